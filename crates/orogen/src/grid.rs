@@ -1,0 +1,184 @@
+//! Windows and grids: plain data, and reading between samples.
+
+use serde::{Deserialize, Serialize};
+
+/// A rectangle of samples of the infinite lattice with spacing `cell`.
+///
+/// Sample (i, j) of a window stands *at* x = (self.x + i) * cell, y = (self.y + j) * cell in metres: a lattice point, not the
+/// middle of a pixel, so neighbouring windows can share an edge. x grows east, y grows south.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Window {
+    /// Column of the first sample on the lattice.
+    pub x: i64,
+    /// Row of the first sample on the lattice.
+    pub y: i64,
+    /// Samples a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Metres from one sample to the next.
+    pub cell: f64,
+}
+
+impl Window {
+    /// The window of `width` x `height` samples that begins at the origin.
+    pub fn new(width: usize, height: usize, cell: f64) -> Window {
+        Window { x: 0, y: 0, width, height, cell }
+    }
+
+    /// The same window begun at column `x` and row `y`.
+    pub fn at(self, x: i64, y: i64) -> Window {
+        Window { x, y, ..self }
+    }
+
+    /// How many samples it has.
+    pub fn len(&self) -> usize {
+        self.width * self.height
+    }
+
+    /// Whether it has no sample at all.
+    pub fn is_empty(&self) -> bool {
+        self.width == 0 || self.height == 0
+    }
+
+    /// The column one past the last.
+    pub fn right(&self) -> i64 {
+        self.x + self.width as i64
+    }
+
+    /// The row one past the last.
+    pub fn bottom(&self) -> i64 {
+        self.y + self.height as i64
+    }
+
+    /// The window with `halo` more samples on each side.
+    pub fn grown(&self, halo: usize) -> Window {
+        Window {
+            x: self.x - halo as i64,
+            y: self.y - halo as i64,
+            width: self.width + 2 * halo,
+            height: self.height + 2 * halo,
+            cell: self.cell,
+        }
+    }
+
+    /// The smallest window that holds both. Both must have the same cell.
+    pub fn union(&self, other: &Window) -> Window {
+        debug_assert_eq!(self.cell, other.cell);
+        let (x, y) = (self.x.min(other.x), self.y.min(other.y));
+        Window {
+            x,
+            y,
+            width: (self.right().max(other.right()) - x) as usize,
+            height: (self.bottom().max(other.bottom()) - y) as usize,
+            cell: self.cell,
+        }
+    }
+
+    /// Whether every sample of `other` is one of this window's.
+    pub fn contains(&self, other: &Window) -> bool {
+        self.cell == other.cell
+            && self.x <= other.x
+            && self.y <= other.y
+            && self.right() >= other.right()
+            && self.bottom() >= other.bottom()
+    }
+
+    /// Metres east of the origin of column `i` of the window. Always the global index times the cell, never a running sum.
+    pub fn east(&self, i: usize) -> f64 {
+        (self.x + i as i64) as f64 * self.cell
+    }
+
+    /// Metres south of the origin of row `j` of the window.
+    pub fn south(&self, j: usize) -> f64 {
+        (self.y + j as i64) as f64 * self.cell
+    }
+
+    /// The eastings of all columns.
+    pub fn eastings(&self) -> Vec<f64> {
+        (0..self.width).map(|i| self.east(i)).collect()
+    }
+
+    /// The southings of all rows.
+    pub fn southings(&self) -> Vec<f64> {
+        (0..self.height).map(|j| self.south(j)).collect()
+    }
+}
+
+/// Samples over a window, row after row from the north, each from west to east: a grid is a picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid<T = f32> {
+    window: Window,
+    data: Vec<T>,
+}
+
+impl<T: Copy> Grid<T> {
+    /// A grid of one value.
+    pub fn filled(window: Window, value: T) -> Grid<T> {
+        Grid { window, data: vec![value; window.len()] }
+    }
+
+    /// A grid over `data`, or `None` if there are not exactly as many samples as the window has.
+    pub fn from_data(window: Window, data: Vec<T>) -> Option<Grid<T>> {
+        (data.len() == window.len()).then_some(Grid { window, data })
+    }
+
+    /// Where the samples stand.
+    pub fn window(&self) -> &Window {
+        &self.window
+    }
+
+    /// Samples a row.
+    pub fn width(&self) -> usize {
+        self.window.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> usize {
+        self.window.height
+    }
+
+    /// All samples, row-major.
+    pub fn data(&self) -> &[T] {
+        &self.data
+    }
+
+    /// All samples, to change.
+    pub fn data_mut(&mut self) -> &mut [T] {
+        &mut self.data
+    }
+
+    /// The samples without their window.
+    pub fn into_data(self) -> Vec<T> {
+        self.data
+    }
+
+    /// Row `j` of the window, from 0.
+    pub fn row(&self, j: usize) -> &[T] {
+        &self.data[j * self.window.width..(j + 1) * self.window.width]
+    }
+
+    /// Row `j`, to change.
+    pub fn row_mut(&mut self, j: usize) -> &mut [T] {
+        let width = self.window.width;
+        &mut self.data[j * width..(j + 1) * width]
+    }
+
+    /// The sample in column `i` and row `j` of the window, both from 0.
+    pub fn get(&self, i: usize, j: usize) -> T {
+        self.data[j * self.window.width + i]
+    }
+
+    /// The part of the grid in `window`, or `None` if the grid does not hold all of it.
+    pub fn crop(&self, window: &Window) -> Option<Grid<T>> {
+        if !self.window.contains(window) {
+            return None;
+        }
+        let (left, top) = ((window.x - self.window.x) as usize, (window.y - self.window.y) as usize);
+        let mut data = Vec::with_capacity(window.len());
+        for j in 0..window.height {
+            data.extend_from_slice(&self.row(top + j)[left..left + window.width]);
+        }
+        Some(Grid { window: *window, data })
+    }
+}

@@ -1,0 +1,8 @@
+//! Orogen: a recipe describes a world; the engine makes any window of it, at any resolution, always the same.
+#![forbid(unsafe_code)]
+
+pub mod error;
+pub mod grid;
+
+pub use error::{Error, ErrorKind, Result};
+pub use grid::{Grid, Window};
