@@ -1,0 +1,101 @@
+//! `cargo xtask bench`: the one door to every figure the project claims.
+
+mod host;
+mod report;
+
+use std::path::PathBuf;
+
+use crate::failure::{Failure, Result, on_file};
+use crate::shell;
+use crate::table;
+
+pub const ABOUT: &str = "measure beside peers and physical limits; print a table, write JSON";
+
+pub const HELP: &str = "
+Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
+
+Builds the benches for release, measures one area (or each in turn) and prints a table.
+
+  AREA         noise   noise kernels beside other crates, one thread, CPU time
+  --json FILE  write the rows as JSON too; needs an AREA once there are several
+  --case TEXT  only the cases with this in their name
+  --quick      few repetitions: to see that it runs, not to quote
+
+How to read the table: docs/benchmarks.md.
+";
+
+/// Every area, as the bench program names it.
+const AREAS: &[&str] = &["noise"];
+
+#[derive(Debug, Default, PartialEq, Eq)]
+struct Options {
+    area: Option<String>,
+    json: Option<PathBuf>,
+    /// Arguments that the bench program understands.
+    passed: Vec<String>,
+}
+
+/// Measures.
+pub fn run(args: &[String]) -> Result {
+    let options = parse(args)?;
+    let areas: Vec<&str> = options.area.as_deref().map_or_else(|| AREAS.to_vec(), |area| vec![area]);
+    if areas.len() > 1 && options.json.is_some() {
+        return Err(Failure::usage("--json holds one area: name it"));
+    }
+    for area in areas {
+        let mut command = shell::cargo("run --quiet --release --package orogen-bench -- ");
+        let measured = shell::capture(command.arg(area).args(&options.passed))?;
+        let report = report::Report::read(&measured)?;
+        println!("{}", report.heading());
+        println!("{}", table::render(&report::HEAD, &report.cells()));
+        if let Some(path) = &options.json {
+            std::fs::write(path, report.json()).map_err(|e| on_file("write", path, &e))?;
+            println!("\nwritten to {}", path.display());
+        }
+    }
+    Ok(())
+}
+
+fn parse(args: &[String]) -> Result<Options> {
+    let mut options = Options::default();
+    let mut args = args.iter();
+    while let Some(arg) = args.next() {
+        let mut value = || args.next().cloned().ok_or_else(|| Failure::usage(format!("{arg} needs a value after it")));
+        match arg.as_str() {
+            "--json" => options.json = Some(value()?.into()),
+            "--case" => options.passed.extend([arg.clone(), value()?]),
+            "--quick" => options.passed.push(arg.clone()),
+            area if AREAS.contains(&area) && options.area.is_none() => options.area = Some(area.to_owned()),
+            flag if flag.starts_with('-') => return Err(Failure::usage(format!("there is no option '{flag}'"))),
+            other => {
+                return Err(Failure::usage(format!("there is no area '{other}'; there are: {}", AREAS.join(", "))));
+            }
+        }
+    }
+    Ok(options)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(line: &str) -> Result<Options> {
+        parse(&line.split_whitespace().map(str::to_owned).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn options() {
+        let options = parsed("noise --json a.json --case perlin --quick").expect("well formed");
+        assert_eq!(options.area.as_deref(), Some("noise"));
+        assert_eq!(options.json, Some("a.json".into()));
+        assert_eq!(options.passed, ["--case", "perlin", "--quick"]);
+        for (line, expect) in [
+            ("nois", "there is no area 'nois'; there are: noise"),
+            ("--json", "--json needs a value"),
+            ("noise --fast", "no option '--fast'"),
+        ] {
+            let failure = parsed(line).expect_err(expect);
+            assert!(failure.message().contains(expect), "{}", failure.message());
+        }
+    }
+}

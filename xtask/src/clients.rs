@@ -1,0 +1,104 @@
+//! `cargo xtask clients`: the programs of other people that open what we write.
+//!
+//! Each client is a row of a table and a script in xtask/clients/. A client that cannot be had is a failure, not a skip: a
+//! check that did not run has shown nothing.
+
+mod install;
+mod presets;
+
+use std::path::PathBuf;
+
+use crate::failure::{Failure, Result};
+use crate::shell::{cargo, program, root, run as sh, target_dir};
+use crate::steps::{self, Step};
+
+pub const ABOUT: &str = "install the foreign programs that open our files, and ask them";
+
+pub const HELP: &str = "
+Usage: cargo xtask clients [STEP...]
+
+Builds `orogen` for release, installs what is missing and runs every client, or only the steps named:
+
+  build     cargo build --release -p orogen-cli
+  install   apt (as root on Debian), pip into target/clients/venv, npm into target/clients/node; versions pinned
+  presets   every preset against golden/presets.txt, on one thread and two, at every SIMD level of this machine
+  numpy     NumPy reads .npy: the numbers of summary.json, and which way is east
+  pillow    Pillow reads the pictures: what a grey value stands for, and what is sea
+  taplo     taplo checks every recipe against the JSON Schema, and refuses broken ones
+
+`build` and `install` go first whatever is named. Elsewhere than on Debian, or not as root, it says what to install.
+";
+
+/// One foreign program, or a few that one script drives.
+struct Client {
+    /// The script in xtask/clients/, which is also the step's name.
+    name: &'static str,
+    /// Debian packages, each with a program it brings.
+    apt: &'static [(&'static str, &'static str)],
+    /// Python packages, pinned.
+    pip: &'static [&'static str],
+    /// Node packages, pinned.
+    npm: &'static [&'static str],
+}
+
+const NUMPY: &str = "numpy==2.4.6";
+
+const CLIENTS: &[Client] = &[
+    Client { name: "numpy", apt: &[], pip: &[NUMPY], npm: &[] },
+    Client { name: "pillow", apt: &[], pip: &[NUMPY, "pillow==12.2.0"], npm: &[] },
+    Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
+];
+
+const BUILD: Step = Step {
+    name: "build",
+    about: "cargo build --release -p orogen-cli",
+    run: || sh(&mut cargo("build --quiet --release --package orogen-cli")),
+};
+const INSTALL: Step = Step { name: "install", about: "what the clients need", run: || install::all(CLIENTS) };
+
+const STEPS: &[&Step] = &[
+    &BUILD,
+    &INSTALL,
+    &Step { name: "presets", about: "the presets' golden hashes at every level and thread count", run: presets::check },
+    &Step { name: "numpy", about: "NumPy reads .npy", run: || script("numpy") },
+    &Step { name: "pillow", about: "Pillow reads the pictures", run: || script("pillow") },
+    &Step { name: "taplo", about: "taplo checks the recipes against the schema", run: || script("taplo") },
+];
+
+/// Runs the clients.
+pub fn run(args: &[String]) -> Result {
+    let mut named = args.to_vec();
+    if !named.is_empty() {
+        named.extend([BUILD.name.to_owned(), INSTALL.name.to_owned()]);
+    }
+    steps::run("cargo xtask clients", STEPS, &named)
+}
+
+/// Where everything of the clients lies: the venv, the node packages, the files they open.
+fn folder() -> PathBuf {
+    target_dir().join("clients")
+}
+
+/// The binary that is asked for files.
+fn orogen() -> PathBuf {
+    target_dir().join("release").join(format!("orogen{}", std::env::consts::EXE_SUFFIX))
+}
+
+/// Runs one client's script in a fresh folder of its own.
+fn script(name: &str) -> Result {
+    if !CLIENTS.iter().any(|c| c.name == name) {
+        return Err(Failure::new(format!("{name} is not in the table of clients: nothing installs it")));
+    }
+    let work = folder().join("work").join(name);
+    crate::shell::empty_dir(&work)?;
+    let mut command = program(install::python());
+    command
+        .arg(format!("xtask/clients/check_{name}.py"))
+        .env("OROGEN", orogen())
+        .env("OROGEN_ROOT", root())
+        .env("OROGEN_WORK", &work)
+        .env("OROGEN_NODE_BIN", install::node_bin())
+        // No .pyc files in the source tree.
+        .env("PYTHONDONTWRITEBYTECODE", "1");
+    sh(&mut command)
+}

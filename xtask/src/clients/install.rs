@@ -1,0 +1,152 @@
+//! Getting the clients: Debian packages, a venv, a folder of node packages.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+use super::Client;
+use crate::failure::{Failure, Result};
+use crate::shell;
+
+/// A registry may be away for a moment: waits before the second and the third try.
+const BACK_OFF: [Duration; 2] = [Duration::from_secs(5), Duration::from_secs(20)];
+
+/// Installs what these clients need and this machine lacks.
+pub fn all(clients: &[Client]) -> Result {
+    let mut debian: Vec<&str> = Vec::new();
+    if !shell::succeeds(shell::program("python3").args(["-c", "import venv, ensurepip"])) {
+        debian.extend(["python3", "python3-venv"]);
+    }
+    let wanted = clients.iter().flat_map(|c| c.apt);
+    debian.extend(wanted.filter(|(program, _)| !on_path(program)).map(|(_, package)| *package));
+    apt(&sorted(debian))?;
+    pip(&sorted(clients.iter().flat_map(|c| c.pip).copied().collect()))?;
+    npm(&sorted(clients.iter().flat_map(|c| c.npm).copied().collect()))
+}
+
+/// The python that has the pinned packages.
+pub fn python() -> PathBuf {
+    venv().join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" })
+}
+
+/// Where the node packages' programs are.
+pub fn node_bin() -> PathBuf {
+    node().join("node_modules/.bin")
+}
+
+fn venv() -> PathBuf {
+    super::folder().join("venv")
+}
+
+fn node() -> PathBuf {
+    super::folder().join("node")
+}
+
+fn sorted(mut names: Vec<&str>) -> Vec<&str> {
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+fn on_path(name: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&path).any(|dir| dir.join(name).is_file())
+}
+
+fn apt(packages: &[&str]) -> Result {
+    if packages.is_empty() {
+        return Ok(());
+    }
+    let root = shell::capture(shell::program("id").arg("-u")).is_ok_and(|id| id.trim() == "0");
+    if !root || !on_path("apt-get") {
+        return Err(Failure::new(format!(
+            "these Debian packages, or what your system calls them, are missing; install them and run this again: {}",
+            packages.join(" ")
+        )));
+    }
+    let apt_get = |args: &[&str]| {
+        let mut command = shell::program("apt-get");
+        command.args(["-q", "-y"]).args(args).env("DEBIAN_FRONTEND", "noninteractive");
+        command
+    };
+    println!("    apt-get install {}", packages.join(" "));
+    patiently(|| apt_get(&["update"]))?;
+    patiently(|| {
+        let mut command = apt_get(&["install", "--no-install-recommends"]);
+        command.args(packages);
+        command
+    })
+}
+
+fn pip(packages: &[&str]) -> Result {
+    if installed(&venv(), packages) && python().is_file() {
+        return Ok(());
+    }
+    println!("    pip install {}", packages.join(" "));
+    shell::empty_dir(&venv())?;
+    shell::run(shell::program("python3").args(["-m", "venv"]).arg(venv()))?;
+    patiently(|| {
+        let mut command = shell::program(python());
+        command.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--only-binary=:all:"]);
+        command.args(packages);
+        command
+    })?;
+    remember(&venv(), packages)
+}
+
+fn npm(packages: &[&str]) -> Result {
+    if installed(&node(), packages) {
+        return Ok(());
+    }
+    println!("    npm install {}", packages.join(" "));
+    shell::empty_dir(&node())?;
+    shell::write(&node().join("package.json"), "{ \"private\": true }\n")?;
+    patiently(|| {
+        let mut command = shell::program("npm");
+        command.current_dir(node());
+        command.args(["install", "--silent", "--no-audit", "--no-fund", "--ignore-scripts"]).args(packages);
+        command
+    })?;
+    remember(&node(), packages)
+}
+
+/// Three tries with waits between them.
+fn patiently(command: impl Fn() -> Command) -> Result {
+    for wait in BACK_OFF {
+        match shell::run(&mut command()) {
+            Ok(()) => return Ok(()),
+            Err(failure) => println!("    {}; trying again in {} s", failure.message(), wait.as_secs()),
+        }
+        std::thread::sleep(wait);
+    }
+    shell::run(&mut command())
+}
+
+/// Whether a folder holds exactly these packages, by the note left in it when they were all in.
+fn installed(folder: &Path, packages: &[&str]) -> bool {
+    std::fs::read_to_string(note(folder)).is_ok_and(|text| text.lines().eq(packages.iter().copied()))
+}
+
+fn remember(folder: &Path, packages: &[&str]) -> Result {
+    shell::write(&note(folder), &(packages.join("\n") + "\n"))
+}
+
+fn note(folder: &Path) -> PathBuf {
+    folder.join("installed.txt")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_note_tells_a_changed_pin() {
+        let folder = std::env::temp_dir().join(format!("orogen-install-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).expect("a temporary folder");
+        assert!(!installed(&folder, &["a==1"]));
+        remember(&folder, &["a==1", "b==2"]).expect("written");
+        assert!(installed(&folder, &["a==1", "b==2"]));
+        assert!(!installed(&folder, &["a==1"]) && !installed(&folder, &["a==1", "b==3"]));
+        std::fs::remove_dir_all(&folder).expect("removed");
+    }
+}

@@ -1,0 +1,117 @@
+//! `cargo xtask codegen`: the lists that a new node would otherwise have to be written into by hand.
+//!
+//! A node is one file with one `op!` block. Its module line, its place in the list of nodes and its part of the JSON Schema
+//! follow from that file.
+
+mod lists;
+mod op;
+
+use std::path::{Path, PathBuf};
+
+use crate::failure::{Failure, Result, on_file};
+use crate::shell;
+use op::Op;
+
+pub const ABOUT: &str = "rewrite the module and node lists and the JSON Schema";
+
+pub const HELP: &str = "
+Usage: cargo xtask codegen [--check]
+
+Reads the op! block of every file in crates/orogen/src/{field,filter,solver} and rewrites
+  - the module lines at the end of each folder's mod.rs
+  - crates/orogen/src/node_list.rs
+  - recipes/orogen.schema.json, from `orogen schema`
+
+  --check  change nothing; fail if one of them is not current
+";
+
+/// The three localities: a folder each, and the word in an op! block.
+const LOCALITIES: [&str; 3] = ["field", "filter", "solver"];
+
+const SCHEMA: &str = "recipes/orogen.schema.json";
+
+/// Rewrites or checks everything.
+pub fn run(args: &[String]) -> Result {
+    let check = match args {
+        [] => false,
+        [flag] if flag == "--check" => true,
+        _ => return Err(Failure::usage(format!("expected nothing or --check, got '{}'", args.join(" ")))),
+    };
+    // The lists come first: `orogen schema` does not build without the module of a new node.
+    lists(check)?;
+    schema(check)
+}
+
+/// The module lines and the list of nodes.
+pub fn lists(check: bool) -> Result {
+    let src = shell::root().join("crates/orogen/src");
+    let mut ops = Vec::new();
+    for locality in LOCALITIES {
+        let folder = src.join(locality);
+        let names = modules(&folder)?;
+        for name in &names {
+            let path = folder.join(format!("{name}.rs"));
+            let text = shell::read(&path)?;
+            let found = op::find(&text).map_err(|e| Failure::new(format!("{}: {e}", shell::relative(&path))))?;
+            if let Some(declared) = found {
+                if declared.locality != locality {
+                    return Err(Failure::new(format!(
+                        "{}: its op! block says {}, its folder says {locality}",
+                        shell::relative(&path),
+                        declared.locality
+                    )));
+                }
+                ops.push(Op { module: name.clone(), ..declared });
+            }
+        }
+        let list = folder.join("mod.rs");
+        let head = shell::read(&list)?;
+        let text = lists::module_file(&head, &names).ok_or_else(|| {
+            Failure::new(format!("{}: the line '{}' is missing", shell::relative(&list), lists::MARKER))
+        })?;
+        settle(&list, &text, check)?;
+    }
+    lists::distinct(&ops).map_err(Failure::new)?;
+    settle(&src.join("node_list.rs"), &lists::node_list(&LOCALITIES, &ops), check)
+}
+
+/// The JSON Schema of recipes.
+pub fn schema(check: bool) -> Result {
+    let text = shell::capture(&mut shell::cargo("run --quiet --package orogen-cli -- schema"))?;
+    if text.trim().is_empty() {
+        return Err(Failure::new("`orogen schema` printed nothing"));
+    }
+    settle(&shell::root().join(SCHEMA), &text, check)
+}
+
+/// The names of a folder's modules.
+fn modules(folder: &Path) -> Result<Vec<String>> {
+    let entries = std::fs::read_dir(folder).map_err(|e| on_file("read", folder, &e))?;
+    let mut names = Vec::new();
+    for entry in entries {
+        let path: PathBuf = entry.map_err(|e| on_file("read", folder, &e))?.path();
+        let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or("");
+        if path.extension().is_some_and(|e| e == "rs") && stem != "mod" {
+            names.push(stem.to_owned());
+        }
+    }
+    names.sort_by(|a, b| lists::version_order(a, b));
+    Ok(names)
+}
+
+/// Makes the file hold this text, or says that it does not.
+fn settle(path: &Path, text: &str, check: bool) -> Result {
+    let shown = shell::relative(path);
+    let current = if path.exists() { shell::read(path)? } else { String::new() };
+    if current == text {
+        println!("    {shown} is current");
+        return Ok(());
+    }
+    if check {
+        return Err(Failure::new(format!(
+            "{shown} is not current; run `cargo xtask codegen` and commit what it writes"
+        )));
+    }
+    println!("    {shown} rewritten");
+    shell::write(path, text)
+}

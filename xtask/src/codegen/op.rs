@@ -1,0 +1,106 @@
+//! Finding the op! block of a node's file.
+
+/// What codegen needs to know of a node.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Op {
+    /// The module, which is the file's name.
+    pub module: String,
+    /// The struct.
+    pub name: String,
+    /// The word a recipe writes.
+    pub op: String,
+    /// The locality it declares.
+    pub locality: String,
+}
+
+/// The one op! block of this source text; none if the file is a helper. The module is left empty.
+pub fn find(text: &str) -> Result<Option<Op>, String> {
+    let mut found = None;
+    let mut lines = text.lines().map(str::trim);
+    while let Some(line) = lines.next() {
+        if !opens(line) {
+            continue;
+        }
+        if found.is_some() {
+            return Err("a second op! block: one node a file".to_owned());
+        }
+        let declaration = lines
+            .find(|l| !(l.is_empty() || l.starts_with("//") || l.starts_with('#')))
+            .ok_or("an op! block that never begins")?;
+        found = Some(parse(declaration).ok_or_else(|| {
+            format!("expected `pub struct NAME = \"op_name\", field|filter|solver, revision N;`, found `{declaration}`")
+        })?);
+    }
+    Ok(found)
+}
+
+/// `op! {`, also by its path; not a line of a comment or a doc example.
+fn opens(line: &str) -> bool {
+    let call = line.strip_prefix("crate::op::").or(line.strip_prefix("crate::")).unwrap_or(line);
+    call.strip_prefix("op!").is_some_and(|rest| rest.trim_start().starts_with('{'))
+}
+
+fn parse(line: &str) -> Option<Op> {
+    let (name, rest) = line.strip_prefix("pub struct ")?.split_once('=')?;
+    let mut parts = rest.trim().strip_suffix(';')?.split(',').map(str::trim);
+    let op = parts.next()?.strip_prefix('"')?.strip_suffix('"')?;
+    let locality = parts.next()?;
+    let revision = parts.next()?.strip_prefix("revision ")?;
+    let whole = parts.next().is_none()
+        && revision.trim().parse::<u32>().is_ok()
+        && super::LOCALITIES.contains(&locality)
+        && !op.is_empty();
+    whole.then(|| Op {
+        module: String::new(),
+        name: name.trim().to_owned(),
+        op: op.to_owned(),
+        locality: locality.to_owned(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BLUR: &str = r#"//! Blur.
+use crate::op::op;
+
+op! {
+    /// A gaussian blur.
+    ///
+    /// Slow in doubt.
+    #[derive(Debug)]
+    pub struct Blur = "blur", filter, revision 1;
+    radius: f64 = 10.0,
+}
+"#;
+
+    fn op(name: &str, op: &str, locality: &str) -> Op {
+        Op { module: String::new(), name: name.into(), op: op.into(), locality: locality.into() }
+    }
+
+    #[test]
+    fn one_block_behind_docs_and_attributes() {
+        assert_eq!(find(BLUR), Ok(Some(op("Blur", "blur", "filter"))));
+        assert_eq!(find(&BLUR.replace("op! {", "crate::op! {")), Ok(Some(op("Blur", "blur", "filter"))));
+        assert_eq!(find("op!{\npub struct A=\"a\",field,revision 12;\n}"), Ok(Some(op("A", "a", "field"))));
+    }
+
+    #[test]
+    fn a_helper_has_none() {
+        assert_eq!(find("//! Shared by two nodes.\n// op! { stands elsewhere\npub fn help() {}\n"), Ok(None));
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        for (text, expect) in [
+            (BLUR.to_owned() + BLUR, "a second op! block"),
+            (BLUR.replace("filter,", "brush,"), "found `pub struct Blur = \"blur\", brush, revision 1;`"),
+            (BLUR.replace(", revision 1", ""), "expected `pub struct NAME"),
+            ("op! {\n/// nothing\n".to_owned(), "never begins"),
+        ] {
+            let error = find(&text).expect_err(expect);
+            assert!(error.contains(expect), "{error}");
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Which licences the dependencies have: anything that would bind a program built with Orogen is refused.
+
+use serde_json::Value;
+
+use crate::failure::{Failure, Result};
+use crate::shell;
+
+/// What we accept: permissive licences, and MPL-2.0, which binds only its own files.
+const ACCEPTED: &[&str] = &[
+    "0BSD",
+    "Apache-2.0",
+    "BSD-2-Clause",
+    "BSD-3-Clause",
+    "BSL-1.0",
+    "CC0-1.0",
+    "ISC",
+    "MIT",
+    "MIT-0",
+    "MPL-2.0",
+    "Unicode-3.0",
+    "Unlicense",
+    "Zlib",
+];
+
+/// Checks every package that Cargo.lock names for this workspace.
+pub fn check() -> Result {
+    let text = shell::capture(&mut shell::cargo("metadata --format-version 1"))?;
+    let metadata: Value =
+        serde_json::from_str(&text).map_err(|e| Failure::new(format!("cargo metadata printed no JSON: {e}")))?;
+    let packages = metadata["packages"].as_array().map(Vec::as_slice).unwrap_or_default();
+    let refused: Vec<String> = packages
+        .iter()
+        .filter_map(|package| {
+            let licence = package["license"].as_str().unwrap_or("");
+            let name = format!("{} {}", package["name"].as_str()?, package["version"].as_str()?);
+            (!accepted(licence)).then(|| format!("  {name}: '{licence}'"))
+        })
+        .collect();
+    if packages.is_empty() || !refused.is_empty() {
+        return Err(Failure::new(format!("licences not on the accepted list:\n{}", refused.join("\n"))));
+    }
+    println!("    {} packages, every licence accepted", packages.len());
+    Ok(())
+}
+
+/// Whether an SPDX expression can be met with accepted licences alone. `/` is the old way to write OR; AND binds tighter.
+fn accepted(expression: &str) -> bool {
+    let spaced = expression.replace('(', " ( ").replace(')', " ) ").replace('/', " OR ");
+    let words: Vec<&str> = spaced.split_whitespace().collect();
+    let mut rest = words.as_slice();
+    either(&mut rest) && rest.is_empty()
+}
+
+fn either(rest: &mut &[&str]) -> bool {
+    let mut any = both(rest);
+    while take(rest, "OR") {
+        any |= both(rest);
+    }
+    any
+}
+
+fn both(rest: &mut &[&str]) -> bool {
+    let mut all = one(rest);
+    while take(rest, "AND") {
+        all &= one(rest);
+    }
+    all
+}
+
+fn one(rest: &mut &[&str]) -> bool {
+    if take(rest, "(") {
+        let inner = either(rest);
+        return take(rest, ")") && inner;
+    }
+    let Some((&name, after)) = rest.split_first() else { return false };
+    *rest = after;
+    if take(rest, "WITH") {
+        // An exception only ever grants more.
+        *rest = rest.get(1..).unwrap_or_default();
+    }
+    ACCEPTED.contains(&name)
+}
+
+fn take(rest: &mut &[&str], word: &str) -> bool {
+    let found = rest.first() == Some(&word);
+    if found {
+        *rest = &rest[1..];
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::accepted;
+
+    #[test]
+    fn expressions() {
+        for (expression, expect) in [
+            ("MIT", true),
+            ("MIT OR Apache-2.0", true),
+            ("MIT/Apache-2.0", true),
+            ("Apache-2.0 WITH LLVM-exception", true),
+            ("(MIT OR Apache-2.0) AND Unicode-3.0", true),
+            ("MIT OR GPL-3.0-only", true),
+            ("GPL-3.0-only", false),
+            ("MIT AND GPL-2.0-or-later", false),
+            ("AGPL-3.0", false),
+            ("(MIT", false),
+            ("MIT Apache-2.0", false),
+            ("", false),
+        ] {
+            assert_eq!(accepted(expression), expect, "{expression}");
+        }
+    }
+}

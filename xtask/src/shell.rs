@@ -1,0 +1,95 @@
+//! Running other programs, and where things lie.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use crate::failure::{Failure, Result, on_file};
+
+/// The root of the repository.
+pub fn root() -> &'static Path {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.parent().unwrap_or(here)
+}
+
+/// The target folder: the one this very program was built into, wherever the user has put it.
+pub fn target_dir() -> PathBuf {
+    let exe = std::env::current_exe().ok();
+    let dir = exe.as_deref().and_then(Path::parent).and_then(Path::parent).map(Path::to_path_buf);
+    dir.unwrap_or_else(|| root().join("target"))
+}
+
+/// A program started at the root of the repository.
+pub fn program(name: impl AsRef<std::ffi::OsStr>) -> Command {
+    let mut command = Command::new(name);
+    command.current_dir(root());
+    command
+}
+
+/// The cargo that runs us, with arguments split at blanks.
+pub fn cargo(args: &str) -> Command {
+    let mut command = program(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(args.split_whitespace());
+    command
+}
+
+/// Runs it with our own output and no input.
+pub fn run(command: &mut Command) -> Result {
+    let status = command.stdin(Stdio::null()).status().map_err(|e| cannot_start(command, &e))?;
+    if status.success() { Ok(()) } else { Err(Failure::new(format!("`{}` ended with {status}", shown(command)))) }
+}
+
+/// Runs it and returns what it printed; its errors go to our own error output.
+pub fn capture(command: &mut Command) -> Result<String> {
+    let output =
+        command.stdin(Stdio::null()).stderr(Stdio::inherit()).output().map_err(|e| cannot_start(command, &e))?;
+    if !output.status.success() {
+        return Err(Failure::new(format!("`{}` ended with {}", shown(command), output.status)));
+    }
+    String::from_utf8(output.stdout).map_err(|_| Failure::new(format!("`{}` printed no UTF-8", shown(command))))
+}
+
+/// Whether it starts and ends well, saying nothing.
+pub fn succeeds(command: &mut Command) -> bool {
+    let quiet = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    quiet.status().is_ok_and(|s| s.success())
+}
+
+/// The command line, for a person.
+pub fn shown(command: &Command) -> String {
+    let name = Path::new(command.get_program());
+    let name = name.file_name().unwrap_or(name.as_os_str()).to_string_lossy().into_owned();
+    std::iter::once(name)
+        .chain(command.get_args().map(|a| {
+            let a = a.to_string_lossy();
+            if a.contains(' ') { format!("'{a}'") } else { a.into_owned() }
+        }))
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+/// Reads a text file.
+pub fn read(path: &Path) -> Result<String> {
+    std::fs::read_to_string(path).map_err(|e| on_file("read", path, &e))
+}
+
+/// Writes a text file.
+pub fn write(path: &Path, text: &str) -> Result {
+    std::fs::write(path, text).map_err(|e| on_file("write", path, &e))
+}
+
+/// An empty folder at this path, whatever was there before.
+pub fn empty_dir(path: &Path) -> Result {
+    if path.exists() {
+        std::fs::remove_dir_all(path).map_err(|e| on_file("clear", path, &e))?;
+    }
+    std::fs::create_dir_all(path).map_err(|e| on_file("create", path, &e))
+}
+
+/// A path as the reader knows it: from the root of the repository.
+pub fn relative(path: &Path) -> String {
+    path.strip_prefix(root()).unwrap_or(path).to_string_lossy().replace('\\', "/")
+}
+
+fn cannot_start(command: &Command, error: &std::io::Error) -> Failure {
+    Failure::new(format!("cannot start `{}`: {error}", shown(command)))
+}

@@ -1,0 +1,58 @@
+//! `cargo xtask test`: everything that Rust alone can prove.
+
+use crate::failure::Result;
+use crate::shell::{cargo, run as sh};
+use crate::steps::{self, Step};
+use crate::{codegen, licences};
+
+pub const ABOUT: &str = "everything that proves it works, with Rust alone";
+
+pub const HELP: &str = "
+Usage: cargo xtask test [STEP...]
+
+Runs the steps in this order, or only those named, and stops at the first that fails:
+
+  fmt       every file is formatted
+  lists     the generated module and node lists are current
+  clippy    no warning in any target
+  tests     unit tests, integration tests, doctests, examples build
+  schema    recipes/orogen.schema.json is what `orogen schema` prints
+  docs      the libraries' documentation builds without a warning
+  licences  every dependency has a licence we accept
+
+It needs nothing but Rust and, the first time, the crates that Cargo.lock names.
+";
+
+const STEPS: &[&Step] = &[
+    &Step { name: "fmt", about: "cargo fmt --all --check", run: || sh(&mut cargo("fmt --all --check")) },
+    &Step { name: "lists", about: "the generated module and node lists are current", run: || codegen::lists(true) },
+    &Step {
+        name: "clippy",
+        about: "cargo clippy --workspace --all-targets -- -D warnings",
+        run: || sh(&mut cargo("clippy --quiet --workspace --all-targets -- -D warnings")),
+    },
+    &Step {
+        name: "tests",
+        about: "cargo test --workspace",
+        run: || sh(&mut cargo("test --workspace --exclude orogen-bench")),
+    },
+    &Step {
+        name: "schema",
+        about: "recipes/orogen.schema.json is what `orogen schema` prints",
+        run: || codegen::schema(true),
+    },
+    &Step { name: "docs", about: "the libraries' documentation builds without a warning", run: docs },
+    &Step { name: "licences", about: "every dependency has a licence we accept", run: licences::check },
+];
+
+/// Runs the checks.
+pub fn run(args: &[String]) -> Result {
+    steps::run("cargo xtask test", STEPS, args)
+}
+
+/// The binary `orogen` is left out: its pages would be written over those of the library of the same name.
+fn docs() -> Result {
+    let mut command =
+        cargo("doc --quiet --workspace --no-deps --exclude orogen-cli --exclude orogen-bench --exclude xtask");
+    sh(command.env("RUSTDOCFLAGS", "-D warnings"))
+}
