@@ -3,6 +3,9 @@
 
 pub mod error;
 pub mod grid;
+pub mod file;
+pub mod format;
+pub mod analysis;
 
 pub use error::{Error, ErrorKind, Result};
 pub use grid::{Grid, Window};

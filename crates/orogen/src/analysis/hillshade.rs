@@ -1,0 +1,124 @@
+//! Hillshade: how much light a slope catches.
+//!
+//! For the light's azimuth a (degrees clockwise from north) and altitude, z the zenith angle, s the slope and b its aspect
+//! (Horn 1981): `cos z cos s + sin z sin s cos(a - b)`, clamped to 0. With the gradient (p, q) and the z factor k this is the
+//! light's direction times the surface's normal:
+//!
+//! ```text
+//! (L_up - k (p L_east + q L_north)) / sqrt(1 + k^2 (p^2 + q^2))
+//! ```
+//!
+//! which needs no angle per sample. 1 is full light, level ground gets the sine of the altitude. A missing sample is dark: 0.
+
+use super::slope::{Gradient, from_gradients};
+use crate::grid::Grid;
+
+/// Where the light comes from, ready to be asked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Light {
+    east: f32,
+    north: f32,
+    up: f32,
+    z_factor: f32,
+}
+
+impl Default for Light {
+    /// The cartographer's light: from the north-west, half way up, heights as they are.
+    fn default() -> Light {
+        Light::new(315.0, 45.0, 1.0)
+    }
+}
+
+impl Light {
+    /// Light from `azimuth` degrees (clockwise from north) and `altitude` degrees above the horizon; heights count
+    /// `z_factor` times.
+    pub fn new(azimuth: f64, altitude: f64, z_factor: f64) -> Light {
+        let (azimuth, altitude) = (azimuth.to_radians(), altitude.to_radians());
+        Light {
+            east: (libm::sin(azimuth) * libm::cos(altitude)) as f32,
+            north: (libm::cos(azimuth) * libm::cos(altitude)) as f32,
+            up: libm::sin(altitude) as f32,
+            z_factor: z_factor as f32,
+        }
+    }
+
+    /// The share of light, 0 to 1, that ground of this gradient gets; 0 if the gradient is not a number.
+    pub fn on(&self, gradient: Gradient) -> f32 {
+        let (p, q) = (self.z_factor * gradient.east, self.z_factor * gradient.north);
+        let light = self.toward(p, q) / (1.0 + p * p + q * q).sqrt();
+        // Written so that NaN, which is above nothing, falls to 0 as well.
+        if light > 0.0 { light.min(1.0) } else { 0.0 }
+    }
+
+    /// The share that level ground gets.
+    pub fn on_level(&self) -> f32 {
+        self.up
+    }
+
+    fn toward(&self, p: f32, q: f32) -> f32 {
+        self.up - p * self.east - q * self.north
+    }
+}
+
+/// The hillshade of every sample of `grid` but those of its border.
+pub fn hillshade(grid: &Grid, light: &Light) -> Grid {
+    from_gradients(grid, |gradient| light.on(gradient))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Window;
+
+    /// The textbook's angles, in f64.
+    fn by_angles(east: f64, north: f64, azimuth: f64, altitude: f64, z_factor: f64) -> f64 {
+        let (p, q) = (east * z_factor, north * z_factor);
+        let zenith = (90.0 - altitude).to_radians();
+        let slope = libm::atan(libm::sqrt(p * p + q * q));
+        // Aspect is where the slope faces: downhill, clockwise from north.
+        let aspect = libm::atan2(-p, -q);
+        let light = libm::cos(zenith) * libm::cos(slope)
+            + libm::sin(zenith) * libm::sin(slope) * libm::cos(azimuth.to_radians() - aspect);
+        light.max(0.0)
+    }
+
+    #[test]
+    fn it_is_the_textbooks_within_a_hundredth_of_a_grey_level() {
+        for azimuth in [0.0, 45.0, 100.0, 225.0, 315.0] {
+            for altitude in [5.0, 30.0, 45.0, 90.0] {
+                for step in 0..50 {
+                    let (east, north) = (f64::from(step * 7 % 50) * 0.1 - 2.5, f64::from(step * 11 % 50) * 0.1 - 2.5);
+                    let light = Light::new(azimuth, altitude, 1.5);
+                    let got = light.on(Gradient { east: east as f32, north: north as f32 });
+                    let expect = by_angles(east, north, azimuth, altitude, 1.5);
+                    assert!((f64::from(got) - expect).abs() < 0.01 / 255.0, "{azimuth} {altitude} {east} {north}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_north_west_is_bright_and_the_south_east_dark() {
+        // A cone: its north-west side faces the light.
+        let window = Window::new(21, 21, 10.0).at(-10, -10);
+        let mut cone = Grid::filled(window, 0.0);
+        for j in 0..21 {
+            for i in 0..21 {
+                let (x, y) = (window.east(i), window.south(j));
+                cone.row_mut(j)[i] = (500.0 - (x * x + y * y).sqrt()) as f32;
+            }
+        }
+        let shade = hillshade(&cone, &Light::default());
+        let (north_west, south_east) = (shade.get(3, 3), shade.get(15, 15));
+        assert!((north_west - 1.0).abs() < 0.01 && south_east < 0.01, "{north_west} {south_east}");
+        let level = hillshade(&Grid::filled(window, 7.0), &Light::default());
+        assert!(level.data().iter().all(|&v| (v - 0.5f32.sqrt()).abs() < 1e-6));
+    }
+
+    #[test]
+    fn missing_samples_are_dark() {
+        let light = Light::default();
+        assert_eq!(light.on(Gradient { east: f32::NAN, north: 0.0 }), 0.0);
+        assert_eq!(light.on(Gradient { east: f32::MAX, north: f32::MAX }), 0.0);
+    }
+}

@@ -1,0 +1,436 @@
+//! Writing files whole or not at all.
+//!
+//! [`write_whole`] writes under a temporary name beside the target, syncs it, renames it over the target and syncs the folder.
+//! Whoever looks at the target sees the old file or the new one, never a half; after any failure the old file is still there
+//! and the temporary one is gone.
+//!
+//! What the target may already be:
+//!
+//! - *a file*: replaced, keeping its permissions; one marked read-only is left alone and refused.
+//! - *a link*: what it names is replaced and the link stays, as an ordinary write would do. A link to nothing is refused.
+//! - *a folder*: refused.
+//! - *a pipe or a device* (`/dev/null`): cannot be replaced without destroying it, so it is written straight through.
+
+use std::fs::{self, File, OpenOptions, Permissions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::error::{Error, ErrorKind, Result};
+
+/// Large enough that a system call is rare, small enough not to matter to a memory budget.
+const BUFFER: usize = 256 * 1024;
+
+/// How many temporary names are tried before giving up: all of them taken means that something is wrong with the folder.
+const NAMES: usize = 100;
+
+/// Lets an [`Error`] travel through code that speaks [`io::Result`], such as the body given to [`write_whole`], which takes it
+/// out again unchanged.
+impl From<Error> for io::Error {
+    fn from(error: Error) -> io::Error {
+        io::Error::other(error)
+    }
+}
+
+/// Writes the file at `path` with what `body` writes: all of it, or nothing.
+///
+/// `body` may fail with an I/O error, which comes back as a sentence naming the file, or with an [`Error`] of its own (through
+/// `?` or `into`), which comes back as it is.
+///
+/// ```
+/// # fn main() -> orogen::Result<()> {
+/// let path = std::env::temp_dir().join(format!("orogen-doc-{}.txt", std::process::id()));
+/// orogen::file::write_whole(&path, |out| out.write_all(b"all of it"))?;
+/// # std::fs::remove_file(&path).ok();
+/// # Ok(())
+/// # }
+/// ```
+pub fn write_whole(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    write_through(path, |file| Box::new(file), body)
+}
+
+/// The error that `cause`, met while `doing` something ("read", "write") to what is called `path`, means to a person: the
+/// [`Error`] inside it if it carries one.
+pub fn explain(doing: &str, path: &Path, cause: &io::Error) -> Error {
+    match cause.get_ref().and_then(|inner| inner.downcast_ref::<Error>()) {
+        Some(error) => error.clone(),
+        None => Error::file(doing, path, cause),
+    }
+}
+
+/// What is to be written to.
+enum Target {
+    /// A file to put in place, under the name that links lead to, with the permissions of the one that is there.
+    File { real: PathBuf, permissions: Option<Permissions> },
+    /// A pipe or device.
+    Stream,
+}
+
+/// [`write_whole`], with `wrap` around the file: where the tests inject their faults.
+fn write_through(
+    path: &Path,
+    wrap: impl for<'f> FnOnce(&'f File) -> Box<dyn Write + 'f>,
+    body: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<()> {
+    let failed = |cause: io::Error| Error::file("write", path, &cause);
+    match target(path)? {
+        Target::Stream => {
+            let file = OpenOptions::new().write(true).open(path).map_err(failed)?;
+            fill(path, wrap(&file), body)
+        }
+        Target::File { real, permissions } => {
+            let (temporary, file) = Temporary::create(path, &real)?;
+            if let Some(permissions) = permissions {
+                // Some file systems have no permissions to keep; the file matters more.
+                let _ = file.set_permissions(permissions);
+            }
+            fill(path, wrap(&file), body)?;
+            file.sync_all().map_err(failed)?;
+            drop(file);
+            temporary.rename(&real).map_err(failed)?;
+            sync_folder(&real);
+            Ok(())
+        }
+    }
+}
+
+/// Finds out what `path` is, and refuses what cannot be written.
+fn target(path: &Path) -> Result<Target> {
+    let refuse = |why: &str| Error::new(ErrorKind::File, format!("cannot write {}: {why}", path.display()));
+    let ends_in_separator = path.to_string_lossy().ends_with(std::path::is_separator);
+    match fs::metadata(path) {
+        Ok(there) if there.is_dir() => Err(refuse("it is a folder")),
+        Ok(there) if there.is_file() => {
+            if there.permissions().readonly() {
+                return Err(refuse("it is marked read-only"));
+            }
+            let real = fs::canonicalize(path).map_err(|cause| Error::file("write", path, &cause))?;
+            Ok(Target::File { real, permissions: Some(there.permissions()) })
+        }
+        Ok(_) => Ok(Target::Stream),
+        Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
+            if fs::symlink_metadata(path).is_ok() {
+                return Err(refuse("it is a link to something that does not exist"));
+            }
+            if path.file_name().is_none() || ends_in_separator {
+                return Err(refuse("it does not name a file"));
+            }
+            Ok(Target::File { real: path.to_path_buf(), permissions: None })
+        }
+        Err(cause) => Err(Error::file("write", path, &cause)),
+    }
+}
+
+/// Runs `body` on a buffer over `file`. The file's own failure is the one reported, whatever `body` (or the format library in
+/// it) made of it, even if it swallowed it.
+fn fill(path: &Path, file: Box<dyn Write + '_>, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    let mut failure = None;
+    let done = {
+        let mut out = BufWriter::with_capacity(BUFFER, Noting { path, inner: file, failure: &mut failure });
+        let done = body(&mut out).and_then(|()| out.flush());
+        // What is left in the buffer after a failure must not be tried again on the way out.
+        drop(out.into_parts());
+        done
+    };
+    match (failure, done) {
+        (Some(failure), _) => Err(failure),
+        (None, Err(cause)) => Err(explain("write", path, &cause)),
+        (None, Ok(())) => Ok(()),
+    }
+}
+
+/// A writer that remembers the first failure of the one inside.
+struct Noting<'a> {
+    path: &'a Path,
+    inner: Box<dyn Write + 'a>,
+    failure: &'a mut Option<Error>,
+}
+
+impl Noting<'_> {
+    fn note<T>(&mut self, result: io::Result<T>) -> io::Result<T> {
+        if let Err(cause) = &result
+            && cause.kind() != io::ErrorKind::Interrupted
+            && self.failure.is_none()
+        {
+            *self.failure = Some(Error::file("write", self.path, cause));
+        }
+        result
+    }
+}
+
+impl Write for Noting<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let result = self.inner.write(bytes);
+        self.note(result)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let result = self.inner.flush();
+        self.note(result)
+    }
+}
+
+/// A temporary file beside its target, removed when dropped unless it was renamed.
+struct Temporary(PathBuf);
+
+impl Temporary {
+    /// Creates one in the folder of `real`. Its name has nothing of the target's, so that the longest names still work; it
+    /// must be new, so that nothing planted under it is followed or overwritten.
+    fn create(path: &Path, real: &Path) -> Result<(Temporary, File)> {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let folder = folder(real);
+        for _ in 0..NAMES {
+            let count = COUNT.fetch_add(1, Ordering::Relaxed);
+            let name = folder.join(format!(".orogen-{}-{count}.tmp", std::process::id()));
+            match OpenOptions::new().write(true).create_new(true).open(&name) {
+                Ok(file) => return Ok((Temporary(name), file)),
+                Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
+                    let sentence =
+                        format!("cannot write {}: the folder {} does not exist", path.display(), folder.display());
+                    return Err(Error::new(ErrorKind::File, sentence));
+                }
+                Err(cause) => return Err(Error::file("write", path, &cause)),
+            }
+        }
+        let sentence =
+            format!("cannot write {}: too many temporary files are left in {}", path.display(), folder.display());
+        Err(Error::new(ErrorKind::File, sentence))
+    }
+
+    fn rename(mut self, real: &Path) -> io::Result<()> {
+        fs::rename(&self.0, real)?;
+        self.0 = PathBuf::new();
+        Ok(())
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        if !self.0.as_os_str().is_empty() {
+            let _ = fs::remove_file(&self.0);
+        }
+    }
+}
+
+fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Makes the rename itself survive a power cut. Not every system can open or sync a folder, and the file is in place either
+/// way, so a failure here is none.
+fn sync_folder(path: &Path) {
+    if let Ok(folder) = File::open(folder(path)) {
+        let _ = folder.sync_all();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Folder(PathBuf);
+
+    impl Folder {
+        fn new(name: &str) -> Folder {
+            let path = std::env::temp_dir().join(format!("orogen-file-{}-{name}", std::process::id()));
+            let _ = fs::remove_dir_all(&path);
+            fs::create_dir_all(&path).unwrap();
+            Folder(path)
+        }
+
+        fn names(&self) -> Vec<String> {
+            let mut names: Vec<String> =
+                fs::read_dir(&self.0).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+            names.sort();
+            names
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    /// Takes `left` bytes, then fails as a full disk does.
+    struct Full<'f> {
+        file: &'f File,
+        left: usize,
+    }
+
+    impl Write for Full<'_> {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            if self.left == 0 && !bytes.is_empty() {
+                return Err(io::ErrorKind::StorageFull.into());
+            }
+            let take = bytes.len().min(self.left);
+            self.left -= take;
+            self.file.write(&bytes[..take])
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            self.file.flush()
+        }
+    }
+
+    #[test]
+    fn a_disk_that_fills_up_at_any_byte_leaves_the_old_file() {
+        let folder = Folder::new("full");
+        let path = folder.0.join("a.bin");
+        write_whole(&path, |out| out.write_all(b"old")).unwrap();
+        let text = b"a body of some length, written in pieces";
+        for n in 0..text.len() {
+            // Pieces of a length of its own make the buffer and the writer disagree about boundaries.
+            let error = write_through(
+                &path,
+                |file| Box::new(Full { file, left: n }),
+                |out| text.chunks(7).try_for_each(|piece| out.write_all(piece)),
+            )
+            .unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::File);
+            assert!(error.to_string().starts_with(&format!("cannot write {}: ", path.display())), "{error}");
+            assert_eq!(fs::read(&path).unwrap(), b"old", "after {n} bytes");
+            assert_eq!(folder.names(), ["a.bin"], "after {n} bytes");
+        }
+        write_through(&path, |file| Box::new(Full { file, left: text.len() }), |out| out.write_all(text)).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), text);
+    }
+
+    #[test]
+    fn a_failure_inside_a_large_body_leaves_nothing() {
+        let folder = Folder::new("large");
+        let path = folder.0.join("a.bin");
+        let piece = vec![7u8; 100_000];
+        for n in [0, 1, BUFFER - 1, BUFFER, BUFFER + 1, 999_999] {
+            let result = write_through(
+                &path,
+                |file| Box::new(Full { file, left: n }),
+                |out| (0..10).try_for_each(|_| out.write_all(&piece)),
+            );
+            assert!(result.is_err());
+            assert_eq!(folder.names(), [] as [&str; 0], "after {n} bytes");
+        }
+    }
+
+    #[test]
+    fn a_swallowed_failure_is_still_a_failure() {
+        let folder = Folder::new("swallowed");
+        let path = folder.0.join("a.bin");
+        let result = write_through(
+            &path,
+            |file| Box::new(Full { file, left: 10 }),
+            |out| {
+                let _ = out.write_all(&vec![0; 2 * BUFFER]);
+                Ok(())
+            },
+        );
+        assert!(result.is_err());
+        assert_eq!(folder.names(), [] as [&str; 0]);
+    }
+
+    #[test]
+    fn a_body_that_fails_leaves_the_old_file_and_its_own_error() {
+        let folder = Folder::new("body");
+        let path = folder.0.join("a.bin");
+        write_whole(&path, |out| out.write_all(b"old")).unwrap();
+        let error = write_whole(&path, |out| {
+            out.write_all(b"half")?;
+            Err(Error::new(ErrorKind::Cancelled, "stopped").into())
+        })
+        .unwrap_err();
+        assert_eq!((error.kind(), error.to_string().as_str()), (ErrorKind::Cancelled, "stopped"));
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(folder.names(), ["a.bin"]);
+    }
+
+    #[test]
+    fn a_target_that_becomes_a_folder_meanwhile_is_an_error() {
+        let folder = Folder::new("becomes");
+        let path = folder.0.join("a.bin");
+        let error = write_whole(&path, |out| {
+            fs::create_dir(&path)?;
+            out.write_all(b"new")
+        })
+        .unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::File);
+        assert_eq!(folder.names(), ["a.bin"]);
+        assert!(path.is_dir());
+    }
+
+    #[test]
+    fn targets_that_cannot_be_written_are_sentences() {
+        let folder = Folder::new("targets");
+        fs::write(folder.0.join("file"), "x").unwrap();
+        fs::create_dir(folder.0.join("folder")).unwrap();
+        let check = |name: &str, expect: &str| {
+            let path = folder.0.join(name);
+            let error = write_whole(&path, |out| out.write_all(b"new")).unwrap_err();
+            let expect = format!("cannot write {}: {expect}", path.display());
+            assert!(error.to_string().starts_with(&expect), "{error} / {expect}");
+        };
+        check("folder", "it is a folder");
+        check("new/", "it does not name a file");
+        check("missing/a", &format!("the folder {} does not exist", folder.0.join("missing").display()));
+        check("file/a", "");
+        assert_eq!(folder.names(), ["file", "folder"]);
+    }
+
+    #[test]
+    fn a_read_only_file_is_left_alone() {
+        let folder = Folder::new("read-only");
+        let path = folder.0.join("a");
+        fs::write(&path, "old").unwrap();
+        let mut permissions = fs::metadata(&path).unwrap().permissions();
+        permissions.set_readonly(true);
+        fs::set_permissions(&path, permissions).unwrap();
+        let error = write_whole(&path, |out| out.write_all(b"new")).unwrap_err();
+        assert!(error.to_string().ends_with("it is marked read-only"), "{error}");
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+    }
+
+    /// /proc refuses new files even to root, who ignores the permissions of ordinary folders.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_folder_that_takes_no_files_is_a_sentence() {
+        let error = write_whole(Path::new("/proc/orogen.png"), |out| out.write_all(b"new")).unwrap_err();
+        assert!(error.to_string().starts_with("cannot write /proc/orogen.png: "), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_and_kept() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = Folder::new("links");
+        let (real, link) = (folder.0.join("real"), folder.0.join("link"));
+        fs::write(&real, "old").unwrap();
+        fs::set_permissions(&real, Permissions::from_mode(0o640)).unwrap();
+        symlink("real", &link).unwrap();
+        write_whole(&link, |out| out.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&real).unwrap(), b"new");
+        assert_eq!(fs::metadata(&real).unwrap().permissions().mode() & 0o777, 0o640);
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        symlink("nowhere", folder.0.join("dangling")).unwrap();
+        let error = write_whole(&folder.0.join("dangling"), |out| out.write_all(b"new")).unwrap_err();
+        assert!(error.to_string().ends_with("it is a link to something that does not exist"), "{error}");
+        assert_eq!(folder.names(), ["dangling", "link", "real"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_is_written_and_stays_a_device() {
+        write_whole(Path::new("/dev/null"), |out| out.write_all(b"gone")).unwrap();
+        assert!(!fs::metadata("/dev/null").unwrap().is_file());
+    }
+
+    #[test]
+    fn the_longest_name_works() {
+        let folder = Folder::new("long");
+        let path = folder.0.join("n".repeat(255));
+        write_whole(&path, |out| out.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+    }
+}

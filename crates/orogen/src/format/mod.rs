@@ -1,0 +1,5 @@
+//! File formats, one a file. Writers stream into any [`Write`](std::io::Write) and hold a few rows at a time.
+
+pub mod levels;
+pub mod npy;
+pub mod png;
