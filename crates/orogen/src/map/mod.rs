@@ -1,0 +1,4 @@
+//! Maps: pictures of grids for people.
+
+pub mod paint;
+pub mod shade;
