@@ -1,2 +1,53 @@
-//! Placeholder.
-fn main() {}
+//! Orogen beside its peers and beside physical limits, measured in one run. `cargo xtask bench` is the front.
+//!
+//! Prints one JSON object, {"area", "simd", "threads", "rows"}; progress goes to the error output.
+#![forbid(unsafe_code)]
+
+mod measure;
+mod noise;
+mod rows;
+
+use std::process::ExitCode;
+
+/// What the command line asks for.
+pub struct Options {
+    /// Only cases with this in their name.
+    pub case: String,
+    /// How often each job is timed.
+    pub repetitions: usize,
+}
+
+/// An area of measurement: its name and what measures it.
+type Area = (&'static str, fn(&Options) -> Result<serde_json::Value, String>);
+
+const AREAS: &[Area] = &[("noise", noise::run)];
+
+fn main() -> ExitCode {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    match run(&args) {
+        Ok(report) => {
+            println!("{report:#}");
+            ExitCode::SUCCESS
+        }
+        Err(message) => {
+            eprintln!("error: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(args: &[String]) -> Result<serde_json::Value, String> {
+    let (area, flags) = args.split_first().ok_or("expected an area; run `cargo xtask bench --help`")?;
+    let (_, measure) =
+        AREAS.iter().find(|(name, _)| name == area).ok_or_else(|| format!("there is no area '{area}'"))?;
+    let mut options = Options { case: String::new(), repetitions: 9 };
+    let mut flags = flags.iter();
+    while let Some(flag) = flags.next() {
+        match flag.as_str() {
+            "--case" => options.case = flags.next().ok_or("--case needs a text after it")?.clone(),
+            "--quick" => options.repetitions = 3,
+            other => return Err(format!("there is no option '{other}'")),
+        }
+    }
+    measure(&options)
+}

@@ -43,7 +43,7 @@ pub fn run(args: &[String]) -> Result {
         return Err(Failure::usage("--json holds one area: name it"));
     }
     for area in areas {
-        let mut command = shell::cargo("run --quiet --release --package orogen-bench -- ");
+        let mut command = shell::cargo("run --quiet --release --package orogen-bench --features peers --");
         let measured = shell::capture(command.arg(area).args(&options.passed))?;
         let report = report::Report::read(&measured)?;
         println!("{}", report.heading());

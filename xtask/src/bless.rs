@@ -36,7 +36,7 @@ pub fn run(args: &[String]) -> Result {
     std::fs::create_dir_all(&golden).map_err(|e| on_file("create", &golden, &e))?;
     copy(&golden, &before)?;
 
-    let mut tests = shell::cargo("test --quiet --workspace --exclude orogen-bench");
+    let mut tests = shell::cargo("test --quiet --workspace");
     tests.args(named).env("OROGEN_BLESS", "1");
     let tested = shell::run(&mut tests);
     if tested.is_err() {

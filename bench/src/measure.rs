@@ -1,0 +1,102 @@
+//! Timing that survives a busy machine: CPU time of this thread, jobs taking turns, medians.
+
+use std::hint::black_box;
+
+use cpu_time::ThreadTime;
+
+/// Something that fills a buffer.
+pub struct Job {
+    /// Whose it is, for the table.
+    pub name: &'static str,
+    /// Fills the buffer; one that can only return a new one replaces it.
+    pub fill: Fill,
+}
+
+/// The filling itself.
+pub type Fill = Box<dyn FnMut(&mut Vec<f32>)>;
+
+impl Job {
+    /// A job of this name.
+    pub fn new(name: &'static str, fill: impl FnMut(&mut Vec<f32>) + 'static) -> Self {
+        Self { name, fill: Box::new(fill) }
+    }
+}
+
+/// One timing lasts at least so long: the clock and its call then cost nothing.
+const AT_LEAST: f64 = 0.01;
+
+/// How many fills one timing may hold.
+const AT_MOST: usize = 500;
+
+/// The rate of each job, in samples a second: the median of timings in which the jobs take turns, so that whatever slows the
+/// machine for a while slows all of them.
+pub fn rates(jobs: &mut [Job], samples: usize, repetitions: usize) -> Result<Vec<f64>, String> {
+    let mut buffer = vec![0.0; samples];
+    let mut fills = Vec::new();
+    for job in jobs.iter_mut() {
+        buffer.clear();
+        buffer.resize(samples, 0.0);
+        // The first fill sets up tables and faults pages in; the second tells how many make a timing.
+        (job.fill)(&mut buffer);
+        check(job.name, &buffer, samples)?;
+        let once = seconds(job, &mut buffer, 1);
+        fills.push(((AT_LEAST / once.max(1e-9)).ceil() as usize).clamp(1, AT_MOST));
+    }
+    let mut times: Vec<Vec<f64>> = vec![Vec::new(); jobs.len()];
+    for _ in 0..repetitions {
+        for ((job, &fills), times) in jobs.iter_mut().zip(&fills).zip(&mut times) {
+            times.push(seconds(job, &mut buffer, fills) / fills as f64);
+        }
+    }
+    Ok(times.iter_mut().map(|t| samples as f64 / median(t)).collect())
+}
+
+fn seconds(job: &mut Job, buffer: &mut Vec<f32>, fills: usize) -> f64 {
+    let start = ThreadTime::now();
+    for _ in 0..fills {
+        (job.fill)(black_box(buffer));
+        black_box(&buffer);
+    }
+    start.elapsed().as_secs_f64()
+}
+
+fn median(times: &mut [f64]) -> f64 {
+    times.sort_by(f64::total_cmp);
+    let middle = times.len() / 2;
+    if times.len() % 2 == 1 { times[middle] } else { (times[middle - 1] + times[middle]) / 2.0 }
+}
+
+/// Whether the job did its work: every sample written, finite, and not all the same.
+fn check(name: &str, buffer: &[f32], samples: usize) -> Result<(), String> {
+    let (low, high) = buffer.iter().fold((f32::MAX, f32::MIN), |(l, h), &v| (l.min(v), h.max(v)));
+    let finite = buffer.iter().all(|v| v.is_finite());
+    // The plain fill writes one value: it has no spread, and is recognised by the value.
+    if buffer.len() == samples && finite && (high - low > 0.01 || low == crate::noise::PLAIN) {
+        return Ok(());
+    }
+    Err(format!("{name} wrote {} of {samples} samples from {low} to {high}: that is no noise", buffer.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_middle_one() {
+        assert_eq!(median(&mut [3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(&mut [4.0, 1.0, 2.0, 3.0]), 2.5);
+    }
+
+    #[test]
+    fn a_job_that_does_nothing_is_found_out() {
+        let error = rates(&mut [Job::new("idle", |_| {})], 64, 1).expect_err("nothing was written");
+        assert!(error.starts_with("idle wrote"), "{error}");
+    }
+
+    #[test]
+    fn rates_of_real_work() {
+        let count = |out: &mut Vec<f32>| out.iter_mut().enumerate().for_each(|(i, v)| *v = i as f32);
+        let rates = rates(&mut [Job::new("count", count)], 64, 3).expect("it counts");
+        assert!(rates.len() == 1 && rates[0] > 0.0, "{rates:?}");
+    }
+}

@@ -1,0 +1,72 @@
+//! The rows of a report.
+
+use serde_json::{Value, json};
+
+/// What a case has to reach.
+#[derive(Clone, Copy)]
+pub struct Target {
+    /// Against whom.
+    pub peer: &'static str,
+    /// How many times that peer's rate.
+    pub ratio: f64,
+    /// A rate that is enough by itself, if there is one.
+    pub or_rate: Option<f64>,
+}
+
+/// One case against one peer, or alone. Rates are in millions of samples a second.
+pub struct Row {
+    /// What is measured.
+    pub case: &'static str,
+    /// Our rate; none if we do not offer it.
+    pub ours: Option<f64>,
+    /// The peer and its rate.
+    pub peer: Option<(&'static str, f64)>,
+    /// What the case has to reach, if this peer is the measure.
+    pub target: Option<Target>,
+}
+
+impl Row {
+    /// As JSON. Whoever offers nothing has not met a target.
+    pub fn json(&self) -> Value {
+        let ratio = self.ours.zip(self.peer).map(|(ours, (_, theirs))| ours / theirs);
+        let met = self.target.map(|target| {
+            let enough = |limit: Option<f64>| self.ours.zip(limit).is_some_and(|(ours, limit)| ours >= limit);
+            ratio.is_some_and(|r| r >= target.ratio) || enough(target.or_rate)
+        });
+        json!({
+            "case": self.case,
+            "ours": self.ours.map(rounded),
+            "unit": "Msamples/s",
+            "peer": self.peer.map(|(name, _)| name).or(self.target.map(|t| t.peer)),
+            "peer_value": self.peer.map(|(_, rate)| rounded(rate)),
+            "ratio": ratio.map(rounded),
+            "target": self.target.map(|t| t.ratio),
+            "met": met,
+        })
+    }
+}
+
+/// Two places: more would be noise.
+fn rounded(x: f64) -> f64 {
+    (x * 100.0).round() / 100.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn targets() {
+        let target = |ratio, or_rate| Some(Target { peer: "p", ratio, or_rate });
+        for (ours, peer, target, ratio, met) in [
+            (Some(84.0), Some(("p", 2.0)), target(42.0, None), json!(42.0), json!(true)),
+            (Some(83.0), Some(("p", 2.0)), target(42.0, None), json!(41.5), json!(false)),
+            (Some(83.0), Some(("p", 2.0)), None, json!(41.5), json!(null)),
+            (Some(50.0), Some(("p", 100.0)), target(0.8, Some(40.0)), json!(0.5), json!(true)),
+            (None, None, target(3.0, None), json!(null), json!(false)),
+        ] {
+            let row = Row { case: "c", ours, peer, target }.json();
+            assert_eq!((&row["ratio"], &row["met"], &row["peer"]), (&ratio, &met, &json!("p")), "{row}");
+        }
+    }
+}
