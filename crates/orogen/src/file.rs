@@ -2,7 +2,9 @@
 //!
 //! [`write_whole`] writes under a temporary name beside the target, syncs it, renames it over the target and syncs the folder.
 //! Whoever looks at the target sees the old file or the new one, never a half; after any failure the old file is still there
-//! and the temporary one is gone.
+//! and the temporary one is gone. [`stage`] does all but the rename, for files that belong together: stage them all, then
+//! [`Staged::commit`] each, and a disk that fills up half way leaves the old set complete. [`check_folder`] finds out early
+//! whether there is any point in starting.
 //!
 //! What the target may already be:
 //!
@@ -46,7 +48,46 @@ impl From<Error> for io::Error {
 /// # }
 /// ```
 pub fn write_whole(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
-    write_through(path, |file| Box::new(file), body)
+    stage(path, body)?.commit()
+}
+
+/// Writes what `body` writes beside `path` under a temporary name and syncs it, all but [`Staged::commit`]ting it.
+///
+/// A pipe or device is written at once.
+pub fn stage(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Staged> {
+    stage_through(path, |file| Box::new(file), body)
+}
+
+/// Whether files can be made in `folder`, found out by making one, which is removed at once.
+pub fn check_folder(folder: &Path) -> Result<()> {
+    match fs::metadata(folder) {
+        Ok(there) if there.is_dir() => {
+            Temporary::create(folder, &folder.join("file")).map(|(temporary, _)| drop(temporary))
+        }
+        Ok(_) => {
+            Err(Error::new(ErrorKind::File, format!("cannot write into {}: it is not a folder", folder.display())))
+        }
+        Err(cause) => Err(Error::file("write into", folder, &cause)),
+    }
+}
+
+/// A file that is written but not yet in its place. Dropped without [`Staged::commit`], it is removed.
+#[derive(Debug)]
+pub struct Staged {
+    path: PathBuf,
+    /// The temporary file and the target's real name; none for a pipe or device, which has already got it all.
+    file: Option<(Temporary, PathBuf)>,
+}
+
+impl Staged {
+    /// Puts the file in its place, over what may be there.
+    pub fn commit(self) -> Result<()> {
+        if let Some((temporary, real)) = self.file {
+            temporary.rename(&real).map_err(|cause| Error::file("write", &self.path, &cause))?;
+            sync_folder(&real);
+        }
+        Ok(())
+    }
 }
 
 /// The error that `cause`, met while `doing` something ("read", "write") to what is called `path`, means to a person: the
@@ -66,17 +107,18 @@ enum Target {
     Stream,
 }
 
-/// [`write_whole`], with `wrap` around the file: where the tests inject their faults.
-fn write_through(
+/// [`stage`], with `wrap` around the file: where the tests inject their faults.
+fn stage_through(
     path: &Path,
     wrap: impl for<'f> FnOnce(&'f File) -> Box<dyn Write + 'f>,
     body: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<()> {
+) -> Result<Staged> {
     let failed = |cause: io::Error| Error::file("write", path, &cause);
-    match target(path)? {
+    let file = match target(path)? {
         Target::Stream => {
             let file = OpenOptions::new().write(true).open(path).map_err(failed)?;
-            fill(path, wrap(&file), body)
+            fill(path, wrap(&file), body)?;
+            None
         }
         Target::File { real, permissions } => {
             let (temporary, file) = Temporary::create(path, &real)?;
@@ -86,12 +128,10 @@ fn write_through(
             }
             fill(path, wrap(&file), body)?;
             file.sync_all().map_err(failed)?;
-            drop(file);
-            temporary.rename(&real).map_err(failed)?;
-            sync_folder(&real);
-            Ok(())
+            Some((temporary, real))
         }
-    }
+    };
+    Ok(Staged { path: path.to_path_buf(), file })
 }
 
 /// Finds out what `path` is, and refuses what cannot be written.
@@ -171,6 +211,7 @@ impl Write for Noting<'_> {
 }
 
 /// A temporary file beside its target, removed when dropped unless it was renamed.
+#[derive(Debug)]
 struct Temporary(PathBuf);
 
 impl Temporary {
@@ -275,6 +316,14 @@ mod tests {
         fn flush(&mut self) -> io::Result<()> {
             self.file.flush()
         }
+    }
+
+    fn write_through(
+        path: &Path,
+        wrap: impl for<'f> FnOnce(&'f File) -> Box<dyn Write + 'f>,
+        body: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<()> {
+        stage_through(path, wrap, body)?.commit()
     }
 
     #[test]
@@ -424,6 +473,34 @@ mod tests {
     fn a_device_is_written_and_stays_a_device() {
         write_whole(Path::new("/dev/null"), |out| out.write_all(b"gone")).unwrap();
         assert!(!fs::metadata("/dev/null").unwrap().is_file());
+    }
+
+    #[test]
+    fn what_is_staged_and_dropped_leaves_no_trace() {
+        let folder = Folder::new("staged");
+        let path = folder.0.join("a");
+        write_whole(&path, |out| out.write_all(b"old")).unwrap();
+        let staged = stage(&path, |out| out.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        drop(staged);
+        assert_eq!(folder.names(), ["a"]);
+        stage(&path, |out| out.write_all(b"new")).unwrap().commit().unwrap();
+        assert_eq!((fs::read(&path).unwrap(), folder.names()), (b"new".to_vec(), vec!["a".to_string()]));
+    }
+
+    #[test]
+    fn folders_are_checked_without_a_trace() {
+        let folder = Folder::new("check");
+        check_folder(&folder.0).unwrap();
+        assert_eq!(folder.names(), [] as [&str; 0]);
+        fs::write(folder.0.join("file"), "x").unwrap();
+        for (name, expect) in [("file", "it is not a folder"), ("none", ""), ("file/none", "")] {
+            let path = folder.0.join(name);
+            let error = check_folder(&path).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("cannot write into {}: {expect}", path.display())), "{error}");
+        }
+        #[cfg(target_os = "linux")]
+        assert!(check_folder(Path::new("/proc")).is_err());
     }
 
     #[test]
