@@ -1,18 +1,70 @@
 //! What we offer.
 
+use orogen_noise::{Depth, Falloff, Fractal, Kind, Mismatch, Perlin, Points, Value, White};
+use orogen_simd::Level;
+
+use super::cases::{Case, OCTAVES, SEED, SIZE, SLICE, WARP, Work, scattered};
 use crate::measure::Job;
-use crate::noise::cases::{Case, Work};
 
 /// The SIMD level in use.
-pub fn level() -> String {
-    "?".to_owned()
+pub fn level() -> &'static str {
+    Level::current().name()
 }
 
 /// Our job for the case; none if it is not built yet.
 pub fn job(case: &Case) -> Option<Job> {
-    (case.work != Work::White || std::env::var_os("OROGEN_BENCH_PEERS").is_some()).then(|| {
-        Job::new("ours", |out| {
-            out.iter_mut().enumerate().for_each(|(i, v)| *v = i as f32);
-        })
+    let seed = SEED as u64;
+    let wavelength = case.wavelength;
+    let perlin = Perlin { seed, wavelength };
+    let fractal = |kind| Fractal { kind, seed, wavelength, octaves: OCTAVES as u32, ..Fractal::default() };
+    let weighted = Kind::Weighted { k: 1.0, falloff: Falloff::Reciprocal };
+    Some(match case.work {
+        Work::White => lattice(move |at, out| White { seed, wavelength }.fill(at, out)),
+        Work::Value => lattice(move |at, out| Value { seed, wavelength, ..Value::default() }.fill(at, out)),
+        Work::Perlin => lattice(move |at, out| perlin.fill(at, out)),
+        Work::PerlinSlice => lattice(move |at, out| perlin.fill3(at, &Depth::Slice(SLICE), out)),
+        Work::PerlinScattered => {
+            let (x, y) = scattered();
+            job_of(move |out| perlin.fill(&Points::Scattered { x: &x, y: &y }, out))
+        }
+        Work::Fbm => whole(fractal(Kind::Fbm)),
+        Work::Ridged => whole(fractal(Kind::Ridged)),
+        Work::WeightedFbm => whole(fractal(weighted)),
+        Work::WarpedFbm => warped(fractal(Kind::Fbm), wavelength),
+        Work::Simplex | Work::SimplexSlice | Work::Worley => return None,
     })
+}
+
+/// Lengths that do not fit are answered without a sample written; the check before the timings then speaks up.
+fn job_of(mut fill: impl FnMut(&mut [f32]) -> Result<(), Mismatch> + 'static) -> Job {
+    Job::new("orogen", move |out| drop(fill(out)))
+}
+
+fn lattice(fill: impl Fn(&Points, &mut [f32]) -> Result<(), Mismatch> + 'static) -> Job {
+    let axis = axis();
+    job_of(move |out| fill(&Points::Lattice { xs: &axis, ys: &axis }, out))
+}
+
+fn whole(fractal: Fractal) -> Job {
+    lattice(move |at, out| fractal.fill(at, out))
+}
+
+/// The textbook warp: fBm at a position displaced by two others.
+fn warped(fractal: Fractal, wavelength: f64) -> Job {
+    let axis = axis();
+    let reach = (WARP * wavelength) as f32;
+    let mut shifts = [1, 2].map(|i| (Fractal { seed: fractal.seed + i, ..fractal }, vec![0.0; SIZE * SIZE]));
+    job_of(move |out| {
+        for (shift, values) in &mut shifts {
+            shift.fill(&Points::Lattice { xs: &axis, ys: &axis }, values)?;
+            values.iter_mut().for_each(|v| *v *= reach);
+        }
+        let [(_, dx), (_, dy)] = &shifts;
+        fractal.fill(&Points::Displaced { xs: &axis, ys: &axis, dx, dy }, out)
+    })
+}
+
+/// Where the picture's columns and rows stand.
+fn axis() -> Vec<f64> {
+    (0..SIZE).map(|i| i as f64).collect()
 }

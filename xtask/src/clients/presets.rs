@@ -43,8 +43,10 @@ fn parse(text: &str) -> std::result::Result<Vec<(&str, &str)>, &str> {
 
 /// The levels this machine can be forced to.
 fn levels() -> Vec<&'static str> {
-    #[allow(unused_mut, reason = "only x86-64 adds to it")]
     let mut levels = vec!["scalar"];
+    if cfg!(target_arch = "aarch64") {
+        levels.push("neon");
+    }
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::is_x86_feature_detected as has;
