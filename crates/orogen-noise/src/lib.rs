@@ -1,1 +1,53 @@
-//! Placeholder.
+//! Coherent noise with analytic derivatives, bit for bit the same everywhere.
+//!
+//! ```
+//! use orogen_noise::{Fractal, Points};
+//!
+//! // Hills 500 m apart, six octaves, over a lattice of 256 x 256 samples 10 m apart.
+//! let hills = Fractal { seed: 7, wavelength: 500.0, ..Default::default() };
+//! let xs: Vec<f64> = (0..256).map(|i| f64::from(i) * 10.0).collect();
+//! let ys = xs.clone();
+//! let mut heights = vec![0.0; xs.len() * ys.len()];
+//! hills.fill(&Points::Lattice { xs: &xs, ys: &ys }, &mut heights)?;
+//!
+//! // The same point, asked alone, gives the same bits.
+//! assert_eq!(heights[3 * 256 + 5], hills.sample(50.0, 30.0));
+//! # Ok::<(), orogen_noise::Mismatch>(())
+//! ```
+//!
+//! A noise is a plain struct: [`White`], [`Value`], [`Perlin`], [`Classic`], or a [`Fractal`] over any [`Basis`]. Each has
+//! `sample` and `fill`, `fill_with_gradient`, and their 3D counterparts `sample3`, `fill3`, `fill3_with_gradient`. Positions and wavelengths are metres (or any unit
+//! you like); values have no unit and lie in [-1, 1].
+//!
+//! **The bits.** A value depends on the noise's parameters and the position, and on nothing else: not on the processor, the SIMD
+//! level ([`Level`]), the build, how the points are given ([`Points`]) or cut into calls.
+//!
+//! **Far away.** Positions are f64; each octave splits them into a whole cell and a fraction before anything is rounded to f32, so
+//! noise at 1e9 m is as smooth as at 0. Positions beyond 2^50 cells of the finest octave are held there; so are infinite ones,
+//! and NaN counts as the lower end. The result is always finite.
+//!
+//! **Octave coordinates.** Octave i looks at `x * lacunarity^i / wavelength + offset`, in f64 and in this order.
+
+#![forbid(unsafe_code)]
+
+mod basis;
+mod classic;
+mod fractal;
+mod kernel;
+mod methods;
+mod perlin;
+mod points;
+mod program;
+mod seed;
+mod value;
+mod white;
+
+pub use basis::Basis;
+pub use classic::{Classic, ClassicVariant};
+pub use fractal::{Falloff, Fractal, Kind};
+pub use orogen_simd::{Level, LevelError};
+pub use perlin::Perlin;
+pub use points::{Depth, Mismatch, Points};
+pub use program::MAX_OCTAVES;
+pub use value::{Fade, Value};
+pub use white::White;

@@ -1,1 +1,106 @@
-//! Placeholder.
+//! One door to SIMD: a generic body is compiled once per instruction set, the fastest is picked at run time, and every one of
+//! them gives the same bits.
+//!
+//! ```
+//! use orogen_simd::{Body, F32Lanes, Simd, dispatch};
+//!
+//! /// y = a * x + y, rounded once.
+//! struct Axpy<'a> {
+//!     a: f32,
+//!     x: &'a [f32],
+//!     y: &'a mut [f32],
+//! }
+//!
+//! impl Body for Axpy<'_> {
+//!     type Output = ();
+//!
+//!     #[inline(always)] // so that it is compiled with the level's instructions
+//!     fn run<S: Simd>(self, simd: S) {
+//!         let a = simd.f32(self.a);
+//!         for (x, y) in self.x.chunks(S::LANES).zip(self.y.chunks_mut(S::LANES)) {
+//!             let sum = simd.load_partial(x, 0.0).mul_add(a, simd.load_partial(y, 0.0));
+//!             sum.store_partial(y);
+//!         }
+//!     }
+//! }
+//!
+//! let mut y = vec![1.0; 19];
+//! dispatch(Axpy { a: 2.0, x: &[3.0; 19], y: &mut y });
+//! assert_eq!(y, [7.0; 19]);
+//! ```
+//!
+//! A default x86-64 build carries every level; no compiler flag is needed. Three habits keep a body fast: mark `run` and every
+//! function it calls `#[inline(always)]` (what is not inlined is compiled without the level's instructions), keep closures out of
+//! hot loops for the same reason, and cut big bodies with [`Simd::run`], which makes a function of its own *with* the instructions.
+//!
+//! This is the only crate of the workspace with `unsafe` code. It is sound because lane values and the tokens of the hardware
+//! levels have private contents: a token comes from [`dispatch`] or from detection, a lane value from a token.
+
+mod fma;
+mod lanes;
+mod level;
+mod scalar;
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+#[cfg(target_arch = "aarch64")]
+mod neon;
+
+pub use fma::fma;
+pub use lanes::{F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
+pub use level::{LEVEL_VARIABLE, Level, LevelError};
+pub use scalar::{Scalar, ScalarF32, ScalarF64, ScalarMask, ScalarU32};
+
+#[cfg(target_arch = "x86_64")]
+pub use avx2::Avx2;
+#[cfg(target_arch = "x86_64")]
+pub use avx512::Avx512;
+#[cfg(target_arch = "aarch64")]
+pub use neon::Neon;
+
+/// Code written once for any level. Mark `run` `#[inline(always)]`.
+pub trait Body {
+    /// What it returns.
+    type Output;
+
+    /// The code; `simd` is the way to the lanes.
+    fn run<S: Simd>(self, simd: S) -> Self::Output;
+}
+
+/// Runs `body` at the level in force ([`Level::current`]).
+#[inline]
+pub fn dispatch<B: Body>(body: B) -> B::Output {
+    match Level::current() {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: `Level::current` only ever gives a level whose instructions were detected.
+        Level::Avx512 => unsafe { Avx512::new_unchecked() }.run(body),
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: as above.
+        Level::Avx2 => unsafe { Avx2::new_unchecked() }.run(body),
+        #[cfg(target_arch = "aarch64")]
+        Level::Neon => Neon::new().run(body),
+        _ => Scalar::<8>.run(body),
+    }
+}
+
+/// Runs `body` at a chosen level, whatever is in force.
+///
+/// # Errors
+/// This machine lacks the level; the body has not run.
+pub fn dispatch_at<B: Body>(level: Level, body: B) -> Result<B::Output, LevelError> {
+    match level {
+        Level::Scalar => Ok(Scalar::<8>.run(body)),
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx2 => Avx2::detect().map(|token| token.run(body)).ok_or(LevelError::Unavailable(level)),
+        #[cfg(target_arch = "x86_64")]
+        Level::Avx512 => Avx512::detect().map(|token| token.run(body)).ok_or(LevelError::Unavailable(level)),
+        #[cfg(target_arch = "aarch64")]
+        Level::Neon => Ok(Neon::new().run(body)),
+        #[cfg(target_arch = "x86_64")]
+        Level::Neon => Err(LevelError::Unavailable(level)),
+        #[cfg(not(target_arch = "x86_64"))]
+        _ => Err(LevelError::Unavailable(level)),
+    }
+}

@@ -1,0 +1,218 @@
+//! Points anywhere: block by block, octave by octave.
+
+use crate::kernel::basis::{Basis, Coefficients, Gradient2, Gradient3, Value2, Value3, Weights};
+use crate::kernel::cell::Cell;
+use crate::kernel::combine::{Sample, add_size, add_weighted, finish_sizes};
+use crate::kernel::source::{ClassicSource, Hashed, PerlinSource};
+use crate::program::{Combine, Octave, Program, Source};
+use orogen_simd::{Body, F32Lanes, F64Lanes, Simd};
+
+/// How many points are worked on at a time: their positions and sums stay in the first-level cache.
+pub(crate) const BLOCK: usize = 128;
+
+/// Positions of a block, metres, clamped. Places beyond the points repeat the last one.
+pub(crate) struct Block {
+    pub x: [f64; BLOCK],
+    pub y: [f64; BLOCK],
+    pub z: [f64; BLOCK],
+}
+
+impl Block {
+    pub(crate) const fn new() -> Block {
+        Block { x: [0.0; BLOCK], y: [0.0; BLOCK], z: [0.0; BLOCK] }
+    }
+
+    /// Holds the first `count` positions within the limit and fills up to whole registers.
+    #[inline(always)]
+    pub(crate) fn settle<S: Simd>(&mut self, simd: S, count: usize, limit: f64, deep: bool) {
+        for axis in [&mut self.x, &mut self.y, &mut self.z].into_iter().take(if deep { 3 } else { 2 }) {
+            let last = axis[count.saturating_sub(1).min(BLOCK - 1)];
+            axis[count.min(BLOCK)..].fill(last);
+            for lanes in axis.chunks_exact_mut(S::LANES) {
+                super::cell::clamp(simd, simd.load_f64(lanes), limit).store(lanes);
+            }
+        }
+    }
+}
+
+/// Sums of a block: values and slopes along x, y and z.
+pub(crate) struct Sums(pub [[f32; BLOCK]; 4]);
+
+impl Sums {
+    pub(crate) const fn new() -> Sums {
+        Sums([[0.0; BLOCK]; 4])
+    }
+
+    #[inline(always)]
+    fn load<S: Simd>(&self, simd: S, at: usize, places: usize) -> Sample<S> {
+        let mut sample = [simd.f32(0.0); 4];
+        for (lanes, values) in sample.iter_mut().zip(&self.0).take(places) {
+            *lanes = simd.load(&values[at..]);
+        }
+        sample
+    }
+
+    #[inline(always)]
+    fn store<S: Simd>(&mut self, sample: &Sample<S>, at: usize, places: usize) {
+        for (lanes, values) in sample.iter().zip(&mut self.0).take(places) {
+            lanes.store(&mut values[at..]);
+        }
+    }
+}
+
+/// Evaluates the program at the first `count` positions of the block, which must be settled. Slopes are made with `slopes`.
+#[inline(always)]
+pub(crate) fn evaluate<S: Simd, const DEEP: bool>(
+    simd: S,
+    program: &Program,
+    block: &Block,
+    count: usize,
+    slopes: bool,
+    sums: &mut Sums,
+) {
+    let (axes, count) = (if DEEP { 3 } else { 2 }, count.min(BLOCK));
+    sums.0.iter_mut().take(if slopes { 4 } else { 1 }).for_each(|values| values.fill(0.0));
+    match program.combine {
+        Combine::Sum => {
+            for octave in program.octaves() {
+                add_octave::<S, DEEP>(simd, program.source, octave, block, count, slopes, sums);
+            }
+        }
+        Combine::Sizes { sign } => {
+            for octave in program.octaves() {
+                let mut one = Sums::new();
+                add_octave::<S, DEEP>(simd, program.source, octave, block, count, slopes, &mut one);
+                let axes = if slopes { axes } else { 0 };
+                for at in (0..count).step_by(S::LANES) {
+                    let mut sum = sums.load(simd, at, axes + 1);
+                    add_size(simd, &mut sum, &one.load(simd, at, axes + 1), axes);
+                    sums.store::<S>(&sum, at, axes + 1);
+                }
+            }
+            let axes = if slopes { axes } else { 0 };
+            for at in (0..count).step_by(S::LANES) {
+                let mut sum = sums.load(simd, at, axes + 1);
+                finish_sizes(simd, &mut sum, sign, axes);
+                sums.store::<S>(&sum, at, axes + 1);
+            }
+        }
+        Combine::Weighted { k, falloff, gradient } => {
+            let mut slope = Sums::new();
+            for octave in program.octaves() {
+                let mut one = Sums::new();
+                add_octave::<S, DEEP>(simd, program.source, octave, block, count, true, &mut one);
+                for at in (0..count).step_by(S::LANES) {
+                    let mut sum = sums.load(simd, at, 4);
+                    let mut so_far = slope.load(simd, at, 4);
+                    let octave = one.load(simd, at, 4);
+                    add_weighted::<S, true>(simd, &mut sum, &mut so_far, &octave, (k, falloff), axes);
+                    sums.store::<S>(&sum, at, 4);
+                    slope.store::<S>(&so_far, at, 4);
+                }
+            }
+            for values in &mut sums.0[1..] {
+                for value in values {
+                    *value *= gradient;
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn add_octave<S: Simd, const DEEP: bool>(
+    simd: S,
+    source: Source,
+    octave: &Octave,
+    block: &Block,
+    count: usize,
+    slopes: bool,
+    sums: &mut Sums,
+) {
+    if slopes {
+        simd.run(AddOctave::<DEEP, true> { source, octave, block, count, sums });
+    } else {
+        simd.run(AddOctave::<DEEP, false> { source, octave, block, count, sums });
+    }
+}
+
+/// Adds one octave to the sums of a block: a function of its own for each level.
+struct AddOctave<'a, const DEEP: bool, const SLOPES: bool> {
+    source: Source,
+    octave: &'a Octave,
+    block: &'a Block,
+    count: usize,
+    sums: &'a mut Sums,
+}
+
+impl<const DEEP: bool, const SLOPES: bool> Body for AddOctave<'_, DEEP, SLOPES> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(mut self, simd: S) {
+        let octave = self.octave;
+        match (self.source, DEEP) {
+            (Source::Value(fade), false) => self.with(simd, Value2(Hashed::new(simd, octave), fade)),
+            (Source::Value(fade), true) => self.with(simd, Value3(Hashed::new(simd, octave), fade)),
+            (Source::Perlin, false) => self.with(simd, Gradient2(PerlinSource::new(simd, octave))),
+            (Source::Perlin, true) => self.with(simd, Gradient3(PerlinSource::new(simd, octave))),
+            (Source::Classic(variant), false) => {
+                self.with(simd, Gradient2(ClassicSource::new(simd, octave, variant)));
+            }
+            (Source::Classic(variant), true) => {
+                self.with(simd, Gradient3(ClassicSource::new(simd, octave, variant)));
+            }
+        }
+    }
+}
+
+impl<const DEEP: bool, const SLOPES: bool> AddOctave<'_, DEEP, SLOPES> {
+    #[inline(always)]
+    fn with<S: Simd, B: Basis<S>>(&mut self, simd: S, basis: B) {
+        let octave = self.octave;
+        let frequency = simd.f64(octave.frequency);
+        let offset = octave.offset.map(|offset| simd.f64(offset));
+        let (amplitude, slope) = (simd.f32(octave.amplitude), simd.f32(octave.slope));
+        for at in (0..self.count).step_by(S::LANES) {
+            let x = Cell::split(simd, simd.load_f64(&self.block.x[at..]), frequency, offset[0]);
+            let y = Cell::split(simd, simd.load_f64(&self.block.y[at..]), frequency, offset[1]);
+            let z = if B::DEEP { simd.load_f64(&self.block.z[at..]) } else { simd.f64(0.0) };
+            let depth = basis.depth(simd, &Cell::split(simd, z, frequency, offset[2]));
+            let (columns, rows) = (basis.keys(simd, 0, &x), basis.keys(simd, 1, &y));
+            let column = Weights::new(simd, x.t, basis.fade(simd, x.t));
+            let row = Weights::new(simd, y.t, basis.fade(simd, y.t));
+            let line = |key| {
+                let left = basis.point::<SLOPES>(simd, columns[0], key, &depth);
+                let right = basis.point::<SLOPES>(simd, columns[1], key, &depth);
+                basis.rows::<SLOPES>(simd, &left, &right, &column)
+            };
+            let lines = [line(rows[0]), line(rows[1])];
+            let coefficients = basis.coefficients(simd, &row, amplitude, slope);
+            let mut sum = self.sums.load(simd, at, if SLOPES { 4 } else { 1 });
+            accumulate::<S, B, SLOPES>(&coefficients, &lines, &mut sum);
+            self.sums.store::<S>(&sum, at, if SLOPES { 4 } else { 1 });
+        }
+    }
+}
+
+/// Adds the octave's value (and slopes) to a sample: the order of these additions is the order of the lattice path.
+#[inline(always)]
+fn accumulate<S: Simd, B: Basis<S>, const SLOPES: bool>(
+    coefficients: &Coefficients<S>,
+    lines: &[[S::F32; 6]; 2],
+    sum: &mut Sample<S>,
+) {
+    for (line, rows) in lines.iter().enumerate() {
+        for vector in 0..B::RANK {
+            let place = 2 * line + vector;
+            sum[0] = coefficients.value[place].mul_add(rows[vector], sum[0]);
+            if SLOPES {
+                sum[1] = coefficients.along[place].mul_add(rows[2 + vector], sum[1]);
+                sum[2] = coefficients.across[place].mul_add(rows[vector], sum[2]);
+                if B::DEEP {
+                    sum[3] = coefficients.along[place].mul_add(rows[4 + vector], sum[3]);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! How lattice points get their numbers: hashes, values and gradients.
+
+use crate::classic::{ClassicVariant, TABLE};
+use crate::kernel::cell::Cell;
+use crate::program::Octave;
+use crate::{classic, perlin};
+use orogen_simd::{F32Lanes, Simd, U32Lanes};
+
+/// A lattice whose points have hashes. A point's hash comes from one key per axis, so that a lattice of samples works the keys out
+/// once per lattice column and row.
+pub(crate) trait Lattice<S: Simd>: Copy {
+    /// The keys of a cell and of the next one.
+    fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2];
+    /// The hash of a point; the top bits are the good ones.
+    fn hash2(self, simd: S, x: S::U32, y: S::U32) -> S::U32;
+    /// The hash of a point in 3D.
+    fn hash3(self, simd: S, x: S::U32, y: S::U32, z: S::U32) -> S::U32;
+}
+
+/// A lattice whose points have gradients.
+pub(crate) trait Gradients<S: Simd>: Lattice<S> {
+    /// The gradient a hash stands for.
+    fn gradient2(self, simd: S, hash: S::U32) -> [S::F32; 2];
+    /// The gradient a hash stands for in 3D.
+    fn gradient3(self, simd: S, hash: S::U32) -> [S::F32; 3];
+}
+
+/// The hashed lattice: 64-bit cells and 64 bits of seed per axis go into a 32-bit key, the keys into a 32-bit hash.
+///
+/// A key is two rounds of xorshift-multiply over the low word, the high word and the second half of the seed entering between them.
+/// Keys are joined by xor and a third round, whose top bits depend on every bit of each. The constants are odd numbers with good
+/// spectral behaviour modulo 2^32 (G. Steele and S. Vigna, "Computationally easy, spectrally good multipliers", 2021).
+#[derive(Clone, Copy)]
+pub(crate) struct Hashed<S: Simd> {
+    words: [[S::U32; 2]; 3],
+}
+
+const ROUND_1: u32 = 0x915F_77F5;
+const ROUND_2: u32 = 0x93D7_65DD;
+const ROUND_3: u32 = 0xADB4_A92D;
+
+impl<S: Simd> Hashed<S> {
+    #[inline(always)]
+    pub(crate) fn new(simd: S, octave: &Octave) -> Hashed<S> {
+        let [[a, b], [c, d], [e, f]] = octave.words;
+        Hashed { words: [[simd.u32(a), simd.u32(b)], [simd.u32(c), simd.u32(d)], [simd.u32(e), simd.u32(f)]] }
+    }
+
+    #[inline(always)]
+    fn finish(simd: S, joined: S::U32) -> S::U32 {
+        (joined ^ joined.shr(15)) * simd.u32(ROUND_3)
+    }
+}
+
+impl<S: Simd> Lattice<S> for Hashed<S> {
+    #[inline(always)]
+    fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2] {
+        let [first, second] = self.words[axis];
+        let here = cell.low * simd.u32(ROUND_1) + first;
+        let next = here + simd.u32(ROUND_1);
+        let round = simd.u32(ROUND_2);
+        [
+            (here ^ here.shr(15) ^ (cell.high ^ second)) * round,
+            (next ^ next.shr(15) ^ (cell.next_high(simd) ^ second)) * round,
+        ]
+    }
+    #[inline(always)]
+    fn hash2(self, simd: S, x: S::U32, y: S::U32) -> S::U32 {
+        Self::finish(simd, x ^ y)
+    }
+    #[inline(always)]
+    fn hash3(self, simd: S, x: S::U32, y: S::U32, z: S::U32) -> S::U32 {
+        Self::finish(simd, x ^ y ^ z)
+    }
+}
+
+/// A hash as a number in [-1, 1], a millionth short of the ends so that blending cannot round past them.
+#[inline(always)]
+pub(crate) fn value<S: Simd>(simd: S, hash: S::U32) -> S::F32 {
+    const UNIT: f32 = (1.0 - 1.0 / 1_048_576.0) / 2_147_483_648.0;
+    hash.i32_to_f32() * simd.f32(UNIT)
+}
+
+/// Hashed gradients.
+#[derive(Clone, Copy)]
+pub(crate) struct PerlinSource<S: Simd> {
+    lattice: Hashed<S>,
+    // The same directions twice: sixteen where one instruction looks them up, else eight and a sign.
+    wide: [S::Table16; 2],
+    half: [S::Table8; 2],
+    deep: [S::Table16; 3],
+}
+
+impl<S: Simd> PerlinSource<S> {
+    #[inline(always)]
+    pub(crate) fn new(simd: S, octave: &Octave) -> PerlinSource<S> {
+        const fn both(half: [f32; 8]) -> [f32; 16] {
+            let [a, b, c, d, e, f, g, h] = half;
+            [a, b, c, d, e, f, g, h, -a, -b, -c, -d, -e, -f, -g, -h]
+        }
+        const WIDE: [[f32; 16]; 2] = [both(perlin::X_2D), both(perlin::Y_2D)];
+        PerlinSource {
+            lattice: Hashed::new(simd, octave),
+            wide: [simd.table16(&WIDE[0]), simd.table16(&WIDE[1])],
+            half: [simd.table8(&perlin::X_2D), simd.table8(&perlin::Y_2D)],
+            deep: [simd.table16(&perlin::X_3D), simd.table16(&perlin::Y_3D), simd.table16(&perlin::Z_3D)],
+        }
+    }
+}
+
+impl<S: Simd> Lattice<S> for PerlinSource<S> {
+    #[inline(always)]
+    fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2] {
+        self.lattice.keys(simd, axis, cell)
+    }
+    #[inline(always)]
+    fn hash2(self, simd: S, x: S::U32, y: S::U32) -> S::U32 {
+        self.lattice.hash2(simd, x, y)
+    }
+    #[inline(always)]
+    fn hash3(self, simd: S, x: S::U32, y: S::U32, z: S::U32) -> S::U32 {
+        self.lattice.hash3(simd, x, y, z)
+    }
+}
+
+impl<S: Simd> Gradients<S> for PerlinSource<S> {
+    #[inline(always)]
+    fn gradient2(self, simd: S, hash: S::U32) -> [S::F32; 2] {
+        // The top bit is the sign, the next three the direction in the upper half plane.
+        if S::WIDE_LOOKUP {
+            let index = hash.shr(28);
+            [simd.lookup16(self.wide[0], index), simd.lookup16(self.wide[1], index)]
+        } else {
+            let index = hash.shr(28);
+            let sign = hash & simd.u32(0x8000_0000);
+            let [x, y] = [simd.lookup8(self.half[0], index), simd.lookup8(self.half[1], index)];
+            [(x.bits() ^ sign).as_f32(), (y.bits() ^ sign).as_f32()]
+        }
+    }
+    #[inline(always)]
+    fn gradient3(self, simd: S, hash: S::U32) -> [S::F32; 3] {
+        let index = hash.shr(27);
+        let sign = hash & simd.u32(0x8000_0000);
+        self.deep.map(|table| (simd.lookup16(table, index).bits() ^ sign).as_f32())
+    }
+}
+
+/// The lattice of Perlin's 2002 reference: a permutation of 0 ..= 255, looked up once per axis.
+#[derive(Clone, Copy)]
+pub(crate) struct ClassicSource<S: Simd> {
+    shift: [S::U32; 3],
+    variant: ClassicVariant,
+}
+
+impl<S: Simd> ClassicSource<S> {
+    #[inline(always)]
+    pub(crate) fn new(simd: S, octave: &Octave, variant: ClassicVariant) -> ClassicSource<S> {
+        let [x, y, z] = octave.words;
+        ClassicSource { shift: [simd.u32(x[0]), simd.u32(y[0]), simd.u32(z[0])], variant }
+    }
+
+    #[inline(always)]
+    fn permuted(simd: S, number: S::U32) -> S::U32 {
+        simd.gather_u32(&TABLE, number & simd.u32(255))
+    }
+}
+
+impl<S: Simd> Lattice<S> for ClassicSource<S> {
+    #[inline(always)]
+    fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2] {
+        let here = cell.low + self.shift[axis];
+        let next = here + simd.u32(1);
+        if axis == 0 { [Self::permuted(simd, here), Self::permuted(simd, next)] } else { [here, next] }
+    }
+    #[inline(always)]
+    fn hash2(self, simd: S, x: S::U32, y: S::U32) -> S::U32 {
+        Self::permuted(simd, x + y)
+    }
+    #[inline(always)]
+    fn hash3(self, simd: S, x: S::U32, y: S::U32, z: S::U32) -> S::U32 {
+        Self::permuted(simd, Self::permuted(simd, x + y) + z)
+    }
+}
+
+impl<S: Simd> Gradients<S> for ClassicSource<S> {
+    #[inline(always)]
+    fn gradient2(self, simd: S, hash: S::U32) -> [S::F32; 2] {
+        let [x, y] = match self.variant {
+            ClassicVariant::Diagonal => [&classic::DIAGONAL_X, &classic::DIAGONAL_Y],
+            ClassicVariant::Eight => [&classic::EIGHT_X, &classic::EIGHT_Y],
+            ClassicVariant::Angle => {
+                let quarter = hash + simd.u32(64);
+                return [
+                    simd.gather(&classic::SINE, quarter & simd.u32(255)),
+                    simd.gather(&classic::SINE, hash & simd.u32(255)),
+                ];
+            }
+        };
+        [simd.lookup8(simd.table8(x), hash), simd.lookup8(simd.table8(y), hash)]
+    }
+    #[inline(always)]
+    fn gradient3(self, simd: S, hash: S::U32) -> [S::F32; 3] {
+        [
+            simd.lookup16(simd.table16(&classic::REFERENCE_X), hash),
+            simd.lookup16(simd.table16(&classic::REFERENCE_Y), hash),
+            simd.lookup16(simd.table16(&classic::REFERENCE_Z), hash),
+        ]
+    }
+}

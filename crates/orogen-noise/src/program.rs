@@ -1,0 +1,170 @@
+//! What the kernels run: one noise, as a list of octaves. Every public noise boils down to this.
+
+use crate::classic::ClassicVariant;
+use crate::fractal::{Falloff, Kind};
+use crate::value::Fade;
+use crate::{Mismatch, Points, seed};
+
+/// The most octaves a fractal has; what is asked beyond is left out. Thirty-two octaves of lacunarity 2 span a factor of four
+/// billion in wavelength, more than f32 can tell apart in one sum.
+pub const MAX_OCTAVES: u32 = 32;
+
+/// Positions are held inside this many cells of the finest octave, where f64 still resolves a quarter of a cell. It keeps every
+/// cell number exact and every result finite, for NaN and infinite positions too.
+const FARTHEST: f64 = 1_125_899_906_842_624.0;
+
+/// How lattice points get their numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Source {
+    /// Values, blended by a fade.
+    Value(Fade),
+    /// Hashed gradients.
+    Perlin,
+    /// Gradients from the 2002 table.
+    Classic(ClassicVariant),
+}
+
+/// One octave, ready to run.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Octave {
+    /// Cells per metre.
+    pub frequency: f64,
+    /// Added to position times frequency, in cells.
+    pub offset: [f64; 3],
+    /// What the lattice hash mixes in, per axis.
+    pub words: [[u32; 2]; 3],
+    /// Factor of the value.
+    pub amplitude: f32,
+    /// Factor of the gradient by cell coordinates.
+    pub slope: f32,
+}
+
+/// How octaves become one number.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Combine {
+    /// The sum.
+    Sum,
+    /// `start + sign * sum of sizes`.
+    Sizes {
+        /// +1 (billow) or -1 (ridged); the sum starts at minus that.
+        sign: f32,
+    },
+    /// The sum, each octave damped by the slope so far.
+    Weighted {
+        /// Strength of the damping.
+        k: f32,
+        /// Its shape.
+        falloff: Falloff,
+        /// From the kernels' gradient unit to 1 / metre of the normalised sum.
+        gradient: f32,
+    },
+}
+
+/// A noise for the kernels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Program {
+    pub source: Source,
+    pub combine: Combine,
+    /// Positions are clamped to plus and minus this, metres.
+    pub limit: f64,
+    pub count: usize,
+    pub all: [Octave; MAX_OCTAVES as usize],
+}
+
+impl Program {
+    /// A single noise: its lattice stands on the origin.
+    pub(crate) fn single(source: Source, seed: u64, wavelength: f64) -> Program {
+        let frequency = defined(1.0 / wavelength);
+        let mut all = [Octave::default(); MAX_OCTAVES as usize];
+        all[0] = Octave {
+            frequency,
+            offset: [0.0; 3],
+            words: words(source, seed),
+            amplitude: 1.0,
+            slope: defined32(frequency as f32),
+        };
+        Program { source, combine: Combine::Sum, limit: limit(frequency), count: 1, all }
+    }
+
+    /// A fractal; `bound` is the basis's.
+    pub(crate) fn fractal(source: Source, fractal: &crate::Fractal, bound: f64) -> Program {
+        let count = fractal.octaves.min(MAX_OCTAVES);
+        let gain = if fractal.gain.is_finite() { fractal.gain.clamp(-1024.0, 1024.0) } else { 0.0 };
+        let base = defined(1.0 / fractal.wavelength);
+        let mut all = [Octave::default(); MAX_OCTAVES as usize];
+        let (mut amplitude, mut total) = (1.0, 0.0);
+        for _ in 0..count {
+            total += f64::abs(amplitude);
+            amplitude *= gain;
+        }
+        // A hair above the sum, so that rounding in f32 cannot carry the result past 1.
+        total *= bound * (1.0 + 1.0 / 1_048_576.0);
+        let per_octave = match fractal.kind {
+            Kind::Fbm | Kind::Weighted { .. } => 1.0,
+            Kind::Ridged | Kind::Billow => 2.0,
+        };
+        let (mut amplitude, mut ratio, mut fastest) = (1.0, 1.0, 0.0_f64);
+        for (octave, i) in all.iter_mut().zip(0..count) {
+            let seed = seed::octave_seed(fractal.seed, u64::from(i));
+            let frequency = defined(base * ratio);
+            let share = per_octave * amplitude / total;
+            *octave = Octave {
+                frequency,
+                offset: [0, 1, 2].map(|axis| seed::offset(seed, axis)),
+                words: words(source, seed),
+                amplitude: share as f32,
+                slope: defined32(match fractal.kind {
+                    // The slope of the sum before it is normalised, per first wavelength.
+                    Kind::Weighted { .. } => amplitude * if frequency == 0.0 { 0.0 } else { ratio },
+                    _ => share * frequency,
+                } as f32),
+            };
+            fastest = fastest.max(frequency.abs());
+            amplitude *= gain;
+            ratio *= fractal.lacunarity;
+        }
+        let combine = match fractal.kind {
+            Kind::Fbm => Combine::Sum,
+            Kind::Ridged => Combine::Sizes { sign: -1.0 },
+            Kind::Billow => Combine::Sizes { sign: 1.0 },
+            Kind::Weighted { k, falloff } => Combine::Weighted {
+                k: if k >= 0.0 { k as f32 } else { 0.0 },
+                falloff,
+                gradient: if count == 0 { 0.0 } else { defined32((base / total) as f32) },
+            },
+        };
+        Program { source, combine, limit: limit(fastest), count: count as usize, all }
+    }
+
+    /// The octaves.
+    pub(crate) fn octaves(&self) -> &[Octave] {
+        &self.all[..self.count.min(self.all.len())]
+    }
+
+    /// Checks the lengths of what a caller gave.
+    pub(crate) fn check(points: &Points, named: &[(&'static str, usize)]) -> Result<(), Mismatch> {
+        points.check()?;
+        named.iter().try_for_each(|&(slice, length)| Mismatch::check(slice, length, points.len()))
+    }
+}
+
+fn words(source: Source, seed: u64) -> [[u32; 2]; 3] {
+    match source {
+        Source::Classic(_) => crate::classic::words(seed),
+        Source::Value(_) | Source::Perlin => seed::lattice_words(seed),
+    }
+}
+
+/// A frequency that cannot be used becomes 0: the octave is then one constant.
+fn defined(frequency: f64) -> f64 {
+    if frequency.is_finite() { frequency } else { 0.0 }
+}
+
+fn defined32(factor: f32) -> f32 {
+    if factor.is_finite() { factor } else { 0.0 }
+}
+
+fn limit(frequency: f64) -> f64 {
+    let limit = FARTHEST / frequency.abs();
+    if limit < f64::MAX { limit } else { f64::MAX }
+}

@@ -1,0 +1,230 @@
+//! What a body may do: the token's trait and the traits of its lane types.
+//!
+//! The rules hold at every level, bit for bit, but for the payload and sign of a NaN, which are unspecified.
+
+use crate::{Body, Level};
+use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
+
+/// Proof that a level's instructions may be used, and the way to its lanes. Lane values come from a token only, so safe code
+/// never runs an instruction the processor lacks.
+///
+/// Slices that are too short make the loads and stores panic as indexing does; the `_partial` forms take any length.
+pub trait Simd: Copy + Send + Sync + 'static {
+    /// `LANES` f32.
+    type F32: F32Lanes<Self>;
+    /// `LANES` u32 with wrapping arithmetic; read as i32 where a method says so.
+    type U32: U32Lanes<Self>;
+    /// `LANES` f64, in as many registers as they need.
+    type F64: F64Lanes<Self>;
+    /// One truth value per lane.
+    type Mask: MaskLanes;
+    /// Eight f32 to look up in registers.
+    type Table8: Copy;
+    /// Sixteen f32 to look up in registers.
+    type Table16: Copy;
+
+    /// How many lanes the types of this level have: 4, 8 or 16.
+    const LANES: usize;
+    /// The level this token proves.
+    const LEVEL: Level;
+    /// Whether a [`Simd::lookup16`] costs one instruction, so that it beats a [`Simd::lookup8`] and a sign.
+    const WIDE_LOOKUP: bool;
+
+    /// Compiles `body` as a function of its own for this level and calls it.
+    fn run<B: Body>(self, body: B) -> B::Output;
+
+    /// `value` in every lane.
+    fn f32(self, value: f32) -> Self::F32;
+    /// `value` in every lane.
+    fn u32(self, value: u32) -> Self::U32;
+    /// `value` in every lane.
+    fn f64(self, value: f64) -> Self::F64;
+    /// 0, 1, 2 ... in lane order.
+    fn iota(self) -> Self::U32;
+
+    /// The first `LANES` values of `from`.
+    fn load(self, from: &[f32]) -> Self::F32;
+    /// The first `LANES` values of `from`; lanes beyond its end hold `rest`.
+    #[inline(always)]
+    fn load_partial(self, from: &[f32], rest: f32) -> Self::F32 {
+        if from.len() >= Self::LANES {
+            return self.load(from);
+        }
+        let mut lanes = [rest; 16];
+        lanes[..from.len()].copy_from_slice(from);
+        self.load(&lanes)
+    }
+    /// The first `LANES` values of `from`.
+    fn load_u32(self, from: &[u32]) -> Self::U32;
+    /// The first `LANES` values of `from`; lanes beyond its end hold `rest`.
+    #[inline(always)]
+    fn load_u32_partial(self, from: &[u32], rest: u32) -> Self::U32 {
+        if from.len() >= Self::LANES {
+            return self.load_u32(from);
+        }
+        let mut lanes = [rest; 16];
+        lanes[..from.len()].copy_from_slice(from);
+        self.load_u32(&lanes)
+    }
+    /// The first `LANES` values of `from`.
+    fn load_f64(self, from: &[f64]) -> Self::F64;
+    /// The first `LANES` values of `from`; lanes beyond its end hold `rest`.
+    #[inline(always)]
+    fn load_f64_partial(self, from: &[f64], rest: f64) -> Self::F64 {
+        if from.len() >= Self::LANES {
+            return self.load_f64(from);
+        }
+        let mut lanes = [rest; 16];
+        lanes[..from.len()].copy_from_slice(from);
+        self.load_f64(&lanes)
+    }
+
+    /// A table to look up with [`Simd::lookup8`].
+    fn table8(self, entries: &[f32; 8]) -> Self::Table8;
+    /// A table to look up with [`Simd::lookup16`].
+    fn table16(self, entries: &[f32; 16]) -> Self::Table16;
+    /// Each lane's entry, chosen by the low three bits of its index.
+    fn lookup8(self, table: Self::Table8, index: Self::U32) -> Self::F32;
+    /// Each lane's entry, chosen by the low four bits of its index.
+    fn lookup16(self, table: Self::Table16, index: Self::U32) -> Self::F32;
+
+    /// `from[index]` per lane, read as u32; an index beyond the end reads the last entry, an empty slice gives 0.
+    fn gather(self, from: &[f32], index: Self::U32) -> Self::F32;
+    /// `from[index]` per lane, read as u32; an index beyond the end reads the last entry, an empty slice gives 0.
+    fn gather_u32(self, from: &[u32], index: Self::U32) -> Self::U32;
+}
+
+/// `S::LANES` f32. `+ - * /`, [`sqrt`](Self::sqrt) and [`mul_add`](Self::mul_add) round correctly (to nearest, ties to even); subnormals are kept.
+pub trait F32Lanes<S: Simd>:
+    Copy
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// Writes the lanes to the first `LANES` places of `to`.
+    fn store(self, to: &mut [f32]);
+    /// Writes as many lanes as `to` has room for.
+    #[inline(always)]
+    fn store_partial(self, to: &mut [f32]) {
+        if to.len() >= S::LANES {
+            return self.store(to);
+        }
+        let mut lanes = [0.0; 16];
+        self.store(&mut lanes);
+        let room = to.len();
+        to.copy_from_slice(&lanes[..room]);
+    }
+    /// `self * factor + term`, rounded once.
+    fn mul_add(self, factor: Self, term: Self) -> Self;
+    /// `term - self * factor`, rounded once.
+    fn neg_mul_add(self, factor: Self, term: Self) -> Self;
+    /// `self < other ? self : other`: the second where either is NaN or both are zero.
+    fn min(self, other: Self) -> Self;
+    /// `self > other ? self : other`: the second where either is NaN or both are zero.
+    fn max(self, other: Self) -> Self;
+    /// The sign bit cleared.
+    fn abs(self) -> Self;
+    /// The square root; NaN below zero.
+    fn sqrt(self) -> Self;
+    /// The greatest whole number not above; keeps the sign of zero.
+    fn floor(self) -> Self;
+    /// `self < other`; false for NaN.
+    fn lt(self, other: Self) -> S::Mask;
+    /// `self <= other`; false for NaN.
+    fn le(self, other: Self) -> S::Mask;
+    /// `self == other`; false for NaN.
+    fn eq(self, other: Self) -> S::Mask;
+    /// `self` where the mask holds, else `other`.
+    fn select(self, mask: S::Mask, other: Self) -> Self;
+    /// Truncated to i32; NaN and what does not fit give `i32::MIN`.
+    fn to_i32(self) -> S::U32;
+    /// The bit patterns.
+    fn bits(self) -> S::U32;
+    /// Exact as f64.
+    fn widen(self) -> S::F64;
+    /// Lane i gets lane `index[i] % LANES`.
+    fn permute(self, index: S::U32) -> Self;
+}
+
+/// `S::LANES` u32. `+ - *` wrap.
+pub trait U32Lanes<S: Simd>:
+    Copy
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + BitAnd<Output = Self>
+    + BitOr<Output = Self>
+    + BitXor<Output = Self>
+    + Not<Output = Self>
+{
+    /// Writes the lanes to the first `LANES` places of `to`.
+    fn store(self, to: &mut [u32]);
+    /// Writes as many lanes as `to` has room for.
+    #[inline(always)]
+    fn store_partial(self, to: &mut [u32]) {
+        if to.len() >= S::LANES {
+            return self.store(to);
+        }
+        let mut lanes = [0; 16];
+        self.store(&mut lanes);
+        let room = to.len();
+        to.copy_from_slice(&lanes[..room]);
+    }
+    /// Shifted left by `count % 32` bits.
+    fn shl(self, count: u32) -> Self;
+    /// Shifted right by `count % 32` bits, zeros entering.
+    fn shr(self, count: u32) -> Self;
+    /// Shifted right by `count % 32` bits as i32, the sign entering.
+    fn sar(self, count: u32) -> Self;
+    /// `self == other`.
+    fn eq(self, other: Self) -> S::Mask;
+    /// `self < other`, both read as i32.
+    fn lt_i32(self, other: Self) -> S::Mask;
+    /// `self` where the mask holds, else `other`.
+    fn select(self, mask: S::Mask, other: Self) -> Self;
+    /// Read as i32, converted and rounded to nearest.
+    fn i32_to_f32(self) -> S::F32;
+    /// The lanes as the bit patterns of f32.
+    fn as_f32(self) -> S::F32;
+    /// Lane i gets lane `index[i] % LANES`.
+    fn permute(self, index: S::U32) -> Self;
+}
+
+/// `S::LANES` f64, for positions. Arithmetic rounds correctly.
+pub trait F64Lanes<S: Simd>:
+    Copy + Send + Sync + 'static + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
+    /// Writes the lanes to the first `LANES` places of `to`.
+    fn store(self, to: &mut [f64]);
+    /// `self < other ? self : other`.
+    fn min(self, other: Self) -> Self;
+    /// `self > other ? self : other`.
+    fn max(self, other: Self) -> Self;
+    /// The greatest whole number not above; keeps the sign of zero.
+    fn floor(self) -> Self;
+    /// Rounded to the nearest f32.
+    fn narrow(self) -> S::F32;
+    /// The low and the high half of each bit pattern.
+    fn words(self) -> (S::U32, S::U32);
+}
+
+/// One truth value per lane.
+pub trait MaskLanes:
+    Copy + Send + Sync + 'static + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
+{
+    /// Lane i in bit i; the bits beyond the lanes are 0.
+    fn to_bits(self) -> u32;
+    /// Whether any lane holds.
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.to_bits() != 0
+    }
+}
