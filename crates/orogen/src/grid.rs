@@ -181,4 +181,20 @@ impl<T: Copy> Grid<T> {
         }
         Some(Grid { window: *window, data })
     }
+
+    /// Copies what of `other` lies in this grid's window.
+    pub fn paste(&mut self, other: &Grid<T>) {
+        let (ours, theirs) = (self.window, other.window);
+        let (left, right) = (ours.x.max(theirs.x), ours.right().min(theirs.right()));
+        if ours.cell != theirs.cell || left >= right {
+            return;
+        }
+        let width = (right - left) as usize;
+        for y in ours.y.max(theirs.y)..ours.bottom().min(theirs.bottom()) {
+            let from = (left - theirs.x) as usize;
+            let to = (left - ours.x) as usize;
+            let source = &other.row((y - theirs.y) as usize)[from..from + width];
+            self.row_mut((y - ours.y) as usize)[to..to + width].copy_from_slice(source);
+        }
+    }
 }

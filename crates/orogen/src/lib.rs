@@ -1,13 +1,58 @@
 //! Orogen: a recipe describes a world; the engine makes any window of it, at any resolution, always the same.
+//!
+//! A [`Recipe`] is a document (TOML or JSON): a world with a seed and measures in metres, named nodes, named outputs. A
+//! [`World`] is a recipe opened: ask it for a [`Window`] of a layer and get a [`Grid`] of heights; ask it for a point and get
+//! the very same number.
+//!
+//! ```
+//! use orogen::{Window, World};
+//!
+//! let preset = orogen::presets::find("hills").ok_or("no such preset")?;
+//! let world = World::open(preset.recipe()?)?;
+//! let tile = world.window("height", &Window::new(64, 64, 30.0).at(100, 50))?;
+//! let highest = tile.data().iter().copied().fold(f32::MIN, f32::max);
+//! println!("the highest of {} samples stands at {highest} m", tile.data().len());
+//! assert_eq!(tile.get(10, 20), world.height(tile.window().east(10), tile.window().south(20))?);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Three words order everything. A **field** looks at one position and the seed (noise, curves, warps); a **filter** looks at a
+//! finite halo (blur, slope); a **solver** looks at the whole bounded world, once (normalise, bake). So any tile equals the
+//! crop of the whole, bit for bit, whatever the tile size, the number of threads, the SIMD level or the machine.
+//!
+//! Where to go on: [`Recipe`] builds a world in code; [`node::Node::all`] lists the ops; [`presets`] are the recipes that come
+//! with the library; [`mod@format`], [`map`] and [`palette`] make files and pictures of grids.
 #![forbid(unsafe_code)]
 
+#[macro_use]
+pub mod declare;
+
 pub mod analysis;
+mod engine;
 pub mod error;
+pub mod field;
 pub mod file;
+pub mod filter;
 pub mod format;
 pub mod grid;
 pub mod map;
+pub mod node;
+pub mod op;
 pub mod palette;
+pub mod plan;
+pub mod progress;
+pub mod recipe;
+pub mod resample;
+pub mod solver;
+mod store;
+pub mod value;
+pub mod words;
+pub mod world;
 
 pub use error::{Error, ErrorKind, Result};
 pub use grid::{Grid, Window};
+pub use progress::Progress;
+pub use recipe::document::{Recipe, WorldSpec};
+pub use recipe::presets;
+pub use words::nearest;
+pub use world::{Options, World};

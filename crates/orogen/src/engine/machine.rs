@@ -1,0 +1,246 @@
+//! Runs a program over one block of samples.
+
+use crate::grid::{Grid, Window};
+use crate::op::{Field, LayerKind, NOWHERE, Setting, Slots, Solution, Solver};
+use crate::plan::program::{Instruction, Program};
+use crate::resample;
+use orogen_noise::Points;
+use std::sync::Arc;
+
+/// Samples a row of a block: wide enough that noise on a lattice runs at full speed.
+pub const BLOCK_WIDTH: usize = 256;
+
+/// Most rows of a block: 256 x 64 samples of 4 bytes are 64 KiB a register, a few of which stay in cache.
+pub const BLOCK_HEIGHT: usize = 64;
+
+/// What a program's instructions refer to.
+pub struct Bindings<'a> {
+    pub setting: &'a Setting,
+    pub fields: &'a (dyn Fn(usize) -> Option<&'a dyn Field> + Sync),
+    pub solvers: &'a (dyn Fn(usize) -> Option<(&'a dyn Solver, Arc<Solution>)> + Sync),
+    pub grids: &'a [Option<Grid>],
+}
+
+/// How a place's buffers are to be understood.
+#[derive(Clone, Copy, Default, PartialEq)]
+enum Shape {
+    #[default]
+    Lattice,
+    Displaced,
+    Scattered,
+}
+
+#[derive(Default)]
+struct Place {
+    shape: Shape,
+    x: Vec<f64>,
+    y: Vec<f64>,
+    dx: Vec<f32>,
+    dy: Vec<f32>,
+}
+
+impl Place {
+    fn points(&self) -> Points<'_> {
+        match self.shape {
+            Shape::Lattice => Points::Lattice { xs: &self.x, ys: &self.y },
+            Shape::Displaced => Points::Displaced { xs: &self.x, ys: &self.y, dx: &self.dx, dy: &self.dy },
+            Shape::Scattered => Points::Scattered { x: &self.x, y: &self.y },
+        }
+    }
+}
+
+/// Registers and places, used again from block to block.
+pub struct Machine<'p> {
+    program: &'p Program,
+    registers: Vec<Vec<f32>>,
+    places: Vec<Place>,
+}
+
+impl<'p> Machine<'p> {
+    /// A machine for a program.
+    pub fn new(program: &'p Program) -> Machine<'p> {
+        Machine {
+            program,
+            registers: vec![Vec::new(); program.registers],
+            places: (0..program.places.max(1)).map(|_| Place::default()).collect(),
+        }
+    }
+
+    /// Runs the program over a block of the lattice.
+    pub fn run_block(&mut self, block: &Window, bindings: &Bindings) {
+        let place = &mut self.places[0];
+        place.shape = Shape::Lattice;
+        place.x.clear();
+        place.x.extend((0..block.width).map(|i| block.east(i)));
+        place.y.clear();
+        place.y.extend((0..block.height).map(|j| block.south(j)));
+        self.run(Some(block), block.len(), bindings);
+    }
+
+    /// Runs the program at any points.
+    pub fn run_points(&mut self, x: &[f64], y: &[f64], bindings: &Bindings) {
+        let place = &mut self.places[0];
+        place.shape = Shape::Scattered;
+        place.x.clear();
+        place.x.extend_from_slice(x);
+        place.y.clear();
+        place.y.extend_from_slice(y);
+        self.run(None, x.len().min(y.len()), bindings);
+    }
+
+    /// Output `i` of the last run.
+    pub fn output(&self, i: usize) -> &[f32] {
+        &self.registers[self.program.outputs[i]]
+    }
+
+    fn run(&mut self, block: Option<&Window>, count: usize, bindings: &Bindings) {
+        for register in &mut self.registers {
+            register.resize(count, 0.0);
+        }
+        for instruction in &self.program.instructions {
+            self.step(instruction, block, count, bindings);
+        }
+    }
+
+    fn step(&mut self, instruction: &Instruction, block: Option<&Window>, count: usize, bindings: &Bindings) {
+        match instruction {
+            Instruction::Constant { value, out } => self.registers[*out].fill(*value),
+            Instruction::Field { node, place, inputs, out } => {
+                let Some(field) = (bindings.fields)(*node) else { return };
+                self.with_inputs(*place, inputs, *out, |points, slots, out| {
+                    field.eval(points, slots, bindings.setting, out);
+                });
+            }
+            Instruction::Solved { node, layer, place, inputs, out } => {
+                let Some((solver, solution)) = (bindings.solvers)(*node) else { return };
+                self.with_inputs(*place, inputs, *out, |points, slots, out| {
+                    solver.read(&solution, *layer, points, slots, out);
+                });
+            }
+            Instruction::Grid { grid, kind, place, out } => {
+                let Some(grid) = &bindings.grids[*grid] else { return };
+                // Only the block itself lies on the lattice that the grid was made on.
+                let block = block.filter(|_| *place == 0);
+                let mut samples = std::mem::take(&mut self.registers[*out]);
+                copy_or_read(grid, *kind, block, &self.places[*place].points(), &mut samples);
+                self.registers[*out] = samples;
+            }
+            Instruction::Mask { source, result, mask, out } => {
+                let mut samples = std::mem::take(&mut self.registers[*out]);
+                let (result, mask) = (&self.registers[*result], &self.registers[*mask]);
+                match source {
+                    Some(source) => {
+                        let source = &self.registers[*source];
+                        for (((sample, s), r), m) in samples.iter_mut().zip(source).zip(result).zip(mask) {
+                            *sample = s + (r - s) * m.clamp(0.0, 1.0);
+                        }
+                    }
+                    None => {
+                        for ((sample, r), m) in samples.iter_mut().zip(result).zip(mask) {
+                            *sample = r * m.clamp(0.0, 1.0);
+                        }
+                    }
+                }
+                self.registers[*out] = samples;
+            }
+            Instruction::Displace { from, east, south, strength, reach, to } => {
+                let mut moved = std::mem::take(&mut self.places[*to]);
+                let metres = |input: f32| {
+                    // A displacement that is no number moves nothing: the source then decides what shows.
+                    let metres = (f64::from(input) * strength).clamp(-reach, *reach) as f32;
+                    if metres.is_nan() { 0.0 } else { metres }
+                };
+                let (east, south) = (&self.registers[*east], &self.registers[*south]);
+                displace(&self.places[*from], count, |k| (metres(east[k]), metres(south[k])), &mut moved);
+                self.places[*to] = moved;
+            }
+            Instruction::Map { from, map, to } => {
+                let mut mapped = std::mem::take(&mut self.places[*to]);
+                let from = &self.places[*from];
+                mapped.x.clear();
+                mapped.y.clear();
+                if from.shape == Shape::Lattice && map.is_separable() {
+                    mapped.shape = Shape::Lattice;
+                    mapped.x.extend(from.x.iter().map(|x| map.apply(*x, 0.0).0));
+                    mapped.y.extend(from.y.iter().map(|y| map.apply(0.0, *y).1));
+                } else {
+                    mapped.shape = Shape::Scattered;
+                    let points = from.points();
+                    for k in 0..count {
+                        let (x, y) = points.position(k).unwrap_or(NOWHERE);
+                        let (x, y) = map.apply(x, y);
+                        mapped.x.push(x);
+                        mapped.y.push(y);
+                    }
+                }
+                self.places[*to] = mapped;
+            }
+        }
+    }
+
+    /// Lends the inputs and takes the output out while an op works, so that both can be borrowed at once.
+    fn with_inputs(
+        &mut self,
+        place: usize,
+        inputs: &[Option<usize>],
+        out: usize,
+        work: impl FnOnce(&Points, &Slots, &mut [f32]),
+    ) {
+        let mut samples = std::mem::take(&mut self.registers[out]);
+        const FEW: usize = 8;
+        let mut few: [Option<&[f32]>; FEW] = [None; FEW];
+        let many: Vec<Option<&[f32]>>;
+        let slots = if inputs.len() <= FEW {
+            for (slot, input) in few.iter_mut().zip(inputs) {
+                *slot = input.map(|register| self.registers[register].as_slice());
+            }
+            &few[..inputs.len()]
+        } else {
+            many = inputs.iter().map(|input| input.map(|register| self.registers[register].as_slice())).collect();
+            &many
+        };
+        work(&self.places[place].points(), &Slots::new(slots), &mut samples);
+        self.registers[out] = samples;
+    }
+}
+
+/// Copies a block out of a grid on its own lattice, or reads it between samples.
+fn copy_or_read(grid: &Grid, kind: LayerKind, block: Option<&Window>, points: &Points, out: &mut [f32]) {
+    match block {
+        Some(block) if grid.window().contains(block) => {
+            let window = grid.window();
+            let (left, top) = ((block.x - window.x) as usize, (block.y - window.y) as usize);
+            for (j, row) in out.chunks_mut(block.width.max(1)).enumerate() {
+                row.copy_from_slice(&grid.row(top + j)[left..left + block.width]);
+            }
+        }
+        _ => resample::read(grid, kind, points, out),
+    }
+}
+
+/// Moves every point. From a lattice the columns and rows stay known beside the displacements; from anywhere else the new
+/// positions are plain points. Either way a position is the f64 sum of where it was and the f32 it moved.
+fn displace(from: &Place, count: usize, by: impl Fn(usize) -> (f32, f32), to: &mut Place) {
+    to.x.clear();
+    to.y.clear();
+    to.dx.clear();
+    to.dy.clear();
+    if from.shape == Shape::Lattice {
+        to.shape = Shape::Displaced;
+        to.x.extend_from_slice(&from.x);
+        to.y.extend_from_slice(&from.y);
+        for k in 0..count {
+            let (dx, dy) = by(k);
+            to.dx.push(dx);
+            to.dy.push(dy);
+        }
+        return;
+    }
+    to.shape = Shape::Scattered;
+    let points = from.points();
+    for k in 0..count {
+        let ((x, y), (dx, dy)) = (points.position(k).unwrap_or(NOWHERE), by(k));
+        to.x.push(x + f64::from(dx));
+        to.y.push(y + f64::from(dy));
+    }
+}

@@ -1,0 +1,5 @@
+//! The engine: runs plans.
+
+pub mod machine;
+pub mod run;
+mod solve;

@@ -1,0 +1,207 @@
+//! Runs a plan's steps.
+
+use super::machine::{BLOCK_HEIGHT, BLOCK_WIDTH, Bindings, Machine};
+use super::solve;
+use crate::error::{Error, ErrorKind, Result};
+use crate::grid::{Grid, Window};
+use crate::op::{Context, Field, Op, Setting, Solution, Solver};
+use crate::plan::planner::{Plan, Planner, Step};
+use crate::plan::program::Program;
+use crate::progress::Progress;
+use crate::recipe::document::Recipe;
+use crate::recipe::graph::Graph;
+use crate::store::Store;
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// What runs plans of one recipe.
+pub struct Engine<'a> {
+    pub recipe: &'a Recipe,
+    pub graph: &'a Graph,
+    pub setting: &'a Setting,
+    pub store: &'a Store,
+    pub progress: &'a Progress,
+}
+
+type Solutions = HashMap<usize, Arc<Solution>>;
+
+impl<'a> Engine<'a> {
+    /// Makes a plan's output grids.
+    pub fn run(&self, plan: &Plan) -> Result<Vec<Grid>> {
+        self.progress.expect(plan.samples());
+        let solutions = self.solve(plan)?;
+        let mut grids: Vec<Option<Grid>> = plan.grids.iter().map(|_| None).collect();
+        for (at, step) in plan.steps.iter().enumerate() {
+            self.progress.check()?;
+            let made = match step {
+                Step::Fill { program, window, out } => self.fill(program, window, out.len(), &solutions, &grids)?,
+                Step::Apply { node, inputs, window, halo, .. } => self.apply(*node, inputs, window, *halo, &grids)?,
+            };
+            for (&slot, grid) in step.writes().iter().zip(made) {
+                grids[slot] = Some(grid);
+            }
+            for (grid, slot) in grids.iter_mut().zip(&plan.grids) {
+                if slot.last_use <= at {
+                    *grid = None;
+                }
+            }
+        }
+        // One grid may be several outputs only by being made several times: each output has a slot of its own.
+        Ok(plan.outputs.iter().filter_map(|&slot| grids[slot].take()).collect())
+    }
+
+    /// Makes a scattered plan's values at points, output after output.
+    pub fn run_points(&self, plan: &Plan, x: &[f64], y: &[f64]) -> Result<Vec<Vec<f32>>> {
+        let solutions = self.solve(plan)?;
+        let mut grids: Vec<Option<Grid>> = plan.grids.iter().map(|_| None).collect();
+        let mut values = Vec::new();
+        for step in &plan.steps {
+            let made = match step {
+                Step::Fill { program, out, .. } if out.is_empty() => {
+                    values = self.at_points(program, x, y, &solutions, &grids);
+                    continue;
+                }
+                Step::Fill { program, window, out } => self.fill(program, window, out.len(), &solutions, &grids)?,
+                Step::Apply { node, inputs, window, halo, .. } => self.apply(*node, inputs, window, *halo, &grids)?,
+            };
+            for (&slot, grid) in step.writes().iter().zip(made) {
+                grids[slot] = Some(grid);
+            }
+        }
+        Ok(values)
+    }
+
+    fn solve(&self, plan: &Plan) -> Result<Solutions> {
+        let mut solutions = Solutions::new();
+        for order in &plan.solves {
+            let solution = self.store.solution(order.key, || {
+                let planner = Planner::new(self.recipe, self.graph);
+                solve::solve(self, &planner, order)
+            })?;
+            solutions.insert(order.node, solution);
+        }
+        Ok(solutions)
+    }
+
+    fn field(&self, node: usize) -> Option<&'a dyn Field> {
+        match self.recipe.nodes().get(node)?.node.op() {
+            Op::Field(field) => Some(field),
+            _ => None,
+        }
+    }
+
+    fn solver(&self, node: usize, solutions: &Solutions) -> Option<(&'a dyn Solver, Arc<Solution>)> {
+        match self.recipe.nodes().get(node)?.node.op() {
+            Op::Solver(solver) => Some((solver, Arc::clone(solutions.get(&node)?))),
+            _ => None,
+        }
+    }
+
+    fn at_points(
+        &self,
+        program: &Program,
+        x: &[f64],
+        y: &[f64],
+        solutions: &Solutions,
+        grids: &[Option<Grid>],
+    ) -> Vec<Vec<f32>> {
+        let fields = |node| self.field(node);
+        let solvers = |node| self.solver(node, solutions);
+        let bindings = Bindings { setting: self.setting, fields: &fields, solvers: &solvers, grids };
+        const POINTS: usize = BLOCK_WIDTH * BLOCK_HEIGHT;
+        let mut values = vec![Vec::with_capacity(x.len()); program.outputs.len()];
+        let mut machine = Machine::new(program);
+        for (x, y) in x.chunks(POINTS).zip(y.chunks(POINTS)) {
+            machine.run_points(x, y, &bindings);
+            for (i, values) in values.iter_mut().enumerate() {
+                values.extend_from_slice(machine.output(i));
+            }
+        }
+        values
+    }
+
+    /// Runs a program over a window: bands of rows side by side, each band block by block.
+    fn fill(
+        &self,
+        program: &Program,
+        window: &Window,
+        outputs: usize,
+        solutions: &Solutions,
+        grids: &[Option<Grid>],
+    ) -> Result<Vec<Grid>> {
+        let mut out: Vec<Grid> = (0..outputs).map(|_| Grid::filled(*window, 0.0f32)).collect();
+        if window.is_empty() {
+            return Ok(out);
+        }
+        let fields = |node| self.field(node);
+        let solvers = |node| self.solver(node, solutions);
+        let bindings = Bindings { setting: self.setting, fields: &fields, solvers: &solvers, grids };
+        // Enough bands for every thread to have some, none so thin that rows of noise lattice are made over and over.
+        let rows = window.height.div_ceil(2 * rayon::current_num_threads()).clamp(8, BLOCK_HEIGHT);
+        let mut bands: Vec<Vec<&mut [f32]>> = (0..window.height.div_ceil(rows)).map(|_| Vec::new()).collect();
+        for grid in &mut out {
+            for (band, samples) in bands.iter_mut().zip(grid.data_mut().chunks_mut(rows * window.width)) {
+                band.push(samples);
+            }
+        }
+        bands.into_par_iter().enumerate().try_for_each_init(
+            || Machine::new(program),
+            |machine, (band, mut out)| {
+                self.progress.check()?;
+                let top = band * rows;
+                let height = rows.min(window.height - top);
+                for left in (0..window.width).step_by(BLOCK_WIDTH) {
+                    let block = Window {
+                        x: window.x + left as i64,
+                        y: window.y + top as i64,
+                        width: BLOCK_WIDTH.min(window.width - left),
+                        height,
+                        cell: window.cell,
+                    };
+                    machine.run_block(&block, &bindings);
+                    for (i, out) in out.iter_mut().enumerate() {
+                        let made = machine.output(i).chunks(block.width);
+                        for (row, made) in out.chunks_mut(window.width).zip(made) {
+                            row[left..left + block.width].copy_from_slice(made);
+                        }
+                    }
+                }
+                self.progress.advance((height * window.width) as u64);
+                Ok::<(), Error>(())
+            },
+        )?;
+        Ok(out)
+    }
+
+    fn apply(
+        &self,
+        node: usize,
+        inputs: &[Option<usize>],
+        window: &Window,
+        halo: usize,
+        grids: &[Option<Grid>],
+    ) -> Result<Vec<Grid>> {
+        let Op::Filter(filter) = self.recipe.nodes()[node].node.op() else {
+            return Err(Error::new(ErrorKind::Recipe, "a node that is no filter was to be applied"));
+        };
+        let grown = window.grown(halo);
+        // An input may have been made for others too, over more samples: the filter gets just what it declared.
+        let cropped: Vec<Option<Grid>> = inputs
+            .iter()
+            .map(|input| {
+                let grid = input.and_then(|slot| grids[slot].as_ref())?;
+                if *grid.window() == grown { None } else { grid.crop(&grown) }
+            })
+            .collect();
+        let given: Vec<Option<&Grid>> = inputs
+            .iter()
+            .zip(&cropped)
+            .map(|(input, cropped)| cropped.as_ref().or_else(|| input.and_then(|slot| grids[slot].as_ref())))
+            .collect();
+        let context = Context { setting: self.setting, progress: self.progress };
+        let made = filter.apply(&given, window, &context)?;
+        self.progress.advance(window.len() as u64);
+        Ok(made)
+    }
+}

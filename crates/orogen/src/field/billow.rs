@@ -1,0 +1,22 @@
+//! Billowing fractal noise.
+
+use super::basis::fill;
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::{Kind, Points};
+
+op! {
+    /// Billows: octaves of 2 |noise| - 1 summed, in -1 ..= 1. Round hills with sharp valleys between them.
+    pub struct Billow = "billow", field, revision 1;
+    octaves;
+}
+
+impl Field for Billow {
+    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+        let noise = self.fractal(setting, Kind::Billow);
+        fill(out, |out| noise.fill(at, out));
+    }
+
+    fn cost(&self) -> f64 {
+        f64::from(self.octaves)
+    }
+}

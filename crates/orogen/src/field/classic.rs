@@ -1,0 +1,52 @@
+//! Perlin noise as the textbooks have it.
+
+use super::basis::fill;
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::Points;
+
+choice! {
+    /// The gradients of the classic noise in 2D.
+    pub enum Variant {
+        /// Four diagonals, each twice, as most textbook ports have it.
+        Diagonal = "diagonal",
+        /// Four diagonals and four axes.
+        Eight = "eight",
+        /// Unit vectors at 256 angles, times the root of 2.
+        Angle = "angle",
+    }
+}
+
+impl Variant {
+    fn noise(self) -> orogen_noise::ClassicVariant {
+        match self {
+            Variant::Diagonal => orogen_noise::ClassicVariant::Diagonal,
+            Variant::Eight => orogen_noise::ClassicVariant::Eight,
+            Variant::Angle => orogen_noise::ClassicVariant::Angle,
+        }
+    }
+}
+
+op! {
+    /// Perlin's improved noise over the permutation table of his 2002 reference; it repeats every 256 lattice points.
+    pub struct Classic = "classic", field, revision 1;
+    params {
+        /// Seed of its own, hashed with the world's unless both are 0: then it is the noise as published.
+        seed: u64 = 0;
+        /// Distance between lattice points.
+        wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
+        /// The set of gradients.
+        variant: Variant = Variant::Diagonal;
+    }
+}
+
+impl Field for Classic {
+    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+        let seed = if setting.seed == 0 && self.seed == 0 { 0 } else { setting.seed_of(self.seed) };
+        let noise = orogen_noise::Classic { seed, wavelength: self.wavelength, variant: self.variant.noise() };
+        fill(out, |out| noise.fill(at, out));
+    }
+
+    fn cost(&self) -> f64 {
+        1.0
+    }
+}

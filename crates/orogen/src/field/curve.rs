@@ -1,0 +1,138 @@
+//! A monotone curve through control points.
+
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::Points;
+
+op! {
+    /// The source mapped through a smooth curve that passes through all control points and never overshoots between them.
+    ///
+    /// Below the first and above the last point the curve stays level. Two points of the same height make a level stretch
+    /// between them: `points = [[-1, 0], [0.4, 0], [1, 1]]` puts everything below 0.4 at 0. Cubic Hermite interpolation with
+    /// the tangents of Fritsch and Carlson (1980).
+    pub struct Curve = "curve", field, revision 1;
+    inputs {
+        /// What is mapped.
+        source: required,
+    }
+    params {
+        /// Control points [[from, to], ...], each `from` greater than the one before.
+        points: Vec<[f64; 2]> = vec![[-1.0, -1.0], [1.0, 1.0]], range -1e9 to 1e9;
+    }
+}
+
+/// One stretch between two control points: to(x) = a + t (b + t (c + t d)) with t = x - start.
+struct Piece {
+    start: f32,
+    a: f32,
+    b: f32,
+    c: f32,
+    d: f32,
+}
+
+impl Curve {
+    fn pieces(&self) -> Vec<Piece> {
+        let points = &self.points;
+        let secants: Vec<f64> =
+            points.windows(2).map(|pair| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0])).collect();
+        let count = points.len();
+        let mut tangents: Vec<f64> = (0..count)
+            .map(|i| match (i.checked_sub(1).and_then(|before| secants.get(before)), secants.get(i)) {
+                (Some(before), Some(after)) if before * after > 0.0 => 0.5 * (before + after),
+                (Some(_), Some(_)) => 0.0,
+                (Some(only), None) | (None, Some(only)) => *only,
+                (None, None) => 0.0,
+            })
+            .collect();
+        // Fritsch and Carlson's condition: tangents within a circle of radius 3 around the secant keep the piece monotone.
+        for (i, secant) in secants.iter().enumerate() {
+            if *secant == 0.0 {
+                tangents[i] = 0.0;
+                tangents[i + 1] = 0.0;
+                continue;
+            }
+            let (alpha, beta) = (tangents[i] / secant, tangents[i + 1] / secant);
+            let square = alpha * alpha + beta * beta;
+            if square > 9.0 {
+                let tau = 3.0 / square.sqrt();
+                tangents[i] = tau * alpha * secant;
+                tangents[i + 1] = tau * beta * secant;
+            }
+        }
+        points
+            .windows(2)
+            .enumerate()
+            .map(|(i, pair)| {
+                let (width, secant) = (pair[1][0] - pair[0][0], secants[i]);
+                let (m0, m1) = (tangents[i], tangents[i + 1]);
+                Piece {
+                    start: pair[0][0] as f32,
+                    a: pair[0][1] as f32,
+                    b: m0 as f32,
+                    c: ((3.0 * secant - 2.0 * m0 - m1) / width) as f32,
+                    d: ((m0 + m1 - 2.0 * secant) / (width * width)) as f32,
+                }
+            })
+            .collect()
+    }
+}
+
+impl Field for Curve {
+    fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
+        let pieces = self.pieces();
+        let ends = |point: Option<&[f64; 2]>| point.map_or([0.0f32; 2], |[x, y]| [*x as f32, *y as f32]);
+        let (first, last) = (ends(self.points.first()), ends(self.points.last()));
+        for (sample, &x) in out.iter_mut().zip(inputs.required(0)) {
+            *sample = if x <= first[0] {
+                first[1]
+            } else if x >= last[0] {
+                last[1]
+            } else if x.is_nan() {
+                x
+            } else {
+                let piece = &pieces[pieces.partition_point(|piece| piece.start <= x).saturating_sub(1)];
+                let t = x - piece.start;
+                piece.a + t * (piece.b + t * (piece.c + t * piece.d))
+            };
+        }
+    }
+
+    fn cost(&self) -> f64 {
+        5.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::declare::Input;
+
+    fn run(points: &[[f64; 2]], xs: &[f32]) -> Vec<f32> {
+        let curve = Curve { source: Input::None, points: points.to_vec() };
+        let mut out = vec![0.0; xs.len()];
+        let setting = Setting { seed: 0, size: None, cell: 1.0, sea_level: 0.0 };
+        let here = vec![0.0; xs.len()];
+        let slots = [Some(xs)];
+        curve.eval(&Points::Scattered { x: &here, y: &here }, &Slots::new(&slots), &setting, &mut out);
+        out
+    }
+
+    #[test]
+    fn passes_through_points_and_stays_level() {
+        let points = [[-1.0, 0.0], [0.4, 0.0], [0.6, 0.5], [1.0, 1.0]];
+        assert_eq!(run(&points, &[-5.0, -1.0, 0.0, 0.39, 0.6, 1.0, 7.0]), [0.0, 0.0, 0.0, 0.0, 0.5, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn never_overshoots() {
+        let points = [[0.0, 0.0], [0.1, 0.9], [0.2, 0.91], [0.9, 0.92], [1.0, 2.0]];
+        let xs: Vec<f32> = (0..=1000).map(|i| i as f32 / 1000.0).collect();
+        let ys = run(&points, &xs);
+        assert!(ys.windows(2).all(|pair| pair[1] >= pair[0] - 1e-6), "monotone data make a monotone curve");
+        assert!(ys.iter().all(|y| (-1e-6..=2.0 + 1e-6).contains(y)));
+    }
+
+    #[test]
+    fn nan_stays_nan() {
+        assert!(run(&[[0.0, 0.0], [1.0, 1.0]], &[f32::NAN])[0].is_nan());
+    }
+}

@@ -1,0 +1,55 @@
+//! Falling off towards the world's edges.
+
+use super::positions::{each, smoothstep};
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::Points;
+
+choice! {
+    /// How two edges meet in a corner.
+    pub enum Corners {
+        /// The corner is rounded: distance is measured to a rounded rectangle.
+        Round = "round",
+        /// The nearest edge alone counts.
+        Square = "square",
+    }
+}
+
+op! {
+    /// 0 at the world's edges, rising smoothly to 1 at `width` from them.
+    ///
+    /// Multiply a height by it, or use it as a mask, to make an island of a bounded world.
+    pub struct Edge = "edge", field, revision 1;
+    params {
+        /// Distance from the edges over which it rises.
+        width: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
+        /// How edges meet in the corners.
+        corners: Corners = Corners::Round;
+    }
+}
+
+impl Field for Edge {
+    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+        let Some([w, h]) = setting.size else {
+            out.fill(1.0);
+            return;
+        };
+        // Distance into the border strip, as a share of its width: 0 inside, 1 at the edge.
+        let strip = |v: f64, extent: f64| (1.0 - v.min(extent - v) / self.width).max(0.0);
+        each(at, out, |x, y| {
+            let (sx, sy) = (strip(x, w), strip(y, h));
+            let depth = match self.corners {
+                Corners::Round => (sx * sx + sy * sy).sqrt(),
+                Corners::Square => sx.max(sy),
+            };
+            smoothstep(1.0 - depth) as f32
+        });
+    }
+
+    fn needs_bounds(&self) -> bool {
+        true
+    }
+
+    fn cost(&self) -> f64 {
+        2.0
+    }
+}

@@ -1,0 +1,25 @@
+//! Fractional Brownian motion.
+
+use super::basis::fill;
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::{Kind, Points};
+
+op! {
+    /// Fractional Brownian motion: octaves of noise summed, in -1 ..= 1.
+    ///
+    /// sum of gain^i n_i(p lacunarity^i / wavelength), divided by the sum of the amplitudes. Every octave has a seed and an
+    /// offset of its own. Mandelbrot and Van Ness 1968; Musgrave 1989.
+    pub struct Fbm = "fbm", field, revision 1;
+    octaves;
+}
+
+impl Field for Fbm {
+    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+        let noise = self.fractal(setting, Kind::Fbm);
+        fill(out, |out| noise.fill(at, out));
+    }
+
+    fn cost(&self) -> f64 {
+        f64::from(self.octaves)
+    }
+}

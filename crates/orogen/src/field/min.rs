@@ -1,0 +1,40 @@
+//! The smaller of two, with a rounded seam if asked.
+
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::Points;
+
+op! {
+    /// The smaller of a and b; with `smooth` above 0 the seam between them is rounded.
+    ///
+    /// The rounded form is the quadratic polynomial: with h = max(0, smooth - |a - b|) / smooth, the result is
+    /// min(a, b) - h^2 smooth / 4 (Quilez, "Smooth minimum").
+    pub struct Min = "min", field, revision 1;
+    inputs {
+        /// One.
+        a: required,
+        /// The other.
+        b: required,
+    }
+    params {
+        /// Difference of the two up to which their seam is rounded, in their unit.
+        smooth: f64 = 0.0, range 0.0 to 1e9;
+    }
+}
+
+impl Field for Min {
+    fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
+        let smooth = self.smooth as f32;
+        let pairs = inputs.required(0).iter().zip(inputs.required(1));
+        if smooth <= 0.0 {
+            for (sample, (a, b)) in out.iter_mut().zip(pairs) {
+                *sample = if a < b { *a } else { *b };
+            }
+            return;
+        }
+        for (sample, (a, b)) in out.iter_mut().zip(pairs) {
+            let h = (smooth - (a - b).abs()).max(0.0) / smooth;
+            let plain = if a < b { *a } else { *b };
+            *sample = plain - h * h * smooth * 0.25;
+        }
+    }
+}

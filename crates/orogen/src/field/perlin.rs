@@ -1,0 +1,27 @@
+//! Perlin noise.
+
+use super::basis::fill;
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::Points;
+
+op! {
+    /// Perlin's gradient noise (2002) over a hashed lattice, in -1 ..= 1: smooth, without repetition.
+    pub struct Perlin = "perlin", field, revision 1;
+    params {
+        /// Seed of its own, hashed with the world's: two nodes of one seed are the same noise.
+        seed: u64 = 0;
+        /// Distance between lattice points: about that between hills.
+        wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
+    }
+}
+
+impl Field for Perlin {
+    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+        let noise = orogen_noise::Perlin { seed: setting.seed_of(self.seed), wavelength: self.wavelength };
+        fill(out, |out| noise.fill(at, out));
+    }
+
+    fn cost(&self) -> f64 {
+        1.0
+    }
+}

@@ -1,0 +1,39 @@
+//! A round hill: the simplest island.
+
+use super::positions::{each, smoothstep};
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::Points;
+
+op! {
+    /// 1 around a centre, falling smoothly to 0 at `radius`.
+    ///
+    /// The fall is Hermite's smooth step 3t^2 - 2t^3 of t = (radius - distance) / (radius - inner).
+    pub struct Radial = "radial", field, revision 1;
+    params {
+        /// The centre, east and south.
+        center: [f64; 2] = [0.0, 0.0], unit "m", range -1e12 to 1e12;
+        /// Distance from the centre from which on it is 0.
+        radius: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
+        /// Distance from the centre up to which it is 1; less than the radius.
+        inner: f64 = 0.0, unit "m", range 0.0 to 1e9;
+    }
+    check |op| match op.inner < op.radius {
+        true => Ok(()),
+        false => Err(("inner", format!("`inner` ({}) must be less than `radius` ({})", op.inner, op.radius))),
+    };
+}
+
+impl Field for Radial {
+    fn eval(&self, at: &Points, _: &Slots, _: &Setting, out: &mut [f32]) {
+        let [x0, y0] = self.center;
+        let span = self.radius - self.inner;
+        each(at, out, |x, y| {
+            let (dx, dy) = (x - x0, y - y0);
+            smoothstep((self.radius - (dx * dx + dy * dy).sqrt()) / span) as f32
+        });
+    }
+
+    fn cost(&self) -> f64 {
+        2.0
+    }
+}

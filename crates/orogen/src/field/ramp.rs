@@ -1,0 +1,45 @@
+//! A plane that rises in one direction.
+
+use super::positions::each;
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::Points;
+
+op! {
+    /// A plane: 0 at the origin, rising by 1 every `length` metres in the direction of `azimuth`.
+    ///
+    /// With `azimuth = 90` it is x / length (east), with 180 it is y / length (south).
+    pub struct Ramp = "ramp", field, revision 1;
+    params {
+        /// Direction in which the ramp rises, clockwise from north.
+        azimuth: f64 = 90.0, unit "deg", range -360.0 to 360.0;
+        /// Distance over which it rises by 1.
+        length: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
+        /// Where it is 0, east and south.
+        origin: [f64; 2] = [0.0, 0.0], unit "m", range -1e12 to 1e12;
+    }
+}
+
+/// Sine and cosine of an angle in degrees, exact at the right angles so that axes stay axes.
+pub(super) fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
+    let turn = degrees.rem_euclid(360.0);
+    if turn == 0.0 {
+        (0.0, 1.0)
+    } else if turn == 90.0 {
+        (1.0, 0.0)
+    } else if turn == 180.0 {
+        (0.0, -1.0)
+    } else if turn == 270.0 {
+        (-1.0, 0.0)
+    } else {
+        libm::sincos(turn.to_radians())
+    }
+}
+
+impl Field for Ramp {
+    fn eval(&self, at: &Points, _: &Slots, _: &Setting, out: &mut [f32]) {
+        // North is up and y grows south: azimuth 0 rises towards -y.
+        let (sin, cos) = sin_cos_degrees(self.azimuth);
+        let [x0, y0] = self.origin;
+        each(at, out, |x, y| (((x - x0) * sin - (y - y0) * cos) / self.length) as f32);
+    }
+}

@@ -1,0 +1,39 @@
+//! One range stretched to another.
+
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::Points;
+
+op! {
+    /// The source with the range `from` stretched linearly to the range `to`; [1, 0] as either turns it upside down.
+    pub struct Remap = "remap", field, revision 1;
+    inputs {
+        /// What is stretched.
+        source: required,
+    }
+    params {
+        /// The two values of the source that become the two of `to`; they must differ.
+        from: [f64; 2] = [-1.0, 1.0], range -1e9 to 1e9;
+        /// What they become.
+        to: [f64; 2] = [0.0, 1.0], range -1e9 to 1e9;
+        /// Whether values beyond `from` are cut off, or continue the line.
+        clamp: bool = false;
+    }
+    check |op| match op.from[0] != op.from[1] && (op.from[1] - op.from[0]).abs() >= 1e-9 {
+        true => Ok(()),
+        false => Err(("from", "the two numbers of `from` must differ by at least 1e-9".to_string())),
+    };
+}
+
+impl Field for Remap {
+    fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
+        let scale = ((self.to[1] - self.to[0]) / (self.from[1] - self.from[0])) as f32;
+        let (from, to) = (self.from[0] as f32, self.to[0] as f32);
+        let (low, high) = match self.clamp {
+            true => (self.to[0].min(self.to[1]) as f32, self.to[0].max(self.to[1]) as f32),
+            false => (f32::NEG_INFINITY, f32::INFINITY),
+        };
+        for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
+            *sample = ((source - from) * scale + to).clamp(low, high);
+        }
+    }
+}

@@ -1,0 +1,22 @@
+//! Ridged fractal noise.
+
+use super::basis::fill;
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::{Kind, Points};
+
+op! {
+    /// Ridges: octaves of 1 - 2 |noise| summed, in -1 ..= 1. Sharp crests, round valleys. Musgrave 1994.
+    pub struct Ridged = "ridged", field, revision 1;
+    octaves;
+}
+
+impl Field for Ridged {
+    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+        let noise = self.fractal(setting, Kind::Ridged);
+        fill(out, |out| noise.fill(at, out));
+    }
+
+    fn cost(&self) -> f64 {
+        f64::from(self.octaves)
+    }
+}

@@ -1,0 +1,55 @@
+//! Value noise.
+
+use super::basis::fill;
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::Points;
+
+choice! {
+    /// How value noise blends from one lattice point to the next.
+    pub enum Fade {
+        /// 6 t^5 - 15 t^4 + 10 t^3: no creases in the slope.
+        Quintic = "quintic",
+        /// 3 t^2 - 2 t^3: no creases.
+        Cubic = "cubic",
+        /// t: creases along the lattice.
+        Linear = "linear",
+    }
+}
+
+impl Fade {
+    fn noise(self) -> orogen_noise::Fade {
+        match self {
+            Fade::Quintic => orogen_noise::Fade::Quintic,
+            Fade::Cubic => orogen_noise::Fade::Cubic,
+            Fade::Linear => orogen_noise::Fade::Linear,
+        }
+    }
+}
+
+op! {
+    /// Value noise: random values in -1 ..= 1 on a square lattice, blended in between.
+    pub struct Value = "value", field, revision 1;
+    params {
+        /// Seed of its own, hashed with the world's: two nodes of one seed are the same noise.
+        seed: u64 = 0;
+        /// Distance between lattice points.
+        wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
+        /// The blend from one lattice point to the next.
+        fade: Fade = Fade::Quintic;
+    }
+}
+
+impl Field for Value {
+    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+        let noise = orogen_noise::Value {
+            seed: setting.seed_of(self.seed),
+            wavelength: self.wavelength,
+            fade: self.fade.noise(),
+        };
+        fill(out, |out| noise.fill(at, out));
+    }
+
+    fn cost(&self) -> f64 {
+        1.0
+    }
+}

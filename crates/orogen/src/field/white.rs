@@ -1,0 +1,27 @@
+//! White noise.
+
+use super::basis::fill;
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::Points;
+
+op! {
+    /// White noise: an independent value in -1 ..= 1 for every square of `wavelength`.
+    pub struct White = "white", field, revision 1;
+    params {
+        /// Seed of its own, hashed with the world's: two nodes of one seed are the same noise.
+        seed: u64 = 0;
+        /// Side of a square.
+        wavelength: f64 = 10.0, unit "m", range 1e-3 to 1e9;
+    }
+}
+
+impl Field for White {
+    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+        let noise = orogen_noise::White { seed: setting.seed_of(self.seed), wavelength: self.wavelength };
+        fill(out, |out| noise.fill(at, out));
+    }
+
+    fn cost(&self) -> f64 {
+        1.0
+    }
+}

@@ -1,0 +1,247 @@
+//! What an op is: a field, a filter or a solver, and what each is given.
+
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use crate::progress::Progress;
+use orogen_noise::Points;
+use serde::{Deserialize, Serialize};
+
+/// The position of a point that is not there. Plans give every point; this only keeps a mistake from becoming a panic.
+pub(crate) const NOWHERE: (f64, f64) = (f64::NAN, f64::NAN);
+
+/// What the world tells every op.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Setting {
+    /// The world's seed.
+    pub seed: u64,
+    /// The world's extent in metres, east and south; `None` if it has no bounds.
+    pub size: Option<[f64; 2]>,
+    /// Metres from one sample of the world's own lattice to the next.
+    pub cell: f64,
+    /// Height of the sea's surface in metres.
+    pub sea_level: f64,
+}
+
+impl Setting {
+    /// A node's seed within this world: two numbers hashed to one, so that worlds and nodes with neighbouring seeds have
+    /// nothing in common (splitmix64's finaliser, Steele, Lea and Flood 2014, over both).
+    pub fn seed_of(&self, node_seed: u64) -> u64 {
+        let mix = |mut z: u64| {
+            z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+            z ^ (z >> 31)
+        };
+        let world = mix(self.seed.wrapping_add(0x9E37_79B9_7F4A_7C15));
+        mix(world ^ node_seed.wrapping_mul(0xD1B5_4A32_D192_ED03))
+    }
+}
+
+/// A node's inputs evaluated at the points asked for: one block of samples each.
+pub struct Slots<'a> {
+    slots: &'a [Option<&'a [f32]>],
+}
+
+impl<'a> Slots<'a> {
+    /// Over the inputs in the order of their declaration.
+    pub fn new(slots: &'a [Option<&'a [f32]>]) -> Slots<'a> {
+        Slots { slots }
+    }
+
+    /// Input `i` where it is given.
+    pub fn get(&self, i: usize) -> Option<&'a [f32]> {
+        self.slots.get(i).copied().flatten()
+    }
+
+    /// Input `i`, which the declaration requires: a plan is never made without it.
+    pub fn required(&self, i: usize) -> &'a [f32] {
+        self.get(i).unwrap_or(&[])
+    }
+}
+
+/// A field looks at one position and the seed, and at its inputs there. It is pure: any point, any order, any number of
+/// times.
+pub trait Field: Send + Sync {
+    /// Makes one value a point.
+    fn eval(&self, at: &Points, inputs: &Slots, setting: &Setting, out: &mut [f32]);
+
+    /// Where a field's source is read elsewhere than at the position asked for. Such a field's [`Field::eval`] is never
+    /// called: the engine moves the points and evaluates the source there.
+    fn moves(&self) -> Option<Moves> {
+        None
+    }
+
+    /// Whether the field only makes sense in a world with bounds.
+    fn needs_bounds(&self) -> bool {
+        false
+    }
+
+    /// About how many nanoseconds a sample takes: what is dear is made once and kept rather than made again.
+    fn cost(&self) -> f64 {
+        0.2
+    }
+}
+
+/// How a field moves the points at which its source is read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Moves {
+    /// By two inputs times `strength` metres; each displacement is clamped to -reach ..= reach.
+    Displaced {
+        /// Index of the input that is read elsewhere.
+        source: usize,
+        /// Index of the input that moves it east.
+        east: usize,
+        /// Index of the input that moves it south.
+        south: usize,
+        /// Metres moved for an input of 1.
+        strength: f64,
+        /// The farthest it may be moved along each axis, in metres.
+        reach: f64,
+    },
+    /// By an affine map of the position.
+    Mapped {
+        /// Index of the input that is read elsewhere.
+        source: usize,
+        /// The map from the position asked for to the one that is read.
+        map: Affine,
+    },
+}
+
+/// A similarity of the plane: p -> turn(p) * scale + offset.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Affine {
+    /// Cosine and sine of the turn; [1, 0] is none.
+    pub turn: [f64; 2],
+    /// Factor.
+    pub scale: f64,
+    /// Metres added, east and south.
+    pub offset: [f64; 2],
+}
+
+impl Affine {
+    /// Whether columns stay columns and rows stay rows.
+    pub fn is_separable(&self) -> bool {
+        self.turn == [1.0, 0.0]
+    }
+
+    /// Where a position is read. Without a turn the result is x * scale + offset bit for bit, so lattices stay lattices.
+    pub fn apply(&self, x: f64, y: f64) -> (f64, f64) {
+        let (tx, ty) = if self.is_separable() {
+            (x, y)
+        } else {
+            (self.turn[0] * x - self.turn[1] * y, self.turn[1] * x + self.turn[0] * y)
+        };
+        (tx * self.scale + self.offset[0], ty * self.scale + self.offset[1])
+    }
+}
+
+/// How a layer may be read between its samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum LayerKind {
+    /// Smooth: interpolated.
+    Height,
+    /// Names in numbers: the nearest sample.
+    Label,
+}
+
+/// One of the things a filter or solver makes.
+#[derive(Debug)]
+pub struct Layer {
+    /// Its name: read as `node.layer`; the first may be read as `node`.
+    pub name: &'static str,
+    /// How it is read between samples.
+    pub kind: LayerKind,
+}
+
+/// The one layer of most ops.
+pub const ONE_LAYER: &[Layer] = &[Layer { name: "height", kind: LayerKind::Height }];
+
+/// What a filter or solver is given beside its inputs.
+pub struct Context<'a> {
+    /// The world's facts.
+    pub setting: &'a Setting,
+    /// Where to ask whether the work is still wanted.
+    pub progress: &'a Progress,
+}
+
+/// A filter looks at a finite halo. Its inputs arrive grown by that halo; what it makes is the same whatever window it is
+/// made in.
+pub trait Filter: Send + Sync {
+    /// Samples that an input is read beyond the window on each side, at this cell.
+    fn halo(&self, cell: f64) -> usize;
+
+    /// What it makes.
+    fn layers(&self) -> &'static [Layer] {
+        ONE_LAYER
+    }
+
+    /// Bytes needed beside inputs and layers to make `window`.
+    fn scratch(&self, window: &Window) -> u64 {
+        let _ = window;
+        0
+    }
+
+    /// Makes every layer over `window`; each input given covers `window.grown(halo)`.
+    fn apply(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>>;
+
+    /// About how many nanoseconds a sample takes at this cell.
+    fn cost(&self, cell: f64) -> f64 {
+        let _ = cell;
+        5.0
+    }
+}
+
+/// What a solver found: read like a field ever after.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// One grid a layer, or none if the solution is numbers alone.
+    pub grids: Vec<Grid>,
+    /// Numbers, their meaning known to the solver.
+    pub scalars: Vec<f64>,
+}
+
+/// A solver's inputs over the whole world, made tile by tile as it asks.
+pub trait Sources {
+    /// The samples of the world: 0 ..= extent / cell on both axes.
+    fn world(&self) -> &Window;
+
+    /// The world with its margin for readers: what a stored grid covers.
+    fn padded(&self) -> &Window;
+
+    /// Makes input `i` over each tile of `window` in a fixed order and hands it on. The tiles cover the window once.
+    fn each_tile(&self, i: usize, window: &Window, visit: &mut dyn FnMut(&Grid)) -> Result<()>;
+}
+
+/// A solver looks at the whole bounded world, once, at a cell of its own.
+pub trait Solver: Send + Sync {
+    /// Metres from one sample to the next of the lattice it is solved on.
+    fn cell(&self, world_cell: f64) -> f64 {
+        world_cell
+    }
+
+    /// What it makes.
+    fn layers(&self) -> &'static [Layer] {
+        ONE_LAYER
+    }
+
+    /// Bytes of the solution and of solving, when the world with its margin has this window.
+    fn memory(&self, padded: &Window) -> u64;
+
+    /// Whether [`Solver::read`] is given the inputs at the points it is asked for.
+    fn reads_inputs(&self) -> bool;
+
+    /// Solves the world.
+    fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution>;
+
+    /// Makes layer `layer`, one value a point, from the solution.
+    fn read(&self, solution: &Solution, layer: usize, at: &Points, inputs: &Slots, out: &mut [f32]);
+}
+
+/// A node as what it is.
+pub enum Op<'a> {
+    /// Looks at one position.
+    Field(&'a dyn Field),
+    /// Looks at a halo.
+    Filter(&'a dyn Filter),
+    /// Looks at the whole world.
+    Solver(&'a dyn Solver),
+}

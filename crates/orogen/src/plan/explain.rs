@@ -1,0 +1,87 @@
+//! A plan in words.
+
+use super::planner::{Plan, Step};
+use crate::declare::short;
+use crate::op::Op;
+use crate::recipe::document::Recipe;
+use crate::recipe::graph::Graph;
+use crate::words::bytes;
+use std::fmt::Write as _;
+
+/// What a plan does: the nodes in order with their locality and halo, then the steps with their windows and memory.
+pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> String {
+    let mut text = String::new();
+    let cell = plan.window.cell;
+    let longest = recipe.nodes().iter().map(|node| node.name.chars().count()).max().unwrap_or(4).clamp(4, 24);
+    let _ = writeln!(text, "nodes, in the order they are made, at {cell} m a sample");
+    let _ = writeln!(text, "  {:longest$}  {:12}  {:8}  {:18}  what it does", "name", "op", "locality", "looks at");
+    const SHOWN: usize = 200;
+    for &index in graph.order.iter().take(SHOWN) {
+        let named = &recipe.nodes()[index];
+        let spec = named.node.spec();
+        let reach = match named.node.op() {
+            Op::Field(field) => match field.moves() {
+                Some(crate::op::Moves::Displaced { reach, .. }) => format!("within {reach} m"),
+                Some(crate::op::Moves::Mapped { .. }) => "elsewhere".to_string(),
+                None => "its place".to_string(),
+            },
+            Op::Filter(filter) => format!("halo of {} samples", filter.halo(cell)),
+            Op::Solver(solver) => format!("world at {} m", solver.cell(recipe.world.cell)),
+        };
+        let _ = writeln!(
+            text,
+            "  {:longest$}  {:12}  {:8}  {reach:18}  {}",
+            named.name,
+            spec.op,
+            spec.locality.name(),
+            short(spec.doc).split(". ").next().unwrap_or_default().trim_end_matches('.')
+        );
+    }
+    if graph.order.len() > SHOWN {
+        let _ = writeln!(text, "  and {} more", graph.order.len() - SHOWN);
+    }
+    let _ = writeln!(
+        text,
+        "\nwhat is done for {} x {} samples at ({}, {})",
+        plan.window.width, plan.window.height, plan.window.x, plan.window.y
+    );
+    let name = |node: usize| recipe.nodes().get(node).map_or("a constant", |named| named.name.as_str());
+    for solve in &plan.solves {
+        let _ = writeln!(
+            text,
+            "  solve `{}` over the world, {} x {} samples at {} m; keeps {}",
+            name(solve.node),
+            solve.world.width,
+            solve.world.height,
+            solve.world.cell,
+            bytes(solve.kept)
+        );
+    }
+    for step in plan.steps.iter().take(SHOWN) {
+        let window = step.window();
+        let _ = match step {
+            Step::Fill { program, out, .. } => {
+                let made: Vec<String> = out.iter().map(|&grid| format!("`{}`", name(plan.grids[grid].node))).collect();
+                writeln!(
+                    text,
+                    "  fill {} x {} with {}: {} instructions over {} registers",
+                    window.width,
+                    window.height,
+                    made.join(", "),
+                    program.instructions.len(),
+                    program.registers
+                )
+            }
+            Step::Apply { node, halo, .. } => {
+                writeln!(text, "  apply `{}` to {} x {}, halo {halo}", name(*node), window.width, window.height)
+            }
+        };
+    }
+    let _ = writeln!(
+        text,
+        "\nmemory: {} at most, with {threads} thread{}",
+        bytes(plan.memory(recipe, threads)),
+        if threads == 1 { "" } else { "s" }
+    );
+    text
+}

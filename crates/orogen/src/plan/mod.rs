@@ -1,0 +1,9 @@
+//! Plans: what will be done, in which order, with which memory, before any sample is made.
+
+mod compile;
+pub mod explain;
+pub mod key;
+mod materials;
+mod memory;
+pub mod planner;
+pub mod program;

@@ -1,0 +1,447 @@
+//! From a recipe and a window to a plan.
+
+use super::compile::{Compiler, Demand, Draft};
+use super::key::{Key, keys};
+use super::materials::clusters;
+use super::memory;
+use super::program::{Instruction, Program};
+use crate::error::Result;
+use crate::grid::Window;
+use crate::op::{Op, Setting};
+use crate::recipe::document::Recipe;
+use crate::recipe::graph::{Graph, Link, Target};
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeSet, HashMap, HashSet};
+
+/// What will be done to make some layers over a window: an owned value that touches no sample.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// What is made.
+    pub window: Window,
+    /// Whether the program is asked at the window's lattice, or at points that lie anywhere within it.
+    pub scattered: bool,
+    /// The solvers that must be solved first, in order.
+    pub solves: Vec<Solve>,
+    /// What is then done, in order.
+    pub steps: Vec<Step>,
+    /// The grids that steps make.
+    pub grids: Vec<GridSlot>,
+    /// The grids that hold the results (empty if scattered: then the last step's program makes them).
+    pub outputs: Vec<usize>,
+}
+
+/// A solver to be solved.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Solve {
+    /// The node.
+    pub node: usize,
+    /// What its solution is stored under.
+    pub key: Key,
+    /// The samples of the world on its lattice.
+    pub world: Window,
+    /// Those with the margin for readers.
+    pub padded: Window,
+    /// Bytes its solution keeps.
+    pub kept: u64,
+    /// Bytes that making a tile of its sources takes at most.
+    pub tile: u64,
+}
+
+/// One step of a plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Step {
+    /// Runs a program over a window, block by block.
+    Fill {
+        /// The program.
+        program: Program,
+        /// The samples made.
+        window: Window,
+        /// The grids its outputs go to (none if scattered).
+        out: Vec<usize>,
+    },
+    /// Applies a filter.
+    Apply {
+        /// The node.
+        node: usize,
+        /// The grids its inputs are in, each holding at least the window grown by the halo.
+        inputs: Vec<Option<usize>>,
+        /// The samples made.
+        window: Window,
+        /// Samples its inputs are read beyond them.
+        halo: usize,
+        /// The grids its layers go to.
+        out: Vec<usize>,
+    },
+}
+
+/// A grid of a plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct GridSlot {
+    /// Its samples.
+    pub window: Window,
+    /// The node it holds.
+    pub node: usize,
+    /// The last step that reads it; the number of steps if it is an output.
+    pub last_use: usize,
+}
+
+/// What solvers' tiles measure at most: large enough that halos cost little, small enough for any memory.
+pub const TILE: usize = 1024;
+
+/// Samples that readers may go beyond a world's edge.
+pub const WORLD_MARGIN: usize = 2;
+
+/// The samples of a world on a lattice, without and with margin.
+pub fn world_windows(size: [f64; 2], cell: f64) -> (Window, Window) {
+    // A side that is a whole number of cells up to rounding has its far edge: 1000 / 0.1 is 10 000 cells.
+    let samples = |length: f64| {
+        let steps = length / cell;
+        let whole = if (steps - steps.round()).abs() < 1e-6 { steps.round() } else { steps.floor() };
+        whole.max(0.0) as usize + 1
+    };
+    let world = Window::new(samples(size[0]), samples(size[1]), cell);
+    (world, world.grown(WORLD_MARGIN))
+}
+
+/// Plans.
+pub struct Planner<'a> {
+    recipe: &'a Recipe,
+    graph: &'a Graph,
+    setting: Setting,
+    keys: Vec<Key>,
+}
+
+impl<'a> Planner<'a> {
+    /// A planner for a resolved recipe.
+    pub fn new(recipe: &'a Recipe, graph: &'a Graph) -> Planner<'a> {
+        Planner { recipe, graph, setting: recipe.world.setting(), keys: keys(recipe, graph) }
+    }
+
+    /// A plan for layers over a window.
+    ///
+    /// # Errors
+    /// If the recipe multiplies into more evaluations than can be planned.
+    pub fn plan(&self, targets: &[Link], window: Window, scattered: bool) -> Result<Plan> {
+        let first = Attempt::new(self, HashSet::new(), scattered).run(targets, window)?;
+        let keep = first.worth_keeping(self);
+        let attempt = if keep.is_empty() { first } else { Attempt::new(self, keep, scattered).run(targets, window)? };
+        attempt.finish(self, window)
+    }
+
+    fn solve(&self, node: usize) -> Result<Solve> {
+        let Op::Solver(solver) = self.recipe.nodes()[node].node.op() else {
+            return Err(crate::Error::new(crate::ErrorKind::Recipe, "a node that is no solver was to be solved"));
+        };
+        let cell = solver.cell(self.setting.cell);
+        let (world, padded) = world_windows(self.setting.size.unwrap_or([cell, cell]), cell);
+        let mut tile = 0;
+        for link in &self.graph.links[node] {
+            let window = Window { width: padded.width.min(TILE), height: padded.height.min(TILE), ..padded };
+            tile = tile.max(self.plan(&[*link], window, false)?.steps_memory());
+        }
+        Ok(Solve { node, key: self.keys[node], world, padded, kept: solver.memory(&padded), tile })
+    }
+
+    /// The solvers that a program reads and those that their sources read, sources first.
+    fn solves(&self, read: &HashSet<usize>) -> Result<Vec<Solve>> {
+        let mut needed: BTreeSet<usize> = BTreeSet::new();
+        let mut rank = vec![0usize; self.recipe.nodes().len()];
+        self.graph.order.iter().enumerate().for_each(|(place, &node)| rank[node] = place);
+        let mut seen: HashSet<usize> = HashSet::new();
+        let mut stack: Vec<usize> = read.iter().copied().collect();
+        while let Some(node) = stack.pop() {
+            if !seen.insert(node) {
+                continue;
+            }
+            if let Op::Solver(_) = self.recipe.nodes()[node].node.op() {
+                needed.insert(rank[node]);
+            }
+            stack.extend(self.graph.sources(node));
+        }
+        needed.into_iter().map(|place| self.solve(self.graph.order[place])).collect()
+    }
+}
+
+/// Steps in the making, last first: what a step demands is known before the step that makes it is.
+struct Attempt<'a> {
+    planner: &'a Planner<'a>,
+    kept: HashSet<usize>,
+    scattered: bool,
+    demands: Vec<Demand>,
+    /// Demands by the node they ask for.
+    by_node: HashMap<usize, Vec<usize>>,
+    /// The grid that serves each demand.
+    served: Vec<usize>,
+    grids: Vec<(Window, usize)>,
+    steps: Vec<DraftStep>,
+    outputs: Vec<usize>,
+    solvers: HashSet<usize>,
+    /// Field nodes that were a step's target, and how often each was evaluated at a block itself.
+    filled: HashSet<usize>,
+    evaluated: HashMap<usize, usize>,
+}
+
+enum DraftStep {
+    /// A program whose grids are demands from `first` on.
+    Fill { program: Program, first: usize, window: Window, out: Vec<usize> },
+    /// A filter whose inputs are demands.
+    Apply { node: usize, inputs: Vec<Option<usize>>, window: Window, halo: usize, out: Vec<usize> },
+}
+
+impl<'a> Attempt<'a> {
+    fn new(planner: &'a Planner<'a>, kept: HashSet<usize>, scattered: bool) -> Attempt<'a> {
+        Attempt {
+            planner,
+            kept,
+            scattered,
+            demands: Vec::new(),
+            by_node: HashMap::new(),
+            served: Vec::new(),
+            grids: Vec::new(),
+            steps: Vec::new(),
+            outputs: Vec::new(),
+            solvers: HashSet::new(),
+            filled: HashSet::new(),
+            evaluated: HashMap::new(),
+        }
+    }
+
+    fn run(mut self, targets: &[Link], window: Window) -> Result<Attempt<'a>> {
+        let nothing_kept = HashSet::new();
+        // Scattered points lie on no lattice: nothing is kept for them, filters are read between samples.
+        let kept = if self.scattered { nothing_kept } else { self.kept.clone() };
+        let draft = Compiler::compile(self.planner.recipe, self.planner.graph, &kept, None, targets, window)?;
+        let out = match self.scattered {
+            true => Vec::new(),
+            false => targets.iter().map(|link| self.grid(window, node_of(link))).collect(),
+        };
+        self.outputs.clone_from(&out);
+        self.fill(draft, window, out);
+        // Backwards through the order: all that reads a node has been planned before the node is.
+        for &node in self.planner.graph.order.iter().rev() {
+            self.make_results(node)?;
+            self.make_raw(node)?;
+        }
+        Ok(self)
+    }
+
+    fn grid(&mut self, window: Window, node: usize) -> usize {
+        self.grids.push((window, node));
+        self.grids.len() - 1
+    }
+
+    fn fill(&mut self, draft: Draft, window: Window, out: Vec<usize>) {
+        let first = self.demands.len();
+        for demand in draft.demands {
+            self.demand(demand);
+        }
+        for node in draft.evaluated {
+            *self.evaluated.entry(node).or_default() += 1;
+        }
+        self.solvers.extend(draft.solvers);
+        self.steps.push(DraftStep::Fill { program: draft.program, first, window, out });
+    }
+
+    fn demand(&mut self, demand: Demand) -> usize {
+        self.demands.push(demand);
+        self.served.push(usize::MAX);
+        let index = self.demands.len() - 1;
+        self.by_node.entry(demand.target.node).or_default().push(index);
+        index
+    }
+
+    /// What asks for a node's result: each layer by a program of its own.
+    fn make_results(&mut self, node: usize) -> Result<()> {
+        let mut layers: Vec<usize> = Vec::new();
+        for &i in self.by_node.get(&node).into_iter().flatten().filter(|&&i| !self.demands[i].raw) {
+            layers.push(self.demands[i].target.layer);
+        }
+        layers.sort_unstable();
+        layers.dedup();
+        for layer in layers {
+            let wanted: Vec<usize> = self.by_node[&node]
+                .iter()
+                .copied()
+                .filter(|&i| !self.demands[i].raw && self.demands[i].target.layer == layer)
+                .collect();
+            for cluster in clusters(&self.demands, wanted.into_iter()) {
+                let target = Link::Node(Target { node, layer });
+                let draft = Compiler::compile(
+                    self.planner.recipe,
+                    self.planner.graph,
+                    &self.kept,
+                    Some(node),
+                    &[target],
+                    cluster.window,
+                )?;
+                let grid = self.grid(cluster.window, node);
+                cluster.serves.iter().for_each(|&i| self.served[i] = grid);
+                self.filled.insert(node);
+                self.fill(draft, cluster.window, vec![grid]);
+            }
+        }
+        Ok(())
+    }
+
+    /// What asks for a filter's own layers: one application for all of them.
+    fn make_raw(&mut self, node: usize) -> Result<()> {
+        let Op::Filter(filter) = self.planner.recipe.nodes()[node].node.op() else { return Ok(()) };
+        let wanted: Vec<usize> =
+            self.by_node.get(&node).into_iter().flatten().copied().filter(|&i| self.demands[i].raw).collect();
+        for cluster in clusters(&self.demands, wanted.into_iter()) {
+            let window = cluster.window;
+            let out: Vec<usize> = filter.layers().iter().map(|_| self.grid(window, node)).collect();
+            for &i in &cluster.serves {
+                self.served[i] = out.get(self.demands[i].target.layer).copied().unwrap_or(usize::MAX);
+            }
+            let halo = filter.halo(window.cell);
+            let grown = window.grown(halo);
+            let graph = self.planner.graph;
+            let mut inputs = Vec::new();
+            let mut constants = Vec::new();
+            for link in &graph.links[node] {
+                inputs.push(match link {
+                    Link::None => None,
+                    Link::Value(_) => {
+                        constants.push((inputs.len(), *link));
+                        None
+                    }
+                    Link::Node(target) => {
+                        let source = &self.planner.recipe.nodes()[target.node].node;
+                        let raw = matches!(source.op(), Op::Filter(_)) && graph.masks[target.node] == Link::None;
+                        Some(self.demand(Demand { target: *target, raw, window: grown }))
+                    }
+                });
+            }
+            // A constant input becomes a grid of that number, made by a step of its own right before.
+            let mut fills = Vec::new();
+            for (i, link) in constants {
+                let index = self.demands.len();
+                self.demands.push(Demand { target: Target { node, layer: 0 }, raw: false, window: grown });
+                let grid = self.grid(grown, node);
+                self.served.push(grid);
+                inputs[i] = Some(index);
+                let none = HashSet::new();
+                fills.push((
+                    Compiler::compile(self.planner.recipe, graph, &none, None, &[link], grown)?,
+                    grown,
+                    vec![grid],
+                ));
+            }
+            self.steps.push(DraftStep::Apply { node, inputs, window, halo, out });
+            for (draft, window, out) in fills {
+                self.fill(draft, window, out);
+            }
+        }
+        Ok(())
+    }
+
+    /// Nodes better made once and kept: those that were made for a filter anyway, and dear ones that several programs make.
+    fn worth_keeping(&self, planner: &Planner) -> HashSet<usize> {
+        const DEAR: f64 = 1.0;
+        let cost = |node: usize| match planner.recipe.nodes()[node].node.op() {
+            Op::Field(field) => field.cost(),
+            _ => 0.0,
+        };
+        let shared = |node: &usize| self.evaluated.get(node).is_some_and(|count| *count >= 2);
+        self.filled
+            .iter()
+            .filter(|node| shared(node))
+            .chain(self.evaluated.keys().filter(|node| shared(node) && cost(**node) >= DEAR))
+            .copied()
+            .collect()
+    }
+
+    fn finish(self, planner: &Planner, window: Window) -> Result<Plan> {
+        let solves = planner.solves(&self.solvers)?;
+        let served = self.served;
+        let mut steps: Vec<Step> = self
+            .steps
+            .into_iter()
+            .map(|step| match step {
+                DraftStep::Fill { mut program, first, window, out } => {
+                    for instruction in &mut program.instructions {
+                        if let Instruction::Grid { grid, .. } = instruction {
+                            *grid = served[first + *grid];
+                        }
+                    }
+                    Step::Fill { program, window, out }
+                }
+                DraftStep::Apply { node, inputs, window, halo, out } => {
+                    let inputs = inputs.into_iter().map(|input| input.map(|demand| served[demand])).collect();
+                    Step::Apply { node, inputs, window, halo, out }
+                }
+            })
+            .collect();
+        steps.reverse();
+        let mut grids: Vec<GridSlot> =
+            self.grids.into_iter().map(|(window, node)| GridSlot { window, node, last_use: 0 }).collect();
+        for (at, step) in steps.iter().enumerate() {
+            for grid in step.reads().into_iter().chain(step.writes().iter().copied()) {
+                grids[grid].last_use = grids[grid].last_use.max(at);
+            }
+        }
+        self.outputs.iter().for_each(|&grid| grids[grid].last_use = steps.len());
+        Ok(Plan { window, scattered: self.scattered, solves, steps, grids, outputs: self.outputs })
+    }
+}
+
+fn node_of(link: &Link) -> usize {
+    match link {
+        Link::Node(target) => target.node,
+        _ => usize::MAX,
+    }
+}
+
+impl Step {
+    /// The grids it reads.
+    pub fn reads(&self) -> Vec<usize> {
+        match self {
+            Step::Fill { program, .. } => program
+                .instructions
+                .iter()
+                .filter_map(|instruction| match instruction {
+                    Instruction::Grid { grid, .. } => Some(*grid),
+                    _ => None,
+                })
+                .collect(),
+            Step::Apply { inputs, .. } => inputs.iter().flatten().copied().collect(),
+        }
+    }
+
+    /// The grids it makes.
+    pub fn writes(&self) -> &[usize] {
+        match self {
+            Step::Fill { out, .. } | Step::Apply { out, .. } => out,
+        }
+    }
+
+    /// The samples it makes.
+    pub fn window(&self) -> &Window {
+        match self {
+            Step::Fill { window, .. } | Step::Apply { window, .. } => window,
+        }
+    }
+}
+
+impl Plan {
+    /// Bytes needed at most at any time, for `threads` threads: grids, registers, solutions, and making solvers' sources.
+    pub fn memory(&self, recipe: &Recipe, threads: usize) -> u64 {
+        memory::plan(self, recipe, threads)
+    }
+
+    /// Bytes the steps alone need, for one tile of a solver's source (threads counted later).
+    fn steps_memory(&self) -> u64 {
+        memory::grids(self)
+    }
+
+    /// Whether the same program answers for every point: no step depends on where the points lie.
+    pub fn is_pointwise(&self) -> bool {
+        self.scattered && self.steps.len() == 1 && self.grids.is_empty()
+    }
+
+    /// Samples that will be made, solvers' sources not counted.
+    pub fn samples(&self) -> u64 {
+        self.steps.iter().fold(0u64, |sum, step| sum.saturating_add(step.window().len() as u64))
+    }
+}

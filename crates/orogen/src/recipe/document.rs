@@ -1,0 +1,195 @@
+//! A recipe in memory: the world, its nodes and its outputs.
+
+use crate::declare::Input;
+use crate::error::{Error, ErrorKind, Result};
+use crate::node::Node;
+use crate::op::Setting;
+use crate::value::{toml_key, toml_string};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// The version of recipes that this program writes.
+pub const VERSION: i64 = 1;
+
+/// Most nodes a recipe may have.
+pub const MOST_NODES: usize = 65_536;
+
+/// Longest text of a recipe, in bytes.
+pub const LONGEST_TEXT: u64 = 16 << 20;
+
+/// What a recipe says of its world. Lengths are metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WorldSpec {
+    /// The seed that every node's own seed is hashed with.
+    pub seed: u64,
+    /// Extent east and south; `None` for a world without bounds.
+    pub size: Option<[f64; 2]>,
+    /// Metres from one sample to the next of the world's own lattice: where solvers work, and what is drawn if nobody asks
+    /// for another.
+    pub cell: f64,
+    /// Height of the sea's surface.
+    pub sea_level: f64,
+}
+
+impl Default for WorldSpec {
+    fn default() -> WorldSpec {
+        WorldSpec { seed: 0, size: None, cell: 10.0, sea_level: 0.0 }
+    }
+}
+
+impl WorldSpec {
+    /// What every op is told.
+    pub fn setting(&self) -> Setting {
+        Setting { seed: self.seed, size: self.size, cell: self.cell, sea_level: self.sea_level }
+    }
+}
+
+/// A node with its name and its mask.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedNode {
+    /// What other nodes call it.
+    pub name: String,
+    /// The op.
+    pub node: Node,
+    /// Where the op takes effect: 1 fully, 0 not at all (the first input, or 0, shows instead).
+    pub mask: Input,
+}
+
+/// A recipe: all that is needed to make a world.
+///
+/// ```
+/// use orogen::field::fbm::Fbm;
+/// use orogen::solver::normalise::Normalise;
+/// use orogen::{Recipe, WorldSpec};
+///
+/// let world = WorldSpec { seed: 7, size: Some([2000.0, 2000.0]), cell: 10.0, ..WorldSpec::default() };
+/// let mut recipe = Recipe::new(world);
+/// recipe.add("base", Fbm { wavelength: 800.0, ..Fbm::default() });
+/// recipe.add("hills", Normalise { source: "base".into(), low: 0.0, high: 300.0, ..Normalise::default() });
+/// recipe.output("height", "hills");
+/// assert!(recipe.to_toml().starts_with("orogen = 1"));
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recipe {
+    /// One sentence about it, or empty.
+    pub about: String,
+    /// The world.
+    pub world: WorldSpec,
+    nodes: Vec<NamedNode>,
+    outputs: Vec<(String, Input)>,
+}
+
+impl Recipe {
+    /// A recipe without nodes.
+    pub fn new(world: WorldSpec) -> Recipe {
+        Recipe { about: String::new(), world, nodes: Vec::new(), outputs: Vec::new() }
+    }
+
+    /// Adds a node. What is wrong with it is told when the world is opened.
+    pub fn add(&mut self, name: &str, node: impl Into<Node>) -> &mut Recipe {
+        self.add_masked(name, node, Input::None)
+    }
+
+    /// Adds a node that takes effect where `mask` is 1.
+    pub fn add_masked(&mut self, name: &str, node: impl Into<Node>, mask: impl Into<Input>) -> &mut Recipe {
+        self.nodes.push(NamedNode { name: name.to_string(), node: node.into(), mask: mask.into() });
+        self
+    }
+
+    /// Names a node's result for the world outside. `height` is what maps and meshes are made from.
+    pub fn output(&mut self, layer: &str, node: impl Into<Input>) -> &mut Recipe {
+        self.outputs.push((layer.to_string(), node.into()));
+        self
+    }
+
+    /// The nodes in the order they were written.
+    pub fn nodes(&self) -> &[NamedNode] {
+        &self.nodes
+    }
+
+    /// The names of the layers it offers.
+    pub fn outputs(&self) -> impl Iterator<Item = &str> + Clone {
+        self.outputs.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// The outputs with what they show.
+    pub fn output_inputs(&self) -> &[(String, Input)] {
+        &self.outputs
+    }
+
+    /// Reads a recipe from a file, TOML or JSON.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is no text, or is no valid recipe: then every complaint has its line and column.
+    pub fn read(path: &Path) -> Result<Recipe> {
+        let doing = "read the recipe";
+        let length = std::fs::metadata(path).map_err(|cause| Error::file(doing, path, &cause))?;
+        if length.is_dir() {
+            return Err(Error::new(
+                ErrorKind::File,
+                format!("cannot read the recipe {}: it is a folder", path.display()),
+            ));
+        }
+        if length.len() > LONGEST_TEXT {
+            return Err(super::text::too_long(&path.display().to_string()));
+        }
+        let bytes = std::fs::read(path).map_err(|cause| Error::file(doing, path, &cause))?;
+        match String::from_utf8(bytes) {
+            Ok(text) => Recipe::parse(&text, &path.display().to_string()),
+            Err(fault) => Err(Error::new(
+                ErrorKind::Recipe,
+                format!(
+                    "{} is not a recipe: byte {} is not UTF-8 text; a recipe is a TOML or JSON file",
+                    path.display(),
+                    fault.utf8_error().valid_up_to()
+                ),
+            )),
+        }
+    }
+
+    /// Reads a recipe from a text, TOML or (if it begins with a brace) JSON; `name` is what complaints call it.
+    ///
+    /// # Errors
+    /// If it is no valid recipe. All complaints are told at once, in the order of the text.
+    pub fn parse(text: &str, name: &str) -> Result<Recipe> {
+        super::parse::parse(text, name)
+    }
+
+    /// The recipe as TOML with every default written out: self-contained, it makes the same world whatever the defaults of
+    /// a later version are.
+    pub fn to_toml(&self) -> String {
+        let mut text = format!("orogen = {VERSION}\n");
+        if !self.about.is_empty() {
+            let _ = writeln!(text, "about = {}", toml_string(&self.about));
+        }
+        let _ = writeln!(text, "\n[world]\nseed = {}", self.world.seed);
+        if let Some([width, height]) = self.world.size {
+            let _ = writeln!(text, "size = [{width:?}, {height:?}]");
+        }
+        let _ = writeln!(text, "cell = {:?}\nsea_level = {:?}", self.world.cell, self.world.sea_level);
+        for NamedNode { name, node, mask } in &self.nodes {
+            let spec = node.spec();
+            let _ = writeln!(text, "\n[nodes.{}]\nop = {:?}", toml_key(name), spec.op);
+            for (i, input) in spec.inputs.iter().enumerate() {
+                write_input(&mut text, input.name, node.input(i));
+            }
+            for (i, param) in spec.params.iter().enumerate() {
+                let _ = writeln!(text, "{} = {}", param.name, node.param(i).to_toml());
+            }
+            write_input(&mut text, "mask", mask);
+        }
+        text.push_str("\n[outputs]\n");
+        for (layer, input) in &self.outputs {
+            write_input(&mut text, &toml_key(layer), input);
+        }
+        text
+    }
+}
+
+fn write_input(text: &mut String, key: &str, input: &Input) {
+    let _ = match input {
+        Input::None => Ok(()),
+        Input::Node(name) => writeln!(text, "{key} = {}", toml_string(name)),
+        Input::Value(value) => writeln!(text, "{key} = {value:?}"),
+    };
+}

@@ -1,0 +1,335 @@
+//! A recipe's nodes as a graph: names resolved, order found, keys computed.
+
+use super::document::{MOST_NODES, Recipe};
+use crate::declare::Input;
+use crate::error::{Complaint, Error, ErrorKind};
+use crate::node::Node;
+use crate::op::{LayerKind, Op};
+use crate::words::{list, suggestion};
+use std::collections::{BTreeSet, HashMap, HashSet};
+
+/// Most samples along a side of a world's own lattice.
+pub const MOST_SAMPLES: f64 = (1u64 << 31) as f64;
+
+/// Most faults told at once: finding the nearest name for each of a million would take for ever and help nobody.
+pub const MOST_FAULTS: usize = 20;
+
+/// What an input resolves to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Link {
+    /// Nothing given.
+    None,
+    /// The same number everywhere.
+    Value(f32),
+    /// A node's layer.
+    Node(Target),
+}
+
+/// A layer of a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Target {
+    /// Index of the node in the recipe.
+    pub node: usize,
+    /// Index of the layer among the node's layers.
+    pub layer: usize,
+}
+
+/// The resolved graph.
+#[derive(Debug, Clone)]
+pub struct Graph {
+    /// Each node's inputs in the order of the declaration.
+    pub links: Vec<Vec<Link>>,
+    /// Each node's mask.
+    pub masks: Vec<Link>,
+    /// Node indices so that every node comes after those it reads.
+    pub order: Vec<usize>,
+    /// What each output shows, in the recipe's order.
+    pub outputs: Vec<Link>,
+}
+
+/// Where in a recipe something is wrong.
+#[derive(Debug, Clone, PartialEq)]
+pub enum At {
+    /// A node's key; the empty key is the node itself.
+    Node(usize, &'static str),
+    /// An output.
+    Output(usize),
+    /// The world.
+    World,
+}
+
+/// One thing that is wrong.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fault {
+    /// Where.
+    pub at: At,
+    /// What, and what to do.
+    pub sentence: String,
+}
+
+/// Whether a name can be a node's or a layer's.
+fn is_name(name: &str) -> bool {
+    (1..=64).contains(&name.len())
+        && name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+        && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-')
+}
+
+const NAME_RULE: &str = "names are 1 to 64 letters, digits, `_` and `-` and do not begin with a digit";
+
+impl Graph {
+    /// Resolves names, checks every value and finds an order, or says everything that is wrong.
+    pub fn resolve(recipe: &Recipe) -> Result<Graph, Vec<Fault>> {
+        let mut faults = Vec::new();
+        check_world(recipe, &mut faults);
+        let nodes = recipe.nodes();
+        if nodes.len() > MOST_NODES {
+            let sentence = format!("the recipe has {} nodes, the most there may be is {MOST_NODES}", nodes.len());
+            return Err(vec![Fault { at: At::Node(MOST_NODES, ""), sentence }]);
+        }
+        let mut names: HashMap<&str, usize> = HashMap::with_capacity(nodes.len());
+        for (index, node) in nodes.iter().enumerate() {
+            if faults.len() >= MOST_FAULTS {
+                return Err(faults);
+            }
+            let mut fault = |key, sentence| faults.push(Fault { at: At::Node(index, key), sentence });
+            if !is_name(&node.name) {
+                fault("", format!("`{}` cannot be a node's name: {NAME_RULE}", node.name));
+            }
+            if names.insert(&node.name, index).is_some() {
+                fault("", format!("there are two nodes named `{}`: rename one", node.name));
+            }
+            check_params(&node.node, &mut fault);
+            if recipe.world.size.is_none() {
+                match node.node.op() {
+                    Op::Solver(_) => fault(
+                        "",
+                        format!(
+                            "node `{}`: the solver `{}` looks at the whole world, and this world has no bounds: give `world` a \
+                             `size`, or leave the solver out",
+                            node.name,
+                            node.node.spec().op
+                        ),
+                    ),
+                    Op::Field(field) if field.needs_bounds() => fault(
+                        "",
+                        format!(
+                            "node `{}`: the op `{}` needs the world's edges, and this world has no bounds: give `world` a `size`",
+                            node.name,
+                            node.node.spec().op
+                        ),
+                    ),
+                    _ => {}
+                }
+            }
+        }
+        let resolver = Resolver { nodes, names };
+        let mut graph =
+            Graph { links: Vec::with_capacity(nodes.len()), masks: Vec::new(), order: Vec::new(), outputs: Vec::new() };
+        for (index, named) in nodes.iter().enumerate() {
+            if faults.len() >= MOST_FAULTS {
+                return Err(faults);
+            }
+            let spec = named.node.spec();
+            let mut link = |key: &'static str, input: &Input, required: bool| {
+                resolver.link(input, required).unwrap_or_else(|sentence| {
+                    let sentence = format!("node `{}`, `{key}`: {sentence}", named.name);
+                    faults.push(Fault { at: At::Node(index, key), sentence });
+                    Link::None
+                })
+            };
+            graph.links.push(
+                spec.inputs
+                    .iter()
+                    .enumerate()
+                    .map(|(i, input)| link(input.name, named.node.input(i), input.required))
+                    .collect(),
+            );
+            graph.masks.push(link("mask", &named.mask, false));
+        }
+        let mut seen = HashSet::new();
+        for (index, (name, input)) in recipe.output_inputs().iter().enumerate() {
+            if faults.len() >= MOST_FAULTS {
+                return Err(faults);
+            }
+            let mut fault = |sentence| faults.push(Fault { at: At::Output(index), sentence });
+            if !is_name(name) {
+                fault(format!("`{name}` cannot be an output's name: {NAME_RULE}"));
+            }
+            if !seen.insert(name) {
+                fault(format!("there are two outputs named `{name}`: rename one"));
+            }
+            graph.outputs.push(resolver.link(input, true).unwrap_or_else(|sentence| {
+                fault(format!("output `{name}`: {sentence}"));
+                Link::None
+            }));
+        }
+        if faults.is_empty() {
+            graph.order = graph.sort().map_err(|cycle| vec![graph.cycle_fault(&cycle, recipe)])?;
+            return Ok(graph);
+        }
+        Err(faults)
+    }
+
+    /// The nodes that a node reads, mask included.
+    pub fn sources(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
+        self.links[node].iter().chain([&self.masks[node]]).filter_map(|link| match link {
+            Link::Node(target) => Some(target.node),
+            _ => None,
+        })
+    }
+
+    /// Kahn's algorithm; nodes keep the order they were written in where they can. On a cycle: the nodes of one.
+    fn sort(&self) -> Result<Vec<usize>, Vec<usize>> {
+        let count = self.links.len();
+        let mut waiting: Vec<usize> = (0..count).map(|node| self.sources(node).count()).collect();
+        let mut readers: Vec<Vec<usize>> = vec![Vec::new(); count];
+        for node in 0..count {
+            for source in self.sources(node) {
+                readers[source].push(node);
+            }
+        }
+        let mut ready: BTreeSet<usize> = (0..count).filter(|&node| waiting[node] == 0).collect();
+        let mut order = Vec::with_capacity(count);
+        while let Some(node) = ready.pop_first() {
+            order.push(node);
+            for &reader in &readers[node] {
+                waiting[reader] -= 1;
+                if waiting[reader] == 0 {
+                    ready.insert(reader);
+                }
+            }
+        }
+        if order.len() == count {
+            return Ok(order);
+        }
+        // Every node left reads another that is left: walking upstream must come round.
+        let left = |node: &usize| waiting[*node] > 0;
+        let mut path: Vec<usize> = Vec::new();
+        let mut step: HashMap<usize, usize> = HashMap::new();
+        let mut at = (0..count).find(|node| left(node));
+        while let Some(node) = at {
+            if let Some(&first) = step.get(&node) {
+                let mut cycle = path.split_off(first);
+                cycle.reverse();
+                return Err(cycle);
+            }
+            step.insert(node, path.len());
+            path.push(node);
+            at = self.sources(node).find(left);
+        }
+        Err(path)
+    }
+
+    fn cycle_fault(&self, cycle: &[usize], recipe: &Recipe) -> Fault {
+        let name = |node: usize| recipe.nodes()[node].name.as_str();
+        let reader = cycle.first().copied().unwrap_or(0);
+        let source = cycle.last().copied().unwrap_or(0);
+        let spec = recipe.nodes()[reader].node.spec();
+        let key = self.links[reader]
+            .iter()
+            .position(|link| matches!(link, Link::Node(target) if target.node == source))
+            .map_or("mask", |i| spec.inputs[i].name);
+        let sentence = if cycle.len() == 1 {
+            format!("node `{}`, `{key}`: the node reads itself; it can only read others", name(reader))
+        } else {
+            const SHOWN: usize = 8;
+            let mut names: Vec<&str> = cycle.iter().take(SHOWN).map(|&node| name(node)).collect();
+            if cycle.len() > SHOWN {
+                names.push("...");
+            }
+            names.push(name(reader));
+            format!(
+                "these nodes read each other in a circle: {}; one of them must read something else",
+                names.join(" -> ")
+            )
+        };
+        Fault { at: At::Node(reader, key), sentence }
+    }
+
+    /// The error of faults that have no text to point into.
+    pub fn error(faults: Vec<Fault>) -> Error {
+        let complaints = faults.into_iter().map(|fault| Complaint { sentence: fault.sentence, place: None }).collect();
+        Error::from_complaints(ErrorKind::Recipe, complaints)
+    }
+
+    /// How a target may be read between its samples.
+    pub fn layer_kind(recipe: &Recipe, target: Target) -> LayerKind {
+        recipe.nodes()[target.node].node.layers().get(target.layer).map_or(LayerKind::Height, |layer| layer.kind)
+    }
+}
+
+struct Resolver<'a> {
+    nodes: &'a [super::document::NamedNode],
+    names: HashMap<&'a str, usize>,
+}
+
+impl Resolver<'_> {
+    fn link(&self, input: &Input, required: bool) -> Result<Link, String> {
+        match input {
+            Input::None if required => Err("it is missing: name the node to read, or give a number".to_string()),
+            Input::None => Ok(Link::None),
+            Input::Value(value) if value.is_finite() && (*value as f32).is_finite() => Ok(Link::Value(*value as f32)),
+            Input::Value(value) => Err(format!("{value} is no number that a sample can hold")),
+            Input::Node(name) => {
+                let (node, layer) = name.split_once('.').map_or((name.as_str(), None), |(n, l)| (n, Some(l)));
+                let Some(&index) = self.names.get(node) else {
+                    let shown: String = node.chars().take(64).collect();
+                    return Err(format!(
+                        "there is no node `{shown}`; {}",
+                        suggestion(node, self.nodes.iter().map(|node| node.name.as_str()))
+                    ));
+                };
+                let layers = self.nodes[index].node.layers();
+                let Some(layer) = layer else { return Ok(Link::Node(Target { node: index, layer: 0 })) };
+                match layers.iter().position(|known| known.name == layer) {
+                    Some(layer) => Ok(Link::Node(Target { node: index, layer })),
+                    None => Err(format!(
+                        "the node `{node}` has no layer `{}`; it has {}",
+                        layer.chars().take(64).collect::<String>(),
+                        list(layers.iter().map(|layer| layer.name))
+                    )),
+                }
+            }
+        }
+    }
+}
+
+fn check_world(recipe: &Recipe, faults: &mut Vec<Fault>) {
+    let world = &recipe.world;
+    let mut fault = |sentence: String| faults.push(Fault { at: At::World, sentence });
+    for (name, value) in super::schema::world_values(world) {
+        let Some(spec) = super::schema::world_param(name) else { continue };
+        if let Err(sentence) = super::schema::read_world(spec, &value, &mut world.clone()) {
+            fault(sentence);
+        }
+    }
+    if let Some(size) = world.size {
+        let most = size[0].max(size[1]) / world.cell;
+        if most > MOST_SAMPLES {
+            fault(format!(
+                "the world would have {most:.0} samples along a side, the most is {MOST_SAMPLES:.0}: raise `cell`"
+            ));
+        }
+        if size[0].min(size[1]) < world.cell {
+            fault(format!(
+                "the world is {} by {} metres, less than one `cell` of {}: raise `size` or lower `cell`",
+                size[0], size[1], world.cell
+            ));
+        }
+    }
+}
+
+/// Values set by a program pass the same checks as those read from a text.
+fn check_params(node: &Node, fault: &mut impl FnMut(&'static str, String)) {
+    let mut copy = node.clone();
+    let mut sound = true;
+    for (i, spec) in node.spec().params.iter().enumerate() {
+        if let Err(sentence) = copy.set_param(i, &node.param(i)) {
+            sound = false;
+            fault(spec.name, sentence);
+        }
+    }
+    if sound && let Err((key, sentence)) = node.consistent() {
+        fault(key, sentence);
+    }
+}

@@ -1,0 +1,315 @@
+//! From a tree of values to a recipe, with every complaint at its own key.
+
+use super::document::{MOST_NODES, Recipe, VERSION, WorldSpec};
+use super::graph::{At, Graph, MOST_FAULTS};
+use super::text::Text;
+use super::{json, toml};
+use crate::declare::Input;
+use crate::error::{Complaint, Error, ErrorKind, Result};
+use crate::node::Node;
+use crate::value::{Span, Spanned, Value};
+use crate::words::{list, suggestion};
+use std::collections::{HashMap, HashSet};
+
+/// Words that other programs use for what has one name here.
+const ALIASES: [(&str, &str); 8] = [
+    ("persistence", "gain"),
+    ("frequency", "wavelength"),
+    ("scale", "wavelength"),
+    ("period", "wavelength"),
+    ("input", "source"),
+    ("in", "source"),
+    ("sigma", "radius"),
+    ("amount", "strength"),
+];
+
+type Table = [(Spanned<String>, Spanned<Value>)];
+
+/// Reads a recipe from TOML or JSON.
+pub fn parse(text: &str, name: &str) -> Result<Recipe> {
+    if text.len() as u64 > super::document::LONGEST_TEXT {
+        return Err(super::text::too_long(name));
+    }
+    if text.trim_start_matches('\u{feff}').trim().is_empty() {
+        return Err(Error::new(
+            ErrorKind::Recipe,
+            format!(
+                "{name} is empty: a recipe begins with `orogen = {VERSION}`; `orogen new NAME` writes one to start from"
+            ),
+        ));
+    }
+    let text = Text { name, text };
+    let is_json = text.text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
+    let tree = if is_json { json::read(&text)? } else { toml::read(&text)? };
+    Walk { text: &text, complaints: Vec::new(), more: 0, places: HashMap::new(), names: Vec::new() }.recipe(&tree)
+}
+
+/// The walk through the tree: gathers complaints and remembers where keys stood, for what only the whole graph can tell.
+struct Walk<'a> {
+    text: &'a Text<'a>,
+    complaints: Vec<Complaint>,
+    /// How many complaints were not written down because there are too many to be of use.
+    more: usize,
+    /// Where the value of (node, key) stood; the empty key is the node's name.
+    places: HashMap<(usize, &'static str), Span>,
+    /// Where the output names' values stood.
+    names: Vec<Span>,
+}
+
+impl Walk<'_> {
+    fn complain(&mut self, span: &Span, sentence: impl Into<String>) {
+        if self.complaints.len() >= MOST_FAULTS {
+            self.more += 1;
+            return;
+        }
+        let complaint = self.text.complaint(span, sentence);
+        self.complaints.push(complaint);
+    }
+
+    fn recipe(mut self, tree: &Spanned<Value>) -> Result<Recipe> {
+        let Value::Table(top) = &tree.value else {
+            return Err(self.text.error(&tree.span, "a recipe is a table of keys"));
+        };
+        self.version(top)?;
+        let mut recipe = Recipe::new(WorldSpec::default());
+        let mut seen = HashSet::new();
+        for (key, value) in top {
+            if self.repeated(&mut seen, key) {
+                continue;
+            }
+            match key.value.as_str() {
+                "orogen" | "$schema" => {}
+                "about" => match &value.value {
+                    Value::Text(about) => recipe.about = about.clone(),
+                    other => self.complain(&value.span, format!("`about` must be a string, not {}", other.describe())),
+                },
+                "world" => recipe.world = self.world(value),
+                "nodes" => self.nodes(value, &mut recipe)?,
+                "outputs" => self.outputs(value, &mut recipe),
+                unknown => {
+                    let known = ["orogen", "about", "world", "nodes", "outputs"];
+                    let hint = suggestion(unknown, known);
+                    self.complain(&key.span, format!("unknown key `{unknown}` in a recipe; {hint}"));
+                }
+            }
+        }
+        if recipe.output_inputs().is_empty() && self.complaints.is_empty() {
+            self.complain(
+                &(0..0),
+                "the recipe has no outputs: add a table `[outputs]` with a line such as `height = \"NODE\"`",
+            );
+        }
+        if self.complaints.is_empty()
+            && let Err(faults) = Graph::resolve(&recipe)
+        {
+            for fault in faults {
+                let span = match &fault.at {
+                    At::Node(node, key) => {
+                        let name = self.places.get(&(*node, ""));
+                        self.places.get(&(*node, *key)).or(name).cloned().unwrap_or(0..0)
+                    }
+                    At::Output(output) => self.names.get(*output).cloned().unwrap_or(0..0),
+                    At::World => {
+                        top.iter().find(|(key, _)| key.value == "world").map_or(0..0, |(key, _)| key.span.clone())
+                    }
+                };
+                self.complain(&span, fault.sentence);
+            }
+        }
+        match self.complaints.is_empty() {
+            true => Ok(recipe),
+            false => Err(self.text.errors(self.complaints, self.more)),
+        }
+    }
+
+    /// The version is checked first: nothing else in a recipe of another version can be trusted to be understood.
+    fn version(&self, top: &Table) -> Result<()> {
+        match top.iter().find(|(key, _)| key.value == "orogen") {
+            None => Err(self.text.error(
+                &(0..0),
+                format!("this is no recipe yet: it must begin with `orogen = {VERSION}`, the version of recipes it is written in"),
+            )),
+            Some((_, Spanned { value: Value::Integer(VERSION), .. })) => Ok(()),
+            Some((_, Spanned { value: Value::Integer(version), span })) if *version > VERSION => Err(self.text.error(
+                span,
+                format!("this recipe is of version {version}, this program reads version {VERSION}: use a newer Orogen"),
+            )),
+            Some((_, value)) => Err(self.text.error(
+                &value.span,
+                format!("`orogen` is the version of recipes and must be {VERSION}, not {}", value.value.describe()),
+            )),
+        }
+    }
+
+    /// Complains of a key that stands twice in a table (TOML's parser refuses it itself, JSON's does not).
+    fn repeated<'k>(&mut self, seen: &mut HashSet<&'k str>, key: &'k Spanned<String>) -> bool {
+        if !seen.insert(key.value.as_str()) {
+            self.complain(&key.span, format!("the key `{}` stands twice in this table", key.value));
+            return true;
+        }
+        false
+    }
+
+    fn world(&mut self, value: &Spanned<Value>) -> WorldSpec {
+        let mut world = WorldSpec::default();
+        let Value::Table(entries) = &value.value else {
+            self.complain(&value.span, format!("`world` must be a table, not {}", value.value.describe()));
+            return world;
+        };
+        let (mut seen, mut cell) = (HashSet::new(), None);
+        for (key, value) in entries {
+            if self.repeated(&mut seen, key) {
+                continue;
+            }
+            match super::schema::world_param(&key.value) {
+                Some(spec) => match super::schema::read_world(spec, &value.value, &mut world) {
+                    Ok(()) if spec.name == "cell" => cell = Some(value.span.clone()),
+                    Ok(()) => {}
+                    Err(sentence) => self.complain(&value.span, sentence),
+                },
+                None => {
+                    let hint = suggestion(&key.value, super::schema::WORLD.iter().map(|spec| spec.name));
+                    self.complain(&key.span, format!("unknown key `{}` in `world`; {hint}", key.value));
+                }
+            }
+        }
+        if cell.is_none()
+            && let Some([width, height]) = world.size
+        {
+            world.cell = width.max(height) / 1024.0;
+        }
+        world
+    }
+
+    fn nodes(&mut self, value: &Spanned<Value>, recipe: &mut Recipe) -> Result<()> {
+        let Value::Table(entries) = &value.value else {
+            self.complain(
+                &value.span,
+                format!("`nodes` must be a table of named nodes, not {}", value.value.describe()),
+            );
+            return Ok(());
+        };
+        if entries.len() > MOST_NODES {
+            return Err(self.text.error(
+                &entries[MOST_NODES].0.span,
+                format!("this recipe has {} nodes, the most there may be is {MOST_NODES}", entries.len()),
+            ));
+        }
+        let mut names: HashSet<&str> = HashSet::with_capacity(entries.len());
+        for (name, value) in entries {
+            if !names.insert(&name.value) {
+                self.complain(&name.span, format!("there are two nodes named `{}`: rename one", name.value));
+                continue;
+            }
+            let index = recipe.nodes().len();
+            self.places.insert((index, ""), name.span.clone());
+            // A node that cannot be read still stands for its name, so that nodes reading it draw no complaint of their own;
+            // the recipe is refused anyway.
+            if let Some((node, mask)) = self.node(index, name, value) {
+                recipe.add_masked(&name.value, node, mask);
+            }
+        }
+        Ok(())
+    }
+
+    fn node(&mut self, index: usize, name: &Spanned<String>, value: &Spanned<Value>) -> Option<(Node, Input)> {
+        let Value::Table(entries) = &value.value else {
+            let found = value.value.describe();
+            self.complain(&value.span, format!("the node `{}` must be a table with an `op`, not {found}", name.value));
+            return None;
+        };
+        let Some((_, op)) = entries.iter().find(|(key, _)| key.value == "op") else {
+            self.complain(
+                &name.span,
+                format!("the node `{}` has no `op`: add a line such as `op = \"fbm\"`", name.value),
+            );
+            return None;
+        };
+        let Value::Text(op_name) = &op.value else {
+            self.complain(&op.span, format!("`op` must be the name of an op, not {}", op.value.describe()));
+            return None;
+        };
+        let Some(mut node) = Node::named(op_name) else {
+            let all = Node::all();
+            let hint = suggestion(op_name, all.iter().map(|node| node.spec().op));
+            self.complain(&op.span, format!("unknown op `{op_name}`; {hint}"));
+            return None;
+        };
+        let spec = node.spec();
+        let (mut seen, mut mask) = (HashSet::new(), Input::None);
+        for (key, value) in entries {
+            if self.repeated(&mut seen, key) || key.value == "op" {
+                continue;
+            }
+            if key.value == "mask" {
+                self.places.insert((index, "mask"), value.span.clone());
+                mask = self.input("mask", value);
+            } else if let Some(i) = spec.inputs.iter().position(|input| input.name == key.value) {
+                self.places.insert((index, spec.inputs[i].name), value.span.clone());
+                let input = self.input(spec.inputs[i].name, value);
+                node.set_input(i, input);
+            } else if let Some(i) = spec.params.iter().position(|param| param.name == key.value) {
+                self.places.insert((index, spec.params[i].name), value.span.clone());
+                if let Err(sentence) = node.set_param(i, &value.value) {
+                    self.complain(&value.span, sentence);
+                }
+            } else {
+                let known =
+                    spec.inputs.iter().map(|input| input.name).chain(spec.params.iter().map(|param| param.name));
+                let hint =
+                    match ALIASES.iter().find(|(alias, name)| *alias == key.value && known.clone().any(|k| k == *name))
+                    {
+                        Some((_, name)) => format!("it is called `{name}` here"),
+                        None => suggestion(&key.value, known.chain(["op", "mask"])),
+                    };
+                self.complain(
+                    &key.span,
+                    format!("unknown key `{}` in node `{}` (op `{}`); {hint}", key.value, name.value, spec.op),
+                );
+            }
+        }
+        Some((node, mask))
+    }
+
+    fn input(&mut self, key: &str, value: &Spanned<Value>) -> Input {
+        match (&value.value, value.value.number()) {
+            (Value::Text(name), _) => Input::Node(name.clone()),
+            (_, Some(number)) if number.is_finite() => Input::Value(number),
+            (other, _) => {
+                let found = other.describe();
+                self.complain(
+                    &value.span,
+                    format!("`{key}` must name a node (or one of its layers, `node.layer`) or be a finite number, not {found}"),
+                );
+                Input::None
+            }
+        }
+    }
+
+    fn outputs(&mut self, value: &Spanned<Value>, recipe: &mut Recipe) {
+        let Value::Table(entries) = &value.value else {
+            self.complain(&value.span, format!("`outputs` must be a table, not {}", value.value.describe()));
+            return;
+        };
+        let mut seen = HashSet::new();
+        for (key, value) in entries {
+            if self.repeated(&mut seen, key) {
+                continue;
+            }
+            if let Value::Table(_) = value.value {
+                self.complain(&value.span, format!("the output `{}` must name a node, not be a table", key.value));
+                continue;
+            }
+            let input = self.input(&key.value, value);
+            self.names.push(value.span.clone());
+            recipe.output(&key.value, input);
+        }
+        if entries.is_empty() {
+            let names: Vec<&str> = recipe.nodes().iter().map(|node| node.name.as_str()).collect();
+            self.complain(
+                &value.span,
+                format!("`outputs` is empty: name a layer, such as `height`, after {}", list(names)),
+            );
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! The recipes that come with the program: plain files in `recipes/`, embedded.
+
+use super::document::Recipe;
+use crate::error::Result;
+
+/// A recipe that comes with the program.
+#[derive(Debug, Clone, Copy)]
+pub struct Preset {
+    /// What it is called.
+    pub name: &'static str,
+    /// Its recipe, TOML.
+    pub text: &'static str,
+}
+
+impl Preset {
+    /// Reads it.
+    ///
+    /// # Errors
+    /// None in a release: a test reads every preset.
+    pub fn recipe(&self) -> Result<Recipe> {
+        Recipe::parse(self.text, &format!("recipes/{}.toml", self.name))
+    }
+}
+
+macro_rules! presets {
+    ($($name:literal,)*) => {
+        &[$( Preset { name: $name, text: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../recipes/", $name, ".toml")) }, )*]
+    };
+}
+
+static PRESETS: &[Preset] = presets!["alpine", "archipelago", "classic", "hills", "island", "mesa",];
+
+/// The preset that is made if nobody asks for another.
+pub const DEFAULT: &str = "alpine";
+
+/// All of them, by name.
+pub fn all() -> &'static [Preset] {
+    PRESETS
+}
+
+/// The preset of that name.
+pub fn find(name: &str) -> Option<&'static Preset> {
+    PRESETS.iter().find(|preset| preset.name == name)
+}

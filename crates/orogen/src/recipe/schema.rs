@@ -1,0 +1,203 @@
+//! The JSON Schema of recipes, made from the declarations.
+
+use super::document::{VERSION, WorldSpec};
+use crate::declare::{Param, ParamSpec, Shape, read_param, short};
+use crate::node::Node;
+use crate::value::Value;
+use serde_json::{Map, Value as Json, json};
+
+/// What `world` can be told.
+pub static WORLD: &[ParamSpec] = &[
+    ParamSpec {
+        name: "seed",
+        doc: "The seed of the world. Every node's own seed is hashed with it.",
+        unit: "",
+        shape: Shape::Seed,
+        range: [0.0, f64::INFINITY],
+    },
+    ParamSpec {
+        name: "size",
+        doc: "Extent of the world east and south, [width, height], or one number for a square. Left out: a world without \
+              bounds, which solvers cannot work in.",
+        unit: "m",
+        shape: Shape::Pair,
+        range: [1e-3, 1e9],
+    },
+    ParamSpec {
+        name: "cell",
+        doc: "From one sample to the next of the world's own lattice, on which solvers work. Left out: a 1024th of the longer \
+              side, or 10 m in a world without bounds.",
+        unit: "m",
+        shape: Shape::Number,
+        range: [1e-4, 1e7],
+    },
+    ParamSpec {
+        name: "sea_level",
+        doc: "Height of the sea's surface.",
+        unit: "m",
+        shape: Shape::Number,
+        range: [-1e6, 1e6],
+    },
+];
+
+/// The world's parameter of that name.
+pub fn world_param(name: &str) -> Option<&'static ParamSpec> {
+    WORLD.iter().find(|spec| spec.name == name)
+}
+
+/// Reads one of the world's parameters.
+pub fn read_world(spec: &ParamSpec, value: &Value, world: &mut WorldSpec) -> Result<(), String> {
+    match spec.name {
+        "seed" => world.seed = read_param(spec, value)?,
+        "size" => {
+            world.size = Some(match value.number() {
+                Some(side) => read_param(spec, &[side, side].write())?,
+                None => read_param(spec, value)?,
+            });
+        }
+        "cell" => world.cell = read_param(spec, value)?,
+        _ => world.sea_level = read_param(spec, value)?,
+    }
+    Ok(())
+}
+
+/// The world's parameters as values.
+pub fn world_values(world: &WorldSpec) -> Vec<(&'static str, Value)> {
+    let mut values =
+        vec![("seed", world.seed.write()), ("cell", world.cell.write()), ("sea_level", world.sea_level.write())];
+    values.extend(world.size.map(|size| ("size", size.write())));
+    values
+}
+
+/// The schema (draft 7) that editors check recipes against.
+pub fn json_schema() -> Json {
+    let name = json!({ "type": "string", "pattern": "^[A-Za-z_][A-Za-z0-9_-]{0,63}$" });
+    let mut world: Map<String, Json> =
+        WORLD.iter().map(|spec| (spec.name.to_string(), param_schema(spec, None))).collect();
+    if let Some(pair) = world.remove("size") {
+        let side = json!({ "type": "number", "minimum": 1e-3, "maximum": 1e9 });
+        world.insert("size".into(), json!({ "description": pair["description"], "anyOf": [side, pair] }));
+    }
+    let ops: Vec<Json> = Node::all().iter().map(op_schema).collect();
+    json!({
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "title": "Orogen recipe",
+        "description": "A world: its nodes and what it offers.",
+        "type": "object",
+        "required": ["orogen", "outputs"],
+        "additionalProperties": false,
+        "properties": {
+            "$schema": { "type": "string", "description": "The schema of this document, for editors." },
+            "orogen": { "const": VERSION, "description": "The version of recipes this one is written in." },
+            "about": { "type": "string", "description": "One sentence about the world." },
+            "world": {
+                "type": "object",
+                "description": "The world's seed and measures.",
+                "additionalProperties": false,
+                "properties": world,
+            },
+            "nodes": {
+                "type": "object",
+                "description": "The nodes by name.",
+                "propertyNames": name,
+                "additionalProperties": { "$ref": "#/definitions/node" },
+            },
+            "outputs": {
+                "type": "object",
+                "description": "What the world offers: layer names with the node (or node.layer) they show. `height` is what maps \
+                                are made from.",
+                "minProperties": 1,
+                "propertyNames": name,
+                "additionalProperties": { "$ref": "#/definitions/input" },
+            },
+        },
+        "definitions": {
+            "input": {
+                "anyOf": [
+                    { "type": "string", "pattern": "^[A-Za-z_][A-Za-z0-9_-]{0,63}(\\.[A-Za-z0-9_-]+)?$" },
+                    { "type": "number" },
+                ],
+            },
+            "node": { "type": "object", "required": ["op"], "oneOf": ops },
+        },
+    })
+}
+
+fn op_schema(node: &Node) -> Json {
+    let spec = node.spec();
+    let mut properties = Map::new();
+    properties.insert("op".into(), json!({ "const": spec.op, "description": spec.doc.trim() }));
+    for input in spec.inputs {
+        properties.insert(
+            input.name.into(),
+            json!({ "description": short(input.doc), "allOf": [{ "$ref": "#/definitions/input" }] }),
+        );
+    }
+    for (i, param) in spec.params.iter().enumerate() {
+        properties.insert(param.name.into(), param_schema(param, Some(&node.param(i))));
+    }
+    properties.insert(
+        "mask".into(),
+        json!({
+            "description": "Where the op takes effect: 1 fully, 0 not at all (its first input shows instead, or 0).",
+            "allOf": [{ "$ref": "#/definitions/input" }],
+        }),
+    );
+    let required: Vec<&str> =
+        ["op"].into_iter().chain(spec.inputs.iter().filter(|input| input.required).map(|input| input.name)).collect();
+    json!({
+        "title": spec.op,
+        "description": short(spec.doc),
+        "type": "object",
+        "required": required,
+        "additionalProperties": false,
+        "properties": properties,
+    })
+}
+
+fn param_schema(spec: &ParamSpec, default: Option<&Value>) -> Json {
+    let mut number = json!({ "type": "number" });
+    for (key, bound) in [("minimum", spec.range[0]), ("maximum", spec.range[1])] {
+        if bound.is_finite() {
+            number[key] = json!(bound);
+        }
+    }
+    let mut schema = match spec.shape {
+        Shape::Number => number,
+        Shape::Integer => {
+            number["type"] = json!("integer");
+            number
+        }
+        Shape::Seed => json!({ "type": "integer", "minimum": 0 }),
+        Shape::Flag => json!({ "type": "boolean" }),
+        Shape::Choice(choices) => json!({
+            "oneOf": choices().iter().map(|(name, doc)| json!({ "const": name, "description": short(doc) })).collect::<Vec<_>>(),
+        }),
+        Shape::Pair => json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": number }),
+        Shape::Curve => json!({
+            "type": "array",
+            "minItems": 2,
+            "items": { "type": "array", "minItems": 2, "maxItems": 2, "items": number },
+        }),
+    };
+    let unit = if spec.unit.is_empty() { String::new() } else { format!(" Unit: {}.", spec.unit) };
+    schema["description"] = json!(format!("{}{unit}", short(spec.doc)));
+    if let Some(default) = default {
+        schema["default"] = plain(default);
+    }
+    schema
+}
+
+fn plain(value: &Value) -> Json {
+    match value {
+        Value::Flag(flag) => json!(flag),
+        Value::Integer(integer) => json!(integer),
+        Value::Number(number) => json!(number),
+        Value::Text(text) => json!(text),
+        Value::List(items) => Json::Array(items.iter().map(|item| plain(&item.value)).collect()),
+        Value::Table(entries) => {
+            Json::Object(entries.iter().map(|(key, item)| (key.value.clone(), plain(&item.value))).collect())
+        }
+        Value::Other(_) => Json::Null,
+    }
+}

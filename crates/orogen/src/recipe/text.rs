@@ -1,0 +1,65 @@
+//! A recipe's text and the places in it.
+
+use super::document::LONGEST_TEXT;
+use crate::error::{Complaint, Error, ErrorKind, Location};
+use crate::value::Span;
+
+/// A text and what complaints call it.
+pub struct Text<'a> {
+    pub name: &'a str,
+    pub text: &'a str,
+}
+
+impl Text<'_> {
+    /// A complaint about a part of the text.
+    pub fn complaint(&self, span: &Span, sentence: impl Into<String>) -> Complaint {
+        Complaint { sentence: sentence.into(), place: Some(self.locate(span)) }
+    }
+
+    /// An error of one complaint.
+    pub fn error(&self, span: &Span, sentence: impl Into<String>) -> Error {
+        Error::from_complaints(ErrorKind::Recipe, vec![self.complaint(span, sentence)])
+    }
+
+    /// An error of several, in the order of the text, and of how many `more` there are.
+    pub fn errors(&self, mut complaints: Vec<Complaint>, more: usize) -> Error {
+        complaints.sort_by_key(|complaint| complaint.place.as_ref().map(|place| (place.line, place.column)));
+        if more > 0 {
+            complaints.push(Complaint { sentence: format!("and {more} more complaints"), place: None });
+        }
+        Error::from_complaints(ErrorKind::Recipe, complaints)
+    }
+
+    fn locate(&self, span: &Span) -> Location {
+        let start = floor_boundary(self.text, span.start);
+        let end = floor_boundary(self.text, span.end).max(start);
+        let line_start = self.text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+        let line_end = self.text[start..].find('\n').map_or(self.text.len(), |newline| start + newline);
+        Location {
+            file: self.name.to_string(),
+            line: self.text[..start].matches('\n').count() + 1,
+            column: self.text[line_start..start].chars().count() + 1,
+            length: self.text[start..end.clamp(start, line_end)].chars().count().max(1),
+            text: self.text[line_start..line_end].trim_end_matches('\r').to_string(),
+        }
+    }
+}
+
+fn floor_boundary(text: &str, at: usize) -> usize {
+    let mut at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    at
+}
+
+/// The error for a text of more than [`LONGEST_TEXT`] bytes.
+pub fn too_long(name: &str) -> Error {
+    Error::new(
+        ErrorKind::Recipe,
+        format!(
+            "{name} is not a recipe: it is longer than {}, the most a recipe may be",
+            crate::words::bytes(LONGEST_TEXT)
+        ),
+    )
+}

@@ -1,0 +1,148 @@
+//! Reading a grid between its samples.
+
+use crate::grid::Grid;
+use crate::op::{LayerKind, NOWHERE};
+use orogen_noise::Points;
+
+/// Index of the sample at or before a position, and the share of the way to the next.
+///
+/// A position that *is* a lattice point (index * cell gives the very same f64) has share 0 at exactly that index, whatever the
+/// division says: cells such as 10.24, 0.1 and 1/3 included.
+pub fn split(position: f64, cell: f64) -> (i64, f32) {
+    let steps = position / cell;
+    let nearest = steps.round();
+    if nearest * cell == position {
+        return (nearest as i64, 0.0);
+    }
+    let index = steps.floor();
+    let share = (steps - index) as f32;
+    // Rounding to f32 can reach 1: that is the next sample.
+    if share >= 1.0 { (index as i64 + 1, 0.0) } else { (index as i64, share) }
+}
+
+/// Reads `grid` at every point into `out`: heights by the interpolating cubic, labels from the nearest sample.
+///
+/// Beyond its border the grid continues with its border samples. A point that is not finite reads NaN.
+pub fn read(grid: &Grid, kind: LayerKind, at: &Points, out: &mut [f32]) {
+    let reader = Reader::new(grid);
+    match (kind, at) {
+        (LayerKind::Height, Points::Lattice { xs, ys }) if !xs.is_empty() => {
+            let columns: Vec<(i64, f32)> = xs.iter().map(|x| split(*x, grid.window().cell)).collect();
+            for (row, y) in out.chunks_mut(xs.len()).zip(ys.iter()) {
+                let (j, v) = split(*y, grid.window().cell);
+                for (sample, (x, (i, u))) in row.iter_mut().zip(xs.iter().zip(&columns)) {
+                    *sample = if x.is_finite() && y.is_finite() { reader.cubic(*i, j, *u, v) } else { f32::NAN };
+                }
+            }
+        }
+        _ => {
+            for (k, sample) in out.iter_mut().enumerate() {
+                let (x, y) = at.position(k).unwrap_or(NOWHERE);
+                let cell = grid.window().cell;
+                *sample = if !(x.is_finite() && y.is_finite()) {
+                    f32::NAN
+                } else if kind == LayerKind::Label {
+                    reader.sample(nearest(x, cell), nearest(y, cell))
+                } else {
+                    let ((i, u), (j, v)) = (split(x, cell), split(y, cell));
+                    reader.cubic(i, j, u, v)
+                };
+            }
+        }
+    }
+}
+
+/// Index of the nearest sample; halves go to the greater one.
+fn nearest(position: f64, cell: f64) -> i64 {
+    let (index, share) = split(position, cell);
+    if share >= 0.5 { index + 1 } else { index }
+}
+
+struct Reader<'a> {
+    data: &'a [f32],
+    x: i64,
+    y: i64,
+    width: i64,
+    height: i64,
+}
+
+impl Reader<'_> {
+    fn new(grid: &Grid) -> Reader<'_> {
+        let window = grid.window();
+        Reader { data: grid.data(), x: window.x, y: window.y, width: window.width as i64, height: window.height as i64 }
+    }
+
+    fn sample(&self, i: i64, j: i64) -> f32 {
+        let i = i.saturating_sub(self.x).clamp(0, self.width - 1);
+        let j = j.saturating_sub(self.y).clamp(0, self.height - 1);
+        self.data.get((j * self.width + i) as usize).copied().unwrap_or(f32::NAN)
+    }
+
+    /// Catmull and Rom's cubic (1974) along x in four rows, then along y. Share 0 gives the sample itself, bit for bit.
+    fn cubic(&self, i: i64, j: i64, u: f32, v: f32) -> f32 {
+        let along = |j: i64| {
+            if u == 0.0 {
+                return self.sample(i, j);
+            }
+            let taps = [-1, 0, 1, 2].map(|step| self.sample(i.saturating_add(step), j));
+            catmull_rom(taps, u)
+        };
+        if v == 0.0 {
+            return along(j);
+        }
+        catmull_rom([-1, 0, 1, 2].map(|step| along(j.saturating_add(step))), v)
+    }
+}
+
+fn catmull_rom([p0, p1, p2, p3]: [f32; 4], t: f32) -> f32 {
+    p1 + 0.5 * t * ((p2 - p0) + t * ((2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3) + t * (3.0 * (p1 - p2) + p3 - p0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Window;
+
+    #[test]
+    fn lattice_points_are_exact() {
+        for cell in [10.24, 0.1, 1.0 / 3.0, 30.0, 1e-3] {
+            for index in [0i64, 1, -1, 3, 7, 1023, -999_983, 123_456_789] {
+                assert_eq!(split(index as f64 * cell, cell), (index, 0.0), "{index} * {cell}");
+            }
+        }
+    }
+
+    #[test]
+    fn shares_stay_below_one() {
+        let (index, share) = split(1.0 - 1e-12, 1.0);
+        assert_eq!((index, share), (1, 0.0));
+        assert_eq!(split(-0.25, 1.0), (-1, 0.75));
+    }
+
+    #[test]
+    fn reads_samples_and_lines() {
+        let window = Window::new(6, 5, 10.0).at(-2, 3);
+        let mut grid = Grid::filled(window, 0.0f32);
+        for j in 0..5 {
+            for i in 0..6 {
+                grid.row_mut(j)[i] = (2.0 * window.east(i) + window.south(j)) as f32;
+            }
+        }
+        let xs = [-20.0, -3.0, 11.5];
+        let ys = [40.0, 47.0];
+        let mut out = [0.0; 6];
+        read(&grid, LayerKind::Height, &Points::Lattice { xs: &xs, ys: &ys }, &mut out);
+        assert_eq!(out[0], 0.0, "a sample itself");
+        // A cubic reproduces straight lines inside; near the border the border sample is repeated.
+        assert!((out[1] - 34.0).abs() < 1e-4 && (out[4] - 41.0).abs() < 1e-4, "{out:?}");
+        let x = [-20.0, -3.0, 11.5, -20.0, -3.0, 11.5];
+        let y = [40.0, 40.0, 40.0, 47.0, 47.0, 47.0];
+        let mut again = [0.0; 6];
+        read(&grid, LayerKind::Height, &Points::Scattered { x: &x, y: &y }, &mut again);
+        assert_eq!(out, again);
+        let mut far = [0.0; 2];
+        let wild = Points::Scattered { x: &[f64::NAN, 1e300], y: &[0.0, -1e300] };
+        read(&grid, LayerKind::Height, &wild, &mut far);
+        assert!(far[0].is_nan() && far[1].is_finite());
+    }
+}

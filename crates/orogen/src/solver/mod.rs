@@ -1,0 +1,5 @@
+//! Solvers: ops that look at the whole bounded world.
+
+// The list below is written by `cargo xtask codegen`.
+pub mod bake;
+pub mod normalise;

@@ -1,0 +1,108 @@
+//! Words for people: the nearest spelling, and lists in sentences.
+
+/// The candidate that a misspelt `word` most likely meant, if one is near enough: at most a third of its letters off
+/// (insertions, deletions, substitutions and swaps of neighbours each count one), upper and lower case alike.
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let word: Vec<char> = word.chars().flat_map(char::to_lowercase).take(64).collect();
+    candidates
+        .into_iter()
+        .map(|candidate| {
+            let letters: Vec<char> = candidate.chars().flat_map(char::to_lowercase).collect();
+            (distance(&word, &letters), letters.len(), candidate)
+        })
+        .filter(|(distance, length, _)| *distance <= (word.len().max(*length) / 3).max(1) && *distance < *length)
+        .min_by_key(|(distance, _, _)| *distance)
+        .map(|(_, _, candidate)| candidate)
+}
+
+/// Optimal string alignment distance (Damerau 1964, restricted to one edit a place).
+fn distance(a: &[char], b: &[char]) -> usize {
+    let mut rows = vec![vec![0usize; b.len() + 1]; a.len() + 1];
+    for (i, row) in rows.iter_mut().enumerate() {
+        row[0] = i;
+    }
+    for (j, cell) in rows[0].iter_mut().enumerate() {
+        *cell = j;
+    }
+    for i in 1..=a.len() {
+        for j in 1..=b.len() {
+            let change = usize::from(a[i - 1] != b[j - 1]);
+            let mut best = (rows[i - 1][j] + 1).min(rows[i][j - 1] + 1).min(rows[i - 1][j - 1] + change);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                best = best.min(rows[i - 2][j - 2] + 1);
+            }
+            rows[i][j] = best;
+        }
+    }
+    rows[a.len()][b.len()]
+}
+
+/// `did you mean ...?` where a near word exists, else what there is to choose from.
+pub fn suggestion<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> String {
+    match nearest(word, candidates.clone()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => {
+            let all: Vec<&str> = candidates.into_iter().collect();
+            match all.len() {
+                0 => "there is none to choose from".to_string(),
+                _ => format!("there is {}", list(all)),
+            }
+        }
+    }
+}
+
+/// Words in a sentence: "`a`, `b` and `c`"; long lists are cut with their count.
+pub fn list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    const SHOWN: usize = 40;
+    let words: Vec<String> = words.into_iter().map(|word| format!("`{word}`")).collect();
+    match words.as_slice() {
+        [] => "nothing".to_string(),
+        [one] => one.clone(),
+        many if many.len() > SHOWN => format!("{} and {} more", many[..SHOWN].join(", "), many.len() - SHOWN),
+        [init @ .., last] => format!("{} and {last}", init.join(", ")),
+    }
+}
+
+/// A number of bytes as people read it: "1.5 GiB".
+pub fn bytes(n: u64) -> String {
+    const UNITS: [&str; 6] = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB"];
+    let (mut value, mut unit) = (n as f64, 0);
+    while value >= 1024.0 && unit + 1 < UNITS.len() {
+        value /= 1024.0;
+        unit += 1;
+    }
+    match unit {
+        0 => format!("{n} bytes"),
+        _ if value < 10.0 => format!("{value:.1} {}", UNITS[unit]),
+        _ => format!("{value:.0} {}", UNITS[unit]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_words() {
+        let names = ["octaves", "lacunarity", "gain", "wavelength"];
+        for (word, expect) in [
+            ("octavs", Some("octaves")),
+            ("Octaves", Some("octaves")),
+            ("wavelenght", Some("wavelength")),
+            ("gian", Some("gain")),
+            ("persistence", None),
+            ("", None),
+            ("x", None),
+        ] {
+            assert_eq!(nearest(word, names), expect, "{word}");
+        }
+    }
+
+    #[test]
+    fn sizes() {
+        assert_eq!(bytes(12), "12 bytes");
+        assert_eq!(bytes(1536), "1.5 KiB");
+        assert_eq!(bytes(3 << 30), "3.0 GiB");
+        assert_eq!(bytes(200 << 20), "200 MiB");
+    }
+}

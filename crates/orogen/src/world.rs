@@ -1,0 +1,305 @@
+//! The front door: a recipe opened, asked for windows and points.
+
+use crate::engine::run::Engine;
+use crate::error::{Error, ErrorKind, Result};
+use crate::grid::{Grid, Window};
+use crate::op::Setting;
+use crate::plan::explain::explain;
+use crate::plan::planner::{Plan, Planner, world_windows};
+use crate::progress::Progress;
+use crate::recipe::document::Recipe;
+use crate::recipe::graph::{Graph, Link};
+use crate::store::Store;
+use crate::words::{bytes, suggestion};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// How a world is worked on. None of it changes a bit of the terrain.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Threads; `None` takes as many as the machine has cores.
+    pub threads: Option<usize>,
+    /// Bytes that a request may need; `None` for no limit.
+    pub memory: Option<u64>,
+}
+
+/// A world: any window of it, at any resolution, always the same.
+///
+/// ```
+/// use orogen::{Recipe, Window, World};
+///
+/// let recipe = Recipe::parse(
+///     r#"
+///     orogen = 1
+///     [world]
+///     seed = 7
+///     [nodes.hills]
+///     op = "fbm"
+///     wavelength = 500
+///     [outputs]
+///     height = "hills"
+///     "#,
+///     "example",
+/// )?;
+/// let world = World::open(recipe)?;
+/// let tile = world.window("height", &Window::new(64, 64, 10.0).at(-32, 1_000_000))?;
+/// assert_eq!(tile.get(3, 5), world.height(tile.window().east(3), tile.window().south(5))?);
+/// # Ok::<(), orogen::Error>(())
+/// ```
+pub struct World {
+    recipe: Recipe,
+    graph: Graph,
+    setting: Setting,
+    store: Store,
+    pool: rayon::ThreadPool,
+    memory: Option<u64>,
+    /// Plans for points of layers that depend on no grid: the same for every point.
+    pointwise: Mutex<HashMap<String, Arc<Plan>>>,
+}
+
+/// The layer that maps and meshes are made from.
+pub const HEIGHT: &str = "height";
+
+impl World {
+    /// Opens a recipe.
+    ///
+    /// # Errors
+    /// If the recipe is not valid: every complaint at once.
+    pub fn open(recipe: Recipe) -> Result<World> {
+        World::with_options(recipe, Options::default())
+    }
+
+    /// Opens a recipe with options.
+    ///
+    /// # Errors
+    /// If the recipe is not valid, or no threads can be started.
+    pub fn with_options(recipe: Recipe, options: Options) -> Result<World> {
+        let graph = Graph::resolve(&recipe).map_err(Graph::error)?;
+        if recipe.outputs().next().is_none() {
+            let sentence = "the recipe has no outputs: name at least one, such as `height`";
+            return Err(Error::new(ErrorKind::Recipe, sentence));
+        }
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(options.threads.unwrap_or(0))
+            .build()
+            .map_err(|cause| Error::new(ErrorKind::Request, format!("cannot start the threads asked for: {cause}")))?;
+        let setting = recipe.world.setting();
+        Ok(World {
+            recipe,
+            graph,
+            setting,
+            store: Store::default(),
+            pool,
+            memory: options.memory,
+            pointwise: Mutex::default(),
+        })
+    }
+
+    /// The recipe.
+    pub fn recipe(&self) -> &Recipe {
+        &self.recipe
+    }
+
+    /// The window of the whole world at `cell` metres a sample, without its far edges: a world of L metres has round(L / cell)
+    /// samples along a side.
+    ///
+    /// # Errors
+    /// If the world has no bounds, or would have no sample at that cell.
+    pub fn whole(&self, cell: f64) -> Result<Window> {
+        let Some(size) = self.setting.size else {
+            let sentence = "this world has no bounds: say how many samples are wanted";
+            return Err(Error::new(ErrorKind::Request, sentence));
+        };
+        let samples = size.map(|length| (length / cell).round());
+        if !samples.iter().all(|samples| (1.0..=crate::recipe::graph::MOST_SAMPLES).contains(samples)) {
+            let sentence = format!(
+                "a world of {} x {} metres has {} x {} samples at a cell of {cell} m; it must have at least one and at most 2^31 \
+                 along each side",
+                size[0], size[1], samples[0], samples[1]
+            );
+            return Err(Error::new(ErrorKind::Request, sentence));
+        }
+        Ok(Window::new(samples[0] as usize, samples[1] as usize, cell))
+    }
+
+    /// A plan for layers over a window.
+    ///
+    /// # Errors
+    /// If there is no such layer, or the window is not one of this world.
+    pub fn plan(&self, layers: &[&str], window: &Window) -> Result<Plan> {
+        let targets = layers.iter().map(|layer| self.target(layer)).collect::<Result<Vec<Link>>>()?;
+        self.check(window)?;
+        Planner::new(&self.recipe, &self.graph).plan(&targets, *window, false)
+    }
+
+    /// Bytes that running a plan takes at most.
+    pub fn memory_of(&self, plan: &Plan) -> u64 {
+        plan.memory(&self.recipe, self.pool.current_num_threads())
+    }
+
+    /// What a plan does, in words.
+    pub fn explain(&self, plan: &Plan) -> String {
+        explain(plan, &self.recipe, &self.graph, self.pool.current_num_threads())
+    }
+
+    /// Runs a plan: one grid a layer, in the order they were asked for.
+    ///
+    /// # Errors
+    /// If it would need more memory than allowed (then nothing was started), or was cancelled.
+    pub fn run(&self, plan: &Plan, progress: &Progress) -> Result<Vec<Grid>> {
+        self.afford(plan)?;
+        self.pool.install(|| self.engine(progress).run(plan))
+    }
+
+    /// Makes layers over a window.
+    ///
+    /// # Errors
+    /// As [`World::plan`] and [`World::run`].
+    pub fn grids(&self, layers: &[&str], window: &Window, progress: &Progress) -> Result<Vec<Grid>> {
+        self.run(&self.plan(layers, window)?, progress)
+    }
+
+    /// Makes one layer over a window.
+    ///
+    /// # Errors
+    /// As [`World::plan`] and [`World::run`].
+    pub fn window(&self, layer: &str, window: &Window) -> Result<Grid> {
+        let mut grids = self.grids(&[layer], window, &Progress::none())?;
+        grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "nothing was asked for"))
+    }
+
+    /// The height at x metres east and y metres south of the origin.
+    ///
+    /// # Errors
+    /// If the world has no layer `height`, or the position is outside of it.
+    pub fn height(&self, x: f64, y: f64) -> Result<f32> {
+        Ok(self.points(HEIGHT, &[x], &[y])?.first().copied().unwrap_or(f32::NAN))
+    }
+
+    /// A layer's values at points, in metres. On lattice points they are the very samples of a window there (filters are made
+    /// at the world's cell).
+    ///
+    /// # Errors
+    /// If there is no such layer, coordinates are not finite or not in pairs, or a point is outside of the world.
+    pub fn points(&self, layer: &str, x: &[f64], y: &[f64]) -> Result<Vec<f32>> {
+        let target = self.target(layer)?;
+        let fault = |sentence: String| Error::new(ErrorKind::Request, sentence);
+        if x.len() != y.len() {
+            return Err(fault(format!("{} eastings do not pair with {} southings", x.len(), y.len())));
+        }
+        for (x, y) in x.iter().zip(y) {
+            if !(x.is_finite() && y.is_finite()) {
+                return Err(fault(format!("({x}, {y}) is no position: coordinates must be finite")));
+            }
+            if let Some([w, h]) = self.setting.size
+                && !((0.0..=w).contains(x) && (0.0..=h).contains(y))
+            {
+                return Err(fault(format!(
+                    "({x}, {y}) is outside the world, which reaches from (0, 0) to ({w}, {h}) metres"
+                )));
+            }
+        }
+        if x.is_empty() {
+            return Ok(Vec::new());
+        }
+        let known = self.pointwise.lock().unwrap_or_else(PoisonError::into_inner).get(layer).cloned();
+        let plan = match known {
+            Some(plan) => plan,
+            None => {
+                let plan = Planner::new(&self.recipe, &self.graph).plan(&[target], self.around(x, y), true)?;
+                let plan = Arc::new(plan);
+                if plan.is_pointwise() {
+                    let mut plans = self.pointwise.lock().unwrap_or_else(PoisonError::into_inner);
+                    plans.insert(layer.to_string(), Arc::clone(&plan));
+                }
+                plan
+            }
+        };
+        self.afford(&plan)?;
+        let progress = Progress::none();
+        let values = self.pool.install(|| self.engine(&progress).run_points(&plan, x, y))?;
+        Ok(values.into_iter().next().unwrap_or_default())
+    }
+
+    /// The samples at the world's cell around points, as far as the interpolating cubic reads.
+    fn around(&self, x: &[f64], y: &[f64]) -> Window {
+        let cell = self.setting.cell;
+        let span = |values: &[f64]| {
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let first = ((low / cell).floor() as i64).saturating_sub(2);
+            let last = ((high / cell).ceil() as i64).saturating_add(2);
+            (first, last.saturating_sub(first).saturating_add(1) as usize)
+        };
+        let ((x, width), (y, height)) = (span(x), span(y));
+        Window { x, y, width, height, cell }
+    }
+
+    fn engine<'a>(&'a self, progress: &'a Progress) -> Engine<'a> {
+        Engine { recipe: &self.recipe, graph: &self.graph, setting: &self.setting, store: &self.store, progress }
+    }
+
+    fn target(&self, layer: &str) -> Result<Link> {
+        match self.recipe.outputs().position(|name| name == layer) {
+            Some(index) => Ok(self.graph.outputs[index]),
+            None => Err(Error::new(
+                ErrorKind::Request,
+                format!("the recipe has no layer `{layer}`; {}", suggestion(layer, self.recipe.outputs())),
+            )),
+        }
+    }
+
+    fn check(&self, window: &Window) -> Result<()> {
+        let fault = |sentence: String| Err(Error::new(ErrorKind::Request, sentence));
+        if !(window.cell.is_finite() && window.cell >= 1e-6) {
+            return fault(format!(
+                "a cell of {} m is not possible: it must be a number of at least 0.000001",
+                window.cell
+            ));
+        }
+        if window.is_empty() {
+            return fault(format!("a window of {} x {} samples holds nothing", window.width, window.height));
+        }
+        const FAR: i64 = 1 << 53;
+        let inside = |start: i64, count: usize| {
+            (-FAR..=FAR).contains(&start) && count as u64 <= FAR as u64 && start + count as i64 <= FAR
+        };
+        if !(inside(window.x, window.width) && inside(window.y, window.height)) {
+            return fault(
+                "the window lies beyond 2^53 samples from the origin, farther than positions are exact".to_string(),
+            );
+        }
+        if let Some(size) = self.setting.size {
+            let (world, _) = world_windows(size, window.cell);
+            if !world.contains(window) {
+                return fault(format!(
+                    "the window of {} x {} samples at ({}, {}) is not inside the world, which at a cell of {} m has samples \
+                     (0, 0) to ({}, {})",
+                    window.width,
+                    window.height,
+                    window.x,
+                    window.y,
+                    window.cell,
+                    world.width - 1,
+                    world.height - 1
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn afford(&self, plan: &Plan) -> Result<()> {
+        let needed = self.memory_of(plan);
+        match self.memory {
+            Some(allowed) if needed > allowed => Err(Error::new(
+                ErrorKind::Memory,
+                format!(
+                    "this needs up to {} of memory and {} is allowed: ask for fewer samples at once, or allow more",
+                    bytes(needed),
+                    bytes(allowed)
+                ),
+            )),
+            _ => Ok(()),
+        }
+    }
+}
