@@ -1,2 +1,30 @@
-//! Placeholder.
-fn main() {}
+//! The `orogen` command: terrains from recipes.
+#![forbid(unsafe_code)]
+// These macros panic when the other end of a pipe is gone; `say` does not.
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
+mod bar;
+mod cli;
+mod command;
+mod failure;
+mod memory;
+mod options;
+mod pictures;
+mod say;
+mod size;
+mod source;
+mod view;
+mod watch;
+
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match cli::Cli::parse().run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.report();
+            failure.code()
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! What the command line may say.
+
+use clap::{Parser, Subcommand};
+
+use crate::command::{completions, explain, export, generate, new, presets, schema};
+use crate::failure::Failure;
+
+/// Procedural terrain: a recipe describes a world, orogen makes it.
+///
+/// Begin with `orogen generate`: it makes the default preset into the folder `out`. `orogen presets` lists what else there is,
+/// `orogen new NAME` writes a recipe of your own to change.
+#[derive(Debug, Parser)]
+#[command(name = "orogen", version, max_term_width = 100)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Make a terrain: heights, a map and a summary in a folder.
+    Generate(generate::Args),
+    /// Write one layer, or a window of it, to a file.
+    Export(export::Args),
+    /// Write a new recipe to start from.
+    New(new::Args),
+    /// List the built-in presets.
+    Presets,
+    /// Print the JSON Schema of recipes, for editors.
+    Schema,
+    /// Show how a recipe would be made: its nodes in order, and the memory it takes.
+    Explain(explain::Args),
+    /// Print the completion script of a shell.
+    Completions(completions::Args),
+}
+
+impl Cli {
+    /// Does what was asked.
+    pub fn run(self) -> Result<(), Failure> {
+        match self.command {
+            Command::Generate(args) => generate::run(&args),
+            Command::Export(args) => export::run(&args),
+            Command::New(args) => new::run(&args),
+            Command::Presets => presets::run(),
+            Command::Schema => schema::run(),
+            Command::Explain(args) => explain::run(&args),
+            Command::Completions(args) => completions::run(&args),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_declarations_agree_with_each_other() {
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,164 @@
+//! `orogen export`.
+
+use std::ffi::OsStr;
+use std::io::{self, BufWriter, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use orogen::format::levels::Levels;
+use orogen::format::{npy, png};
+use orogen::{Grid, Window, file, nearest};
+
+use crate::bar::Bar;
+use crate::failure::Failure;
+use crate::options::{Limits, View};
+use crate::pictures;
+use crate::size::{Rectangle, cell};
+use crate::source::Source;
+use crate::{say, view};
+
+/// What it takes.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A recipe's file, or the name of a preset
+    recipe: PathBuf,
+    /// File to write, its extension one of the formats; `-` is standard output
+    #[arg(short, long, value_name = "FILE")]
+    out: PathBuf,
+    /// Format, if the file's extension does not say [default: npy]
+    #[arg(long)]
+    format: Option<Format>,
+    /// Layer to write
+    #[arg(long, value_name = "L", default_value = orogen::world::HEIGHT)]
+    layer: String,
+    /// Samples to write, at the cell asked for [default: the whole world]
+    #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
+    window: Option<Rectangle>,
+    /// Metres from one sample to the next [default: the world's cell]
+    #[arg(long, value_name = "M", value_parser = cell)]
+    cell: Option<f64>,
+    /// Seed of the world, instead of the recipe's
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    #[command(flatten)]
+    limits: Limits,
+    /// Show neither progress nor the closing words
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// What can be written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// NumPy array of f32, the layer's own unit (metres for heights)
+    Npy,
+    /// 16-bit grey picture, black the lowest and white the highest of the window
+    Png,
+}
+
+impl Format {
+    const NAMES: [&'static str; 2] = ["npy", "png"];
+
+    fn of_extension(extension: &OsStr) -> Option<Format> {
+        Format::from_str(extension.to_str()?, true).ok()
+    }
+}
+
+/// Writes the layer.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let format = format(args)?;
+    let to_stdout = args.out == Path::new("-");
+    if to_stdout && io::stdout().is_terminal() {
+        return Err(Failure::Usage(
+            "standard output is a terminal, which cannot show binary data; name a file with -o, or pipe it on".into(),
+        ));
+    }
+    let mut recipe = Source::find(&args.recipe)?.read()?;
+    recipe.world.seed = args.seed.unwrap_or(recipe.world.seed);
+    let world = args.limits.open(recipe)?;
+    let view = View { seed: None, size: None, cell: args.cell };
+    let window = match args.window {
+        Some(Rectangle { x, y, width, height }) => {
+            let cell = args.cell.unwrap_or(world.recipe().world.cell);
+            Window { x, y, width, height, cell }
+        }
+        None => view::whole(&world, &view)?,
+    };
+    let plan = world.plan(&[args.layer.as_str()], &window)?;
+    if !to_stdout {
+        let folder = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        file::check_folder(folder)?;
+    }
+    let (bar, progress) = Bar::new(args.quiet);
+    let grids = world.run(&plan, &progress);
+    drop(bar);
+    let Some(grid) = grids?.pop() else {
+        return Ok(());
+    };
+    match to_stdout {
+        true => {
+            let mut out = BufWriter::new(io::stdout().lock());
+            write(&mut out, format, &grid).and_then(|()| out.flush()).map_err(|cause| Failure::stdout(&cause))
+        }
+        false => {
+            file::write_whole(&args.out, |out| write(out, format, &grid))?;
+            if args.quiet { Ok(()) } else { say::out(&words(args, format, &grid)) }
+        }
+    }
+}
+
+/// The format that is asked for: by name, else by extension, else an array.
+fn format(args: &Args) -> Result<Format, Failure> {
+    let known = args.out.extension().map(|extension| (extension, Format::of_extension(extension)));
+    match (args.format, known) {
+        (Some(format), Some((_, Some(other)))) if format != other => Err(Failure::Usage(format!(
+            "--format {} and the extension of {} contradict each other",
+            format.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default(),
+            args.out.display()
+        ))),
+        (Some(format), _) | (None, Some((_, Some(format)))) => Ok(format),
+        (None, None) if args.out == Path::new("-") => Ok(Format::Npy),
+        (None, None) => Err(Failure::Usage(format!(
+            "{} has no extension to tell its format; known are {}, or say --format",
+            args.out.display(),
+            list()
+        ))),
+        (None, Some((extension, None))) => {
+            let extension = extension.to_string_lossy();
+            let hint = match nearest(&extension, Format::NAMES) {
+                Some(near) => format!("did you mean .{near}?"),
+                None => format!("known are {}", list()),
+            };
+            Err(Failure::Usage(format!("the format .{extension} is not known; {hint}")))
+        }
+    }
+}
+
+fn list() -> String {
+    Format::NAMES.map(|name| format!(".{name}")).join(" and ")
+}
+
+fn write(out: &mut dyn Write, format: Format, grid: &Grid) -> io::Result<()> {
+    match format {
+        Format::Npy => npy::write(out, grid),
+        Format::Png => {
+            let levels = Levels::of(grid);
+            let notes = pictures::notes(grid, &levels);
+            let notes: Vec<(&str, &str)> = notes.iter().map(|(keyword, text)| (*keyword, text.as_str())).collect();
+            png::write_grey16(out, grid, &levels, &notes)
+        }
+    }
+}
+
+fn words(args: &Args, format: Format, grid: &Grid) -> String {
+    let (file, layer) = (args.out.display(), &args.layer);
+    let size = format!("{} x {} samples of {} m", grid.width(), grid.height(), grid.window().cell);
+    let levels = Levels::of(grid);
+    match format {
+        Format::Npy => format!("{file}: {layer}, {size}, {} to {}\n", levels.low(), levels.high()),
+        Format::Png if levels.is_flat() => {
+            format!("{file}: {layer}, {size}, flat at {} and so all black\n", levels.low())
+        }
+        Format::Png => format!("{file}: {layer}, {size}, 0 is {} and 65535 is {}\n", levels.low(), levels.high()),
+    }
+}

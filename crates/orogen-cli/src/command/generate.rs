@@ -1,0 +1,99 @@
+//! `orogen generate`.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use orogen::{Error, Progress, file};
+
+use crate::bar::Bar;
+use crate::failure::Failure;
+use crate::options::{Limits, View};
+use crate::pictures::{self, FILES, Report};
+use crate::source::Source;
+use crate::{say, view, watch};
+
+/// What it takes.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Args {
+    /// A recipe's file, or the name of a preset
+    #[arg(default_value = orogen::recipe::presets::DEFAULT)]
+    recipe: PathBuf,
+    #[command(flatten)]
+    view: View,
+    /// Folder to write into; made if it is not there
+    #[arg(short, long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+    #[command(flatten)]
+    limits: Limits,
+    /// Show neither progress nor the closing words
+    #[arg(short, long)]
+    quiet: bool,
+    /// Print the summary as JSON instead of in words
+    #[arg(long)]
+    json: bool,
+    /// Stay, and make the terrain again whenever the recipe's file changes
+    #[arg(long)]
+    watch: bool,
+}
+
+/// Makes the terrain.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let source = Source::find(&args.recipe)?;
+    let again = |progress: &Progress| make(&source, args, progress);
+    match (&source, args.watch) {
+        (Source::File(path), true) => watch::watch(path, args.quiet, again),
+        (Source::Preset(preset), true) => Err(Failure::Usage(format!(
+            "--watch waits for changes of a file, and `{0}` is a preset; `orogen new NAME --preset {0}` makes a file of it",
+            preset.name
+        ))),
+        (_, false) => {
+            let (bar, progress) = Bar::new(args.quiet);
+            let made = make(&source, args, &progress);
+            drop(bar);
+            made.and_then(|text| say::out(&text))
+        }
+    }
+}
+
+/// Makes it once, and returns what there is to say on standard output.
+fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Failure> {
+    let begun = Instant::now();
+    let mut recipe = source.read()?;
+    recipe.world.seed = args.view.seed.unwrap_or(recipe.world.seed);
+    let world = args.limits.open(recipe)?;
+    let window = view::whole(&world, &args.view)?;
+    let plan = world.plan(&[orogen::world::HEIGHT], &window)?;
+    // Better to hear of a folder that takes no files before the work than after it.
+    std::fs::create_dir_all(&args.out).map_err(|cause| Error::file("make the folder", &args.out, &cause))?;
+    file::check_folder(&args.out)?;
+    let mut grids = world.run(&plan, progress)?;
+    let Some(grid) = grids.pop() else {
+        return Ok(String::new());
+    };
+    let report = pictures::write(&args.out, world.recipe(), &grid, || begun.elapsed().as_secs_f64())?;
+    Ok(match (args.json, args.quiet) {
+        (true, _) => report.json(),
+        (false, true) => String::new(),
+        (false, false) => words(&report, &args.out),
+    })
+}
+
+/// The closing words.
+fn words(report: &Report, folder: &Path) -> String {
+    let Report { seed, width, height, cell, height_min, height_max, height_mean, land_share, seconds, .. } = report;
+    let across = |samples: &usize| *samples as f64 * cell / 1000.0;
+    let sea = match land_share {
+        share if *share >= 1.0 => String::new(),
+        share => format!(", {:.0} % land", share * 100.0),
+    };
+    let flat = if height_min == height_max { "; it is flat, so the grey pictures are all black" } else { "" };
+    format!(
+        "{}: {}\n{width} x {height} samples of {} m, {:.1} x {:.1} km, seed {seed}\nheights {height_min:.1} to \
+         {height_max:.1} m, {height_mean:.1} m on average{sea}{flat}\nmade in {seconds:.1} s\n",
+        folder.display(),
+        FILES.join("  "),
+        (cell * 1000.0).round() / 1000.0,
+        across(width),
+        across(height),
+    )
+}

@@ -1,0 +1,9 @@
+//! The commands, one a file: what each takes and does.
+
+pub mod completions;
+pub mod explain;
+pub mod export;
+pub mod generate;
+pub mod new;
+pub mod presets;
+pub mod schema;

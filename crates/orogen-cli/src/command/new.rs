@@ -1,0 +1,45 @@
+//! `orogen new`.
+
+use std::path::PathBuf;
+
+use orogen::recipe::presets;
+use orogen::{Error, ErrorKind, file};
+
+use crate::failure::Failure;
+use crate::{say, source};
+
+/// What it takes.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Name of the new recipe: NAME.toml is written
+    name: PathBuf,
+    /// The preset to start from
+    #[arg(long, value_name = "PRESET", default_value = presets::DEFAULT)]
+    preset: String,
+}
+
+/// Writes the recipe, never over another file.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let preset = source::preset(&args.preset)?;
+    let path = path(args)?;
+    if path.symlink_metadata().is_ok() {
+        let sentence = format!("{} already exists and is left as it is; choose another name", path.display());
+        return Err(Error::new(ErrorKind::File, sentence).into());
+    }
+    file::write_whole(&path, |out| out.write_all(preset.text.as_bytes()))?;
+    let path = path.display();
+    say::out(&format!("wrote {path}, a copy of the preset {}\nmake it: orogen generate {path}\n", preset.name))
+}
+
+/// NAME.toml, in the folder the name may carry.
+fn path(args: &Args) -> Result<PathBuf, Failure> {
+    let Some(name) = args.name.file_name() else {
+        return Err(Failure::Usage(format!("`{}` is no name for a file", args.name.display())));
+    };
+    if args.name.extension().is_some_and(|extension| extension == "toml") {
+        return Ok(args.name.clone());
+    }
+    let mut name = name.to_os_string();
+    name.push(".toml");
+    Ok(args.name.with_file_name(name))
+}

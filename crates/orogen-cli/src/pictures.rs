@@ -1,0 +1,108 @@
+//! The files that `generate` makes of a grid of heights.
+
+use std::io::Write;
+use std::path::Path;
+
+use orogen::analysis::summary::{self, Summary};
+use orogen::file::{self, Staged};
+use orogen::format::levels::Levels;
+use orogen::format::png;
+use orogen::map::paint::Painter;
+use orogen::{Grid, Recipe, Result};
+use serde::Serialize;
+
+/// `summary.json`. The order of its keys is the file's.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// The world's seed.
+    pub seed: u64,
+    /// Samples a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Metres from one sample to the next.
+    pub cell: f64,
+    /// Lowest height in metres: what 0 is in `height.png`.
+    pub height_min: f32,
+    /// Highest height in metres: what 65535 is in `height.png`.
+    pub height_max: f32,
+    /// Mean height in metres.
+    pub height_mean: f64,
+    /// Height of the sea's surface in metres.
+    pub sea_level: f64,
+    /// Share of the samples above it, 0 to 1.
+    pub land_share: f64,
+    /// How long it took.
+    pub seconds: f64,
+    /// SHA-256 of the heights as f32 little-endian, row-major.
+    pub sha256: String,
+}
+
+impl Report {
+    /// The text of `summary.json`.
+    pub fn json(&self) -> String {
+        // A struct of numbers and strings always has a JSON text.
+        serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
+    }
+}
+
+/// The names of the files, in the order they are put in place: the summary last, so that its appearance says that all is there.
+pub const FILES: [&str; 5] = ["height.png", "height8.png", "map.png", "recipe.toml", "summary.json"];
+
+/// Writes all files into `folder`, or none: they are staged first, and only put in place once every byte is on the disk.
+/// `seconds` tells the time it all took.
+pub fn write(folder: &Path, recipe: &Recipe, grid: &Grid, seconds: impl FnOnce() -> f64) -> Result<Report> {
+    let levels = Levels::of(grid);
+    let notes = notes(grid, &levels);
+    let notes: Vec<(&str, &str)> = notes.iter().map(|(keyword, text)| (*keyword, text.as_str())).collect();
+    let stage = |name: &str, body: &(dyn Fn(&mut dyn Write) -> std::io::Result<()> + Sync)| {
+        file::stage(&folder.join(name), |out| body(out))
+    };
+    let (pictures, summary) = rayon::join(
+        || {
+            rayon::join(
+                || stage(FILES[2], &|out| Painter::fit(grid, recipe.world.sea_level).write_png(out, grid, &notes[..1])),
+                || {
+                    let grey16 = stage(FILES[0], &|out| png::write_grey16(out, grid, &levels, &notes))?;
+                    let grey8 = stage(FILES[1], &|out| png::write_grey8(out, grid, &levels, &notes))?;
+                    Ok::<[Staged; 2], orogen::Error>([grey16, grey8])
+                },
+            )
+        },
+        || summary::summary(grid.data(), recipe.world.sea_level),
+    );
+    let (map, greys) = (pictures.0?, pictures.1?);
+    let text = stage(FILES[3], &|out| out.write_all(recipe.to_toml().as_bytes()))?;
+    let report = report(recipe, grid, summary, seconds());
+    let json = stage(FILES[4], &|out| out.write_all(report.json().as_bytes()))?;
+    for staged in greys.into_iter().chain([map, text, json]) {
+        staged.commit()?;
+    }
+    Ok(report)
+}
+
+/// What a grey picture tells whoever opens it without its summary.
+pub fn notes(grid: &Grid, levels: &Levels) -> Vec<(&'static str, String)> {
+    let cell = grid.window().cell;
+    let heights = match levels.is_flat() {
+        true => format!("flat at {}; {cell} metres a sample", levels.low()),
+        false => format!("black is {}, white is {}; {cell} metres a sample", levels.low(), levels.high()),
+    };
+    vec![("Software", format!("Orogen {}", env!("CARGO_PKG_VERSION"))), ("Description", heights)]
+}
+
+fn report(recipe: &Recipe, grid: &Grid, summary: Summary, seconds: f64) -> Report {
+    Report {
+        seed: recipe.world.seed,
+        width: grid.width(),
+        height: grid.height(),
+        cell: grid.window().cell,
+        height_min: summary.min,
+        height_max: summary.max,
+        height_mean: summary.mean,
+        sea_level: recipe.world.sea_level,
+        land_share: summary.land_share,
+        seconds: (seconds * 1000.0).round() / 1000.0,
+        sha256: summary.sha256,
+    }
+}

@@ -1,0 +1,193 @@
+//! Sizes on the command line: how many samples, how many bytes, which window.
+
+use std::str::FromStr;
+
+/// The most samples a side may have: far beyond any memory, and safely within every sum.
+pub const MOST: u64 = 1_000_000_000;
+
+/// `--size`: samples of the longer side, or of both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Size {
+    /// N: the longer side; the other follows from the world.
+    Longer(usize),
+    /// WxH.
+    Both(usize, usize),
+}
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Size, String> {
+        match text.split_once(['x', 'X', '×']) {
+            Some((width, height)) => Ok(Size::Both(samples(width)?, samples(height)?)),
+            None => Ok(Size::Longer(samples(text)?)),
+        }
+    }
+}
+
+fn samples(text: &str) -> Result<usize, String> {
+    match text.trim().parse::<u64>() {
+        Ok(n) if (1..=MOST).contains(&n) => Ok(n as usize),
+        Ok(n) => Err(format!("a side has 1 to {MOST} samples, not {n}")),
+        Err(_) => Err("a size is a number of samples, such as 1024 or 1024x768".into()),
+    }
+}
+
+/// `--cell`: metres from one sample to the next.
+pub fn cell(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(cell) if cell.is_finite() && cell > 0.0 => Ok(cell),
+        Ok(_) => Err("a cell is more than 0 metres".into()),
+        Err(_) => Err("a cell is a number of metres, such as 10 or 2.5".into()),
+    }
+}
+
+/// `--window`: a rectangle of samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rectangle {
+    /// Column of the first sample.
+    pub x: i64,
+    /// Row of the first sample.
+    pub y: i64,
+    /// Samples a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+}
+
+impl FromStr for Rectangle {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Rectangle, String> {
+        let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+        let [x, y, width, height] = parts[..] else {
+            return Err("a window is X,Y,W,H in samples, such as 0,0,512,512".into());
+        };
+        let corner = |text: &str| {
+            // Beyond this, positions in metres would lose the cell.
+            text.parse::<i64>().ok().filter(|n| n.abs() <= 1 << 52).ok_or_else(|| {
+                format!("`{text}` is not the column or row of a sample; a window is X,Y,W,H, such as 0,0,512,512")
+            })
+        };
+        Ok(Rectangle { x: corner(x)?, y: corner(y)?, width: samples(width)?, height: samples(height)? })
+    }
+}
+
+/// `--memory`: bytes, with or without a unit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Bytes(pub u64);
+
+const UNITS: [(&str, u64); 14] = [
+    ("", 1),
+    ("b", 1),
+    ("k", 1 << 10),
+    ("kib", 1 << 10),
+    ("kb", 1000),
+    ("m", 1 << 20),
+    ("mib", 1 << 20),
+    ("mb", 1_000_000),
+    ("g", 1 << 30),
+    ("gib", 1 << 30),
+    ("gb", 1_000_000_000),
+    ("t", 1 << 40),
+    ("tib", 1 << 40),
+    ("tb", 1_000_000_000_000),
+];
+
+impl FromStr for Bytes {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Bytes, String> {
+        let text = text.trim();
+        let digits = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+        let unit = text[digits..].trim().to_lowercase();
+        let unit = UNITS.iter().find(|(name, _)| *name == unit);
+        let (Ok(number), Some((_, unit))) = (text[..digits].parse::<f64>(), unit) else {
+            return Err("memory is a number of bytes, such as 512MiB, 2GiB or 1.5GB".into());
+        };
+        match number * *unit as f64 {
+            bytes if bytes >= 1.0 && bytes < u64::MAX as f64 => Ok(Bytes(bytes as u64)),
+            bytes if bytes < 1.0 => Err("memory is at least a byte".into()),
+            _ => Err("no machine has that much memory".into()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes() {
+        for (text, expect) in [
+            ("1", Some(Size::Longer(1))),
+            ("1024", Some(Size::Longer(1024))),
+            ("1024x768", Some(Size::Both(1024, 768))),
+            ("64 x 32", Some(Size::Both(64, 32))),
+            ("0", None),
+            ("0x5", None),
+            ("-5", None),
+            ("1.5", None),
+            ("NaN", None),
+            ("", None),
+            ("x", None),
+            ("1x2x3", None),
+            ("99999999999999999999", None),
+        ] {
+            assert_eq!(text.parse::<Size>().ok(), expect, "{text}");
+        }
+    }
+
+    #[test]
+    fn cells() {
+        for (text, expect) in [
+            ("2.5", Some(2.5)),
+            ("1e3", Some(1000.0)),
+            ("0", None),
+            ("-1", None),
+            ("nan", None),
+            ("inf", None),
+            ("1e999", None),
+            ("m", None),
+        ] {
+            assert_eq!(cell(text).ok(), expect, "{text}");
+        }
+    }
+
+    #[test]
+    fn windows() {
+        let window = |x, y, width, height| Some(Rectangle { x, y, width, height });
+        for (text, expect) in [
+            ("0,0,512,512", window(0, 0, 512, 512)),
+            (" -5, 7 ,1,2", window(-5, 7, 1, 2)),
+            ("0,0,0,5", None),
+            ("0,0,5", None),
+            ("0,0,5,5,5", None),
+            ("9223372036854775807,0,5,5", None),
+            ("a,0,5,5", None),
+        ] {
+            assert_eq!(text.parse::<Rectangle>().ok(), expect, "{text}");
+        }
+    }
+
+    #[test]
+    fn memory() {
+        for (text, expect) in [
+            ("512MiB", Some(512 << 20)),
+            ("2GiB", Some(2 << 30)),
+            ("2 gib", Some(2 << 30)),
+            ("2G", Some(2 << 30)),
+            ("1.5GB", Some(1_500_000_000)),
+            ("123456", Some(123_456)),
+            ("0", None),
+            ("-1GiB", None),
+            ("1.5.5GB", None),
+            ("GiB", None),
+            ("5 parsecs", None),
+            ("99999999TiB", None),
+            ("nan", None),
+        ] {
+            assert_eq!(text.parse::<Bytes>().ok(), expect.map(Bytes), "{text}");
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! RECIPE on the command line: a file, or the name of a preset.
+
+use std::path::{Path, PathBuf};
+
+use orogen::recipe::presets::{self, Preset};
+use orogen::{Recipe, nearest};
+
+use crate::failure::Failure;
+use crate::say;
+
+/// Where a recipe comes from.
+#[derive(Debug, Clone)]
+pub enum Source {
+    /// A file.
+    File(PathBuf),
+    /// A preset.
+    Preset(&'static Preset),
+}
+
+impl Source {
+    /// What `argument` names: the file, if there is one, else the preset.
+    pub fn find(argument: &Path) -> Result<Source, Failure> {
+        let preset = argument.to_str().and_then(presets::find);
+        match preset {
+            Some(preset) if argument.is_file() => {
+                say::error(&format!(
+                    "note: reading the file {name}, not the preset of that name; give another folder's path or rename \
+                     the file to get the preset",
+                    name = preset.name
+                ));
+                Ok(Source::File(argument.to_path_buf()))
+            }
+            Some(preset) => Ok(Source::Preset(preset)),
+            None if argument.exists() || looks_like_a_path(argument) => Ok(Source::File(argument.to_path_buf())),
+            None => Err(Failure::Usage(unknown(argument))),
+        }
+    }
+
+    /// Reads the recipe.
+    pub fn read(&self) -> Result<Recipe, Failure> {
+        Ok(match self {
+            Source::File(path) => Recipe::read(path)?,
+            Source::Preset(preset) => preset.recipe()?,
+        })
+    }
+}
+
+/// The preset called `name`, or the sentence that says what there is.
+pub fn preset(name: &str) -> Result<&'static Preset, Failure> {
+    presets::find(name).ok_or_else(|| Failure::Usage(format!("there is no preset `{name}`; {}", hint(name))))
+}
+
+fn looks_like_a_path(argument: &Path) -> bool {
+    argument.extension().is_some() || argument.components().count() > 1
+}
+
+fn unknown(argument: &Path) -> String {
+    let name = argument.to_string_lossy();
+    for extension in ["toml", "json"] {
+        let file = argument.with_extension(extension);
+        if file.is_file() {
+            return format!(
+                "there is no preset and no file `{name}`, but there is {0}: give that name in full",
+                file.display()
+            );
+        }
+    }
+    format!("there is no preset and no file `{name}`; {}", hint(&name))
+}
+
+fn hint(name: &str) -> String {
+    let names = || presets::all().iter().map(|preset| preset.name);
+    match nearest(name, names()) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("the presets are {}", names().collect::<Vec<_>>().join(", ")),
+    }
+}

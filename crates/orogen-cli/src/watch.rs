@@ -1,0 +1,120 @@
+//! Making something again whenever a file changes.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use orogen::{ErrorKind, Progress};
+
+use crate::bar::Bar;
+use crate::failure::Failure;
+use crate::say;
+
+/// How often the file is looked at. Its content is compared, not its time: editors that touch a file change nothing.
+const INTERVAL: Duration = Duration::from_millis(200);
+
+/// For how many looks a file may be gone before that is a change: editors replace files by way of removing them.
+const PATIENCE: u32 = 5;
+
+/// Calls `make` now and after each change of the file at `path`, for ever; work on what is outdated is cancelled. Failures are
+/// told and the watch goes on, except that nobody listens any more.
+pub fn watch(
+    path: &Path,
+    quiet: bool,
+    mut make: impl FnMut(&Progress) -> Result<String, Failure>,
+) -> Result<(), Failure> {
+    let mut seen = Seen::look(path);
+    loop {
+        let (bar, progress) = Bar::new(quiet);
+        let made = until_changed(path, &seen, &progress, || make(&progress));
+        drop(bar);
+        match made {
+            Ok(text) => say::out(&text)?,
+            Err(Failure::Engine(error)) if error.kind() == ErrorKind::Cancelled => {
+                seen = Seen::look(path);
+                continue;
+            }
+            Err(Failure::BrokenPipe) => return Err(Failure::BrokenPipe),
+            Err(failure) => failure.report(),
+        }
+        if !quiet {
+            say::error(&format!("watching {}; Ctrl-C ends", path.display()));
+        }
+        while !seen.changed(path) {
+            std::thread::sleep(INTERVAL);
+        }
+    }
+}
+
+/// Runs `work`, cancelling it if the file changes meanwhile.
+fn until_changed<T>(path: &Path, seen: &Seen, progress: &Progress, work: impl FnOnce() -> T) -> T {
+    let finished = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let looker = scope.spawn(|| {
+            while !finished.load(Ordering::Relaxed) {
+                if seen.clone().changed(path) {
+                    progress.cancel();
+                    return;
+                }
+                std::thread::park_timeout(INTERVAL);
+            }
+        });
+        let done = work();
+        finished.store(true, Ordering::Relaxed);
+        looker.thread().unpark();
+        done
+    })
+}
+
+/// What was last seen in the file.
+#[derive(Debug, Clone, PartialEq)]
+struct Seen {
+    content: Option<Vec<u8>>,
+    missed: u32,
+}
+
+impl Seen {
+    fn look(path: &Path) -> Seen {
+        Seen { content: std::fs::read(path).ok(), missed: 0 }
+    }
+
+    /// Looks again: whether there is something else than before.
+    fn changed(&mut self, path: &Path) -> bool {
+        let now = std::fs::read(path).ok();
+        if now == self.content {
+            self.missed = 0;
+            return false;
+        }
+        if now.is_none() && self.missed < PATIENCE {
+            self.missed += 1;
+            return false;
+        }
+        *self = Seen { content: now, missed: 0 };
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_other_content_is_a_change() {
+        let path = std::env::temp_dir().join(format!("orogen-watch-{}.toml", std::process::id()));
+        std::fs::write(&path, "a").unwrap();
+        let mut seen = Seen::look(&path);
+        assert!(!seen.changed(&path));
+        std::fs::write(&path, "a").unwrap();
+        assert!(!seen.changed(&path));
+        std::fs::write(&path, "b").unwrap();
+        assert!(seen.changed(&path) && !seen.changed(&path));
+        std::fs::remove_file(&path).unwrap();
+        for _ in 0..PATIENCE {
+            assert!(!seen.changed(&path));
+        }
+        assert!(seen.changed(&path) && !seen.changed(&path));
+        std::fs::write(&path, "b").unwrap();
+        assert!(seen.changed(&path));
+        std::fs::remove_file(&path).unwrap();
+    }
+}
