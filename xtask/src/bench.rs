@@ -14,7 +14,7 @@ pub const ABOUT: &str = "measure beside peers and physical limits; print a table
 pub const HELP: &str = "
 Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
 
-Builds the benches for release, measures one area (or each in turn) and prints a table.
+Builds the benches at full optimisation, measures one area (or each in turn) and prints a table.
 
   AREA         noise   noise kernels beside other crates, one thread, CPU time
   --json FILE  write the rows as JSON too; needs an AREA once there are several
@@ -43,7 +43,7 @@ pub fn run(args: &[String]) -> Result {
         return Err(Failure::usage("--json holds one area: name it"));
     }
     for area in areas {
-        let mut command = shell::cargo("run --quiet --release --package orogen-bench --features peers --");
+        let mut command = shell::cargo("run --quiet --profile bench --package orogen-bench --features peers --");
         let measured = shell::capture(command.arg(area).args(&options.passed))?;
         let report = report::Report::read(&measured)?;
         println!("{}", report.heading());

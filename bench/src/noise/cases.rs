@@ -93,13 +93,3 @@ pub fn scattered() -> (Vec<f64>, Vec<f64>) {
     };
     (0..SIZE * SIZE).map(|_| (next(), next())).unzip()
 }
-
-/// Fills a picture sample by sample, for peers that offer one sample at a time.
-#[inline(always)]
-pub fn by_sample(out: &mut [f32], sample: impl Fn(f64, f64) -> f32) {
-    for (y, row) in out.chunks_exact_mut(SIZE).enumerate() {
-        for (x, value) in row.iter_mut().enumerate() {
-            *value = sample(x as f64, y as f64);
-        }
-    }
-}

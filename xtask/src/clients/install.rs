@@ -66,7 +66,7 @@ fn apt(packages: &[&str]) -> Result {
     }
     let apt_get = |args: &[&str]| {
         let mut command = shell::program("apt-get");
-        command.args(["-q", "-y"]).args(args).env("DEBIAN_FRONTEND", "noninteractive");
+        command.args(["-qq", "-y"]).args(args).env("DEBIAN_FRONTEND", "noninteractive");
         command
     };
     println!("    apt-get install {}", packages.join(" "));

@@ -2,8 +2,9 @@
 
 use fastnoise_lite::{CellularDistanceFunction, CellularReturnType, FastNoiseLite, FractalType, NoiseType};
 
+use super::by_sample::by_sample;
 use crate::measure::Job;
-use crate::noise::cases::{Case, OCTAVES, PLAIN_FBM, SEED, SLICE, Work, by_sample, scattered};
+use crate::noise::cases::{Case, OCTAVES, PLAIN_FBM, SEED, SLICE, Work, scattered};
 
 /// What fastnoise-lite offers for the case.
 pub fn job(case: &Case) -> Option<Job> {

@@ -3,8 +3,9 @@
 
 use libnoise::{Generator, Source};
 
+use super::by_sample::by_sample;
 use crate::measure::Job;
-use crate::noise::cases::{Case, OCTAVES, SEED, SLICE, Work, by_sample, scattered};
+use crate::noise::cases::{Case, OCTAVES, SEED, SLICE, Work, scattered};
 
 const NAME: &str = "libnoise";
 

@@ -1,6 +1,8 @@
 //! The peers: each fills the picture by the fastest way it offers in public.
 
 #[cfg(feature = "peers")]
+mod by_sample;
+#[cfg(feature = "peers")]
 mod fastnoise_lite;
 #[cfg(feature = "peers")]
 mod libnoise;

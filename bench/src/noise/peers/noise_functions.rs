@@ -3,8 +3,9 @@
 use noise_functions::modifiers::Frequency;
 use noise_functions::{CellDistance, Constant, Noise, OpenSimplex2, Perlin, Sample, Value};
 
+use super::by_sample::by_sample;
 use crate::measure::Job;
-use crate::noise::cases::{Case, OCTAVES, SEED, SLICE, WARP, Work, by_sample, scattered};
+use crate::noise::cases::{Case, OCTAVES, SEED, SLICE, WARP, Work, scattered};
 
 const NAME: &str = "noise-functions";
 
