@@ -51,7 +51,7 @@ pub struct Location {
     pub column: usize,
     /// How many characters of the line are meant (at least 1).
     pub length: usize,
-    /// The whole line, for showing.
+    /// The whole line, for showing; empty if it is longer than anybody would read.
     pub text: String,
 }
 

@@ -1,76 +1,15 @@
 //! The laws every node obeys, tested over all of them: a new node joins by existing.
 
+mod support;
+
 use orogen::declare::Input;
 use orogen::field::{add::Add, constant::Constant, fbm::Fbm, perlin::Perlin, transform::Transform, warp::Warp};
-use orogen::filter::blur::Blur;
 use orogen::node::Node;
 use orogen::op::Op;
 use orogen::plan::planner::Step;
 use orogen::solver::normalise::Normalise;
-use orogen::value::{Spanned, Value};
-use orogen::{Grid, Options, Progress, Recipe, Window, World, WorldSpec};
-
-/// A small deterministic generator for test inputs (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        (z ^ (z >> 31)) % n
-    }
-}
-
-/// The node alone: each input a noise of its own, lengths fitted so that a small world shows every effect.
-fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
-    let mut node = node.clone();
-    let mut recipe = Recipe::new(world);
-    let spec = node.spec();
-    for (i, param) in spec.params.iter().enumerate() {
-        let pair = |a: f64, b: f64| Value::List([a, b].map(|n| Spanned::unplaced(Value::Number(n))).into());
-        let fitted = match (spec.op, param.name) {
-            ("blur", "radius") => Value::Number(3.7 * world.cell),
-            ("bake", "cell") => Value::Number(2.5 * world.cell),
-            ("radial", "radius") => Value::Number(40.0 * world.cell),
-            ("transform", "angle") => Value::Number(33.0),
-            ("transform", "offset") => pair(17.3 * world.cell, -5.1 * world.cell),
-            (_, "wavelength" | "width" | "length" | "strength") => Value::Number(11.3 * world.cell),
-            _ => continue,
-        };
-        node.set_param(i, &fitted).unwrap();
-    }
-    for (i, input) in spec.inputs.iter().enumerate() {
-        let name = format!("in{i}");
-        let noise = Fbm { seed: i as u64, wavelength: 9.0 * world.cell, octaves: 3, ..Default::default() };
-        recipe.add(&name, noise);
-        // A filter below the node under test puts halos on top of halos.
-        if input.name == "source" {
-            recipe.add("soft", Blur { source: Input::from(&name), radius: 1.2 * world.cell });
-            node.set_input(i, Input::from("soft"));
-        } else {
-            node.set_input(i, Input::Node(name));
-        }
-    }
-    if masked {
-        recipe.add("mask", Perlin { seed: 99, wavelength: 7.0 * world.cell });
-        recipe.add_masked("node", node, "mask");
-    } else {
-        recipe.add("node", node);
-    }
-    recipe.output("height", "node");
-    recipe
-}
-
-fn world_of(cell: f64) -> WorldSpec {
-    WorldSpec { seed: 42, size: Some([96.0 * cell, 80.0 * cell]), cell, sea_level: 0.0 }
-}
-
-fn open(recipe: &Recipe, threads: usize) -> World {
-    World::with_options(recipe.clone(), Options { threads: Some(threads), ..Options::default() })
-        .unwrap_or_else(|error| panic!("{error}\n{}", recipe.to_toml()))
-}
+use orogen::{Grid, Progress, Recipe, Window, World, WorldSpec};
+use support::{Random, open, recipe_of, world_of};
 
 fn same_bits(name: &str, whole: &Grid, tile: &Grid) {
     let crop = whole.crop(tile.window()).expect("the tile is part of the whole");
@@ -303,4 +242,48 @@ fn a_plan_is_a_value_that_can_be_sent() {
     let came = serde_json::from_str(&sent).unwrap();
     assert_eq!(plan, came);
     assert_eq!(world.run(&came, &Progress::none()).unwrap()[0], world.window("height", &window).unwrap());
+}
+
+#[test]
+fn a_plan_over_memory_is_refused_before_it_starts() {
+    let recipe = recipe_of(&Node::named("fbm").unwrap(), WorldSpec::default(), false);
+    let options = orogen::Options { threads: Some(1), memory: Some(64 << 20) };
+    let world = World::with_options(recipe, options).unwrap();
+    let error = world.window("height", &Window::new(1 << 20, 1 << 20, 10.0)).unwrap_err();
+    assert_eq!(error.kind(), orogen::ErrorKind::Memory);
+    assert!(error.to_string().contains("4.0 TiB") && error.to_string().contains("64 MiB"), "{error}");
+    assert!(world.window("height", &Window::new(512, 512, 10.0)).is_ok());
+}
+
+#[test]
+fn windows_and_points_that_are_not_there_are_named() {
+    let bounded = open(&recipe_of(&Node::named("fbm").unwrap(), world_of(10.0), false), 1);
+    let window = |x, y, width, height, cell| Window { x, y, width, height, cell };
+    for (window, said) in [
+        (window(-1, 0, 5, 5, 10.0), "not inside the world"),
+        (window(0, 70, 5, 12, 10.0), "(0, 0) to (96, 80)"),
+        (window(0, 0, 0, 5, 10.0), "holds nothing"),
+        (window(0, 0, 5, 5, 0.0), "cell of 0"),
+        (window(0, 0, 5, 5, f64::NAN), "cell of NaN"),
+        (window(i64::MAX - 3, 0, 5, 5, 10.0), "2^53"),
+        (window(0, 0, usize::MAX, 5, 10.0), "2^53"),
+    ] {
+        let error = bounded.window("height", &window).unwrap_err();
+        assert!(error.to_string().contains(said), "{window:?}: {error}");
+    }
+    assert!(bounded.window("hight", &Window::new(2, 2, 10.0)).unwrap_err().to_string().contains("did you mean `height`?"));
+    for (x, y, said) in [(f64::NAN, 0.0, "finite"), (-1.0, 0.0, "outside the world"), (0.0, 801.0, "(960, 800)")] {
+        let error = bounded.height(x, y).unwrap_err();
+        assert!(error.to_string().contains(said), "{error}");
+    }
+    assert!(bounded.height(960.0, 800.0).is_ok(), "the far corner is part of the world");
+}
+
+#[test]
+fn cancelled_work_stops() {
+    let world = open(&recipe_of(&Node::named("blur").unwrap(), world_of(10.0), false), 2);
+    let progress = Progress::none();
+    progress.cancel();
+    let error = world.grids(&["height"], &Window::new(90, 70, 10.0), &progress).unwrap_err();
+    assert_eq!(error.kind(), orogen::ErrorKind::Cancelled);
 }

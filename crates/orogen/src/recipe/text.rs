@@ -35,12 +35,15 @@ impl Text<'_> {
         let end = floor_boundary(self.text, span.end).max(start);
         let line_start = self.text[..start].rfind('\n').map_or(0, |newline| newline + 1);
         let line_end = self.text[start..].find('\n').map_or(self.text.len(), |newline| start + newline);
+        // Lines nobody can read are not shown: twenty complaints about one of 16 MiB would copy it twenty times.
+        const LONGEST_SHOWN: usize = 20_000;
+        let line = if line_end - line_start > LONGEST_SHOWN { "" } else { &self.text[line_start..line_end] };
         Location {
             file: self.name.to_string(),
             line: self.text[..start].matches('\n').count() + 1,
             column: self.text[line_start..start].chars().count() + 1,
             length: self.text[start..end.clamp(start, line_end)].chars().count().max(1),
-            text: self.text[line_start..line_end].trim_end_matches('\r').to_string(),
+            text: line.trim_end_matches('\r').to_string(),
         }
     }
 }

@@ -1,0 +1,61 @@
+//! The very bits of every op and every preset. `OROGEN_BLESS=1` writes them anew; a changed line is changed terrain.
+
+mod support;
+
+use orogen::node::Node;
+use orogen::{Options, Window, World, analysis, presets};
+use orogen_noise::Level;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use support::{open, recipe_of, world_of};
+
+fn golden(file: &str, made: &BTreeMap<String, String>) {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../golden").join(file);
+    let text: String = made.iter().map(|(name, hash)| format!("{name} {hash}\n")).collect();
+    if std::env::var_os("OROGEN_BLESS").is_some() {
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, text).unwrap();
+        return;
+    }
+    let expected = std::fs::read_to_string(&path).unwrap_or_default();
+    let expected: BTreeMap<&str, &str> = expected.lines().filter_map(|line| line.split_once(' ')).collect();
+    let mut wrong = Vec::new();
+    for (name, hash) in made {
+        match expected.get(name.as_str()) {
+            Some(before) if before == hash => {}
+            Some(before) => wrong.push(format!("{name} makes {hash}, golden/{file} says {before}")),
+            None => wrong.push(format!("{name} is not in golden/{file}")),
+        }
+    }
+    wrong.extend(expected.keys().filter(|name| !made.contains_key(**name)).map(|name| format!("{name} is made no more")));
+    assert!(wrong.is_empty(), "{}\nif this change of terrain is meant: cargo xtask bless", wrong.join("\n"));
+}
+
+#[test]
+fn every_op_makes_its_golden_bits_at_every_level() {
+    for level in Level::available() {
+        Level::force(level).unwrap();
+        let mut made = BTreeMap::new();
+        for node in Node::all() {
+            let recipe = recipe_of(&node, world_of(10.24), false);
+            let grid = open(&recipe, 2).window("height", &Window::new(75, 63, 10.24).at(5, 9)).unwrap();
+            made.insert(node.spec().op.to_string(), analysis::summary::summary(grid.data(), 0.0).sha256.to_string());
+        }
+        golden("ops.txt", &made);
+    }
+    Level::force(Level::detect()).unwrap();
+}
+
+#[test]
+fn every_preset_makes_its_golden_bits() {
+    let mut made = BTreeMap::new();
+    for preset in presets::all() {
+        let recipe = preset.recipe().unwrap_or_else(|error| panic!("{error}"));
+        let [width, height] = recipe.world.size.expect("shipped worlds have bounds");
+        let world = World::with_options(recipe, Options { threads: Some(2), ..Options::default() }).unwrap();
+        let window = world.whole(width.max(height) / 256.0).unwrap();
+        let grid = world.window("height", &window).unwrap();
+        made.insert(preset.name.to_string(), analysis::summary::summary(grid.data(), 0.0).sha256.to_string());
+    }
+    golden("presets.txt", &made);
+}

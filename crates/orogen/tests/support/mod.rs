@@ -1,0 +1,71 @@
+//! Shared by the tests: every node in a recipe of its own.
+#![allow(dead_code, reason = "each test binary uses its part")]
+
+use orogen::declare::Input;
+use orogen::field::{fbm::Fbm, perlin::Perlin};
+use orogen::filter::blur::Blur;
+use orogen::node::Node;
+use orogen::value::{Spanned, Value};
+use orogen::{Options, Recipe, World, WorldSpec};
+
+/// A small deterministic generator for test inputs (splitmix64).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn below(&mut self, n: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        (z ^ (z >> 31)) % n
+    }
+}
+
+/// The node alone: each input a noise of its own, lengths fitted so that a small world shows every effect.
+pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
+    let mut node = node.clone();
+    let mut recipe = Recipe::new(world);
+    let spec = node.spec();
+    for (i, param) in spec.params.iter().enumerate() {
+        let pair = |a: f64, b: f64| Value::List([a, b].map(|n| Spanned::unplaced(Value::Number(n))).into());
+        let fitted = match (spec.op, param.name) {
+            ("blur", "radius") => Value::Number(3.7 * world.cell),
+            ("bake", "cell") => Value::Number(2.5 * world.cell),
+            ("radial", "radius") => Value::Number(40.0 * world.cell),
+            ("transform", "angle") => Value::Number(33.0),
+            ("transform", "offset") => pair(17.3 * world.cell, -5.1 * world.cell),
+            (_, "wavelength" | "width" | "length" | "strength") => Value::Number(11.3 * world.cell),
+            _ => continue,
+        };
+        node.set_param(i, &fitted).unwrap();
+    }
+    for (i, input) in spec.inputs.iter().enumerate() {
+        let name = format!("in{i}");
+        let noise = Fbm { seed: i as u64, wavelength: 9.0 * world.cell, octaves: 3, ..Default::default() };
+        recipe.add(&name, noise);
+        // A filter below the node under test puts halos on top of halos.
+        if input.name == "source" {
+            recipe.add("soft", Blur { source: Input::from(&name), radius: 1.2 * world.cell });
+            node.set_input(i, Input::from("soft"));
+        } else {
+            node.set_input(i, Input::Node(name));
+        }
+    }
+    if masked {
+        recipe.add("mask", Perlin { seed: 99, wavelength: 7.0 * world.cell });
+        recipe.add_masked("node", node, "mask");
+    } else {
+        recipe.add("node", node);
+    }
+    recipe.output("height", "node");
+    recipe
+}
+
+pub fn world_of(cell: f64) -> WorldSpec {
+    WorldSpec { seed: 42, size: Some([96.0 * cell, 80.0 * cell]), cell, sea_level: 0.0 }
+}
+
+pub fn open(recipe: &Recipe, threads: usize) -> World {
+    World::with_options(recipe.clone(), Options { threads: Some(threads), ..Options::default() })
+        .unwrap_or_else(|error| panic!("{error}\n{}", recipe.to_toml()))
+}
