@@ -123,8 +123,18 @@ fn is_harmful(c: char) -> bool {
     c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// A sentence that quotes a file or an argument, without what could command the terminal.
+/// The longest sentence that is shown whole. Beyond it, it quotes something that nobody wants to read to its end.
+const SENTENCE: usize = 2000;
+
+/// A sentence that quotes a file or an argument, without what could command the terminal, and cut in its middle if it is endless.
 fn printable(text: &str) -> String {
+    let count = text.chars().count();
+    if count > SENTENCE {
+        let part = SENTENCE / 2 - 10;
+        let start: String = text.chars().take(part).collect();
+        let end: String = text.chars().skip(count - part).collect();
+        return printable(&format!("{start} ... {end}"));
+    }
     text.chars().map(|c| if c != '\n' && is_harmful(c) { '\u{fffd}' } else { c }).collect()
 }
 

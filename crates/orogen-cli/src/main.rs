@@ -7,6 +7,7 @@ mod bar;
 mod cli;
 mod command;
 mod failure;
+mod folder;
 mod memory;
 mod options;
 mod pictures;

@@ -5,19 +5,19 @@ use orogen::{Options, Recipe, World};
 
 use crate::failure::Failure;
 use crate::memory;
-use crate::size::{Bytes, Size, cell};
+use crate::size::{Bytes, Size, cell, seed};
 
 /// Which samples of which world.
 #[derive(Debug, Clone, Args)]
 pub struct View {
     /// Seed of the world, instead of the recipe's
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
     pub seed: Option<u64>,
     /// Samples of the world's longer side, or of both (of the world's own aspect)
-    #[arg(long, value_name = "N|WxH", conflicts_with = "cell")]
+    #[arg(long, value_name = "N|WxH", conflicts_with = "cell", allow_negative_numbers = true)]
     pub size: Option<Size>,
     /// Metres from one sample to the next [default: the world's cell]
-    #[arg(long, value_name = "M", value_parser = cell)]
+    #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
     pub cell: Option<f64>,
 }
 
@@ -25,7 +25,7 @@ pub struct View {
 #[derive(Debug, Clone, Args)]
 pub struct Limits {
     /// Threads to work with [default: all there are]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
     /// Most memory to use, such as 512MiB or 2GiB [default: half of what is free]
     #[arg(long, value_name = "BYTES")]

@@ -33,6 +33,12 @@ fn samples(text: &str) -> Result<usize, String> {
     }
 }
 
+/// `--seed`: what a recipe may say too, so that the one written reads back.
+pub fn seed(text: &str) -> Result<u64, String> {
+    let seed = text.trim().parse().ok().filter(|&seed| seed <= i64::MAX as u64);
+    seed.ok_or_else(|| format!("a seed is a whole number from 0 to {}", i64::MAX))
+}
+
 /// `--cell`: metres from one sample to the next.
 pub fn cell(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {

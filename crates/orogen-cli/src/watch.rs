@@ -13,6 +13,9 @@ use crate::say;
 /// How often the file is looked at. Its content is compared, not its time: editors that touch a file change nothing.
 const INTERVAL: Duration = Duration::from_millis(200);
 
+/// For how long a changed file must stay the same before it is read: editors empty files before they fill them.
+const CALM: Duration = Duration::from_millis(50);
+
 /// For how many looks a file may be gone before that is a change: editors replace files by way of removing them.
 const PATIENCE: u32 = 5;
 
@@ -31,7 +34,7 @@ pub fn watch(
         match made {
             Ok(text) => say::out(&text)?,
             Err(Failure::Engine(error)) if error.kind() == ErrorKind::Cancelled => {
-                seen = Seen::look(path);
+                seen.settle(path);
                 continue;
             }
             Err(Failure::BrokenPipe) => return Err(Failure::BrokenPipe),
@@ -43,6 +46,7 @@ pub fn watch(
         while !seen.changed(path) {
             std::thread::sleep(INTERVAL);
         }
+        seen.settle(path);
     }
 }
 
@@ -76,6 +80,17 @@ struct Seen {
 impl Seen {
     fn look(path: &Path) -> Seen {
         Seen { content: std::fs::read(path).ok(), missed: 0 }
+    }
+
+    /// Looks until nothing changes any more.
+    fn settle(&mut self, path: &Path) {
+        loop {
+            *self = Seen::look(path);
+            std::thread::sleep(CALM);
+            if Seen::look(path) == *self {
+                return;
+            }
+        }
     }
 
     /// Looks again: whether there is something else than before.

@@ -60,13 +60,16 @@ pub fn stage(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -
 
 /// Whether files can be made in `folder`, found out by making one, which is removed at once.
 pub fn check_folder(folder: &Path) -> Result<()> {
+    let refuse = |why: &str| Error::new(ErrorKind::File, format!("cannot write into {}: {why}", folder.display()));
     match fs::metadata(folder) {
-        Ok(there) if there.is_dir() => {
-            Temporary::create(folder, &folder.join("file")).map(|(temporary, _)| drop(temporary))
-        }
-        Ok(_) => {
-            Err(Error::new(ErrorKind::File, format!("cannot write into {}: it is not a folder", folder.display())))
-        }
+        Ok(there) if !there.is_dir() => Err(refuse("it is not a folder")),
+        Ok(_) => match Temporary::create(folder) {
+            Ok(_) => Ok(()),
+            // What /proc and its like answer: the folder is there, but nothing can be made in it.
+            Err(cause) if cause.kind() == io::ErrorKind::NotFound => Err(refuse("it takes no new files")),
+            Err(cause) => Err(Error::file("write into", folder, &cause)),
+        },
+        Err(cause) if cause.kind() == io::ErrorKind::NotFound => Err(refuse("the folder does not exist")),
         Err(cause) => Err(Error::file("write into", folder, &cause)),
     }
 }
@@ -121,7 +124,14 @@ fn stage_through(
             None
         }
         Target::File { real, permissions } => {
-            let (temporary, file) = Temporary::create(path, &real)?;
+            let (temporary, file) = match Temporary::create(folder(&real)) {
+                Ok(created) => created,
+                // The folder is what is missing, or what takes no files: say so.
+                Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
+                    return check_folder(folder(&real)).and(Err(failed(cause)));
+                }
+                Err(cause) => return Err(failed(cause)),
+            };
             if let Some(permissions) = permissions {
                 // Some file systems have no permissions to keep; the file matters more.
                 let _ = file.set_permissions(permissions);
@@ -215,28 +225,20 @@ impl Write for Noting<'_> {
 struct Temporary(PathBuf);
 
 impl Temporary {
-    /// Creates one in the folder of `real`. Its name has nothing of the target's, so that the longest names still work; it
-    /// must be new, so that nothing planted under it is followed or overwritten.
-    fn create(path: &Path, real: &Path) -> Result<(Temporary, File)> {
+    /// Creates one in `folder`. Its name has nothing of the target's, so that the longest names still work; it must be new, so
+    /// that nothing planted under it is followed or overwritten.
+    fn create(folder: &Path) -> io::Result<(Temporary, File)> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
-        let folder = folder(real);
         for _ in 0..NAMES {
             let count = COUNT.fetch_add(1, Ordering::Relaxed);
             let name = folder.join(format!(".orogen-{}-{count}.tmp", std::process::id()));
             match OpenOptions::new().write(true).create_new(true).open(&name) {
                 Ok(file) => return Ok((Temporary(name), file)),
                 Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => {}
-                Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
-                    let sentence =
-                        format!("cannot write {}: the folder {} does not exist", path.display(), folder.display());
-                    return Err(Error::new(ErrorKind::File, sentence));
-                }
-                Err(cause) => return Err(Error::file("write", path, &cause)),
+                Err(cause) => return Err(cause),
             }
         }
-        let sentence =
-            format!("cannot write {}: too many temporary files are left in {}", path.display(), folder.display());
-        Err(Error::new(ErrorKind::File, sentence))
+        Err(io::Error::other("too many temporary files are left in its folder"))
     }
 
     fn rename(mut self, real: &Path) -> io::Result<()> {
@@ -423,7 +425,9 @@ mod tests {
         };
         check("folder", "it is a folder");
         check("new/", "it does not name a file");
-        check("missing/a", &format!("the folder {} does not exist", folder.0.join("missing").display()));
+        let error = write_whole(&folder.0.join("missing/a"), |out| out.write_all(b"new")).unwrap_err();
+        let expect = format!("cannot write into {}: the folder does not exist", folder.0.join("missing").display());
+        assert_eq!(error.to_string(), expect);
         check("file/a", "");
         assert_eq!(folder.names(), ["file", "folder"]);
     }
@@ -446,7 +450,7 @@ mod tests {
     #[test]
     fn a_folder_that_takes_no_files_is_a_sentence() {
         let error = write_whole(Path::new("/proc/orogen.png"), |out| out.write_all(b"new")).unwrap_err();
-        assert!(error.to_string().starts_with("cannot write /proc/orogen.png: "), "{error}");
+        assert!(error.to_string().starts_with("cannot write"), "{error}");
     }
 
     #[cfg(unix)]

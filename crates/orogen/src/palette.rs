@@ -3,6 +3,9 @@
 //! Colours between stops are mixed in Oklab (B. Ottosson, 2020), where equal steps look equal and a mix of green and brown does
 //! not turn grey. What comes out is linear light, so that shading may multiply it; [`Encoder`] makes the bytes.
 
+use crate::format::levels::Levels;
+use crate::grid::Grid;
+
 /// A colour as linear light: red, green, blue, 0 to 1.
 pub type Light = [f32; 3];
 
@@ -19,9 +22,14 @@ impl Ramp {
     /// A ramp through `stops`: positions in ascending order, and their colours as sRGB bytes. Before the first stop and
     /// behind the last it is level; without any stop it is black.
     pub fn new(stops: &[(f32, [u8; 3])]) -> Ramp {
+        Ramp::bent(stops, |at| at)
+    }
+
+    /// As [`Ramp::new`], with the colour of `bend(at)` at `at`.
+    fn bent(stops: &[(f32, [u8; 3])], bend: impl Fn(f32) -> f32) -> Ramp {
         let labs: Vec<(f32, [f32; 3])> =
             stops.iter().map(|&(at, [r, g, b])| (at, oklab([decode(r), decode(g), decode(b)]))).collect();
-        let table = (0..=STEPS).map(|step| linear(between(&labs, step as f32 / STEPS as f32))).collect();
+        let table = (0..=STEPS).map(|step| linear(between(&labs, bend(step as f32 / STEPS as f32)))).collect();
         Ramp { table }
     }
 
@@ -52,18 +60,17 @@ fn mix(from: [f32; 3], to: [f32; 3], share: f32) -> [f32; 3] {
 ///
 /// A printed atlas gives every height one colour, which paints 300 m hills all green; stretching all colours over whatever
 /// relief there is paints them with snow. This does a bit of both: the more relief the land has, the further up the atlas its
-/// summits reach (300 m to ochre, 4000 m to white), and likewise the deeper the sea.
+/// summits reach (300 m to ochre, 4000 m to white), and likewise the deeper the sea. And as real land is mostly low, land of
+/// which much stands high is bent towards the greens, so that its summits still stand out.
 #[derive(Debug, Clone)]
 pub struct Tint {
     land: Ramp,
     sea: Ramp,
     sea_level: f32,
-    /// Where the land's colours begin, and the share of its ramp that a metre is worth.
+    /// Where the land's colours begin, and the shares of the ramps that a metre is worth.
     base: f32,
     land_scale: f32,
-    land_top: f32,
     sea_scale: f32,
-    sea_top: f32,
 }
 
 /// Land from the lowest up. Lightness falls to the browns and rises again to the snow, as on printed relief maps.
@@ -90,22 +97,53 @@ const SEA: [(f32, [u8; 3]); 6] = [
     (1.00, [31, 72, 122]),
 ];
 
+/// Where on its relief half of the land should lie below, and how far colours are bent at most to get there.
+const MIDDLE: f32 = 0.40;
+const MOST_BENT: f32 = 1.4;
+
+/// How many samples are looked at to find the middle of the land.
+const PROBES: usize = 1 << 16;
+
 impl Tint {
     /// The tint for a world between `low` and `high` with the sea at `sea_level`, all in metres.
     pub fn hypsometric(low: f32, high: f32, sea_level: f32) -> Tint {
+        Tint::bent(low, high, sea_level, 1.0)
+    }
+
+    /// The tint that suits the heights of a grid.
+    pub fn fit(grid: &Grid, sea_level: f32) -> Tint {
+        let levels = Levels::of(grid);
+        let (low, high) = (levels.low(), levels.high());
+        let stride = grid.data().len() / PROBES + 1;
+        let mut land: Vec<f32> =
+            grid.data().iter().step_by(stride).copied().filter(|h| h.is_finite() && *h > sea_level).collect();
+        let middle = land.len() / 2;
+        let share = match land.is_empty() {
+            true => MIDDLE,
+            false => {
+                let base = low.max(sea_level);
+                let share = (*land.select_nth_unstable_by(middle, f32::total_cmp).1 - base) / (high - base);
+                if share.is_finite() { share.clamp(0.01, 0.99) } else { MIDDLE }
+            }
+        };
+        Tint::bent(low, high, sea_level, (libm::logf(MIDDLE) / libm::logf(share)).clamp(1.0, MOST_BENT))
+    }
+
+    /// The land's colours by `share of the relief ^ power`.
+    fn bent(low: f32, high: f32, sea_level: f32, power: f32) -> Tint {
         // Land that does not touch the sea begins with green at its own foot: plateaus have lowlands too.
         let base = if low.is_finite() { low.max(sea_level) } else { sea_level };
         let relief = if high > base { high - base } else { 0.0 };
         let depth = if low < sea_level { sea_level - low } else { 0.0 };
+        let land_top = grows(relief, 100.0, 0.50, 3500.0, 1.0);
+        let sea_top = grows(depth, 20.0, 0.30, 3000.0, 1.0);
         Tint {
-            land: Ramp::new(&LAND),
-            sea: Ramp::new(&SEA),
+            land: Ramp::bent(&LAND, |at| land_top * libm::powf(at, power)),
+            sea: Ramp::bent(&SEA, |at| sea_top * at),
             sea_level,
             base,
             land_scale: inverse(relief),
-            land_top: grows(relief, 100.0, 0.50, 3500.0, 1.0),
             sea_scale: inverse(depth),
-            sea_top: grows(depth, 20.0, 0.30, 3000.0, 1.0),
         }
     }
 
@@ -119,9 +157,9 @@ impl Tint {
         if self.is_sea(height) {
             // Shelves are wide and shallow: the square root shows them.
             let depth = ((self.sea_level - height) * self.sea_scale).max(0.0).sqrt();
-            self.sea.at(depth * self.sea_top)
+            self.sea.at(depth)
         } else {
-            self.land.at((height - self.base) * self.land_scale * self.land_top)
+            self.land.at((height - self.base) * self.land_scale)
         }
     }
 }

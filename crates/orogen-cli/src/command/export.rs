@@ -13,7 +13,7 @@ use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::options::{Limits, View};
 use crate::pictures;
-use crate::size::{Rectangle, cell};
+use crate::size::{Rectangle, cell, seed};
 use crate::source::Source;
 use crate::{say, view};
 
@@ -35,10 +35,10 @@ pub struct Args {
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
     window: Option<Rectangle>,
     /// Metres from one sample to the next [default: the world's cell]
-    #[arg(long, value_name = "M", value_parser = cell)]
+    #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
     cell: Option<f64>,
     /// Seed of the world, instead of the recipe's
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
     seed: Option<u64>,
     #[command(flatten)]
     limits: Limits,

@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use orogen::{Error, Progress, file};
+use orogen::Progress;
 
 use crate::bar::Bar;
 use crate::failure::Failure;
+use crate::folder::Folder;
 use crate::options::{Limits, View};
 use crate::pictures::{self, FILES, Report};
 use crate::source::Source;
@@ -63,14 +64,13 @@ fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Fai
     let world = args.limits.open(recipe)?;
     let window = view::whole(&world, &args.view)?;
     let plan = world.plan(&[orogen::world::HEIGHT], &window)?;
-    // Better to hear of a folder that takes no files before the work than after it.
-    std::fs::create_dir_all(&args.out).map_err(|cause| Error::file("make the folder", &args.out, &cause))?;
-    file::check_folder(&args.out)?;
+    let folder = Folder::ready(&args.out)?;
     let mut grids = world.run(&plan, progress)?;
     let Some(grid) = grids.pop() else {
         return Ok(String::new());
     };
     let report = pictures::write(&args.out, world.recipe(), &grid, || begun.elapsed().as_secs_f64())?;
+    folder.keep();
     Ok(match (args.json, args.quiet) {
         (true, _) => report.json(),
         (false, true) => String::new(),

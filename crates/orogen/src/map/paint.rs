@@ -6,7 +6,6 @@ use rayon::prelude::*;
 
 use super::shade::Shade;
 use crate::analysis::slope::{beyond, extend_row, gradients_between};
-use crate::format::levels::Levels;
 use crate::format::png::{self, Picture, Pixel};
 use crate::grid::Grid;
 use crate::palette::{Encoder, Tint};
@@ -30,8 +29,8 @@ impl Painter {
 
     /// The painter that suits the heights of `grid`, in metres.
     pub fn fit(grid: &Grid, sea_level: f64) -> Painter {
-        let (levels, sea_level) = (Levels::of(grid), sea_level as f32);
-        Painter::new(Tint::hypsometric(levels.low(), levels.high(), sea_level), Shade::fit(grid, sea_level))
+        let sea_level = sea_level as f32;
+        Painter::new(Tint::fit(grid, sea_level), Shade::fit(grid, sea_level))
     }
 
     /// Paints a row as sRGB bytes, given the heights of the row above, the row itself and the one below, each with one sample

@@ -10,15 +10,15 @@ use crate::grid::Grid;
 const LIGHTS: [(f64, f64, f32); 3] = [(315.0, 42.0, 0.6), (265.0, 38.0, 0.2), (5.0, 38.0, 0.2)];
 
 /// The steepness, as rise per metre, that is shaded as it is. Land steep as real mountains seen at 30 m cells.
-const NATURAL: f32 = 0.6;
+const NATURAL: f32 = 0.65;
 
 /// How much of the way from its own steepness to [`NATURAL`] land is brought, in powers: 1 would make hills look like alps, 0
 /// would leave coarse cells, whose slopes are always gentler, without relief.
-const FIT: f32 = 0.62;
+const FIT: f32 = 0.66;
 
 /// How bright the darkest shadow is, and how much light beyond level ground's counts.
-const DARKEST: f32 = 0.30;
-const HIGHLIGHT: f32 = 0.40;
+const DARKEST: f32 = 0.26;
+const HIGHLIGHT: f32 = 0.45;
 
 /// How many rows are looked at to fit the z factor.
 const PROBES: usize = 64;

@@ -1,0 +1,138 @@
+//! Recipes that cannot be made: each ends in a sentence at its place, and writes nothing.
+
+use crate::harness::Folder;
+
+/// Recipes begin like this where nothing else is said.
+const HEAD: &str = "orogen = 1\n[world]\nsize = [100, 100]\n";
+
+fn check(content: impl AsRef<[u8]>, expect: &str) {
+    check_as("a.toml", content, expect);
+}
+
+/// `generate`, `export` and `explain` all refuse it with `expect`, in time, and leave the folder as it was.
+fn check_as(name: &str, content: impl AsRef<[u8]>, expect: &str) {
+    let folder = Folder::new();
+    folder.write(name, content);
+    for command in [&["generate", name][..], &["export", name, "-o", "x.npy"], &["explain", name]] {
+        let begun = std::time::Instant::now();
+        let outcome = folder.bad(command, 1, expect);
+        assert!(outcome.err.len() < 20_000, "{} bytes of complaints", outcome.err.len());
+        assert!(begun.elapsed().as_secs() < 60, "{expect} took {:?}", begun.elapsed());
+        assert_eq!(folder.names(""), [name]);
+    }
+}
+
+/// A recipe with these nodes, whose heights are the node `a`.
+fn nodes(nodes: &str) -> String {
+    format!("{HEAD}{nodes}\n[outputs]\nheight = \"a\"\n")
+}
+
+#[test]
+fn what_is_no_text() {
+    check("", "a.toml is empty");
+    check(" \n\n ", "a.toml is empty");
+    check((0..=255u8).cycle().take(5000).collect::<Vec<u8>>(), "is not UTF-8 text");
+    check([0; 100], "a.toml:");
+    check(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "is not UTF-8 text");
+}
+
+#[test]
+fn deep_nesting() {
+    let deep = 1_000_000;
+    check(format!("orogen = 1\na = {}{}", "[".repeat(deep), "]".repeat(deep)), "a.toml:2:");
+    check(format!("orogen = 1\na = {}", "{a = ".repeat(deep)), "a.toml:2:");
+    check(format!("orogen = 1\n{} = 1", vec!["a"; deep].join(".")), "a.toml");
+    check_as("a.json", format!("{{\"orogen\": 1, \"a\": {}{}}}", "[".repeat(deep), "]".repeat(deep)), "a.json:1:");
+    check_as("a.json", "{\"a\":".repeat(deep), "a.json:1:");
+}
+
+#[test]
+fn numbers_that_are_none() {
+    for (value, expect) in
+        [("nan", "finite"), ("inf", "finite"), ("-inf", "finite"), ("1e999", ""), ("\"5\"", "number")]
+    {
+        check(nodes(&format!("[nodes.a]\nop = \"fbm\"\nwavelength = {value}")), &format!("a.toml:6:14: {}", ""));
+        check(nodes(&format!("[nodes.a]\nop = \"fbm\"\nwavelength = {value}")), expect);
+        check(
+            format!(
+                "orogen = 1\n[world]\nsize = [100, {value}]\n[nodes.a]\nop = \"constant\"\n[outputs]\nheight = \"a\"\n"
+            ),
+            "a.toml:3:",
+        );
+    }
+    check_as(
+        "a.json",
+        r#"{"orogen": 1, "world": {"size": [100, 100], "cell": 1e999}, "nodes": {"a": {"op": "constant"}}, "outputs": {"height": "a"}}"#,
+        "a.json:1:",
+    );
+}
+
+#[test]
+fn sizes_that_are_none() {
+    for line in [
+        "size = [0, 100]",
+        "size = [-5, 100]",
+        "size = [100]",
+        "size = []",
+        "size = \"big\"",
+        "cell = 0",
+        "cell = -1",
+        "seed = -1",
+    ] {
+        check(
+            format!("orogen = 1\n[world]\n{line}\n[nodes.a]\nop = \"constant\"\n[outputs]\nheight = \"a\"\n"),
+            "a.toml:3:",
+        );
+    }
+}
+
+#[test]
+fn cycles() {
+    check(nodes("[nodes.a]\nop = \"add\"\na = \"a\"\nb = \"a\""), "a.toml:6:5: ");
+    let cycle = "[nodes.a]\nop = \"add\"\na = \"b\"\nb = \"c\"\n[nodes.b]\nop = \"clamp\"\nsource = \"c\"\n[nodes.c]\nop = \"clamp\"\nsource = \"a\"\n";
+    check(nodes(cycle), "a.toml:");
+}
+
+#[test]
+fn names_that_are_wrong() {
+    check(nodes("[nodes.a]\nop = \"fmb\""), "did you mean `fbm`?");
+    check(nodes("[nodes.a]\nop = \"fmb\""), "a.toml:5:6: ");
+    check(nodes("[nodes.a]\nop = \"fbm\"\noctavs = 3"), "a.toml:6:1: ");
+    check(nodes("[nodes.a]\nop = \"fbm\"\noctavs = 3"), "\n 6 | octavs = 3\n   | ^^^^^^\n");
+    check(nodes("[nodes.a]\nop = \"clamp\"\nsource = \"nowhere\""), "a.toml:6:10: ");
+    check(nodes("[nodes.a]\nop = \"clamp\""), "source");
+    check(nodes("[nodes.a]\nop = \"fbm\"\n[nodes.a]\nop = \"fbm\""), "a.toml:6:");
+    check(nodes("[nodes.a]\nop = \"fbm\"\nop = \"fbm\""), "a.toml:6:");
+    check(nodes("[nodes.b]\nop = \"fbm\""), "a.toml:7:10: ");
+    check_as("a.json", "{\"orogen\": 1, \"orogen\": 1}", "twice");
+    check("orogen = 2\n", "newer Orogen");
+    check("[world]\n", "orogen = 1");
+    check(HEAD, "no outputs");
+}
+
+#[test]
+fn a_recipe_without_heights_has_nothing_to_generate() {
+    let folder = Folder::new();
+    folder.write("a.toml", format!("{HEAD}[nodes.a]\nop = \"constant\"\n[outputs]\nwet = \"a\"\n"));
+    folder.bad(&["generate", "a.toml"], 2, "no layer `height`");
+    assert_eq!(folder.names(""), ["a.toml"]);
+    folder.good(&["export", "a.toml", "--layer", "wet", "-o", "a.npy"]);
+}
+
+#[test]
+fn a_million_nodes() {
+    let many: String = (0..1_000_000).map(|i| format!("n{i} = {{ op = \"fbm\" }}\n")).collect();
+    check(format!("orogen = 1\n[nodes]\n{many}[outputs]\nheight = \"n1\"\n"), "a.toml");
+    // Few enough bytes to be read, too many nodes to be a recipe.
+    let many: String = (0..100_000).map(|i| format!("n{i} = {{ op = \"fbm\" }}\n")).collect();
+    check(format!("orogen = 1\n[nodes]\n{many}[outputs]\nheight = \"n1\"\n"), "65536");
+}
+
+#[test]
+fn lines_that_are_long_and_strange() {
+    check(format!("orogen = 1\n{} = 1\n", "x".repeat(1_000_000)), "a.toml:2:1: ");
+    let folder = Folder::new();
+    folder.write("a.toml", "orogen = 1\n\"\\u001b[31m\\u0007\" = 1\n");
+    let outcome = folder.bad(&["generate", "a.toml"], 1, "a.toml:2:");
+    assert!(!outcome.err.contains(['\x1b', '\x07']), "{:?}", outcome.err);
+}

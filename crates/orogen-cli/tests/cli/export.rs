@@ -1,0 +1,92 @@
+//! `orogen export`.
+
+use crate::harness::{Folder, Outcome, npy, png};
+use std::io::Read;
+use std::process::Stdio;
+
+#[test]
+fn a_window_is_the_crop_of_the_whole() {
+    let folder = Folder::with_small();
+    let outcome = folder.good(&["export", "small.toml", "-o", "all.npy"]);
+    assert!(outcome.text().starts_with("all.npy: height, 64 x 48 samples of 10 m, "), "{}", outcome.text());
+    folder.good(&["export", "small.toml", "-o", "part.npy", "--window", "10,20,30,15", "-q"]);
+    let (all, part) = (npy(&folder.read("all.npy")), npy(&folder.read("part.npy")));
+    assert_eq!((part.width(), part.height()), (30, 15));
+    assert!((0..15).all(|j| (0..30).all(|i| part.get(i, j) == all.get(i + 10, j + 20))));
+    assert_eq!(folder.names(""), ["all.npy", "part.npy", "small.toml"]);
+}
+
+#[test]
+fn a_picture_spans_its_own_range() {
+    let folder = Folder::with_small();
+    let outcome = folder.good(&["export", "small.toml", "-o", "a.PNG", "--layer", "noise"]);
+    assert!(outcome.text().contains("0 is -") && outcome.text().contains("65535 is 0."), "{}", outcome.text());
+    let levels = png(&folder.read("a.PNG")).grey16();
+    assert_eq!((levels.iter().min(), levels.iter().max()), (Some(&0), Some(&65535)));
+}
+
+#[test]
+fn standard_output_gets_the_very_file_and_nothing_else() {
+    let folder = Folder::with_small();
+    for (options, file) in [(&[][..], "a.npy"), (&["--format", "png"][..], "a.png")] {
+        folder.good(&["export", "small.toml", "-o", file]);
+        let outcome = folder.good(&[&["export", "small.toml", "-o", "-"][..], options].concat());
+        assert!(outcome.out == folder.read(file) && outcome.err.is_empty());
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_ends_it_quietly() {
+    let folder = Folder::new();
+    let mut child = folder
+        .command(&["export", "classic", "-o", "-"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut start = [0; 6];
+    let mut stdout = child.stdout.take().unwrap();
+    stdout.read_exact(&mut start).unwrap();
+    drop(stdout);
+    let outcome = Outcome::of(&child.wait_with_output().unwrap());
+    assert_eq!((&start, outcome.code, outcome.err.as_str()), (b"\x93NUMPY", 0, ""));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_that_is_full_is_a_sentence() {
+    let folder = Folder::with_small();
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = folder.command(&["export", "small.toml", "-o", "-"]).stdout(full).output().unwrap();
+    let outcome = Outcome::of(&output);
+    assert_eq!(outcome.code, 1);
+    assert_eq!(outcome.err, "error: cannot write to standard output: no space left on device\n");
+    folder.bad(&["export", "small.toml", "-o", "/dev/full", "--format", "npy"], 1, "no space left on device");
+}
+
+#[test]
+fn what_cannot_be_asked_for_is_usage() {
+    let folder = Folder::with_small();
+    for (options, expect) in [
+        (&["-o", "a.npz"][..], "did you mean .npy?"),
+        (&["-o", "a.tiff"], "known are .npy and .png"),
+        (&["-o", "a"], "no extension"),
+        (&["-o", "a.png", "--format", "npy"], "contradict"),
+        (&["-o", "a.npy", "--format", "bmp"], "invalid value"),
+        (&["-o", "a.npy", "--layer", "hieght"], "did you mean `height`?"),
+        (&["-o", "a.npy", "--layer", "rivers"], "`height` and `noise`"),
+        (&["-o", "a.npy", "--window", "60,0,10,10"], "not inside the world"),
+        (&["-o", "a.npy", "--window", "-1,0,10,10"], "not inside the world"),
+        (&["-o", "a.npy", "--window", "0,0,10"], "X,Y,W,H"),
+        (&["-o", "a.npy", "--window", "0,0,0,10"], "1 to 1000000000 samples"),
+        (&["-o", "a.npy", "--window", "99999999999999,0,5,5"], "not inside the world"),
+        (&["-o", "a.npy", "--window", "9223372036854775807,0,5,5"], "not the column or row"),
+        (&["-o", "a.npy", "--cell", "-2"], "more than 0 metres"),
+        (&[], "--out <FILE>"),
+    ] {
+        folder.bad(&[&["export", "small.toml"][..], options].concat(), 2, expect);
+        assert_eq!(folder.names(""), ["small.toml"], "{options:?}");
+    }
+    folder.bad(&["export", "small.toml", "-o", "none/a.npy"], 1, "cannot write into none: the folder does not exist");
+    folder.bad(&["export", "small.toml", "-o", "a.npy", "--memory", "1kB"], 1, "of memory");
+}

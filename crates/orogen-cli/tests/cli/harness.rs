@@ -1,0 +1,180 @@
+//! Folders to work in, and the program to run there.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// A world of 64 x 48 samples that is made at once.
+pub const SMALL: &str = r#"
+orogen = 1
+about = "a test"
+[world]
+seed = 3
+size = [640, 480]
+cell = 10
+[nodes.noise]
+op = "fbm"
+wavelength = 300
+octaves = 4
+[nodes.land]
+op = "normalise"
+source = "noise"
+low = -50
+high = 200
+[outputs]
+height = "land"
+noise = "noise"
+"#;
+
+/// A new, empty folder, removed when dropped.
+pub struct Folder(pub PathBuf);
+
+impl Folder {
+    pub fn new() -> Folder {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let count = COUNT.fetch_add(1, Ordering::Relaxed);
+        let path = std::env::temp_dir().join(format!("orogen-cli-test-{}-{count}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Folder(path)
+    }
+
+    /// One with [`SMALL`] in it as `small.toml`.
+    pub fn with_small() -> Folder {
+        let folder = Folder::new();
+        folder.write("small.toml", SMALL);
+        folder
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        fs::write(self.path(name), content).unwrap();
+    }
+
+    pub fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path(name)).unwrap()
+    }
+
+    pub fn text(&self, name: &str) -> String {
+        String::from_utf8(self.read(name)).unwrap()
+    }
+
+    pub fn json(&self, name: &str) -> serde_json::Value {
+        serde_json::from_str(&self.text(name)).unwrap()
+    }
+
+    /// The names of what is in a folder within, hidden files too.
+    pub fn names(&self, within: &str) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(self.path(within))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    /// The program, about to be run in here.
+    pub fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_orogen"));
+        command.args(arguments).current_dir(&self.0).stdin(Stdio::null()).env_remove("NO_COLOR");
+        command
+    }
+
+    /// Runs it.
+    pub fn run(&self, arguments: &[&str]) -> Outcome {
+        Outcome::of(&self.command(arguments).output().unwrap())
+    }
+
+    /// Runs it to success.
+    pub fn good(&self, arguments: &[&str]) -> Outcome {
+        let outcome = self.run(arguments);
+        assert_eq!(outcome.code, 0, "{arguments:?}: {}", outcome.err);
+        outcome
+    }
+
+    /// Runs it to an end with `code`, nothing on standard output, and an error that has `expect` in it.
+    pub fn bad(&self, arguments: &[&str], code: i32, expect: &str) -> Outcome {
+        let outcome = self.run(arguments);
+        assert!(outcome.err.contains(expect), "{arguments:?}: {} / {expect}", outcome.err);
+        assert!(outcome.err.starts_with("error: "), "{arguments:?}: {}", outcome.err);
+        assert_eq!((outcome.code, outcome.out.len()), (code, 0), "{arguments:?}: {}", outcome.err);
+        outcome
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// How a run ended.
+pub struct Outcome {
+    pub code: i32,
+    pub out: Vec<u8>,
+    pub err: String,
+}
+
+impl Outcome {
+    /// Whatever happens, the program ends by itself, and not by a panic.
+    pub fn of(output: &Output) -> Outcome {
+        let err = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!err.contains("panicked"), "{err}");
+        let code = output.status.code().unwrap_or_else(|| panic!("ended by a signal: {err}"));
+        assert!((0..=2).contains(&code), "{code}: {err}");
+        Outcome { code, out: output.stdout.clone(), err }
+    }
+
+    pub fn text(&self) -> &str {
+        std::str::from_utf8(&self.out).unwrap()
+    }
+}
+
+/// The samples of an array file.
+pub fn npy(bytes: &[u8]) -> orogen::Grid {
+    orogen::format::npy::read(&mut &bytes[..], "test.npy", 1.0).unwrap()
+}
+
+/// A decoded PNG.
+pub struct Picture {
+    pub width: usize,
+    pub height: usize,
+    pub bits: u8,
+    pub channels: usize,
+    pub data: Vec<u8>,
+}
+
+pub fn png(bytes: &[u8]) -> Picture {
+    let mut reader = ::png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+    let mut data = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut data).unwrap();
+    Picture {
+        width: info.width as usize,
+        height: info.height as usize,
+        bits: info.bit_depth as u8,
+        channels: info.color_type.samples(),
+        data,
+    }
+}
+
+impl Picture {
+    /// The levels of 16-bit grey.
+    pub fn grey16(&self) -> Vec<u16> {
+        assert_eq!((self.bits, self.channels), (16, 1));
+        self.data.chunks_exact(2).map(|b| u16::from_be_bytes([b[0], b[1]])).collect()
+    }
+}
+
+/// Whether `path` is a whole picture, array or JSON, by its extension.
+pub fn is_whole(path: &Path) -> bool {
+    let bytes = fs::read(path).unwrap();
+    match path.extension().and_then(|extension| extension.to_str()) {
+        Some("png") => bytes.ends_with(b"IEND\xae\x42\x60\x82"),
+        Some("json") => serde_json::from_slice::<serde_json::Value>(&bytes).is_ok(),
+        _ => !bytes.is_empty(),
+    }
+}

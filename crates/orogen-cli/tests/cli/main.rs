@@ -1,0 +1,11 @@
+//! The `orogen` command as its users meet it: the built program, run in folders of its own.
+// Clippy knows test functions, but not that all of this file is for them.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod bad_places;
+mod bad_recipes;
+mod export;
+mod generate;
+mod harness;
+mod others;
+mod watch;

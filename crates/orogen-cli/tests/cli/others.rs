@@ -1,0 +1,96 @@
+//! The small commands.
+
+use crate::harness::{Folder, SMALL};
+use std::process::Stdio;
+
+#[test]
+fn presets_are_one_a_line() {
+    let folder = Folder::new();
+    let outcome = folder.good(&["presets"]);
+    let names: Vec<&str> = outcome.text().lines().map(|line| line.split_whitespace().next().unwrap()).collect();
+    for name in ["alpine", "archipelago", "classic", "hills", "island", "mesa"] {
+        assert!(names.contains(&name), "{name}");
+    }
+    assert!(outcome.text().lines().all(|line| line.split_whitespace().count() > 3), "each says what it is");
+}
+
+#[test]
+fn the_schema_is_json() {
+    let folder = Folder::new();
+    let schema: serde_json::Value = serde_json::from_str(folder.good(&["schema"]).text()).unwrap();
+    assert!(schema["$schema"].as_str().unwrap().contains("json-schema.org"));
+}
+
+#[test]
+fn a_new_recipe_is_the_preset_and_never_overwrites() {
+    let folder = Folder::new();
+    let outcome = folder.good(&["new", "mine"]);
+    assert!(outcome.text().contains("orogen generate mine.toml"), "{}", outcome.text());
+    folder.good(&["generate", "mine.toml", "--size", "16", "-o", "a"]);
+    folder.good(&["generate", "alpine", "--size", "16", "-o", "b"]);
+    assert_eq!(folder.text("a/recipe.toml"), folder.text("b/recipe.toml"));
+    folder.write("mine.toml", "precious");
+    folder.bad(&["new", "mine"], 1, "mine.toml already exists");
+    assert_eq!(folder.text("mine.toml"), "precious");
+    folder.good(&["new", "other.toml", "--preset", "mesa"]);
+    folder.good(&["new", "v1.2"]);
+    assert_eq!(folder.names(""), ["a", "b", "mine.toml", "other.toml", "v1.2.toml"]);
+    folder.bad(&["new", "x", "--preset", "messa"], 2, "did you mean `mesa`?");
+    folder.bad(&["new", ".."], 2, "no name for a file");
+    folder.bad(&["new", "none/x"], 1, "cannot write into none");
+}
+
+#[test]
+fn explain_names_nodes_locality_halo_and_memory() {
+    let folder = Folder::new();
+    folder.write(
+        "a.toml",
+        SMALL.replace("\"land\"", "\"soft\"") + "[nodes.soft]\nop = \"blur\"\nsource = \"land\"\nradius = 30\n",
+    );
+    let outcome = folder.good(&["explain", "a.toml"]);
+    for word in ["noise", "fbm", "field", "land", "solver", "soft", "filter", "halo", "memory"] {
+        assert!(outcome.text().contains(word), "{word}: {}", outcome.text());
+    }
+    folder.bad(&["explain", "a.toml", "--layer", "nose"], 2, "did you mean `noise`?");
+}
+
+#[test]
+fn completions_for_every_shell() {
+    let folder = Folder::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        assert!(folder.good(&["completions", shell]).text().contains("orogen"), "{shell}");
+    }
+    folder.bad(&["completions", "basch"], 2, "bash");
+}
+
+#[test]
+fn help_and_version_end_well_and_nothing_is_usage() {
+    let folder = Folder::new();
+    assert!(folder.good(&["--help"]).text().contains("generate"));
+    assert!(folder.good(&["--version"]).text().starts_with("orogen 0."));
+    assert_eq!(folder.run(&[]).code, 2);
+    folder.bad(&["genrate"], 2, "generate");
+}
+
+#[test]
+fn names_that_are_nothing_are_answered() {
+    let folder = Folder::with_small();
+    for command in [&["generate"][..], &["explain"], &["export", "-o", "a.npy"]] {
+        let check = |name, code, expect: &str| folder.bad(&[command, &[name]].concat(), code, expect);
+        check("alpin", 2, "did you mean `alpine`?");
+        check("zzz", 2, "the presets are alpine, ");
+        check("small", 2, "there is small.toml");
+        check("missing.toml", 1, "cannot read the recipe missing.toml: no such file or directory");
+        check(".", 1, "it is a folder");
+        check("", 2, "a value is required");
+    }
+}
+
+#[test]
+fn a_closed_pipe_is_quiet() {
+    let folder = Folder::new();
+    let mut child = folder.command(&["schema"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0));
+}
