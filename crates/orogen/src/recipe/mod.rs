@@ -5,6 +5,7 @@ pub mod graph;
 mod json;
 mod parse;
 pub mod presets;
+pub mod reference;
 pub mod schema;
 mod text;
 mod toml;

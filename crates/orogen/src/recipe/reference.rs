@@ -1,0 +1,115 @@
+//! The ops in words, made from their declarations.
+
+use crate::declare::{Shape, Spec, short};
+use crate::node::Node;
+use crate::value::Value;
+use std::fmt::Write as _;
+
+/// One line an op: its name, its locality and what it does.
+pub fn overview() -> String {
+    let nodes = Node::all();
+    let longest = nodes.iter().map(|node| node.spec().op.len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for node in &nodes {
+        let spec = node.spec();
+        let _ = writeln!(text, "{:longest$}  {:8}  {}", spec.op, spec.locality.name(), first_sentence(spec));
+    }
+    text
+}
+
+/// The first sentence of an op's doc.
+pub fn first_sentence(spec: &Spec) -> String {
+    let doc = short(spec.doc);
+    match doc.find(". ") {
+        Some(end) => doc[..end].to_string(),
+        None => doc.trim_end_matches('.').to_string(),
+    }
+}
+
+/// All about one op, for a terminal.
+pub fn describe(node: &Node) -> String {
+    let spec = node.spec();
+    let mut text = format!("{} ({})\n\n{}\n", spec.op, spec.locality.name(), spec.doc.trim());
+    text = text.lines().map(|line| format!("{}\n", line.trim())).collect();
+    if !spec.inputs.is_empty() {
+        text.push_str("\ninputs: a node, `node.layer`, or a number\n");
+    }
+    let longest = spec.inputs.iter().map(|input| input.name.len()).chain(spec.params.iter().map(|p| p.name.len())).max();
+    let longest = longest.unwrap_or(0);
+    for input in spec.inputs {
+        let optional = if input.required { "" } else { " (optional)" };
+        let _ = writeln!(text, "  {:longest$}  {}{optional}", input.name, short(input.doc));
+    }
+    if !spec.params.is_empty() {
+        text.push_str("\nparameters\n");
+    }
+    for (i, param) in spec.params.iter().enumerate() {
+        let default = node.param(i).to_toml();
+        let _ = writeln!(text, "  {:longest$}  {}", param.name, short(param.doc));
+        let _ = writeln!(text, "  {:longest$}  {}; default {default}", "", param.expected());
+        if let Shape::Choice(choices) = param.shape {
+            for (name, doc) in choices() {
+                let _ = writeln!(text, "  {:longest$}    {name:?}: {}", "", short(doc));
+            }
+        }
+    }
+    text
+}
+
+/// The reference of all ops as a page of documentation, Markdown.
+pub fn markdown() -> String {
+    let mut text = String::from(
+        "<!-- Written by `cargo xtask codegen` from the declarations in crates/orogen/src. Do not edit. -->\n\n# The ops\n\n\
+         A node of a recipe names its `op`. An input takes the name of a node, of one of its layers (`node.layer`), or a number. \
+         Every node also takes `mask`, a node or number from 0 to 1: where it is 0 the node's first input shows instead (or 0, \
+         if it has none). Lengths are metres; noise is in -1 ..= 1.\n",
+    );
+    for (locality, about) in [
+        ("field", "look at one position and the seed: any point, at any resolution, for itself"),
+        ("filter", "look at a finite halo around each sample"),
+        ("solver", "look at the whole bounded world, once"),
+    ] {
+        let _ = write!(text, "\n## {}s: {about}\n", capital(locality));
+        for node in Node::all().iter().filter(|node| node.spec().locality.name() == locality) {
+            section(&mut text, node);
+        }
+    }
+    text
+}
+
+fn section(text: &mut String, node: &Node) {
+    let spec = node.spec();
+    let _ = write!(text, "\n### `{}`\n\n", spec.op);
+    for line in spec.doc.trim().lines() {
+        let _ = writeln!(text, "{}", line.trim());
+    }
+    if spec.inputs.is_empty() && spec.params.is_empty() {
+        return;
+    }
+    text.push_str("\n| key | what it is | takes | default |\n|---|---|---|---|\n");
+    for input in spec.inputs {
+        let needed = if input.required { "required" } else { "none" };
+        let _ = writeln!(text, "| `{}` | {} | input | {needed} |", input.name, short(input.doc));
+    }
+    for (i, param) in spec.params.iter().enumerate() {
+        let takes = match param.shape {
+            Shape::Choice(choices) => {
+                let names: Vec<String> =
+                    choices().iter().map(|(name, doc)| format!("`{name}` ({})", short(doc).trim_end_matches('.'))).collect();
+                names.join("; ")
+            }
+            _ => param.expected(),
+        };
+        let default = match node.param(i) {
+            Value::Text(text) => format!("`{text}`"),
+            other => format!("`{}`", other.to_toml()),
+        };
+        let cell = |text: String| text.replace('|', "\\|");
+        let _ = writeln!(text, "| `{}` | {} | {} | {default} |", param.name, cell(short(param.doc)), cell(takes));
+    }
+}
+
+fn capital(word: &str) -> String {
+    let mut letters = word.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
