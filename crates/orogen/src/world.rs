@@ -5,7 +5,9 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::op::Setting;
 use crate::plan::explain::explain;
-use crate::plan::planner::{Plan, Planner, world_windows};
+use crate::plan::memory;
+use crate::plan::planner::{Planner, world_windows};
+use crate::plan::steps::Plan;
 use crate::progress::Progress;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, Link};
@@ -134,7 +136,7 @@ impl World {
 
     /// Bytes that running a plan takes at most.
     pub fn memory_of(&self, plan: &Plan) -> u64 {
-        plan.memory(&self.recipe, self.pool.current_num_threads())
+        memory::needed(plan, &self.recipe, self.pool.current_num_threads())
     }
 
     /// What a plan does, in words.

@@ -27,7 +27,9 @@ fn golden(file: &str, made: &BTreeMap<String, String>) {
             None => wrong.push(format!("{name} is not in golden/{file}")),
         }
     }
-    wrong.extend(expected.keys().filter(|name| !made.contains_key(**name)).map(|name| format!("{name} is made no more")));
+    wrong.extend(
+        expected.keys().filter(|name| !made.contains_key(**name)).map(|name| format!("{name} is made no more")),
+    );
     assert!(wrong.is_empty(), "{}\nif this change of terrain is meant: cargo xtask bless", wrong.join("\n"));
 }
 

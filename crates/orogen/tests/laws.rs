@@ -6,7 +6,7 @@ use orogen::declare::Input;
 use orogen::field::{add::Add, constant::Constant, fbm::Fbm, perlin::Perlin, transform::Transform, warp::Warp};
 use orogen::node::Node;
 use orogen::op::Op;
-use orogen::plan::planner::Step;
+use orogen::plan::steps::Step;
 use orogen::solver::normalise::Normalise;
 use orogen::{Grid, Progress, Recipe, Window, World, WorldSpec};
 use support::{Random, open, recipe_of, world_of};
@@ -271,7 +271,9 @@ fn windows_and_points_that_are_not_there_are_named() {
         let error = bounded.window("height", &window).unwrap_err();
         assert!(error.to_string().contains(said), "{window:?}: {error}");
     }
-    assert!(bounded.window("hight", &Window::new(2, 2, 10.0)).unwrap_err().to_string().contains("did you mean `height`?"));
+    assert!(
+        bounded.window("hight", &Window::new(2, 2, 10.0)).unwrap_err().to_string().contains("did you mean `height`?")
+    );
     for (x, y, said) in [(f64::NAN, 0.0, "finite"), (-1.0, 0.0, "outside the world"), (0.0, 801.0, "(960, 800)")] {
         let error = bounded.height(x, y).unwrap_err();
         assert!(error.to_string().contains(said), "{error}");

@@ -12,7 +12,8 @@ fn complains(text: &str, place: &str, words: &[&str]) {
     let said = error.to_string();
     let first = said.lines().next().unwrap();
     // "4:8" is that place, "4:" any column of that line, "" anywhere.
-    let place = if place.ends_with(':') || place.is_empty() { format!("r.toml:{place}") } else { format!("r.toml:{place}: ") };
+    let place =
+        if place.ends_with(':') || place.is_empty() { format!("r.toml:{place}") } else { format!("r.toml:{place}: ") };
     let shown: String = text.chars().take(300).collect();
     assert!(place == "r.toml:" || first.starts_with(&place), "expected {place}, not {first}\nin {shown}");
     for word in words {
@@ -74,7 +75,11 @@ fn wrong_recipes_are_told_where_and_what() {
     complains(&node("op = \"curve\"\nsource = 1\npoints = [[0, 0]]"), "5:10", &["at least two"]);
     complains(&node("op = \"normalise\"\nsource = 1"), "2:8", &["no bounds", "`size`"]);
     complains(&node("op = \"edge\""), "2:8", &["no bounds", "`size`"]);
-    complains("orogen = 1\n[nodes.\"a b\"]\nop = \"fbm\"\n[outputs]\nheight = 1\n", "2:8", &["cannot be a node's name"]);
+    complains(
+        "orogen = 1\n[nodes.\"a b\"]\nop = \"fbm\"\n[outputs]\nheight = 1\n",
+        "2:8",
+        &["cannot be a node's name"],
+    );
     complains("orogen = 1\n[nodes.a]\nop = \"fbm\"\n[nodes.a]\nop = \"fbm\"\n", "4:", &["not TOML", "duplicate"]);
     complains("orogen = 1\n[nodes.a]\nop = \"fbm\"\n[outputs]\n", "4:1", &["`outputs` is empty"]);
     complains("orogen = 1\n[nodes.a]\nop = \"fbm\"\n[outputs]\nheight = \"b\"\n", "5:10", &["no node `b`", "`a`"]);
@@ -88,7 +93,11 @@ fn wrong_json_is_told_too() {
     complains("{", "1:", &["not JSON"]);
     complains("{}", "1:1", &["orogen = 1"]);
     complains("{\"orogen\": 1, \"orogen\": 1}", "1:15", &["stands twice"]);
-    complains("{\"orogen\": 1, \"nodes\": {\"a\": {\"op\": \"fbm\"}, \"a\": {\"op\": \"fbm\"}}}", "1:45", &["two nodes named `a`"]);
+    complains(
+        "{\"orogen\": 1, \"nodes\": {\"a\": {\"op\": \"fbm\"}, \"a\": {\"op\": \"fbm\"}}}",
+        "1:45",
+        &["two nodes named `a`"],
+    );
     complains("{\"orogen\": 1, \"nodes\": {\"a\": null}}", "1:30", &["must be a table", "null"]);
     complains("{\"orogen\": 1, // a comment\n\"outputs\": {}}", "1:", &["not JSON"]);
     let deep = format!("{{\"orogen\": {}", "[".repeat(1_000_000));
@@ -131,7 +140,8 @@ fn all_complaints_come_at_once() {
 
 #[test]
 fn columns_count_characters_not_bytes() {
-    let text = "orogen = 1\nabout = \"Höhenzüge — 山\"\n[nodes.a]\nop = \"fbm\" # Größe\n[outputs]\nheight = { \"ü\" = 1 }\n";
+    let text =
+        "orogen = 1\nabout = \"Höhenzüge — 山\"\n[nodes.a]\nop = \"fbm\" # Größe\n[outputs]\nheight = { \"ü\" = 1 }\n";
     let error = Recipe::parse(text, "r").unwrap_err();
     assert_eq!(error.complaints()[0].place.as_ref().unwrap().column, 10, "{error}");
 }

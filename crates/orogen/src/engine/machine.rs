@@ -7,12 +7,6 @@ use crate::resample;
 use orogen_noise::Points;
 use std::sync::Arc;
 
-/// Samples a row of a block: wide enough that noise on a lattice runs at full speed.
-pub const BLOCK_WIDTH: usize = 256;
-
-/// Most rows of a block: 256 x 64 samples of 4 bytes are 64 KiB a register, a few of which stay in cache.
-pub const BLOCK_HEIGHT: usize = 64;
-
 /// What a program's instructions refer to.
 pub struct Bindings<'a> {
     pub setting: &'a Setting,

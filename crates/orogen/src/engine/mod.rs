@@ -1,5 +1,5 @@
 //! The engine: runs plans.
 
-pub mod machine;
+mod machine;
 pub mod run;
-mod solve;
+mod tiles;

@@ -1,12 +1,13 @@
 //! Runs a plan's steps.
 
-use super::machine::{BLOCK_HEIGHT, BLOCK_WIDTH, Bindings, Machine};
-use super::solve;
+use super::machine::{Bindings, Machine};
+use super::tiles::Tiles;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::op::{Context, Field, Op, Setting, Solution, Solver};
-use crate::plan::planner::{Plan, Planner, Step};
-use crate::plan::program::Program;
+use crate::plan::planner::Planner;
+use crate::plan::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
+use crate::plan::steps::{Plan, Step};
 use crate::progress::Progress;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;
@@ -77,7 +78,13 @@ impl<'a> Engine<'a> {
         for order in &plan.solves {
             let solution = self.store.solution(order.key, || {
                 let planner = Planner::new(self.recipe, self.graph);
-                solve::solve(self, &planner, order)
+                let make = |link, tile| self.run(&planner.plan(&[link], tile, false)?);
+                let tiles = Tiles { links: &self.graph.links[order.node], order, make: &make };
+                let context = Context { setting: self.setting, progress: self.progress };
+                match self.recipe.nodes()[order.node].node.op() {
+                    Op::Solver(solver) => solver.solve(&tiles, &context),
+                    _ => Err(Error::new(ErrorKind::Recipe, "a node that is no solver was to be solved")),
+                }
             })?;
             solutions.insert(order.node, solution);
         }

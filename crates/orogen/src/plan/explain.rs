@@ -1,6 +1,7 @@
 //! A plan in words.
 
-use super::planner::{Plan, Step};
+use super::memory;
+use super::steps::{Plan, Step};
 use crate::declare::short;
 use crate::op::Op;
 use crate::recipe::document::Recipe;
@@ -80,7 +81,7 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
     let _ = writeln!(
         text,
         "\nmemory: {} at most, with {threads} thread{}",
-        bytes(plan.memory(recipe, threads)),
+        bytes(memory::needed(plan, recipe, threads)),
         if threads == 1 { "" } else { "s" }
     );
     text

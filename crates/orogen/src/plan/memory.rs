@@ -1,8 +1,7 @@
 //! How much memory a plan takes, known before the first sample.
 
-use super::planner::{Plan, Step};
-use super::program::Program;
-use crate::engine::machine::{BLOCK_HEIGHT, BLOCK_WIDTH};
+use super::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
+use super::steps::{Plan, Step};
 use crate::grid::Window;
 use crate::op::Op;
 use crate::recipe::document::Recipe;
@@ -44,8 +43,8 @@ pub fn grids(plan: &Plan) -> u64 {
     most
 }
 
-/// All of a plan.
-pub fn plan(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
+/// Bytes a plan needs at most at any time, for `threads` threads: grids, registers, solutions, and making solvers' sources.
+pub fn needed(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
     let mut beside = 0;
     for step in &plan.steps {
         beside = beside.max(match step {

@@ -4,6 +4,7 @@ mod compile;
 pub mod explain;
 pub mod key;
 mod materials;
-mod memory;
+pub mod memory;
 pub mod planner;
 pub mod program;
+pub mod steps;

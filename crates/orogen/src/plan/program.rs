@@ -3,6 +3,12 @@
 use crate::op::{Affine, LayerKind};
 use serde::{Deserialize, Serialize};
 
+/// Samples a row of a block: wide enough that noise on a lattice runs at full speed.
+pub const BLOCK_WIDTH: usize = 256;
+
+/// Most rows of a block: 256 x 64 samples of 4 bytes are 64 KiB a register, a few of which stay in cache.
+pub const BLOCK_HEIGHT: usize = 64;
+
 /// Index of a register: one block of samples.
 pub type Register = usize;
 

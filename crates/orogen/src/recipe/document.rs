@@ -1,12 +1,10 @@
 //! A recipe in memory: the world, its nodes and its outputs.
 
 use crate::declare::Input;
-use crate::error::{Error, ErrorKind, Result};
 use crate::node::Node;
 use crate::op::Setting;
 use crate::value::{toml_key, toml_string};
 use std::fmt::Write as _;
-use std::path::Path;
 
 /// The version of recipes that this program writes.
 pub const VERSION: i64 = 1;
@@ -115,44 +113,6 @@ impl Recipe {
     /// The outputs with what they show.
     pub fn output_inputs(&self) -> &[(String, Input)] {
         &self.outputs
-    }
-
-    /// Reads a recipe from a file, TOML or JSON.
-    ///
-    /// # Errors
-    /// If the file cannot be read, is no text, or is no valid recipe: then every complaint has its line and column.
-    pub fn read(path: &Path) -> Result<Recipe> {
-        let doing = "read the recipe";
-        let length = std::fs::metadata(path).map_err(|cause| Error::file(doing, path, &cause))?;
-        if length.is_dir() {
-            return Err(Error::new(
-                ErrorKind::File,
-                format!("cannot read the recipe {}: it is a folder", path.display()),
-            ));
-        }
-        if length.len() > LONGEST_TEXT {
-            return Err(super::text::too_long(&path.display().to_string()));
-        }
-        let bytes = std::fs::read(path).map_err(|cause| Error::file(doing, path, &cause))?;
-        match String::from_utf8(bytes) {
-            Ok(text) => Recipe::parse(&text, &path.display().to_string()),
-            Err(fault) => Err(Error::new(
-                ErrorKind::Recipe,
-                format!(
-                    "{} is not a recipe: byte {} is not UTF-8 text; a recipe is a TOML or JSON file",
-                    path.display(),
-                    fault.utf8_error().valid_up_to()
-                ),
-            )),
-        }
-    }
-
-    /// Reads a recipe from a text, TOML or (if it begins with a brace) JSON; `name` is what complaints call it.
-    ///
-    /// # Errors
-    /// If it is no valid recipe. All complaints are told at once, in the order of the text.
-    pub fn parse(text: &str, name: &str) -> Result<Recipe> {
-        super::parse::parse(text, name)
     }
 
     /// The recipe as TOML with every default written out: self-contained, it makes the same world whatever the defaults of

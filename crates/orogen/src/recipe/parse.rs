@@ -1,8 +1,8 @@
 //! From a tree of values to a recipe, with every complaint at its own key.
 
-use super::document::{MOST_NODES, Recipe, VERSION, WorldSpec};
+use super::document::{LONGEST_TEXT, MOST_NODES, Recipe, VERSION, WorldSpec};
 use super::graph::{At, Graph, MOST_FAULTS};
-use super::text::Text;
+use super::text::{Text, too_long};
 use super::{json, toml};
 use crate::declare::Input;
 use crate::error::{Complaint, Error, ErrorKind, Result};
@@ -10,6 +10,7 @@ use crate::node::Node;
 use crate::value::{Span, Spanned, Value};
 use crate::words::{list, suggestion};
 use std::collections::{HashMap, HashSet};
+use std::path::Path;
 
 /// Words that other programs use for what has one name here.
 const ALIASES: [(&str, &str); 8] = [
@@ -25,10 +26,49 @@ const ALIASES: [(&str, &str); 8] = [
 
 type Table = [(Spanned<String>, Spanned<Value>)];
 
-/// Reads a recipe from TOML or JSON.
-pub fn parse(text: &str, name: &str) -> Result<Recipe> {
-    if text.len() as u64 > super::document::LONGEST_TEXT {
-        return Err(super::text::too_long(name));
+impl Recipe {
+    /// Reads a recipe from a file, TOML or JSON.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is no text, or is no valid recipe: then every complaint has its line and column.
+    pub fn read(path: &Path) -> Result<Recipe> {
+        let doing = "read the recipe";
+        let length = std::fs::metadata(path).map_err(|cause| Error::file(doing, path, &cause))?;
+        if length.is_dir() {
+            return Err(Error::new(
+                ErrorKind::File,
+                format!("cannot read the recipe {}: it is a folder", path.display()),
+            ));
+        }
+        if length.len() > LONGEST_TEXT {
+            return Err(too_long(&path.display().to_string()));
+        }
+        let bytes = std::fs::read(path).map_err(|cause| Error::file(doing, path, &cause))?;
+        match String::from_utf8(bytes) {
+            Ok(text) => Recipe::parse(&text, &path.display().to_string()),
+            Err(fault) => Err(Error::new(
+                ErrorKind::Recipe,
+                format!(
+                    "{} is not a recipe: byte {} is not UTF-8 text; a recipe is a TOML or JSON file",
+                    path.display(),
+                    fault.utf8_error().valid_up_to()
+                ),
+            )),
+        }
+    }
+
+    /// Reads a recipe from a text, TOML or (if it begins with a brace) JSON; `name` is what complaints call it.
+    ///
+    /// # Errors
+    /// If it is no valid recipe. All complaints are told at once, in the order of the text.
+    pub fn parse(text: &str, name: &str) -> Result<Recipe> {
+        parse(text, name)
+    }
+}
+
+fn parse(text: &str, name: &str) -> Result<Recipe> {
+    if text.len() as u64 > LONGEST_TEXT {
+        return Err(too_long(name));
     }
     if text.trim_start_matches('\u{feff}').trim().is_empty() {
         return Err(Error::new(

@@ -34,7 +34,8 @@ pub fn describe(node: &Node) -> String {
     if !spec.inputs.is_empty() {
         text.push_str("\ninputs: a node, `node.layer`, or a number\n");
     }
-    let longest = spec.inputs.iter().map(|input| input.name.len()).chain(spec.params.iter().map(|p| p.name.len())).max();
+    let longest =
+        spec.inputs.iter().map(|input| input.name.len()).chain(spec.params.iter().map(|p| p.name.len())).max();
     let longest = longest.unwrap_or(0);
     for input in spec.inputs {
         let optional = if input.required { "" } else { " (optional)" };
@@ -94,8 +95,10 @@ fn section(text: &mut String, node: &Node) {
     for (i, param) in spec.params.iter().enumerate() {
         let takes = match param.shape {
             Shape::Choice(choices) => {
-                let names: Vec<String> =
-                    choices().iter().map(|(name, doc)| format!("`{name}` ({})", short(doc).trim_end_matches('.'))).collect();
+                let names: Vec<String> = choices()
+                    .iter()
+                    .map(|(name, doc)| format!("`{name}` ({})", short(doc).trim_end_matches('.')))
+                    .collect();
                 names.join("; ")
             }
             _ => param.expected(),

@@ -1,0 +1,121 @@
+//! What a plan is: steps, solvers and grids, as plain data.
+
+use super::key::Key;
+use super::program::{Instruction, Program};
+use crate::grid::Window;
+use serde::{Deserialize, Serialize};
+
+/// What will be done to make some layers over a window: an owned value that touches no sample.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// What is made.
+    pub window: Window,
+    /// Whether the program is asked at the window's lattice, or at points that lie anywhere within it.
+    pub scattered: bool,
+    /// The solvers that must be solved first, in order.
+    pub solves: Vec<Solve>,
+    /// What is then done, in order.
+    pub steps: Vec<Step>,
+    /// The grids that steps make.
+    pub grids: Vec<GridSlot>,
+    /// The grids that hold the results (empty if scattered: then the last step's program makes them).
+    pub outputs: Vec<usize>,
+}
+
+/// A solver to be solved.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Solve {
+    /// The node.
+    pub node: usize,
+    /// What its solution is stored under.
+    pub key: Key,
+    /// The samples of the world on its lattice.
+    pub world: Window,
+    /// Those with the margin for readers.
+    pub padded: Window,
+    /// Bytes its solution keeps.
+    pub kept: u64,
+    /// Bytes that making a tile of its sources takes at most.
+    pub tile: u64,
+}
+
+/// One step of a plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Step {
+    /// Runs a program over a window, block by block.
+    Fill {
+        /// The program.
+        program: Program,
+        /// The samples made.
+        window: Window,
+        /// The grids its outputs go to (none if scattered).
+        out: Vec<usize>,
+    },
+    /// Applies a filter.
+    Apply {
+        /// The node.
+        node: usize,
+        /// The grids its inputs are in, each holding at least the window grown by the halo.
+        inputs: Vec<Option<usize>>,
+        /// The samples made.
+        window: Window,
+        /// Samples its inputs are read beyond them.
+        halo: usize,
+        /// The grids its layers go to.
+        out: Vec<usize>,
+    },
+}
+
+/// A grid of a plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct GridSlot {
+    /// Its samples.
+    pub window: Window,
+    /// The node it holds.
+    pub node: usize,
+    /// The last step that reads it; the number of steps if it is an output.
+    pub last_use: usize,
+}
+
+impl Step {
+    /// The grids it reads.
+    pub fn reads(&self) -> Vec<usize> {
+        match self {
+            Step::Fill { program, .. } => program
+                .instructions
+                .iter()
+                .filter_map(|instruction| match instruction {
+                    Instruction::Grid { grid, .. } => Some(*grid),
+                    _ => None,
+                })
+                .collect(),
+            Step::Apply { inputs, .. } => inputs.iter().flatten().copied().collect(),
+        }
+    }
+
+    /// The grids it makes.
+    pub fn writes(&self) -> &[usize] {
+        match self {
+            Step::Fill { out, .. } | Step::Apply { out, .. } => out,
+        }
+    }
+
+    /// The samples it makes.
+    pub fn window(&self) -> &Window {
+        match self {
+            Step::Fill { window, .. } | Step::Apply { window, .. } => window,
+        }
+    }
+}
+
+impl Plan {
+    /// Whether the same program answers for every point: no step depends on where the points lie.
+    pub fn is_pointwise(&self) -> bool {
+        self.scattered && self.steps.len() == 1 && self.grids.is_empty()
+    }
+
+    /// Samples that will be made, solvers' sources not counted.
+    pub fn samples(&self) -> u64 {
+        self.steps.iter().fold(0u64, |sum, step| sum.saturating_add(step.window().len() as u64))
+    }
+}
