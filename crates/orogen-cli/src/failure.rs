@@ -60,7 +60,7 @@ impl Failure {
     }
 }
 
-/// Whether standard error shows colours: a terminal whose user has not declined (https://no-color.org).
+/// Whether standard error shows colours: a terminal whose user has not declined (<https://no-color.org>).
 fn colours() -> bool {
     let declined = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
