@@ -242,6 +242,7 @@ fn linear([lightness, a, b]: [f32; 3]) -> Light {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::grid::Window;
 
     #[test]
     fn every_byte_comes_back_through_light_and_oklab() {
@@ -294,6 +295,26 @@ mod tests {
         assert!(r > 180 && r > g && g > b, "ochre, not snow: {r} {g} {b}");
         let [r, g, b] = summit(4000.0);
         assert!(r.min(g).min(b) > 240, "snow: {r} {g} {b}");
+    }
+
+    #[test]
+    fn high_land_is_bent_towards_the_greens_and_low_land_is_not() {
+        let window = Window::new(101, 1, 1.0);
+        let grid = |height: fn(f32) -> f32| {
+            Grid::from_data(window, (0..=100).map(|i| height(i as f32 / 100.0)).collect()).unwrap()
+        };
+        let plain = Tint::hypsometric(0.0, 1000.0, -1.0);
+        let high = Tint::fit(&grid(|share| 1000.0 * share.sqrt()), -1.0);
+        let low = Tint::fit(&grid(|share| 1000.0 * share * share * share), -1.0);
+        for height in [100.0, 300.0, 500.0] {
+            let [red, bent, same] = [&plain, &high, &low].map(|tint| tint.at(height)[0]);
+            assert!(bent < red && same == red, "{height}: {bent} {red} {same}");
+        }
+        assert_eq!([0.0, 1000.0].map(|h| high.at(h)), [0.0, 1000.0].map(|h| plain.at(h)));
+        for height in [f32::NAN, 5.0, -5.0] {
+            let tint = Tint::fit(&Grid::filled(window, height), 0.0);
+            assert!([height, 0.0, 1e9].iter().all(|&h| tint.at(h).iter().all(|c| c.is_finite())));
+        }
     }
 
     #[test]
