@@ -1,5 +1,6 @@
 //! The smaller of two, with a rounded seam if asked.
 
+use super::seam::rounded;
 use crate::op::{Field, Setting, Slots};
 use orogen_noise::Points;
 
@@ -23,18 +24,6 @@ op! {
 
 impl Field for Min {
     fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
-        let smooth = self.smooth as f32;
-        let pairs = inputs.required(0).iter().zip(inputs.required(1));
-        if smooth <= 0.0 {
-            for (sample, (a, b)) in out.iter_mut().zip(pairs) {
-                *sample = if a < b { *a } else { *b };
-            }
-            return;
-        }
-        for (sample, (a, b)) in out.iter_mut().zip(pairs) {
-            let h = (smooth - (a - b).abs()).max(0.0) / smooth;
-            let plain = if a < b { *a } else { *b };
-            *sample = plain - h * h * smooth * 0.25;
-        }
+        rounded(out, inputs.required(0), inputs.required(1), self.smooth as f32, 1.0);
     }
 }

@@ -20,6 +20,7 @@ pub mod radial;
 pub mod ramp;
 pub mod remap;
 pub mod ridged;
+pub mod seam;
 pub mod terrace;
 pub mod transform;
 pub mod value;
