@@ -31,11 +31,7 @@ const STEPS: &[&Step] = &[
         about: "cargo clippy --workspace --all-targets -- -D warnings",
         run: || sh(&mut cargo("clippy --quiet --workspace --all-targets --features orogen-bench/peers -- -D warnings")),
     },
-    &Step {
-        name: "tests",
-        about: "cargo test --workspace",
-        run: || sh(&mut cargo("test --workspace")),
-    },
+    &Step { name: "tests", about: "cargo test --workspace", run: || sh(&mut cargo("test --workspace")) },
     &Step {
         name: "schema",
         about: "recipes/orogen.schema.json is what `orogen schema` prints",
