@@ -48,10 +48,10 @@ impl Default for Classic {
 }
 
 impl Classic {
-    fn program(&self) -> Program {
+    pub(crate) fn program(&self) -> Program {
         Program::single(Source::Classic(self.variant), self.seed, self.wavelength)
     }
-    fn program3(&self) -> Program {
+    pub(crate) fn program3(&self) -> Program {
         self.program()
     }
 }

@@ -103,10 +103,10 @@ impl Fractal {
             Basis::ClassicAngle => Source::Classic(ClassicVariant::Angle),
         }
     }
-    fn program(&self) -> Program {
+    pub(crate) fn program(&self) -> Program {
         Program::fractal(self.source(), self, self.basis.bound())
     }
-    fn program3(&self) -> Program {
+    pub(crate) fn program3(&self) -> Program {
         Program::fractal(self.source(), self, self.basis.bound3())
     }
 }

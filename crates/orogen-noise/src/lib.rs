@@ -39,6 +39,8 @@ mod perlin;
 mod points;
 mod program;
 mod seed;
+#[cfg(test)]
+mod tests;
 mod value;
 mod white;
 

@@ -33,10 +33,10 @@ impl Default for Perlin {
 }
 
 impl Perlin {
-    fn program(&self) -> Program {
+    pub(crate) fn program(&self) -> Program {
         Program::single(Source::Perlin, self.seed, self.wavelength)
     }
-    fn program3(&self) -> Program {
+    pub(crate) fn program3(&self) -> Program {
         self.program()
     }
 }

@@ -8,14 +8,14 @@ use std::fmt;
 /// scattered points, because everything that depends on x alone or y alone is worked out once per column or row.
 #[derive(Clone, Copy, Debug)]
 pub enum Points<'a> {
-    /// Sample k = j * xs.len() + i stands at (xs[i], ys[j]). Evenly spaced, ascending columns are fastest; any values are legal.
+    /// Sample k = j * xs.len() + i stands at `(xs[i], ys[j])`. Evenly spaced, ascending columns are fastest; any values are legal.
     Lattice {
         /// x of each column, metres.
         xs: &'a [f64],
         /// y of each row, metres.
         ys: &'a [f64],
     },
-    /// Sample k = j * xs.len() + i stands at (xs[i] + dx\[k\], ys[j] + dy\[k\]), the sums in f64: a warped lattice.
+    /// Sample k = j * xs.len() + i stands at `(xs[i] + dx[k], ys[j] + dy[k])`, the sums in f64: a warped lattice.
     Displaced {
         /// x of each column, metres.
         xs: &'a [f64],
@@ -26,7 +26,7 @@ pub enum Points<'a> {
         /// Displacement of each sample along y, metres; row-major.
         dy: &'a [f32],
     },
-    /// Sample k stands at (x\[k\], y\[k\]).
+    /// Sample k stands at `(x[k], y[k])`.
     Scattered {
         /// x of each sample, metres.
         x: &'a [f64],

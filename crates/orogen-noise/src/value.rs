@@ -42,10 +42,10 @@ impl Default for Value {
 }
 
 impl Value {
-    fn program(&self) -> Program {
+    pub(crate) fn program(&self) -> Program {
         Program::single(Source::Value(self.fade), self.seed, self.wavelength)
     }
-    fn program3(&self) -> Program {
+    pub(crate) fn program3(&self) -> Program {
         self.program()
     }
 }

@@ -27,10 +27,10 @@ impl Default for White {
 }
 
 impl White {
-    fn program(&self) -> Program {
+    pub(crate) fn program(&self) -> Program {
         Program::single(Source::Value(Fade::Step), self.seed, self.wavelength)
     }
-    fn program3(&self) -> Program {
+    pub(crate) fn program3(&self) -> Program {
         self.program()
     }
 }

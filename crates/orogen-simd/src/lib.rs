@@ -104,3 +104,6 @@ pub fn dispatch_at<B: Body>(level: Level, body: B) -> Result<B::Output, LevelErr
         _ => Err(LevelError::Unavailable(level)),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -17,7 +17,8 @@
 
 use crate::kernel::cell::Cell;
 use crate::kernel::fade::{fade, quintic};
-use crate::kernel::source::{Gradients, Hashed, Lattice, value};
+use crate::kernel::source::{ClassicSource, Gradients, Hashed, Lattice, PerlinSource, value};
+use crate::program::{Octave, Source};
 use crate::value::Fade;
 use orogen_simd::{F32Lanes, Simd};
 
@@ -73,7 +74,6 @@ pub(crate) trait Basis<S: Simd>: Copy {
     /// Row vectors per line.
     const RANK: usize;
     /// Numbers per lattice point without slopes along z; the slopes come after them.
-    #[allow(dead_code)]
     const NUMBERS: usize;
     /// Whether there is a third axis.
     const DEEP: bool;
@@ -95,6 +95,29 @@ pub(crate) trait Basis<S: Simd>: Copy {
     fn coefficients(self, simd: S, row: &Weights<S>, amplitude: S::F32, slope: S::F32) -> Coefficients<S>;
 }
 
+/// Work on one octave, whatever its basis.
+pub(crate) trait Visit<S: Simd> {
+    /// The work.
+    fn visit<B: Basis<S>>(self, simd: S, basis: B);
+}
+
+/// Does the work with the basis the source names, in the plane or (`DEEP`) in space.
+#[inline(always)]
+pub(crate) fn with_basis<S: Simd, V: Visit<S>, const DEEP: bool>(simd: S, source: Source, octave: &Octave, work: V) {
+    match (source, DEEP) {
+        (Source::Value(fade), false) => work.visit(simd, Value2(Hashed::new(simd, octave), fade)),
+        (Source::Value(fade), true) => work.visit(simd, Value3(Hashed::new(simd, octave), fade)),
+        (Source::Perlin, false) => work.visit(simd, Gradient2(PerlinSource::new(simd, octave))),
+        (Source::Perlin, true) => work.visit(simd, Gradient3(PerlinSource::new(simd, octave))),
+        (Source::Classic(variant), false) => {
+            work.visit(simd, Gradient2(ClassicSource::new(simd, octave, variant)));
+        }
+        (Source::Classic(variant), true) => {
+            work.visit(simd, Gradient3(ClassicSource::new(simd, octave, variant)));
+        }
+    }
+}
+
 /// What the third axis contributes to gradient noise.
 #[derive(Clone, Copy)]
 pub(crate) struct DepthPart<S: Simd> {
@@ -105,6 +128,19 @@ pub(crate) struct DepthPart<S: Simd> {
 #[inline(always)]
 fn blend<S: Simd>(weights: [S::F32; 2], left: S::F32, right: S::F32) -> S::F32 {
     weights[1].mul_add(right, weights[0] * left)
+}
+
+/// The row vector X in space: the ramps along x, then what the ramps along z left.
+#[inline(always)]
+fn ramp_in_space<S: Simd>(
+    column: &Weights<S>,
+    left: S::F32,
+    left_rest: S::F32,
+    right: S::F32,
+    right_rest: S::F32,
+) -> S::F32 {
+    let across = blend::<S>(column.ramp, left, right);
+    column.u[1].mul_add(right_rest, column.u[0].mul_add(left_rest, across))
 }
 
 /// Gradient noise in the plane.
@@ -121,16 +157,17 @@ pub(crate) struct Value2<S: Simd>(pub Hashed<S>, pub Fade);
 pub(crate) struct Value3<S: Simd>(pub Hashed<S>, pub Fade);
 
 #[inline(always)]
-fn gradient_coefficients<S: Simd>(simd: S, row: &Weights<S>, amplitude: S::F32, slope: S::F32) -> Coefficients<S> {
-    let scaled = |factor: S::F32| {
-        let (a, c) = (row.u[0] * factor, row.u[1] * factor);
-        [a, a * row.t[0], c, c * row.t[1]]
-    };
+fn scaled_ramps<S: Simd>(row: &Weights<S>, factor: S::F32) -> [S::F32; 4] {
+    let (a, c) = (row.u[0] * factor, row.u[1] * factor);
+    [a, a * row.t[0], c, c * row.t[1]]
+}
+
+#[inline(always)]
+fn gradient_coefficients<S: Simd>(row: &Weights<S>, amplitude: S::F32, slope: S::F32) -> Coefficients<S> {
     let steep = row.du * slope;
-    let _ = simd;
     Coefficients {
-        value: scaled(amplitude),
-        along: scaled(slope),
+        value: scaled_ramps(row, amplitude),
+        along: scaled_ramps(row, slope),
         across: [-steep, row.dramp[0] * slope, steep, row.dramp[1] * slope],
     }
 }
@@ -181,8 +218,8 @@ impl<S: Simd, G: Gradients<S>> Basis<S> for Gradient2<G> {
         ]
     }
     #[inline(always)]
-    fn coefficients(self, simd: S, row: &Weights<S>, amplitude: S::F32, slope: S::F32) -> Coefficients<S> {
-        gradient_coefficients(simd, row, amplitude, slope)
+    fn coefficients(self, _: S, row: &Weights<S>, amplitude: S::F32, slope: S::F32) -> Coefficients<S> {
+        gradient_coefficients(row, amplitude, slope)
     }
 }
 
@@ -220,23 +257,19 @@ impl<S: Simd, G: Gradients<S>> Basis<S> for Gradient3<G> {
     }
     #[inline(always)]
     fn rows<const SLOPES: bool>(self, _: S, left: &Numbers<S>, right: &Numbers<S>, column: &Weights<S>) -> Rows<S> {
-        let ramp = |first: usize| {
-            let across = blend::<S>(column.ramp, left[first], right[first]);
-            column.u[1].mul_add(right[first + 2], column.u[0].mul_add(left[first + 2], across))
-        };
         let slope = blend::<S>(column.dramp, left[0], right[0]);
         [
-            ramp(0),
+            ramp_in_space::<S>(column, left[0], left[2], right[0], right[2]),
             blend::<S>(column.u, left[1], right[1]),
             column.du.mul_add(right[2] - left[2], slope),
             column.du * (right[1] - left[1]),
-            ramp(3),
+            ramp_in_space::<S>(column, left[3], left[5], right[3], right[5]),
             blend::<S>(column.u, left[4], right[4]),
         ]
     }
     #[inline(always)]
-    fn coefficients(self, simd: S, row: &Weights<S>, amplitude: S::F32, slope: S::F32) -> Coefficients<S> {
-        gradient_coefficients(simd, row, amplitude, slope)
+    fn coefficients(self, _: S, row: &Weights<S>, amplitude: S::F32, slope: S::F32) -> Coefficients<S> {
+        gradient_coefficients(row, amplitude, slope)
     }
 }
 

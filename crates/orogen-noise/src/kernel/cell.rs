@@ -8,6 +8,8 @@ const WHOLE: f64 = 6_755_399_441_055_744.0;
 /// Lanes of one coordinate, split.
 #[derive(Clone, Copy)]
 pub(crate) struct Cell<S: Simd> {
+    /// The cell's number.
+    pub whole: S::F64,
     /// Low word of the cell's number in two's complement.
     pub low: S::U32,
     /// High word, plus a constant.
@@ -22,9 +24,15 @@ impl<S: Simd> Cell<S> {
     #[inline(always)]
     pub(crate) fn split(simd: S, position: S::F64, frequency: S::F64, offset: S::F64) -> Cell<S> {
         let u = position * frequency + offset;
-        let c = u.floor();
-        let (low, high) = (c + simd.f64(WHOLE)).words();
-        Cell { low, high, t: (u - c).narrow() }
+        let whole = u.floor();
+        Cell { t: (u - whole).narrow(), ..Cell::at(simd, whole) }
+    }
+
+    /// The lower edge of the cell of that number.
+    #[inline(always)]
+    pub(crate) fn at(simd: S, whole: S::F64) -> Cell<S> {
+        let (low, high) = (whole + simd.f64(WHOLE)).words();
+        Cell { whole, low, high, t: simd.f32(0.0) }
     }
 
     /// The high word of the next cell.

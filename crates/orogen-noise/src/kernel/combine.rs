@@ -1,5 +1,7 @@
 //! How octaves become one number, lane by lane. Lattice and scattered points share these steps.
 
+#![allow(clippy::needless_range_loop)] // see kernel/mod.rs
+
 use crate::fractal::Falloff;
 use orogen_simd::{F32Lanes, Simd, U32Lanes};
 
@@ -21,8 +23,8 @@ pub(crate) fn add_size<S: Simd>(simd: S, sum: &mut Sample<S>, octave: &Sample<S>
 pub(crate) fn finish_sizes<S: Simd>(simd: S, sum: &mut Sample<S>, sign: f32, axes: usize) {
     let sign = simd.f32(sign);
     sum[0] = (sum[0] - simd.f32(1.0)) * sign;
-    for slope in &mut sum[1..=axes] {
-        *slope = *slope * sign;
+    for axis in 1..=axes {
+        sum[axis] = sum[axis] * sign;
     }
 }
 

@@ -1,5 +1,6 @@
 //! The way in: picks the level and the path.
 
+use crate::kernel::lattice;
 use crate::kernel::scattered::{BLOCK, Block, Sums, evaluate};
 use crate::program::Program;
 use crate::{Depth, Points};
@@ -9,6 +10,20 @@ use orogen_simd::{Body, Simd};
 pub(crate) struct Outputs<'a> {
     pub value: &'a mut [f32],
     pub slopes: Option<[&'a mut [f32]; 3]>,
+}
+
+impl Outputs<'_> {
+    /// The `count` samples from `start` on. In 2D there is no slope along z: that slice is empty.
+    #[inline(always)]
+    pub(crate) fn part(&mut self, start: usize, count: usize) -> Outputs<'_> {
+        Outputs {
+            value: &mut self.value[start..start + count],
+            slopes: self
+                .slopes
+                .as_mut()
+                .map(|slopes| slopes.each_mut().map(|slope| slope.get_mut(start..start + count).unwrap_or_default())),
+        }
+    }
 }
 
 /// One call of a public `fill`. `depth` is there in 3D.
@@ -24,29 +39,36 @@ impl Body for Fill<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(mut self, simd: S) {
-        let total = self.points.len();
-        let (mut block, mut sums) = (Block::new(), Sums::new());
-        let mut start = 0;
-        while start < total {
-            let count = BLOCK.min(total - start);
-            gather(&self.points, self.depth.as_ref(), start, count, &mut block);
-            block.settle(simd, count, self.program.limit, self.depth.is_some());
-            let slopes = self.outputs.slopes.is_some();
-            if self.depth.is_some() {
-                evaluate::<S, true>(simd, self.program, &block, count, slopes, &mut sums);
-            } else {
-                evaluate::<S, false>(simd, self.program, &block, count, slopes, &mut sums);
+        let Fill { program, points, depth, outputs } = &mut self;
+        match (&*points, &*depth) {
+            (Points::Lattice { xs, ys }, None) => lattice::fill(simd, program, (xs, ys, None), outputs),
+            (Points::Lattice { xs, ys }, Some(Depth::Slice(z))) => {
+                lattice::fill(simd, program, (xs, ys, Some(*z)), outputs);
             }
-            self.outputs.value[start..start + count].copy_from_slice(&sums.0[0][..count]);
-            if let Some(slopes) = &mut self.outputs.slopes {
-                for (slope, sum) in slopes.iter_mut().zip(&sums.0[1..]) {
-                    // In 2D there is no slope along z: that slice is empty.
-                    if let Some(slope) = slope.get_mut(start..start + count) {
-                        slope.copy_from_slice(&sum[..count]);
-                    }
-                }
-            }
-            start += count;
+            (_, None) => scattered::<S, false>(simd, program, points, None, outputs),
+            (_, Some(depth)) => scattered::<S, true>(simd, program, points, Some(depth), outputs),
+        }
+    }
+}
+
+#[inline(always)]
+fn scattered<S: Simd, const DEEP: bool>(
+    simd: S,
+    program: &Program,
+    points: &Points,
+    depth: Option<&Depth>,
+    outputs: &mut Outputs,
+) {
+    let (mut block, mut sums) = (Block::new(), Sums::new());
+    for start in (0..points.len()).step_by(BLOCK) {
+        let mut target = outputs.part(start, BLOCK.min(points.len() - start));
+        let count = target.value.len();
+        gather(points, depth, start, count, &mut block);
+        block.settle(simd, count, program.limit, DEEP);
+        evaluate::<S, DEEP>(simd, program, &block, count, target.slopes.is_some(), &mut sums);
+        target.value.copy_from_slice(&sums.0[0][..count]);
+        for (slope, sum) in target.slopes.iter_mut().flatten().zip(&sums.0[1..]) {
+            slope.copy_from_slice(&sum[..slope.len()]);
         }
     }
 }

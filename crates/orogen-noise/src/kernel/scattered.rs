@@ -1,9 +1,10 @@
 //! Points anywhere: block by block, octave by octave.
 
-use crate::kernel::basis::{Basis, Coefficients, Gradient2, Gradient3, Value2, Value3, Weights};
+#![allow(clippy::needless_range_loop)] // see kernel/mod.rs
+
+use crate::kernel::basis::{Basis, Coefficients, Rows, Visit, Weights, with_basis};
 use crate::kernel::cell::Cell;
 use crate::kernel::combine::{Sample, add_size, add_weighted, finish_sizes};
-use crate::kernel::source::{ClassicSource, Hashed, PerlinSource};
 use crate::program::{Combine, Octave, Program, Source};
 use orogen_simd::{Body, F32Lanes, F64Lanes, Simd};
 
@@ -11,6 +12,7 @@ use orogen_simd::{Body, F32Lanes, F64Lanes, Simd};
 pub(crate) const BLOCK: usize = 128;
 
 /// Positions of a block, metres, clamped. Places beyond the points repeat the last one.
+#[repr(C, align(64))]
 pub(crate) struct Block {
     pub x: [f64; BLOCK],
     pub y: [f64; BLOCK],
@@ -36,6 +38,7 @@ impl Block {
 }
 
 /// Sums of a block: values and slopes along x, y and z.
+#[repr(align(64))]
 pub(crate) struct Sums(pub [[f32; BLOCK]; 4]);
 
 impl Sums {
@@ -46,16 +49,16 @@ impl Sums {
     #[inline(always)]
     fn load<S: Simd>(&self, simd: S, at: usize, places: usize) -> Sample<S> {
         let mut sample = [simd.f32(0.0); 4];
-        for (lanes, values) in sample.iter_mut().zip(&self.0).take(places) {
-            *lanes = simd.load(&values[at..]);
+        for place in 0..places {
+            sample[place] = simd.load(&self.0[place][at..]);
         }
         sample
     }
 
     #[inline(always)]
     fn store<S: Simd>(&mut self, sample: &Sample<S>, at: usize, places: usize) {
-        for (lanes, values) in sample.iter().zip(&mut self.0).take(places) {
-            lanes.store(&mut values[at..]);
+        for place in 0..places {
+            sample[place].store(&mut self.0[place][at..]);
         }
     }
 }
@@ -149,29 +152,18 @@ impl<const DEEP: bool, const SLOPES: bool> Body for AddOctave<'_, DEEP, SLOPES> 
     type Output = ();
 
     #[inline(always)]
-    fn run<S: Simd>(mut self, simd: S) {
-        let octave = self.octave;
-        match (self.source, DEEP) {
-            (Source::Value(fade), false) => self.with(simd, Value2(Hashed::new(simd, octave), fade)),
-            (Source::Value(fade), true) => self.with(simd, Value3(Hashed::new(simd, octave), fade)),
-            (Source::Perlin, false) => self.with(simd, Gradient2(PerlinSource::new(simd, octave))),
-            (Source::Perlin, true) => self.with(simd, Gradient3(PerlinSource::new(simd, octave))),
-            (Source::Classic(variant), false) => {
-                self.with(simd, Gradient2(ClassicSource::new(simd, octave, variant)));
-            }
-            (Source::Classic(variant), true) => {
-                self.with(simd, Gradient3(ClassicSource::new(simd, octave, variant)));
-            }
-        }
+    fn run<S: Simd>(self, simd: S) {
+        with_basis::<S, _, DEEP>(simd, self.source, self.octave, self);
     }
 }
 
-impl<const DEEP: bool, const SLOPES: bool> AddOctave<'_, DEEP, SLOPES> {
+impl<S: Simd, const DEEP: bool, const SLOPES: bool> Visit<S> for AddOctave<'_, DEEP, SLOPES> {
     #[inline(always)]
-    fn with<S: Simd, B: Basis<S>>(&mut self, simd: S, basis: B) {
+    fn visit<B: Basis<S>>(self, simd: S, basis: B) {
         let octave = self.octave;
         let frequency = simd.f64(octave.frequency);
-        let offset = octave.offset.map(|offset| simd.f64(offset));
+        let [ox, oy, oz] = octave.offset;
+        let offset = [simd.f64(ox), simd.f64(oy), simd.f64(oz)];
         let (amplitude, slope) = (simd.f32(octave.amplitude), simd.f32(octave.slope));
         for at in (0..self.count).step_by(S::LANES) {
             let x = Cell::split(simd, simd.load_f64(&self.block.x[at..]), frequency, offset[0]);
@@ -181,12 +173,10 @@ impl<const DEEP: bool, const SLOPES: bool> AddOctave<'_, DEEP, SLOPES> {
             let (columns, rows) = (basis.keys(simd, 0, &x), basis.keys(simd, 1, &y));
             let column = Weights::new(simd, x.t, basis.fade(simd, x.t));
             let row = Weights::new(simd, y.t, basis.fade(simd, y.t));
-            let line = |key| {
-                let left = basis.point::<SLOPES>(simd, columns[0], key, &depth);
-                let right = basis.point::<SLOPES>(simd, columns[1], key, &depth);
-                basis.rows::<SLOPES>(simd, &left, &right, &column)
-            };
-            let lines = [line(rows[0]), line(rows[1])];
+            let lines = [
+                line::<S, B, SLOPES>(simd, basis, columns, rows[0], &depth, &column),
+                line::<S, B, SLOPES>(simd, basis, columns, rows[1], &depth, &column),
+            ];
             let coefficients = basis.coefficients(simd, &row, amplitude, slope);
             let mut sum = self.sums.load(simd, at, if SLOPES { 4 } else { 1 });
             accumulate::<S, B, SLOPES>(&coefficients, &lines, &mut sum);
@@ -195,14 +185,30 @@ impl<const DEEP: bool, const SLOPES: bool> AddOctave<'_, DEEP, SLOPES> {
     }
 }
 
+/// The row vectors between a point's two lattice columns, on the line with that key.
+#[inline(always)]
+fn line<S: Simd, B: Basis<S>, const SLOPES: bool>(
+    simd: S,
+    basis: B,
+    columns: [S::U32; 2],
+    key: S::U32,
+    depth: &B::Depth,
+    column: &Weights<S>,
+) -> Rows<S> {
+    let left = basis.point::<SLOPES>(simd, columns[0], key, depth);
+    let right = basis.point::<SLOPES>(simd, columns[1], key, depth);
+    basis.rows::<SLOPES>(simd, &left, &right, column)
+}
+
 /// Adds the octave's value (and slopes) to a sample: the order of these additions is the order of the lattice path.
 #[inline(always)]
 fn accumulate<S: Simd, B: Basis<S>, const SLOPES: bool>(
     coefficients: &Coefficients<S>,
-    lines: &[[S::F32; 6]; 2],
+    lines: &[Rows<S>; 2],
     sum: &mut Sample<S>,
 ) {
-    for (line, rows) in lines.iter().enumerate() {
+    for line in 0..2 {
+        let rows = &lines[line];
         for vector in 0..B::RANK {
             let place = 2 * line + vector;
             sum[0] = coefficients.value[place].mul_add(rows[vector], sum[0]);

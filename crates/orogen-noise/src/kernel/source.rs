@@ -141,7 +141,11 @@ impl<S: Simd> Gradients<S> for PerlinSource<S> {
     fn gradient3(self, simd: S, hash: S::U32) -> [S::F32; 3] {
         let index = hash.shr(27);
         let sign = hash & simd.u32(0x8000_0000);
-        self.deep.map(|table| (simd.lookup16(table, index).bits() ^ sign).as_f32())
+        [
+            (simd.lookup16(self.deep[0], index).bits() ^ sign).as_f32(),
+            (simd.lookup16(self.deep[1], index).bits() ^ sign).as_f32(),
+            (simd.lookup16(self.deep[2], index).bits() ^ sign).as_f32(),
+        ]
     }
 }
 

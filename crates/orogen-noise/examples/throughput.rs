@@ -1,0 +1,81 @@
+//! Prints how many million points a second each noise makes on one thread, per SIMD level: 1024 x 1024 samples, wavelength of
+//! 100 samples, the best of a few runs.
+//!
+//! `cargo run --release -p orogen-noise --example throughput [LEVEL [CASE]]`
+
+use orogen_noise::{Basis, Depth, Falloff, Fractal, Kind, Level, Perlin, Points, Value, White};
+use std::time::Instant;
+
+const SIDE: usize = 1024;
+
+/// Fills a value and two slopes.
+type Work<'a> = &'a mut dyn FnMut(&mut [f32], &mut [f32], &mut [f32]);
+
+fn best(mut work: impl FnMut()) -> f64 {
+    let mut best = f64::INFINITY;
+    let begun = Instant::now();
+    while begun.elapsed().as_secs_f64() < 0.25 {
+        let start = Instant::now();
+        work();
+        best = best.min(start.elapsed().as_secs_f64());
+    }
+    (SIDE * SIDE) as f64 / best / 1e6
+}
+
+fn main() {
+    let wanted = std::env::args().nth(1);
+    let case = std::env::args().nth(2);
+    let xs: Vec<f64> = (0..SIDE).map(|i| i as f64).collect();
+    let ys = xs.clone();
+    let lattice = Points::Lattice { xs: &xs, ys: &ys };
+    let (x, y): (Vec<f64>, Vec<f64>) = (0..SIDE * SIDE).map(|k| lattice.position(k).unwrap_or_default()).unzip();
+    let scattered = Points::Scattered { x: &x, y: &y };
+    let bend: Vec<f32> = (0..SIDE * SIDE).map(|k| (k % 97) as f32 * 0.3).collect();
+    let displaced = Points::Displaced { xs: &xs, ys: &ys, dx: &bend, dy: &bend };
+    let slice = Depth::Slice(12.3);
+    let (mut out, mut dx, mut dy) = (vec![0.0; SIDE * SIDE], vec![0.0; SIDE * SIDE], vec![0.0; SIDE * SIDE]);
+    let fbm = Fractal { seed: 1, wavelength: 100.0, ..Default::default() };
+    let perlin = Perlin { seed: 1, wavelength: 100.0 };
+    let value = Value { seed: 1, wavelength: 100.0, ..Default::default() };
+    let weighted = Fractal { kind: Kind::Weighted { k: 1.0, falloff: Falloff::Reciprocal }, ..fbm };
+
+    for level in Level::available().into_iter().rev() {
+        if wanted.as_deref().is_some_and(|name| name != level.name()) || Level::force(level).is_err() {
+            continue;
+        }
+        let mut row = |name: &str, work: Work| {
+            if case.as_deref().is_some_and(|case| case != name) {
+                return;
+            }
+            println!("{:8} {name:28} {:8.0}", level.name(), best(|| work(&mut out, &mut dx, &mut dy)));
+        };
+        macro_rules! fill {
+            ($name:expr, $noise:expr, $points:expr) => {
+                row($name, &mut |out, _, _| assert!($noise.fill(&$points, out).is_ok()));
+            };
+        }
+        fill!("white, wavelength 1", White { seed: 1, wavelength: 1.0 }, lattice);
+        fill!("white, wavelength 100", White { seed: 1, wavelength: 100.0 }, lattice);
+        fill!("value", value, lattice);
+        fill!("perlin", perlin, lattice);
+        row("perlin slice in 3D", &mut |out, _, _| assert!(perlin.fill3(&lattice, &slice, out).is_ok()));
+        fill!("perlin scattered", perlin, scattered);
+        row("perlin with gradient", &mut |out, dx, dy| {
+            assert!(perlin.fill_with_gradient(&lattice, out, dx, dy).is_ok());
+        });
+        fill!("fbm6", fbm, lattice);
+        fill!("fbm6, wavelength 50", Fractal { wavelength: 50.0, ..fbm }, lattice);
+        fill!("fbm6 value", Fractal { basis: Basis::Value, ..fbm }, lattice);
+        row("fbm6 with gradient", &mut |out, dx, dy| {
+            assert!(fbm.fill_with_gradient(&lattice, out, dx, dy).is_ok());
+        });
+        fill!("fbm6 displaced", fbm, displaced);
+        fill!("fbm6 scattered", fbm, scattered);
+        fill!("ridged6", Fractal { kind: Kind::Ridged, ..fbm }, lattice);
+        fill!("weighted6", weighted, lattice);
+        row("weighted6 with gradient", &mut |out, dx, dy| {
+            assert!(weighted.fill_with_gradient(&lattice, out, dx, dy).is_ok());
+        });
+        fill!("classic diagonal fbm6", Fractal { basis: Basis::ClassicDiagonal, ..fbm }, lattice);
+    }
+}

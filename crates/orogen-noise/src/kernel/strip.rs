@@ -1,0 +1,334 @@
+//! A strip of lattice columns, octave by octave: what depends on x alone, and the row vectors of two lattice lines.
+
+#![allow(clippy::needless_range_loop)] // see kernel/mod.rs
+
+use crate::kernel::basis::{Basis, Numbers, Visit, Weights, with_basis};
+use crate::kernel::cell::{Cell, clamp};
+use crate::program::{Octave, Source};
+use orogen_simd::{Body, F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
+
+/// Columns worked on at a time. Six octaves' row vectors of this width fill half of a first-level cache.
+pub(crate) const WIDTH: usize = 256;
+/// Lattice points a strip may span and still be hashed once each.
+const SPAN: usize = WIDTH + 32;
+/// The most lanes of any level.
+pub(crate) const MOST_LANES: usize = 16;
+
+/// One octave over the strip. Each array begins on a cache line: a register that straddles two costs twice.
+#[repr(C, align(64))]
+pub(crate) struct StripOctave {
+    /// The row vectors of two lattice lines.
+    lines: [[[f32; WIDTH]; 6]; 2],
+    /// Rows: coefficients of value, slope along x (and z), slope across; four places each.
+    pub coefficients: [[[f32; MOST_LANES]; 4]; 3],
+    /// Fractions and fades per column: (1 - u) t, u (t - 1), 1 - u, u, then the slopes of the first two and of u.
+    weights: [[f32; WIDTH]; 7],
+    /// Dense: each column's lattice point, counted from its register's first.
+    index: [u32; WIDTH],
+    /// Dense: the keys of the lattice points. Else: of each column's cell and the next.
+    keys: [[u32; SPAN]; 2],
+    /// Rows: the keys of the lattice lines above and below each.
+    line_keys: [[u32; MOST_LANES]; 2],
+    /// Rows: the row of cells of each.
+    cells: [u64; MOST_LANES],
+    /// Dense: each register's first lattice point, counted from the strip's first.
+    first: [u32; WIDTH / 4],
+    /// Dense: how many lattice points there are.
+    points: usize,
+    /// Whether cells follow so closely that each register's lattice points fit one register.
+    dense: bool,
+    /// Which of the lines is the upper one.
+    upper: usize,
+    /// The row of cells the lines enclose.
+    held: Option<u64>,
+}
+
+impl StripOctave {
+    pub(crate) const fn new() -> StripOctave {
+        StripOctave {
+            weights: [[0.0; WIDTH]; 7],
+            dense: false,
+            index: [0; WIDTH],
+            first: [0; WIDTH / 4],
+            points: 0,
+            keys: [[0; SPAN]; 2],
+            lines: [[[0.0; WIDTH]; 6]; 2],
+            upper: 0,
+            held: None,
+            cells: [0; MOST_LANES],
+            line_keys: [[0; MOST_LANES]; 2],
+            coefficients: [[[0.0; MOST_LANES]; 4]; 3],
+        }
+    }
+
+    /// A row vector of the upper (0) or lower (1) line.
+    #[inline(always)]
+    pub(crate) fn row(&self, line: usize, vector: usize) -> &[f32; WIDTH] {
+        &self.lines[(self.upper ^ line) & 1][vector]
+    }
+
+    /// Makes the lines those around the group's row `r`. Only what changed is built: rows mostly share their lines, and the
+    /// next row of cells keeps one.
+    #[inline(always)]
+    pub(crate) fn hold<S: Simd>(&mut self, simd: S, job: &Job, numbers: &mut Points, r: usize) {
+        let cell = self.cells[r];
+        if self.held == Some(cell) {
+            return;
+        }
+        let [above, below] = [self.line_keys[0][r], self.line_keys[1][r]];
+        let held = self.held.replace(cell);
+        if held.map(|held| held.wrapping_add(1)) == Some(cell) {
+            self.upper ^= 1;
+            self.build(simd, job, numbers, 1, below);
+        } else if held.map(|held| held.wrapping_sub(1)) == Some(cell) {
+            self.upper ^= 1;
+            self.build(simd, job, numbers, 0, above);
+        } else {
+            self.build(simd, job, numbers, 0, above);
+            self.build(simd, job, numbers, 1, below);
+        }
+    }
+
+    #[inline(always)]
+    fn build<S: Simd>(&mut self, simd: S, job: &Job, points: &mut Points, line: usize, key: u32) {
+        let (job, strip) = (*job, self);
+        match (job.deep, job.slopes) {
+            (false, false) => simd.run(Line::<false, false> { job, strip, points, line, key }),
+            (false, true) => simd.run(Line::<false, true> { job, strip, points, line, key }),
+            (true, false) => simd.run(Line::<true, false> { job, strip, points, line, key }),
+            (true, true) => simd.run(Line::<true, true> { job, strip, points, line, key }),
+        }
+    }
+}
+
+/// The numbers of a line's lattice points.
+#[repr(align(64))]
+pub(crate) struct Points([[f32; SPAN]; 6]);
+
+/// An empty [`Points`].
+pub(crate) const NO_POINTS: Points = Points([[0.0; SPAN]; 6]);
+
+/// What is the same for all strips and rows of an octave.
+#[derive(Clone, Copy)]
+pub(crate) struct Job<'a> {
+    pub source: Source,
+    pub octave: &'a Octave,
+    pub limit: f64,
+    pub slopes: bool,
+    /// Depth of the slice, metres; unused in the plane.
+    pub z: f64,
+    /// Whether there is a third axis.
+    pub deep: bool,
+    /// Columns of the strip.
+    pub columns: usize,
+}
+
+impl Job<'_> {
+    #[inline(always)]
+    fn split<S: Simd>(&self, simd: S, position: S::F64, axis: usize) -> Cell<S> {
+        let held = clamp(simd, position, self.limit);
+        Cell::split(simd, held, simd.f64(self.octave.frequency), simd.f64(self.octave.offset[axis]))
+    }
+
+    #[inline(always)]
+    fn registers<S: Simd>(&self) -> usize {
+        self.columns.div_ceil(S::LANES).min(WIDTH / S::LANES)
+    }
+}
+
+/// Where register `v` of a strip begins; the compiler sees that it ends inside.
+#[inline(always)]
+fn at<S: Simd>(v: usize) -> usize {
+    (v & (WIDTH / S::LANES - 1)) * S::LANES
+}
+
+/// Prepares the columns of a strip.
+pub(crate) struct Columns<'a> {
+    pub job: Job<'a>,
+    pub strip: &'a mut StripOctave,
+    /// x of the columns, metres; at least one.
+    pub xs: &'a [f64],
+}
+
+impl Body for Columns<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        // What depends on x or y alone is the same in the plane and in space.
+        with_basis::<S, _, false>(simd, self.job.source, self.job.octave, self);
+    }
+}
+
+impl<S: Simd> Visit<S> for Columns<'_> {
+    #[inline(always)]
+    fn visit<B: Basis<S>>(self, simd: S, basis: B) {
+        let Columns { job, strip, xs } = self;
+        strip.held = None;
+        let Some(&last) = xs.last() else { return };
+        let registers = job.registers::<S>();
+        let mut lanes = [0.0; MOST_LANES];
+        job.split(simd, simd.load_f64_partial(xs, last), 0).whole.store(&mut lanes);
+        let origin = lanes[0];
+
+        let mut reach = simd.u32(0);
+        let mut farthest = 0;
+        for v in 0..registers {
+            let cell = job.split(simd, simd.load_f64_partial(&xs[v * S::LANES..], last), 0);
+            let column = Weights::new(simd, cell.t, basis.fade(simd, cell.t));
+            let kept =
+                [column.ramp[0], column.ramp[1], column.u[0], column.u[1], column.dramp[0], column.dramp[1], column.du];
+            for place in 0..if job.slopes { 7 } else { 4 } {
+                kept[place].store(&mut strip.weights[place][at::<S>(v)..]);
+            }
+            // Cells from the strip's first. Exact while small; what is not (or lies before the first) turns into a huge
+            // number and fails the tests below.
+            let place = (cell.whole - simd.f64(origin)).narrow().to_i32();
+            let mut places = [0; MOST_LANES];
+            place.store(&mut places);
+            let index = place - simd.u32(places[0]);
+            index.store(&mut strip.index[at::<S>(v)..]);
+            strip.first[v] = places[0];
+            reach = reach | index;
+            farthest = farthest.max(places[0]);
+        }
+        let spread = !reach.shr(S::LANES.trailing_zeros()).eq(simd.u32(0));
+        strip.dense = !spread.any() && (farthest as usize) <= SPAN - 2 * S::LANES;
+
+        if strip.dense {
+            strip.points = (farthest as usize + S::LANES + 1).next_multiple_of(S::LANES).min(SPAN);
+            const COUNT: [f64; MOST_LANES] =
+                [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
+            for p in (0..strip.points).step_by(S::LANES) {
+                let cell = Cell::at(simd, simd.f64(origin + p as f64) + simd.load_f64(&COUNT));
+                basis.keys(simd, 0, &cell)[0].store(&mut strip.keys[0][p..]);
+            }
+        } else {
+            for v in 0..registers {
+                let cell = job.split(simd, simd.load_f64_partial(&xs[v * S::LANES..], last), 0);
+                let [here, next] = basis.keys(simd, 0, &cell);
+                here.store(&mut strip.keys[0][at::<S>(v)..]);
+                next.store(&mut strip.keys[1][at::<S>(v)..]);
+            }
+        }
+    }
+}
+
+/// Prepares a group of rows, one per lane.
+pub(crate) struct Rows<'a> {
+    pub job: Job<'a>,
+    pub strip: &'a mut StripOctave,
+    /// y of the rows, metres; one to as many as there are lanes.
+    pub ys: &'a [f64],
+}
+
+impl Body for Rows<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        // What depends on x or y alone is the same in the plane and in space.
+        with_basis::<S, _, false>(simd, self.job.source, self.job.octave, self);
+    }
+}
+
+impl<S: Simd> Visit<S> for Rows<'_> {
+    #[inline(always)]
+    fn visit<B: Basis<S>>(self, simd: S, basis: B) {
+        let Rows { job, strip, ys } = self;
+        let Some(&last) = ys.last() else { return };
+        let cell = job.split(simd, simd.load_f64_partial(ys, last), 1);
+        let [above, below] = basis.keys(simd, 1, &cell);
+        above.store(&mut strip.line_keys[0]);
+        below.store(&mut strip.line_keys[1]);
+        let (mut low, mut high) = ([0; MOST_LANES], [0; MOST_LANES]);
+        cell.low.store(&mut low);
+        cell.high.store(&mut high);
+        for ((cell, low), high) in strip.cells.iter_mut().zip(low).zip(high) {
+            *cell = u64::from(high) << 32 | u64::from(low);
+        }
+        let row = Weights::new(simd, cell.t, basis.fade(simd, cell.t));
+        let made = basis.coefficients(simd, &row, simd.f32(job.octave.amplitude), simd.f32(job.octave.slope));
+        for place in 0..4 {
+            made.value[place].store(&mut strip.coefficients[0][place]);
+            made.along[place].store(&mut strip.coefficients[1][place]);
+            made.across[place].store(&mut strip.coefficients[2][place]);
+        }
+    }
+}
+
+/// Builds the row vectors of one lattice line.
+struct Line<'a, const DEEP: bool, const SLOPES: bool> {
+    job: Job<'a>,
+    strip: &'a mut StripOctave,
+    points: &'a mut Points,
+    /// The upper (0) or lower (1) line.
+    line: usize,
+    key: u32,
+}
+
+impl<const DEEP: bool, const SLOPES: bool> Body for Line<'_, DEEP, SLOPES> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        with_basis::<S, _, DEEP>(simd, self.job.source, self.job.octave, self);
+    }
+}
+
+impl<S: Simd, const DEEP: bool, const SLOPES: bool> Visit<S> for Line<'_, DEEP, SLOPES> {
+    #[inline(always)]
+    fn visit<B: Basis<S>>(self, simd: S, basis: B) {
+        let Line { job, strip, points, line, key } = self;
+        let points = &mut points.0;
+        let key = simd.u32(key);
+        let depth = basis.depth(simd, &job.split(simd, simd.f64(job.z), 2));
+        let numbers = if SLOPES && B::DEEP { 2 * B::NUMBERS } else { B::NUMBERS };
+        let dense = strip.dense;
+        if dense {
+            for p in (0..strip.points.min(SPAN)).step_by(S::LANES) {
+                let made = basis.point::<SLOPES>(simd, simd.load_u32(&strip.keys[0][p..]), key, &depth);
+                for place in 0..numbers {
+                    made[place].store(&mut points[place][p..]);
+                }
+            }
+        }
+        let rows = &mut strip.lines[(strip.upper ^ line) & 1];
+        for v in 0..job.registers::<S>() {
+            let at = at::<S>(v);
+            let none = simd.f32(0.0);
+            let (mut left, mut right): (Numbers<S>, Numbers<S>) = ([none; 6], [none; 6]);
+            if dense {
+                let first = (strip.first[v & (WIDTH / 4 - 1)] as usize).min(SPAN - 1 - S::LANES);
+                let index = simd.load_u32(&strip.index[at..]);
+                for place in 0..numbers {
+                    left[place] = simd.load(&points[place][first..]).permute(index);
+                    right[place] = simd.load(&points[place][first + 1..]).permute(index);
+                }
+            } else {
+                left = basis.point::<SLOPES>(simd, simd.load_u32(&strip.keys[0][at..]), key, &depth);
+                right = basis.point::<SLOPES>(simd, simd.load_u32(&strip.keys[1][at..]), key, &depth);
+            }
+            let weights = &strip.weights;
+            let column = Weights {
+                t: [none; 2],
+                ramp: [simd.load(&weights[0][at..]), simd.load(&weights[1][at..])],
+                u: [simd.load(&weights[2][at..]), simd.load(&weights[3][at..])],
+                dramp: if SLOPES { [simd.load(&weights[4][at..]), simd.load(&weights[5][at..])] } else { [none; 2] },
+                du: if SLOPES { simd.load(&weights[6][at..]) } else { none },
+            };
+            let made = basis.rows::<SLOPES>(simd, &left, &right, &column);
+            for place in 0..6 {
+                let lanes = made[place];
+                let wanted = match place / 2 {
+                    0 => true,
+                    1 => SLOPES,
+                    _ => SLOPES && B::DEEP,
+                };
+                if wanted && place % 2 < B::RANK {
+                    lanes.store(&mut rows[place][at..]);
+                }
+            }
+        }
+    }
+}

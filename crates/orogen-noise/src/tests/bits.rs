@@ -1,0 +1,84 @@
+//! Laws over every noise: the same bits at every level, in every way of asking, however it is cut.
+
+use crate::kernel::fill::{Fill, Outputs};
+use crate::program::Program;
+use crate::tests::common::programs;
+use crate::{Depth, Level, Points};
+use orogen_simd::{Scalar, Simd, dispatch_at};
+
+/// Where a fill runs: the real levels and the widths that stand in for other machines.
+#[derive(Clone, Copy, Debug)]
+enum Machine {
+    Real(Level),
+    Four,
+    Sixteen,
+}
+
+fn machines() -> Vec<Machine> {
+    let real = Level::available().into_iter().map(Machine::Real);
+    real.chain([Machine::Four, Machine::Sixteen]).collect()
+}
+
+/// Value and slopes at the points, as bits.
+fn run(machine: Machine, program: &Program, points: Points, depth: Option<Depth>, slopes: bool) -> [Vec<u32>; 4] {
+    let n = points.len();
+    let mut out = [0; 4].map(|_| vec![f32::NAN; n]);
+    let [value, dx, dy, dz] = &mut out;
+    let dz: &mut [f32] = if depth.is_some() { dz } else { &mut [] };
+    let outputs = Outputs { value, slopes: slopes.then_some([dx, dy, dz]) };
+    let fill = Fill { program, points, depth, outputs };
+    match machine {
+        Machine::Real(level) => dispatch_at(level, fill).unwrap(),
+        Machine::Four => Scalar::<4>.run(fill),
+        Machine::Sixteen => Scalar::<16>.run(fill),
+    }
+    out.map(|values| values.into_iter().map(f32::to_bits).collect())
+}
+
+fn axis(start: f64, cell: f64, count: usize) -> Vec<f64> {
+    (0..count).map(|i| (start + i as f64) * cell).collect()
+}
+
+#[test]
+fn every_machine_and_every_way_of_asking_gives_the_same_bits() {
+    // Wavelengths from many samples per cell to many cells per sample; near, negative, and far places; odd sizes.
+    let cases = [
+        (10.24, 300.0, (-3.0, 2.0), (37, 11)),
+        (0.1, 1.1, (-17.0, 5.0), (19, 18)),
+        (1.0 / 3.0, 0.26, (1e9, -4e8), (33, 5)),
+        (1.0, 100.0, (-150.0, -8.0), (300, 21)),
+        (5.0, 0.013, (-4.0, 7.0), (21, 4)),
+    ];
+    for (cell, wavelength, (x, y), (width, height)) in cases {
+        let (xs, ys) = (axis(x, cell, width), axis(y, cell, height));
+        let lattice = Points::Lattice { xs: &xs, ys: &ys };
+        let none = vec![0.0; width * height];
+        let displaced = Points::Displaced { xs: &xs, ys: &ys, dx: &none, dy: &none };
+        let (x, y): (Vec<f64>, Vec<f64>) = (0..lattice.len()).map(|k| lattice.position(k).unwrap()).unzip();
+        let scattered = Points::Scattered { x: &x, y: &y };
+        let z = vec![7.3 * cell; width * height];
+        for deep in [false, true] {
+            let (slice, each) = (Depth::Slice(z[0]), Depth::Each(&z));
+            for (name, program) in programs(wavelength, deep) {
+                let expected = run(Machine::Real(Level::Scalar), &program, scattered, deep.then_some(each), true);
+                assert!(expected.iter().take(3).flatten().all(|&bits| f32::from_bits(bits).is_finite()), "{name}");
+                for machine in machines() {
+                    for (points, depth) in [(lattice, slice), (displaced, slice), (scattered, slice), (lattice, each)] {
+                        for slopes in [true, false] {
+                            let found = run(machine, &program, points, deep.then_some(depth), slopes);
+                            for place in 0..if slopes { 3 + usize::from(deep) } else { 1 } {
+                                assert!(
+                                    found[place] == expected[place],
+                                    "{name} differs on {machine:?} at place {place}, deep {deep}, {width} x {height}, slopes {slopes}, {:?}: {:?} {:?}",
+                                    std::mem::discriminant(&points),
+                                    f32::from_bits(found[place][0]),
+                                    f32::from_bits(expected[place][0]),
+                                );
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

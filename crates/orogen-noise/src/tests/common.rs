@@ -1,0 +1,43 @@
+//! What the tests share.
+
+use crate::program::Program;
+use crate::{Basis, Classic, ClassicVariant, Fade, Falloff, Fractal, Kind, Perlin, Value};
+
+/// Random numbers for positions: splitmix64.
+pub(crate) struct Rng(pub u64);
+
+impl Rng {
+    pub(crate) fn word(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        crate::seed::mix64(self.0)
+    }
+    /// Between two numbers.
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * ((self.word() >> 11) as f64 / 9_007_199_254_740_992.0)
+    }
+}
+
+/// Every basis and every way to sum, in the plane or in space.
+pub(crate) fn programs(wavelength: f64, deep: bool) -> Vec<(String, Program)> {
+    let mut list = Vec::new();
+    let mut add = |name: String, plane: Program, space: Program| list.push((name, if deep { space } else { plane }));
+    for fade in [Fade::Step, Fade::Linear, Fade::Cubic, Fade::Quintic] {
+        let noise = Value { seed: 3, wavelength, fade };
+        add(format!("{noise:?}"), noise.program(), noise.program3());
+    }
+    let noise = Perlin { seed: 4, wavelength };
+    add(format!("{noise:?}"), noise.program(), noise.program3());
+    for variant in [ClassicVariant::Diagonal, ClassicVariant::Eight, ClassicVariant::Angle] {
+        let noise = Classic { seed: 5, wavelength, variant };
+        add(format!("{noise:?}"), noise.program(), noise.program3());
+    }
+    let falloffs = [Falloff::Reciprocal, Falloff::Exponential, Falloff::SquareRoot, Falloff::Smoothstep];
+    let weighted = falloffs.map(|falloff| Kind::Weighted { k: 1.5, falloff });
+    for kind in [Kind::Fbm, Kind::Ridged, Kind::Billow].into_iter().chain(weighted) {
+        for basis in [Basis::Value, Basis::Perlin] {
+            let noise = Fractal { basis, kind, seed: 6, wavelength, octaves: 4, lacunarity: 1.9, gain: 0.6 };
+            add(format!("{noise:?}"), noise.program(), noise.program3());
+        }
+    }
+    list
+}

@@ -1,0 +1,6 @@
+//! Tests that look inside.
+
+mod bits;
+mod common;
+mod statistics;
+mod twins;

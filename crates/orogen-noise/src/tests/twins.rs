@@ -1,0 +1,324 @@
+//! Twins of every noise in f64, written the textbook way: values against them, gradients against their differences.
+
+use crate::classic::{self, ClassicVariant, TABLE};
+use crate::program::{Combine, Octave, Program, Source};
+use crate::tests::common::{Rng, programs};
+use crate::{Classic, Depth, Fade, Falloff, Points, perlin};
+
+fn lerp(t: f64, a: f64, b: f64) -> f64 {
+    a + t * (b - a)
+}
+
+fn quintic(t: f64) -> f64 {
+    t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
+}
+
+/// `ImprovedNoise.noise` of the 2002 reference, operation by operation.
+fn improved_noise(x: f64, y: f64, z: f64) -> f64 {
+    let p = |i: i64| i64::from(TABLE[(i & 255) as usize]);
+    let grad = |hash: i64, x: f64, y: f64, z: f64| {
+        let h = hash & 15;
+        let u = if h < 8 { x } else { y };
+        let v = if h < 4 {
+            y
+        } else if h == 12 || h == 14 {
+            x
+        } else {
+            z
+        };
+        (if h & 1 == 0 { u } else { -u }) + (if h & 2 == 0 { v } else { -v })
+    };
+    let cell = |c: f64| c.floor() as i64 & 255;
+    let (cx, cy, cz) = (cell(x), cell(y), cell(z));
+    let (x, y, z) = (x - x.floor(), y - y.floor(), z - z.floor());
+    let (u, v, w) = (quintic(x), quintic(y), quintic(z));
+    let (a, b) = (p(cx) + cy, p(cx + 1) + cy);
+    let (aa, ab, ba, bb) = (p(a) + cz, p(a + 1) + cz, p(b) + cz, p(b + 1) + cz);
+    lerp(
+        w,
+        lerp(
+            v,
+            lerp(u, grad(p(aa), x, y, z), grad(p(ba), x - 1.0, y, z)),
+            lerp(u, grad(p(ab), x, y - 1.0, z), grad(p(bb), x - 1.0, y - 1.0, z)),
+        ),
+        lerp(
+            v,
+            lerp(u, grad(p(aa + 1), x, y, z - 1.0), grad(p(ba + 1), x - 1.0, y, z - 1.0)),
+            lerp(u, grad(p(ab + 1), x, y - 1.0, z - 1.0), grad(p(bb + 1), x - 1.0, y - 1.0, z - 1.0)),
+        ),
+    )
+}
+
+#[test]
+fn the_reference_values_are_met() {
+    #[allow(clippy::approx_constant)] // the place of the published value
+    let place = 3.14;
+    // Published: Rosetta Code, "Perlin noise", the value every port of the reference is checked with.
+    assert_eq!(improved_noise(place, 42.0, 7.0), 0.136_919_958_784_000_12);
+    let noise = Classic::default();
+    let mut rng = Rng(1);
+    for _ in 0..20_000 {
+        let [x, y, z] = [0; 3].map(|_| rng.between(-300.0, 300.0));
+        assert!((f64::from(noise.sample3(x, y, z)) - improved_noise(x, y, z)).abs() < 1e-6, "{x} {y} {z}");
+    }
+}
+
+/// The hash of a lattice point; the third cell is there in space.
+fn hash(source: Source, octave: &Octave, cells: &[f64]) -> u32 {
+    if let Source::Classic(_) = source {
+        let step = |sum: u32, (cell, words): (&f64, &[u32; 2])| {
+            TABLE[(sum.wrapping_add(*cell as i64 as u32).wrapping_add(words[0]) & 255) as usize]
+        };
+        return cells.iter().zip(&octave.words).fold(0, step);
+    }
+    let joined = cells.iter().zip(&octave.words).fold(0, |joined, (cell, words)| {
+        let bits = (cell + 6_755_399_441_055_744.0).to_bits();
+        let (low, high) = (bits as u32, (bits >> 32) as u32);
+        let first = low.wrapping_mul(0x915F_77F5).wrapping_add(words[0]);
+        joined ^ (first ^ first >> 15 ^ high ^ words[1]).wrapping_mul(0x93D7_65DD)
+    });
+    (joined ^ joined >> 15).wrapping_mul(0xADB4_A92D)
+}
+
+/// What a lattice point contributes at an offset from it.
+fn corner(source: Source, octave: &Octave, cells: &[f64], from: &[f64]) -> f64 {
+    let hash = hash(source, octave, cells);
+    let dot = |gradient: &[f64]| gradient.iter().zip(from).map(|(g, d)| g * d).sum::<f64>();
+    let pick = |tables: &[&[f32]], i: usize| -> Vec<f64> { tables.iter().map(|table| f64::from(table[i])).collect() };
+    match source {
+        Source::Value(_) => f64::from(hash as i32) / 2_147_483_648.0 * (1.0 - 1.0 / 1_048_576.0),
+        Source::Perlin => {
+            let sign = if hash >> 31 == 1 { -1.0 } else { 1.0 };
+            if from.len() == 2 {
+                // 16 directions, 22.5 degrees apart, scaled to a maximum of 1.
+                let angle = (f64::from(hash >> 28 & 7) + 0.5) * std::f64::consts::PI / 8.0;
+                sign * 1.438_117_6 * dot(&[libm::cos(angle), libm::sin(angle)])
+            } else {
+                sign * dot(&pick(&[&perlin::X_3D, &perlin::Y_3D, &perlin::Z_3D], (hash >> 27 & 15) as usize))
+            }
+        }
+        Source::Classic(_) if from.len() == 3 => {
+            dot(&pick(&[&classic::REFERENCE_X, &classic::REFERENCE_Y, &classic::REFERENCE_Z], (hash & 15) as usize))
+        }
+        Source::Classic(ClassicVariant::Angle) => {
+            let angle = f64::from(hash) * std::f64::consts::PI / 128.0;
+            dot(&[libm::cos(angle), libm::sin(angle)]) * std::f64::consts::SQRT_2
+        }
+        Source::Classic(ClassicVariant::Diagonal) => {
+            // As ports of the reference have it: u and v are x and y, or swapped, each with a sign.
+            let (u, v) = if hash & 7 < 4 { (from[0], from[1]) } else { (from[1], from[0]) };
+            (if hash & 1 == 0 { u } else { -u }) + (if hash & 2 == 0 { v } else { -v })
+        }
+        Source::Classic(ClassicVariant::Eight) => {
+            dot(&pick(&[&classic::EIGHT_X, &classic::EIGHT_Y], (hash & 7) as usize))
+        }
+    }
+}
+
+/// One octave, without its amplitude, at cell coordinates.
+fn octave_at(source: Source, octave: &Octave, at: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for corner_bits in 0..1 << at.len() {
+        let (mut cells, mut from, mut weight) = (Vec::new(), Vec::new(), 1.0);
+        for (axis, u) in at.iter().enumerate() {
+            let step = f64::from(corner_bits >> axis & 1);
+            let t = u - u.floor();
+            let fade = match source {
+                Source::Value(Fade::Step) => 0.0,
+                Source::Value(Fade::Linear) => t,
+                Source::Value(Fade::Cubic) => t * t * (3.0 - 2.0 * t),
+                _ => quintic(t),
+            };
+            weight *= if step == 1.0 { fade } else { 1.0 - fade };
+            cells.push(u.floor() + step);
+            from.push(t - step);
+        }
+        sum += weight * corner(source, octave, &cells, &from);
+    }
+    sum
+}
+
+/// A whole program at a position in metres.
+fn twin(program: &Program, position: &[f64]) -> f64 {
+    let coordinates = |octave: &Octave| -> Vec<f64> {
+        position.iter().zip(octave.offset).map(|(x, offset)| x * octave.frequency + offset).collect()
+    };
+    let values =
+        || program.octaves().iter().map(|o| f64::from(o.amplitude) * octave_at(program.source, o, &coordinates(o)));
+    match program.combine {
+        Combine::Sum => values().sum(),
+        Combine::Sizes { sign } => (values().map(f64::abs).sum::<f64>() - 1.0) * f64::from(sign),
+        Combine::Weighted { k, falloff, .. } => {
+            let mut slope = vec![0.0; position.len()];
+            let mut sum = 0.0;
+            for (octave, value) in program.octaves().iter().zip(values()) {
+                let at = coordinates(octave);
+                for (axis, slope) in slope.iter_mut().enumerate() {
+                    *slope += f64::from(octave.slope)
+                        * difference(&at, axis, 1e-5, |at| octave_at(program.source, octave, at));
+                }
+                let m = slope.iter().map(|d| d * d).sum::<f64>();
+                let k = f64::from(k);
+                sum += value
+                    * match falloff {
+                        Falloff::Reciprocal => 1.0 / (1.0 + k * m),
+                        Falloff::Exponential => libm::exp(-k * m),
+                        Falloff::SquareRoot => 1.0 / (1.0 + k * m.sqrt()),
+                        Falloff::Smoothstep => {
+                            let t = (k * m).min(1.0);
+                            1.0 - t * t * (3.0 - 2.0 * t)
+                        }
+                    };
+            }
+            sum
+        }
+    }
+}
+
+fn difference(at: &[f64], axis: usize, step: f64, f: impl Fn(&[f64]) -> f64) -> f64 {
+    let [mut ahead, mut behind] = [at.to_vec(), at.to_vec()];
+    ahead[axis] += step;
+    behind[axis] -= step;
+    (f(&ahead) - f(&behind)) / (ahead[axis] - behind[axis])
+}
+
+#[test]
+fn values_and_gradients_are_those_of_the_twins() {
+    const WAVELENGTH: f64 = 37.0;
+    for deep in [false, true] {
+        for (name, program) in programs(WAVELENGTH, deep) {
+            let mut rng = Rng(7);
+            let n = 600;
+            let mut axis = || (0..n).map(|_| rng.between(-2000.0, 2000.0)).collect::<Vec<f64>>();
+            let (x, y, z) = (axis(), axis(), axis());
+            let mut out = [0; 4].map(|_| vec![0.0; n]);
+            let [value, dx, dy, dz] = &mut out;
+            let dz: &mut [f32] = if deep { dz } else { &mut [] };
+            let (points, depth) = (Points::Scattered { x: &x, y: &y }, Depth::Each(&z));
+            crate::methods::fill(&program, &points, deep.then_some(&depth), value, Some([dx, dy, dz])).unwrap();
+            let weighted = matches!(program.combine, Combine::Weighted { .. });
+            let creased = matches!(program.combine, Combine::Sizes { .. });
+            let (mut error, mut size) = (0.0, 0.0);
+            for k in 0..n {
+                let position = [x[k], y[k], z[k]];
+                let position = &position[..if deep { 3 } else { 2 }];
+                let expected = twin(&program, position);
+                let tolerance = if weighted { 3e-6 } else { 1e-6 };
+                assert!(
+                    (f64::from(out[0][k]) - expected).abs() < tolerance,
+                    "{name} at {position:?}: {} is not {expected}",
+                    out[0][k]
+                );
+                // A crease within the step has no slope to compare with; nor has the edge of a step or linear fade.
+                let fade_edge = matches!(program.source, Source::Value(Fade::Step | Fade::Linear));
+                if weighted || fade_edge {
+                    continue;
+                }
+                for axis in 0..position.len() {
+                    let central = difference(position, axis, WAVELENGTH * 1e-5, |at| twin(&program, at));
+                    let found = f64::from(out[1 + axis][k]);
+                    if creased {
+                        let wider = difference(position, axis, WAVELENGTH * 2e-5, |at| twin(&program, at));
+                        if (wider - central).abs() * WAVELENGTH > 1e-2 {
+                            continue;
+                        }
+                    }
+                    error += (found - central) * (found - central);
+                    size += central * central;
+                }
+            }
+            if size > 0.0 {
+                let relative = libm::sqrt(error / size);
+                assert!(relative < 1e-3, "{name}, deep {deep}: the gradient is {relative} off");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_linear_fade_has_its_slope_inside_cells() {
+    let noise = crate::Value { seed: 3, wavelength: 10.0, fade: Fade::Linear };
+    let program = noise.program();
+    let (mut value, mut dx, mut dy) = ([0.0], [0.0], [0.0]);
+    let points = Points::Scattered { x: &[33.0], y: &[-7.5] };
+    noise.fill_with_gradient(&points, &mut value, &mut dx, &mut dy).unwrap();
+    for (axis, found) in [dx[0], dy[0]].into_iter().enumerate() {
+        let central = difference(&[33.0, -7.5], axis, 1e-3, |at| twin(&program, at));
+        assert!((f64::from(found) - central).abs() < 1e-5);
+    }
+}
+
+#[test]
+fn the_weighted_gradient_without_weights_is_the_plain_one() {
+    let plain = crate::Fractal { wavelength: 50.0, octaves: 5, ..Default::default() };
+    let weighted = crate::Fractal { kind: crate::Kind::Weighted { k: 0.0, falloff: Falloff::Reciprocal }, ..plain };
+    let x: Vec<f64> = (0..200).map(|i| f64::from(i) * 1.7).collect();
+    let points = Points::Lattice { xs: &x, ys: &x[..3] };
+    let run = |noise: &crate::Fractal| {
+        let mut out = [0; 3].map(|_| vec![0.0_f32; points.len()]);
+        let [value, dx, dy] = &mut out;
+        noise.fill_with_gradient(&points, value, dx, dy).unwrap();
+        out
+    };
+    for (a, b) in run(&plain).iter().flatten().zip(run(&weighted).iter().flatten()) {
+        assert!((a - b).abs() < 1e-6, "{a} {b}");
+    }
+}
+
+/// The greatest value a gradient noise reaches with gradients chosen at will, by search on a fine grid and ever finer ones around
+/// the best place: the sum over the corners of each one's best.
+fn supremum(gradients: &[Vec<f64>]) -> f64 {
+    let axes = gradients[0].len();
+    let value = |at: &[f64]| {
+        (0..1_u32 << axes)
+            .map(|corner| {
+                let step = |axis: usize| f64::from(corner >> axis & 1);
+                let weight: f64 = (0..axes)
+                    .map(|axis| if step(axis) == 1.0 { quintic(at[axis]) } else { 1.0 - quintic(at[axis]) })
+                    .product();
+                let best = gradients
+                    .iter()
+                    .map(|g| (0..axes).map(|axis| g[axis] * (at[axis] - step(axis))).sum::<f64>())
+                    .fold(f64::MIN, f64::max);
+                weight * best
+            })
+            .sum::<f64>()
+    };
+    let (mut best, mut center, mut span) = (f64::MIN, vec![0.5; axes], 0.5);
+    for _ in 0..10 {
+        let from = center.clone();
+        let side = 17_i32;
+        for k in 0..side.pow(axes as u32) {
+            let at: Vec<f64> = (0..axes)
+                .map(|axis| {
+                    let place = k / side.pow(axis as u32) % side;
+                    (from[axis] + span * (f64::from(place) / 8.0 - 1.0)).clamp(0.0, 1.0)
+                })
+                .collect();
+            let found = value(&at);
+            if found > best {
+                (best, center) = (found, at);
+            }
+        }
+        span /= 3.0;
+    }
+    best
+}
+
+#[test]
+fn the_stated_maxima_are_the_true_ones() {
+    let columns = |tables: &[&[f32]]| -> Vec<Vec<f64>> {
+        (0..tables[0].len()).map(|i| tables.iter().map(|table| f64::from(table[i])).collect()).collect()
+    };
+    let both = |half: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
+        half.iter().cloned().chain(half.iter().map(|g| g.iter().map(|x| -x).collect())).collect()
+    };
+    let near = |found: f64, stated: f64| assert!((found - stated).abs() < 3e-6, "{found} is not {stated}");
+    near(supremum(&both(columns(&[&perlin::X_2D, &perlin::Y_2D]))), 1.0);
+    near(supremum(&both(columns(&[&perlin::X_3D, &perlin::Y_3D, &perlin::Z_3D]))), 1.0);
+    near(supremum(&columns(&[&classic::DIAGONAL_X, &classic::DIAGONAL_Y])), 1.0);
+    near(supremum(&columns(&[&classic::EIGHT_X, &classic::EIGHT_Y])), 1.0);
+    let angles: Vec<f32> = (0..256).map(|i| classic::SINE[(i + 64) & 255]).collect();
+    near(supremum(&columns(&[&angles, &classic::SINE])), 1.0);
+    near(supremum(&columns(&[&classic::REFERENCE_X, &classic::REFERENCE_Y, &classic::REFERENCE_Z])), classic::BOUND_3D);
+}

@@ -1,0 +1,74 @@
+//! The bits of every noise, as hashes in a file. A change here changes every terrain made from the noise.
+//!
+//! `OROGEN_BLESS=1 cargo test -p orogen-noise --test goldens` writes the file anew.
+
+use orogen_noise::{
+    Basis, Classic, ClassicVariant, Depth, Fade, Falloff, Fractal, Kind, Level, Perlin, Points, Value, White,
+};
+
+const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/goldens.txt");
+
+/// FNV-1a over the bit patterns.
+fn hash(values: &[f32]) -> u64 {
+    values
+        .iter()
+        .flat_map(|x| x.to_bits().to_le_bytes())
+        .fold(0xCBF2_9CE4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3))
+}
+
+/// Value and gradient, in the plane and in space, of a window that crosses the origin and of one far away.
+macro_rules! golden {
+    ($list:expr, $name:expr, $noise:expr) => {{
+        let noise = $noise;
+        let mut bits = Vec::new();
+        for start in [-150.0, 3e8] {
+            let xs: Vec<f64> = (0..67).map(|i| start + f64::from(i) * 7.3).collect();
+            let ys: Vec<f64> = (0..19).map(|i| f64::from(i) * 10.24 - start).collect();
+            let points = Points::Lattice { xs: &xs, ys: &ys };
+            let mut out = [0; 7].map(|_| vec![0.0_f32; points.len()]);
+            let [a, b, c, d, e, f, g] = &mut out;
+            noise.fill_with_gradient(&points, a, b, c).unwrap();
+            noise.fill3_with_gradient(&points, &Depth::Slice(start * 0.3), d, [e, f, g]).unwrap();
+            bits.extend(out.concat());
+        }
+        $list.push(format!("{} {:016x}", $name, hash(&bits)));
+    }};
+}
+
+fn goldens() -> Vec<String> {
+    let mut list = Vec::new();
+    golden!(list, "white", White { seed: 11, wavelength: 20.0 });
+    for fade in [Fade::Linear, Fade::Cubic, Fade::Quintic] {
+        golden!(list, format!("value {fade:?}"), Value { seed: 11, wavelength: 90.0, fade });
+    }
+    golden!(list, "perlin", Perlin { seed: 11, wavelength: 90.0 });
+    for variant in [ClassicVariant::Diagonal, ClassicVariant::Eight, ClassicVariant::Angle] {
+        golden!(list, format!("classic {variant:?}"), Classic { seed: 11, wavelength: 90.0, variant });
+    }
+    let fractal = Fractal { seed: 11, wavelength: 300.0, ..Default::default() };
+    for &basis in Basis::all() {
+        golden!(list, format!("fbm {}", basis.name()), Fractal { basis, ..fractal });
+    }
+    golden!(list, "fbm odd", Fractal { lacunarity: 1.87, gain: 0.62, octaves: 9, ..fractal });
+    golden!(list, "ridged perlin", Fractal { kind: Kind::Ridged, ..fractal });
+    golden!(list, "billow perlin", Fractal { kind: Kind::Billow, ..fractal });
+    for falloff in [Falloff::Reciprocal, Falloff::Exponential, Falloff::SquareRoot, Falloff::Smoothstep] {
+        let kind = Kind::Weighted { k: 1.3, falloff };
+        golden!(list, format!("weighted {falloff:?} perlin"), Fractal { kind, ..fractal });
+        golden!(list, format!("weighted {falloff:?} value"), Fractal { kind, basis: Basis::Value, ..fractal });
+    }
+    list
+}
+
+#[test]
+fn the_bits_are_the_committed_ones_at_every_level() {
+    for level in Level::available() {
+        Level::force(level).unwrap();
+        let found = goldens().join("\n") + "\n";
+        if std::env::var_os("OROGEN_BLESS").is_some() {
+            std::fs::write(FILE, &found).unwrap();
+        }
+        let expected = std::fs::read_to_string(FILE).unwrap_or_default();
+        assert_eq!(expected, found, "level {level}");
+    }
+}

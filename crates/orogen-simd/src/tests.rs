@@ -1,0 +1,325 @@
+//! Every level does what the scalar rules say, bit for bit.
+
+use crate::*;
+
+struct Rng(u64);
+
+impl Rng {
+    fn word(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+    /// A bit pattern of an f32: any at all, or one where things go wrong.
+    fn pattern(&mut self) -> u32 {
+        let word = self.word();
+        let special = [
+            0.0,
+            -0.0,
+            1.0,
+            -1.0,
+            0.5,
+            1.5,
+            -2.5,
+            8_388_608.0,
+            8_388_607.5,
+            4_194_304.5,
+            -4_194_304.5,
+            2_147_483_648.0,
+            -2_147_483_648.0,
+            2_147_483_520.0,
+            f32::MAX,
+            f32::MIN_POSITIVE,
+            f32::INFINITY,
+            f32::NEG_INFINITY,
+            f32::NAN,
+            f32::from_bits(1),
+            f32::from_bits(0x807F_FFFF),
+        ];
+        match word >> 62 {
+            0 => special[(word % special.len() as u64) as usize].to_bits(),
+            1 => ((word as i32 as f32) / 65_536.0).to_bits(),
+            _ => word as u32,
+        }
+    }
+}
+
+/// All results of one round, 16 lanes at a time, NaNs made one.
+type Results = Vec<(&'static str, Vec<u64>)>;
+
+struct Round {
+    a: [u32; 16],
+    b: [u32; 16],
+    c: [u32; 16],
+    x: [f64; 16],
+    y: [f64; 16],
+}
+
+fn quiet(bits: u32) -> u64 {
+    if f32::from_bits(bits).is_nan() { 0x7FC0_0000 } else { u64::from(bits) }
+}
+
+impl Body for Round {
+    type Output = Results;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, s: S) -> Results {
+        let mut results: Results = Vec::new();
+        let mut float = |name: &'static str, lanes: S::F32| {
+            let mut out = [0.0; 16];
+            lanes.store(&mut out);
+            keep(&mut results, name, out[..S::LANES].iter().map(|x| quiet(x.to_bits())).collect());
+        };
+        for at in (0..16).step_by(S::LANES) {
+            let a = s.load_u32(&self.a[at..]).as_f32();
+            let b = s.load_u32(&self.b[at..]).as_f32();
+            let c = s.load_u32(&self.c[at..]).as_f32();
+            float("add", a + b);
+            float("sub", a - b);
+            float("mul", a * b);
+            float("div", a / b);
+            float("neg", -a);
+            float("abs", a.abs());
+            float("sqrt", a.sqrt());
+            float("floor", a.floor());
+            float("min", a.min(b));
+            float("max", a.max(b));
+            float("mul_add", a.mul_add(b, c));
+            float("neg_mul_add", a.neg_mul_add(b, c));
+            float("select lt", c.select(a.lt(b), a));
+            float("select le", c.select(a.le(b), a));
+            float("select eq", c.select(a.eq(b) | !b.eq(b), a));
+            float("from i32", a.bits().i32_to_f32());
+            let table: [f32; 16] = std::array::from_fn(|i| i as f32 * 1.5);
+            let half: [f32; 8] = std::array::from_fn(|i| i as f32 - 2.5);
+            float("lookup16", s.lookup16(s.table16(&table), b.bits()));
+            float("lookup8", s.lookup8(s.table8(&half), b.bits()));
+            float("gather", s.gather(&table[..11], b.bits().shr(27)));
+            float("gather far", s.gather(&table[..11], b.bits()));
+            float("gather none", s.gather(&[], b.bits()));
+            float("narrow", s.load_f64(&self.x[at..]).narrow());
+            float("partial", s.load_partial(&table[..3 + at.min(1)], 9.0).select(a.lt(a), a));
+        }
+        let mut word = |name: &'static str, lanes: S::U32| {
+            let mut out = [0; 16];
+            lanes.store(&mut out);
+            keep(&mut results, name, out[..S::LANES].iter().map(|&x| u64::from(x)).collect());
+        };
+        for at in (0..16).step_by(S::LANES) {
+            let (a, b, c) = (s.load_u32(&self.a[at..]), s.load_u32(&self.b[at..]), s.load_u32(&self.c[at..]));
+            word("add", a + b);
+            word("sub", a - b);
+            word("mul", a * b);
+            word("and", a & b);
+            word("or", a | b);
+            word("xor", a ^ b);
+            word("not", !a);
+            for count in [0, 1, 15, 31, 32, 33] {
+                word("shl", a.shl(count));
+                word("shr", a.shr(count));
+                word("sar", a.sar(count));
+            }
+            word("select eq", c.select(a.eq(b), a));
+            word("select lt", c.select(a.lt_i32(b), a));
+            word("to i32", a.as_f32().to_i32());
+            word("gather", s.gather_u32(&[5, 6, 7, 8, 9], b.shr(29)));
+            let (x, y) = (s.load_f64(&self.x[at..]), s.load_f64(&self.y[at..]));
+            for (name, lanes) in [
+                ("f64 add", x + y),
+                ("f64 sub", x - y),
+                ("f64 mul", x * y),
+                ("f64 min", x.min(y)),
+                ("f64 max", x.max(y)),
+                ("f64 floor", x.floor()),
+            ] {
+                // A NaN of f64 is quieted by hand: its low word is unspecified too.
+                let mut out = [0.0; 16];
+                lanes.store(&mut out);
+                let out = out.map(|x: f64| if x.is_nan() { f64::NAN } else { x });
+                let (low, high) = s.load_f64(&out).words();
+                word(name, low);
+                word(name, high);
+            }
+        }
+        results
+    }
+}
+
+fn keep(results: &mut Results, name: &'static str, lanes: Vec<u64>) {
+    match results.iter_mut().find(|(known, _)| *known == name) {
+        Some((_, kept)) => kept.extend(lanes),
+        None => results.push((name, lanes)),
+    }
+}
+
+#[test]
+fn every_level_gives_the_same_bits() {
+    let mut rng = Rng(1);
+    for _ in 0..3000 {
+        let mut pattern = || std::array::from_fn(|_| rng.pattern());
+        let (a, b, c) = (pattern(), pattern(), pattern());
+        let mut wide = || {
+            std::array::from_fn(|_| {
+                let word = rng.word();
+                match word & 3 {
+                    0 => f64::from_bits(word),
+                    1 => (word as i64 >> (word >> 58)) as f64 / 8.0,
+                    2 => f64::from(f32::from_bits(word as u32)),
+                    _ => f64::from((word >> 32) as i32) / 1024.0,
+                }
+            })
+        };
+        let (x, y) = (wide(), wide());
+        let round = || Round { a, b, c, x, y };
+        // What is one call of 16 lanes here is several of fewer there; 16 emulated lanes are the reference.
+        let expected = Scalar::<16>.run(round());
+        let mut found = vec![("4", Scalar::<4>.run(round())), ("8", Scalar::<8>.run(round()))];
+        for level in Level::available() {
+            found.push((level.name(), dispatch_at(level, round()).unwrap()));
+        }
+        for (level, found) in found {
+            for ((name, expected), (_, mut found)) in expected.iter().zip(found) {
+                let mut expected = expected.clone();
+                if name.starts_with("f64") || ["add", "sub", "mul", "shl", "shr", "sar"].contains(name) {
+                    // Several results share these names and interleave differently.
+                    expected.sort_unstable();
+                    found.sort_unstable();
+                }
+                assert_eq!(expected, found, "{name} at level {level}");
+            }
+        }
+    }
+}
+
+#[test]
+fn permute_reads_its_own_lanes() {
+    struct Permute;
+    impl Body for Permute {
+        type Output = Vec<f32>;
+        #[inline(always)]
+        fn run<S: Simd>(self, s: S) -> Vec<f32> {
+            let mut out = [0.0; 16];
+            let reversed = s.u32(S::LANES as u32 - 1) - s.iota();
+            let lanes = s.iota().i32_to_f32().permute(reversed + s.u32(5 * S::LANES as u32));
+            lanes.store(&mut out);
+            let mut words = [0; 16];
+            s.iota().permute(reversed).store(&mut words);
+            assert!(words[..S::LANES].iter().zip(&out).all(|(&word, &lane)| word as f32 == lane));
+            assert_eq!(s.iota().lt_i32(s.u32(3)).to_bits(), 7);
+            assert_eq!(s.f32(1.5).widen().narrow().bits().eq(s.f32(1.5).bits()).to_bits(), (1 << S::LANES) - 1);
+            out[..S::LANES].to_vec()
+        }
+    }
+    for level in Level::available() {
+        let expected: Vec<f32> = (0..level.lanes()).rev().map(|i| i as f32).collect();
+        assert_eq!(dispatch_at(level, Permute), Ok(expected));
+    }
+    assert_eq!(Scalar::<4>.run(Permute), [3.0, 2.0, 1.0, 0.0]);
+}
+
+#[test]
+fn tails_are_read_and_written_whole() {
+    struct Copy<'a>(&'a [f32], &'a mut [f32]);
+    impl Body for Copy<'_> {
+        type Output = ();
+        #[inline(always)]
+        fn run<S: Simd>(self, s: S) {
+            for (from, to) in self.0.chunks(S::LANES).zip(self.1.chunks_mut(S::LANES)) {
+                s.load_partial(from, f32::NAN).store_partial(to);
+            }
+        }
+    }
+    for level in Level::available() {
+        for length in 0..50 {
+            let from: Vec<f32> = (0..length).map(|i| i as f32).collect();
+            let mut to = vec![-1.0; length];
+            dispatch_at(level, Copy(&from, &mut to)).unwrap();
+            assert_eq!(from, to);
+        }
+    }
+}
+
+/// `a * b + c` rounded once, by whole numbers of any size: the sum's bits are laid out in a wide integer.
+fn exact_fma(a: f32, b: f32, c: f32) -> f32 {
+    if !(a.is_finite() && b.is_finite() && c.is_finite()) {
+        // Infinities and NaN need no rounding: f64 gives the right class.
+        return (f64::from(a) * f64::from(b) + f64::from(c)) as f32;
+    }
+    let parts = |x: f32| {
+        let bits = x.to_bits();
+        let (exponent, mantissa) = ((bits >> 23 & 255) as i32, i128::from(bits & 0x7F_FFFF));
+        let (mantissa, exponent) =
+            if exponent == 0 { (mantissa, -149) } else { (mantissa | 0x80_0000, exponent - 150) };
+        (if bits >> 31 == 1 { -mantissa } else { mantissa }, exponent)
+    };
+    let ((ma, ea), (mb, eb), (mc, ec)) = (parts(a), parts(b), parts(c));
+    let (product, ep) = (ma * mb, ea + eb);
+    // Where one term is so far above the other that they do not fit 128 bits, the lower only breaks ties: a stub of it does.
+    let (mut high, mut eh, mut low, mut el) = if ep >= ec { (product, ep, mc, ec) } else { (mc, ec, product, ep) };
+    if high == 0 {
+        (high, eh, low, el) = (low, el, 0, el);
+    }
+    let mut gap = eh - el;
+    if low != 0 && gap > 70 {
+        (low, gap) = (low.signum(), 70);
+        el = eh - 70;
+    } else if low == 0 {
+        gap = 0;
+        el = eh;
+    }
+    let sum = (high << gap) + low;
+    if sum == 0 {
+        return a * b + c; // the signs of zeros: the product of zeros, or an exact cancellation, is exact in f32
+    }
+    // Round |sum| * 2^el to 24 bits, or fewer where subnormal.
+    let (size, negative) = (sum.unsigned_abs(), sum < 0);
+    let top = 127 - size.leading_zeros() as i32;
+    let unit = (top - 23).max(-149 - el);
+    let rounded = if unit <= 0 {
+        size << (-unit).min(100)
+    } else if unit > 127 {
+        0
+    } else {
+        let (whole, rest, half) = (size >> unit, size & ((1 << unit) - 1), 1_u128 << (unit - 1));
+        whole + u128::from(rest > half || (rest == half && whole & 1 == 1))
+    };
+    // At most 2^24, times a power of two: exact in f64, and infinite as f32 where it overflows.
+    let exponent = el + unit;
+    let mut value = rounded as f64;
+    for _ in 0..exponent.unsigned_abs() {
+        value *= if exponent > 0 { 2.0 } else { 0.5 };
+    }
+    (if negative { -value } else { value }) as f32
+}
+
+#[test]
+fn the_scalar_fma_is_exact() {
+    let same = |a: f32, b: f32, c: f32| {
+        let (found, expected) = (fma(a, b, c), exact_fma(a, b, c));
+        assert!(
+            found.to_bits() == expected.to_bits() || found.is_nan() && expected.is_nan(),
+            "{a:e} * {b:e} + {c:e}: {found:e} is not {expected:e}"
+        );
+    };
+    let mut rng = Rng(2);
+    for _ in 0..200_000 {
+        let [a, b, c] = [0; 3].map(|_| f32::from_bits(rng.pattern()));
+        same(a, b, c);
+        // Nearly cancelling, and ties broken by a distant term.
+        let near = f32::from_bits((-(a * b)).to_bits().wrapping_add((rng.word() % 5) as u32).wrapping_sub(2));
+        same(a, b, near);
+        let scale = f32::from_bits(((rng.word() % 254 + 1) as u32) << 23);
+        same(a, scale, c);
+        // Subnormal results.
+        let [p, q] = [0; 2].map(|_| f32::from_bits((rng.word() as u32 & 0x807F_FFFF) | (63 << 23)));
+        same(p * 1e-4, q * 1e-4, f32::from_bits(rng.word() as u32 & 0x807F_FFFF));
+    }
+    // Rounding the sum to f64 and then to f32 would round twice here.
+    let tie = 1.0 + f32::EPSILON;
+    same(tie, 1.0 + f32::EPSILON / 2.0, f32::from_bits(1));
+    same(4097.0 / 4096.0, 4097.0 / 4096.0, f32::MIN_POSITIVE);
+    same(f32::MAX, f32::MAX, -f32::INFINITY);
+    same(f32::INFINITY, 0.0, 1.0);
+    same(-0.0, 1.0, 0.0);
+}
