@@ -12,7 +12,7 @@ use crate::failure::{Failure, Result, on_file};
 use crate::shell;
 use op::Op;
 
-pub const ABOUT: &str = "rewrite the module and node lists and the JSON Schema";
+pub const ABOUT: &str = "rewrite the module and node lists, the JSON Schema and the ops' reference";
 
 pub const HELP: &str = "
 Usage: cargo xtask codegen [--check]
@@ -21,6 +21,7 @@ Reads the op! block of every file in crates/orogen/src/{field,filter,solver} and
   - the module lines at the end of each folder's mod.rs
   - crates/orogen/src/node_list.rs
   - recipes/orogen.schema.json, from `orogen schema`
+  - docs/ops.md, from `orogen ops --markdown`
 
   --check  change nothing; fail if one of them is not current
 ";
@@ -29,6 +30,7 @@ Reads the op! block of every file in crates/orogen/src/{field,filter,solver} and
 const LOCALITIES: [&str; 3] = ["field", "filter", "solver"];
 
 const SCHEMA: &str = "recipes/orogen.schema.json";
+const REFERENCE: &str = "docs/ops.md";
 
 /// Rewrites or checks everything.
 pub fn run(args: &[String]) -> Result {
@@ -39,7 +41,7 @@ pub fn run(args: &[String]) -> Result {
     };
     // The lists come first: `orogen schema` does not build without the module of a new node.
     lists(check)?;
-    schema(check)
+    written(check)
 }
 
 /// The module lines and the list of nodes.
@@ -75,13 +77,16 @@ pub fn lists(check: bool) -> Result {
     settle(&src.join("node_list.rs"), &lists::node_list(&LOCALITIES, &ops), check)
 }
 
-/// The JSON Schema of recipes.
-pub fn schema(check: bool) -> Result {
-    let text = shell::capture(&mut shell::cargo("run --quiet --package orogen-cli -- schema"))?;
-    if text.trim().is_empty() {
-        return Err(Failure::new("`orogen schema` printed nothing"));
+/// What the declarations say to readers: the JSON Schema of recipes and the reference of the ops.
+pub fn written(check: bool) -> Result {
+    for (arguments, path) in [("schema", SCHEMA), ("ops --markdown", REFERENCE)] {
+        let text = shell::capture(&mut shell::cargo(&format!("run --quiet --package orogen-cli -- {arguments}")))?;
+        if text.trim().is_empty() {
+            return Err(Failure::new(format!("`orogen {arguments}` printed nothing")));
+        }
+        settle(&shell::root().join(path), &text, check)?;
     }
-    settle(&shell::root().join(SCHEMA), &text, check)
+    Ok(())
 }
 
 /// The names of a folder's modules.

@@ -1,8 +1,8 @@
 //! What the command line may say.
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
-use crate::command::{completions, explain, export, generate, new, presets, schema};
+use crate::command::{completions, explain, export, generate, new, ops, presets, schema};
 use crate::failure::Failure;
 
 /// Procedural terrain: a recipe describes a world, orogen makes it.
@@ -26,6 +26,8 @@ enum Command {
     New(new::Args),
     /// List the built-in presets.
     Presets,
+    /// List the ops that recipes are made of, or tell all about one.
+    Ops(ops::Args),
     /// Print the JSON Schema of recipes, for editors.
     Schema,
     /// Show how a recipe would be made: its nodes in order, and the memory it takes.
@@ -42,9 +44,10 @@ impl Cli {
             Command::Export(args) => export::run(&args),
             Command::New(args) => new::run(&args),
             Command::Presets => presets::run(),
+            Command::Ops(args) => ops::run(&args),
             Command::Schema => schema::run(),
             Command::Explain(args) => explain::run(&args),
-            Command::Completions(args) => completions::run(&args),
+            Command::Completions(args) => completions::run(&args, Cli::command()),
         }
     }
 }
@@ -52,7 +55,6 @@ impl Cli {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_declarations_agree_with_each_other() {

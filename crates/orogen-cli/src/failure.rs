@@ -1,13 +1,9 @@
-//! How a command ends when it does not succeed, and how that is told.
+//! How a command ends when it does not succeed.
 
-use std::fmt::Write as _;
-use std::io::{self, IsTerminal};
+use std::io;
 use std::process::ExitCode;
 
-use orogen::error::{Complaint, Location};
 use orogen::{Error, ErrorKind};
-
-use crate::say;
 
 /// Why a command did not do what it was asked to.
 #[derive(Debug)]
@@ -43,133 +39,5 @@ impl Failure {
             Failure::Engine(_) => ExitCode::FAILURE,
             Failure::BrokenPipe => ExitCode::SUCCESS,
         }
-    }
-
-    /// Tells a person, on standard error.
-    pub fn report(&self) {
-        let paint = Paint(colours());
-        match self {
-            Failure::Usage(sentence) => say::error(&paint.complaint(sentence, None)),
-            Failure::Engine(error) => {
-                for Complaint { sentence, place } in error.complaints() {
-                    say::error(&paint.complaint(sentence, place.as_ref()));
-                }
-            }
-            Failure::BrokenPipe => {}
-        }
-    }
-}
-
-/// Whether standard error shows colours: a terminal whose user has not declined (<https://no-color.org>).
-fn colours() -> bool {
-    let declined = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-    let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
-    io::stderr().is_terminal() && !declined && !dumb
-}
-
-/// The longest part of a line that is shown around a complaint.
-const SHOWN: usize = 100;
-
-/// Writes complaints, with colour or without.
-struct Paint(bool);
-
-impl Paint {
-    fn red(&self, text: &str) -> String {
-        if self.0 { format!("\x1b[1;31m{text}\x1b[0m") } else { text.to_string() }
-    }
-
-    /// `error: file:line:column: sentence`, then the line itself with its part underlined.
-    fn complaint(&self, sentence: &str, place: Option<&Location>) -> String {
-        let mut text = format!("{} ", self.red("error:"));
-        if let Some(Location { file, line, column, .. }) = place {
-            let _ = write!(text, "{}:{line}:{column}: ", printable(file));
-        }
-        text.push_str(&printable(sentence));
-        if let Some(place) = place.filter(|place| !place.text.trim().is_empty()) {
-            text.push('\n');
-            text.push_str(&self.excerpt(place));
-        }
-        text
-    }
-
-    fn excerpt(&self, place: &Location) -> String {
-        let characters: Vec<char> = place.text.chars().collect();
-        let at = place.column.saturating_sub(1).min(characters.len());
-        let (from, before) = if at > SHOWN * 2 / 3 { (at - SHOWN / 2, "...") } else { (0, "") };
-        let to = (from + SHOWN).min(characters.len());
-        let after = if to < characters.len() { "..." } else { "" };
-        // One column a character, whatever stands there: the underline must meet its word.
-        let line: String = characters[from..to].iter().map(|&c| one_column(c)).collect();
-        let length = place.length.min(to.saturating_sub(at)).max(1);
-        let margin = " ".repeat(place.line.to_string().len());
-        let indent = " ".repeat(before.len() + at - from);
-        let underline = self.red(&"^".repeat(length));
-        format!(" {} | {before}{}{after}\n {margin} | {indent}{underline}", place.line, line.trim_end())
-    }
-}
-
-fn one_column(c: char) -> char {
-    if c == '\t' {
-        ' '
-    } else if is_harmful(c) {
-        '\u{fffd}'
-    } else {
-        c
-    }
-}
-
-/// What could move a terminal's cursor, change its colours or reverse its writing.
-fn is_harmful(c: char) -> bool {
-    c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-}
-
-/// The longest sentence that is shown whole. Beyond it, it quotes something that nobody wants to read to its end.
-const SENTENCE: usize = 2000;
-
-/// A sentence that quotes a file or an argument, without what could command the terminal, and cut in its middle if it is endless.
-fn printable(text: &str) -> String {
-    let count = text.chars().count();
-    if count > SENTENCE {
-        let part = SENTENCE / 2 - 10;
-        let start: String = text.chars().take(part).collect();
-        let end: String = text.chars().skip(count - part).collect();
-        return printable(&format!("{start} ... {end}"));
-    }
-    text.chars().map(|c| if c != '\n' && is_harmful(c) { '\u{fffd}' } else { c }).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn place(column: usize, length: usize, text: &str) -> Location {
-        Location { file: "a.toml".into(), line: 12, column, length, text: text.into() }
-    }
-
-    fn check(place: &Location, expect: &str) {
-        assert_eq!(Paint(false).complaint("wrong.", Some(place)), expect);
-    }
-
-    #[test]
-    fn the_place_is_underlined() {
-        check(&place(3, 4, "  gian = 2"), "error: a.toml:12:3: wrong.\n 12 |   gian = 2\n    |   ^^^^");
-        check(&place(1, 99, "\tx"), "error: a.toml:12:1: wrong.\n 12 |  x\n    | ^^");
-        check(&place(3, 1, "x"), "error: a.toml:12:3: wrong.\n 12 | x\n    |  ^");
-        check(&place(1, 1, "  "), "error: a.toml:12:1: wrong.");
-    }
-
-    #[test]
-    fn long_lines_are_cut_around_the_place() {
-        let long = format!("{}BAD{}", "a".repeat(5000), "b".repeat(5000));
-        let text = Paint(false).complaint("wrong.", Some(&place(5001, 3, &long)));
-        let lines: Vec<&str> = text.lines().collect();
-        assert!(lines[1].len() < 120 && lines[1].starts_with(" 12 | ...aaa") && lines[1].ends_with("bbb..."));
-        assert_eq!(lines[1].find("BAD"), lines[2].find("^^^"));
-    }
-
-    #[test]
-    fn nothing_in_a_file_commands_the_terminal() {
-        let text = Paint(false).complaint("bad \x1b[31m key", Some(&place(1, 2, "\x1b]0;title\x07 = 1")));
-        assert!(!text.contains('\x1b') && !text.contains('\x07'), "{text:?}");
     }
 }

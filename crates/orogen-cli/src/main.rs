@@ -11,6 +11,7 @@ mod folder;
 mod memory;
 mod options;
 mod pictures;
+mod report;
 mod say;
 mod size;
 mod source;
@@ -24,7 +25,7 @@ fn main() -> ExitCode {
     match cli::Cli::parse().run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            failure.report();
+            report::report(&failure);
             failure.code()
         }
     }

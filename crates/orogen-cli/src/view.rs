@@ -4,7 +4,7 @@ use orogen::{Window, World};
 
 use crate::failure::Failure;
 use crate::options::View;
-use crate::size::{MOST, Size};
+use crate::size::Size;
 
 /// Samples along each side of what is looked at in a world without bounds, if nobody says.
 const UNBOUNDED: usize = 1024;
@@ -22,12 +22,8 @@ pub fn whole(world: &World, view: &View) -> Result<Window, Failure> {
         });
     };
     match view.size {
-        None => at_cell(size, view.cell.unwrap_or(spec.cell)),
-        Some(Size::Longer(n)) => {
-            let cell = size[0].max(size[1]) / n as f64;
-            let [width, height] = size.map(|length| ((length / cell).round() as usize).max(1));
-            Ok(Window::new(width, height, cell))
-        }
+        None => Ok(world.whole(view.cell.unwrap_or(spec.cell))?),
+        Some(Size::Longer(n)) => Ok(world.across(n)?),
         Some(Size::Both(width, height)) => {
             let [fitting_width, fitting_height] = [width as f64 * size[1] / size[0], height as f64 * size[0] / size[1]];
             let cell = if size[0] >= size[1] { size[0] / width as f64 } else { size[1] / height as f64 };
@@ -50,23 +46,6 @@ pub fn whole(world: &World, view: &View) -> Result<Window, Failure> {
     }
 }
 
-fn at_cell(size: [f64; 2], cell: f64) -> Result<Window, Failure> {
-    let samples = size.map(|length| (length / cell).round());
-    if samples.iter().any(|&n| n < 1.0) {
-        return Err(Failure::Usage(format!(
-            "the world of {} x {} m has no sample to show at a cell of {cell} m; ask for a smaller cell",
-            size[0], size[1]
-        )));
-    }
-    if samples.iter().any(|&n| n > MOST as f64) {
-        return Err(Failure::Usage(format!(
-            "the world of {} x {} m has more than {MOST} samples a side at a cell of {cell} m; ask for a larger cell",
-            size[0], size[1]
-        )));
-    }
-    Ok(Window::new(samples[0] as usize, samples[1] as usize, cell))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -80,6 +59,7 @@ mod tests {
         match whole(&world, &view) {
             Ok(window) => Ok((window.width, window.height, window.cell)),
             Err(Failure::Usage(sentence)) => Err(sentence),
+            Err(Failure::Engine(error)) => Err(error.to_string()),
             Err(other) => panic!("{other:?}"),
         }
     }

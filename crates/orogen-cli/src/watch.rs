@@ -1,13 +1,16 @@
 //! Making something again whenever a file changes.
 
+use std::io::Read;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use orogen::recipe::document::LONGEST_TEXT;
 use orogen::{ErrorKind, Progress};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
+use crate::report::report;
 use crate::say;
 
 /// How often the file is looked at. Its content is compared, not its time: editors that touch a file change nothing.
@@ -38,7 +41,7 @@ pub fn watch(
                 continue;
             }
             Err(Failure::BrokenPipe) => return Err(Failure::BrokenPipe),
-            Err(failure) => failure.report(),
+            Err(failure) => report(&failure),
         }
         if !quiet {
             say::error(&format!("watching {}; Ctrl-C ends", path.display()));
@@ -77,9 +80,16 @@ struct Seen {
     missed: u32,
 }
 
+/// The file's bytes, as many as a recipe may have and one more.
+fn read(path: &Path) -> Option<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).ok()?;
+    file.take(LONGEST_TEXT + 1).read_to_end(&mut bytes).ok().map(|_| bytes)
+}
+
 impl Seen {
     fn look(path: &Path) -> Seen {
-        Seen { content: std::fs::read(path).ok(), missed: 0 }
+        Seen { content: read(path), missed: 0 }
     }
 
     /// Looks until nothing changes any more.
@@ -95,7 +105,7 @@ impl Seen {
 
     /// Looks again: whether there is something else than before.
     fn changed(&mut self, path: &Path) -> bool {
-        let now = std::fs::read(path).ok();
+        let now = read(path);
         if now == self.content {
             self.missed = 0;
             return false;

@@ -90,7 +90,13 @@ pub enum Shape {
     Curve,
 }
 
-/// First line or paragraph of a doc, on one line.
+/// A bound as people write it: 1e9 rather than 1000000000.
+fn number(bound: f64) -> String {
+    let plain = (1e-3..1e6).contains(&bound.abs()) || bound == 0.0;
+    if plain { format!("{bound}") } else { format!("{bound:e}") }
+}
+
+/// First paragraph of a doc, on one line.
 pub fn short(doc: &str) -> String {
     let paragraph = doc.trim().split("\n\n").next().unwrap_or_default();
     paragraph.split_whitespace().collect::<Vec<_>>().join(" ")
@@ -242,9 +248,9 @@ impl ParamSpec {
             unit => format!(" ({unit})"),
         };
         let range = match self.range {
-            [low, high] if low.is_finite() && high.is_finite() => format!(" from {low} to {high}"),
-            [low, _] if low.is_finite() => format!(" of at least {low}"),
-            [_, high] if high.is_finite() => format!(" of at most {high}"),
+            [low, high] if low.is_finite() && high.is_finite() => format!(" from {} to {}", number(low), number(high)),
+            [low, _] if low.is_finite() => format!(" of at least {}", number(low)),
+            [_, high] if high.is_finite() => format!(" of at most {}", number(high)),
             _ => String::new(),
         };
         match self.shape {

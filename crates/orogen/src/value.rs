@@ -52,6 +52,9 @@ impl Value {
                 format!("the string \"{}...\"", text.chars().take(37).collect::<String>())
             }
             Value::Text(text) => format!("the string {text:?}"),
+            Value::List(items) if items.len() <= 4 && items.iter().all(|item| item.value.number().is_some()) => {
+                self.to_toml()
+            }
             Value::List(items) => format!("a list of {}", items.len()),
             Value::Table(_) => "a table".to_string(),
             Value::Other(name) => (*name).to_string(),

@@ -10,7 +10,7 @@ use crate::plan::planner::{Planner, world_windows};
 use crate::plan::steps::Plan;
 use crate::progress::Progress;
 use crate::recipe::document::Recipe;
-use crate::recipe::graph::{Graph, Link};
+use crate::recipe::graph::{Graph, Link, MOST_SAMPLES};
 use crate::store::Store;
 use crate::words::{bytes, suggestion};
 use std::collections::HashMap;
@@ -102,26 +102,46 @@ impl World {
         &self.recipe
     }
 
-    /// The window of the whole world at `cell` metres a sample, without its far edges: a world of L metres has round(L / cell)
-    /// samples along a side.
+    /// The window of the whole world at `cell` metres a sample: a world of length L has round(L / cell) samples along that side;
+    /// its far edge is left to a neighbour.
     ///
     /// # Errors
-    /// If the world has no bounds, or would have no sample at that cell.
+    /// If the world has no bounds, or has no sample or more than 2^31 along a side at that cell.
     pub fn whole(&self, cell: f64) -> Result<Window> {
-        let Some(size) = self.setting.size else {
-            let sentence = "this world has no bounds: say how many samples are wanted";
-            return Err(Error::new(ErrorKind::Request, sentence));
-        };
+        let size = self.bounds()?;
         let samples = size.map(|length| (length / cell).round());
-        if !samples.iter().all(|samples| (1.0..=crate::recipe::graph::MOST_SAMPLES).contains(samples)) {
-            let sentence = format!(
-                "a world of {} x {} metres has {} x {} samples at a cell of {cell} m; it must have at least one and at most 2^31 \
-                 along each side",
-                size[0], size[1], samples[0], samples[1]
-            );
-            return Err(Error::new(ErrorKind::Request, sentence));
+        let fault = |why: &str, other: &str| {
+            let [width, height] = size;
+            let sentence =
+                format!("the world of {width} x {height} m has {why} at a cell of {cell} m; ask for a {other} cell");
+            Err(Error::new(ErrorKind::Request, sentence))
+        };
+        if !samples.iter().all(|samples| *samples >= 1.0) {
+            return fault("no sample to show", "smaller");
+        }
+        if samples.iter().any(|samples| *samples > MOST_SAMPLES) {
+            return fault("more than 2^31 samples along a side", "larger");
         }
         Ok(Window::new(samples[0] as usize, samples[1] as usize, cell))
+    }
+
+    /// The window of the whole world with `samples` along its longer side.
+    ///
+    /// # Errors
+    /// If the world has no bounds, or no sample is asked for.
+    pub fn across(&self, samples: usize) -> Result<Window> {
+        let size = self.bounds()?;
+        if samples == 0 {
+            return Err(Error::new(ErrorKind::Request, "no samples along the world's longer side show nothing"));
+        }
+        let cell = size[0].max(size[1]) / samples as f64;
+        let [width, height] = size.map(|length| ((length / cell).round() as usize).max(1));
+        Ok(Window::new(width, height, cell))
+    }
+
+    fn bounds(&self) -> Result<[f64; 2]> {
+        let sentence = "this world has no bounds: say which window of it is wanted";
+        self.setting.size.ok_or_else(|| Error::new(ErrorKind::Request, sentence))
     }
 
     /// A plan for layers over a window.

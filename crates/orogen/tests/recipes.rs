@@ -1,4 +1,5 @@
 //! Recipes that are wrong, and what is said about them.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use orogen::{ErrorKind, Recipe, World, presets};
 

@@ -1,9 +1,7 @@
 //! `orogen completions`.
 
-use clap::CommandFactory;
 use clap_complete::Shell;
 
-use crate::cli::Cli;
 use crate::failure::Failure;
 use crate::say;
 
@@ -14,9 +12,9 @@ pub struct Args {
     shell: Shell,
 }
 
-/// Prints the completion script.
-pub fn run(args: &Args) -> Result<(), Failure> {
+/// Prints the script that completes `command`.
+pub fn run(args: &Args, mut command: clap::Command) -> Result<(), Failure> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), "orogen", &mut script);
+    clap_complete::generate(args.shell, &mut command, "orogen", &mut script);
     say::out(&String::from_utf8_lossy(&script))
 }

@@ -5,5 +5,6 @@ pub mod explain;
 pub mod export;
 pub mod generate;
 pub mod new;
+pub mod ops;
 pub mod presets;
 pub mod schema;

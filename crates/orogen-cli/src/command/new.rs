@@ -28,7 +28,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     file::write_whole(&path, |out| out.write_all(preset.text.as_bytes()))?;
     let path = path.display();
-    say::out(&format!("wrote {path}, a copy of the preset {}\nmake it: orogen generate {path}\n", preset.name))
+    say::out(&format!(
+        "wrote {path}, a copy of the preset {}\nmake it:             orogen generate {path}\n\
+         help in an editor:   orogen schema > orogen.schema.json\n",
+        preset.name
+    ))
 }
 
 /// NAME.toml, in the folder the name may carry.

@@ -30,8 +30,8 @@ impl Falloff {
 }
 
 op! {
-    /// Weighted fbm: each octave is damped by the slope so far, so that steep ground stays smooth and detail gathers on the
-    /// flats and crests, as if loose ground had slid. In -1 ..= 1.
+    /// Weighted fbm: octaves of noise, each damped by the slope of those before. Steep ground stays smooth, as if loose ground
+    /// had slid, and detail gathers on flats and crests. In -1 ..= 1.
     ///
     /// d += (gain lacunarity)^i grad n_i; height += gain^i n_i falloff(k |d|^2), divided by the sum of the amplitudes.
     /// Quilez, "Value noise derivatives" (2008).
