@@ -63,8 +63,15 @@ fn scattered<S: Simd, const DEEP: bool>(
     for start in (0..points.len()).step_by(BLOCK) {
         let mut target = outputs.part(start, BLOCK.min(points.len() - start));
         let count = target.value.len();
-        gather(points, depth, start, count, &mut block);
-        block.settle(simd, count, program.limit, DEEP);
+        match (*points, DEEP) {
+            (Points::Scattered { x, y }, false) => {
+                block.settle_from(simd, [&x[start..start + count], &y[start..start + count]], program.limit);
+            }
+            _ => {
+                gather(points, depth, start, count, &mut block);
+                block.settle(simd, count, program.limit, DEEP);
+            }
+        }
         evaluate::<S, DEEP>(simd, program, &block, count, target.slopes.is_some(), &mut sums);
         target.value.copy_from_slice(&sums.0[0][..count]);
         for (slope, sum) in target.slopes.iter_mut().flatten().zip(&sums.0[1..]) {

@@ -36,7 +36,9 @@ pub(crate) fn fill<S: Simd>(
     let Scratch { octaves: strips, points } = &mut *scratch;
     let strips = &mut strips[..octaves.len()];
     let slopes = outputs.slopes.is_some() || matches!(program.combine, Combine::Weighted { .. });
-    for (s, columns) in xs.chunks(WIDTH).enumerate() {
+    // Slopes double the row vectors: half the width keeps them in the first-level cache.
+    let width = if slopes { WIDTH / 2 } else { WIDTH };
+    for (s, columns) in xs.chunks(width).enumerate() {
         let job = Job {
             source: program.source,
             octave: &octaves.first().copied().unwrap_or_default(),
@@ -57,7 +59,7 @@ pub(crate) fn fill<S: Simd>(
                 for (strip, octave) in strips.iter_mut().zip(octaves) {
                     strip.hold(simd, &Job { octave, ..job }, points, r);
                 }
-                let start = (g * S::LANES + r) * xs.len() + s * WIDTH;
+                let start = (g * S::LANES + r) * xs.len() + s * width;
                 let target = outputs.part(start, columns.len());
                 row(simd, program, z.is_some(), Row { combine: program.combine, strips, r, target });
             }
@@ -120,11 +122,12 @@ impl<const RANK: usize, const KIND: usize, const DEEP: bool, const SLOPES: bool>
             // How many registers are worked on at a time is a matter of speed: enough to hide the latency of the
             // multiply-adds, few enough to stay in registers. All of them divide a strip's width.
             at += S::LANES
-                * match (KIND, SLOPES) {
-                    (SUM, false) => block::<S, DEEP, RANK, 8, KIND, SLOPES>(simd, &mut row, at),
-                    (SIZES, false) => block::<S, DEEP, RANK, 4, KIND, SLOPES>(simd, &mut row, at),
-                    (_, false) | (SUM, true) => block::<S, DEEP, RANK, 2, KIND, SLOPES>(simd, &mut row, at),
-                    (_, true) => block::<S, DEEP, RANK, 1, KIND, SLOPES>(simd, &mut row, at),
+                * match (KIND, SLOPES, S::LANES) {
+                    (SUM, false, _) => block::<S, DEEP, RANK, 8, KIND, SLOPES>(simd, &mut row, at),
+                    // 32 registers instead of 16.
+                    (SIZES, false, 16) => block::<S, DEEP, RANK, 8, KIND, SLOPES>(simd, &mut row, at),
+                    (SIZES, false, _) | (_, _, 16) => block::<S, DEEP, RANK, 4, KIND, SLOPES>(simd, &mut row, at),
+                    _ => block::<S, DEEP, RANK, 2, KIND, SLOPES>(simd, &mut row, at),
                 };
         }
     }

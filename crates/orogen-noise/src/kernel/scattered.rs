@@ -3,7 +3,7 @@
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
 use crate::kernel::basis::{Basis, Coefficients, Rows, Visit, Weights, with_basis};
-use crate::kernel::cell::Cell;
+use crate::kernel::cell::{Cell, clamp};
 use crate::kernel::combine::{Sample, add_size, add_weighted, finish_sizes};
 use crate::program::{Combine, Octave, Program, Source};
 use orogen_simd::{Body, F32Lanes, F64Lanes, Simd};
@@ -31,7 +31,17 @@ impl Block {
             let last = axis[count.saturating_sub(1).min(BLOCK - 1)];
             axis[count.min(BLOCK)..].fill(last);
             for lanes in axis.chunks_exact_mut(S::LANES) {
-                super::cell::clamp(simd, simd.load_f64(lanes), limit).store(lanes);
+                clamp(simd, simd.load_f64(lanes), limit).store(lanes);
+            }
+        }
+    }
+
+    /// The same with x and y read from where they are.
+    #[inline(always)]
+    pub(crate) fn settle_from<S: Simd>(&mut self, simd: S, [x, y]: [&[f64]; 2], limit: f64) {
+        for (axis, from) in [(&mut self.x, x), (&mut self.y, y)] {
+            for (lanes, from) in axis.chunks_exact_mut(S::LANES).zip(from.chunks(S::LANES)) {
+                clamp(simd, simd.load_f64_partial(from, 0.0), limit).store(lanes);
             }
         }
     }
