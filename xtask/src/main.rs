@@ -6,6 +6,7 @@ mod bless;
 mod clients;
 mod codegen;
 mod failure;
+mod gallery;
 mod licences;
 mod shell;
 mod steps;
@@ -31,6 +32,7 @@ const COMMANDS: &[Command] = &[
     Command { name: "clients", about: clients::ABOUT, help: clients::HELP, run: clients::run },
     Command { name: "codegen", about: codegen::ABOUT, help: codegen::HELP, run: codegen::run },
     Command { name: "bless", about: bless::ABOUT, help: bless::HELP, run: bless::run },
+    Command { name: "gallery", about: gallery::ABOUT, help: gallery::HELP, run: gallery::run },
     Command { name: "bench", about: bench::ABOUT, help: bench::HELP, run: bench::run },
 ];
 

@@ -1,0 +1,36 @@
+//! `cargo xtask gallery`: the pictures in the README and the docs, made by the program they show.
+
+use crate::failure::{Failure, Result, on_file};
+use crate::shell;
+
+pub const ABOUT: &str = "make the pictures in docs/images anew";
+
+pub const HELP: &str = "
+Usage: cargo xtask gallery
+
+Makes docs/images/ anew: one relief map of each preset, and a large one of the default preset as the README's first picture.
+";
+
+/// Samples along a side of a preset's picture, and of the first picture.
+const SIZES: [&str; 2] = ["400", "1024"];
+
+/// Makes the pictures.
+pub fn run(args: &[String]) -> Result {
+    if !args.is_empty() {
+        return Err(Failure::usage("expected nothing"));
+    }
+    let images = shell::root().join("docs/images");
+    shell::empty_dir(&images)?;
+    let work = shell::target_dir().join("gallery");
+    let listed = shell::capture(&mut shell::cargo("run --quiet --release --package orogen-cli -- presets"))?;
+    let names = listed.lines().filter_map(|line| line.split_whitespace().next());
+    let pictures = names.map(|name| (name, name, SIZES[0])).chain([("alpine", "range", SIZES[1])]);
+    for (preset, picture, size) in pictures {
+        let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- generate --quiet");
+        shell::run(orogen.args([preset, "--size", size, "-o"]).arg(&work))?;
+        let to = images.join(format!("{picture}.png"));
+        std::fs::copy(work.join("map.png"), &to).map_err(|e| on_file("write", &to, &e))?;
+        println!("{}", shell::relative(&to));
+    }
+    Ok(())
+}
