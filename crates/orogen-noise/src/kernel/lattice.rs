@@ -36,9 +36,7 @@ pub(crate) fn fill<S: Simd>(
     let Scratch { octaves: strips, points } = &mut *scratch;
     let strips = &mut strips[..octaves.len()];
     let slopes = outputs.slopes.is_some() || matches!(program.combine, Combine::Weighted { .. });
-    // Slopes double the row vectors: half the width keeps them in the first-level cache.
-    let width = if slopes { WIDTH / 2 } else { WIDTH };
-    for (s, columns) in xs.chunks(width).enumerate() {
+    for (s, columns) in xs.chunks(WIDTH).enumerate() {
         let job = Job {
             source: program.source,
             octave: &octaves.first().copied().unwrap_or_default(),
@@ -59,7 +57,7 @@ pub(crate) fn fill<S: Simd>(
                 for (strip, octave) in strips.iter_mut().zip(octaves) {
                     strip.hold(simd, &Job { octave, ..job }, points, r);
                 }
-                let start = (g * S::LANES + r) * xs.len() + s * width;
+                let start = (g * S::LANES + r) * xs.len() + s * WIDTH;
                 let target = outputs.part(start, columns.len());
                 row(simd, program, z.is_some(), Row { combine: program.combine, strips, r, target });
             }
