@@ -2,6 +2,8 @@
 
 use clap::{CommandFactory, Parser, Subcommand};
 
+use orogen::Level;
+
 use crate::command::{completions, explain, export, generate, new, ops, presets, schema};
 use crate::failure::Failure;
 
@@ -39,6 +41,8 @@ enum Command {
 impl Cli {
     /// Does what was asked.
     pub fn run(self) -> Result<(), Failure> {
+        // Somebody who forces a level is hunting a difference between levels: never quietly take another.
+        Level::environment().map_err(|wrong| Failure::Usage(format!("OROGEN_SIMD: {wrong}")))?;
         match self.command {
             Command::Generate(args) => generate::run(&args),
             Command::Export(args) => export::run(&args),

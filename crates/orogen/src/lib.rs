@@ -51,6 +51,10 @@ pub mod world;
 
 pub use error::{Error, ErrorKind, Result};
 pub use grid::{Grid, Window};
+/// The SIMD level that noise is made at, and the way to force one: the bits are the same at all of them.
+pub use orogen_noise::Level;
+/// Where a field is asked.
+pub use orogen_noise::Points;
 pub use progress::Progress;
 pub use recipe::document::{Recipe, WorldSpec};
 pub use recipe::presets;

@@ -6,13 +6,14 @@ use crate::plan::key::Key;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A place for one solution, empty until it is made.
-type Slot = Arc<Mutex<Option<Arc<Solution>>>>;
-
-/// Solutions in memory. Two threads that want the same one make it once.
+/// Solutions in memory.
+///
+/// No lock is held while a solution is made: a thread that waits for work of its own may be lent to another request for the
+/// same solution, and would then wait for itself. Two requests at the same moment may so both make it; they make the same bits,
+/// and the first is kept.
 #[derive(Default)]
 pub struct Store {
-    solutions: Mutex<HashMap<Key, Slot>>,
+    solutions: Mutex<HashMap<Key, Arc<Solution>>>,
 }
 
 impl Store {
@@ -21,18 +22,15 @@ impl Store {
     /// # Errors
     /// Whatever `make` fails with.
     pub fn solution(&self, key: Key, make: impl FnOnce() -> Result<Solution>) -> Result<Arc<Solution>> {
-        let slot = Arc::clone(lock(&self.solutions).entry(key).or_default());
-        let mut slot = lock(&slot);
-        if let Some(solution) = slot.as_ref() {
+        if let Some(solution) = self.lock().get(&key) {
             return Ok(Arc::clone(solution));
         }
-        let solution = Arc::new(make()?);
-        *slot = Some(Arc::clone(&solution));
-        Ok(solution)
+        let made = Arc::new(make()?);
+        Ok(Arc::clone(self.lock().entry(key).or_insert(made)))
     }
-}
 
-/// A lock whose holder panicked still guards sound data: slots are filled in one assignment.
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+    /// A lock whose holder panicked still guards sound data: solutions go in whole.
+    fn lock(&self) -> MutexGuard<'_, HashMap<Key, Arc<Solution>>> {
+        self.solutions.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }

@@ -290,3 +290,15 @@ fn cancelled_work_stops() {
     let error = world.grids(&["height"], &Window::new(90, 70, 10.0), &progress).unwrap_err();
     assert_eq!(error.kind(), orogen::ErrorKind::Cancelled);
 }
+
+#[test]
+fn one_world_serves_many_threads_at_once() {
+    use rayon::prelude::*;
+    // Requests from the threads of a pool, each waiting for solvers that need threads themselves.
+    let world = open(&recipe_of(&Node::named("bake").unwrap(), world_of(10.0), false), 2);
+    let window = Window::new(40, 40, 10.0).at(7, 9);
+    let expect = world.window("height", &window).unwrap();
+    let fresh = open(&recipe_of(&Node::named("bake").unwrap(), world_of(10.0), false), 2);
+    let all: Vec<Grid> = (0..32).into_par_iter().map(|_| fresh.window("height", &window).unwrap()).collect();
+    assert!(all.iter().all(|grid| *grid == expect));
+}

@@ -94,3 +94,33 @@ fn a_closed_pipe_is_quiet() {
     let output = child.wait_with_output().unwrap();
     assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0));
 }
+
+#[test]
+fn ops_are_listed_and_told_about() {
+    let folder = Folder::new();
+    let list = folder.good(&["ops"]).text();
+    assert!(list.lines().any(|line| line.starts_with("normalise") && line.contains("solver")), "{list}");
+    let fbm = folder.good(&["ops", "fbm"]).text();
+    for told in ["wavelength", "(m); default 1000.0", "whole number from 1 to 32; default 6", "\"perlin\": "] {
+        assert!(fbm.contains(told), "{told} is not told in\n{fbm}");
+    }
+    assert!(folder.good(&["ops", "--markdown"]).text().contains("### `fbm`"));
+    folder.bad(&["ops", "fbmm"], 2, "did you mean `fbm`?");
+}
+
+#[test]
+fn a_simd_level_that_is_not_there_is_refused_and_the_bits_are_the_same_at_all() {
+    let folder = Folder::with_small();
+    let run = |level: &str, out: &str| {
+        let arguments = ["generate", "small.toml", "--json", "-o", out];
+        folder.command(&arguments).env("OROGEN_SIMD", level).output().unwrap()
+    };
+    let refused = run("avx3", "x");
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("no SIMD level is called `avx3`"));
+    let hash = |level: &str, out| {
+        let told = String::from_utf8(run(level, out).stdout).unwrap();
+        told.lines().find(|line| line.contains("sha256")).map(str::to_string).unwrap()
+    };
+    assert_eq!(hash("scalar", "a"), hash("", "b"));
+}
