@@ -98,9 +98,9 @@ fn a_closed_pipe_is_quiet() {
 #[test]
 fn ops_are_listed_and_told_about() {
     let folder = Folder::new();
-    let list = folder.good(&["ops"]).text();
+    let list = folder.good(&["ops"]).text().to_string();
     assert!(list.lines().any(|line| line.starts_with("normalise") && line.contains("solver")), "{list}");
-    let fbm = folder.good(&["ops", "fbm"]).text();
+    let fbm = folder.good(&["ops", "fbm"]).text().to_string();
     for told in ["wavelength", "(m); default 1000.0", "whole number from 1 to 32; default 6", "\"perlin\": "] {
         assert!(fbm.contains(told), "{told} is not told in\n{fbm}");
     }
