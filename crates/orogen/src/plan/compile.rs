@@ -30,7 +30,7 @@ pub struct Demand {
 pub struct Draft {
     pub program: Program,
     pub demands: Vec<Demand>,
-    /// Field nodes evaluated at the block itself.
+    /// Fields and solvers evaluated at the block itself.
     pub evaluated: Vec<usize>,
     /// Solvers read.
     pub solvers: HashSet<usize>,
@@ -214,9 +214,7 @@ impl<'a> Compiler<'a> {
                     self.value(&links[source], to)
                 }
                 None => {
-                    if place == 0 {
-                        self.evaluated.push(node);
-                    }
+                    self.note(node, place);
                     let inputs = self.values(&links, place);
                     let out = self.fresh();
                     self.instructions.push(Instruction::Field { node, place, inputs, out });
@@ -225,6 +223,7 @@ impl<'a> Compiler<'a> {
             },
             Op::Solver(solver) => {
                 self.solvers.insert(node);
+                self.note(node, place);
                 let inputs = if solver.reads_inputs() { self.values(&links, place) } else { Vec::new() };
                 let out = self.fresh();
                 self.instructions.push(Instruction::Solved { node, layer: target.layer, place, inputs, out });
@@ -251,6 +250,13 @@ impl<'a> Compiler<'a> {
         let out = self.fresh();
         self.instructions.push(Instruction::Grid { grid, kind, place, out });
         out
+    }
+
+    /// Remembers what is evaluated at the block itself: what several programs do so may be better kept.
+    fn note(&mut self, node: usize, place: Place) {
+        if place == 0 {
+            self.evaluated.push(node);
+        }
     }
 
     fn fresh(&mut self) -> Register {

@@ -35,7 +35,7 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
             named.name,
             spec.op,
             spec.locality.name(),
-            short(spec.doc).split(". ").next().unwrap_or_default().trim_end_matches('.')
+            brief(&short(spec.doc))
         );
     }
     if graph.order.len() > SHOWN {
@@ -85,4 +85,18 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
         if threads == 1 { "" } else { "s" }
     );
     text
+}
+
+/// The first sentence, cut at a word where it is too long for a line.
+fn brief(doc: &str) -> String {
+    const LONGEST: usize = 60;
+    let sentence = doc.split(". ").next().unwrap_or_default().trim_end_matches('.');
+    let mut line = String::new();
+    for word in sentence.split(' ') {
+        if line.chars().count() + word.chars().count() > LONGEST {
+            return line.trim_end_matches([',', ':', ';', ' ']).to_string() + " ...";
+        }
+        line.extend([if line.is_empty() { "" } else { " " }, word]);
+    }
+    line
 }

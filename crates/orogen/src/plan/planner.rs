@@ -50,9 +50,16 @@ impl<'a> Planner<'a> {
     /// # Errors
     /// If the recipe multiplies into more evaluations than can be planned.
     pub fn plan(&self, targets: &[Link], window: Window, scattered: bool) -> Result<Plan> {
-        let first = Attempt::new(self, HashSet::new(), scattered).run(targets, window)?;
-        let keep = first.worth_keeping(self);
-        let attempt = if keep.is_empty() { first } else { Attempt::new(self, keep, scattered).run(targets, window)? };
+        // First what is a grid anyway is read instead of made again; of what is still made by several programs, what is dear.
+        let mut kept = HashSet::new();
+        let mut attempt = Attempt::new(self, HashSet::new(), scattered).run(targets, window)?;
+        for choose in [Attempt::grids_made_again, Attempt::dear_made_again] {
+            let more = choose(&attempt, self);
+            if !more.is_empty() {
+                kept.extend(more);
+                attempt = Attempt::new(self, kept.clone(), scattered).run(targets, window)?;
+            }
+        }
         attempt.finish(self, window)
     }
 
@@ -264,20 +271,20 @@ impl<'a> Attempt<'a> {
         Ok(())
     }
 
-    /// Nodes better made once and kept: those that were made for a filter anyway, and dear ones that several programs make.
-    fn worth_keeping(&self, planner: &Planner) -> HashSet<usize> {
+    /// Nodes that were made for a filter and that other programs make too.
+    fn grids_made_again(&self, _: &Planner) -> HashSet<usize> {
+        self.filled.iter().filter(|node| self.evaluated.get(node).is_some_and(|count| *count >= 2)).copied().collect()
+    }
+
+    /// Dear fields that several programs make.
+    fn dear_made_again(&self, planner: &Planner) -> HashSet<usize> {
         const DEAR: f64 = 1.0;
-        let cost = |node: usize| match planner.recipe.nodes()[node].node.op() {
-            Op::Field(field) => field.cost(),
-            _ => 0.0,
+        let is_dear = |node: &usize| match planner.recipe.nodes()[*node].node.op() {
+            Op::Field(field) => field.cost() >= DEAR,
+            _ => false,
         };
-        let shared = |node: &usize| self.evaluated.get(node).is_some_and(|count| *count >= 2);
-        self.filled
-            .iter()
-            .filter(|node| shared(node))
-            .chain(self.evaluated.keys().filter(|node| shared(node) && cost(**node) >= DEAR))
-            .copied()
-            .collect()
+        let again = self.evaluated.iter().filter(|(_, count)| **count >= 2).map(|(node, _)| *node);
+        again.filter(is_dear).collect()
     }
 
     fn finish(self, planner: &Planner, window: Window) -> Result<Plan> {
