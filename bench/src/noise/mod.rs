@@ -11,8 +11,6 @@ use crate::measure::{self, Job};
 use crate::rows::Row;
 use cases::{CASES, Case, SIZE};
 
-pub use peers::PLAIN;
-
 /// Measures every case, or those named.
 pub fn run(options: &Options) -> Result<Value, String> {
     let mut rows = Vec::new();

@@ -17,8 +17,6 @@ mod simdnoise;
 use super::cases::Case;
 use crate::measure::Job;
 
-pub use plain::PLAIN;
-
 /// What a peer does for a case; none if it does not offer it.
 pub type Peer = fn(&Case) -> Option<Job>;
 
