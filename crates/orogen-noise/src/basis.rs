@@ -1,5 +1,7 @@
 //! The list of bases, by name.
 
+use crate::tables::reference::BOUND_3D;
+
 /// A coherent noise that a [`crate::Fractal`] can be made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Basis {
@@ -65,7 +67,7 @@ impl Basis {
     pub const fn bound3(self) -> f64 {
         match self {
             Basis::White | Basis::Value | Basis::Perlin => 1.0,
-            Basis::ClassicDiagonal | Basis::ClassicEight | Basis::ClassicAngle => crate::classic::BOUND_3D,
+            Basis::ClassicDiagonal | Basis::ClassicEight | Basis::ClassicAngle => BOUND_3D,
         }
     }
 }

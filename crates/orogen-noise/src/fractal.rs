@@ -1,51 +1,9 @@
 //! Fractal sums of octaves.
 
 use crate::basis::Basis;
-use crate::classic::ClassicVariant;
-use crate::program::{Program, Source};
-use crate::value::Fade;
-
-/// How octaves become one number. All kinds are normalised by the sum of the octaves' amplitudes and stay within [-1, 1].
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub enum Kind {
-    /// Fractional Brownian motion: the sum. Its gradient is exact.
-    #[default]
-    Fbm,
-    /// The sum of 1 - 2 |noise|: sharp crests. Its gradient is exact except on the creases.
-    Ridged,
-    /// The sum of 2 |noise| - 1: sharp valleys, round hills. Its gradient is exact except on the creases.
-    Billow,
-    /// Each octave is damped by the slope so far, so that detail gathers on the flats and steep ground stays smooth:
-    ///
-    /// ```text
-    /// d += (gain lacunarity)^i grad n_i       slope of the plain sum, per wavelength of the first octave
-    /// h += gain^i n_i falloff(k |d|^2)
-    /// ```
-    ///
-    /// With gain 1/2 and lacunarity 2 this is the sum of I. Quilez, "Value noise derivatives" (2008), over any basis.
-    /// Its gradient leaves the falloff's own slope out, which would take second derivatives: an approximation, not the
-    /// exact slope. White noise has no slope, so over it this is [`Kind::Fbm`].
-    Weighted {
-        /// Strength of the damping, 0 and up; 0 is [`Kind::Fbm`]. No unit: it means the same at any wavelength. Usual: 1.
-        k: f64,
-        /// Shape of the damping.
-        falloff: Falloff,
-    },
-}
-
-/// The damping factor of [`Kind::Weighted`] for a squared slope m, 1 at no slope.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum Falloff {
-    /// 1 / (1 + k m).
-    #[default]
-    Reciprocal,
-    /// e^(-k m).
-    Exponential,
-    /// 1 / (1 + k sqrt m).
-    SquareRoot,
-    /// 1 - smoothstep(k m): no detail at all from k m = 1 on.
-    Smoothstep,
-}
+use crate::choices::{ClassicVariant, Fade, Kind};
+use crate::methods::noise_methods;
+use crate::program::{Octaves, Program, Source};
 
 /// Octaves of one basis, each finer and weaker than the one before.
 ///
@@ -103,12 +61,24 @@ impl Fractal {
             Basis::ClassicAngle => Source::Classic(ClassicVariant::Angle),
         }
     }
+    fn octaves(&self, bound: f64) -> Program {
+        Program::octaves_of(&Octaves {
+            source: self.source(),
+            bound,
+            kind: self.kind,
+            seed: self.seed,
+            wavelength: self.wavelength,
+            count: self.octaves,
+            lacunarity: self.lacunarity,
+            gain: self.gain,
+        })
+    }
     pub(crate) fn program(&self) -> Program {
-        Program::fractal(self.source(), self, self.basis.bound())
+        self.octaves(self.basis.bound())
     }
     pub(crate) fn program3(&self) -> Program {
-        Program::fractal(self.source(), self, self.basis.bound3())
+        self.octaves(self.basis.bound3())
     }
 }
 
-crate::methods::noise_methods!(Fractal);
+noise_methods!(Fractal);

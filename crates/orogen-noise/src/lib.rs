@@ -31,6 +31,7 @@
 #![forbid(unsafe_code)]
 
 mod basis;
+mod choices;
 mod classic;
 mod fractal;
 mod kernel;
@@ -39,17 +40,19 @@ mod perlin;
 mod points;
 mod program;
 mod seed;
+mod tables;
 #[cfg(test)]
 mod tests;
 mod value;
 mod white;
 
 pub use basis::Basis;
-pub use classic::{Classic, ClassicVariant};
-pub use fractal::{Falloff, Fractal, Kind};
+pub use choices::{ClassicVariant, Fade, Falloff, Kind};
+pub use classic::Classic;
+pub use fractal::Fractal;
 pub use orogen_simd::{Level, LevelError};
 pub use perlin::Perlin;
 pub use points::{Depth, Mismatch, Points};
 pub use program::MAX_OCTAVES;
-pub use value::{Fade, Value};
+pub use value::Value;
 pub use white::White;

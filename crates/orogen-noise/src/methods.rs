@@ -1,8 +1,9 @@
 //! The methods every noise has, written once.
 
-use crate::kernel::fill::{Fill, Outputs};
+use crate::kernel::fill::Fill;
+use crate::kernel::outputs::Outputs;
+use crate::points::{Depth, Mismatch, Points};
 use crate::program::Program;
-use crate::{Depth, Mismatch, Points};
 use orogen_simd::{Level, LevelError, dispatch, dispatch_at};
 
 /// Runs a program at the level in force. Slopes: two slices in 2D, three in 3D.
@@ -40,15 +41,18 @@ fn check(
     value: &[f32],
     slopes: Option<&[&mut [f32]; 3]>,
 ) -> Result<(), Mismatch> {
-    Program::check(points, &[("value", value.len())])?;
+    points.check()?;
+    let check = |slice, length| Mismatch::check(slice, length, points.len());
+    check("value", value.len())?;
     if let Some([dx, dy, dz]) = slopes {
-        Program::check(points, &[("dx", dx.len()), ("dy", dy.len())])?;
+        check("dx", dx.len())?;
+        check("dy", dy.len())?;
         if depth.is_some() {
-            Program::check(points, &[("dz", dz.len())])?;
+            check("dz", dz.len())?;
         }
     }
     if let Some(Depth::Each(z)) = depth {
-        Program::check(points, &[("depth", z.len())])?;
+        check("depth", z.len())?;
     }
     Ok(())
 }

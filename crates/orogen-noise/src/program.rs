@@ -1,9 +1,7 @@
 //! What the kernels run: one noise, as a list of octaves. Every public noise boils down to this.
 
-use crate::classic::ClassicVariant;
-use crate::fractal::{Falloff, Kind};
-use crate::value::Fade;
-use crate::{Mismatch, Points, seed};
+use crate::choices::{ClassicVariant, Fade, Falloff, Kind};
+use crate::seed;
 
 /// The most octaves a fractal has; what is asked beyond is left out. Thirty-two octaves of lacunarity 2 span a factor of four
 /// billion in wavelength, more than f32 can tell apart in one sum.
@@ -37,6 +35,21 @@ pub(crate) struct Octave {
     pub amplitude: f32,
     /// Factor of the gradient by cell coordinates.
     pub slope: f32,
+}
+
+/// What a sum of octaves is made from: the parameters of a fractal.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Octaves {
+    pub source: Source,
+    /// The greatest size of the source's values.
+    pub bound: f64,
+    pub kind: Kind,
+    pub seed: u64,
+    /// Wavelength of the first octave, metres.
+    pub wavelength: f64,
+    pub count: u32,
+    pub lacunarity: f64,
+    pub gain: f64,
 }
 
 /// How octaves become one number.
@@ -86,9 +99,10 @@ impl Program {
         Program { source, combine: Combine::Sum, limit: limit(frequency), count: 1, all }
     }
 
-    /// A fractal; `bound` is the basis's.
-    pub(crate) fn fractal(source: Source, fractal: &crate::Fractal, bound: f64) -> Program {
-        let count = fractal.octaves.min(MAX_OCTAVES);
+    /// A sum of octaves.
+    pub(crate) fn octaves_of(fractal: &Octaves) -> Program {
+        let Octaves { source, bound, .. } = *fractal;
+        let count = fractal.count.min(MAX_OCTAVES);
         let gain = if fractal.gain.is_finite() { fractal.gain.clamp(-1024.0, 1024.0) } else { 0.0 };
         let base = defined(1.0 / fractal.wavelength);
         let mut all = [Octave::default(); MAX_OCTAVES as usize];
@@ -140,17 +154,11 @@ impl Program {
     pub(crate) fn octaves(&self) -> &[Octave] {
         &self.all[..self.count.min(self.all.len())]
     }
-
-    /// Checks the lengths of what a caller gave.
-    pub(crate) fn check(points: &Points, named: &[(&'static str, usize)]) -> Result<(), Mismatch> {
-        points.check()?;
-        named.iter().try_for_each(|&(slice, length)| Mismatch::check(slice, length, points.len()))
-    }
 }
 
 fn words(source: Source, seed: u64) -> [[u32; 2]; 3] {
     match source {
-        Source::Classic(_) => crate::classic::words(seed),
+        Source::Classic(_) => seed::reference_words(seed),
         Source::Value(_) | Source::Perlin => seed::lattice_words(seed),
     }
 }

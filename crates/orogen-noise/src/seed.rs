@@ -22,6 +22,11 @@ pub(crate) fn lattice_words(seed: u64) -> [[u32; 2]; 3] {
     })
 }
 
+/// The same for the 2002 table, which holds no seed: by how many cells a seed moves the lattice, per axis.
+pub(crate) fn reference_words(seed: u64) -> [[u32; 2]; 3] {
+    if seed == 0 { [[0; 2]; 3] } else { lattice_words(seed).map(|[word, _]| [word & 255, 0]) }
+}
+
 /// The seed of a fractal's octave.
 pub(crate) const fn octave_seed(seed: u64, octave: u64) -> u64 {
     word(seed, 16 + octave)

@@ -1,20 +1,8 @@
 //! Value noise.
 
+use crate::choices::Fade;
+use crate::methods::noise_methods;
 use crate::program::{Program, Source};
-
-/// How value noise blends from one lattice point to the next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum Fade {
-    /// No blend: the value of the cell's lower corner. This is what [`crate::White`] is made of; its gradient is zero.
-    Step,
-    /// t: creases along the lattice.
-    Linear,
-    /// 3 t^2 - 2 t^3: no creases.
-    Cubic,
-    /// 6 t^5 - 15 t^4 + 10 t^3: no creases in the slope either.
-    #[default]
-    Quintic,
-}
 
 /// Value noise: random values on a square lattice, blended in between.
 ///
@@ -50,4 +38,4 @@ impl Value {
     }
 }
 
-crate::methods::noise_methods!(Value);
+noise_methods!(Value);

@@ -1,7 +1,8 @@
 //! White noise.
 
+use crate::choices::Fade;
+use crate::methods::noise_methods;
 use crate::program::{Program, Source};
-use crate::value::Fade;
 
 /// White noise: an independent value for every square (in 3D every cube) of a lattice.
 ///
@@ -35,4 +36,4 @@ impl White {
     }
 }
 
-crate::methods::noise_methods!(White);
+noise_methods!(White);

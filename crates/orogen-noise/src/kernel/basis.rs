@@ -15,11 +15,11 @@
 //!
 //! Scattered points evaluate the very same functions, so they get the very same bits.
 
+use crate::choices::Fade;
 use crate::kernel::cell::Cell;
 use crate::kernel::fade::{fade, quintic};
 use crate::kernel::source::{ClassicSource, Gradients, Hashed, Lattice, PerlinSource, value};
 use crate::program::{Octave, Source};
-use crate::value::Fade;
 use orogen_simd::{F32Lanes, Simd};
 
 /// The numbers of a lattice point: those that make values, then (from the third or fourth place on) their slopes along z.

@@ -2,7 +2,7 @@
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
-use crate::fractal::Falloff;
+use crate::choices::Falloff;
 use orogen_simd::{F32Lanes, Simd, U32Lanes};
 
 /// A value and its slopes along x, y and z.

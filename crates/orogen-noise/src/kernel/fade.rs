@@ -1,6 +1,6 @@
 //! The blends between lattice points, with their slopes.
 
-use crate::value::Fade;
+use crate::choices::Fade;
 use orogen_simd::{F32Lanes, Simd};
 
 /// 6 t^5 - 15 t^4 + 10 t^3 and its slope 30 t^2 (t - 1)^2.

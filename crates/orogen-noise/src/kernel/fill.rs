@@ -1,30 +1,11 @@
 //! The way in: picks the level and the path.
 
 use crate::kernel::lattice;
+use crate::kernel::outputs::Outputs;
 use crate::kernel::scattered::{BLOCK, Block, Sums, evaluate};
+use crate::points::{Depth, Points};
 use crate::program::Program;
-use crate::{Depth, Points};
 use orogen_simd::{Body, Simd};
-
-/// Where results go: values, and slopes along x, y and z where they are wanted. Lengths are checked.
-pub(crate) struct Outputs<'a> {
-    pub value: &'a mut [f32],
-    pub slopes: Option<[&'a mut [f32]; 3]>,
-}
-
-impl Outputs<'_> {
-    /// The `count` samples from `start` on. In 2D there is no slope along z: that slice is empty.
-    #[inline(always)]
-    pub(crate) fn part(&mut self, start: usize, count: usize) -> Outputs<'_> {
-        Outputs {
-            value: &mut self.value[start..start + count],
-            slopes: self
-                .slopes
-                .as_mut()
-                .map(|slopes| slopes.each_mut().map(|slope| slope.get_mut(start..start + count).unwrap_or_default())),
-        }
-    }
-}
 
 /// One call of a public `fill`. `depth` is there in 3D.
 pub(crate) struct Fill<'a> {

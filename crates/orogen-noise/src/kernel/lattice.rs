@@ -3,7 +3,7 @@
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
 use crate::kernel::combine::{Sample, add_size, add_weighted, finish_sizes};
-use crate::kernel::fill::Outputs;
+use crate::kernel::outputs::Outputs;
 use crate::kernel::strip::{Columns, Job, NO_POINTS, Points, Rows, StripOctave, WIDTH};
 use crate::program::{Combine, Program, Source};
 use orogen_simd::{Body, F32Lanes, Simd};

@@ -9,6 +9,7 @@ pub(crate) mod combine;
 pub(crate) mod fade;
 pub(crate) mod fill;
 pub(crate) mod lattice;
+pub(crate) mod outputs;
 pub(crate) mod scattered;
 pub(crate) mod source;
 pub(crate) mod strip;

@@ -1,9 +1,9 @@
 //! How lattice points get their numbers: hashes, values and gradients.
 
-use crate::classic::{ClassicVariant, TABLE};
+use crate::choices::ClassicVariant;
 use crate::kernel::cell::Cell;
 use crate::program::Octave;
-use crate::{classic, perlin};
+use crate::tables::{directions, reference};
 use orogen_simd::{F32Lanes, Simd, U32Lanes};
 
 /// A lattice whose points have hashes. A point's hash comes from one key per axis, so that a lattice of samples works the keys out
@@ -98,12 +98,12 @@ impl<S: Simd> PerlinSource<S> {
             let [a, b, c, d, e, f, g, h] = half;
             [a, b, c, d, e, f, g, h, -a, -b, -c, -d, -e, -f, -g, -h]
         }
-        const WIDE: [[f32; 16]; 2] = [both(perlin::X_2D), both(perlin::Y_2D)];
+        const WIDE: [[f32; 16]; 2] = [both(directions::X_2D), both(directions::Y_2D)];
         PerlinSource {
             lattice: Hashed::new(simd, octave),
             wide: [simd.table16(&WIDE[0]), simd.table16(&WIDE[1])],
-            half: [simd.table8(&perlin::X_2D), simd.table8(&perlin::Y_2D)],
-            deep: [simd.table16(&perlin::X_3D), simd.table16(&perlin::Y_3D), simd.table16(&perlin::Z_3D)],
+            half: [simd.table8(&directions::X_2D), simd.table8(&directions::Y_2D)],
+            deep: [simd.table16(&directions::X_3D), simd.table16(&directions::Y_3D), simd.table16(&directions::Z_3D)],
         }
     }
 }
@@ -165,7 +165,7 @@ impl<S: Simd> ClassicSource<S> {
 
     #[inline(always)]
     fn permuted(simd: S, number: S::U32) -> S::U32 {
-        simd.gather_u32(&TABLE, number & simd.u32(255))
+        simd.gather_u32(&reference::TABLE, number & simd.u32(255))
     }
 }
 
@@ -190,13 +190,13 @@ impl<S: Simd> Gradients<S> for ClassicSource<S> {
     #[inline(always)]
     fn gradient2(self, simd: S, hash: S::U32) -> [S::F32; 2] {
         let [x, y] = match self.variant {
-            ClassicVariant::Diagonal => [&classic::DIAGONAL_X, &classic::DIAGONAL_Y],
-            ClassicVariant::Eight => [&classic::EIGHT_X, &classic::EIGHT_Y],
+            ClassicVariant::Diagonal => [&reference::DIAGONAL_X, &reference::DIAGONAL_Y],
+            ClassicVariant::Eight => [&reference::EIGHT_X, &reference::EIGHT_Y],
             ClassicVariant::Angle => {
                 let quarter = hash + simd.u32(64);
                 return [
-                    simd.gather(&classic::SINE, quarter & simd.u32(255)),
-                    simd.gather(&classic::SINE, hash & simd.u32(255)),
+                    simd.gather(&reference::SINE, quarter & simd.u32(255)),
+                    simd.gather(&reference::SINE, hash & simd.u32(255)),
                 ];
             }
         };
@@ -205,9 +205,9 @@ impl<S: Simd> Gradients<S> for ClassicSource<S> {
     #[inline(always)]
     fn gradient3(self, simd: S, hash: S::U32) -> [S::F32; 3] {
         [
-            simd.lookup16(simd.table16(&classic::REFERENCE_X), hash),
-            simd.lookup16(simd.table16(&classic::REFERENCE_Y), hash),
-            simd.lookup16(simd.table16(&classic::REFERENCE_Z), hash),
+            simd.lookup16(simd.table16(&reference::REFERENCE_X), hash),
+            simd.lookup16(simd.table16(&reference::REFERENCE_Y), hash),
+            simd.lookup16(simd.table16(&reference::REFERENCE_Z), hash),
         ]
     }
 }

@@ -1,6 +1,7 @@
 //! Laws over every noise: the same bits at every level, in every way of asking, however it is cut.
 
-use crate::kernel::fill::{Fill, Outputs};
+use crate::kernel::fill::Fill;
+use crate::kernel::outputs::Outputs;
 use crate::program::Program;
 use crate::tests::common::programs;
 use crate::{Depth, Level, Points};

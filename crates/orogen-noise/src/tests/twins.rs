@@ -1,9 +1,10 @@
 //! Twins of every noise in f64, written the textbook way: values against them, gradients against their differences.
 
-use crate::classic::{self, ClassicVariant, TABLE};
 use crate::program::{Combine, Octave, Program, Source};
+use crate::tables::directions;
+use crate::tables::reference::{self, TABLE};
 use crate::tests::common::{Rng, programs};
-use crate::{Classic, Depth, Fade, Falloff, Points, perlin};
+use crate::{Classic, ClassicVariant, Depth, Fade, Falloff, Points};
 
 fn lerp(t: f64, a: f64, b: f64) -> f64 {
     a + t * (b - a)
@@ -94,12 +95,16 @@ fn corner(source: Source, octave: &Octave, cells: &[f64], from: &[f64]) -> f64 {
                 let angle = (f64::from(hash >> 28 & 7) + 0.5) * std::f64::consts::PI / 8.0;
                 sign * 1.438_117_6 * dot(&[libm::cos(angle), libm::sin(angle)])
             } else {
-                sign * dot(&pick(&[&perlin::X_3D, &perlin::Y_3D, &perlin::Z_3D], (hash >> 27 & 15) as usize))
+                sign * dot(&pick(
+                    &[&directions::X_3D, &directions::Y_3D, &directions::Z_3D],
+                    (hash >> 27 & 15) as usize,
+                ))
             }
         }
-        Source::Classic(_) if from.len() == 3 => {
-            dot(&pick(&[&classic::REFERENCE_X, &classic::REFERENCE_Y, &classic::REFERENCE_Z], (hash & 15) as usize))
-        }
+        Source::Classic(_) if from.len() == 3 => dot(&pick(
+            &[&reference::REFERENCE_X, &reference::REFERENCE_Y, &reference::REFERENCE_Z],
+            (hash & 15) as usize,
+        )),
         Source::Classic(ClassicVariant::Angle) => {
             let angle = f64::from(hash) * std::f64::consts::PI / 128.0;
             dot(&[libm::cos(angle), libm::sin(angle)]) * std::f64::consts::SQRT_2
@@ -110,7 +115,7 @@ fn corner(source: Source, octave: &Octave, cells: &[f64], from: &[f64]) -> f64 {
             (if hash & 1 == 0 { u } else { -u }) + (if hash & 2 == 0 { v } else { -v })
         }
         Source::Classic(ClassicVariant::Eight) => {
-            dot(&pick(&[&classic::EIGHT_X, &classic::EIGHT_Y], (hash & 7) as usize))
+            dot(&pick(&[&reference::EIGHT_X, &reference::EIGHT_Y], (hash & 7) as usize))
         }
     }
 }
@@ -314,11 +319,14 @@ fn the_stated_maxima_are_the_true_ones() {
         half.iter().cloned().chain(half.iter().map(|g| g.iter().map(|x| -x).collect())).collect()
     };
     let near = |found: f64, stated: f64| assert!((found - stated).abs() < 3e-6, "{found} is not {stated}");
-    near(supremum(&both(columns(&[&perlin::X_2D, &perlin::Y_2D]))), 1.0);
-    near(supremum(&both(columns(&[&perlin::X_3D, &perlin::Y_3D, &perlin::Z_3D]))), 1.0);
-    near(supremum(&columns(&[&classic::DIAGONAL_X, &classic::DIAGONAL_Y])), 1.0);
-    near(supremum(&columns(&[&classic::EIGHT_X, &classic::EIGHT_Y])), 1.0);
-    let angles: Vec<f32> = (0..256).map(|i| classic::SINE[(i + 64) & 255]).collect();
-    near(supremum(&columns(&[&angles, &classic::SINE])), 1.0);
-    near(supremum(&columns(&[&classic::REFERENCE_X, &classic::REFERENCE_Y, &classic::REFERENCE_Z])), classic::BOUND_3D);
+    near(supremum(&both(columns(&[&directions::X_2D, &directions::Y_2D]))), 1.0);
+    near(supremum(&both(columns(&[&directions::X_3D, &directions::Y_3D, &directions::Z_3D]))), 1.0);
+    near(supremum(&columns(&[&reference::DIAGONAL_X, &reference::DIAGONAL_Y])), 1.0);
+    near(supremum(&columns(&[&reference::EIGHT_X, &reference::EIGHT_Y])), 1.0);
+    let angles: Vec<f32> = (0..256).map(|i| reference::SINE[(i + 64) & 255]).collect();
+    near(supremum(&columns(&[&angles, &reference::SINE])), 1.0);
+    near(
+        supremum(&columns(&[&reference::REFERENCE_X, &reference::REFERENCE_Y, &reference::REFERENCE_Z])),
+        reference::BOUND_3D,
+    );
 }
