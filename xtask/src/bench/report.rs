@@ -55,8 +55,10 @@ impl Report {
             let case = row.get("case").and_then(Value::as_str).unwrap_or("?");
             let again = std::mem::replace(&mut last, case) == case;
             let once = |text: String| if again { String::new() } else { text };
+            let built = row.get("ours").is_some_and(Value::is_number);
             let target = match (row.get("target"), row.get("met").and_then(Value::as_bool)) {
                 (Some(target), Some(true)) => format!("{} met", number(Some(target))),
+                (Some(target), Some(false)) if !built => format!("{} not built", number(Some(target))),
                 (Some(target), Some(false)) => format!("{} MISSED", number(Some(target))),
                 _ => "-".to_owned(),
             };
@@ -107,7 +109,8 @@ mod tests {
         let text = r#"{"area":"noise","simd":"avx2","threads":1,"rows":[
             {"case":"perlin","ours":2211.7,"unit":"Mpt/s","peer":"a","peer_value":40.0,"ratio":55.3,"target":42.0,"met":true},
             {"case":"perlin","ours":2211.7,"unit":"Mpt/s","peer":"b","peer_value":80.0,"ratio":27.6,"target":null,"met":null},
-            {"case":"white","ours":4000.0,"unit":"Mpt/s","peer":null,"peer_value":null,"ratio":null,"target":5000,"met":false}]}"#;
+            {"case":"white","ours":4000.0,"unit":"Mpt/s","peer":null,"peer_value":null,"ratio":null,"target":5000,"met":false},
+            {"case":"worley","ours":null,"unit":"Mpt/s","peer":"a","peer_value":null,"ratio":null,"target":50,"met":false}]}"#;
         let mut report = Report::read(text).expect("well formed");
         report.date = "2026-01-02".into();
         report.processor = "A Processor".into();
@@ -120,10 +123,11 @@ mod tests {
         assert_eq!(report.heading(), "noise: 2026-01-02, A Processor, SIMD level avx2, 1 thread\n");
         let expect = "\
 case    ours  unit   peer  theirs  ratio  target
-------  ----  -----  ----  ------  -----  -----------
+------  ----  -----  ----  ------  -----  --------------
 perlin  2212  Mpt/s  a       40.0   55.3  42.0 met
                      b       80.0   27.6  -
-white   4000  Mpt/s  -          -      -  5000 MISSED";
+white   4000  Mpt/s  -          -      -  5000 MISSED
+worley     -  Mpt/s  a          -      -  50.0 not built";
         assert_eq!(table::render(&HEAD, &report.cells()), expect);
     }
 
