@@ -77,97 +77,26 @@ fn is_name(name: &str) -> bool {
 const NAME_RULE: &str = "names are 1 to 64 letters, digits, `_` and `-` and do not begin with a digit";
 
 impl Graph {
-    /// Resolves names, checks every value and finds an order, or says everything that is wrong.
+    /// Resolves names, checks every value and finds an order, or says what is wrong: all of it, up to [`MOST_FAULTS`].
     pub fn resolve(recipe: &Recipe) -> Result<Graph, Vec<Fault>> {
-        let mut faults = Vec::new();
-        check_world(recipe, &mut faults);
         let nodes = recipe.nodes();
         if nodes.len() > MOST_NODES {
             let sentence = format!("the recipe has {} nodes, the most there may be is {MOST_NODES}", nodes.len());
             return Err(vec![Fault { at: At::Node(MOST_NODES, ""), sentence }]);
         }
-        let mut names: HashMap<&str, usize> = HashMap::with_capacity(nodes.len());
-        for (index, node) in nodes.iter().enumerate() {
-            if faults.len() >= MOST_FAULTS {
-                return Err(faults);
-            }
-            let mut fault = |key, sentence| faults.push(Fault { at: At::Node(index, key), sentence });
-            if !is_name(&node.name) {
-                fault("", format!("`{}` cannot be a node's name: {NAME_RULE}", node.name));
-            }
-            if names.insert(&node.name, index).is_some() {
-                fault("", format!("there are two nodes named `{}`: rename one", node.name));
-            }
-            check_params(&node.node, &mut fault);
-            if recipe.world.size.is_none() {
-                match node.node.op() {
-                    Op::Solver(_) => fault(
-                        "",
-                        format!(
-                            "node `{}`: the solver `{}` looks at the whole world, and this world has no bounds: give `world` a \
-                             `size`, or leave the solver out",
-                            node.name,
-                            node.node.spec().op
-                        ),
-                    ),
-                    Op::Field(field) if field.needs_bounds() => fault(
-                        "",
-                        format!(
-                            "node `{}`: the op `{}` needs the world's edges, and this world has no bounds: give `world` a `size`",
-                            node.name,
-                            node.node.spec().op
-                        ),
-                    ),
-                    _ => {}
-                }
-            }
+        let mut resolver = Resolver { recipe, names: HashMap::with_capacity(nodes.len()), faults: Vec::new() };
+        resolver.check_world();
+        (0..nodes.len()).try_for_each(|index| resolver.check_node(index))?;
+        let linked: Vec<(Vec<Link>, Link)> =
+            (0..nodes.len()).map(|index| resolver.link_node(index)).collect::<Result<_, _>>()?;
+        let outputs = resolver.link_outputs()?;
+        if !resolver.faults.is_empty() {
+            return Err(resolver.faults);
         }
-        let resolver = Resolver { nodes, names };
-        let mut graph =
-            Graph { links: Vec::with_capacity(nodes.len()), masks: Vec::new(), order: Vec::new(), outputs: Vec::new() };
-        for (index, named) in nodes.iter().enumerate() {
-            if faults.len() >= MOST_FAULTS {
-                return Err(faults);
-            }
-            let spec = named.node.spec();
-            let mut link = |key: &'static str, input: &Input, required: bool| {
-                resolver.link(input, required).unwrap_or_else(|sentence| {
-                    let sentence = format!("node `{}`, `{key}`: {sentence}", named.name);
-                    faults.push(Fault { at: At::Node(index, key), sentence });
-                    Link::None
-                })
-            };
-            graph.links.push(
-                spec.inputs
-                    .iter()
-                    .enumerate()
-                    .map(|(i, input)| link(input.name, named.node.input(i), input.required))
-                    .collect(),
-            );
-            graph.masks.push(link("mask", &named.mask, false));
-        }
-        let mut seen = HashSet::new();
-        for (index, (name, input)) in recipe.output_inputs().iter().enumerate() {
-            if faults.len() >= MOST_FAULTS {
-                return Err(faults);
-            }
-            let mut fault = |sentence| faults.push(Fault { at: At::Output(index), sentence });
-            if !is_name(name) {
-                fault(format!("`{name}` cannot be an output's name: {NAME_RULE}"));
-            }
-            if !seen.insert(name) {
-                fault(format!("there are two outputs named `{name}`: rename one"));
-            }
-            graph.outputs.push(resolver.link(input, true).unwrap_or_else(|sentence| {
-                fault(format!("output `{name}`: {sentence}"));
-                Link::None
-            }));
-        }
-        if faults.is_empty() {
-            graph.order = graph.sort().map_err(|cycle| vec![graph.cycle_fault(&cycle, recipe)])?;
-            return Ok(graph);
-        }
-        Err(faults)
+        let (links, masks) = linked.into_iter().unzip();
+        let mut graph = Graph { links, masks, order: Vec::new(), outputs };
+        graph.order = graph.sort().map_err(|cycle| vec![graph.cycle_fault(&cycle, recipe)])?;
+        Ok(graph)
     }
 
     /// The nodes that a node reads, mask included.
@@ -258,12 +187,128 @@ impl Graph {
     }
 }
 
+/// Goes through a recipe and gathers what is wrong with it.
 struct Resolver<'a> {
-    nodes: &'a [super::document::NamedNode],
+    recipe: &'a Recipe,
     names: HashMap<&'a str, usize>,
+    faults: Vec<Fault>,
 }
 
-impl Resolver<'_> {
+impl<'a> Resolver<'a> {
+    fn fault(&mut self, at: At, sentence: String) {
+        self.faults.push(Fault { at, sentence });
+    }
+
+    /// Ends the search where there are more faults than anybody reads.
+    fn enough(&mut self) -> Result<(), Vec<Fault>> {
+        match self.faults.len() >= MOST_FAULTS {
+            true => Err(std::mem::take(&mut self.faults)),
+            false => Ok(()),
+        }
+    }
+
+    fn check_world(&mut self) {
+        let world = self.recipe.world;
+        for (name, value) in super::schema::world_values(&world) {
+            let Some(spec) = super::schema::world_param(name) else { continue };
+            if let Err(sentence) = super::schema::read_world(spec, &value, &mut world.clone()) {
+                self.fault(At::World, sentence);
+            }
+        }
+        let Some([width, height]) = world.size else { return };
+        let most = width.max(height) / world.cell;
+        if most > MOST_SAMPLES {
+            let sentence = format!(
+                "the world would have {most:.0} samples along a side, the most is {MOST_SAMPLES:.0}: raise `cell`"
+            );
+            self.fault(At::World, sentence);
+        }
+        if width.min(height) < world.cell {
+            let sentence = format!(
+                "the world is {width} by {height} metres, less than one `cell` of {}: raise `size` or lower `cell`",
+                world.cell
+            );
+            self.fault(At::World, sentence);
+        }
+    }
+
+    /// The node for itself: its name, its parameters, and whether it can be in this world.
+    fn check_node(&mut self, index: usize) -> Result<(), Vec<Fault>> {
+        let named = &self.recipe.nodes()[index];
+        let name = named.name.as_str();
+        if !is_name(name) {
+            self.fault(At::Node(index, ""), format!("`{name}` cannot be a node's name: {NAME_RULE}"));
+        }
+        if self.names.insert(name, index).is_some() {
+            self.fault(At::Node(index, ""), format!("there are two nodes named `{name}`: rename one"));
+        }
+        self.check_params(index, &named.node);
+        let needs_bounds = match named.node.op() {
+            Op::Solver(_) => Some("looks at the whole world"),
+            Op::Field(field) if field.needs_bounds() => Some("needs the world's edges"),
+            _ => None,
+        };
+        if let (Some(needs), None) = (needs_bounds, self.recipe.world.size) {
+            let sentence = format!(
+                "node `{name}`: the op `{}` {needs}, and this world has no bounds: give `world` a `size`, or leave the node out",
+                named.node.spec().op
+            );
+            self.fault(At::Node(index, ""), sentence);
+        }
+        self.enough()
+    }
+
+    /// Values set by a program pass the same checks as those read from a text.
+    fn check_params(&mut self, index: usize, node: &Node) {
+        let mut copy = node.clone();
+        let mut sound = true;
+        for (i, spec) in node.spec().params.iter().enumerate() {
+            if let Err(sentence) = copy.set_param(i, &node.param(i)) {
+                sound = false;
+                self.fault(At::Node(index, spec.name), sentence);
+            }
+        }
+        if sound && let Err((key, sentence)) = node.consistent() {
+            self.fault(At::Node(index, key), sentence);
+        }
+    }
+
+    /// A node's inputs and its mask.
+    fn link_node(&mut self, index: usize) -> Result<(Vec<Link>, Link), Vec<Fault>> {
+        let named = &self.recipe.nodes()[index];
+        let inputs = named.node.spec().inputs.iter().enumerate();
+        let inputs = inputs.map(|(i, input)| (input.name, named.node.input(i), input.required));
+        let mut links: Vec<Link> = Vec::new();
+        for (key, input, required) in inputs.chain([("mask", &named.mask, false)]) {
+            links.push(self.link(input, required).unwrap_or_else(|sentence| {
+                self.fault(At::Node(index, key), format!("node `{}`, `{key}`: {sentence}", named.name));
+                Link::None
+            }));
+        }
+        self.enough()?;
+        let mask = links.pop().unwrap_or(Link::None);
+        Ok((links, mask))
+    }
+
+    fn link_outputs(&mut self) -> Result<Vec<Link>, Vec<Fault>> {
+        let (mut seen, mut links) = (HashSet::new(), Vec::new());
+        for (index, (name, input)) in self.recipe.output_inputs().iter().enumerate() {
+            if !is_name(name) {
+                self.fault(At::Output(index), format!("`{name}` cannot be an output's name: {NAME_RULE}"));
+            }
+            if !seen.insert(name) {
+                self.fault(At::Output(index), format!("there are two outputs named `{name}`: rename one"));
+            }
+            links.push(self.link(input, true).unwrap_or_else(|sentence| {
+                self.fault(At::Output(index), format!("output `{name}`: {sentence}"));
+                Link::None
+            }));
+            self.enough()?;
+        }
+        Ok(links)
+    }
+
+    /// What an input resolves to, or what is wrong with it.
     fn link(&self, input: &Input, required: bool) -> Result<Link, String> {
         match input {
             Input::None if required => Err("it is missing: name the node to read, or give a number".to_string()),
@@ -276,10 +321,10 @@ impl Resolver<'_> {
                     let shown: String = node.chars().take(64).collect();
                     return Err(format!(
                         "there is no node `{shown}`; {}",
-                        suggestion(node, self.nodes.iter().map(|node| node.name.as_str()))
+                        suggestion(node, self.recipe.nodes().iter().map(|node| node.name.as_str()))
                     ));
                 };
-                let layers = self.nodes[index].node.layers();
+                let layers = self.recipe.nodes()[index].node.layers();
                 let Some(layer) = layer else { return Ok(Link::Node(Target { node: index, layer: 0 })) };
                 match layers.iter().position(|known| known.name == layer) {
                     Some(layer) => Ok(Link::Node(Target { node: index, layer })),
@@ -291,45 +336,5 @@ impl Resolver<'_> {
                 }
             }
         }
-    }
-}
-
-fn check_world(recipe: &Recipe, faults: &mut Vec<Fault>) {
-    let world = &recipe.world;
-    let mut fault = |sentence: String| faults.push(Fault { at: At::World, sentence });
-    for (name, value) in super::schema::world_values(world) {
-        let Some(spec) = super::schema::world_param(name) else { continue };
-        if let Err(sentence) = super::schema::read_world(spec, &value, &mut world.clone()) {
-            fault(sentence);
-        }
-    }
-    if let Some(size) = world.size {
-        let most = size[0].max(size[1]) / world.cell;
-        if most > MOST_SAMPLES {
-            fault(format!(
-                "the world would have {most:.0} samples along a side, the most is {MOST_SAMPLES:.0}: raise `cell`"
-            ));
-        }
-        if size[0].min(size[1]) < world.cell {
-            fault(format!(
-                "the world is {} by {} metres, less than one `cell` of {}: raise `size` or lower `cell`",
-                size[0], size[1], world.cell
-            ));
-        }
-    }
-}
-
-/// Values set by a program pass the same checks as those read from a text.
-fn check_params(node: &Node, fault: &mut impl FnMut(&'static str, String)) {
-    let mut copy = node.clone();
-    let mut sound = true;
-    for (i, spec) in node.spec().params.iter().enumerate() {
-        if let Err(sentence) = copy.set_param(i, &node.param(i)) {
-            sound = false;
-            fault(spec.name, sentence);
-        }
-    }
-    if sound && let Err((key, sentence)) = node.consistent() {
-        fault(key, sentence);
     }
 }
