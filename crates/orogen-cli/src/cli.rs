@@ -4,7 +4,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use orogen::Level;
 
-use crate::command::{completions, explain, export, generate, new, ops, presets, schema};
+use crate::command::{completions, explain, export, generate, new, noise, ops, presets, schema};
 use crate::failure::Failure;
 
 /// Procedural terrain: a recipe describes a world, orogen makes it.
@@ -30,6 +30,8 @@ enum Command {
     Presets,
     /// List the ops that recipes are made of, or tell all about one.
     Ops(ops::Args),
+    /// Draw one noise without a recipe: a picture, an array, an animation or a block.
+    Noise(noise::Args),
     /// Print the JSON Schema of recipes, for editors.
     Schema,
     /// Show how a recipe would be made: its nodes in order, and the memory it takes.
@@ -49,6 +51,7 @@ impl Cli {
             Command::New(args) => new::run(&args),
             Command::Presets => presets::run(),
             Command::Ops(args) => ops::run(&args),
+            Command::Noise(args) => noise::run(&args),
             Command::Schema => schema::run(),
             Command::Explain(args) => explain::run(&args),
             Command::Completions(args) => completions::run(&args, Cli::command()),

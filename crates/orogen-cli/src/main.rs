@@ -6,8 +6,10 @@
 mod bar;
 mod cli;
 mod command;
+mod draw;
 mod failure;
 mod folder;
+mod format;
 mod memory;
 mod options;
 mod pictures;

@@ -48,6 +48,31 @@ pub fn cell(text: &str) -> Result<f64, String> {
     }
 }
 
+/// `--wavelength`: samples from one hill of a noise to the next.
+pub fn wavelength(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(wavelength) if wavelength.is_finite() && wavelength > 0.0 => Ok(wavelength),
+        Ok(_) => Err("a wavelength is more than 0 samples".into()),
+        Err(_) => Err("a wavelength is a number of samples, such as 64 or 2.5".into()),
+    }
+}
+
+/// Any number that is one.
+pub fn finite(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    number.ok_or_else(|| "it is a number, such as 2 or 0.5".into())
+}
+
+/// A number above 0.
+pub fn positive(text: &str) -> Result<f64, String> {
+    finite(text).ok().filter(|&number| number > 0.0).ok_or_else(|| "it is a number above 0, such as 2 or 0.5".into())
+}
+
+/// A number from 0 up.
+pub fn not_negative(text: &str) -> Result<f64, String> {
+    finite(text).ok().filter(|&number| number >= 0.0).ok_or_else(|| "it is 0 or a number above, such as 1.5".into())
+}
+
 /// `--window`: a rectangle of samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rectangle {
@@ -157,6 +182,21 @@ mod tests {
             ("m", None),
         ] {
             assert_eq!(cell(text).ok(), expect, "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers() {
+        for (text, wave, any, above, from) in [
+            ("2.5", true, true, true, true),
+            ("0", false, true, false, true),
+            ("-3", false, true, false, false),
+            ("nan", false, false, false, false),
+            ("inf", false, false, false, false),
+            ("", false, false, false, false),
+        ] {
+            let got = [wavelength(text), finite(text), positive(text), not_negative(text)].map(|parsed| parsed.is_ok());
+            assert_eq!(got, [wave, any, above, from], "{text}");
         }
     }
 

@@ -1,16 +1,15 @@
 //! `orogen export`.
 
-use std::ffi::OsStr;
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
 use orogen::format::levels::Levels;
 use orogen::format::{npy, png};
-use orogen::{Grid, Window, file, nearest};
+use orogen::{Grid, Window, file};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
+use crate::format::Format;
 use crate::options::{Limits, View};
 use crate::pictures;
 use crate::size::{Rectangle, cell, seed};
@@ -45,23 +44,6 @@ pub struct Args {
     /// Show neither progress nor the closing words
     #[arg(short, long)]
     quiet: bool,
-}
-
-/// What can be written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// NumPy array of f32, the layer's own unit (metres for heights)
-    Npy,
-    /// 16-bit grey picture, black the lowest and white the highest of the window
-    Png,
-}
-
-impl Format {
-    const NAMES: [&'static str; 2] = ["npy", "png"];
-
-    fn of_extension(extension: &OsStr) -> Option<Format> {
-        Format::from_str(extension.to_str()?, true).ok()
-    }
 }
 
 /// Writes the layer.
@@ -109,33 +91,21 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 /// The format that is asked for: by name, else by extension, else an array.
 fn format(args: &Args) -> Result<Format, Failure> {
-    let known = args.out.extension().map(|extension| (extension, Format::of_extension(extension)));
-    match (args.format, known) {
-        (Some(format), Some((_, Some(other)))) if format != other => Err(Failure::Usage(format!(
-            "--format {} and the extension of {} contradict each other",
-            format.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default(),
-            args.out.display()
-        ))),
-        (Some(format), _) | (None, Some((_, Some(format)))) => Ok(format),
-        (None, None) if args.out == Path::new("-") => Ok(Format::Npy),
-        (None, None) => Err(Failure::Usage(format!(
-            "{} has no extension to tell its format; known are {}, or say --format",
-            args.out.display(),
-            list()
-        ))),
-        (None, Some((extension, None))) => {
-            let extension = extension.to_string_lossy();
-            let hint = match nearest(&extension, Format::NAMES) {
-                Some(near) => format!("did you mean .{near}?"),
-                None => format!("known are {}", list()),
-            };
-            Err(Failure::Usage(format!("the format .{extension} is not known; {hint}")))
-        }
+    match args.format {
+        None if args.out == Path::new("-") => Ok(Format::Npy),
+        None => Format::of(&args.out).map_err(|why| match args.out.extension() {
+            None => Failure::Usage(format!("{why}, or say --format")),
+            Some(_) => Failure::Usage(why),
+        }),
+        Some(format) => match Format::of(&args.out) {
+            Ok(other) if other != format => Err(Failure::Usage(format!(
+                "--format {} and the extension of {} contradict each other",
+                format.name(),
+                args.out.display()
+            ))),
+            _ => Ok(format),
+        },
     }
-}
-
-fn list() -> String {
-    Format::NAMES.map(|name| format!(".{name}")).join(" and ")
 }
 
 fn write(out: &mut dyn Write, format: Format, grid: &Grid) -> io::Result<()> {

@@ -5,6 +5,7 @@ pub mod explain;
 pub mod export;
 pub mod generate;
 pub mod new;
+pub mod noise;
 pub mod ops;
 pub mod presets;
 pub mod schema;

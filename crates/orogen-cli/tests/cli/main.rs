@@ -7,5 +7,6 @@ mod bad_recipes;
 mod export;
 mod generate;
 mod harness;
+mod noise;
 mod others;
 mod watch;

@@ -24,9 +24,19 @@ pub fn write(out: &mut dyn Write, grid: &Grid) -> io::Result<()> {
     write_rows(out, grid.data())
 }
 
-/// Writes what comes before the samples. Exactly `width * height` of them must follow by [`write_rows`].
+/// Writes what comes before the samples of a grid. Exactly `width * height` of them must follow by [`write_rows`].
 pub fn write_header(out: &mut dyn Write, width: usize, height: usize) -> io::Result<()> {
-    let mut header = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({height}, {width}), }}");
+    write_shape(out, &[height, width])
+}
+
+/// Writes what comes before the samples of an array of any dimensions, the last the fastest. Exactly their product of samples
+/// must follow by [`write_rows`].
+pub fn write_shape(out: &mut dyn Write, shape: &[usize]) -> io::Result<()> {
+    // Python writes a tuple of one with a comma behind it.
+    let sides: Vec<String> = shape.iter().map(usize::to_string).collect();
+    let comma = if sides.len() == 1 { "," } else { "" };
+    let shape = format!("({}{comma})", sides.join(", "));
+    let mut header = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}");
     let before = MAGIC.len() + 2 + 2;
     // The newline ends the header, and the data behind it begins at a multiple of 64.
     let total = (before + header.len() + 1).next_multiple_of(64);
@@ -327,6 +337,16 @@ mod tests {
         assert_eq!(std::str::from_utf8(&bytes[10..128]).unwrap().trim_end(), text);
         assert_eq!((bytes[127], bytes.len()), (b'\n', 128 + 15 * 4));
         assert_eq!(&bytes[128..132], (-0.7f32).to_le_bytes());
+    }
+
+    #[test]
+    fn shapes_are_python_tuples() {
+        for (shape, text) in [(&[7][..], "(7,)"), (&[2, 3], "(2, 3)"), (&[4, 3, 2], "(4, 3, 2)")] {
+            let mut bytes = Vec::new();
+            write_shape(&mut bytes, shape).unwrap();
+            assert!(String::from_utf8_lossy(&bytes).contains(&format!("'shape': {text}, }}")), "{shape:?}");
+            assert_eq!(bytes.len() % 64, 0);
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
-//! PNG pictures: grey of 8 and 16 bits, and colour.
+//! PNG pictures: grey of 8 and 16 bits, colour, normals, and animations of them (APNG).
 //!
-//! The PNG specification (third edition, W3C 2025). 16-bit samples are big-endian. Greys are data, so they carry no gamma or
-//! colour chunk that a reader could "correct" them by; colours are marked as sRGB. Compression favours speed.
+//! The PNG specification (third edition, W3C 2025). 16-bit samples are big-endian. Greys and normals are data, so they carry no
+//! gamma or colour chunk that a reader could "correct" them by; colours are marked as sRGB. Compression favours speed.
 
 use std::io::{self, Write};
 use std::ops::Range;
@@ -23,6 +23,10 @@ pub enum Pixel {
     Grey16,
     /// Three bytes: red, green, blue, as sRGB.
     Rgb8,
+    /// Three bytes of data that are no colour: the parts of a normal.
+    Normal8,
+    /// Three numbers of two bytes, the higher first: the parts of a normal.
+    Normal16,
 }
 
 impl Pixel {
@@ -31,7 +35,8 @@ impl Pixel {
         match self {
             Pixel::Grey8 => 1,
             Pixel::Grey16 => 2,
-            Pixel::Rgb8 => 3,
+            Pixel::Rgb8 | Pixel::Normal8 => 3,
+            Pixel::Normal16 => 6,
         }
     }
 }
@@ -49,6 +54,15 @@ pub struct Picture<'a> {
     pub notes: &'a [(&'a str, &'a str)],
 }
 
+/// What makes an animation of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Animation {
+    /// How many frames it has.
+    pub frames: u32,
+    /// How long each is shown, in milliseconds. It is shown again and again.
+    pub delay: u16,
+}
+
 /// Writes a picture whose rows `fill` makes, some at a time from the top: it is given the range of rows and their bytes.
 ///
 /// Fails as `out` or `fill` do, and on a picture without pixels or of more than 2^31 - 1 a side, which PNG cannot hold.
@@ -57,23 +71,7 @@ pub fn write(
     picture: &Picture,
     mut fill: impl FnMut(Range<usize>, &mut [u8]) -> io::Result<()>,
 ) -> io::Result<()> {
-    let (width, height) = (side(picture.width)?, side(picture.height)?);
-    let mut encoder = Encoder::new(out, width, height);
-    let (color, depth) = match picture.pixel {
-        Pixel::Grey8 => (ColorType::Grayscale, BitDepth::Eight),
-        Pixel::Grey16 => (ColorType::Grayscale, BitDepth::Sixteen),
-        Pixel::Rgb8 => (ColorType::Rgb, BitDepth::Eight),
-    };
-    encoder.set_color(color);
-    encoder.set_depth(depth);
-    encoder.set_compression(Compression::Fast);
-    if picture.pixel == Pixel::Rgb8 {
-        encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
-    }
-    for (keyword, text) in picture.notes {
-        encoder.add_text_chunk((*keyword).into(), (*text).into()).map_err(plain)?;
-    }
-    let mut writer = encoder.write_header().map_err(plain)?;
+    let mut writer = encoder(out, picture)?.write_header().map_err(plain)?;
     let mut rows = writer.stream_writer_with_size(BAND).map_err(plain)?;
     let row_bytes = picture.width * picture.pixel.bytes();
     let rows_a_band = (BAND / row_bytes).clamp(1, picture.height);
@@ -87,6 +85,48 @@ pub fn write(
     rows.finish().map_err(plain)?;
     // Finished here and not when dropped: the last chunk's failure must not be lost.
     writer.finish().map_err(plain)
+}
+
+/// Writes an animation whose frames `fill` makes, one at a time: it is given the frame's number, from 0, and its bytes.
+///
+/// A reader that knows no animations shows the first frame. Fails as [`write`] does, and without any frame.
+pub fn write_animation(
+    out: &mut dyn Write,
+    picture: &Picture,
+    animation: Animation,
+    mut fill: impl FnMut(u32, &mut [u8]) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut encoder = encoder(out, picture)?;
+    encoder.set_animated(animation.frames, 0).map_err(plain)?;
+    encoder.set_frame_delay(animation.delay, 1000).map_err(plain)?;
+    let mut writer = encoder.write_header().map_err(plain)?;
+    // The encoder's streams do not number the chunks of later frames rightly, so each frame is made as a whole.
+    let mut bytes = vec![0; picture.width * picture.height * picture.pixel.bytes()];
+    for frame in 0..animation.frames {
+        fill(frame, &mut bytes)?;
+        writer.write_image_data(&bytes).map_err(plain)?;
+    }
+    writer.finish().map_err(plain)
+}
+
+fn encoder<'a>(out: &'a mut dyn Write, picture: &Picture) -> io::Result<Encoder<'a, &'a mut dyn Write>> {
+    let mut encoder = Encoder::new(out, side(picture.width)?, side(picture.height)?);
+    let (color, depth) = match picture.pixel {
+        Pixel::Grey8 => (ColorType::Grayscale, BitDepth::Eight),
+        Pixel::Grey16 => (ColorType::Grayscale, BitDepth::Sixteen),
+        Pixel::Rgb8 | Pixel::Normal8 => (ColorType::Rgb, BitDepth::Eight),
+        Pixel::Normal16 => (ColorType::Rgb, BitDepth::Sixteen),
+    };
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    encoder.set_compression(Compression::Fast);
+    if picture.pixel == Pixel::Rgb8 {
+        encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
+    }
+    for (keyword, text) in picture.notes {
+        encoder.add_text_chunk((*keyword).into(), (*text).into()).map_err(plain)?;
+    }
+    Ok(encoder)
 }
 
 /// Writes a grid as 16-bit grey over the range of `levels`.
@@ -229,6 +269,33 @@ mod tests {
             let result = write_grey16(&mut Full { left }, &grid, &Levels::of(&grid), &[]);
             assert!(result.is_err(), "after {left} of {} bytes", bytes.len());
         }
+    }
+
+    #[test]
+    fn an_animation_has_its_frames_in_order() {
+        let picture = Picture { width: 5, height: 4, pixel: Pixel::Normal16, notes: &[] };
+        let mut bytes = Vec::new();
+        let animation = Animation { frames: 3, delay: 40 };
+        write_animation(&mut bytes, &picture, animation, |frame, bytes| {
+            bytes.fill(frame as u8 + 1);
+            Ok(())
+        })
+        .unwrap();
+        assert_eq!(
+            chunks(&bytes),
+            ["IHDR", "acTL", "fcTL", "IDAT", "fcTL", "fdAT", "fcTL", "fdAT", "IEND"],
+            "no colour chunk: normals are data"
+        );
+        let mut reader = ::png::Decoder::new(io::Cursor::new(&bytes)).read_info().unwrap();
+        let mut data = vec![0; reader.output_buffer_size().unwrap()];
+        for frame in 1..=3 {
+            reader.next_frame(&mut data).unwrap();
+            assert_eq!(data, [frame; 5 * 4 * 6]);
+            assert_eq!(reader.info().frame_control.unwrap().delay_num, 40);
+        }
+        assert!(reader.next_frame(&mut data).is_err());
+        let none = Animation { frames: 0, delay: 40 };
+        assert!(write_animation(&mut Vec::new(), &picture, none, |_, _| Ok(())).is_err());
     }
 
     #[test]

@@ -1,0 +1,342 @@
+//! `orogen noise`.
+
+use std::f64::consts::TAU;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use orogen::format::png::{Animation, Picture};
+use orogen::format::{npy, png};
+use orogen::{Error, ErrorKind, file, words};
+use orogen_noise::{Basis, Fractal, Kind, MAX_OCTAVES};
+
+use crate::draw::look::{Drawing, Look};
+use crate::draw::slice::Slice;
+use crate::draw::texture::Texture;
+use crate::failure::Failure;
+use crate::format::Format;
+use crate::size::{Bytes, MOST, Size, finite, not_negative, positive, seed, wavelength};
+use crate::{memory, say};
+
+/// Milliseconds that a frame is shown.
+const DELAY: u16 = 40;
+
+/// How many frames an animation takes for the way of one wavelength, on average.
+const FRAMES_A_WAVELENGTH: f64 = 24.0;
+
+/// Bytes of samples that are made at a time.
+const BAND: usize = 1 << 22;
+
+/// What it takes.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Sample (i, j) is the noise at (i, j), exactly as the library orogen-noise gives it for the \
+                        Fractal of these parameters (also with one octave). -1 is black and 1 is white.")]
+pub struct Args {
+    /// The noise
+    #[arg(value_parser = basis())]
+    basis: Basis,
+    /// File to write, .png or .npy [default: noise.png, or noise.npy for a block]
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Samples of the picture, or of each side
+    #[arg(long, value_name = "N|WxH", default_value = "512", allow_negative_numbers = true)]
+    size: Size,
+    /// Seed of the noise
+    #[arg(long, value_name = "N", value_parser = seed, default_value = "0", allow_negative_numbers = true)]
+    seed: u64,
+    /// Samples from one hill to the next, more or less [default: 64; a texture has its own]
+    #[arg(long, value_name = "N", value_parser = wavelength, allow_negative_numbers = true)]
+    wavelength: Option<f64>,
+    /// Octaves, each finer and weaker than the one before [default: 1; a texture has its own]
+    #[arg(long, value_name = "N", value_parser = octaves(), allow_negative_numbers = true)]
+    octaves: Option<u32>,
+    /// Amplitude from one octave to the next
+    #[arg(long, value_name = "G", value_parser = finite, default_value = "0.5", allow_negative_numbers = true)]
+    gain: f64,
+    /// Frequency from one octave to the next
+    #[arg(long, value_name = "L", value_parser = positive, default_value = "2", allow_negative_numbers = true)]
+    lacunarity: f64,
+    /// How octaves become one number
+    #[arg(long, default_value = "fbm", conflicts_with = "texture")]
+    fractal: Sum,
+    /// How strongly slope damps the octaves of --fractal weighted [default: 1]
+    #[arg(long, value_name = "K", value_parser = not_negative, allow_negative_numbers = true)]
+    k: Option<f64>,
+    /// The shape of that damping, m being the squared slope [default: reciprocal]
+    #[arg(long)]
+    falloff: Option<Falloff>,
+    /// Draw the noise in space, cut at this depth (in samples), instead of the noise of the plane
+    #[arg(long, value_name = "Z", value_parser = finite, allow_negative_numbers = true)]
+    z: Option<f64>,
+    /// Draw the slope instead: a normal map of ground a quarter of a wavelength high, red east, green north (up), blue up;
+    /// as .npy, the slopes along x and y per sample, of shape (2, H, W)
+    #[arg(long, conflicts_with_all = ["texture", "volume"])]
+    gradient: bool,
+    /// Draw a material made of the noise, as the textbooks do
+    #[arg(long, conflicts_with = "volume")]
+    texture: Option<Texture>,
+    /// Bits of each grey, or of each part of a normal
+    #[arg(long, value_name = "8|16", value_parser = ["8", "16"], default_value = "8")]
+    bits: String,
+    /// Write an animation (APNG) of so many frames: each a slice of the noise in space, forth from --z and back, slowing
+    /// where it turns, so that it repeats without a jump
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true,
+          conflicts_with = "volume")]
+    frames: Option<u32>,
+    /// Write a block of so many slices one sample apart from --z on, as .npy of shape (N, H, W)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MOST), allow_negative_numbers = true)]
+    volume: Option<u64>,
+    /// Most memory to use, such as 512MiB or 2GiB [default: half of what is free]
+    #[arg(long, value_name = "BYTES")]
+    memory: Option<Bytes>,
+    /// Leave out the closing words
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// The bases there are, whichever the library has.
+fn basis() -> impl TypedValueParser<Value = Basis> {
+    let names = PossibleValuesParser::new(Basis::all().iter().map(|basis| basis.name()));
+    names.try_map(|name| Basis::from_name(&name).ok_or("it is not known"))
+}
+
+fn octaves() -> impl TypedValueParser<Value = u32> {
+    clap::value_parser!(u32).range(1..=i64::from(MAX_OCTAVES))
+}
+
+/// How octaves are summed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Sum {
+    /// Fractional Brownian motion: the plain sum
+    Fbm,
+    /// Sharp crests
+    Ridged,
+    /// Round hills between sharp valleys
+    Billow,
+    /// Each octave damped by the slope of those before
+    Weighted,
+}
+
+/// How slope damps an octave.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Falloff {
+    /// 1 / (1 + k m)
+    Reciprocal,
+    /// e^(-k m)
+    Exponential,
+    /// 1 / (1 + k sqrt m)
+    SquareRoot,
+    /// 1 - smoothstep(k m): nothing beyond k m = 1
+    Smoothstep,
+}
+
+/// What is to be drawn, all of it settled and checked.
+struct Task<'a> {
+    args: &'a Args,
+    out: &'a Path,
+    format: Format,
+    noise: Fractal,
+    look: Look,
+    width: usize,
+    height: usize,
+}
+
+/// Draws the noise.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let default = if args.volume.is_some() { "noise.npy" } else { "noise.png" };
+    let out = args.out.as_deref().unwrap_or(Path::new(default));
+    let format = Format::of(out).map_err(Failure::Usage)?;
+    let (width, height) = match args.size {
+        Size::Longer(n) => (n, n),
+        Size::Both(width, height) => (width, height),
+    };
+    let look = match (args.gradient, args.texture) {
+        (_, Some(texture)) => Look::Texture(texture),
+        (true, None) => Look::Normal,
+        (false, None) => Look::Grey,
+    };
+    let task = Task { args, out, format, noise: noise(args)?, look, width, height };
+    task.check()?;
+    task.afford()?;
+    file::write_whole(out, |out| match format {
+        Format::Npy => task.write_array(out),
+        Format::Png => task.write_picture(out),
+    })?;
+    if args.quiet { Ok(()) } else { say::out(&task.words()) }
+}
+
+fn noise(args: &Args) -> Result<Fractal, Failure> {
+    if args.fractal != Sum::Weighted && (args.k.is_some() || args.falloff.is_some()) {
+        return Err(Failure::Usage("--k and --falloff are for --fractal weighted".into()));
+    }
+    let falloff = match args.falloff {
+        None | Some(Falloff::Reciprocal) => orogen_noise::Falloff::Reciprocal,
+        Some(Falloff::Exponential) => orogen_noise::Falloff::Exponential,
+        Some(Falloff::SquareRoot) => orogen_noise::Falloff::SquareRoot,
+        Some(Falloff::Smoothstep) => orogen_noise::Falloff::Smoothstep,
+    };
+    let kind = match args.fractal {
+        Sum::Fbm => Kind::Fbm,
+        Sum::Ridged => Kind::Ridged,
+        Sum::Billow => Kind::Billow,
+        Sum::Weighted => Kind::Weighted { k: args.k.unwrap_or(1.0), falloff },
+    };
+    Ok(Fractal {
+        basis: args.basis,
+        kind,
+        seed: args.seed,
+        wavelength: args.wavelength.or(args.texture.map(Texture::wavelength)).unwrap_or(64.0),
+        octaves: args.octaves.or(args.texture.map(Texture::octaves)).unwrap_or(1),
+        lacunarity: args.lacunarity,
+        gain: args.gain,
+    })
+}
+
+impl Task<'_> {
+    /// What contradicts itself.
+    fn check(&self) -> Result<(), Failure> {
+        let Args { texture, frames, volume, gradient, basis, .. } = self.args;
+        let (png, deep) = (self.format == Format::Png, self.deep());
+        let wrong = match () {
+            () if *gradient && !basis.has_gradient() => {
+                format!("{} is made of squares of one value each and has no slope to draw", basis.name())
+            }
+            () if volume.is_some() && png => "--volume makes an array; name a file that ends in .npy".into(),
+            () if frames.is_some() && !png => "--frames makes pictures; name a file that ends in .png".into(),
+            () if texture.is_some() && !png => "--texture makes a picture; name a file that ends in .png".into(),
+            () if texture.is_some() && deep => "--bits 16 is for greys and normals; a texture is in colours".into(),
+            () if !png && deep => "--bits is for pictures; an array holds f32".into(),
+            () => return Ok(()),
+        };
+        Err(Failure::Usage(wrong))
+    }
+
+    /// Nothing starts that cannot finish.
+    fn afford(&self) -> Result<(), Failure> {
+        let wide = |width: usize, bytes: usize| width as u64 * bytes as u64;
+        // A band of samples with its slopes, columns and pixels, and the rows the encoder keeps.
+        let band = wide(self.rows_a_band() * self.width, 32).saturating_add(wide(self.width, 48));
+        let frame = match self.args.frames {
+            // The frame as it is, as it is filtered and as it is packed; and the samples behind it.
+            Some(_) => wide(self.width, 3 * self.drawing().pixel().bytes() + 32).saturating_mul(self.height as u64),
+            None => 0,
+        };
+        let needed = band.saturating_add(frame);
+        match self.args.memory.map(|bytes| bytes.0).or_else(memory::share_of_free) {
+            Some(allowed) if needed > allowed => {
+                let sentence = format!(
+                    "this needs up to {} of memory and {} is allowed: ask for fewer samples, or allow more",
+                    words::bytes(needed),
+                    words::bytes(allowed)
+                );
+                Err(Error::new(ErrorKind::Memory, sentence).into())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn deep(&self) -> bool {
+        self.args.bits == "16"
+    }
+
+    fn drawing(&self) -> Drawing {
+        Drawing::new(self.noise, self.width, self.look, self.deep())
+    }
+
+    fn rows_a_band(&self) -> usize {
+        (BAND / 4 / self.width).clamp(1, self.height)
+    }
+
+    fn write_picture(&self, out: &mut dyn Write) -> io::Result<()> {
+        let drawing = self.drawing();
+        let (software, description) = (format!("Orogen {}", env!("CARGO_PKG_VERSION")), self.description());
+        let notes = [("Software", software.as_str()), ("Description", description.as_str())];
+        let picture = Picture { width: self.width, height: self.height, pixel: drawing.pixel(), notes: &notes };
+        let Some(frames) = self.args.frames else {
+            return png::write(out, &picture, |rows, bytes| {
+                drawing.paint(self.args.z, rows, bytes);
+                Ok(())
+            });
+        };
+        png::write_animation(out, &picture, Animation { frames, delay: DELAY }, |frame, bytes| {
+            drawing.paint(Some(self.depth(frame, frames)), 0..self.height, bytes);
+            Ok(())
+        })
+    }
+
+    /// Where a frame cuts. A walk in a circle would need a fourth dimension; this one goes there and back on a cosine.
+    fn depth(&self, frame: u32, frames: u32) -> f64 {
+        let farthest = f64::from(frames) / 2.0 * self.noise.wavelength / FRAMES_A_WAVELENGTH;
+        let turn = f64::from(frame) / f64::from(frames);
+        self.args.z.unwrap_or(0.0) + farthest * (1.0 - libm::cos(TAU * turn)) / 2.0
+    }
+
+    fn write_array(&self, out: &mut dyn Write) -> io::Result<()> {
+        let slice = Slice { noise: self.noise, width: self.width, depth: self.args.z, stretch: 1.0 };
+        let (width, height) = (self.width, self.height);
+        if let Some(slices) = self.args.volume {
+            npy::write_shape(out, &[slices as usize, height, width])?;
+            let first = self.args.z.unwrap_or(0.0);
+            return (0..slices).try_for_each(|n| {
+                let slice = Slice { depth: Some(first + n as f64), ..slice };
+                self.bands(out, |rows, value| slice.fill(rows, value))
+            });
+        }
+        if self.args.gradient {
+            npy::write_shape(out, &[2, height, width])?;
+            let mut other = vec![0.0; self.rows_a_band() * width];
+            self.bands(out, |rows, dx| {
+                let dy = &mut other[..dx.len()];
+                slice.fill_slopes(rows, dx, dy);
+            })?;
+            return self.bands(out, |rows, dy| {
+                let dx = &mut other[..dy.len()];
+                slice.fill_slopes(rows, dx, dy);
+            });
+        }
+        npy::write_header(out, width, height)?;
+        self.bands(out, |rows, value| slice.fill(rows, value))
+    }
+
+    /// Writes all rows, some at a time, as `fill` makes them.
+    fn bands(&self, out: &mut dyn Write, mut fill: impl FnMut(std::ops::Range<usize>, &mut [f32])) -> io::Result<()> {
+        let mut band = vec![0.0; self.rows_a_band() * self.width];
+        for first in (0..self.height).step_by(self.rows_a_band()) {
+            let last = (first + self.rows_a_band()).min(self.height);
+            let value = &mut band[..(last - first) * self.width];
+            fill(first..last, value);
+            npy::write_rows(out, value)?;
+        }
+        Ok(())
+    }
+
+    /// What was drawn, in one line.
+    fn description(&self) -> String {
+        let Fractal { basis, seed, wavelength, octaves, .. } = self.noise;
+        let sum = match self.look {
+            Look::Texture(texture) => name(texture),
+            _ => name(self.args.fractal),
+        };
+        let depth = self.args.z.map(|z| format!(", depth {z}")).unwrap_or_default();
+        let plural = if octaves == 1 { "" } else { "s" };
+        format!(
+            "{sum} of {octaves} octave{plural} of {} noise, wavelength {wavelength}{depth}, seed {seed}",
+            basis.name()
+        )
+    }
+
+    fn words(&self) -> String {
+        let (width, height) = (self.width, self.height);
+        let size = match (self.args.frames, self.args.volume) {
+            (Some(frames), _) => format!("{frames} frames of {width} x {height}"),
+            (_, Some(slices)) => format!("{slices} slices of {width} x {height}"),
+            _ => format!("{width} x {height}"),
+        };
+        format!("{}: {}; {size} samples\n", self.out.display(), self.description())
+    }
+}
+
+fn name(value: impl ValueEnum) -> String {
+    value.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default()
+}

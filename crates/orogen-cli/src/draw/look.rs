@@ -1,0 +1,114 @@
+//! What a sample of a noise looks like: a grey, a direction or a colour.
+
+use std::ops::Range;
+
+use orogen::format::levels::Levels;
+use orogen::format::png::Pixel;
+use orogen_noise::Fractal;
+
+use super::slice::Slice;
+use super::texture::{Painter, Texture};
+
+/// How high the ground of a normal picture is, in wavelengths: its slopes then neither vanish nor turn to walls.
+const RELIEF: f64 = 0.25;
+
+/// What is drawn of a noise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Look {
+    /// Its values: -1 black, 1 white.
+    Grey,
+    /// Where its slope faces.
+    Normal,
+    /// A material made of it.
+    Texture(Texture),
+}
+
+/// A noise and its look.
+#[derive(Debug)]
+pub struct Drawing {
+    noise: Fractal,
+    width: usize,
+    deep: bool,
+    look: Look,
+    painter: Painter,
+}
+
+impl Drawing {
+    /// Of rows of `width` samples, with 16 bits a number if `deep` and not a texture.
+    pub fn new(noise: Fractal, width: usize, look: Look, deep: bool) -> Drawing {
+        Drawing { noise, width, deep, look, painter: Painter::default() }
+    }
+
+    /// What its pixels are.
+    pub fn pixel(&self) -> Pixel {
+        match (self.look, self.deep) {
+            (Look::Grey, false) => Pixel::Grey8,
+            (Look::Grey, true) => Pixel::Grey16,
+            (Look::Normal, false) => Pixel::Normal8,
+            (Look::Normal, true) => Pixel::Normal16,
+            (Look::Texture(_), _) => Pixel::Rgb8,
+        }
+    }
+
+    /// Draws some rows, at a depth or in the plane.
+    pub fn paint(&self, depth: Option<f64>, rows: Range<usize>, bytes: &mut [u8]) {
+        let slice = Slice { noise: self.noise, width: self.width, depth, stretch: 1.0 };
+        let mut value = vec![0.0; rows.len() * self.width];
+        match self.look {
+            Look::Grey => {
+                slice.fill(rows, &mut value);
+                self.numbers(&value, bytes);
+            }
+            Look::Normal => {
+                let mut dy = vec![0.0; value.len()];
+                slice.fill_slopes(rows, &mut value, &mut dy);
+                let relief = (RELIEF * self.noise.wavelength) as f32;
+                let normals: Vec<f32> =
+                    value.iter().zip(&dy).flat_map(|(&dx, &dy)| normal(dx * relief, dy * relief)).collect();
+                self.numbers(&normals, bytes);
+            }
+            Look::Texture(texture) => self.painter.paint(texture, &slice, rows, bytes),
+        }
+    }
+
+    /// Numbers of -1 to 1 over all levels.
+    fn numbers(&self, numbers: &[f32], bytes: &mut [u8]) {
+        let levels = Levels::new(-1.0, 1.0);
+        match self.deep {
+            false => bytes.iter_mut().zip(numbers).for_each(|(byte, &number)| *byte = levels.to_u8(number)),
+            true => bytes
+                .chunks_exact_mut(2)
+                .zip(numbers)
+                .for_each(|(pair, &number)| pair.copy_from_slice(&levels.to_u16(number).to_be_bytes())),
+        }
+    }
+}
+
+/// The upward normal of ground that rises by `dx` eastwards and by `dy` southwards: its parts east, north and up. North is
+/// up in the picture, as most programs have it.
+fn normal(dx: f32, dy: f32) -> [f32; 3] {
+    let length = (1.0 + dx * dx + dy * dy).sqrt();
+    [-dx / length, dy / length, 1.0 / length]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normals_face_downhill() {
+        assert_eq!(normal(0.0, 0.0), [0.0, 0.0, 1.0]);
+        let [east, north, up] = normal(-1.0, 0.0);
+        assert!(east > 0.7 && north == 0.0 && up > 0.7, "falling eastwards it faces east");
+        let [_, north, _] = normal(0.0, 1.0);
+        assert!(north > 0.7, "rising southwards it faces north");
+    }
+
+    #[test]
+    fn greys_span_all_levels() {
+        let drawing = Drawing::new(Fractal::default(), 3, Look::Grey, true);
+        let mut bytes = [0; 6];
+        drawing.numbers(&[-1.0, 0.0, 1.0], &mut bytes);
+        assert_eq!(bytes, [0, 0, 0x80, 0, 0xff, 0xff]);
+    }
+}

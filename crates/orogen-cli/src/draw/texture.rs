@@ -1,0 +1,136 @@
+//! Materials made of noise, by the textbooks' recipes.
+//!
+//! K. Perlin, "An Image Synthesizer" (SIGGRAPH 1985) for marble; D. Ebert and others, "Texturing and Modeling" for all three.
+
+use std::f32::consts::TAU;
+use std::ops::Range;
+
+use clap::ValueEnum;
+use orogen::palette::{Encoder, Ramp};
+use orogen_noise::{Fractal, Kind};
+use rayon::prelude::*;
+
+use super::slice::Slice;
+
+/// A material.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Texture {
+    /// Fbm through a curve: below a threshold blue sky, above it ever denser white
+    Clouds,
+    /// A sine across the picture, distorted by turbulence: the sum of the octaves' sizes
+    Marble,
+    /// Rings: the fractional part of a noise that has been counted up and drawn out, and a fine grain
+    Wood,
+}
+
+impl Texture {
+    /// The octaves it looks best with.
+    pub fn octaves(self) -> u32 {
+        match self {
+            Texture::Clouds => 8,
+            Texture::Marble => 7,
+            Texture::Wood => 1,
+        }
+    }
+
+    /// The wavelength it looks best with in a picture of 512 samples.
+    pub fn wavelength(self) -> f64 {
+        match self {
+            Texture::Clouds => 200.0,
+            Texture::Marble => 150.0,
+            Texture::Wood => 128.0,
+        }
+    }
+}
+
+/// What of fbm is sky, and how soon clouds behind it are white.
+const COVER: f32 = -0.05;
+const DENSITY: f32 = 5.0;
+
+/// By how many wavelengths turbulence moves the sine of marble.
+const TURBULENCE: f32 = 1.5;
+
+/// How many rings a noise from 0 to 1 counts, and how many times longer than wide they are drawn.
+const RINGS: f32 = 9.0;
+const STRETCH: f64 = 6.0;
+
+const SKY: [(f32, [u8; 3]); 4] =
+    [(0.0, [56, 112, 184]), (0.35, [132, 174, 220]), (0.7, [216, 229, 243]), (1.0, [255, 255, 255])];
+
+const STONE: [(f32, [u8; 3]); 6] = [
+    (0.0, [66, 74, 84]),
+    (0.05, [112, 121, 131]),
+    (0.16, [176, 181, 186]),
+    (0.4, [219, 219, 217]),
+    (0.75, [240, 238, 233]),
+    (1.0, [249, 247, 242]),
+];
+
+const TIMBER: [(f32, [u8; 3]); 5] = [
+    (0.0, [214, 165, 108]),
+    (0.45, [201, 147, 90]),
+    (0.8, [164, 106, 58]),
+    (0.94, [122, 73, 37]),
+    (1.0, [190, 138, 84]),
+];
+
+/// Paints materials.
+#[derive(Debug)]
+pub struct Painter {
+    sky: Ramp,
+    stone: Ramp,
+    timber: Ramp,
+    encoder: Encoder,
+}
+
+impl Default for Painter {
+    fn default() -> Painter {
+        Painter { sky: Ramp::new(&SKY), stone: Ramp::new(&STONE), timber: Ramp::new(&TIMBER), encoder: Encoder::new() }
+    }
+}
+
+impl Painter {
+    /// Paints some rows of a material made of a slice's noise; how its octaves are summed is the material's own matter.
+    pub fn paint(&self, texture: Texture, slice: &Slice, rows: Range<usize>, bytes: &mut [u8]) {
+        let Slice { noise, width, .. } = *slice;
+        let (kind, stretch) = match texture {
+            Texture::Clouds => (Kind::Fbm, 1.0),
+            Texture::Marble => (Kind::Billow, 1.0),
+            Texture::Wood => (Kind::Fbm, 1.0 / STRETCH),
+        };
+        let mut value = vec![0.0; rows.len() * width];
+        let made_of = Slice { noise: Fractal { kind, ..noise }, stretch, ..*slice };
+        made_of.fill(rows.clone(), &mut value);
+        let grain = match texture {
+            Texture::Wood => grain(slice, rows),
+            _ => Vec::new(),
+        };
+        bytes.par_chunks_exact_mut(3).zip(&value).enumerate().with_min_len(1 << 12).for_each(|(k, (pixel, &value))| {
+            let color = match texture {
+                Texture::Clouds => self.sky.at(1.0 - libm::expf(-DENSITY * (value - COVER).max(0.0))),
+                Texture::Marble => {
+                    // In f64 until it is within one wave: a wide picture has no fewer veins at its far end.
+                    let waves = (k % width) as f64 / noise.wavelength;
+                    let turns = (waves - waves.floor()) as f32 + TURBULENCE * (value + 1.0) / 2.0;
+                    self.stone.at(0.5 + 0.5 * libm::sinf(TAU * (turns - turns.floor())))
+                }
+                Texture::Wood => {
+                    let rings = RINGS * (value + 1.0) / 2.0;
+                    let grain = grain.get(k).copied().unwrap_or(0.0);
+                    self.timber.at(rings - rings.floor()).map(|light| light * (1.0 + grain))
+                }
+            };
+            pixel.copy_from_slice(&self.encoder.bytes(color));
+        });
+    }
+}
+
+/// The fibres of wood: how much lighter each sample is, mostly along y the same.
+fn grain(slice: &Slice, rows: Range<usize>) -> Vec<f32> {
+    let noise =
+        Fractal { kind: Kind::Fbm, seed: slice.noise.seed ^ 1, wavelength: 3.0, octaves: 2, ..Fractal::default() };
+    let mut fibres = vec![0.0; rows.len() * slice.width];
+    Slice { noise, stretch: 1.0 / 40.0, ..*slice }.fill(rows, &mut fibres);
+    fibres.iter_mut().for_each(|fibre| *fibre *= 0.25);
+    fibres
+}

@@ -1,0 +1,222 @@
+//! `orogen noise`.
+
+use crate::harness::{Folder, npy, png};
+use orogen_noise::{Basis, Depth, Falloff, Fractal, Kind, Points};
+
+/// The noise's own samples over W x H.
+fn samples(noise: &Fractal, width: u32, height: u32, depth: Option<f64>) -> Vec<f32> {
+    let side = |n| (0..n).map(f64::from).collect::<Vec<_>>();
+    let (xs, ys) = (side(width), side(height));
+    let points = Points::Lattice { xs: &xs, ys: &ys };
+    let mut value = vec![0.0; points.len()];
+    match depth {
+        None => noise.fill(&points, &mut value).unwrap(),
+        Some(depth) => noise.fill3(&points, &Depth::Slice(depth), &mut value).unwrap(),
+    }
+    value
+}
+
+/// The f32 at the end of an array file, and its shape as it stands in the header.
+fn array(bytes: &[u8], count: usize) -> (Vec<f32>, String) {
+    let (header, data) = bytes.split_at(bytes.len() - count * 4);
+    let header = String::from_utf8_lossy(header).into_owned();
+    let shape = header.split_once("'shape': ").unwrap().1.split_once(", }").unwrap().0.to_string();
+    (data.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect(), shape)
+}
+
+#[test]
+fn every_basis_is_drawn_with_the_librarys_own_samples() {
+    let folder = Folder::new();
+    for &basis in Basis::all() {
+        folder.good(&["noise", basis.name(), "-o", "a.npy", "--size", "70x40", "--seed", "9", "-q"]);
+        let noise = Fractal { basis, seed: 9, wavelength: 64.0, octaves: 1, ..Fractal::default() };
+        let grid = npy(&folder.read("a.npy"));
+        assert_eq!((grid.width(), grid.height()), (70, 40));
+        assert_eq!(grid.data(), samples(&noise, 70, 40, None), "{}", basis.name());
+    }
+}
+
+#[test]
+fn every_parameter_reaches_the_noise() {
+    let folder = Folder::new();
+    let options = [
+        "--size",
+        "33",
+        "--wavelength",
+        "12.5",
+        "--octaves",
+        "4",
+        "--gain",
+        "0.7",
+        "--lacunarity",
+        "1.9",
+        "--seed",
+        "5",
+    ];
+    let noise = Fractal { seed: 5, wavelength: 12.5, octaves: 4, gain: 0.7, lacunarity: 1.9, ..Fractal::default() };
+    let weighted = Kind::Weighted { k: 2.5, falloff: Falloff::SquareRoot };
+    for (more, kind, depth) in [
+        (&["--fractal", "ridged"][..], Kind::Ridged, None),
+        (&["--fractal", "billow", "--z", "-7.5"], Kind::Billow, Some(-7.5)),
+        (&["--fractal", "weighted", "--k", "2.5", "--falloff", "square-root"], weighted, None),
+        (&["--z", "0"], Kind::Fbm, Some(0.0)),
+    ] {
+        folder.good(&[&["noise", "value", "-o", "a.npy"], &options[..], more].concat());
+        let expect = samples(&Fractal { basis: Basis::Value, kind, ..noise }, 33, 33, depth);
+        assert_eq!(npy(&folder.read("a.npy")).data(), expect, "{more:?}");
+    }
+}
+
+#[test]
+fn greys_span_minus_one_to_one() {
+    let folder = Folder::new();
+    let outcome = folder.good(&["noise", "perlin", "--size", "64x48"]);
+    assert_eq!(outcome.text(), "noise.png: fbm of 1 octave of perlin noise, wavelength 64, seed 0; 64 x 48 samples\n");
+    folder.good(&["noise", "perlin", "--size", "64x48", "-o", "b.PNG", "--bits", "16"]);
+    let (a, b) = (png(&folder.read("noise.png")), png(&folder.read("b.PNG")));
+    assert_eq!((a.width, a.height, a.bits, a.channels), (64, 48, 8, 1));
+    let noise = Fractal { wavelength: 64.0, octaves: 1, ..Fractal::default() };
+    for ((value, &grey), deep) in samples(&noise, 64, 48, None).into_iter().zip(&a.data).zip(b.grey16()) {
+        assert!((f32::from(grey) - (value + 1.0) * 127.5).abs() <= 0.501);
+        assert!((f32::from(deep) - (value + 1.0) * 32767.5).abs() <= 0.52);
+    }
+}
+
+#[test]
+fn an_animation_has_its_frames_and_comes_back() {
+    let folder = Folder::new();
+    folder.good(&["noise", "perlin", "--size", "40x30", "--frames", "6", "--z", "3", "-o", "a.png"]);
+    folder.good(&["noise", "perlin", "--size", "40x30", "--z", "3", "-o", "first.png"]);
+    let bytes = folder.read("a.png");
+    let mut reader = ::png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+    let control = *reader.info().animation_control().unwrap();
+    assert_eq!((control.num_frames, control.num_plays), (6, 0));
+    let frames: Vec<Vec<u8>> = (0..6)
+        .map(|_| {
+            let mut data = vec![0; reader.output_buffer_size().unwrap()];
+            reader.next_frame(&mut data).unwrap();
+            data
+        })
+        .collect();
+    assert_eq!(frames[0], png(&folder.read("first.png")).data);
+    assert!(frames[1] != frames[0] && frames[2] != frames[1] && frames[3] != frames[2]);
+    // There and back, but for the rounding of the cosine.
+    let far = frames[1].iter().zip(&frames[5]).map(|(a, b)| a.abs_diff(*b)).max();
+    assert!(far <= Some(1), "{far:?}");
+}
+
+#[test]
+fn a_block_is_its_slices() {
+    let folder = Folder::new();
+    folder.good(&["noise", "perlin", "--size", "20x10", "--volume", "3", "--z", "0.5", "--wavelength", "8"]);
+    let (values, shape) = array(&folder.read("noise.npy"), 600);
+    assert_eq!(shape, "(3, 10, 20)");
+    let noise = Fractal { wavelength: 8.0, octaves: 1, ..Fractal::default() };
+    for (slice, depth) in values.chunks_exact(200).zip([0.5, 1.5, 2.5]) {
+        assert_eq!(slice, samples(&noise, 20, 10, Some(depth)));
+    }
+}
+
+#[test]
+fn slopes_are_arrays_or_normals() {
+    let folder = Folder::new();
+    folder.good(&["noise", "perlin", "--size", "20x10", "--gradient", "-o", "a.npy"]);
+    let (slopes, shape) = array(&folder.read("a.npy"), 400);
+    assert_eq!(shape, "(2, 10, 20)");
+    let noise = Fractal { wavelength: 64.0, octaves: 1, ..Fractal::default() };
+    for k in [0, 57, 199] {
+        let (x, y) = (f64::from(k % 20), f64::from(k / 20));
+        let east = (noise.sample(x + 0.5, y) - noise.sample(x - 0.5, y)) as f64;
+        let south = (noise.sample(x, y + 0.5) - noise.sample(x, y - 0.5)) as f64;
+        let got = [slopes[k as usize], slopes[200 + k as usize]].map(f64::from);
+        assert!((got[0] - east).abs() < 1e-3 && (got[1] - south).abs() < 1e-3, "{k}: {got:?} {east} {south}");
+    }
+    for (bits, options) in [(8, &[][..]), (16, &["--bits", "16"])] {
+        folder.good(&[&["noise", "perlin", "--size", "20", "--gradient", "-o", "a.png"][..], options].concat());
+        let picture = png(&folder.read("a.png"));
+        assert_eq!((picture.bits, picture.channels), (bits, 3));
+        let step = usize::from(bits) / 8;
+        for pixel in picture.data.chunks_exact(3 * step) {
+            let part = |n: usize| f64::from(pixel[n * step]) / 127.5 - 1.0;
+            let length = part(0) * part(0) + part(1) * part(1) + part(2) * part(2);
+            assert!((length - 1.0).abs() < 0.05 && part(2) > 0.3, "{pixel:?}");
+        }
+    }
+}
+
+#[test]
+fn textures_are_coloured_each_in_its_way() {
+    let folder = Folder::new();
+    for texture in ["clouds", "marble", "wood"] {
+        folder.good(&["noise", "perlin", "--size", "128", "--texture", texture, "-o", "a.png"]);
+        let picture = png(&folder.read("a.png"));
+        assert_eq!((picture.bits, picture.channels), (8, 3));
+        let sum = |c: usize| picture.data.iter().skip(c).step_by(3).map(|&b| u64::from(b)).sum::<u64>();
+        let (red, blue) = (sum(0), sum(2));
+        match texture {
+            "clouds" => assert!(blue > red * 11 / 10),
+            "wood" => assert!(red > blue * 15 / 10),
+            _ => assert!(red.abs_diff(blue) < red / 10),
+        }
+        folder.good(&["noise", "value", "--size", "16", "--texture", texture, "--frames", "2", "-o", "b.png"]);
+    }
+}
+
+#[test]
+fn what_cannot_be_drawn_is_a_sentence_and_leaves_nothing() {
+    let folder = Folder::new();
+    for (arguments, code, expect) in [
+        (&["perln"][..], 2, "a similar value exists: 'perlin'"),
+        (&["nothing"], 2, "possible values: white, value, perlin"),
+        (&[], 2, "<BASIS>"),
+        (&["perlin", "--size", "0"], 2, "1 to 1000000000 samples, not 0"),
+        (&["perlin", "--size", "5x0"], 2, "1 to 1000000000 samples, not 0"),
+        (&["perlin", "--size", "1000000000"], 1, "of memory"),
+        (&["perlin", "--size", "4000", "--frames", "2", "--memory", "100MB"], 1, "of memory and 95 MiB is allowed"),
+        (&["perlin", "--wavelength", "0"], 2, "a wavelength is more than 0 samples"),
+        (&["perlin", "--wavelength", "nan"], 2, "a wavelength is more than 0 samples"),
+        (&["perlin", "--wavelength", "long"], 2, "such as 64"),
+        (&["perlin", "--octaves", "0"], 2, "1..=32"),
+        (&["perlin", "--octaves", "33"], 2, "1..=32"),
+        (&["perlin", "--gain", "inf"], 2, "it is a number"),
+        (&["perlin", "--lacunarity", "0"], 2, "a number above 0"),
+        (&["perlin", "--k", "1"], 2, "for --fractal weighted"),
+        (&["perlin", "--fractal", "weighted", "--k", "-1"], 2, "0 or a number above"),
+        (&["perlin", "--fractal", "rigded"], 2, "ridged"),
+        (&["perlin", "--z", "deep"], 2, "it is a number"),
+        (&["perlin", "--frames", "0"], 2, "1..=1000000"),
+        (&["perlin", "--frames", "3", "-o", "a.npy"], 2, "ends in .png"),
+        (&["perlin", "--volume", "0"], 2, "1..=1000000000"),
+        (&["perlin", "--volume", "3", "-o", "a.png"], 2, "ends in .npy"),
+        (&["perlin", "--volume", "3", "--frames", "3"], 2, "cannot be used with"),
+        (&["perlin", "--bits", "12"], 2, "possible values: 8, 16"),
+        (&["perlin", "--bits", "16", "-o", "a.npy"], 2, "--bits is for pictures"),
+        (&["perlin", "--texture", "marble", "-o", "a.npy"], 2, "ends in .png"),
+        (&["perlin", "--texture", "marble", "--bits", "16"], 2, "a texture is in colours"),
+        (&["perlin", "--texture", "marble", "--fractal", "fbm"], 2, "cannot be used with"),
+        (&["white", "--gradient"], 2, "white is made of squares of one value each and has no slope"),
+        (&["perlin", "-o", "a.jpg"], 2, "known are .npy and .png"),
+        (&["perlin", "-o", "a.npz"], 2, "did you mean .npy?"),
+        (&["perlin", "-o", "a"], 2, "has no extension"),
+        (&["perlin", "-o", "none/a.png"], 1, "cannot write into none: the folder does not exist"),
+    ] {
+        folder.bad(&[&["noise"][..], arguments].concat(), code, expect);
+        assert!(folder.names("").is_empty(), "{arguments:?}");
+    }
+}
+
+#[test]
+fn the_strangest_numbers_are_drawn_all_the_same() {
+    let folder = Folder::new();
+    for options in [
+        &["--wavelength", "1e-300", "--size", "9x7"][..],
+        &["--wavelength", "1e300", "--gain", "2", "--size", "7"],
+        &["--gain", "-1e300", "--size", "9"],
+        &["--lacunarity", "1e300", "--gradient", "--size", "9x7"],
+        &["--z", "1e300", "--size", "1x1"],
+        &["--frames", "1", "--size", "9"],
+        &["--texture", "marble", "--wavelength", "1e-9", "--size", "9"],
+    ] {
+        folder.good(&[&["noise", "perlin", "--octaves", "3"][..], options].concat());
+    }
+}
