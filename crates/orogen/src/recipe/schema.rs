@@ -5,6 +5,7 @@ use crate::declare::{Param, ParamSpec, Shape, read_param, short};
 use crate::node::Node;
 use crate::value::Value;
 use serde_json::{Map, Value as Json, json};
+use std::collections::BTreeMap;
 
 /// What `world` can be told.
 pub static WORLD: &[ParamSpec] = &[
@@ -78,7 +79,6 @@ pub fn json_schema() -> Json {
         let side = json!({ "type": "number", "minimum": 1e-3, "maximum": 1e9 });
         world.insert("size".into(), json!({ "description": pair["description"], "anyOf": [side, pair] }));
     }
-    let ops: Vec<Json> = Node::all().iter().map(op_schema).collect();
     json!({
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "Orogen recipe",
@@ -118,8 +118,46 @@ pub fn json_schema() -> Json {
                     { "type": "number" },
                 ],
             },
-            "node": { "type": "object", "required": ["op"], "oneOf": ops },
+            "node": node_schema(),
         },
+    })
+}
+
+/// A node: by its op, one of the ops' schemas. `if` and `then` rather than `oneOf`, so that a wrong key is named and not just the
+/// whole node called wrong; all keys of all ops beside them, because that is where editors look for completions.
+fn node_schema() -> Json {
+    let nodes = Node::all();
+    let ops: Vec<Json> = nodes
+        .iter()
+        .map(|node| json!({ "if": { "properties": { "op": { "const": node.spec().op } } }, "then": op_schema(node) }))
+        .collect();
+    let mut keys: BTreeMap<&str, Vec<(&str, String)>> = BTreeMap::new();
+    for spec in nodes.iter().map(Node::spec) {
+        let inputs = spec.inputs.iter().map(|input| (input.name, input.doc));
+        for (key, doc) in inputs.chain(spec.params.iter().map(|param| (param.name, param.doc))) {
+            keys.entry(key).or_default().push((spec.op, short(doc)));
+        }
+    }
+    let mut properties: Map<String, Json> =
+        keys.into_iter().map(|(key, docs)| (key.to_string(), json!({ "description": joined(&docs) }))).collect();
+    let names: Vec<&str> = nodes.iter().map(|node| node.spec().op).collect();
+    properties.insert("op".into(), json!({ "enum": names, "description": "What the node does." }));
+    properties.insert("mask".into(), mask_schema());
+    json!({ "type": "object", "required": ["op"], "properties": properties, "allOf": ops })
+}
+
+/// What a key means: once if it means the same in all ops, else op by op.
+fn joined(docs: &[(&str, String)]) -> String {
+    match docs {
+        [(_, first), others @ ..] if others.iter().all(|(_, doc)| doc == first) => first.clone(),
+        _ => docs.iter().map(|(op, doc)| format!("{op}: {doc}")).collect::<Vec<_>>().join("\n"),
+    }
+}
+
+fn mask_schema() -> Json {
+    json!({
+        "description": "Where the op takes effect: 1 fully, 0 not at all (its first input shows instead, or 0).",
+        "allOf": [{ "$ref": "#/definitions/input" }],
     })
 }
 
@@ -136,13 +174,7 @@ fn op_schema(node: &Node) -> Json {
     for (i, param) in spec.params.iter().enumerate() {
         properties.insert(param.name.into(), param_schema(param, Some(&node.param(i))));
     }
-    properties.insert(
-        "mask".into(),
-        json!({
-            "description": "Where the op takes effect: 1 fully, 0 not at all (its first input shows instead, or 0).",
-            "allOf": [{ "$ref": "#/definitions/input" }],
-        }),
-    );
+    properties.insert("mask".into(), mask_schema());
     let required: Vec<&str> =
         ["op"].into_iter().chain(spec.inputs.iter().filter(|input| input.required).map(|input| input.name)).collect();
     json!({
