@@ -216,3 +216,21 @@ fn broken_texts_never_panic() {
         }
     }
 }
+
+#[test]
+fn recipes_in_the_docs_are_recipes() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut found = 0;
+    for page in ["README.md", "docs/recipes.md"] {
+        let text = std::fs::read_to_string(root.join(page)).unwrap();
+        for block in text.split("```toml\n").skip(1) {
+            let block = block.split("```").next().unwrap();
+            if block.contains("orogen = 1") {
+                let world = Recipe::parse(block, page).and_then(World::open).unwrap_or_else(|error| panic!("{error}"));
+                world.window("height", &orogen::Window::new(16, 16, 60.0)).unwrap_or_else(|error| panic!("{error}"));
+                found += 1;
+            }
+        }
+    }
+    assert_eq!(found, 2);
+}
