@@ -8,7 +8,8 @@ pub const ABOUT: &str = "make the pictures in docs/images anew";
 pub const HELP: &str = "
 Usage: cargo xtask gallery
 
-Makes docs/images/ anew: one relief map of each preset, and a large one of the default preset as the README's first picture.
+Makes docs/images/ anew: one relief map of each preset, a large one of the default preset as the README's first picture, and
+the page that shows the noises side by side.
 ";
 
 /// Samples along a side of a preset's picture, and of the first picture.
@@ -32,5 +33,9 @@ pub fn run(args: &[String]) -> Result {
         std::fs::copy(work.join("map.png"), &to).map_err(|e| on_file("write", &to, &e))?;
         println!("{}", shell::relative(&to));
     }
+    let page = images.join("compare.png");
+    let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- compare --quiet -o");
+    shell::run(orogen.arg(&page))?;
+    println!("{}", shell::relative(&page));
     Ok(())
 }

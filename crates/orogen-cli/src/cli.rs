@@ -4,7 +4,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use orogen::Level;
 
-use crate::command::{completions, explain, export, generate, new, noise, ops, presets, schema};
+use crate::command::{compare, completions, explain, export, generate, new, noise, ops, presets, schema};
 use crate::failure::Failure;
 
 /// Procedural terrain: a recipe describes a world, orogen makes it.
@@ -32,6 +32,8 @@ enum Command {
     Ops(ops::Args),
     /// Draw one noise without a recipe: a picture, an array, an animation or a block.
     Noise(noise::Args),
+    /// Draw the noises side by side on one page, as heights and as hillshade.
+    Compare(compare::Args),
     /// Print the JSON Schema of recipes, for editors.
     Schema,
     /// Show how a recipe would be made: its nodes in order, and the memory it takes.
@@ -52,6 +54,7 @@ impl Cli {
             Command::Presets => presets::run(),
             Command::Ops(args) => ops::run(&args),
             Command::Noise(args) => noise::run(&args),
+            Command::Compare(args) => compare::run(&args),
             Command::Schema => schema::run(),
             Command::Explain(args) => explain::run(&args),
             Command::Completions(args) => completions::run(&args, Cli::command()),

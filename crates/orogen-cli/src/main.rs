@@ -15,6 +15,7 @@ mod options;
 mod pictures;
 mod report;
 mod say;
+mod sheet;
 mod size;
 mod source;
 mod view;

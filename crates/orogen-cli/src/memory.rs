@@ -1,6 +1,9 @@
-//! How much memory may be used if nobody says.
+//! How much memory may be used.
 
+use orogen::{Error, ErrorKind, words};
 use sysinfo::{Pid, ProcessRefreshKind, ProcessesToUpdate, System};
+
+use crate::size::Bytes;
 
 /// Half of what is free, to the machine or to the container this runs in, whichever is less; `None` if the system does not
 /// tell.
@@ -19,6 +22,22 @@ pub fn share_of_free() -> Option<u64> {
         .filter(|&free| free > 0)
         .min()
         .map(|free| free / 2)
+}
+
+/// Refuses work that needs more bytes than `allowed`, or than [`share_of_free`] if nobody says: nothing starts that cannot
+/// finish.
+pub fn afford(needed: u64, allowed: Option<Bytes>) -> Result<(), Error> {
+    match allowed.map(|bytes| bytes.0).or_else(share_of_free) {
+        Some(allowed) if needed > allowed => Err(Error::new(
+            ErrorKind::Memory,
+            format!(
+                "this needs up to {} of memory and {} is allowed: ask for fewer samples, or allow more",
+                words::bytes(needed),
+                words::bytes(allowed)
+            ),
+        )),
+        _ => Ok(()),
+    }
 }
 
 #[cfg(test)]

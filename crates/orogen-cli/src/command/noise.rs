@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use orogen::file;
 use orogen::format::png::{Animation, Picture};
 use orogen::format::{npy, png};
-use orogen::{Error, ErrorKind, file, words};
 use orogen_noise::{Basis, Fractal, Kind, MAX_OCTAVES};
 
 use crate::draw::look::{Drawing, Look};
@@ -212,7 +212,7 @@ impl Task<'_> {
         Err(Failure::Usage(wrong))
     }
 
-    /// Nothing starts that cannot finish.
+    /// Whether there is memory enough.
     fn afford(&self) -> Result<(), Failure> {
         let wide = |width: usize, bytes: usize| width as u64 * bytes as u64;
         // A band of samples with its slopes, columns and pixels, and the rows the encoder keeps.
@@ -223,17 +223,7 @@ impl Task<'_> {
             None => 0,
         };
         let needed = band.saturating_add(frame);
-        match self.args.memory.map(|bytes| bytes.0).or_else(memory::share_of_free) {
-            Some(allowed) if needed > allowed => {
-                let sentence = format!(
-                    "this needs up to {} of memory and {} is allowed: ask for fewer samples, or allow more",
-                    words::bytes(needed),
-                    words::bytes(allowed)
-                );
-                Err(Error::new(ErrorKind::Memory, sentence).into())
-            }
-            _ => Ok(()),
-        }
+        Ok(memory::afford(needed, self.args.memory)?)
     }
 
     fn deep(&self) -> bool {

@@ -89,7 +89,7 @@ pub fn write(
 
 /// Writes an animation whose frames `fill` makes, one at a time: it is given the frame's number, from 0, and its bytes.
 ///
-/// A reader that knows no animations shows the first frame. Fails as [`write`] does, and without any frame.
+/// A reader that knows no animations shows the first frame. Fails as [`write()`] does, and without any frame.
 pub fn write_animation(
     out: &mut dyn Write,
     picture: &Picture,

@@ -1,4 +1,6 @@
 //! Maps: pictures of grids for people.
 
+pub mod canvas;
 pub mod paint;
 pub mod shade;
+pub mod text;

@@ -1,0 +1,55 @@
+//! `orogen compare`.
+
+use std::path::PathBuf;
+
+use orogen::file;
+
+use crate::failure::Failure;
+use crate::format::Format;
+use crate::sheet::{page, row};
+use crate::size::{Bytes, seed};
+use crate::{memory, say};
+
+/// What it takes.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Picture to write, a .png
+    #[arg(short, long, value_name = "FILE", default_value = "compare.png")]
+    out: PathBuf,
+    /// Seed of all noises
+    #[arg(long, value_name = "N", value_parser = seed, default_value = "4", allow_negative_numbers = true)]
+    seed: u64,
+    /// Samples a side of each picture on the page; the page grows with it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(120..=4000), default_value = "200",
+          allow_negative_numbers = true)]
+    size: u16,
+    /// Most memory to use, such as 512MiB or 2GiB [default: half of what is free]
+    #[arg(long, value_name = "BYTES")]
+    memory: Option<Bytes>,
+    /// Leave out the closing words
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Draws the page.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    if Format::of(&args.out).map_err(Failure::Usage)? != Format::Png {
+        return Err(Failure::Usage("the page is a picture; name a file that ends in .png".into()));
+    }
+    let (rows, side) = (row::rows(args.seed), usize::from(args.size));
+    let [width, height] = page::size(rows.len(), side);
+    // The page, and of each noise its pictures, its heights twice and what they are made of.
+    let noises: usize = rows.iter().map(|row| row.noises.len()).sum();
+    memory::afford((3 * width * height + noises * side * side * 24) as u64, args.memory)?;
+    let page = page::draw(&rows, side, args.seed)?;
+    let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+    file::write_whole(&args.out, |out| page.write_png(out, &[("Software", &software)]))?;
+    match args.quiet {
+        true => Ok(()),
+        false => say::out(&format!(
+            "{}: {noises} noises of seed {}, each as heights and as hillshade; {width} x {height} pixels\n",
+            args.out.display(),
+            args.seed
+        )),
+    }
+}
