@@ -65,6 +65,7 @@ fn main() {
                 row($name, &mut |out, _, _| assert!($noise.fill(&$points, out).is_ok()));
             };
         }
+        row("plain fill", &mut |out, _, _| std::hint::black_box(out).fill(0.0));
         fill!("white, wavelength 1", White { seed: 1, wavelength: 1.0 }, lattice);
         fill!("white, wavelength 100", White { seed: 1, wavelength: 100.0 }, lattice);
         fill!("value", value, lattice);
@@ -80,6 +81,7 @@ fn main() {
         row("fbm6 with gradient", &mut |out, dx, dy| {
             assert!(fbm.fill_with_gradient(&lattice, out, dx, dy).is_ok());
         });
+        fill!("white scattered", White { seed: 1, wavelength: 1.0 }, scattered);
         fill!("fbm6 displaced", fbm, displaced);
         fill!("fbm6 scattered", fbm, scattered);
         fill!("ridged6", Fractal { kind: Kind::Ridged, ..fbm }, lattice);

@@ -207,6 +207,18 @@ impl Simd for Avx512 {
         F32x16(unsafe { _mm512_permutexvar_ps(index.0, table.0) })
     }
     #[inline(always)]
+    fn whole(self, number: F64x16) -> (F64x16, U32x16, U32x16) {
+        const DOWN: i32 = _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC;
+        let far = self.f64(6_755_399_441_055_744.0);
+        // Numbers of that size have no fraction: a sum rounded down is the whole number, already in place.
+        // SAFETY: see the head of the file.
+        let sum = unsafe {
+            F64x16(_mm512_add_round_pd::<DOWN>(number.0, far.0), _mm512_add_round_pd::<DOWN>(number.1, far.1))
+        };
+        let (low, high) = sum.words();
+        (sum - far, low, high)
+    }
+    #[inline(always)]
     fn gather(self, from: &[f32], index: U32x16) -> F32x16 {
         let Some(last) = last_index(from.len()) else {
             return self.f32(0.0);

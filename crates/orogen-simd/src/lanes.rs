@@ -88,6 +88,16 @@ pub trait Simd: Copy + Send + Sync + 'static {
     /// Each lane's entry, chosen by the low four bits of its index.
     fn lookup16(self, table: Self::Table16, index: Self::U32) -> Self::F32;
 
+    /// The greatest whole numbers not above, and those numbers in two's complement: the low words, and the high words plus
+    /// 0x4338_0000. For numbers of size below 2^51; the sign of a zero is unspecified.
+    #[inline(always)]
+    fn whole(self, number: Self::F64) -> (Self::F64, Self::U32, Self::U32) {
+        // A whole number added to 1.5 * 2^52 stands in the low bits of the sum.
+        let whole = number.floor();
+        let (low, high) = (whole + self.f64(6_755_399_441_055_744.0)).words();
+        (whole, low, high)
+    }
+
     /// `from[index]` per lane, read as u32; an index beyond the end reads the last entry, an empty slice gives 0.
     fn gather(self, from: &[f32], index: Self::U32) -> Self::F32;
     /// `from[index]` per lane, read as u32; an index beyond the end reads the last entry, an empty slice gives 0.

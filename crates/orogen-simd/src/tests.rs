@@ -125,7 +125,12 @@ impl Body for Round {
             word("to i32", a.as_f32().to_i32());
             word("gather", s.gather_u32(&[5, 6, 7, 8, 9], b.shr(29)));
             let (x, y) = (s.load_f64(&self.x[at..]), s.load_f64(&self.y[at..]));
+            let near = (x - x.floor()).max(s.f64(0.0)).min(s.f64(1.0)) + y.max(s.f64(-1e15)).min(s.f64(1e15));
+            let (whole, low, high) = s.whole(near);
+            word("f64 whole low", low);
+            word("f64 whole high", high);
             for (name, lanes) in [
+                ("f64 whole", whole + s.f64(0.0)),
                 ("f64 add", x + y),
                 ("f64 sub", x - y),
                 ("f64 mul", x * y),

@@ -2,9 +2,6 @@
 
 use orogen_simd::{F64Lanes, Simd, U32Lanes};
 
-/// 1.5 * 2^52: a whole number of size below 2^51 added to it stands in the low bits of the sum, in two's complement.
-const WHOLE: f64 = 6_755_399_441_055_744.0;
-
 /// Lanes of one coordinate, split.
 #[derive(Clone, Copy)]
 pub(crate) struct Cell<S: Simd> {
@@ -24,14 +21,14 @@ impl<S: Simd> Cell<S> {
     #[inline(always)]
     pub(crate) fn split(simd: S, position: S::F64, frequency: S::F64, offset: S::F64) -> Cell<S> {
         let u = position * frequency + offset;
-        let whole = u.floor();
-        Cell { t: (u - whole).narrow(), ..Cell::at(simd, whole) }
+        let (whole, low, high) = simd.whole(u);
+        Cell { whole, low, high, t: (u - whole).narrow() }
     }
 
     /// The lower edge of the cell of that number.
     #[inline(always)]
     pub(crate) fn at(simd: S, whole: S::F64) -> Cell<S> {
-        let (low, high) = (whole + simd.f64(WHOLE)).words();
+        let (_, low, high) = simd.whole(whole);
         Cell { whole, low, high, t: simd.f32(0.0) }
     }
 

@@ -1,11 +1,15 @@
 //! The way in: picks the level and the path.
 
-use crate::kernel::lattice;
+use crate::choices::Fade;
 use crate::kernel::outputs::Outputs;
-use crate::kernel::scattered::{BLOCK, Block, Sums, evaluate};
+use crate::kernel::scattered::Scatter;
+use crate::kernel::{lattice, white};
 use crate::points::{Depth, Points};
-use crate::program::Program;
-use orogen_simd::{Body, Simd};
+use crate::program::{Combine, Program, Source};
+use orogen_simd::{Body, F32Lanes, F64Lanes, Simd};
+
+/// How many points are worked on at a time where their positions have to be put together: they stay in the first-level cache.
+const BLOCK: usize = 256;
 
 /// One call of a public `fill`. `depth` is there in 3D.
 pub(crate) struct Fill<'a> {
@@ -22,13 +26,21 @@ impl Body for Fill<'_> {
     fn run<S: Simd>(mut self, simd: S) {
         let Fill { program, points, depth, outputs } = &mut self;
         match (&*points, &*depth) {
-            (Points::Lattice { xs, ys }, None) => lattice::fill(simd, program, (xs, ys, None), outputs),
+            (Points::Lattice { xs, ys }, None) => window(simd, program, (xs, ys, None), outputs),
             (Points::Lattice { xs, ys }, Some(Depth::Slice(z))) => {
-                lattice::fill(simd, program, (xs, ys, Some(*z)), outputs);
+                window(simd, program, (xs, ys, Some(*z)), outputs);
             }
             (_, None) => scattered::<S, false>(simd, program, points, None, outputs),
             (_, Some(depth)) => scattered::<S, true>(simd, program, points, Some(depth), outputs),
         }
+    }
+}
+
+#[inline(always)]
+fn window<S: Simd>(simd: S, program: &Program, at: (&[f64], &[f64], Option<f64>), outputs: &mut Outputs) {
+    match (program.source, program.combine, program.octaves()) {
+        (Source::Value(Fade::Step), Combine::Sum, [octave]) => white::fill(simd, program, octave, at, outputs),
+        _ => lattice::fill(simd, program, at, outputs),
     }
 }
 
@@ -40,55 +52,80 @@ fn scattered<S: Simd, const DEEP: bool>(
     depth: Option<&Depth>,
     outputs: &mut Outputs,
 ) {
-    let (mut block, mut sums) = (Block::new(), Sums::new());
+    let (mut x, mut y, mut z) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
+    if let Some(Depth::Slice(depth)) = depth {
+        z.fill(*depth);
+    }
     for start in (0..points.len()).step_by(BLOCK) {
-        let mut target = outputs.part(start, BLOCK.min(points.len() - start));
-        let count = target.value.len();
-        match (*points, DEEP) {
-            (Points::Scattered { x, y }, false) => {
-                block.settle_from(simd, [&x[start..start + count], &y[start..start + count]], program.limit);
+        let count = BLOCK.min(points.len() - start);
+        let target = outputs.part(start, count);
+        let [x, y] = match *points {
+            // Read where they are.
+            Points::Scattered { x, y } => [&x[start..start + count], &y[start..start + count]],
+            Points::Lattice { xs, ys } => {
+                gather(simd, (xs, ys), None, start, [&mut x[..count], &mut y[..count]]);
+                [&x[..count], &y[..count]]
             }
-            _ => {
-                gather(points, depth, start, count, &mut block);
-                block.settle(simd, count, program.limit, DEEP);
+            Points::Displaced { xs, ys, dx, dy } => {
+                gather(simd, (xs, ys), Some([dx, dy]), start, [&mut x[..count], &mut y[..count]]);
+                [&x[..count], &y[..count]]
             }
-        }
-        evaluate::<S, DEEP>(simd, program, &block, count, target.slopes.is_some(), &mut sums);
-        target.value.copy_from_slice(&sums.0[0][..count]);
-        for (slope, sum) in target.slopes.iter_mut().flatten().zip(&sums.0[1..]) {
-            slope.copy_from_slice(&sum[..slope.len()]);
+        };
+        let z = match depth {
+            Some(Depth::Each(z)) => &z[start..start + count],
+            _ => &z[..count],
+        };
+        if target.slopes.is_some() || matches!(program.combine, Combine::Weighted { .. }) {
+            simd.run(Scatter::<DEEP, true> { program, at: [x, y, z], target });
+        } else {
+            simd.run(Scatter::<DEEP, false> { program, at: [x, y, z], target });
         }
     }
 }
 
-/// Collects the positions of `count` samples from `start` on, row by row.
+/// Collects the positions of lattice samples from `start` on, row by row.
 #[inline(always)]
-fn gather(points: &Points, depth: Option<&Depth>, start: usize, count: usize, block: &mut Block) {
-    match *points {
-        Points::Scattered { x, y } => {
-            block.x[..count].copy_from_slice(&x[start..start + count]);
-            block.y[..count].copy_from_slice(&y[start..start + count]);
+fn gather<S: Simd>(
+    simd: S,
+    (xs, ys): (&[f64], &[f64]),
+    displaced: Option<[&[f32]; 2]>,
+    start: usize,
+    [x, y]: [&mut [f64]; 2],
+) {
+    let mut done = 0;
+    while done < x.len() {
+        let at = start + done;
+        let (row, column) = (at / xs.len(), at % xs.len());
+        let run = (xs.len() - column).min(x.len() - done);
+        let (x, y) = (&mut x[done..done + run], &mut y[done..done + run]);
+        x.copy_from_slice(&xs[column..column + run]);
+        y.fill(ys[row]);
+        if let Some([dx, dy]) = displaced {
+            simd.run(Displace { to: x, by: &dx[at..at + run] });
+            simd.run(Displace { to: y, by: &dy[at..at + run] });
         }
-        Points::Lattice { xs, ys } | Points::Displaced { xs, ys, .. } => {
-            let mut done = 0;
-            while done < count {
-                let at = start + done;
-                let (row, column) = (at / xs.len(), at % xs.len());
-                let run = (xs.len() - column).min(count - done);
-                block.x[done..done + run].copy_from_slice(&xs[column..column + run]);
-                block.y[done..done + run].fill(ys[row]);
-                if let Points::Displaced { dx, dy, .. } = *points {
-                    let add = |to: &mut [f64], by: &[f32]| to.iter_mut().zip(by).for_each(|(t, &b)| *t += f64::from(b));
-                    add(&mut block.x[done..done + run], &dx[at..at + run]);
-                    add(&mut block.y[done..done + run], &dy[at..at + run]);
-                }
-                done += run;
-            }
-        }
+        done += run;
     }
-    match depth {
-        None => {}
-        Some(Depth::Slice(z)) => block.z[..count].fill(*z),
-        Some(Depth::Each(z)) => block.z[..count].copy_from_slice(&z[start..start + count]),
+}
+
+/// Adds displacements to positions.
+struct Displace<'a> {
+    to: &'a mut [f64],
+    by: &'a [f32],
+}
+
+impl Body for Displace<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let whole = self.by.len() / S::LANES * S::LANES;
+        for at in (0..whole).step_by(S::LANES) {
+            let sum = simd.load_f64(&self.to[at..]) + simd.load(&self.by[at..]).widen();
+            sum.store(&mut self.to[at..]);
+        }
+        for at in whole..self.by.len() {
+            self.to[at] += f64::from(self.by[at]);
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::choices::ClassicVariant;
 use crate::kernel::cell::Cell;
-use crate::program::Octave;
+use crate::program::{Octave, Source};
 use crate::tables::{directions, reference};
 use orogen_simd::{F32Lanes, Simd, U32Lanes};
 
@@ -19,6 +19,8 @@ pub(crate) trait Lattice<S: Simd>: Copy {
 
 /// A lattice whose points have gradients.
 pub(crate) trait Gradients<S: Simd>: Lattice<S> {
+    /// The lattice as the octave needs it.
+    fn new(simd: S, source: Source, octave: &Octave) -> Self;
     /// The gradient a hash stands for.
     fn gradient2(self, simd: S, hash: S::U32) -> [S::F32; 2];
     /// The gradient a hash stands for in 3D.
@@ -46,8 +48,9 @@ impl<S: Simd> Hashed<S> {
         Hashed { words: [[simd.u32(a), simd.u32(b)], [simd.u32(c), simd.u32(d)], [simd.u32(e), simd.u32(f)]] }
     }
 
+    /// The hash of keys joined by xor.
     #[inline(always)]
-    fn finish(simd: S, joined: S::U32) -> S::U32 {
+    pub(crate) fn finish(simd: S, joined: S::U32) -> S::U32 {
         (joined ^ joined.shr(15)) * simd.u32(ROUND_3)
     }
 }
@@ -91,23 +94,6 @@ pub(crate) struct PerlinSource<S: Simd> {
     deep: [S::Table16; 3],
 }
 
-impl<S: Simd> PerlinSource<S> {
-    #[inline(always)]
-    pub(crate) fn new(simd: S, octave: &Octave) -> PerlinSource<S> {
-        const fn both(half: [f32; 8]) -> [f32; 16] {
-            let [a, b, c, d, e, f, g, h] = half;
-            [a, b, c, d, e, f, g, h, -a, -b, -c, -d, -e, -f, -g, -h]
-        }
-        const WIDE: [[f32; 16]; 2] = [both(directions::X_2D), both(directions::Y_2D)];
-        PerlinSource {
-            lattice: Hashed::new(simd, octave),
-            wide: [simd.table16(&WIDE[0]), simd.table16(&WIDE[1])],
-            half: [simd.table8(&directions::X_2D), simd.table8(&directions::Y_2D)],
-            deep: [simd.table16(&directions::X_3D), simd.table16(&directions::Y_3D), simd.table16(&directions::Z_3D)],
-        }
-    }
-}
-
 impl<S: Simd> Lattice<S> for PerlinSource<S> {
     #[inline(always)]
     fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2] {
@@ -124,6 +110,20 @@ impl<S: Simd> Lattice<S> for PerlinSource<S> {
 }
 
 impl<S: Simd> Gradients<S> for PerlinSource<S> {
+    #[inline(always)]
+    fn new(simd: S, _: Source, octave: &Octave) -> PerlinSource<S> {
+        const fn both(half: [f32; 8]) -> [f32; 16] {
+            let [a, b, c, d, e, f, g, h] = half;
+            [a, b, c, d, e, f, g, h, -a, -b, -c, -d, -e, -f, -g, -h]
+        }
+        const WIDE: [[f32; 16]; 2] = [both(directions::X_2D), both(directions::Y_2D)];
+        PerlinSource {
+            lattice: Hashed::new(simd, octave),
+            wide: [simd.table16(&WIDE[0]), simd.table16(&WIDE[1])],
+            half: [simd.table8(&directions::X_2D), simd.table8(&directions::Y_2D)],
+            deep: [simd.table16(&directions::X_3D), simd.table16(&directions::Y_3D), simd.table16(&directions::Z_3D)],
+        }
+    }
     #[inline(always)]
     fn gradient2(self, simd: S, hash: S::U32) -> [S::F32; 2] {
         // The top bit is the sign, the next three the direction in the upper half plane.
@@ -158,12 +158,6 @@ pub(crate) struct ClassicSource<S: Simd> {
 
 impl<S: Simd> ClassicSource<S> {
     #[inline(always)]
-    pub(crate) fn new(simd: S, octave: &Octave, variant: ClassicVariant) -> ClassicSource<S> {
-        let [x, y, z] = octave.words;
-        ClassicSource { shift: [simd.u32(x[0]), simd.u32(y[0]), simd.u32(z[0])], variant }
-    }
-
-    #[inline(always)]
     fn permuted(simd: S, number: S::U32) -> S::U32 {
         simd.gather_u32(&reference::TABLE, number & simd.u32(255))
     }
@@ -187,6 +181,12 @@ impl<S: Simd> Lattice<S> for ClassicSource<S> {
 }
 
 impl<S: Simd> Gradients<S> for ClassicSource<S> {
+    #[inline(always)]
+    fn new(simd: S, source: Source, octave: &Octave) -> ClassicSource<S> {
+        let [x, y, z] = octave.words;
+        let variant = if let Source::Classic(variant) = source { variant } else { ClassicVariant::Diagonal };
+        ClassicSource { shift: [simd.u32(x[0]), simd.u32(y[0]), simd.u32(z[0])], variant }
+    }
     #[inline(always)]
     fn gradient2(self, simd: S, hash: S::U32) -> [S::F32; 2] {
         let [x, y] = match self.variant {

@@ -2,7 +2,8 @@
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
-use crate::kernel::basis::{Basis, Numbers, Visit, Weights, with_basis};
+use crate::kernel::bases::with_basis;
+use crate::kernel::basis::{Basis, Numbers, Visit, Weights};
 use crate::kernel::cell::{Cell, clamp};
 use crate::program::{Octave, Source};
 use orogen_simd::{Body, F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
@@ -156,13 +157,14 @@ impl Body for Columns<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         // What depends on x or y alone is the same in the plane and in space.
-        with_basis::<S, _, false>(simd, self.job.source, self.job.octave, self);
+        with_basis::<S, _, false>(simd, self.job.source, self);
     }
 }
 
 impl<S: Simd> Visit<S> for Columns<'_> {
     #[inline(always)]
-    fn visit<B: Basis<S>>(self, simd: S, basis: B) {
+    fn visit<B: Basis<S>>(self, simd: S) {
+        let basis = B::new(simd, self.job.source, self.job.octave);
         let Columns { job, strip, xs } = self;
         strip.held = None;
         let Some(&last) = xs.last() else { return };
@@ -228,13 +230,14 @@ impl Body for Rows<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         // What depends on x or y alone is the same in the plane and in space.
-        with_basis::<S, _, false>(simd, self.job.source, self.job.octave, self);
+        with_basis::<S, _, false>(simd, self.job.source, self);
     }
 }
 
 impl<S: Simd> Visit<S> for Rows<'_> {
     #[inline(always)]
-    fn visit<B: Basis<S>>(self, simd: S, basis: B) {
+    fn visit<B: Basis<S>>(self, simd: S) {
+        let basis = B::new(simd, self.job.source, self.job.octave);
         let Rows { job, strip, ys } = self;
         let Some(&last) = ys.last() else { return };
         let cell = job.split(simd, simd.load_f64_partial(ys, last), 1);
@@ -272,13 +275,14 @@ impl<const DEEP: bool, const SLOPES: bool> Body for Line<'_, DEEP, SLOPES> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        with_basis::<S, _, DEEP>(simd, self.job.source, self.job.octave, self);
+        with_basis::<S, _, DEEP>(simd, self.job.source, self);
     }
 }
 
 impl<S: Simd, const DEEP: bool, const SLOPES: bool> Visit<S> for Line<'_, DEEP, SLOPES> {
     #[inline(always)]
-    fn visit<B: Basis<S>>(self, simd: S, basis: B) {
+    fn visit<B: Basis<S>>(self, simd: S) {
+        let basis = B::new(simd, self.job.source, self.job.octave);
         let Line { job, strip, points, line, key } = self;
         let points = &mut points.0;
         let key = simd.u32(key);

@@ -1,0 +1,115 @@
+//! Lattices of white noise: a key per column and per row, one hash per sample.
+//!
+//! The numbers are those of [`crate::kernel::value`]'s flat bases over the lattice kernels; here nothing is looked up or blended.
+
+#![allow(clippy::needless_range_loop)] // see kernel/mod.rs
+
+use crate::kernel::cell::{Cell, clamp};
+use crate::kernel::outputs::Outputs;
+use crate::kernel::source::{Hashed, Lattice, value};
+use crate::program::{Octave, Program};
+use orogen_simd::{Body, F32Lanes, Simd, U32Lanes};
+
+/// Columns whose keys are kept at a time: a quarter of a first-level cache.
+const WIDTH: usize = 2048;
+/// Rows whose keys are made at a time.
+const ROWS: usize = 16;
+
+/// Fills a lattice with one octave of white noise.
+#[inline(always)]
+pub(crate) fn fill<S: Simd>(
+    simd: S,
+    program: &Program,
+    octave: &Octave,
+    (xs, ys, z): (&[f64], &[f64], Option<f64>),
+    outputs: &mut Outputs,
+) {
+    for slope in outputs.slopes.iter_mut().flatten() {
+        slope.fill(0.0);
+    }
+    let limit = program.limit;
+    let (mut columns, mut rows, mut depth) = (Aligned([0; WIDTH]), [0; ROWS], [0]);
+    if let Some(z) = z {
+        simd.run(Keys { octave, limit, axis: 2, at: &[z], keys: &mut depth });
+    }
+    for (s, part) in xs.chunks(WIDTH).enumerate() {
+        simd.run(Keys { octave, limit, axis: 0, at: part, keys: &mut columns.0 });
+        for (g, group) in ys.chunks(ROWS).enumerate() {
+            simd.run(Keys { octave, limit, axis: 1, at: group, keys: &mut rows });
+            for r in 0..group.len() {
+                let start = (g * ROWS + r) * xs.len() + s * WIDTH;
+                let to = &mut outputs.value[start..start + part.len()];
+                // Keys are joined by xor, so that depth counts once per row.
+                simd.run(Row { columns: &columns.0, key: rows[r] ^ depth[0], amplitude: octave.amplitude, to });
+            }
+        }
+    }
+}
+
+#[repr(align(64))]
+struct Aligned([u32; WIDTH]);
+
+/// The keys of the cells at positions along an axis.
+struct Keys<'a> {
+    octave: &'a Octave,
+    limit: f64,
+    axis: usize,
+    at: &'a [f64],
+    keys: &'a mut [u32],
+}
+
+impl Body for Keys<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Keys { octave, limit, axis, at, keys } = self;
+        let lattice = Hashed::new(simd, octave);
+        let (frequency, offset) = (simd.f64(octave.frequency), simd.f64(octave.offset[axis]));
+        let mut start = 0;
+        while start < at.len() {
+            let held = clamp(simd, simd.load_f64_partial(&at[start..], 0.0), limit);
+            let cell = Cell::split(simd, held, frequency, offset);
+            lattice.keys(simd, axis, &cell)[0].store_partial(&mut keys[start..]);
+            start += S::LANES;
+        }
+    }
+}
+
+/// One row of samples.
+struct Row<'a> {
+    columns: &'a [u32; WIDTH],
+    key: u32,
+    amplitude: f32,
+    to: &'a mut [f32],
+}
+
+impl Body for Row<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Row { columns, key, amplitude, to } = self;
+        let (key, amplitude) = (simd.u32(key), simd.f32(amplitude));
+        // Whole blocks first: enough registers to hide the latency of a multiplication.
+        let (block, blocks) = (8 * S::LANES, to.len().min(WIDTH) / (8 * S::LANES));
+        for b in 0..blocks {
+            let (from, to) = (&columns[b * block..][..block], &mut to[b * block..][..block]);
+            for n in 0..8 {
+                let column = simd.load_u32(&from[n * S::LANES..]);
+                sample(simd, column, key, amplitude).store(&mut to[n * S::LANES..]);
+            }
+        }
+        let mut at = blocks * block;
+        while at < to.len().min(WIDTH) {
+            let column = simd.load_u32(&columns[at.min(WIDTH - S::LANES)..]);
+            sample(simd, column, key, amplitude).store_partial(&mut to[at..]);
+            at += S::LANES;
+        }
+    }
+}
+
+#[inline(always)]
+fn sample<S: Simd>(simd: S, column: S::U32, row: S::U32, amplitude: S::F32) -> S::F32 {
+    value(simd, Hashed::<S>::finish(simd, column ^ row)) * amplitude
+}
