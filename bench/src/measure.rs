@@ -60,7 +60,8 @@ fn seconds(job: &mut Job, buffer: &mut Vec<f32>, fills: usize) -> f64 {
     start.elapsed().as_secs_f64()
 }
 
-fn median(times: &mut [f64]) -> f64 {
+/// The middle one.
+pub fn median(times: &mut [f64]) -> f64 {
     times.sort_by(f64::total_cmp);
     let middle = times.len() / 2;
     if times.len() % 2 == 1 { times[middle] } else { (times[middle - 1] + times[middle]) / 2.0 }

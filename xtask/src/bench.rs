@@ -16,7 +16,8 @@ Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
 
 Builds the benches at full optimisation, measures one area (or each in turn) and prints a table.
 
-  AREA         noise   noise kernels beside other crates, one thread, CPU time
+  AREA         noise     noise kernels beside other crates, one thread, CPU time
+               generate  every preset from the command to the last file, all cores, wall clock
   --json FILE  write the rows as JSON too; needs an AREA once there are several
   --case TEXT  only the cases with this in their name
   --quick      few repetitions: to see that it runs, not to quote
@@ -25,7 +26,7 @@ How to read the table: docs/benchmarks.md.
 ";
 
 /// Every area, as the bench program names it.
-const AREAS: &[&str] = &["noise"];
+const AREAS: &[&str] = &["noise", "generate"];
 
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Options {
@@ -42,9 +43,12 @@ pub fn run(args: &[String]) -> Result {
     if areas.len() > 1 && options.json.is_some() {
         return Err(Failure::usage("--json holds one area: name it"));
     }
+    // Whole runs are measured with the program users run.
+    shell::run(&mut shell::cargo("build --quiet --release --package orogen-cli"))?;
+    let program = shell::target_dir().join("release").join(format!("orogen{}", std::env::consts::EXE_SUFFIX));
     for area in areas {
         let mut command = shell::cargo("run --quiet --profile bench --package orogen-bench --features peers --");
-        let measured = shell::capture(command.arg(area).args(&options.passed))?;
+        let measured = shell::capture(command.arg(area).args(&options.passed).env("OROGEN_BIN", &program))?;
         let report = report::Report::read(&measured)?;
         println!("{}", report.heading());
         println!("{}", table::render(&report::HEAD, &report.cells()));
@@ -90,7 +94,7 @@ mod tests {
         assert_eq!(options.json, Some("a.json".into()));
         assert_eq!(options.passed, ["--case", "perlin", "--quick"]);
         for (line, expect) in [
-            ("nois", "there is no area 'nois'; there are: noise"),
+            ("nois", "there is no area 'nois'; there are: noise, generate"),
             ("--json", "--json needs a value"),
             ("noise --fast", "no option '--fast'"),
         ] {
