@@ -12,36 +12,49 @@ pub enum Format {
     Npy,
     /// 16-bit grey picture, black the lowest and white the highest of the window
     Png,
+    /// Cloud-Optimised GeoTIFF of f32 with overviews, in local metres
+    #[value(alias = "tiff")]
+    Tif,
 }
 
 impl Format {
-    const ALL: [Format; 2] = [Format::Npy, Format::Png];
+    /// All there are.
+    pub const ALL: &[Format] = &[Format::Npy, Format::Png, Format::Tif];
 
     /// Its name, which is also its extension.
     pub fn name(self) -> &'static str {
         match self {
             Format::Npy => "npy",
             Format::Png => "png",
+            Format::Tif => "tif",
         }
     }
 
-    /// The format that the extension of `path` tells, or a sentence that says why it tells none.
-    pub fn of(path: &Path) -> Result<Format, String> {
+    /// Whether files of this format have such an extension.
+    fn has(self, extension: &str) -> bool {
+        extension.eq_ignore_ascii_case(self.name()) || self == Format::Tif && extension.eq_ignore_ascii_case("tiff")
+    }
+
+    /// The one of `formats` that the extension of `path` tells, or a sentence that says why it tells none.
+    pub fn of(path: &Path, formats: &[Format]) -> Result<Format, String> {
         let Some(extension) = path.extension() else {
-            return Err(format!("{} has no extension to tell its format; known are {}", path.display(), list()));
+            return Err(format!("{} has no extension to tell its format; known are {}", path.display(), list(formats)));
         };
         let extension = extension.to_string_lossy();
-        let known = Format::ALL.into_iter().find(|format| extension.eq_ignore_ascii_case(format.name()));
-        known.ok_or_else(|| {
-            let hint = match nearest(&extension, Format::ALL.map(Format::name)) {
+        formats.iter().copied().find(|format| format.has(&extension)).ok_or_else(|| {
+            let hint = match nearest(&extension, formats.iter().map(|format| format.name())) {
                 Some(near) => format!("did you mean .{near}?"),
-                None => format!("known are {}", list()),
+                None => format!("known are {}", list(formats)),
             };
             format!("the format .{extension} is not known; {hint}")
         })
     }
 }
 
-fn list() -> String {
-    Format::ALL.map(|format| format!(".{}", format.name())).join(" and ")
+fn list(formats: &[Format]) -> String {
+    let names: Vec<String> = formats.iter().map(|format| format!(".{}", format.name())).collect();
+    match names.as_slice() {
+        [init @ .., last] if !init.is_empty() => format!("{} and {last}", init.join(", ")),
+        names => names.concat(),
+    }
 }

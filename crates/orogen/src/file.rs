@@ -222,23 +222,34 @@ impl Write for Noting<'_> {
 
 /// A temporary file beside its target, removed when dropped unless it was renamed.
 #[derive(Debug)]
-struct Temporary(PathBuf);
+pub(crate) struct Temporary(PathBuf);
 
 impl Temporary {
     /// Creates one in `folder`. Its name has nothing of the target's, so that the longest names still work; it must be new, so
     /// that nothing planted under it is followed or overwritten.
-    fn create(folder: &Path) -> io::Result<(Temporary, File)> {
+    pub(crate) fn create(folder: &Path) -> io::Result<(Temporary, File)> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         for _ in 0..NAMES {
             let count = COUNT.fetch_add(1, Ordering::Relaxed);
             let name = folder.join(format!(".orogen-{}-{count}.tmp", std::process::id()));
-            match OpenOptions::new().write(true).create_new(true).open(&name) {
+            match OpenOptions::new().read(true).write(true).create_new(true).open(&name) {
                 Ok(file) => return Ok((Temporary(name), file)),
                 Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(cause) => return Err(cause),
             }
         }
         Err(io::Error::other("too many temporary files are left in its folder"))
+    }
+
+    /// Takes the name away from the file, which goes on while it is open; returns it where that is not possible.
+    pub(crate) fn unlink(mut self) -> Option<Temporary> {
+        match fs::remove_file(&self.0) {
+            Ok(()) => {
+                self.0 = PathBuf::new();
+                None
+            }
+            Err(_) => Some(self),
+        }
     }
 
     fn rename(mut self, real: &Path) -> io::Result<()> {
@@ -256,7 +267,8 @@ impl Drop for Temporary {
     }
 }
 
-fn folder(path: &Path) -> &Path {
+/// The folder that `path` names something in.
+pub(crate) fn folder(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),

@@ -44,6 +44,7 @@ pub mod progress;
 pub mod recipe;
 pub mod resample;
 pub mod solver;
+pub mod spool;
 mod store;
 pub mod value;
 pub mod words;

@@ -4,7 +4,8 @@ use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use orogen::format::levels::Levels;
-use orogen::format::{npy, png};
+use orogen::format::{geotiff, npy, png};
+use orogen::spool::Spool;
 use orogen::{Grid, Window, file};
 
 use crate::bar::Bar;
@@ -80,10 +81,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     match to_stdout {
         true => {
             let mut out = BufWriter::new(io::stdout().lock());
-            write(&mut out, format, &grid).and_then(|()| out.flush()).map_err(|cause| Failure::stdout(&cause))
+            write(&mut out, format, &grid, Spool::in_memory())
+                .and_then(|()| out.flush())
+                .map_err(|cause| Failure::stdout(&cause))
         }
         false => {
-            file::write_whole(&args.out, |out| write(out, format, &grid))?;
+            file::write_whole(&args.out, |out| write(out, format, &grid, Spool::beside(&args.out)))?;
             if args.quiet { Ok(()) } else { say::out(&words(args, format, &grid)) }
         }
     }
@@ -93,11 +96,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 fn format(args: &Args) -> Result<Format, Failure> {
     match args.format {
         None if args.out == Path::new("-") => Ok(Format::Npy),
-        None => Format::of(&args.out).map_err(|why| match args.out.extension() {
+        None => Format::of(&args.out, Format::ALL).map_err(|why| match args.out.extension() {
             None => Failure::Usage(format!("{why}, or say --format")),
             Some(_) => Failure::Usage(why),
         }),
-        Some(format) => match Format::of(&args.out) {
+        Some(format) => match Format::of(&args.out, Format::ALL) {
             Ok(other) if other != format => Err(Failure::Usage(format!(
                 "--format {} and the extension of {} contradict each other",
                 format.name(),
@@ -108,7 +111,8 @@ fn format(args: &Args) -> Result<Format, Failure> {
     }
 }
 
-fn write(out: &mut dyn Write, format: Format, grid: &Grid) -> io::Result<()> {
+/// `spool` is for what cannot be written before all is known.
+fn write(out: &mut dyn Write, format: Format, grid: &Grid, spool: Spool) -> io::Result<()> {
     match format {
         Format::Npy => npy::write(out, grid),
         Format::Png => {
@@ -117,6 +121,7 @@ fn write(out: &mut dyn Write, format: Format, grid: &Grid) -> io::Result<()> {
             let notes: Vec<(&str, &str)> = notes.iter().map(|(keyword, text)| (*keyword, text.as_str())).collect();
             png::write_grey16(out, grid, &levels, &notes)
         }
+        Format::Tif => geotiff::writer::write(out, grid, &geotiff::writer::Options::default(), spool),
     }
 }
 
@@ -125,7 +130,7 @@ fn words(args: &Args, format: Format, grid: &Grid) -> String {
     let size = format!("{} x {} samples of {} m", grid.width(), grid.height(), grid.window().cell);
     let levels = Levels::of(grid);
     match format {
-        Format::Npy => format!("{file}: {layer}, {size}, {} to {}\n", levels.low(), levels.high()),
+        Format::Npy | Format::Tif => format!("{file}: {layer}, {size}, {} to {}\n", levels.low(), levels.high()),
         Format::Png if levels.is_flat() => {
             format!("{file}: {layer}, {size}, flat at {} and so all black\n", levels.low())
         }

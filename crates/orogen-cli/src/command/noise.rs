@@ -146,7 +146,8 @@ struct Task<'a> {
 pub fn run(args: &Args) -> Result<(), Failure> {
     let default = if args.volume.is_some() { "noise.npy" } else { "noise.png" };
     let out = args.out.as_deref().unwrap_or(Path::new(default));
-    let format = Format::of(out).map_err(Failure::Usage)?;
+    // Noise lies nowhere: a map's formats are not for it.
+    let format = Format::of(out, &[Format::Npy, Format::Png]).map_err(Failure::Usage)?;
     let (width, height) = match args.size {
         Size::Longer(n) => (n, n),
         Size::Both(width, height) => (width, height),
@@ -161,7 +162,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     task.afford()?;
     file::write_whole(out, |out| match format {
         Format::Npy => task.write_array(out),
-        Format::Png => task.write_picture(out),
+        _ => task.write_picture(out),
     })?;
     if args.quiet { Ok(()) } else { say::out(&task.words()) }
 }

@@ -26,9 +26,22 @@ fn a_picture_spans_its_own_range() {
 }
 
 #[test]
+fn a_geotiff_is_the_same_on_any_number_of_threads() {
+    let folder = Folder::with_small();
+    let outcome = folder.good(&["export", "small.toml", "-o", "a.tif", "--cell", "1", "--threads", "1"]);
+    assert!(outcome.text().starts_with("a.tif: height, 640 x 480 samples of 1 m, "), "{}", outcome.text());
+    folder.good(&["export", "small.toml", "-o", "b.TIFF", "--cell", "1", "--threads", "3", "-q"]);
+    let bytes = folder.read("a.tif");
+    assert!(bytes.starts_with(b"II\x2a\0") && bytes == folder.read("b.TIFF"));
+    assert_eq!(folder.names(""), ["a.tif", "b.TIFF", "small.toml"]);
+}
+
+#[test]
 fn standard_output_gets_the_very_file_and_nothing_else() {
     let folder = Folder::with_small();
-    for (options, file) in [(&[][..], "a.npy"), (&["--format", "png"][..], "a.png")] {
+    for (options, file) in
+        [(&[][..], "a.npy"), (&["--format", "png"][..], "a.png"), (&["--format", "tif"][..], "a.tiff")]
+    {
         folder.good(&["export", "small.toml", "-o", file]);
         let outcome = folder.good(&[&["export", "small.toml", "-o", "-"][..], options].concat());
         assert!(outcome.out == folder.read(file) && outcome.err.is_empty());
@@ -69,7 +82,8 @@ fn what_cannot_be_asked_for_is_usage() {
     let folder = Folder::with_small();
     for (options, expect) in [
         (&["-o", "a.npz"][..], "did you mean .npy?"),
-        (&["-o", "a.tiff"], "known are .npy and .png"),
+        (&["-o", "a.asc"], "known are .npy, .png and .tif"),
+        (&["-o", "a.tig"], "did you mean .tif?"),
         (&["-o", "a"], "no extension"),
         (&["-o", "a.png", "--format", "npy"], "contradict"),
         (&["-o", "a.npy", "--format", "bmp"], "invalid value"),

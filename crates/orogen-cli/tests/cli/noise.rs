@@ -196,6 +196,7 @@ fn what_cannot_be_drawn_is_a_sentence_and_leaves_nothing() {
         (&["perlin", "--texture", "marble", "--fractal", "fbm"], 2, "cannot be used with"),
         (&["white", "--gradient"], 2, "white is made of squares of one value each and has no slope"),
         (&["perlin", "-o", "a.jpg"], 2, "known are .npy and .png"),
+        (&["perlin", "-o", "a.tif"], 2, "known are .npy and .png"),
         (&["perlin", "-o", "a.npz"], 2, "did you mean .npy?"),
         (&["perlin", "-o", "a"], 2, "has no extension"),
         (&["perlin", "-o", "none/a.png"], 1, "cannot write into none: the folder does not exist"),
