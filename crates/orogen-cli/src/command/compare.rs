@@ -33,7 +33,7 @@ pub struct Args {
 
 /// Draws the page.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    if Format::of(&args.out).map_err(Failure::Usage)? != Format::Png {
+    if Format::of(&args.out, Format::ALL).map_err(Failure::Usage)? != Format::Png {
         return Err(Failure::Usage("the page is a picture; name a file that ends in .png".into()));
     }
     let (rows, side) = (row::rows(args.seed), usize::from(args.size));
