@@ -24,6 +24,7 @@ Builds `orogen` for release, installs what is missing and runs every client, or 
   presets   every preset against golden/presets.txt, on one thread and two, at every SIMD level of this machine
   numpy     NumPy reads .npy: the numbers of summary.json, and which way is east
   pillow    Pillow reads the pictures: what a grey value stands for, and what is sea
+  rasterio  rasterio reads GeoTIFFs: the samples and where they lie; rio-cogeo validates their layout
   taplo     taplo checks every recipe against the JSON Schema, and refuses broken ones
 
 `build` and `install` go first whatever is named. Elsewhere than on Debian, or not as root, it says what to install.
@@ -46,6 +47,7 @@ const NUMPY: &str = "numpy==2.4.6";
 const CLIENTS: &[Client] = &[
     Client { name: "numpy", apt: &[], pip: &[NUMPY], npm: &[] },
     Client { name: "pillow", apt: &[], pip: &[NUMPY, "pillow==12.2.0"], npm: &[] },
+    Client { name: "rasterio", apt: &[], pip: &[NUMPY, "rasterio==1.4.4", "rio-cogeo==7.0.4"], npm: &[] },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
 
@@ -62,6 +64,7 @@ const STEPS: &[&Step] = &[
     &Step { name: "presets", about: "the presets' golden hashes at every level and thread count", run: presets::check },
     &Step { name: "numpy", about: "NumPy reads .npy", run: || script("numpy") },
     &Step { name: "pillow", about: "Pillow reads the pictures", run: || script("pillow") },
+    &Step { name: "rasterio", about: "rasterio and rio-cogeo read GeoTIFFs", run: || script("rasterio") },
     &Step { name: "taplo", about: "taplo checks the recipes against the schema", run: || script("taplo") },
 ];
 

@@ -159,7 +159,7 @@ fn written(grid: &Grid, options: &Options) -> Vec<u8> {
 }
 
 fn small_tiles() -> Options {
-    Options { tile: 16, ..Options::default() }
+    Options { tile: Some(16), ..Options::default() }
 }
 
 #[test]
@@ -194,6 +194,12 @@ fn the_default_tile_and_odd_values() {
     let tiff = Tiff::open(written(&grid, &Options::default()));
     assert_eq!((tiff.long(0, 322), tiff.tiles(0).len(), tiff.directories.len()), (512, 4, 2));
     assert_eq!(bits(&tiff.samples(0)), bits(grid.data()));
+    for (width, height, tile, levels) in
+        [(1024, 512, 512, 2), (1024, 600, 512, 2), (1023, 1026, 384, 3), (512, 513, 384, 2)]
+    {
+        let tiff = Tiff::open(written(&Grid::filled(Window::new(width, height, 1.0), 1.0), &Options::default()));
+        assert_eq!((tiff.long(0, 322), tiff.directories.len()), (tile, levels), "{width} x {height}");
+    }
 }
 
 #[test]
@@ -281,7 +287,9 @@ fn the_bytes_depend_neither_on_threads_nor_on_pieces() {
 #[test]
 fn what_cannot_be_written_is_an_error() {
     let new = |window: Window, tile| {
-        Writer::new(&window, &Options { tile, ..Options::default() }, Spool::in_memory()).err().map(|e| e.to_string())
+        Writer::new(&window, &Options { tile: Some(tile), ..Options::default() }, Spool::in_memory())
+            .err()
+            .map(|e| e.to_string())
     };
     for (window, tile, expect) in [
         (Window::new(0, 5, 1.0), 512, "samples a side, not 0"),

@@ -11,20 +11,15 @@ use crate::grid::{Grid, Window};
 use crate::spool::Spool;
 
 /// How a file is laid out.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Options {
-    /// Samples along a tile's side, a multiple of 16.
-    pub tile: usize,
+    /// Samples along a tile's side, a multiple of 16; `None` for 512, or 384 where a level would be just one tile of 512 wide and
+    /// taller than that: some readers take it for strips.
+    pub tile: Option<usize>,
     /// The value that stands for no value, if there is one. Overviews leave it out of their means.
     pub nodata: Option<f32>,
     /// BigTIFF even where the file does not pass 4 GiB.
     pub big: bool,
-}
-
-impl Default for Options {
-    fn default() -> Options {
-        Options { tile: 512, nodata: None, big: false }
-    }
 }
 
 /// Writes a grid. `spool` holds the packed tiles until their places in the file are known.
@@ -43,6 +38,21 @@ pub fn write(out: &mut dyn Write, grid: &Grid, options: &Options, spool: Spool) 
     let mut writer = Writer::new(grid.window(), options, spool)?;
     writer.rows(grid.data())?;
     writer.finish(out)
+}
+
+/// The size of each level, from the full raster to the one that fits a tile.
+fn sizes(window: &Window, tile: usize) -> impl Iterator<Item = [usize; 2]> {
+    std::iter::successors(Some([window.width, window.height]), move |size| {
+        size.iter().any(|side| *side > tile).then(|| size.map(half))
+    })
+}
+
+/// No raster has both a level 512 wide and one 384 wide.
+fn usual_tile(window: &Window) -> usize {
+    match sizes(window, 512).any(|[width, height]| width == 512 && height > 512) {
+        true => 384,
+        false => 512,
+    }
 }
 
 /// A raster on its way into a file: [`Writer::rows`] takes all rows, some at a time from the top, and [`Writer::finish`] writes.
@@ -82,8 +92,10 @@ impl Writer {
     /// does not allow.
     pub fn new(window: &Window, options: &Options, spool: Spool) -> io::Result<Writer> {
         let refuse = |why: String| Err(io::Error::new(io::ErrorKind::InvalidInput, why));
-        let (mut width, mut height, tile) = (window.width, window.height, options.tile);
-        if let Some(side) = [width, height].into_iter().find(|side| !(1..=i32::MAX as usize).contains(side)) {
+        let tile = options.tile.unwrap_or_else(|| usual_tile(window));
+        if let Some(side) =
+            [window.width, window.height].into_iter().find(|side| !(1..=i32::MAX as usize).contains(side))
+        {
             return refuse(format!("a GeoTIFF has 1 to 2147483647 samples a side, not {side}"));
         }
         if !(window.cell.is_finite() && window.cell > 0.0) {
@@ -92,11 +104,7 @@ impl Writer {
         if !(16..=8192).contains(&tile) || !tile.is_multiple_of(16) {
             return refuse(format!("a GeoTIFF's tiles have 16 to 8192 samples a side, a multiple of 16, not {tile}"));
         }
-        let mut levels = vec![Level::new(width, height)];
-        while width.max(height) > tile {
-            (width, height) = (half(width), half(height));
-            levels.push(Level::new(width, height));
-        }
+        let levels = sizes(window, tile).map(|[width, height]| Level::new(width, height)).collect();
         let description = Description { window: *window, tile, nodata: options.nodata };
         Ok(Writer { description, big: options.big, levels, spool })
     }

@@ -1,0 +1,120 @@
+"""rasterio reads exported GeoTIFFs: the samples of the .npy, at their places; rio-cogeo finds their layout fit for the cloud."""
+
+import logging
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import numpy
+import rasterio
+from orogen import ROOT, WORK, Checks, export
+from rasterio.errors import RasterioIOError
+from rio_cogeo.cogeo import cog_validate
+
+checks = Checks()
+RIO = Path(sys.executable).with_name("rio")
+
+# What GDAL grumbles about comes as log records, what rasterio and PROJ do as Python warnings: both must stay silent.
+grumbles = []
+listener = logging.Handler(level=logging.WARNING)
+listener.emit = lambda record: grumbles.append(record.getMessage())
+logging.getLogger("rasterio").addHandler(listener)
+warnings.simplefilter("error")
+
+
+def same_bits(a, b):
+    """Equal to the last bit, of zeros and NaNs too."""
+    return a.dtype == b.dtype and a.shape == b.shape and numpy.array_equal(a.view("u4"), b.view("u4"))
+
+
+def both(recipe, name, cell, window):
+    """One window as GeoTIFF and as an array."""
+    options = ("--cell", cell, "--window", ",".join(map(str, window)))
+    return export(recipe, f"{name}.tif", *options), numpy.load(export(recipe, f"{name}.npy", *options))
+
+
+def factors(width, height, tile):
+    """The decimations of overviews that halve, rounded up, down to one tile."""
+    found, size = [], (width, height)
+    while max(size) > tile:
+        size = tuple((side + 1) // 2 for side in size)
+        found.append(2 ** (len(found) + 1))
+    return found
+
+
+# Odd sides, whole tiles, an overview that would be just one tile of 512 wide, less than a tile, a single sample.
+for name, recipe, cell, window, tile in [
+    ("alpine", "alpine", 30, (31, 77, 1237, 899), 512),
+    ("wide", "alpine", 30, (0, 0, 1536, 1024), 512),
+    ("tall", "alpine", 30, (0, 0, 1024, 1536), 384),
+    ("small", "hills", 20, (5, 6, 100, 70), 512),
+    ("one", "hills", 20, (5, 6, 1, 1), 512),
+]:
+    path, heights = both(recipe, name, cell, window)
+    x, y, width, height = window
+    with rasterio.open(path) as tiff:
+        checks.equal(f"{name}: one band of f32", tiff.dtypes, ("float32",))
+        checks.equal(f"{name}: tiles", tiff.block_shapes, [(tile, tile)])
+        checks.equal(f"{name}: overviews", tiff.overviews(1), factors(width, height, tile))
+        checks.that(f"{name}: bit-equal to the .npy", same_bits(tiff.read(1), heights))
+        checks.equal(f"{name}: points, not areas", tiff.tags().get("AREA_OR_POINT"), "Point")
+        checks.equal(f"{name}: layout", tiff.tags(ns="IMAGE_STRUCTURE").get("LAYOUT"), "COG")
+        checks.equal(f"{name}: no value stands for none", tiff.nodata, None)
+        checks.that(f"{name}: a system of its own, in metres", "metre" in tiff.crs.to_wkt() and not tiff.crs.to_epsg())
+        # The middle of a pixel is where its sample stands: x east, y south of the origin.
+        for row, column in [(0, 0), (height - 1, 0), (0, width - 1), (height // 2, width // 3)]:
+            place = tuple(map(float, tiff.xy(row, column)))
+            checks.equal(f"{name}: place of {column}, {row}", place, ((x + column) * cell, -(y + row) * cell))
+    valid, errors, complaints = cog_validate(path, strict=True, quiet=True)
+    checks.that(f"{name}: valid for rio-cogeo, strictly", valid and not errors and not complaints, (errors, complaints))
+
+said = subprocess.run([RIO, "cogeo", "validate", "--strict", WORK / "alpine.tif"], capture_output=True, text=True)
+checks.that("rio cogeo validate --strict", said.stdout.strip().endswith("is a valid cloud optimized GeoTIFF"), said)
+
+# A plane that rises 3 m a metre to the east and falls 2 m a metre to the south, as its northing does: 3 east + 2 north, wherever
+# one asks. Mirrored, turned or moved by half a cell it would be another.
+PLANE, CELL = ROOT / "xtask/clients/plane.toml", 0.05
+for name, window in [("even", (24, 8, 1216, 896)), ("odd", (31, 15, 1203, 901))]:
+    path, heights = both(PLANE, f"plane-{name}", CELL, window)
+    with rasterio.open(path) as tiff:
+        checks.that(f"plane {name}: bit-equal to the .npy", same_bits(tiff.read(1), heights))
+        places = [(2.0, -1.0), (50.0, -1.0), (2.0, -40.0), (50.0, -40.0), (12.35, -33.3)]
+        for (east, north), [height] in zip(places, tiff.sample(places)):
+            checks.near(f"plane {name} at {east}, {north}", float(height), 3.0 * east + 2.0 * north, 1e-3)
+        count = len(tiff.overviews(1))
+    checks.equal(f"plane {name}: overviews", count, 2)
+    for level in range(count):
+        with rasterio.open(path, overview_level=level) as coarse:
+            rows, columns = numpy.mgrid[0 : coarse.height, 0 : coarse.width]
+            place = coarse.transform
+            east, north = place.c + (columns + 0.5) * place.a, place.f + (rows + 0.5) * place.e
+            worst = float(numpy.abs(coarse.read(1) - (3.0 * east + 2.0 * north)).max())
+            # A quarter of a cell of the full raster, where sides are odd; half of one is what every second sample would be off.
+            most = 1e-3 if name == "even" else 0.25 * CELL
+            checks.that(f"plane {name}, overview {level}: in its place", worst <= most, f"(off by {worst}, allowed {most})")
+
+checks.equal("nothing was grumbled about", grumbles, [])
+
+# It can fail: a flipped byte in a tile, half a file, and a layout that is not for the cloud.
+path, heights = WORK / "alpine.tif", numpy.load(WORK / "alpine.npy")
+whole = path.read_bytes()
+flipped = bytearray(whole)
+flipped[len(whole) - len(whole) // 4] ^= 0x10
+for name, damaged in [("flipped", bytes(flipped)), ("half", whole[: len(whole) // 2])]:
+    broken = WORK / f"{name}.tif"
+    broken.write_bytes(damaged)
+    try:
+        with rasterio.open(broken) as tiff:
+            found = same_bits(tiff.read(1), heights)
+    except RasterioIOError:
+        found = False
+    checks.that(f"{name}: noticed", not found)
+
+with rasterio.open(path) as tiff:
+    profile = {key: tiff.profile[key] for key in ("driver", "dtype", "width", "height", "count", "crs", "transform")}
+with rasterio.open(WORK / "plain.tif", "w", **profile) as plain:
+    plain.write(heights, 1)
+checks.that("a plain GeoTIFF is not valid", not cog_validate(WORK / "plain.tif", strict=True, quiet=True)[0])
+
+checks.end()
