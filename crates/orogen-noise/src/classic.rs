@@ -3,6 +3,7 @@
 use crate::choices::ClassicVariant;
 use crate::methods::noise_methods;
 use crate::program::{Program, Source};
+use crate::tiled::tileable;
 
 /// Perlin's improved noise as published: a table of 256 entries, so it repeats every 256 cells.
 ///
@@ -44,3 +45,4 @@ impl Classic {
 }
 
 noise_methods!(Classic);
+tileable!(Classic);

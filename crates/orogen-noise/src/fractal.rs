@@ -4,6 +4,7 @@ use crate::basis::Basis;
 use crate::choices::{ClassicVariant, Fade, Kind};
 use crate::methods::noise_methods;
 use crate::program::{Octaves, Program, Source};
+use crate::tiled::tileable;
 
 /// Octaves of one basis, each finer and weaker than the one before.
 ///
@@ -82,3 +83,4 @@ impl Fractal {
 }
 
 noise_methods!(Fractal);
+tileable!(Fractal);

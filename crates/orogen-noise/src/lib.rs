@@ -22,6 +22,8 @@
 //! **The bits.** A value depends on the noise's parameters and the position, and on nothing else: not on the processor, the SIMD
 //! level ([`Level`]), the build, how the points are given ([`Points`]) or cut into calls.
 //!
+//! **Without a seam.** Each noise has a `tiled` variant that repeats after whole numbers of cells: see [`Tiled`].
+//!
 //! **Far away.** Positions are f64; each octave splits them into a whole cell and a fraction before anything is rounded to f32, so
 //! noise at 1e9 m is as smooth as at 0. Positions beyond 2^50 cells of the finest octave are held there; so are infinite ones,
 //! and NaN counts as the lower end. The result is always finite.
@@ -43,6 +45,7 @@ mod seed;
 mod tables;
 #[cfg(test)]
 mod tests;
+mod tiled;
 mod value;
 mod white;
 
@@ -53,6 +56,7 @@ pub use fractal::Fractal;
 pub use orogen_simd::{Level, LevelError};
 pub use perlin::Perlin;
 pub use points::{Depth, Mismatch, Points};
-pub use program::MAX_OCTAVES;
+pub use program::{MAX_OCTAVES, Untileable};
+pub use tiled::Tiled;
 pub use value::Value;
 pub use white::White;

@@ -2,6 +2,7 @@
 
 use crate::methods::noise_methods;
 use crate::program::{Program, Source};
+use crate::tiled::tileable;
 
 /// Perlin's improved gradient noise, with gradients hashed from 64-bit cells instead of looked up in a table of 256: it never
 /// repeats, and every seed is a noise of its own.
@@ -43,3 +44,4 @@ impl Perlin {
 }
 
 noise_methods!(Perlin);
+tileable!(Perlin);

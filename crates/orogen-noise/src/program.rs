@@ -2,6 +2,7 @@
 
 use crate::choices::{ClassicVariant, Fade, Falloff, Kind};
 use crate::seed;
+use std::fmt;
 
 /// The most octaves a fractal has; what is asked beyond is left out. Thirty-two octaves of lacunarity 2 span a factor of four
 /// billion in wavelength, more than f32 can tell apart in one sum.
@@ -10,6 +11,12 @@ pub const MAX_OCTAVES: u32 = 32;
 /// Positions are held inside this many cells of the finest octave, where f64 still resolves a quarter of a cell. It keeps every
 /// cell number exact and every result finite, for NaN and infinite positions too.
 const FARTHEST: f64 = 1_125_899_906_842_624.0;
+
+/// The same where lattices repeat: there coordinates are rounded to 2^-24 of a cell in a way that holds up to here.
+const FARTHEST_TILED: f64 = 134_217_727.0;
+
+/// The most cells a period may have in any octave: two of them fit where positions are held.
+pub(crate) const MAX_PERIOD: f64 = 67_108_864.0;
 
 /// How lattice points get their numbers.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +42,12 @@ pub(crate) struct Octave {
     pub amplitude: f32,
     /// Factor of the gradient by cell coordinates.
     pub slope: f32,
+    /// The octave's frequency over the first one's.
+    pub ratio: f64,
+    /// Whether coordinates are rounded so that a seam's two sides agree.
+    pub tiled: bool,
+    /// After how many cells the lattice repeats, per axis; 0 where it does not.
+    pub period: [f64; 3],
 }
 
 /// What a sum of octaves is made from: the parameters of a fractal.
@@ -84,6 +97,31 @@ pub(crate) struct Program {
     pub all: [Octave; MAX_OCTAVES as usize],
 }
 
+/// Why a noise cannot repeat.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Untileable {
+    /// The octave that does not close, counted from 0.
+    pub octave: usize,
+    /// Along which axis: 0 for x, 1 for y, 2 for z.
+    pub axis: usize,
+    /// How many of its cells would have to fit into one period: the first octave's times a power of the lacunarity.
+    pub cells: f64,
+}
+
+impl fmt::Display for Untileable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let axis = ["x", "y", "z"].get(self.axis).unwrap_or(&"?");
+        write!(
+            f,
+            "octave {} would have to repeat after {} cells along {axis}; a period is a whole number of cells from 1 to {MAX_PERIOD}, so \
+             periods times powers of the lacunarity must be such numbers",
+            self.octave, self.cells
+        )
+    }
+}
+
+impl std::error::Error for Untileable {}
+
 impl Program {
     /// A single noise: its lattice stands on the origin.
     pub(crate) fn single(source: Source, seed: u64, wavelength: f64) -> Program {
@@ -95,6 +133,8 @@ impl Program {
             words: words(source, seed),
             amplitude: 1.0,
             slope: defined32(frequency as f32),
+            ratio: 1.0,
+            ..Octave::default()
         };
         Program { source, combine: Combine::Sum, limit: limit(frequency), count: 1, all }
     }
@@ -132,6 +172,8 @@ impl Program {
                     Kind::Weighted { .. } => amplitude * if frequency == 0.0 { 0.0 } else { ratio },
                     _ => share * frequency,
                 } as f32),
+                ratio,
+                ..Octave::default()
             };
             fastest = fastest.max(frequency.abs());
             amplitude *= gain;
@@ -148,6 +190,33 @@ impl Program {
             },
         };
         Program { source, combine, limit: limit(fastest), count: count as usize, all }
+    }
+
+    /// The same noise on lattices that repeat: the first octave's after `period` cells along x, y and z, 0 for never.
+    pub(crate) fn tiled(mut self, period: [u32; 3]) -> Result<Program, Untileable> {
+        if period == [0; 3] {
+            return Ok(self);
+        }
+        let mut fastest = 0.0_f64;
+        for (number, octave) in self.all.iter_mut().take(self.count).enumerate() {
+            octave.tiled = true;
+            // In multiples of the coordinates' own rounding.
+            octave.offset = octave.offset.map(|offset| (offset * 16_777_216.0).floor() / 16_777_216.0);
+            fastest = fastest.max(octave.frequency.abs());
+            for (axis, &cells) in period.iter().enumerate() {
+                // An octave without a frequency is a constant: it repeats as it is.
+                if octave.frequency == 0.0 || cells == 0 {
+                    continue;
+                }
+                let cells = f64::from(cells) * octave.ratio.abs();
+                if !(1.0..=MAX_PERIOD).contains(&cells) || cells.floor() != cells {
+                    return Err(Untileable { octave: number, axis, cells });
+                }
+                octave.period[axis] = cells;
+            }
+        }
+        self.limit = self.limit.min(limit_of(FARTHEST_TILED, fastest));
+        Ok(self)
     }
 
     /// The octaves.
@@ -173,6 +242,10 @@ fn defined32(factor: f32) -> f32 {
 }
 
 fn limit(frequency: f64) -> f64 {
-    let limit = FARTHEST / frequency.abs();
+    limit_of(FARTHEST, frequency)
+}
+
+fn limit_of(cells: f64, frequency: f64) -> f64 {
+    let limit = cells / frequency.abs();
     if limit < f64::MAX { limit } else { f64::MAX }
 }

@@ -3,6 +3,7 @@
 use crate::choices::Fade;
 use crate::methods::noise_methods;
 use crate::program::{Program, Source};
+use crate::tiled::tileable;
 
 /// Value noise: random values on a square lattice, blended in between.
 ///
@@ -39,3 +40,4 @@ impl Value {
 }
 
 noise_methods!(Value);
+tileable!(Value);

@@ -3,6 +3,7 @@
 use crate::choices::Fade;
 use crate::methods::noise_methods;
 use crate::program::{Program, Source};
+use crate::tiled::tileable;
 
 /// White noise: an independent value for every square (in 3D every cube) of a lattice.
 ///
@@ -37,3 +38,4 @@ impl White {
 }
 
 noise_methods!(White);
+tileable!(White);

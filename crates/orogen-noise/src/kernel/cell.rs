@@ -1,6 +1,10 @@
 //! From positions to cells and fractions.
 
+use crate::program::Octave;
 use orogen_simd::{F64Lanes, Simd, U32Lanes};
+
+/// 1.5 * 2^28: a number of size below 2^27 added to it is rounded to a multiple of 2^-24.
+const SNAP: f64 = 402_653_184.0;
 
 /// Lanes of one coordinate, split.
 #[derive(Clone, Copy)]
@@ -17,10 +21,13 @@ pub(crate) struct Cell<S: Simd> {
 }
 
 impl<S: Simd> Cell<S> {
-    /// The cell and fraction of `position * frequency + offset`. The position is within the program's limit.
+    /// The cell and fraction of a position along an axis of the octave. The position is within the program's limit.
     #[inline(always)]
-    pub(crate) fn split(simd: S, position: S::F64, frequency: S::F64, offset: S::F64) -> Cell<S> {
-        let u = position * frequency + offset;
+    pub(crate) fn split(simd: S, octave: &Octave, axis: usize, position: S::F64) -> Cell<S> {
+        let mut u = position * simd.f64(octave.frequency) + simd.f64(octave.offset[axis]);
+        if octave.tiled {
+            u = (u + simd.f64(SNAP)) - simd.f64(SNAP);
+        }
         let (whole, low, high) = simd.whole(u);
         Cell { whole, low, high, t: (u - whole).narrow() }
     }
@@ -37,6 +44,23 @@ impl<S: Simd> Cell<S> {
     pub(crate) fn next_high(&self, simd: S) -> S::U32 {
         let carried = self.high + simd.u32(1);
         carried.select(self.low.eq(simd.u32(u32::MAX)), self.high)
+    }
+}
+
+impl<S: Simd> Cell<S> {
+    /// Low and high words of the cell and of the next, counted round from 0 to the period.
+    #[inline(always)]
+    pub(crate) fn around(&self, simd: S, period: f64) -> [[S::U32; 2]; 2] {
+        let next = self.whole + simd.f64(1.0);
+        [Self::wrapped(simd, self.whole, period), Self::wrapped(simd, next, period)]
+    }
+
+    #[inline(always)]
+    fn wrapped(simd: S, whole: S::F64, period: f64) -> [S::U32; 2] {
+        // The middle of a cell is so far from the ends of a period that rounding cannot carry it across.
+        let turns = ((whole + simd.f64(0.5)) * simd.f64(1.0 / period)).floor();
+        let (_, low, high) = simd.whole(whole - turns * simd.f64(period));
+        [low, high]
     }
 }
 

@@ -85,11 +85,8 @@ fn add_octave<S: Simd, B: Basis<S>, const SLOPES: bool>(
     position: &[S::F64; 3],
     sum: &mut Sample<S>,
 ) {
-    let frequency = simd.f64(octave.frequency);
-    let [ox, oy, oz] = octave.offset;
-    let x = Cell::split(simd, position[0], frequency, simd.f64(ox));
-    let y = Cell::split(simd, position[1], frequency, simd.f64(oy));
-    let z = if B::DEEP { Cell::split(simd, position[2], frequency, simd.f64(oz)) } else { x };
+    let (x, y) = (Cell::split(simd, octave, 0, position[0]), Cell::split(simd, octave, 1, position[1]));
+    let z = if B::DEEP { Cell::split(simd, octave, 2, position[2]) } else { x };
     let depth = basis.depth(simd, &z);
     let (columns, lines) = (basis.keys(simd, 0, &x), basis.keys(simd, 1, &y));
     let (amplitude, slope) = (simd.f32(octave.amplitude), simd.f32(octave.slope));

@@ -35,6 +35,7 @@ pub(crate) trait Gradients<S: Simd>: Lattice<S> {
 #[derive(Clone, Copy)]
 pub(crate) struct Hashed<S: Simd> {
     words: [[S::U32; 2]; 3],
+    period: [f64; 3],
 }
 
 const ROUND_1: u32 = 0x915F_77F5;
@@ -45,7 +46,10 @@ impl<S: Simd> Hashed<S> {
     #[inline(always)]
     pub(crate) fn new(simd: S, octave: &Octave) -> Hashed<S> {
         let [[a, b], [c, d], [e, f]] = octave.words;
-        Hashed { words: [[simd.u32(a), simd.u32(b)], [simd.u32(c), simd.u32(d)], [simd.u32(e), simd.u32(f)]] }
+        Hashed {
+            words: [[simd.u32(a), simd.u32(b)], [simd.u32(c), simd.u32(d)], [simd.u32(e), simd.u32(f)]],
+            period: octave.period,
+        }
     }
 
     /// The hash of keys joined by xor.
@@ -59,6 +63,15 @@ impl<S: Simd> Lattice<S> for Hashed<S> {
     #[inline(always)]
     fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2] {
         let [first, second] = self.words[axis];
+        if self.period[axis] > 0.0 {
+            let [here, next] = cell.around(simd, self.period[axis]);
+            let (here_low, next_low) = (here[0] * simd.u32(ROUND_1) + first, next[0] * simd.u32(ROUND_1) + first);
+            let round = simd.u32(ROUND_2);
+            return [
+                (here_low ^ here_low.shr(15) ^ (here[1] ^ second)) * round,
+                (next_low ^ next_low.shr(15) ^ (next[1] ^ second)) * round,
+            ];
+        }
         let here = cell.low * simd.u32(ROUND_1) + first;
         let next = here + simd.u32(ROUND_1);
         let round = simd.u32(ROUND_2);
@@ -153,6 +166,7 @@ impl<S: Simd> Gradients<S> for PerlinSource<S> {
 #[derive(Clone, Copy)]
 pub(crate) struct ClassicSource<S: Simd> {
     shift: [S::U32; 3],
+    period: [f64; 3],
     variant: ClassicVariant,
 }
 
@@ -166,8 +180,12 @@ impl<S: Simd> ClassicSource<S> {
 impl<S: Simd> Lattice<S> for ClassicSource<S> {
     #[inline(always)]
     fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2] {
-        let here = cell.low + self.shift[axis];
-        let next = here + simd.u32(1);
+        let mut here = cell.low + self.shift[axis];
+        let mut next = here + simd.u32(1);
+        if self.period[axis] > 0.0 {
+            let [[low, _], [next_low, _]] = cell.around(simd, self.period[axis]);
+            (here, next) = (low + self.shift[axis], next_low + self.shift[axis]);
+        }
         if axis == 0 { [Self::permuted(simd, here), Self::permuted(simd, next)] } else { [here, next] }
     }
     #[inline(always)]
@@ -185,7 +203,7 @@ impl<S: Simd> Gradients<S> for ClassicSource<S> {
     fn new(simd: S, source: Source, octave: &Octave) -> ClassicSource<S> {
         let [x, y, z] = octave.words;
         let variant = if let Source::Classic(variant) = source { variant } else { ClassicVariant::Diagonal };
-        ClassicSource { shift: [simd.u32(x[0]), simd.u32(y[0]), simd.u32(z[0])], variant }
+        ClassicSource { shift: [simd.u32(x[0]), simd.u32(y[0]), simd.u32(z[0])], period: octave.period, variant }
     }
     #[inline(always)]
     fn gradient2(self, simd: S, hash: S::U32) -> [S::F32; 2] {

@@ -128,7 +128,7 @@ impl Job<'_> {
     #[inline(always)]
     fn split<S: Simd>(&self, simd: S, position: S::F64, axis: usize) -> Cell<S> {
         let held = clamp(simd, position, self.limit);
-        Cell::split(simd, held, simd.f64(self.octave.frequency), simd.f64(self.octave.offset[axis]))
+        Cell::split(simd, self.octave, axis, held)
     }
 
     #[inline(always)]

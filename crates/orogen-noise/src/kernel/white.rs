@@ -65,11 +65,10 @@ impl Body for Keys<'_> {
     fn run<S: Simd>(self, simd: S) {
         let Keys { octave, limit, axis, at, keys } = self;
         let lattice = Hashed::new(simd, octave);
-        let (frequency, offset) = (simd.f64(octave.frequency), simd.f64(octave.offset[axis]));
         let mut start = 0;
         while start < at.len() {
             let held = clamp(simd, simd.load_f64_partial(&at[start..], 0.0), limit);
-            let cell = Cell::split(simd, held, frequency, offset);
+            let cell = Cell::split(simd, octave, axis, held);
             lattice.keys(simd, axis, &cell)[0].store_partial(&mut keys[start..]);
             start += S::LANES;
         }

@@ -1,7 +1,7 @@
 //! What the tests share.
 
 use crate::program::Program;
-use crate::{Basis, Classic, ClassicVariant, Fade, Falloff, Fractal, Kind, Perlin, Value};
+use crate::{Basis, Classic, ClassicVariant, Fade, Falloff, Fractal, Kind, Perlin, Value, White};
 
 /// Random numbers for positions: splitmix64.
 pub(crate) struct Rng(pub u64);
@@ -38,6 +38,16 @@ pub(crate) fn programs(wavelength: f64, deep: bool) -> Vec<(String, Program)> {
             let noise = Fractal { basis, kind, seed: 6, wavelength, octaves: 4, lacunarity: 1.9, gain: 0.6 };
             add(format!("{noise:?}"), noise.program(), noise.program3());
         }
+    }
+    let period = [6, 3, 2];
+    let tiled = |program: Program| program.tiled(period).unwrap();
+    let noise = Perlin { seed: 4, wavelength };
+    add(format!("tiled {noise:?}"), tiled(noise.program()), tiled(noise.program3()));
+    let noise = White { seed: 4, wavelength };
+    add(format!("tiled {noise:?}"), tiled(noise.program()), tiled(noise.program3()));
+    for basis in [Basis::Value, Basis::ClassicEight] {
+        let noise = Fractal { basis, kind: Kind::Ridged, seed: 6, wavelength, octaves: 3, ..Default::default() };
+        add(format!("tiled {noise:?}"), tiled(noise.program()), tiled(noise.program3()));
     }
     list
 }

@@ -2,5 +2,6 @@
 
 mod bits;
 mod common;
+mod seams;
 mod statistics;
 mod twins;

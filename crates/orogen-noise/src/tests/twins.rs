@@ -135,7 +135,8 @@ fn octave_at(source: Source, octave: &Octave, at: &[f64]) -> f64 {
                 _ => quintic(t),
             };
             weight *= if step == 1.0 { fade } else { 1.0 - fade };
-            cells.push(u.floor() + step);
+            let (cell, period) = (u.floor() + step, octave.period[axis]);
+            cells.push(if period > 0.0 { cell.rem_euclid(period) } else { cell });
             from.push(t - step);
         }
         sum += weight * corner(source, octave, &cells, &from);
