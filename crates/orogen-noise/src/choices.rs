@@ -68,3 +68,34 @@ pub enum Falloff {
     /// 1 - smoothstep(k m): no detail at all from k m = 1 on.
     Smoothstep,
 }
+
+/// How [`crate::Worley`] measures distance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Distance {
+    /// The straight line: round cells.
+    #[default]
+    Euclidean,
+    /// The sum along the axes: cells with slanted sides.
+    Manhattan,
+    /// The greatest along the axes: square cells.
+    Chebyshev,
+}
+
+/// What [`crate::Worley`] tells about the points near a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Feature {
+    /// The distance to the nearest point.
+    #[default]
+    F1,
+    /// The distance to the second nearest point.
+    F2,
+    /// F2 - F1: zero on the edges between cells.
+    Difference,
+    /// F1 * F2.
+    Product,
+    /// A value of its own for each cell.
+    Value,
+    /// The distance to the nearest edge between cells: exact for [`Distance::Euclidean`]. For the others (F2 - F1) / 2, which is zero
+    /// on the edges and never more than the distance to them.
+    Edge,
+}

@@ -15,7 +15,7 @@
 //! # Ok::<(), orogen_noise::Mismatch>(())
 //! ```
 //!
-//! A noise is a plain struct: [`White`], [`Value`], [`Perlin`], [`Classic`], or a [`Fractal`] over any [`Basis`]. Each has
+//! A noise is a plain struct: [`White`], [`Value`], [`Perlin`], [`Classic`], [`Worley`], or a [`Fractal`] over any [`Basis`]. Each has
 //! `sample` and `fill`, `fill_with_gradient`, and their 3D counterparts `sample3`, `fill3`, `fill3_with_gradient`. Positions and wavelengths are metres (or any unit
 //! you like); values have no unit and lie in [-1, 1].
 //!
@@ -48,9 +48,10 @@ mod tests;
 mod tiled;
 mod value;
 mod white;
+mod worley;
 
 pub use basis::Basis;
-pub use choices::{ClassicVariant, Fade, Falloff, Kind};
+pub use choices::{ClassicVariant, Distance, Fade, Falloff, Feature, Kind};
 pub use classic::Classic;
 pub use fractal::Fractal;
 pub use orogen_simd::{Level, LevelError};
@@ -60,3 +61,4 @@ pub use program::{MAX_OCTAVES, Untileable};
 pub use tiled::Tiled;
 pub use value::Value;
 pub use white::White;
+pub use worley::Worley;

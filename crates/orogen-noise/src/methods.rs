@@ -66,8 +66,8 @@ pub(crate) fn sample(program: &Program, x: f64, y: f64, z: Option<f64>) -> f32 {
     value[0]
 }
 
-/// The methods of a noise that has `program()` and `program3()`.
-macro_rules! noise_methods {
+/// The methods of a noise that has `program()` and `program3()`, without slopes.
+macro_rules! value_methods {
     ($noise:ident) => {
         impl $noise {
             /// The value at (x, y), metres. Each call pays for picking the level and seeding the octaves: for more than a few
@@ -91,6 +91,42 @@ macro_rules! noise_methods {
                 $crate::methods::fill(&self.program(), points, None, value, None)
             }
 
+            /// The values at the points in space.
+            ///
+            /// # Errors
+            /// A slice does not have the points' length; nothing is written.
+            pub fn fill3(
+                &self,
+                points: &$crate::Points,
+                depth: &$crate::Depth,
+                value: &mut [f32],
+            ) -> Result<(), $crate::Mismatch> {
+                $crate::methods::fill(&self.program3(), points, Some(depth), value, None)
+            }
+
+            /// [`fill`](Self::fill) at a chosen SIMD level, for tests and bug reports: the bits are the same.
+            ///
+            /// # Errors
+            /// This machine lacks the level; inside, a slice of the wrong length.
+            pub fn fill_at(
+                &self,
+                level: $crate::Level,
+                points: &$crate::Points,
+                value: &mut [f32],
+            ) -> Result<Result<(), $crate::Mismatch>, $crate::LevelError> {
+                $crate::methods::fill_at(level, &self.program(), points, None, value, None)
+            }
+        }
+    };
+}
+pub(crate) use value_methods;
+
+/// The methods of a noise that has slopes, too.
+macro_rules! noise_methods {
+    ($noise:ident) => {
+        $crate::methods::value_methods!($noise);
+
+        impl $noise {
             /// The values and their slopes along x and y, per metre.
             ///
             /// # Errors
@@ -105,19 +141,6 @@ macro_rules! noise_methods {
                 $crate::methods::fill(&self.program(), points, None, value, Some([dx, dy, &mut []]))
             }
 
-            /// The values at the points in space.
-            ///
-            /// # Errors
-            /// A slice does not have the points' length; nothing is written.
-            pub fn fill3(
-                &self,
-                points: &$crate::Points,
-                depth: &$crate::Depth,
-                value: &mut [f32],
-            ) -> Result<(), $crate::Mismatch> {
-                $crate::methods::fill(&self.program3(), points, Some(depth), value, None)
-            }
-
             /// The values at the points in space and their slopes along x, y and z, per metre, in `gradient`.
             ///
             /// # Errors
@@ -130,19 +153,6 @@ macro_rules! noise_methods {
                 gradient: [&mut [f32]; 3],
             ) -> Result<(), $crate::Mismatch> {
                 $crate::methods::fill(&self.program3(), points, Some(depth), value, Some(gradient))
-            }
-
-            /// [`fill`](Self::fill) at a chosen SIMD level, for tests and bug reports: the bits are the same.
-            ///
-            /// # Errors
-            /// This machine lacks the level; inside, a slice of the wrong length.
-            pub fn fill_at(
-                &self,
-                level: $crate::Level,
-                points: &$crate::Points,
-                value: &mut [f32],
-            ) -> Result<Result<(), $crate::Mismatch>, $crate::LevelError> {
-                $crate::methods::fill_at(level, &self.program(), points, None, value, None)
             }
         }
     };

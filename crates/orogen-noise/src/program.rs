@@ -1,7 +1,8 @@
 //! What the kernels run: one noise, as a list of octaves. Every public noise boils down to this.
 
-use crate::choices::{ClassicVariant, Fade, Falloff, Kind};
+use crate::choices::{ClassicVariant, Distance, Fade, Falloff, Feature, Kind};
 use crate::seed;
+use std::f32::consts::SQRT_2;
 use std::fmt;
 
 /// The most octaves a fractal has; what is asked beyond is left out. Thirty-two octaves of lacunarity 2 span a factor of four
@@ -27,6 +28,46 @@ pub(crate) enum Source {
     Perlin,
     /// Gradients from the 2002 table.
     Classic(ClassicVariant),
+    /// Points, one in each cell; one octave.
+    Worley(Cellular),
+}
+
+/// What cellular noise is made of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cellular {
+    pub distance: Distance,
+    pub feature: Feature,
+    /// How much of its cell a point may be in, along each axis.
+    pub jitter: f32,
+}
+
+impl Cellular {
+    /// The greatest size of the feature, in cells.
+    ///
+    /// A sample whose nearest lattice corner is x, y (and z) off, each at most 1/2, has its own cell's point within
+    /// (1 - x, 1 - y), and that of the neighbour across the side nearest to it within 2 min(x, y) more along one axis; the greatest
+    /// of these over all places bound the nearest and the second nearest, and points in the farthest corners reach them. An edge is at
+    /// most sqrt 2 (sqrt 3) minus the nearest distance away, or that far off a place would be without a point, and at most half the
+    /// sum of the nearest two: together less than 1 (2 / sqrt 3).
+    pub(crate) fn bound(self, deep: bool) -> f32 {
+        let pick = |plane: f32, space: f32| if deep { space } else { plane };
+        let second = match self.distance {
+            Distance::Euclidean => pick(1.581_138_8, 1.732_050_8),
+            Distance::Manhattan => pick(2.0, 3.0),
+            Distance::Chebyshev => 1.5,
+        };
+        match (self.feature, self.distance) {
+            (Feature::F1, Distance::Euclidean) => pick(SQRT_2, 1.732_050_8),
+            (Feature::F1, Distance::Manhattan) => pick(2.0, 3.0),
+            (Feature::F1 | Feature::Product, Distance::Chebyshev) => 1.0,
+            (Feature::F2 | Feature::Difference, _) => second,
+            (Feature::Product, Distance::Euclidean) => pick(2.0, 3.0),
+            (Feature::Product, Distance::Manhattan) => pick(4.0, 9.0),
+            (Feature::Value, _) => 1.0,
+            (Feature::Edge, Distance::Euclidean) => pick(1.0, 1.154_700_5),
+            (Feature::Edge, _) => second * 0.5,
+        }
+    }
 }
 
 /// One octave, ready to run.
@@ -228,7 +269,7 @@ impl Program {
 fn words(source: Source, seed: u64) -> [[u32; 2]; 3] {
     match source {
         Source::Classic(_) => seed::reference_words(seed),
-        Source::Value(_) | Source::Perlin => seed::lattice_words(seed),
+        Source::Value(_) | Source::Perlin | Source::Worley(_) => seed::lattice_words(seed),
     }
 }
 

@@ -3,7 +3,8 @@
 //! `OROGEN_BLESS=1 cargo test -p orogen-noise --test goldens` writes the file anew.
 
 use orogen_noise::{
-    Basis, Classic, ClassicVariant, Depth, Fade, Falloff, Fractal, Kind, Level, Perlin, Points, Value, White,
+    Basis, Classic, ClassicVariant, Depth, Distance, Fade, Falloff, Feature, Fractal, Kind, Level, Perlin, Points,
+    Value, White, Worley,
 };
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/goldens.txt");
@@ -35,6 +36,25 @@ macro_rules! golden {
     }};
 }
 
+/// The same of a noise without slopes.
+macro_rules! golden_values {
+    ($list:expr, $name:expr, $noise:expr) => {{
+        let noise = $noise;
+        let mut bits = Vec::new();
+        for start in [-150.0, 3e8] {
+            let xs: Vec<f64> = (0..67).map(|i| start + f64::from(i) * 7.3).collect();
+            let ys: Vec<f64> = (0..19).map(|i| f64::from(i) * 10.24 - start).collect();
+            let points = Points::Lattice { xs: &xs, ys: &ys };
+            let (mut plane, mut space) = (vec![0.0_f32; points.len()], vec![0.0_f32; points.len()]);
+            noise.fill(&points, &mut plane).unwrap();
+            noise.fill3(&points, &Depth::Slice(start * 0.3), &mut space).unwrap();
+            bits.extend(plane);
+            bits.extend(space);
+        }
+        $list.push(format!("{} {:016x}", $name, hash(&bits)));
+    }};
+}
+
 fn goldens() -> Vec<String> {
     let mut list = Vec::new();
     golden!(list, "white", White { seed: 11, wavelength: 20.0 });
@@ -56,6 +76,18 @@ fn goldens() -> Vec<String> {
         let kind = Kind::Weighted { k: 1.3, falloff };
         golden!(list, format!("weighted {falloff:?} perlin"), Fractal { kind, ..fractal });
         golden!(list, format!("weighted {falloff:?} value"), Fractal { kind, basis: Basis::Value, ..fractal });
+    }
+    if let Ok(tiled) = (Fractal { octaves: 4, ..fractal }).tiled([3, 2, 5]) {
+        golden!(list, "tiled fbm perlin", tiled);
+    }
+    if let Ok(tiled) = (White { seed: 11, wavelength: 20.0 }).tiled([7, 6, 5]) {
+        golden!(list, "tiled white", tiled);
+    }
+    for feature in [Feature::F1, Feature::F2, Feature::Difference, Feature::Product, Feature::Value, Feature::Edge] {
+        for distance in [Distance::Euclidean, Distance::Manhattan, Distance::Chebyshev] {
+            let noise = Worley { seed: 11, wavelength: 90.0, distance, feature, ..Default::default() };
+            golden_values!(list, format!("worley {feature:?} {distance:?}"), noise);
+        }
     }
     list
 }

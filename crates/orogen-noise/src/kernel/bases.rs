@@ -18,6 +18,8 @@ pub(crate) fn with_basis<S: Simd, V: Visit<S>, const DEEP: bool>(simd: S, source
         (Source::Value(_), true) => work.visit::<Value3<S>>(simd),
         (Source::Perlin, false) => work.visit::<Gradient2<PerlinSource<S>>>(simd),
         (Source::Perlin, true) => work.visit::<Gradient3<PerlinSource<S>>>(simd),
+        // Cellular noise has kernels of its own.
+        (Source::Worley(_), _) => {}
         (Source::Classic(_), false) => work.visit::<Gradient2<ClassicSource<S>>>(simd),
         (Source::Classic(_), true) => work.visit::<Gradient3<ClassicSource<S>>>(simd),
     }

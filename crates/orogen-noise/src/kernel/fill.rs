@@ -3,7 +3,7 @@
 use crate::choices::Fade;
 use crate::kernel::outputs::Outputs;
 use crate::kernel::scattered::Scatter;
-use crate::kernel::{lattice, white};
+use crate::kernel::{cellular, lattice, white};
 use crate::points::{Depth, Points};
 use crate::program::{Combine, Program, Source};
 use orogen_simd::{Body, F32Lanes, F64Lanes, Simd};
@@ -40,6 +40,16 @@ impl Body for Fill<'_> {
 fn window<S: Simd>(simd: S, program: &Program, at: (&[f64], &[f64], Option<f64>), outputs: &mut Outputs) {
     match (program.source, program.combine, program.octaves()) {
         (Source::Value(Fade::Step), Combine::Sum, [octave]) => white::fill(simd, program, octave, at, outputs),
+        (Source::Worley(kind), _, [octave]) => {
+            for slope in outputs.slopes.iter_mut().flatten() {
+                slope.fill(0.0);
+            }
+            let (xs, ys, z) = at;
+            match z {
+                None => cellular::fill::<S, false>(simd, (program, octave, kind), (xs, ys, 0.0), outputs),
+                Some(z) => cellular::fill::<S, true>(simd, (program, octave, kind), (xs, ys, z), outputs),
+            }
+        }
         _ => lattice::fill(simd, program, at, outputs),
     }
 }
@@ -52,6 +62,11 @@ fn scattered<S: Simd, const DEEP: bool>(
     depth: Option<&Depth>,
     outputs: &mut Outputs,
 ) {
+    if let Source::Worley(_) = program.source {
+        for slope in outputs.slopes.iter_mut().flatten() {
+            slope.fill(0.0);
+        }
+    }
     let (mut x, mut y, mut z) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
     if let Some(Depth::Slice(depth)) = depth {
         z.fill(*depth);
@@ -75,7 +90,9 @@ fn scattered<S: Simd, const DEEP: bool>(
             Some(Depth::Each(z)) => &z[start..start + count],
             _ => &z[..count],
         };
-        if target.slopes.is_some() || matches!(program.combine, Combine::Weighted { .. }) {
+        if let (Source::Worley(cellular), [octave]) = (program.source, program.octaves()) {
+            simd.run(cellular::Scatter::<DEEP> { program, octave, cellular, at: [x, y, z], target });
+        } else if target.slopes.is_some() || matches!(program.combine, Combine::Weighted { .. }) {
             simd.run(Scatter::<DEEP, true> { program, at: [x, y, z], target });
         } else {
             simd.run(Scatter::<DEEP, false> { program, at: [x, y, z], target });

@@ -6,6 +6,7 @@
 pub(crate) mod bases;
 pub(crate) mod basis;
 pub(crate) mod cell;
+pub(crate) mod cellular;
 pub(crate) mod combine;
 pub(crate) mod fade;
 pub(crate) mod fill;
@@ -13,6 +14,7 @@ pub(crate) mod gradient;
 pub(crate) mod lattice;
 pub(crate) mod outputs;
 pub(crate) mod scattered;
+pub(crate) mod sites;
 pub(crate) mod source;
 pub(crate) mod strip;
 pub(crate) mod value;

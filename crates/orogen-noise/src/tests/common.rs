@@ -1,7 +1,9 @@
 //! What the tests share.
 
 use crate::program::Program;
-use crate::{Basis, Classic, ClassicVariant, Fade, Falloff, Fractal, Kind, Perlin, Value, White};
+use crate::{
+    Basis, Classic, ClassicVariant, Distance, Fade, Falloff, Feature, Fractal, Kind, Perlin, Value, White, Worley,
+};
 
 /// Random numbers for positions: splitmix64.
 pub(crate) struct Rng(pub u64);
@@ -39,9 +41,17 @@ pub(crate) fn programs(wavelength: f64, deep: bool) -> Vec<(String, Program)> {
             add(format!("{noise:?}"), noise.program(), noise.program3());
         }
     }
+    for feature in [Feature::F1, Feature::F2, Feature::Difference, Feature::Product, Feature::Value, Feature::Edge] {
+        for distance in [Distance::Euclidean, Distance::Manhattan, Distance::Chebyshev] {
+            let noise = Worley { seed: 7, wavelength, distance, feature, jitter: 0.9 };
+            add(format!("{noise:?}"), noise.program(), noise.program3());
+        }
+    }
     let period = [6, 3, 2];
     let tiled = |program: Program| program.tiled(period).unwrap();
     let noise = Perlin { seed: 4, wavelength };
+    add(format!("tiled {noise:?}"), tiled(noise.program()), tiled(noise.program3()));
+    let noise = Worley { seed: 4, wavelength, feature: Feature::Edge, ..Default::default() };
     add(format!("tiled {noise:?}"), tiled(noise.program()), tiled(noise.program3()));
     let noise = White { seed: 4, wavelength };
     add(format!("tiled {noise:?}"), tiled(noise.program()), tiled(noise.program3()));

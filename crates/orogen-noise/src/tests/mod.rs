@@ -5,3 +5,4 @@ mod common;
 mod seams;
 mod statistics;
 mod twins;
+mod worley;
