@@ -1,6 +1,6 @@
 //! What we offer.
 
-use orogen_noise::{Depth, Falloff, Fractal, Kind, Mismatch, Perlin, Points, Value, White};
+use orogen_noise::{Depth, Falloff, Fractal, Kind, Mismatch, Perlin, Points, Value, White, Worley};
 use orogen_simd::Level;
 
 use super::cases::{Case, OCTAVES, SEED, SIZE, SLICE, WARP, Work, scattered};
@@ -31,7 +31,8 @@ pub fn job(case: &Case) -> Option<Job> {
         Work::Ridged => whole(fractal(Kind::Ridged)),
         Work::WeightedFbm => whole(fractal(weighted)),
         Work::WarpedFbm => warped(fractal(Kind::Fbm), wavelength),
-        Work::Simplex | Work::SimplexSlice | Work::Worley => return None,
+        Work::Worley => lattice(move |at, out| Worley { seed, wavelength, ..Worley::default() }.fill(at, out)),
+        Work::Simplex | Work::SimplexSlice => return None,
     })
 }
 
