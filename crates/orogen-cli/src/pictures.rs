@@ -72,13 +72,28 @@ pub fn write(folder: &Path, recipe: &Recipe, grid: &Grid, seconds: impl FnOnce()
         || summary::summary(grid.data(), recipe.world.sea_level),
     );
     let (map, greys) = (pictures.0?, pictures.1?);
-    let text = stage(FILES[3], &|out| out.write_all(recipe.to_toml().as_bytes()))?;
+    let text = stage(FILES[3], &|out| out.write_all((again(recipe, grid) + &recipe.to_toml()).as_bytes()))?;
     let report = report(recipe, grid, summary, seconds());
     let json = stage(FILES[4], &|out| out.write_all(report.json().as_bytes()))?;
     for staged in greys.into_iter().chain([map, text, json]) {
         staged.commit()?;
     }
     Ok(report)
+}
+
+/// The comment above the recipe: how to look at its world the same way again.
+fn again(recipe: &Recipe, grid: &Grid) -> String {
+    let (width, height, cell) = (grid.width(), grid.height(), grid.window().cell);
+    // A world without bounds is looked at at its own cell unless another is asked for, and then at its usual size.
+    let view = match recipe.world.size {
+        None if cell == recipe.world.cell => format!("--size {width}x{height}"),
+        _ => format!("--cell {cell}"),
+    };
+    let version = env!("CARGO_PKG_VERSION");
+    format!(
+        "# Orogen {version} made the files beside this one, {width} x {height} samples: orogen generate {} {view}\n",
+        FILES[3]
+    )
 }
 
 /// What a grey picture tells whoever opens it without its summary.

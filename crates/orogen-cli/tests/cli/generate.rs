@@ -226,3 +226,22 @@ fn a_file_wins_over_the_preset_of_its_name_and_a_folder_does_not() {
     assert!(outcome.err.starts_with("note: reading the file mesa"), "{}", outcome.err);
     assert_eq!(folder.json("b/summary.json")["width"], 64);
 }
+
+#[test]
+fn the_recipe_written_says_how_to_look_at_it_the_same_way() {
+    let folder = Folder::with_small();
+    let hash = |out: &str| {
+        folder.text(&format!("{out}/summary.json")).lines().find(|l| l.contains("sha256")).map(str::to_string)
+    };
+    for (view, out) in [(&["--size", "37"][..], "a"), (&["--cell", "7"], "b"), (&[], "c")] {
+        folder.good(&[&["generate", "small.toml", "-q", "-o", out], view].concat());
+        let text = folder.text(&format!("{out}/recipe.toml"));
+        let line = text.lines().next().unwrap();
+        let (_, command) = line.split_once("orogen generate recipe.toml ").unwrap_or_else(|| panic!("{line}"));
+        let recipe = format!("{out}/recipe.toml");
+        let mut again = vec!["generate", &recipe, "-q", "-o", "again"];
+        again.extend(command.split(' '));
+        folder.good(&again);
+        assert_eq!(hash(out), hash("again"), "{line}");
+    }
+}
