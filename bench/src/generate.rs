@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 
-use crate::Options;
+use crate::options::Options;
 
 /// Names the program to run: `cargo xtask bench` builds it and sets this.
 const PROGRAM: &str = "OROGEN_BIN";

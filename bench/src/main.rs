@@ -6,17 +6,12 @@
 mod generate;
 mod measure;
 mod noise;
+mod options;
 mod rows;
 
 use std::process::ExitCode;
 
-/// What the command line asks for.
-pub struct Options {
-    /// Only cases with this in their name.
-    pub case: String,
-    /// How often each job is timed.
-    pub repetitions: usize,
-}
+use options::Options;
 
 /// An area of measurement: its name and what measures it.
 type Area = (&'static str, fn(&Options) -> Result<serde_json::Value, String>);

@@ -6,8 +6,8 @@ mod peers;
 
 use serde_json::{Value, json};
 
-use crate::Options;
 use crate::measure::{self, Job};
+use crate::options::Options;
 use crate::rows::Row;
 use cases::{CASES, Case, SIZE};
 

@@ -6,7 +6,7 @@ use super::materials::clusters;
 use super::memory;
 use super::program::{Instruction, Program};
 use super::steps::{GridSlot, Plan, Solve, Step};
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Window;
 use crate::op::{Op, Setting};
 use crate::recipe::document::Recipe;
@@ -65,7 +65,7 @@ impl<'a> Planner<'a> {
 
     fn solve(&self, node: usize) -> Result<Solve> {
         let Op::Solver(solver) = self.recipe.nodes()[node].node.op() else {
-            return Err(crate::Error::new(crate::ErrorKind::Recipe, "a node that is no solver was to be solved"));
+            return Err(Error::new(ErrorKind::Recipe, "a node that is no solver was to be solved"));
         };
         let cell = solver.cell(self.setting.cell);
         let (world, padded) = world_windows(self.setting.size.unwrap_or([cell, cell]), cell);
