@@ -3,6 +3,7 @@
 //! One `op!` block gives the struct, its defaults, reading and checking from a recipe, writing back, the JSON Schema, the
 //! command line's help and a user interface's sliders.
 
+use crate::layer::Layer;
 use crate::value::{Spanned, Value};
 use serde::{Deserialize, Serialize};
 
@@ -43,6 +44,8 @@ pub struct Spec {
     pub inputs: &'static [InputSpec],
     /// What it can be told.
     pub params: &'static [ParamSpec],
+    /// What it makes: at least one layer.
+    pub layers: &'static [Layer],
 }
 
 /// A node read by an op.
@@ -340,6 +343,9 @@ macro_rules! choice {
 
 /// Declares an op: see any file in `field/`, `filter/` or `solver/`.
 ///
+/// What a filter or solver makes besides one layer of heights is declared in a block `layers`: each with its doc, how it is
+/// read between samples (`height`, `label`, `flow`, or as its `source`) and its unit.
+///
 /// With `octaves;` after its name the op is a fractal: it gets the parameters all fractals share, beside its own.
 macro_rules! op {
     (
@@ -391,6 +397,7 @@ macro_rules! op {
             $(#[doc = $pdoc:literal])+
             $param:ident: $pty:ty = $default:expr $(, unit $unit:literal)? $(, range $low:literal to $high:expr)?;
         )* })?
+        $(layers { $( $(#[doc = $ldoc:literal])+ $layer:ident: $between:ident $(, unit $lunit:literal)?; )+ })?
         $(check $check:expr;)?
     ) => {
         $(#[doc = $doc])+
@@ -431,6 +438,12 @@ macro_rules! op {
                     shape: <$pty as $crate::declare::Param>::SHAPE,
                     range: op!(@range $($low, $high)?),
                 }, )* )?];
+                const LAYERS: &[$crate::layer::Layer] = &[$( $( $crate::layer::Layer {
+                    name: stringify!($layer),
+                    doc: concat!($($ldoc, "\n"),+),
+                    unit: concat!($($lunit)?),
+                    between: op!(@between $between),
+                }, )+ )?];
                 static SPEC: $crate::declare::Spec = $crate::declare::Spec {
                     op: $op,
                     locality: op!(@locality $locality),
@@ -438,6 +451,7 @@ macro_rules! op {
                     doc: concat!($($doc, "\n"),+),
                     inputs: INPUTS,
                     params: PARAMS,
+                    layers: if LAYERS.is_empty() { $crate::layer::ONE_LAYER } else { LAYERS },
                 };
                 &SPEC
             }
@@ -486,6 +500,10 @@ macro_rules! op {
     (@required optional) => { false };
     (@range) => { [f64::NEG_INFINITY, f64::INFINITY] };
     (@range $low:literal, $high:expr) => { [$low as f64, $high as f64] };
+    (@between height) => { $crate::layer::Between::As($crate::layer::LayerKind::Height) };
+    (@between label) => { $crate::layer::Between::As($crate::layer::LayerKind::Label) };
+    (@between flow) => { $crate::layer::Between::As($crate::layer::LayerKind::Flow) };
+    (@between source) => { $crate::layer::Between::AsSource };
     (@locality field) => { $crate::declare::Locality::Field };
     (@locality filter) => { $crate::declare::Locality::Filter };
     (@locality solver) => { $crate::declare::Locality::Solver };

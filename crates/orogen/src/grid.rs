@@ -84,6 +84,22 @@ impl Window {
             && self.bottom() >= other.bottom()
     }
 
+    /// The window cut into tiles of at most `side` x `side` samples, row after row from the north, each from west to east.
+    pub fn tiles(&self, side: usize) -> impl Iterator<Item = Window> + use<> {
+        let (window, side) = (*self, side.max(1));
+        let columns = window.width.div_ceil(side);
+        (0..columns * window.height.div_ceil(side)).map(move |index| {
+            let (left, top) = (index % columns * side, index / columns * side);
+            Window {
+                x: window.x + left as i64,
+                y: window.y + top as i64,
+                width: side.min(window.width - left),
+                height: side.min(window.height - top),
+                cell: window.cell,
+            }
+        })
+    }
+
     /// Metres east of the origin of column `i` of the window. Always the global index times the cell, never a running sum.
     pub fn east(&self, i: usize) -> f64 {
         (self.x + i as i64) as f64 * self.cell

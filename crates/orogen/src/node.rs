@@ -1,7 +1,8 @@
 //! The list of all ops: one enum that a recipe is made of.
 
 use crate::declare::{Declared, Input, Spec};
-use crate::op::{Field, Filter, Layer, ONE_LAYER, Op, Solver};
+use crate::layer::Layer;
+use crate::op::{Field, Filter, Op, Solver};
 use crate::value::Value;
 use crate::{field, filter, solver};
 
@@ -92,12 +93,8 @@ impl Node {
         self.declared().consistent()
     }
 
-    /// What the node makes: fields one layer, filters and solvers those they name.
+    /// What the node makes.
     pub fn layers(&self) -> &'static [Layer] {
-        match self.op() {
-            Op::Field(_) => ONE_LAYER,
-            Op::Filter(filter) => filter.layers(),
-            Op::Solver(solver) => solver.layers(),
-        }
+        self.spec().layers
     }
 }

@@ -1,13 +1,13 @@
 //! What an op is: a field, a filter or a solver, and what each is given.
 
+use crate::declare::Declared;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
+use crate::layer::LayerKind;
 use crate::progress::Progress;
+use crate::raster::Raster;
 use orogen_noise::Points;
 use serde::{Deserialize, Serialize};
-
-/// The position of a point that is not there. Plans give every point; this only keeps a mistake from becoming a panic.
-pub(crate) const NOWHERE: (f64, f64) = (f64::NAN, f64::NAN);
 
 /// What the world tells every op.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -134,27 +134,6 @@ impl Affine {
     }
 }
 
-/// How a layer may be read between its samples.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum LayerKind {
-    /// Smooth: interpolated.
-    Height,
-    /// Names in numbers: the nearest sample.
-    Label,
-}
-
-/// One of the things a filter or solver makes.
-#[derive(Debug)]
-pub struct Layer {
-    /// Its name: read as `node.layer`; the first may be read as `node`.
-    pub name: &'static str,
-    /// How it is read between samples.
-    pub kind: LayerKind,
-}
-
-/// The one layer of most ops.
-pub const ONE_LAYER: &[Layer] = &[Layer { name: "height", kind: LayerKind::Height }];
-
 /// What a filter or solver is given beside its inputs.
 pub struct Context<'a> {
     /// The world's facts.
@@ -165,14 +144,9 @@ pub struct Context<'a> {
 
 /// A filter looks at a finite halo. Its inputs arrive grown by that halo; what it makes is the same whatever window it is
 /// made in.
-pub trait Filter: Send + Sync {
+pub trait Filter: Declared + Send + Sync {
     /// Samples that an input is read beyond the window on each side, at this cell.
     fn halo(&self, cell: f64) -> usize;
-
-    /// What it makes.
-    fn layers(&self) -> &'static [Layer] {
-        ONE_LAYER
-    }
 
     /// Bytes needed beside inputs and layers to make `window`.
     fn scratch(&self, window: &Window) -> u64 {
@@ -180,8 +154,15 @@ pub trait Filter: Send + Sync {
         0
     }
 
-    /// Makes every layer over `window`; each input given covers `window.grown(halo)`.
-    fn apply(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>>;
+    /// Makes layers over `window`; each input given covers `window.grown(halo)`. `out` has a place for each declared layer:
+    /// a grid of zeros over `window` where the layer is wanted, nothing where nobody reads it.
+    fn apply(
+        &self,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        out: &mut [Option<Grid>],
+        context: &Context,
+    ) -> Result<()>;
 
     /// About how many nanoseconds a sample takes at this cell.
     fn cost(&self, cell: f64) -> f64 {
@@ -191,49 +172,101 @@ pub trait Filter: Send + Sync {
 }
 
 /// What a solver found: read like a field ever after.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub struct Solution {
-    /// One grid a layer, or none if the solution is numbers alone.
-    pub grids: Vec<Grid>,
+    /// One raster a layer, or none if the solution is numbers alone.
+    pub layers: Vec<Raster>,
     /// Numbers, their meaning known to the solver.
     pub scalars: Vec<f64>,
 }
 
-/// A solver's inputs over the whole world, made tile by tile as it asks.
+/// A solver's inputs over the whole world, made tile by tile as it asks, and rasters to work in.
 pub trait Sources {
     /// The samples of the world: 0 ..= extent / cell on both axes.
     fn world(&self) -> &Window;
 
-    /// The world with its margin for readers: what a stored grid covers.
+    /// The world with its margin for readers: what a solution's layers cover.
     fn padded(&self) -> &Window;
 
-    /// Makes input `i` over each tile of `window` in a fixed order and hands it on. The tiles cover the window once.
-    fn each_tile(&self, i: usize, window: &Window, visit: &mut dyn FnMut(&Grid)) -> Result<()>;
+    /// Whether input `i` is given.
+    fn given(&self, i: usize) -> bool;
+
+    /// Makes input `i` over each tile of `window` in a fixed order and hands it on. The tiles cover the window once; there is
+    /// none if the input is not given.
+    fn each_tile(&self, i: usize, window: &Window, visit: &mut dyn FnMut(&Grid) -> Result<()>) -> Result<()>;
+
+    /// Input `i` over all of `window` at once, zero if it is not given: for solvers that cannot work tile by tile. Count it in
+    /// [`Solver::scratch`].
+    fn whole(&self, i: usize, window: &Window) -> Result<Grid> {
+        let mut grid = Grid::filled(*window, 0.0f32);
+        self.each_tile(i, window, &mut |tile| {
+            grid.paste(tile);
+            Ok(())
+        })?;
+        Ok(grid)
+    }
+
+    /// A raster of zeros over [`Sources::padded`], to solve in or to return: in memory or on disk, as the budget says.
+    fn raster(&self) -> Result<Raster>;
+
+    /// A grid over [`Sources::padded`] as a raster to return: it may leave memory for the disk.
+    fn keep(&self, grid: Grid) -> Result<Raster>;
+}
+
+/// What is asked of a solution.
+pub struct Reading<'a> {
+    /// Index of the layer.
+    pub layer: usize,
+    /// How the layer is read between its samples.
+    pub kind: LayerKind,
+    /// Where.
+    pub at: &'a Points<'a>,
+    /// The solver's inputs at those points, if it reads them.
+    pub inputs: &'a Slots<'a>,
 }
 
 /// A solver looks at the whole bounded world, once, at a cell of its own.
-pub trait Solver: Send + Sync {
+pub trait Solver: Declared + Send + Sync {
     /// Metres from one sample to the next of the lattice it is solved on.
     fn cell(&self, world_cell: f64) -> f64 {
         world_cell
     }
 
-    /// What it makes.
-    fn layers(&self) -> &'static [Layer] {
-        ONE_LAYER
+    /// How many rasters of the world it holds at once at most: the layers of the solution and those it works in.
+    fn rasters(&self) -> usize {
+        self.spec().layers.len()
     }
 
-    /// Bytes of the solution and of solving, when the world with its margin has this window.
-    fn memory(&self, padded: &Window) -> u64;
+    /// Bytes of memory that solving takes beside those rasters, when the world with its margin has this window. A solver that
+    /// works tile by tile takes none; one that needs whole grids counts them here.
+    fn scratch(&self, padded: &Window) -> u64 {
+        let _ = padded;
+        0
+    }
 
     /// Whether [`Solver::read`] is given the inputs at the points it is asked for.
-    fn reads_inputs(&self) -> bool;
+    fn reads_inputs(&self) -> bool {
+        false
+    }
 
-    /// Solves the world.
+    /// Solves the world. The result must not depend on how the sources are cut into tiles.
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution>;
 
-    /// Makes layer `layer`, one value a point, from the solution.
-    fn read(&self, solution: &Solution, layer: usize, at: &Points, inputs: &Slots, out: &mut [f32]);
+    /// Makes one value a point from the solution: unless said otherwise, what the layer's raster shows there.
+    fn read(&self, solution: &Solution, asked: &Reading, out: &mut [f32]) -> Result<()> {
+        match solution.layers.get(asked.layer) {
+            Some(raster) => raster.read(asked.kind, asked.at, out),
+            None => {
+                out.fill(0.0);
+                Ok(())
+            }
+        }
+    }
+
+    /// About how many nanoseconds a sample of the world takes to solve, its sources not counted.
+    fn cost(&self) -> f64 {
+        1.0
+    }
 }
 
 /// A node as what it is.

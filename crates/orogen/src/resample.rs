@@ -1,8 +1,11 @@
 //! Reading a grid between its samples.
 
 use crate::grid::Grid;
-use crate::op::{LayerKind, NOWHERE};
+use crate::layer::LayerKind;
 use orogen_noise::Points;
+
+/// The position of a point that is not there. Plans give every point; this only keeps a mistake from becoming a panic.
+pub(crate) const NOWHERE: (f64, f64) = (f64::NAN, f64::NAN);
 
 /// Index of the sample at or before a position, and the share of the way to the next.
 ///
@@ -20,7 +23,7 @@ pub fn split(position: f64, cell: f64) -> (i64, f32) {
     if share >= 1.0 { (index as i64 + 1, 0.0) } else { (index as i64, share) }
 }
 
-/// Reads `grid` at every point into `out`: heights by the interpolating cubic, labels from the nearest sample.
+/// Reads `grid` at every point into `out`, between samples as the [`LayerKind`] says.
 ///
 /// Beyond its border the grid continues with its border samples. A point that is not finite reads NaN.
 pub fn read(grid: &Grid, kind: LayerKind, at: &Points, out: &mut [f32]) {
@@ -39,14 +42,7 @@ pub fn read(grid: &Grid, kind: LayerKind, at: &Points, out: &mut [f32]) {
             for (k, sample) in out.iter_mut().enumerate() {
                 let (x, y) = at.position(k).unwrap_or(NOWHERE);
                 let cell = grid.window().cell;
-                *sample = if !(x.is_finite() && y.is_finite()) {
-                    f32::NAN
-                } else if kind == LayerKind::Label {
-                    reader.sample(nearest(x, cell), nearest(y, cell))
-                } else {
-                    let ((i, u), (j, v)) = (split(x, cell), split(y, cell));
-                    reader.cubic(i, j, u, v)
-                };
+                *sample = if x.is_finite() && y.is_finite() { reader.at(kind, x, y, cell) } else { f32::NAN };
             }
         }
     }
@@ -76,6 +72,36 @@ impl Reader<'_> {
         let i = i.saturating_sub(self.x).clamp(0, self.width - 1);
         let j = j.saturating_sub(self.y).clamp(0, self.height - 1);
         self.data.get((j * self.width + i) as usize).copied().unwrap_or(f32::NAN)
+    }
+
+    fn at(&self, kind: LayerKind, x: f64, y: f64, cell: f64) -> f32 {
+        if kind == LayerKind::Label {
+            return self.sample(nearest(x, cell), nearest(y, cell));
+        }
+        let ((i, u), (j, v)) = (split(x, cell), split(y, cell));
+        match kind {
+            LayerKind::Flow => {
+                self.logarithmic(i, j, u, v).unwrap_or_else(|| self.sample(nearest(x, cell), nearest(y, cell)))
+            }
+            _ => self.cubic(i, j, u, v),
+        }
+    }
+
+    /// Linear in the logarithms of the four samples around; none if one of them has none. Share 0 gives the sample itself.
+    fn logarithmic(&self, i: i64, j: i64, u: f32, v: f32) -> Option<f32> {
+        if u == 0.0 && v == 0.0 {
+            return Some(self.sample(i, j));
+        }
+        let log = |di: i64, dj: i64| {
+            let sample = self.sample(i.saturating_add(di), j.saturating_add(dj));
+            (sample > 0.0 && sample.is_finite()).then(|| libm::log(f64::from(sample)))
+        };
+        let (u, v) = (f64::from(u), f64::from(v));
+        let (north, south) = (
+            log(0, 0)? * (1.0 - u) + if u > 0.0 { log(1, 0)? * u } else { 0.0 },
+            if v > 0.0 { log(0, 1)? * (1.0 - u) + if u > 0.0 { log(1, 1)? * u } else { 0.0 } } else { 0.0 },
+        );
+        Some(libm::exp(north * (1.0 - v) + south * v) as f32)
     }
 
     /// Catmull and Rom's cubic (1974) along x in four rows, then along y. Share 0 gives the sample itself, bit for bit.
@@ -144,5 +170,20 @@ mod tests {
         let wild = Points::Scattered { x: &[f64::NAN, 1e300], y: &[0.0, -1e300] };
         read(&grid, LayerKind::Height, &wild, &mut far);
         assert!(far[0].is_nan() && far[1].is_finite());
+    }
+
+    #[test]
+    fn labels_and_flows_are_not_mixed_like_heights() {
+        let window = Window::new(3, 3, 1.0);
+        let grid = Grid::from_data(window, vec![1.0, 100.0, 1e4, 1.0, 100.0, 1e4, 0.0, 7.0, 7.0]).unwrap();
+        let (x, y) = ([0.0, 0.5, 0.25, 1.5, 0.25, 0.5], [0.0, 0.0, 0.5, 1.0, 1.75, 2.0]);
+        let mut out = [0.0; 6];
+        read(&grid, LayerKind::Label, &Points::Scattered { x: &x, y: &y }, &mut out);
+        assert_eq!(out, [1.0, 100.0, 1.0, 1e4, 0.0, 7.0]);
+        read(&grid, LayerKind::Flow, &Points::Scattered { x: &x, y: &y }, &mut out);
+        let expect = [1.0, 10.0, 3.162_277_7, 1000.0, 0.0, 7.0];
+        for (made, expect) in out.iter().zip(expect) {
+            assert!((made - expect).abs() <= 1e-5 * expect, "{out:?}");
+        }
     }
 }

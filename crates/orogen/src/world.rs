@@ -261,14 +261,18 @@ impl World {
         Engine { recipe: &self.recipe, graph: &self.graph, setting: &self.setting, store: &self.store, progress }
     }
 
+    /// What a layer's name means: one of the outputs, else a node or `node.layer`.
     fn target(&self, layer: &str) -> Result<Link> {
-        match self.recipe.outputs().position(|name| name == layer) {
-            Some(index) => Ok(self.graph.outputs[index]),
-            None => Err(Error::new(
-                ErrorKind::Request,
-                format!("the recipe has no layer `{layer}`; {}", suggestion(layer, self.recipe.outputs())),
-            )),
+        if let Some(index) = self.recipe.outputs().position(|name| name == layer) {
+            return Ok(self.graph.outputs[index]);
         }
+        Graph::find(&self.recipe, layer).map(Link::Node).map_err(|why| {
+            let sentence = match layer.contains('.') {
+                true => format!("there is no layer `{layer}`: {why}"),
+                false => format!("the recipe has no layer `{layer}`; {}", suggestion(layer, self.recipe.outputs())),
+            };
+            Error::new(ErrorKind::Request, sentence)
+        })
     }
 
     fn check(&self, window: &Window) -> Result<()> {

@@ -20,27 +20,36 @@ fn same_bits(name: &str, whole: &Grid, tile: &Grid) {
     }
 }
 
-/// Tile == crop for one recipe: the whole against tiles of several sizes and offsets, thread counts, fresh and warm.
+/// Tile == crop for every layer of one recipe: the whole against tiles of several sizes and offsets, thread counts, fresh and
+/// warm.
 fn tiles_equal_crop(name: &str, recipe: &Recipe, cell: f64) {
     let whole_window = Window::new(97, 81, cell);
-    let whole = open(recipe, 2).window("height", &whole_window).unwrap();
-    assert!(whole.data().iter().all(|sample| sample.is_finite()), "{name} makes numbers");
+    let layers: Vec<&str> = recipe.outputs().collect();
+    let all = |world: &World, window: &Window| world.grids(&layers, window, &Progress::none()).unwrap();
+    let wholes = all(&open(recipe, 2), &whole_window);
     let warm = open(recipe, 1);
     let mut random = Random(name.len() as u64);
+    let mut tiles = vec![(Window::new(31, 17, cell).at(13, 44), true)];
     for size in [1usize, 2, 7, 33, 64] {
         for _ in 0..2 {
             let x = random.below((97 - size) as u64 + 1) as i64;
             let y = random.below((81 - size) as u64 + 1) as i64;
-            let tile = Window::new(size, size, cell).at(x, y);
-            same_bits(name, &whole, &warm.window("height", &tile).unwrap());
+            tiles.push((Window::new(size, size, cell).at(x, y), false));
         }
     }
-    let tile = Window::new(31, 17, cell).at(13, 44);
-    same_bits(name, &whole, &open(recipe, 2).window("height", &tile).unwrap());
+    for (tile, fresh) in tiles {
+        let made = if fresh { all(&open(recipe, 2), &tile) } else { all(&warm, &tile) };
+        for ((layer, whole), made) in layers.iter().zip(&wholes).zip(&made) {
+            same_bits(&format!("{name}, {layer}"), whole, made);
+        }
+    }
     // A point on the lattice is the sample there.
     let (i, j) = (random.below(97) as usize, random.below(81) as usize);
-    let point = warm.height(whole_window.east(i), whole_window.south(j)).unwrap();
-    assert_eq!(point.to_bits(), whole.get(i, j).to_bits(), "{name}: point ({i}, {j})");
+    for (layer, whole) in layers.iter().zip(&wholes) {
+        assert!(whole.data().iter().all(|sample| sample.is_finite()), "{name}, {layer}: makes numbers");
+        let point = warm.points(layer, &[whole_window.east(i)], &[whole_window.south(j)]).unwrap()[0];
+        assert_eq!(point.to_bits(), whole.get(i, j).to_bits(), "{name}, {layer}: point ({i}, {j})");
+    }
 }
 
 #[test]
@@ -67,11 +76,15 @@ fn every_node_can_be_warped_and_turned() {
         }
         let noise = |seed| Fbm { seed, wavelength: 300.0, octaves: 2, ..Default::default() };
         recipe.add("wx", noise(1)).add("wy", noise(2));
-        recipe.add("warped", Warp { source: "node".into(), x: "wx".into(), y: "wy".into(), strength: 95.0 });
-        let turned = Transform { source: "warped".into(), offset: [200.0, -77.0], scale: 1.5, angle: 25.0 };
-        recipe.add("turned", turned);
-        recipe.add("sum", Add { a: "turned".into(), b: "warped".into() });
-        recipe.output("height", "sum");
+        for layer in node.layers() {
+            let [warped, turned, sum] = ["warped", "turned", "sum"].map(|what| format!("{what}-{}", layer.name));
+            let source = Input::Node(format!("node.{}", layer.name));
+            recipe.add(&warped, Warp { source, x: "wx".into(), y: "wy".into(), strength: 95.0 });
+            let source = Input::from(&warped);
+            recipe.add(&turned, Transform { source, offset: [200.0, -77.0], scale: 1.5, angle: 25.0 });
+            recipe.add(&sum, Add { a: (&turned).into(), b: (&warped).into() });
+            recipe.output(layer.name, &sum);
+        }
         tiles_equal_crop(&format!("warped {}", node.spec().op), &recipe, 30.0);
     }
 }
@@ -230,6 +243,38 @@ fn dear_sources_of_a_filter_are_made_once() {
         })
         .sum();
     assert_eq!(fields, 1, "{}", world.explain(&plan));
+}
+
+#[test]
+fn layers_are_read_by_name_and_only_those_wanted_are_made() {
+    let text = |output: &str| {
+        format!(
+            "orogen = 1\n[nodes.a]\nop = \"fbm\"\n[nodes.s]\nop = \"slope\"\nsource = \"a\"\n[outputs]\nheight = \"{output}\"\n"
+        )
+    };
+    let open = |output: &str| World::open(Recipe::parse(&text(output), "t")?);
+    let window = Window::new(16, 16, 10.0);
+    let world = open("s.south").unwrap();
+    let plan = world.plan(&["height"], &window).unwrap();
+    let Some(Step::Apply { out, .. }) = plan.steps.iter().find(|step| matches!(step, Step::Apply { .. })) else {
+        panic!("a filter is applied")
+    };
+    assert!(matches!(out.as_slice(), [None, None, Some(_)]), "{}", world.explain(&plan));
+    assert!(world.explain(&plan).contains("apply `s` (south)"), "{}", world.explain(&plan));
+    // The layer is what it says: rise per metre, and with its neighbour the whole slope.
+    let source = world.window("a", &window.grown(1)).unwrap();
+    let [east, south] = ["s.east", "s.south"].map(|layer| world.window(layer, &window).unwrap());
+    let steep = (source.get(5, 6) - source.get(5, 4)) / 20.0;
+    assert!((south.get(4, 4) - steep).abs() < 0.5 * steep.abs() + 1e-4, "{} {steep}", south.get(4, 4));
+    let slope = world.window("s", &window).unwrap().get(4, 4);
+    let whole = libm::atanf(libm::hypotf(east.get(4, 4), south.get(4, 4))).to_degrees();
+    assert!((slope - whole).abs() < 1e-3, "{slope} {whole}");
+    let error = open("s.sout").err().unwrap().to_string();
+    assert!(error.contains("has no layer `sout`; did you mean `south`?"), "{error}");
+    let error = open("a.flow").err().unwrap().to_string();
+    assert!(error.contains("has no layer `flow`; there is `height`"), "{error}");
+    let error = world.window("s.est", &window).unwrap_err().to_string();
+    assert!(error.contains("did you mean `east`?"), "{error}");
 }
 
 #[test]

@@ -1,9 +1,11 @@
 //! Runs a program over one block of samples.
 
+use crate::error::Result;
 use crate::grid::{Grid, Window};
-use crate::op::{Field, LayerKind, NOWHERE, Setting, Slots, Solution, Solver};
+use crate::layer::LayerKind;
+use crate::op::{Field, Reading, Setting, Slots, Solution, Solver};
 use crate::plan::program::{Instruction, Program};
-use crate::resample;
+use crate::resample::{self, NOWHERE};
 use orogen_noise::Points;
 use std::sync::Arc;
 
@@ -61,25 +63,25 @@ impl<'p> Machine<'p> {
     }
 
     /// Runs the program over a block of the lattice.
-    pub fn run_block(&mut self, block: &Window, bindings: &Bindings) {
+    pub fn run_block(&mut self, block: &Window, bindings: &Bindings) -> Result<()> {
         let place = &mut self.places[0];
         place.shape = Shape::Lattice;
         place.x.clear();
         place.x.extend((0..block.width).map(|i| block.east(i)));
         place.y.clear();
         place.y.extend((0..block.height).map(|j| block.south(j)));
-        self.run(Some(block), block.len(), bindings);
+        self.run(Some(block), block.len(), bindings)
     }
 
     /// Runs the program at any points.
-    pub fn run_points(&mut self, x: &[f64], y: &[f64], bindings: &Bindings) {
+    pub fn run_points(&mut self, x: &[f64], y: &[f64], bindings: &Bindings) -> Result<()> {
         let place = &mut self.places[0];
         place.shape = Shape::Scattered;
         place.x.clear();
         place.x.extend_from_slice(x);
         place.y.clear();
         place.y.extend_from_slice(y);
-        self.run(None, x.len().min(y.len()), bindings);
+        self.run(None, x.len().min(y.len()), bindings)
     }
 
     /// Output `i` of the last run.
@@ -87,32 +89,36 @@ impl<'p> Machine<'p> {
         &self.registers[self.program.outputs[i]]
     }
 
-    fn run(&mut self, block: Option<&Window>, count: usize, bindings: &Bindings) {
+    fn run(&mut self, block: Option<&Window>, count: usize, bindings: &Bindings) -> Result<()> {
         for register in &mut self.registers {
             register.resize(count, 0.0);
         }
-        for instruction in &self.program.instructions {
-            self.step(instruction, block, count, bindings);
-        }
+        self.program.instructions.iter().try_for_each(|instruction| self.step(instruction, block, count, bindings))
     }
 
-    fn step(&mut self, instruction: &Instruction, block: Option<&Window>, count: usize, bindings: &Bindings) {
+    fn step(
+        &mut self,
+        instruction: &Instruction,
+        block: Option<&Window>,
+        count: usize,
+        bindings: &Bindings,
+    ) -> Result<()> {
         match instruction {
             Instruction::Constant { value, out } => self.registers[*out].fill(*value),
             Instruction::Field { node, place, inputs, out } => {
-                let Some(field) = (bindings.fields)(*node) else { return };
+                let Some(field) = (bindings.fields)(*node) else { return Ok(()) };
                 self.with_inputs(*place, inputs, *out, |points, slots, out| {
                     field.eval(points, slots, bindings.setting, out);
                 });
             }
-            Instruction::Solved { node, layer, place, inputs, out } => {
-                let Some((solver, solution)) = (bindings.solvers)(*node) else { return };
-                self.with_inputs(*place, inputs, *out, |points, slots, out| {
-                    solver.read(&solution, *layer, points, slots, out);
-                });
+            Instruction::Solved { node, layer, kind, place, inputs, out } => {
+                let Some((solver, solution)) = (bindings.solvers)(*node) else { return Ok(()) };
+                self.with_inputs(*place, inputs, *out, |at, inputs, out| {
+                    solver.read(&solution, &Reading { layer: *layer, kind: *kind, at, inputs }, out)
+                })?;
             }
             Instruction::Grid { grid, kind, place, out } => {
-                let Some(grid) = &bindings.grids[*grid] else { return };
+                let Some(grid) = &bindings.grids[*grid] else { return Ok(()) };
                 // Only the block itself lies on the lattice that the grid was made on.
                 let block = block.filter(|_| *place == 0);
                 let mut samples = std::mem::take(&mut self.registers[*out]);
@@ -170,16 +176,17 @@ impl<'p> Machine<'p> {
                 self.places[*to] = mapped;
             }
         }
+        Ok(())
     }
 
     /// Lends the inputs and takes the output out while an op works, so that both can be borrowed at once.
-    fn with_inputs(
+    fn with_inputs<T>(
         &mut self,
         place: usize,
         inputs: &[Option<usize>],
         out: usize,
-        work: impl FnOnce(&Points, &Slots, &mut [f32]),
-    ) {
+        work: impl FnOnce(&Points, &Slots, &mut [f32]) -> T,
+    ) -> T {
         let mut samples = std::mem::take(&mut self.registers[out]);
         const FEW: usize = 8;
         let mut few: [Option<&[f32]>; FEW] = [None; FEW];
@@ -193,8 +200,9 @@ impl<'p> Machine<'p> {
             many = inputs.iter().map(|input| input.map(|register| self.registers[register].as_slice())).collect();
             &many
         };
-        work(&self.places[place].points(), &Slots::new(slots), &mut samples);
+        let done = work(&self.places[place].points(), &Slots::new(slots), &mut samples);
         self.registers[out] = samples;
+        done
     }
 }
 

@@ -37,9 +37,9 @@ impl<'a> Engine<'a> {
             self.progress.check()?;
             let made = match step {
                 Step::Fill { program, window, out } => self.fill(program, window, out.len(), &solutions, &grids)?,
-                Step::Apply { node, inputs, window, halo, .. } => self.apply(*node, inputs, window, *halo, &grids)?,
+                Step::Apply { .. } => self.apply(step, &grids)?,
             };
-            for (&slot, grid) in step.writes().iter().zip(made) {
+            for (slot, grid) in step.writes().into_iter().zip(made) {
                 grids[slot] = Some(grid);
             }
             for (grid, slot) in grids.iter_mut().zip(&plan.grids) {
@@ -60,13 +60,13 @@ impl<'a> Engine<'a> {
         for step in &plan.steps {
             let made = match step {
                 Step::Fill { program, out, .. } if out.is_empty() => {
-                    values = self.at_points(program, x, y, &solutions, &grids);
+                    values = self.at_points(program, x, y, &solutions, &grids)?;
                     continue;
                 }
                 Step::Fill { program, window, out } => self.fill(program, window, out.len(), &solutions, &grids)?,
-                Step::Apply { node, inputs, window, halo, .. } => self.apply(*node, inputs, window, *halo, &grids)?,
+                Step::Apply { .. } => self.apply(step, &grids)?,
             };
-            for (&slot, grid) in step.writes().iter().zip(made) {
+            for (slot, grid) in step.writes().into_iter().zip(made) {
                 grids[slot] = Some(grid);
             }
         }
@@ -112,7 +112,7 @@ impl<'a> Engine<'a> {
         y: &[f64],
         solutions: &Solutions,
         grids: &[Option<Grid>],
-    ) -> Vec<Vec<f32>> {
+    ) -> Result<Vec<Vec<f32>>> {
         let fields = |node| self.field(node);
         let solvers = |node| self.solver(node, solutions);
         let bindings = Bindings { setting: self.setting, fields: &fields, solvers: &solvers, grids };
@@ -120,12 +120,12 @@ impl<'a> Engine<'a> {
         let mut values = vec![Vec::with_capacity(x.len()); program.outputs.len()];
         let mut machine = Machine::new(program);
         for (x, y) in x.chunks(POINTS).zip(y.chunks(POINTS)) {
-            machine.run_points(x, y, &bindings);
+            machine.run_points(x, y, &bindings)?;
             for (i, values) in values.iter_mut().enumerate() {
                 values.extend_from_slice(machine.output(i));
             }
         }
-        values
+        Ok(values)
     }
 
     /// Runs a program over a window: bands of rows side by side, each band block by block.
@@ -166,7 +166,7 @@ impl<'a> Engine<'a> {
                         height,
                         cell: window.cell,
                     };
-                    machine.run_block(&block, &bindings);
+                    machine.run_block(&block, &bindings)?;
                     for (i, out) in out.iter_mut().enumerate() {
                         let made = machine.output(i).chunks(block.width);
                         for (row, made) in out.chunks_mut(window.width).zip(made) {
@@ -181,18 +181,12 @@ impl<'a> Engine<'a> {
         Ok(out)
     }
 
-    fn apply(
-        &self,
-        node: usize,
-        inputs: &[Option<usize>],
-        window: &Window,
-        halo: usize,
-        grids: &[Option<Grid>],
-    ) -> Result<Vec<Grid>> {
-        let Op::Filter(filter) = self.recipe.nodes()[node].node.op() else {
+    fn apply(&self, step: &Step, grids: &[Option<Grid>]) -> Result<Vec<Grid>> {
+        let Step::Apply { node, inputs, window, halo, out } = step else { return Ok(Vec::new()) };
+        let Op::Filter(filter) = self.recipe.nodes()[*node].node.op() else {
             return Err(Error::new(ErrorKind::Recipe, "a node that is no filter was to be applied"));
         };
-        let grown = window.grown(halo);
+        let grown = window.grown(*halo);
         // An input may have been made for others too, over more samples: the filter gets just what it declared.
         let cropped: Vec<Option<Grid>> = inputs
             .iter()
@@ -207,8 +201,10 @@ impl<'a> Engine<'a> {
             .map(|(input, cropped)| cropped.as_ref().or_else(|| input.and_then(|slot| grids[slot].as_ref())))
             .collect();
         let context = Context { setting: self.setting, progress: self.progress };
-        let made = filter.apply(&given, window, &context)?;
+        let mut made: Vec<Option<Grid>> =
+            out.iter().map(|wanted| wanted.map(|_| Grid::filled(*window, 0.0f32))).collect();
+        filter.apply(&given, window, &mut made, &context)?;
         self.progress.advance(window.len() as u64);
-        Ok(made)
+        Ok(made.into_iter().flatten().collect())
     }
 }

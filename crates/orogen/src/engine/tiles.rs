@@ -5,6 +5,7 @@ use crate::grid::{Grid, Window};
 use crate::op::Sources;
 use crate::plan::planner::TILE;
 use crate::plan::steps::Solve;
+use crate::raster::Raster;
 use crate::recipe::graph::Link;
 
 /// The inputs of one solver; `make` makes an input over a tile.
@@ -23,22 +24,25 @@ impl Sources for Tiles<'_> {
         &self.order.padded
     }
 
-    fn each_tile(&self, i: usize, window: &Window, visit: &mut dyn FnMut(&Grid)) -> Result<()> {
+    fn given(&self, i: usize) -> bool {
+        self.links.get(i).is_some_and(|link| *link != Link::None)
+    }
+
+    fn each_tile(&self, i: usize, window: &Window, visit: &mut dyn FnMut(&Grid) -> Result<()>) -> Result<()> {
         let Some(link) = self.links.get(i).filter(|link| **link != Link::None) else { return Ok(()) };
-        for top in (0..window.height).step_by(TILE) {
-            for left in (0..window.width).step_by(TILE) {
-                let tile = Window {
-                    x: window.x + left as i64,
-                    y: window.y + top as i64,
-                    width: TILE.min(window.width - left),
-                    height: TILE.min(window.height - top),
-                    cell: window.cell,
-                };
-                for grid in (self.make)(*link, tile)? {
-                    visit(&grid);
-                }
+        for tile in window.tiles(TILE) {
+            for grid in (self.make)(*link, tile)? {
+                visit(&grid)?;
             }
         }
         Ok(())
+    }
+
+    fn raster(&self) -> Result<Raster> {
+        Ok(Raster::in_memory(Grid::filled(self.order.padded, 0.0)))
+    }
+
+    fn keep(&self, grid: Grid) -> Result<Raster> {
+        Ok(Raster::in_memory(grid))
     }
 }

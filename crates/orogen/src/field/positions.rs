@@ -1,6 +1,6 @@
 //! Going through positions, whichever way they are given.
 
-use crate::op::NOWHERE;
+use crate::resample::NOWHERE;
 use orogen_noise::Points;
 
 /// Writes `value(x, y)` of each position, in metres.

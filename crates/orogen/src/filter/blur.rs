@@ -44,12 +44,18 @@ impl Filter for Blur {
         (window.width as u64) * (window.height as u64 + 2 * self.halo(window.cell) as u64) * 4
     }
 
-    fn apply(&self, inputs: &[Option<&Grid>], window: &Window, context: &Context) -> Result<Vec<Grid>> {
-        let mut out = Grid::filled(*window, 0.0f32);
-        let [Some(source)] = inputs else { return Ok(vec![out]) };
+    fn apply(
+        &self,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        out: &mut [Option<Grid>],
+        context: &Context,
+    ) -> Result<()> {
+        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
         let reach = self.halo(window.cell);
         if reach == 0 || window.is_empty() {
-            return Ok(vec![source.crop(window).unwrap_or(out)]);
+            out.paste(source);
+            return Ok(());
         }
         let weights = self.weights(window.cell);
         let width = window.width;
@@ -70,8 +76,7 @@ impl Filter for Blur {
                 accumulate(row, &rows[at..at + width], *weight);
             }
             Ok(())
-        })?;
-        Ok(vec![out])
+        })
     }
 
     fn cost(&self, cell: f64) -> f64 {

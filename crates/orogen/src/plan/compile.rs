@@ -7,7 +7,8 @@
 use super::program::{Instruction, Place, Program, Register};
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Window;
-use crate::op::{LayerKind, Moves, Op};
+use crate::layer::LayerKind;
+use crate::op::{Moves, Op};
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, Link, Target};
 use std::collections::{HashMap, HashSet};
@@ -200,7 +201,7 @@ impl<'a> Compiler<'a> {
             return;
         }
         let node = target.node;
-        let kind = Graph::layer_kind(self.recipe, target);
+        let kind = self.graph.layer_kind(self.recipe, target);
         if self.is_kept(node, place) {
             let out = self.demand(target, false, place, kind);
             self.made.insert((target, place), out);
@@ -226,7 +227,7 @@ impl<'a> Compiler<'a> {
                 self.note(node, place);
                 let inputs = if solver.reads_inputs() { self.values(&links, place) } else { Vec::new() };
                 let out = self.fresh();
-                self.instructions.push(Instruction::Solved { node, layer: target.layer, place, inputs, out });
+                self.instructions.push(Instruction::Solved { node, layer: target.layer, kind, place, inputs, out });
                 out
             }
             Op::Filter(_) => self.demand(target, true, place, kind),

@@ -73,8 +73,12 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
                     program.registers
                 )
             }
-            Step::Apply { node, halo, .. } => {
-                writeln!(text, "  apply `{}` to {} x {}, halo {halo}", name(*node), window.width, window.height)
+            Step::Apply { node, halo, out, .. } => {
+                let layers = recipe.nodes()[*node].node.layers();
+                let wanted: Vec<&str> =
+                    layers.iter().zip(out).filter(|(_, out)| out.is_some()).map(|(layer, _)| layer.name).collect();
+                let which = if layers.len() > 1 { format!(" ({})", wanted.join(", ")) } else { String::new() };
+                writeln!(text, "  apply `{}`{which} to {} x {}, halo {halo}", name(*node), window.width, window.height)
             }
         };
     }

@@ -6,7 +6,8 @@ use crate::grid::Window;
 use crate::op::Op;
 use crate::recipe::document::Recipe;
 
-fn grid_bytes(window: &Window) -> u64 {
+/// Bytes of one grid over a window.
+pub fn grid_bytes(window: &Window) -> u64 {
     (window.width as u64).saturating_mul(window.height as u64).saturating_mul(4)
 }
 
@@ -21,7 +22,7 @@ fn block_bytes(program: &Program) -> u64 {
 pub fn grids(plan: &Plan) -> u64 {
     let mut born = vec![usize::MAX; plan.grids.len()];
     for (at, step) in plan.steps.iter().enumerate() {
-        for &grid in step.writes() {
+        for grid in step.writes() {
             born[grid] = at;
         }
     }
@@ -56,7 +57,8 @@ pub fn needed(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
         });
     }
     let steps = grids(plan).saturating_add(beside);
-    let tiles = plan.solves.iter().map(|solve| solve.tile).max().unwrap_or(0).saturating_add(beside);
+    let solving = plan.solves.iter().map(|solve| solve.tile.saturating_add(solve.scratch)).max().unwrap_or(0);
+    let tiles = solving.saturating_add(beside);
     let kept = plan.solves.iter().fold(0u64, |sum, solve| sum.saturating_add(solve.kept));
     kept.saturating_add(steps.max(if plan.solves.is_empty() { 0 } else { tiles }))
 }

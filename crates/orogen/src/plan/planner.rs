@@ -74,7 +74,9 @@ impl<'a> Planner<'a> {
             let window = Window { width: padded.width.min(TILE), height: padded.height.min(TILE), ..padded };
             tile = tile.max(memory::grids(&self.plan(&[*link], window, false)?));
         }
-        Ok(Solve { node, key: self.keys[node], world, padded, kept: solver.memory(&padded), tile })
+        let raster = memory::grid_bytes(&padded);
+        let kept = raster.saturating_mul(solver.rasters() as u64);
+        Ok(Solve { node, key: self.keys[node], world, padded, kept, scratch: solver.scratch(&padded), tile })
     }
 
     /// The solvers that a program reads and those that their sources read, sources first.
@@ -120,7 +122,7 @@ enum DraftStep {
     /// A program whose grids are demands from `first` on.
     Fill { program: Program, first: usize, window: Window, out: Vec<usize> },
     /// A filter whose inputs are demands.
-    Apply { node: usize, inputs: Vec<Option<usize>>, window: Window, halo: usize, out: Vec<usize> },
+    Apply { node: usize, inputs: Vec<Option<usize>>, window: Window, halo: usize, out: Vec<Option<usize>> },
 }
 
 impl<'a> Attempt<'a> {
@@ -225,9 +227,14 @@ impl<'a> Attempt<'a> {
             self.by_node.get(&node).into_iter().flatten().copied().filter(|&i| self.demands[i].raw).collect();
         for cluster in clusters(&self.demands, wanted.into_iter()) {
             let window = cluster.window;
-            let out: Vec<usize> = filter.layers().iter().map(|_| self.grid(window, node)).collect();
+            let layers = self.planner.recipe.nodes()[node].node.layers().len();
+            let mut out: Vec<Option<usize>> = vec![None; layers];
             for &i in &cluster.serves {
-                self.served[i] = out.get(self.demands[i].target.layer).copied().unwrap_or(usize::MAX);
+                let Some(slot) = out.get_mut(self.demands[i].target.layer) else { continue };
+                self.served[i] = *slot.get_or_insert_with(|| {
+                    self.grids.push((window, node));
+                    self.grids.len() - 1
+                });
             }
             let halo = filter.halo(window.cell);
             let grown = window.grown(halo);
@@ -312,7 +319,7 @@ impl<'a> Attempt<'a> {
         let mut grids: Vec<GridSlot> =
             self.grids.into_iter().map(|(window, node)| GridSlot { window, node, last_use: 0 }).collect();
         for (at, step) in steps.iter().enumerate() {
-            for grid in step.reads().into_iter().chain(step.writes().iter().copied()) {
+            for grid in step.reads().into_iter().chain(step.writes()) {
                 grids[grid].last_use = grids[grid].last_use.max(at);
             }
         }

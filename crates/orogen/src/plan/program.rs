@@ -1,6 +1,7 @@
 //! A program: fused fields as a flat list of instructions over block registers.
 
-use crate::op::{Affine, LayerKind};
+use crate::layer::LayerKind;
+use crate::op::Affine;
 use serde::{Deserialize, Serialize};
 
 /// Samples a row of a block: wide enough that noise on a lattice runs at full speed.
@@ -42,6 +43,8 @@ pub enum Instruction {
         node: usize,
         /// Which of its layers.
         layer: usize,
+        /// How the layer is read between its samples.
+        kind: LayerKind,
         /// Where it is asked.
         place: Place,
         /// Its inputs there, if it reads them.

@@ -33,8 +33,10 @@ pub struct Solve {
     pub world: Window,
     /// Those with the margin for readers.
     pub padded: Window,
-    /// Bytes its solution keeps.
+    /// Bytes of the rasters that it keeps or works in.
     pub kept: u64,
+    /// Bytes of memory that solving takes beside them.
+    pub scratch: u64,
     /// Bytes that making a tile of its sources takes at most.
     pub tile: u64,
 }
@@ -61,8 +63,8 @@ pub enum Step {
         window: Window,
         /// Samples its inputs are read beyond them.
         halo: usize,
-        /// The grids its layers go to.
-        out: Vec<usize>,
+        /// The grids its layers go to; none for a layer that nobody reads.
+        out: Vec<Option<usize>>,
     },
 }
 
@@ -94,9 +96,10 @@ impl Step {
     }
 
     /// The grids it makes.
-    pub fn writes(&self) -> &[usize] {
+    pub fn writes(&self) -> Vec<usize> {
         match self {
-            Step::Fill { out, .. } | Step::Apply { out, .. } => out,
+            Step::Fill { out, .. } => out.clone(),
+            Step::Apply { out, .. } => out.iter().flatten().copied().collect(),
         }
     }
 

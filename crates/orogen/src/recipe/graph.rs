@@ -3,9 +3,10 @@
 use super::document::{MOST_NODES, Recipe};
 use crate::declare::Input;
 use crate::error::{Complaint, Error, ErrorKind};
+use crate::layer::{Between, LayerKind};
 use crate::node::Node;
-use crate::op::{LayerKind, Op};
-use crate::words::{list, suggestion};
+use crate::op::Op;
+use crate::words::suggestion;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// Most samples along a side of a world's own lattice.
@@ -181,9 +182,48 @@ impl Graph {
         Error::from_complaints(ErrorKind::Recipe, complaints)
     }
 
-    /// How a target may be read between its samples.
-    pub fn layer_kind(recipe: &Recipe, target: Target) -> LayerKind {
-        recipe.nodes()[target.node].node.layers().get(target.layer).map_or(LayerKind::Height, |layer| layer.kind)
+    /// How a target is read between its samples. A layer that is read as its source is leads to that, and so on.
+    pub fn layer_kind(&self, recipe: &Recipe, target: Target) -> LayerKind {
+        let mut at = target;
+        loop {
+            match recipe.nodes()[at.node].node.layers().get(at.layer).map(|layer| layer.between) {
+                Some(Between::As(kind)) => return kind,
+                Some(Between::AsSource) => match self.links[at.node].first() {
+                    Some(Link::Node(source)) => at = *source,
+                    _ => return LayerKind::Height,
+                },
+                None => return LayerKind::Height,
+            }
+        }
+    }
+
+    /// What `node` or `node.layer` names.
+    ///
+    /// # Errors
+    /// A sentence with the nearest name, if there is no such node or layer.
+    pub fn find(recipe: &Recipe, text: &str) -> Result<Target, String> {
+        named(recipe, text, |name| recipe.nodes().iter().position(|node| node.name == name))
+    }
+}
+
+/// What `node` or `node.layer` names, the node's index found by `find`.
+fn named(recipe: &Recipe, text: &str, find: impl Fn(&str) -> Option<usize>) -> Result<Target, String> {
+    const SHOWN: usize = 64;
+    let (node, layer) = text.split_once('.').map_or((text, None), |(node, layer)| (node, Some(layer)));
+    let Some(index) = find(node) else {
+        let shown: String = node.chars().take(SHOWN).collect();
+        let names = recipe.nodes().iter().map(|node| node.name.as_str());
+        return Err(format!("there is no node `{shown}`; {}", suggestion(node, names)));
+    };
+    let Some(layer) = layer else { return Ok(Target { node: index, layer: 0 }) };
+    let layers = recipe.nodes()[index].node.layers();
+    match layers.iter().position(|known| known.name == layer) {
+        Some(layer) => Ok(Target { node: index, layer }),
+        None => {
+            let shown: String = layer.chars().take(SHOWN).collect();
+            let names = layers.iter().map(|layer| layer.name);
+            Err(format!("the node `{node}` has no layer `{shown}`; {}", suggestion(layer, names)))
+        }
     }
 }
 
@@ -315,26 +355,7 @@ impl<'a> Resolver<'a> {
             Input::None => Ok(Link::None),
             Input::Value(value) if value.is_finite() && (*value as f32).is_finite() => Ok(Link::Value(*value as f32)),
             Input::Value(value) => Err(format!("{value} is no number that a sample can hold")),
-            Input::Node(name) => {
-                let (node, layer) = name.split_once('.').map_or((name.as_str(), None), |(n, l)| (n, Some(l)));
-                let Some(&index) = self.names.get(node) else {
-                    let shown: String = node.chars().take(64).collect();
-                    return Err(format!(
-                        "there is no node `{shown}`; {}",
-                        suggestion(node, self.recipe.nodes().iter().map(|node| node.name.as_str()))
-                    ));
-                };
-                let layers = self.recipe.nodes()[index].node.layers();
-                let Some(layer) = layer else { return Ok(Link::Node(Target { node: index, layer: 0 })) };
-                match layers.iter().position(|known| known.name == layer) {
-                    Some(layer) => Ok(Link::Node(Target { node: index, layer })),
-                    None => Err(format!(
-                        "the node `{node}` has no layer `{}`; it has {}",
-                        layer.chars().take(64).collect::<String>(),
-                        list(layers.iter().map(|layer| layer.name))
-                    )),
-                }
-            }
+            Input::Node(name) => named(self.recipe, name, |node| self.names.get(node).copied()).map(Link::Node),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The ops in words, made from their declarations.
 
 use crate::declare::{Shape, Spec, short};
+use crate::layer::{Between, Layer, ONE_LAYER};
 use crate::node::Node;
 use crate::value::Value;
 use std::fmt::Write as _;
@@ -54,14 +55,40 @@ pub fn describe(node: &Node) -> String {
             }
         }
     }
+    if names_layers(spec) {
+        text.push_str("\nlayers, the first also read as the node itself\n");
+        let longest = spec.layers.iter().map(|layer| layer.name.len()).max().unwrap_or(0);
+        for layer in spec.layers {
+            let _ = writeln!(text, "  {:longest$}  {}", layer.name, short(layer.doc));
+            let _ = writeln!(text, "  {:longest$}  between samples: {}", "", between(layer));
+        }
+    }
     text
+}
+
+/// Whether an op says what it makes: fields do not, they make one thing.
+fn names_layers(spec: &Spec) -> bool {
+    spec.layers.iter().map(|layer| layer.name).ne(ONE_LAYER.iter().map(|layer| layer.name))
+}
+
+/// How a layer is read between its samples, and its unit.
+fn between(layer: &Layer) -> String {
+    let how = match layer.between {
+        Between::As(kind) => kind.about(),
+        Between::AsSource => "as the source is",
+    };
+    match layer.unit {
+        "" => how.to_string(),
+        unit => format!("{how} ({unit})"),
+    }
 }
 
 /// The reference of all ops as a page of documentation, Markdown.
 pub fn markdown() -> String {
     let mut text = String::from(
         "<!-- Written by `cargo xtask codegen` from the declarations in crates/orogen/src. Do not edit. -->\n\n# The ops\n\n\
-         A node of a recipe names its `op`. An input takes the name of a node, of one of its layers (`node.layer`), or a number. \
+         A node of a recipe names its `op`. An input takes the name of a node, of one of its layers (`node.layer`; the node's name \
+         alone is its first), or a number. \
          Every node also takes `mask`, a node or number from 0 to 1: where it is 0 the node's first input shows instead (or 0, \
          if it has none). Lengths are metres; noise is in -1 ..= 1.\n",
     );
@@ -84,6 +111,18 @@ fn section(text: &mut String, node: &Node) {
     for line in spec.doc.trim().lines() {
         let _ = writeln!(text, "{}", line.trim());
     }
+    keys(text, node);
+    if names_layers(spec) {
+        text.push_str("\n| layer | what it is | between samples |\n|---|---|---|\n");
+        for layer in spec.layers {
+            let _ = writeln!(text, "| `{}` | {} | {} |", layer.name, short(layer.doc), between(layer));
+        }
+    }
+}
+
+/// What a node can be told.
+fn keys(text: &mut String, node: &Node) {
+    let spec = node.spec();
     if spec.inputs.is_empty() && spec.params.is_empty() {
         return;
     }

@@ -164,7 +164,14 @@ fn mask_schema() -> Json {
 fn op_schema(node: &Node) -> Json {
     let spec = node.spec();
     let mut properties = Map::new();
-    properties.insert("op".into(), json!({ "const": spec.op, "description": spec.doc.trim() }));
+    let mut about = spec.doc.trim().to_string();
+    if spec.layers.len() > 1 {
+        about.push_str("\n\nLayers:");
+        for layer in spec.layers {
+            about.push_str(&format!("\n`{}`: {}", layer.name, short(layer.doc)));
+        }
+    }
+    properties.insert("op".into(), json!({ "const": spec.op, "description": about }));
     for input in spec.inputs {
         properties.insert(
             input.name.into(),

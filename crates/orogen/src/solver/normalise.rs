@@ -1,9 +1,9 @@
 //! The source stretched to a range of heights over the world.
 
 use crate::error::Result;
-use crate::grid::Window;
-use crate::op::{Context, Slots, Solution, Solver, Sources};
-use orogen_noise::Points;
+use crate::grid::Grid;
+use crate::op::{Context, Reading, Solution, Solver, Sources};
+use rayon::prelude::*;
 
 op! {
     /// The source stretched linearly so that over the whole world its lowest sample becomes `low` and its highest `high`.
@@ -24,7 +24,7 @@ op! {
 }
 
 impl Solver for Normalise {
-    fn memory(&self, _: &Window) -> u64 {
+    fn rasters(&self) -> usize {
         0
     }
 
@@ -33,24 +33,45 @@ impl Solver for Normalise {
     }
 
     fn solve(&self, sources: &dyn Sources, _: &Context) -> Result<Solution> {
-        // Minimum and maximum do not depend on the order they are taken in.
-        let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+        let mut range = NOTHING;
         sources.each_tile(0, sources.world(), &mut |tile| {
-            for sample in tile.data().iter().filter(|sample| sample.is_finite()) {
-                low = low.min(*sample);
-                high = high.max(*sample);
-            }
+            range = join(range, range_of(tile));
+            Ok(())
         })?;
-        Ok(Solution { grids: Vec::new(), scalars: vec![f64::from(low), f64::from(high)] })
+        let (low, high) = range;
+        Ok(Solution { layers: Vec::new(), scalars: vec![f64::from(low), f64::from(high)] })
     }
 
-    fn read(&self, solution: &Solution, _: usize, _: &Points, inputs: &Slots, out: &mut [f32]) {
+    fn read(&self, solution: &Solution, asked: &Reading, out: &mut [f32]) -> Result<()> {
         let [low, high] = [0, 1].map(|i| solution.scalars.get(i).copied().unwrap_or(0.0));
         let relief = high - low;
         let scale = if relief > 0.0 { ((self.high - self.low) / relief) as f32 } else { 0.0 };
         let (from, to) = (if relief >= 0.0 { low as f32 } else { 0.0 }, self.low as f32);
-        for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
+        for (sample, source) in out.iter_mut().zip(asked.inputs.required(0)) {
             *sample = (source - from) * scale + to;
         }
+        Ok(())
     }
+
+    fn cost(&self) -> f64 {
+        0.2
+    }
+}
+
+/// Lowest and highest of no samples.
+const NOTHING: (f32, f32) = (f32::INFINITY, f32::NEG_INFINITY);
+
+fn join(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {
+    (a.0.min(b.0), a.1.max(b.1))
+}
+
+/// Lowest and highest finite sample. Minimum and maximum do not depend on the order they are taken in, so the rows may be
+/// looked at side by side.
+fn range_of(tile: &Grid) -> (f32, f32) {
+    const SAMPLES: usize = 1 << 16;
+    let range = |samples: &[f32]| {
+        let finite = samples.iter().filter(|sample| sample.is_finite());
+        finite.fold(NOTHING, |range, sample| join(range, (*sample, *sample)))
+    };
+    tile.data().par_chunks(SAMPLES).map(range).reduce(|| NOTHING, join)
 }

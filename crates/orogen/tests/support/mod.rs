@@ -58,6 +58,9 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
         recipe.add("node", node);
     }
     recipe.output("height", "node");
+    for layer in spec.layers.iter().skip(1) {
+        recipe.output(layer.name, Input::Node(format!("node.{}", layer.name)));
+    }
     recipe
 }
 
