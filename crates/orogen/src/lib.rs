@@ -48,6 +48,7 @@ pub mod resample;
 pub mod solver;
 pub mod spool;
 mod store;
+pub mod tiles;
 pub mod value;
 pub mod words;
 pub mod world;

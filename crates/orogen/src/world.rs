@@ -154,6 +154,11 @@ impl World {
         Planner::new(&self.recipe, &self.graph).plan(&targets, *window, false)
     }
 
+    /// Bytes that a request may need; `None` for no limit.
+    pub fn memory_limit(&self) -> Option<u64> {
+        self.memory
+    }
+
     /// Bytes that running a plan takes at most.
     pub fn memory_of(&self, plan: &Plan) -> u64 {
         memory::needed(plan, &self.recipe, self.pool.current_num_threads())
@@ -275,7 +280,8 @@ impl World {
         })
     }
 
-    fn check(&self, window: &Window) -> Result<()> {
+    /// Whether the world has this window.
+    pub(crate) fn check(&self, window: &Window) -> Result<()> {
         let fault = |sentence: String| Err(Error::new(ErrorKind::Request, sentence));
         if !(window.cell.is_finite() && window.cell >= 1e-6) {
             return fault(format!(
