@@ -20,7 +20,7 @@
 //! finite halo (blur, slope); a **solver** looks at the whole bounded world, once (normalise, bake). So any tile equals the
 //! crop of the whole, bit for bit, whatever the tile size, the number of threads, the SIMD level or the machine.
 //!
-//! Where to go on: [`Recipe`] builds a world in code; [`node::Node::all`] lists the ops; [`presets`] are the recipes that come
+//! Where to go on: [`Recipe`] builds a world in code; a [`Sampler`] answers many questions quickly; [`node::Node::all`] lists the ops; [`presets`] are the recipes that come
 //! with the library; [`mod@format`], [`map`] and [`palette`] make files and pictures of grids.
 #![forbid(unsafe_code)]
 
@@ -45,6 +45,7 @@ pub mod progress;
 pub mod raster;
 pub mod recipe;
 pub mod resample;
+pub mod sampler;
 pub mod solver;
 pub mod spool;
 mod store;
@@ -62,5 +63,6 @@ pub use orogen_noise::Points;
 pub use progress::Progress;
 pub use recipe::document::{Recipe, WorldSpec};
 pub use recipe::presets;
+pub use sampler::Sampler;
 pub use words::nearest;
 pub use world::{Options, World};

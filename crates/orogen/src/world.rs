@@ -1,5 +1,6 @@
 //! The front door: a recipe opened, asked for windows and points.
 
+use crate::engine::alone::Ready;
 use crate::engine::run::Engine;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
@@ -214,18 +215,7 @@ impl World {
         if x.len() != y.len() {
             return Err(fault(format!("{} eastings do not pair with {} southings", x.len(), y.len())));
         }
-        for (x, y) in x.iter().zip(y) {
-            if !(x.is_finite() && y.is_finite()) {
-                return Err(fault(format!("({x}, {y}) is no position: coordinates must be finite")));
-            }
-            if let Some([w, h]) = self.setting.size
-                && !((0.0..=w).contains(x) && (0.0..=h).contains(y))
-            {
-                return Err(fault(format!(
-                    "({x}, {y}) is outside the world, which reaches from (0, 0) to ({w}, {h}) metres"
-                )));
-            }
-        }
+        x.iter().zip(y).try_for_each(|(x, y)| self.check_point(*x, *y))?;
         if x.is_empty() {
             return Ok(Vec::new());
         }
@@ -248,8 +238,30 @@ impl World {
         Ok(values.into_iter().next().unwrap_or_default())
     }
 
+    /// Whether a point is one of this world.
+    pub(crate) fn check_point(&self, x: f64, y: f64) -> Result<()> {
+        let fault = |sentence: String| Err(Error::new(ErrorKind::Request, sentence));
+        if !(x.is_finite() && y.is_finite()) {
+            return fault(format!("({x}, {y}) is no position: coordinates must be finite"));
+        }
+        match self.setting.size {
+            Some([w, h]) if !((0.0..=w).contains(&x) && (0.0..=h).contains(&y)) => {
+                fault(format!("({x}, {y}) is outside the world, which reaches from (0, 0) to ({w}, {h}) metres"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A plan for points of a layer within `around`, and all that it needs made.
+    pub(crate) fn ready(&self, layer: &str, around: Window) -> Result<Ready> {
+        let plan = Planner::new(&self.recipe, &self.graph).plan(&[self.target(layer)?], around, true)?;
+        self.afford(&plan)?;
+        let ready = self.pool.install(|| self.engine(&Progress::none()).ready(&plan))?;
+        ready.ok_or_else(|| Error::new(ErrorKind::Request, "a plan for points asks at no point"))
+    }
+
     /// The samples at the world's cell around points, as far as the interpolating cubic reads.
-    fn around(&self, x: &[f64], y: &[f64]) -> Window {
+    pub(crate) fn around(&self, x: &[f64], y: &[f64]) -> Window {
         let cell = self.setting.cell;
         let span = |values: &[f64]| {
             let low = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -262,7 +274,7 @@ impl World {
         Window { x, y, width, height, cell }
     }
 
-    fn engine<'a>(&'a self, progress: &'a Progress) -> Engine<'a> {
+    pub(crate) fn engine<'a>(&'a self, progress: &'a Progress) -> Engine<'a> {
         Engine { recipe: &self.recipe, graph: &self.graph, setting: &self.setting, store: &self.store, progress }
     }
 
@@ -320,8 +332,16 @@ impl World {
         Ok(())
     }
 
+    /// Whether there is memory for a window's samples, beside what is held already.
+    pub(crate) fn afford_grid(&self, window: &Window) -> Result<()> {
+        self.allow((window.width as u64).saturating_mul(window.height as u64).saturating_mul(4))
+    }
+
     fn afford(&self, plan: &Plan) -> Result<()> {
-        let needed = self.memory_of(plan);
+        self.allow(self.memory_of(plan))
+    }
+
+    fn allow(&self, needed: u64) -> Result<()> {
         match self.memory {
             Some(allowed) if needed > allowed => Err(Error::new(
                 ErrorKind::Memory,

@@ -45,6 +45,13 @@ impl Place {
     }
 }
 
+/// Registers and places between two runs: handed to the next machine, they spare it asking for memory.
+#[derive(Default)]
+pub struct Buffers {
+    registers: Vec<Vec<f32>>,
+    places: Vec<Place>,
+}
+
 /// Registers and places, used again from block to block.
 pub struct Machine<'p> {
     program: &'p Program,
@@ -55,11 +62,20 @@ pub struct Machine<'p> {
 impl<'p> Machine<'p> {
     /// A machine for a program.
     pub fn new(program: &'p Program) -> Machine<'p> {
-        Machine {
-            program,
-            registers: vec![Vec::new(); program.registers],
-            places: (0..program.places.max(1)).map(|_| Place::default()).collect(),
-        }
+        Machine::with(program, Buffers::default())
+    }
+
+    /// A machine for a program, over buffers that another has left.
+    pub fn with(program: &'p Program, buffers: Buffers) -> Machine<'p> {
+        let Buffers { mut registers, mut places } = buffers;
+        registers.resize_with(program.registers, Vec::new);
+        places.resize_with(program.places.max(1), Place::default);
+        Machine { program, registers, places }
+    }
+
+    /// The buffers, for the next machine.
+    pub fn into_buffers(self) -> Buffers {
+        Buffers { registers: self.registers, places: self.places }
     }
 
     /// Runs the program over a block of the lattice.

@@ -1,5 +1,6 @@
 //! The engine: runs plans.
 
-mod machine;
+pub mod alone;
+pub mod machine;
 pub mod run;
 mod tiles;

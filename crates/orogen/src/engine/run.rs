@@ -25,7 +25,8 @@ pub struct Engine<'a> {
     pub progress: &'a Progress,
 }
 
-type Solutions = HashMap<usize, Arc<Solution>>;
+/// What solvers found, by node.
+pub type Solutions = HashMap<usize, Arc<Solution>>;
 
 impl<'a> Engine<'a> {
     /// Makes a plan's output grids.
@@ -54,15 +55,18 @@ impl<'a> Engine<'a> {
 
     /// Makes a scattered plan's values at points, output after output.
     pub fn run_points(&self, plan: &Plan, x: &[f64], y: &[f64]) -> Result<Vec<Vec<f32>>> {
+        let (solutions, grids) = self.before_points(plan)?;
+        let Some(program) = plan.asked() else { return Ok(Vec::new()) };
+        self.at_points(program, x, y, &solutions, &grids)
+    }
+
+    /// All that a scattered plan makes before it is asked at any point.
+    pub fn before_points(&self, plan: &Plan) -> Result<(Solutions, Vec<Option<Grid>>)> {
         let solutions = self.solve(plan)?;
         let mut grids: Vec<Option<Grid>> = plan.grids.iter().map(|_| None).collect();
-        let mut values = Vec::new();
         for step in &plan.steps {
             let made = match step {
-                Step::Fill { program, out, .. } if out.is_empty() => {
-                    values = self.at_points(program, x, y, &solutions, &grids)?;
-                    continue;
-                }
+                Step::Fill { out, .. } if out.is_empty() => continue,
                 Step::Fill { program, window, out } => self.fill(program, window, out.len(), &solutions, &grids)?,
                 Step::Apply { .. } => self.apply(step, &grids)?,
             };
@@ -70,7 +74,7 @@ impl<'a> Engine<'a> {
                 grids[slot] = Some(grid);
             }
         }
-        Ok(values)
+        Ok((solutions, grids))
     }
 
     fn solve(&self, plan: &Plan) -> Result<Solutions> {
@@ -91,14 +95,14 @@ impl<'a> Engine<'a> {
         Ok(solutions)
     }
 
-    fn field(&self, node: usize) -> Option<&'a dyn Field> {
+    pub(super) fn field(&self, node: usize) -> Option<&'a dyn Field> {
         match self.recipe.nodes().get(node)?.node.op() {
             Op::Field(field) => Some(field),
             _ => None,
         }
     }
 
-    fn solver(&self, node: usize, solutions: &Solutions) -> Option<(&'a dyn Solver, Arc<Solution>)> {
+    pub(super) fn solver(&self, node: usize, solutions: &Solutions) -> Option<(&'a dyn Solver, Arc<Solution>)> {
         match self.recipe.nodes().get(node)?.node.op() {
             Op::Solver(solver) => Some((solver, Arc::clone(solutions.get(&node)?))),
             _ => None,

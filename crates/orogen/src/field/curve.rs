@@ -20,7 +20,8 @@ op! {
     }
 }
 
-/// One stretch between two control points: to(x) = a + t (b + t (c + t d)) with t = x - start.
+/// One stretch from a control point to the next: to(x) = a + t (b + t (c + t d)) with t = x - start.
+#[derive(Clone, Copy, Default)]
 struct Piece {
     start: f32,
     a: f32,
@@ -29,56 +30,81 @@ struct Piece {
     d: f32,
 }
 
+/// A control point's tangent, and what follows it.
+#[derive(Clone, Copy, Default)]
+struct Knot {
+    /// Of the straight line to the next point.
+    secant: f64,
+    tangent: f64,
+    /// The stretch to the next point.
+    piece: Piece,
+}
+
+/// Curves of so many points need no memory beside the stack: evaluating a block then asks for none.
+const FEW: usize = 32;
+
 impl Curve {
-    fn pieces(&self) -> Vec<Piece> {
+    /// Works out `knots`, one for each point. The last has no stretch.
+    fn tie(&self, knots: &mut [Knot]) {
         let points = &self.points;
-        let secants: Vec<f64> =
-            points.windows(2).map(|pair| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0])).collect();
         let count = points.len();
-        let mut tangents: Vec<f64> = (0..count)
-            .map(|i| match (i.checked_sub(1).and_then(|before| secants.get(before)), secants.get(i)) {
+        for (knot, pair) in knots.iter_mut().zip(points.windows(2)) {
+            knot.secant = (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0]);
+        }
+        let secant = |knots: &[Knot], i: usize| (i + 1 < count).then(|| knots[i].secant);
+        for i in 0..count {
+            let before = i.checked_sub(1).and_then(|before| secant(knots, before));
+            knots[i].tangent = match (before, secant(knots, i)) {
                 (Some(before), Some(after)) if before * after > 0.0 => 0.5 * (before + after),
                 (Some(_), Some(_)) => 0.0,
-                (Some(only), None) | (None, Some(only)) => *only,
+                (Some(only), None) | (None, Some(only)) => only,
                 (None, None) => 0.0,
-            })
-            .collect();
+            };
+        }
         // Fritsch and Carlson's condition: tangents within a circle of radius 3 around the secant keep the piece monotone.
-        for (i, secant) in secants.iter().enumerate() {
-            if *secant == 0.0 {
-                tangents[i] = 0.0;
-                tangents[i + 1] = 0.0;
+        for i in 1..count {
+            let secant = knots[i - 1].secant;
+            if secant == 0.0 {
+                knots[i - 1].tangent = 0.0;
+                knots[i].tangent = 0.0;
                 continue;
             }
-            let (alpha, beta) = (tangents[i] / secant, tangents[i + 1] / secant);
+            let (alpha, beta) = (knots[i - 1].tangent / secant, knots[i].tangent / secant);
             let square = alpha * alpha + beta * beta;
             if square > 9.0 {
                 let tau = 3.0 / square.sqrt();
-                tangents[i] = tau * alpha * secant;
-                tangents[i + 1] = tau * beta * secant;
+                knots[i - 1].tangent = tau * alpha * secant;
+                knots[i].tangent = tau * beta * secant;
             }
         }
-        points
-            .windows(2)
-            .enumerate()
-            .map(|(i, pair)| {
-                let (width, secant) = (pair[1][0] - pair[0][0], secants[i]);
-                let (m0, m1) = (tangents[i], tangents[i + 1]);
-                Piece {
-                    start: pair[0][0] as f32,
-                    a: pair[0][1] as f32,
-                    b: m0 as f32,
-                    c: ((3.0 * secant - 2.0 * m0 - m1) / width) as f32,
-                    d: ((m0 + m1 - 2.0 * secant) / (width * width)) as f32,
-                }
-            })
-            .collect()
+        for (i, pair) in points.windows(2).enumerate() {
+            let (width, secant) = (pair[1][0] - pair[0][0], knots[i].secant);
+            let (m0, m1) = (knots[i].tangent, knots[i + 1].tangent);
+            knots[i].piece = Piece {
+                start: pair[0][0] as f32,
+                a: pair[0][1] as f32,
+                b: m0 as f32,
+                c: ((3.0 * secant - 2.0 * m0 - m1) / width) as f32,
+                d: ((m0 + m1 - 2.0 * secant) / (width * width)) as f32,
+            };
+        }
     }
 }
 
 impl Field for Curve {
     fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
-        let pieces = self.pieces();
+        let count = self.points.len();
+        let mut few = [Knot::default(); FEW];
+        let mut many = Vec::new();
+        let knots = match few.get_mut(..count) {
+            Some(knots) => knots,
+            None => {
+                many.resize(count, Knot::default());
+                many.as_mut_slice()
+            }
+        };
+        self.tie(knots);
+        let knots = &knots[..count.saturating_sub(1)];
         let ends = |point: Option<&[f64; 2]>| point.map_or([0.0f32; 2], |[x, y]| [*x as f32, *y as f32]);
         let (first, last) = (ends(self.points.first()), ends(self.points.last()));
         for (sample, &x) in out.iter_mut().zip(inputs.required(0)) {
@@ -89,7 +115,8 @@ impl Field for Curve {
             } else if x.is_nan() {
                 x
             } else {
-                let piece = &pieces[pieces.partition_point(|piece| piece.start <= x).saturating_sub(1)];
+                let at = knots.partition_point(|knot| knot.piece.start <= x).saturating_sub(1);
+                let piece = &knots[at].piece;
                 let t = x - piece.start;
                 piece.a + t * (piece.b + t * (piece.c + t * piece.d))
             };
@@ -129,6 +156,15 @@ mod tests {
         let ys = run(&points, &xs);
         assert!(ys.windows(2).all(|pair| pair[1] >= pair[0] - 1e-6), "monotone data make a monotone curve");
         assert!(ys.iter().all(|y| (-1e-6..=2.0 + 1e-6).contains(y)));
+    }
+
+    #[test]
+    fn many_points_are_as_good_as_few() {
+        let line: Vec<[f64; 2]> = (0..=100).map(|i| [f64::from(i), 3.0 * f64::from(i)]).collect();
+        let xs: Vec<f32> = (0..=400).map(|i| i as f32 / 4.0).collect();
+        let straight: Vec<f32> = xs.iter().map(|x| 3.0 * x).collect();
+        assert_eq!(run(&line, &xs), straight);
+        assert_eq!(run(&[[0.0, 0.0], [100.0, 300.0]], &xs), straight);
     }
 
     #[test]

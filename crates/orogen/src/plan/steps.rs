@@ -117,6 +117,14 @@ impl Plan {
         self.scattered && self.steps.len() == 1 && self.grids.is_empty()
     }
 
+    /// The program that a scattered plan asks at points, after all else is made.
+    pub fn asked(&self) -> Option<&Program> {
+        match self.steps.last() {
+            Some(Step::Fill { program, out, .. }) if self.scattered && out.is_empty() => Some(program),
+            _ => None,
+        }
+    }
+
     /// Samples that will be made, solvers' sources not counted.
     pub fn samples(&self) -> u64 {
         self.steps.iter().fold(0u64, |sum, step| sum.saturating_add(step.window().len() as u64))
