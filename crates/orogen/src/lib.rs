@@ -35,6 +35,7 @@ pub mod file;
 pub mod filter;
 pub mod format;
 pub mod grid;
+pub mod hydrology;
 pub mod layer;
 pub mod map;
 pub mod node;

@@ -1,0 +1,100 @@
+//! The eight directions of a grid.
+//!
+//! Codes run clockwise from the east: 0 east, 1 south-east, 2 south, 3 south-west, 4 west, 5 north-west, 6 north, 7 north-east.
+
+/// The code of a cell that drains to no neighbour.
+pub const NONE: u8 = 8;
+
+/// Columns east and rows south that each direction leads.
+pub const STEPS: [(isize, isize); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
+
+/// How far each direction leads through the samples of a row-major grid of this width.
+pub fn strides(width: usize) -> [isize; 8] {
+    STEPS.map(|(east, south)| south * width as isize + east)
+}
+
+/// The sample that `stride` leads to from sample `index`. Only for samples that are not on the grid's border, whose neighbours
+/// all exist.
+#[inline(always)]
+pub fn neighbour(index: usize, stride: isize) -> usize {
+    index.wrapping_add_signed(stride)
+}
+
+/// The way back.
+pub fn opposite(code: u8) -> u8 {
+    (code + 4) & 7
+}
+
+/// Whether a direction leads to a corner, square root of 2 cells away.
+pub fn is_diagonal(code: u8) -> bool {
+    code & 1 == 1
+}
+
+/// Cells from a sample to its neighbour in each direction.
+pub const DISTANCES: [f64; 8] = [
+    1.0,
+    std::f64::consts::SQRT_2,
+    1.0,
+    std::f64::consts::SQRT_2,
+    1.0,
+    std::f64::consts::SQRT_2,
+    1.0,
+    std::f64::consts::SQRT_2,
+];
+
+/// A number that depends on a sample's place on the lattice alone, for choices between equals: they then neither lean to one
+/// side nor depend on the window. (Multiplication and xor-shifts as in splitmix64's finaliser, Steele, Lea and Flood 2014.)
+#[inline]
+pub fn hashed(x: i64, y: i64) -> u32 {
+    let mut z = (x as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ (y as u64).wrapping_mul(0xD1B5_4A32_D192_ED03);
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    (z >> 32) as u32
+}
+
+/// One of the directions in a set, by a hashed number: bit k of `set` stands for direction k. [`NONE`] of an empty set.
+#[inline]
+pub fn one_of(set: u8, hash: u32) -> u8 {
+    if set & set.wrapping_sub(1) == 0 {
+        // One or none: no choice.
+        return set.trailing_zeros() as u8;
+    }
+    let mut rest = set;
+    let skip = (u64::from(hash) * u64::from(set.count_ones())) >> 32;
+    for _ in 0..skip {
+        rest &= rest - 1;
+    }
+    rest.trailing_zeros() as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_direction_has_its_way_back() {
+        for code in 0..8u8 {
+            let ((x, y), (bx, by)) = (STEPS[usize::from(code)], STEPS[usize::from(opposite(code))]);
+            assert_eq!((x + bx, y + by), (0, 0));
+            assert_eq!(is_diagonal(code), x != 0 && y != 0);
+            assert_eq!(DISTANCES[usize::from(code)], ((x * x + y * y) as f64).sqrt());
+        }
+    }
+
+    #[test]
+    fn choices_are_members_and_even() {
+        assert_eq!(one_of(0, 12345), NONE);
+        for set in 1..=255u8 {
+            let mut counts = [0u32; 8];
+            for x in 0..400 {
+                let code = one_of(set, hashed(x, 7));
+                assert!(set & (1 << code) != 0);
+                counts[usize::from(code)] += 1;
+            }
+            let expect = 400 / set.count_ones();
+            for code in (0..8).filter(|k| set & (1 << k) != 0) {
+                assert!(counts[code] * 2 > expect && counts[code] < expect * 2, "{set:b} {counts:?}");
+            }
+        }
+    }
+}

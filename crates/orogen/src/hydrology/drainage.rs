@@ -1,0 +1,111 @@
+//! Where every cell drains to, depressions included.
+
+use super::basins::{Basins, WayOut, basins};
+use super::direction::opposite;
+use super::outlets::Outlets;
+use super::receivers::Receivers;
+use super::{flats, steepest};
+use crate::grid::Grid;
+
+/// Receivers that lead from every cell to an outlet.
+#[derive(Debug, Clone)]
+pub struct Drainage {
+    /// No circle, and [`NONE`](super::direction::NONE) at outlets only.
+    pub receivers: Receivers,
+    /// The basins as they were before water was led out of them.
+    pub basins: Basins,
+}
+
+/// Drainage along the ground as it lies, under the water of the lakes: each cell drains to its steepest lower neighbour; in a
+/// depression this leads to the pit, and from there on along the way by which the ground's own drainage leads from the pass
+/// to the pit, taken backwards, over the pass and out (Cordonnier, Bovy and Braun 2019, who call it carving).
+///
+/// So a lake's bed keeps its own valleys, where drainage of the *filled* surface has to be made up over level water.
+pub fn over_bed(heights: &Grid, outlets: &Outlets) -> Drainage {
+    let mut receivers = steepest::receivers(heights, outlets);
+    flats::resolve(heights, outlets, &mut receivers);
+    let basins = basins(heights, outlets, &receivers);
+    for basin in &basins.order {
+        lead_out(&basins.ways_out[*basin as usize], &mut receivers);
+    }
+    Drainage { receivers, basins }
+}
+
+/// Turns the way from the pass to the pit around.
+fn lead_out(way: &WayOut, receivers: &mut Receivers) {
+    let (mut cell, mut code) = (way.last as usize, way.code);
+    loop {
+        let next = receivers.of(cell);
+        let was = std::mem::replace(&mut receivers.codes_mut()[cell], code);
+        if next == cell {
+            return;
+        }
+        (cell, code) = (next, opposite(was));
+    }
+}
+
+/// Drainage of a surface without depressions, such as [`filled`](super::fill::filled) ground: steepest descent, and over level
+/// ground [`flats::resolve`].
+pub fn over_surface(filled: &Grid, outlets: &Outlets) -> Receivers {
+    let mut receivers = steepest::receivers(filled, outlets);
+    flats::resolve(filled, outlets, &mut receivers);
+    receivers
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hydrology::direction::NONE;
+    use crate::hydrology::{fill, samples};
+
+    /// The outlet that each cell leads to.
+    fn ends(receivers: &Receivers, outlets: &Outlets) -> Vec<usize> {
+        let end = |start: usize| {
+            let mut at = start;
+            for _ in 0..receivers.codes().len() {
+                at = receivers.of(at);
+            }
+            assert!(outlets.at(at) && receivers.code(at) == NONE, "from {start} to {at}");
+            at
+        };
+        (0..receivers.codes().len()).map(end).collect()
+    }
+
+    #[test]
+    fn every_cell_leads_to_an_outlet() {
+        for heights in samples::grids() {
+            let outlets = Outlets::new(&heights, Some(2.0));
+            ends(&over_bed(&heights, &outlets).receivers, &outlets);
+            let filled = fill::fill(&heights, &outlets);
+            ends(&over_surface(&filled, &outlets), &outlets);
+        }
+    }
+
+    #[test]
+    fn nothing_on_the_way_is_higher_than_the_water() {
+        for heights in samples::grids() {
+            let outlets = Outlets::new(&heights, None);
+            let drainage = over_bed(&heights, &outlets);
+            let filled = fill::filled(&heights, &drainage.basins);
+            for c in 0..heights.data().len() {
+                let receiver = drainage.receivers.of(c);
+                assert!(outlets.at(c) || filled.data()[receiver] <= filled.data()[c]);
+            }
+        }
+    }
+
+    #[test]
+    fn without_depressions_both_are_the_steepest_descent() {
+        let mut cone = Grid::filled(crate::grid::Window::new(31, 31, 1.0), 0.0);
+        for j in 0..31 {
+            for i in 0..31 {
+                let (x, y) = (i as f32 - 14.3, j as f32 - 15.8);
+                cone.row_mut(j)[i] = -(x * x + y * y).sqrt();
+            }
+        }
+        let outlets = Outlets::new(&cone, None);
+        let steepest = steepest::receivers(&cone, &outlets);
+        assert_eq!(over_bed(&cone, &outlets).receivers, steepest);
+        assert_eq!(over_surface(&cone, &outlets), steepest);
+    }
+}

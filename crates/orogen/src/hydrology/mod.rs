@@ -1,0 +1,16 @@
+//! Water finds its way: depressions, drainage, areas, lakes, rivers and what they cut. Pure functions on grids, one algorithm
+//! a file.
+
+pub mod accumulation;
+pub mod basins;
+pub mod direction;
+pub mod drainage;
+pub mod fill;
+pub mod flats;
+pub mod outlets;
+pub mod receivers;
+#[cfg(test)]
+mod samples;
+pub mod steepest;
+pub mod strahler;
+pub mod watersheds;

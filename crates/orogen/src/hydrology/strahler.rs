@@ -1,0 +1,62 @@
+//! Strahler's order of streams.
+
+use super::accumulation::Accumulation;
+use super::receivers::Receivers;
+use crate::grid::Grid;
+
+/// The order of the stream through each cell (Strahler 1957): a stream that begins is of order 1, and where two or more of the
+/// highest order that flows in meet it rises by 1. A cell that drains fewer than `threshold` cells is no stream: 0.
+///
+/// Costs O(cells).
+pub fn orders(receivers: &Receivers, accumulation: &Accumulation, threshold: u32) -> Grid<u8> {
+    let area = accumulation.area.data();
+    let mut orders = Grid::filled(*receivers.window(), 0u8);
+    // Whether the highest order that has flowed in so far has done so more than once.
+    let mut met = vec![false; area.len()];
+    for cell in accumulation.order.iter().map(|cell| *cell as usize) {
+        if area[cell] < threshold {
+            continue;
+        }
+        let out = orders.data_mut();
+        out[cell] = (out[cell] + u8::from(met[cell])).max(1);
+        let (order, receiver) = (out[cell], receivers.of(cell));
+        if receiver != cell {
+            met[receiver] = (met[receiver] && out[receiver] >= order) || out[receiver] == order;
+            out[receiver] = out[receiver].max(order);
+        }
+    }
+    orders
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hydrology::accumulation::accumulate;
+    use crate::hydrology::outlets::Outlets;
+    use crate::hydrology::{drainage, samples};
+
+    #[test]
+    fn orders_follow_from_the_inflows() {
+        for heights in samples::grids() {
+            let receivers = drainage::over_bed(&heights, &Outlets::new(&heights, None)).receivers;
+            let accumulation = accumulate(&receivers);
+            for threshold in [1, 4, 20] {
+                let orders = orders(&receivers, &accumulation, threshold);
+                for c in 0..orders.data().len() {
+                    let mut inflows: Vec<u8> = (0..orders.data().len())
+                        .filter(|d| *d != c && receivers.of(*d) == c && orders.data()[*d] > 0)
+                        .map(|d| orders.data()[d])
+                        .collect();
+                    inflows.sort_unstable();
+                    let expect = match inflows[..] {
+                        _ if accumulation.area.data()[c] < threshold => 0,
+                        [.., a, b] if a == b => b + 1,
+                        [.., b] => b,
+                        [] => 1,
+                    };
+                    assert_eq!(orders.data()[c], expect, "cell {c}, flowing in: {inflows:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! Watersheds: the ground that drains to one outlet.
+
+use super::accumulation::Accumulation;
+use super::outlets::Outlets;
+use super::receivers::Receivers;
+use crate::grid::Grid;
+
+/// The watershed of every cell, numbered from 1 in row order of their outlets; 0 for outlets that nothing but themselves
+/// drains to, so that the sea stays 0. Costs O(cells).
+pub fn watersheds(receivers: &Receivers, outlets: &Outlets, accumulation: &Accumulation) -> Grid<u32> {
+    let mut labels = Grid::filled(*receivers.window(), 0u32);
+    let mut count = 0;
+    for (cell, area) in accumulation.area.data().iter().enumerate() {
+        if outlets.at(cell) && *area > 1 {
+            count += 1;
+            labels.data_mut()[cell] = count;
+        }
+    }
+    for cell in accumulation.order.iter().rev().map(|cell| *cell as usize) {
+        let receiver = receivers.of(cell);
+        if receiver != cell {
+            labels.data_mut()[cell] = labels.data()[receiver];
+        }
+    }
+    labels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hydrology::accumulation::accumulate;
+    use crate::hydrology::{drainage, samples};
+
+    #[test]
+    fn a_label_is_one_outlet_and_its_area() {
+        for heights in samples::grids() {
+            let outlets = Outlets::new(&heights, None);
+            let receivers = drainage::over_bed(&heights, &outlets).receivers;
+            let accumulation = accumulate(&receivers);
+            let labels = watersheds(&receivers, &outlets, &accumulation);
+            let count = labels.data().iter().copied().max().unwrap_or(0);
+            let mut cells = vec![0u32; count as usize + 1];
+            labels.data().iter().for_each(|label| cells[*label as usize] += 1);
+            let mut ends = vec![0u32; count as usize + 1];
+            for c in (0..labels.data().len()).filter(|c| outlets.at(*c)) {
+                let (label, area) = (labels.data()[c] as usize, accumulation.area.data()[c]);
+                ends[label] += 1;
+                assert_eq!(label == 0, area == 1);
+                assert!(label == 0 || cells[label] == area);
+            }
+            assert!(ends[1..].iter().all(|n| *n == 1));
+            for c in 0..labels.data().len() {
+                assert_eq!(labels.data()[c], labels.data()[receivers.of(c)]);
+            }
+        }
+    }
+}
