@@ -29,7 +29,10 @@ pub fn run(options: &Options) -> Result<Value, String> {
         let mut times = Vec::new();
         for _ in 0..options.repetitions {
             let mut command = Command::new(&program);
-            command.args(["generate", name, "--size", "1024", "--quiet", "-o"]).arg(&out).stdin(Stdio::null());
+            command
+                .args(["generate", name, "--size", "1024", "--quiet", "--no-cache", "-o"])
+                .arg(&out)
+                .stdin(Stdio::null());
             let start = Instant::now();
             let status = command.status().map_err(|e| format!("{}: {e}", program.display()))?;
             times.push(start.elapsed().as_secs_f64());

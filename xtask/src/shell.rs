@@ -21,7 +21,8 @@ pub fn target_dir() -> PathBuf {
 /// A program started at the root of the repository.
 pub fn program(name: impl AsRef<std::ffi::OsStr>) -> Command {
     let mut command = Command::new(name);
-    command.current_dir(root());
+    // No chore may read what an earlier build of the program has solved.
+    command.current_dir(root()).env("OROGEN_CACHE", "");
     command
 }
 

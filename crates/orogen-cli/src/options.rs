@@ -1,7 +1,9 @@
 //! Options that several commands share.
 
+use std::path::PathBuf;
+
 use clap::Args;
-use orogen::{Options, Recipe, World};
+use orogen::{Cache, Options, Recipe, World};
 
 use crate::failure::Failure;
 use crate::memory;
@@ -30,7 +32,19 @@ pub struct Limits {
     /// Most memory to use, such as 512MiB or 2GiB [default: half of what is free]
     #[arg(long, value_name = "BYTES")]
     pub memory: Option<Bytes>,
+    /// Folder in which slow solutions are kept for later runs [default: $OROGEN_CACHE, else the system's folder for caches]
+    #[arg(long, value_name = "DIR")]
+    pub cache: Option<PathBuf>,
+    /// Most bytes to keep there; the longest unused go first [default: 10GiB]
+    #[arg(long, value_name = "BYTES")]
+    pub cache_limit: Option<Bytes>,
+    /// Neither look for solutions of earlier runs nor keep any
+    #[arg(long, conflicts_with_all = ["cache", "cache_limit"])]
+    pub no_cache: bool,
 }
+
+/// Names the cache's folder; set but empty, it means none.
+const CACHE_VARIABLE: &str = "OROGEN_CACHE";
 
 impl Limits {
     /// Opens the world of a recipe within these limits.
@@ -41,6 +55,21 @@ impl Limits {
             let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
         }
         let memory = self.memory.map(|bytes| bytes.0).or_else(memory::share_of_free);
-        Ok(World::with_options(recipe, Options { threads, memory })?)
+        Ok(World::with_options(recipe, Options { threads, memory, cache: self.cache(), scratch: None })?)
+    }
+
+    /// Where solutions are kept: what was asked for, else what the environment says, else where the system wants them.
+    fn cache(&self) -> Option<Cache> {
+        if self.no_cache {
+            return None;
+        }
+        let environment = || match std::env::var_os(CACHE_VARIABLE) {
+            Some(folder) if folder.is_empty() => None,
+            Some(folder) => Some(PathBuf::from(folder)),
+            None => Cache::system_folder(),
+        };
+        let mut cache = Cache::new(self.cache.clone().or_else(environment)?);
+        cache.limit = self.cache_limit.map_or(cache.limit, |bytes| bytes.0);
+        Some(cache)
     }
 }

@@ -267,6 +267,11 @@ impl Drop for Temporary {
     }
 }
 
+/// Whether a file of this name is one that [`Temporary::create`] made.
+pub(crate) fn is_temporary(name: &str) -> bool {
+    name.starts_with(".orogen-") && name.ends_with(".tmp")
+}
+
 /// The folder that `path` names something in.
 pub(crate) fn folder(path: &Path) -> &Path {
     match path.parent() {

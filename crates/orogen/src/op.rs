@@ -180,6 +180,13 @@ pub struct Solution {
     pub scalars: Vec<f64>,
 }
 
+impl Solution {
+    /// Bytes of memory it takes.
+    pub fn memory(&self) -> u64 {
+        self.layers.iter().map(Raster::memory).sum::<u64>() + self.scalars.len() as u64 * 8
+    }
+}
+
 /// A solver's inputs over the whole world, made tile by tile as it asks, and rasters to work in.
 pub trait Sources {
     /// The samples of the world: 0 ..= extent / cell on both axes.
@@ -238,7 +245,8 @@ pub trait Solver: Declared + Send + Sync {
     }
 
     /// Bytes of memory that solving takes beside those rasters, when the world with its margin has this window. A solver that
-    /// works tile by tile takes none; one that needs whole grids counts them here.
+    /// works tile by tile takes none; one that needs whole grids counts all it holds at once, those that it then keeps as
+    /// layers included.
     fn scratch(&self, padded: &Window) -> u64 {
         let _ = padded;
         0

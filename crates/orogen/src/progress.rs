@@ -36,9 +36,9 @@ impl Progress {
         }
     }
 
-    /// More work has become known.
-    pub(crate) fn expect(&self, samples: u64) {
-        self.total.fetch_add(samples, Ordering::Relaxed);
+    /// More work has become known, or less of it.
+    pub(crate) fn expect(&self, samples: i64) {
+        let _ = self.total.fetch_add(samples as u64, Ordering::Relaxed);
     }
 
     /// Some work is done.

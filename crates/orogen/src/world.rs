@@ -6,15 +6,18 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::op::Setting;
 use crate::plan::explain::explain;
+use crate::plan::key::Key;
 use crate::plan::memory;
 use crate::plan::planner::{Planner, world_windows};
 use crate::plan::steps::Plan;
 use crate::progress::Progress;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, Link, MOST_SAMPLES};
-use crate::store::Store;
+use crate::store::cache::Cache;
+use crate::store::solutions::Store;
 use crate::words::{bytes, suggestion};
 use std::collections::HashMap;
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// How a world is worked on. None of it changes a bit of the terrain.
@@ -22,8 +25,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub struct Options {
     /// Threads; `None` takes as many as the machine has cores.
     pub threads: Option<usize>,
-    /// Bytes that a request may need; `None` for no limit.
+    /// Bytes that a request may need; `None` for no limit. Solutions that are too large for it are kept on disk.
     pub memory: Option<u64>,
+    /// Where solutions are found again by later runs; `None` keeps none.
+    pub cache: Option<Cache>,
+    /// The folder for what does not fit in memory; `None` takes the cache's, or else the system's for temporary files. Nothing
+    /// stays in it, not even after a kill.
+    pub scratch: Option<PathBuf>,
 }
 
 /// A world: any window of it, at any resolution, always the same.
@@ -91,7 +99,7 @@ impl World {
             recipe,
             graph,
             setting,
-            store: Store::default(),
+            store: Store::new(options.cache, options.scratch),
             pool,
             memory: options.memory,
             pointwise: Mutex::default(),
@@ -152,12 +160,22 @@ impl World {
     pub fn plan(&self, layers: &[&str], window: &Window) -> Result<Plan> {
         let targets = layers.iter().map(|layer| self.target(layer)).collect::<Result<Vec<Link>>>()?;
         self.check(window)?;
-        Planner::new(&self.recipe, &self.graph).plan(&targets, *window, false)
+        self.planned(&targets, *window, false)
     }
 
     /// Bytes that a request may need; `None` for no limit.
     pub fn memory_limit(&self) -> Option<u64> {
         self.memory
+    }
+
+    fn planned(&self, targets: &[Link], window: Window, scattered: bool) -> Result<Plan> {
+        let threads = self.pool.current_num_threads();
+        Planner::new(&self.recipe, &self.graph).fitting(targets, window, scattered, threads, self.memory)
+    }
+
+    /// Bytes of disk that running a plan takes at most, what stays in the cache not counted.
+    pub fn disk_of(&self, plan: &Plan) -> u64 {
+        memory::disk(plan)
     }
 
     /// Bytes that running a plan takes at most.
@@ -223,7 +241,7 @@ impl World {
         let plan = match known {
             Some(plan) => plan,
             None => {
-                let plan = Planner::new(&self.recipe, &self.graph).plan(&[target], self.around(x, y), true)?;
+                let plan = self.planned(&[target], self.around(x, y), true)?;
                 let plan = Arc::new(plan);
                 if plan.is_pointwise() {
                     let mut plans = self.pointwise.lock().unwrap_or_else(PoisonError::into_inner);
@@ -254,7 +272,7 @@ impl World {
 
     /// A plan for points of a layer within `around`, and all that it needs made.
     pub(crate) fn ready(&self, layer: &str, around: Window) -> Result<Ready> {
-        let plan = Planner::new(&self.recipe, &self.graph).plan(&[self.target(layer)?], around, true)?;
+        let plan = self.planned(&[self.target(layer)?], around, true)?;
         self.afford(&plan)?;
         let ready = self.pool.install(|| self.engine(&Progress::none()).ready(&plan))?;
         ready.ok_or_else(|| Error::new(ErrorKind::Request, "a plan for points asks at no point"))
@@ -337,8 +355,15 @@ impl World {
         self.allow((window.width as u64).saturating_mul(window.height as u64).saturating_mul(4))
     }
 
+    /// Refuses a plan that needs more than is allowed, and lets go of other solutions to make room for it.
     fn afford(&self, plan: &Plan) -> Result<()> {
-        self.allow(self.memory_of(plan))
+        let needed = self.memory_of(plan);
+        self.allow(needed)?;
+        if let Some(allowed) = self.memory {
+            let keys: Vec<Key> = plan.solves.iter().map(|solve| solve.key).collect();
+            self.store.make_room(allowed - needed, &keys);
+        }
+        Ok(())
     }
 
     fn allow(&self, needed: u64) -> Result<()> {

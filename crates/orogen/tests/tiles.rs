@@ -14,7 +14,8 @@ fn recipe(op: &str) -> Recipe {
 }
 
 fn limited(recipe: &Recipe, memory: u64) -> World {
-    World::with_options(recipe.clone(), Options { threads: Some(2), memory: Some(memory) }).unwrap()
+    World::with_options(recipe.clone(), Options { threads: Some(2), memory: Some(memory), ..Options::default() })
+        .unwrap()
 }
 
 #[test]

@@ -81,6 +81,8 @@ impl Folder {
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_orogen"));
         command.args(arguments).current_dir(&self.0).stdin(Stdio::null()).env_remove("NO_COLOR");
+        // No test may find what another run has solved, nor leave anything behind.
+        command.env("OROGEN_CACHE", "");
         command
     }
 

@@ -3,4 +3,5 @@
 pub mod alone;
 pub mod machine;
 pub mod run;
+mod solve;
 mod tiles;

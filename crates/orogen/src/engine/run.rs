@@ -1,17 +1,15 @@
 //! Runs a plan's steps.
 
 use super::machine::{Bindings, Machine};
-use super::tiles::Tiles;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::op::{Context, Field, Op, Setting, Solution, Solver};
-use crate::plan::planner::Planner;
 use crate::plan::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use crate::plan::steps::{Plan, Step};
 use crate::progress::Progress;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;
-use crate::store::Store;
+use crate::store::solutions::Store;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -31,18 +29,17 @@ pub type Solutions = HashMap<usize, Arc<Solution>>;
 impl<'a> Engine<'a> {
     /// Makes a plan's output grids.
     pub fn run(&self, plan: &Plan) -> Result<Vec<Grid>> {
-        self.progress.expect(plan.samples());
+        self.progress.expect(plan.samples() as i64);
         let solutions = self.solve(plan)?;
+        self.steps(plan, &solutions)
+    }
+
+    /// Makes a plan's output grids, all that it reads being solved.
+    pub(super) fn steps(&self, plan: &Plan, solutions: &Solutions) -> Result<Vec<Grid>> {
         let mut grids: Vec<Option<Grid>> = plan.grids.iter().map(|_| None).collect();
         for (at, step) in plan.steps.iter().enumerate() {
             self.progress.check()?;
-            let made = match step {
-                Step::Fill { program, window, out } => self.fill(program, window, out.len(), &solutions, &grids)?,
-                Step::Apply { .. } => self.apply(step, &grids)?,
-            };
-            for (slot, grid) in step.writes().into_iter().zip(made) {
-                grids[slot] = Some(grid);
-            }
+            self.step(step, solutions, &mut grids)?;
             for (grid, slot) in grids.iter_mut().zip(&plan.grids) {
                 if slot.last_use <= at {
                     *grid = None;
@@ -65,34 +62,23 @@ impl<'a> Engine<'a> {
         let solutions = self.solve(plan)?;
         let mut grids: Vec<Option<Grid>> = plan.grids.iter().map(|_| None).collect();
         for step in &plan.steps {
-            let made = match step {
-                Step::Fill { out, .. } if out.is_empty() => continue,
-                Step::Fill { program, window, out } => self.fill(program, window, out.len(), &solutions, &grids)?,
-                Step::Apply { .. } => self.apply(step, &grids)?,
-            };
-            for (slot, grid) in step.writes().into_iter().zip(made) {
-                grids[slot] = Some(grid);
+            match step {
+                Step::Fill { out, .. } if out.is_empty() => {}
+                _ => self.step(step, &solutions, &mut grids)?,
             }
         }
         Ok((solutions, grids))
     }
 
-    fn solve(&self, plan: &Plan) -> Result<Solutions> {
-        let mut solutions = Solutions::new();
-        for order in &plan.solves {
-            let solution = self.store.solution(order.key, || {
-                let planner = Planner::new(self.recipe, self.graph);
-                let make = |link, tile| self.run(&planner.plan(&[link], tile, false)?);
-                let tiles = Tiles { links: &self.graph.links[order.node], order, make: &make };
-                let context = Context { setting: self.setting, progress: self.progress };
-                match self.recipe.nodes()[order.node].node.op() {
-                    Op::Solver(solver) => solver.solve(&tiles, &context),
-                    _ => Err(Error::new(ErrorKind::Recipe, "a node that is no solver was to be solved")),
-                }
-            })?;
-            solutions.insert(order.node, solution);
+    fn step(&self, step: &Step, solutions: &Solutions, grids: &mut [Option<Grid>]) -> Result<()> {
+        let made = match step {
+            Step::Fill { program, window, out } => self.fill(program, window, out.len(), solutions, grids)?,
+            Step::Apply { .. } => self.apply(step, grids)?,
+        };
+        for (slot, grid) in step.writes().into_iter().zip(made) {
+            grids[slot] = Some(grid);
         }
-        Ok(solutions)
+        Ok(())
     }
 
     pub(super) fn field(&self, node: usize) -> Option<&'a dyn Field> {

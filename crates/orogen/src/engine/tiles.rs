@@ -3,16 +3,19 @@
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 use crate::op::Sources;
-use crate::plan::planner::TILE;
+use crate::pages::Pages;
 use crate::plan::steps::Solve;
 use crate::raster::Raster;
 use crate::recipe::graph::Link;
+use std::path::Path;
 
 /// The inputs of one solver; `make` makes an input over a tile.
 pub struct Tiles<'a> {
     pub links: &'a [Link],
     pub order: &'a Solve,
     pub make: &'a dyn Fn(Link, Window) -> Result<Vec<Grid>>,
+    /// The folder for what is to be on disk.
+    pub scratch: &'a Path,
 }
 
 impl Sources for Tiles<'_> {
@@ -30,7 +33,7 @@ impl Sources for Tiles<'_> {
 
     fn each_tile(&self, i: usize, window: &Window, visit: &mut dyn FnMut(&Grid) -> Result<()>) -> Result<()> {
         let Some(link) = self.links.get(i).filter(|link| **link != Link::None) else { return Ok(()) };
-        for tile in window.tiles(TILE) {
+        for tile in window.tiles(self.order.side) {
             for grid in (self.make)(*link, tile)? {
                 visit(&grid)?;
             }
@@ -39,10 +42,14 @@ impl Sources for Tiles<'_> {
     }
 
     fn raster(&self) -> Result<Raster> {
-        Ok(Raster::in_memory(Grid::filled(self.order.padded, 0.0)))
+        match self.order.on_disk {
+            true => Pages::scratch(self.scratch, self.order.padded).map(Raster::on_disk),
+            false => Ok(Raster::in_memory(Grid::filled(self.order.padded, 0.0))),
+        }
     }
 
     fn keep(&self, grid: Grid) -> Result<Raster> {
-        Ok(Raster::in_memory(grid))
+        let raster = Raster::in_memory(grid);
+        if self.order.on_disk { raster.copied_to_disk(self.scratch) } else { Ok(raster) }
     }
 }

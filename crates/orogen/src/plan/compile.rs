@@ -33,8 +33,6 @@ pub struct Draft {
     pub demands: Vec<Demand>,
     /// Fields and solvers evaluated at the block itself.
     pub evaluated: Vec<usize>,
-    /// Solvers read.
-    pub solvers: HashSet<usize>,
 }
 
 enum Work {
@@ -59,7 +57,6 @@ pub struct Compiler<'a> {
     entered: HashMap<(usize, Place), Place>,
     demands: Vec<Demand>,
     evaluated: Vec<usize>,
-    solvers: HashSet<usize>,
 }
 
 impl<'a> Compiler<'a> {
@@ -85,7 +82,6 @@ impl<'a> Compiler<'a> {
             entered: HashMap::new(),
             demands: Vec::new(),
             evaluated: Vec::new(),
-            solvers: HashSet::new(),
         };
         let mut outputs = Vec::with_capacity(targets.len());
         for link in targets {
@@ -96,7 +92,7 @@ impl<'a> Compiler<'a> {
         }
         let places = compiler.windows.len();
         let program = Program::allocate(compiler.instructions, compiler.values, places, outputs);
-        Ok(Draft { program, demands: compiler.demands, evaluated: compiler.evaluated, solvers: compiler.solvers })
+        Ok(Draft { program, demands: compiler.demands, evaluated: compiler.evaluated })
     }
 
     fn run(&mut self, target: Target) -> Result<()> {
@@ -223,7 +219,6 @@ impl<'a> Compiler<'a> {
                 }
             },
             Op::Solver(solver) => {
-                self.solvers.insert(node);
                 self.note(node, place);
                 let inputs = if solver.reads_inputs() { self.values(&links, place) } else { Vec::new() };
                 let out = self.fresh();

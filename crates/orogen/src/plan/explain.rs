@@ -50,12 +50,13 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
     for solve in &plan.solves {
         let _ = writeln!(
             text,
-            "  solve `{}` over the world, {} x {} samples at {} m; keeps {}",
+            "  solve `{}` over the world, {} x {} samples at {} m; keeps {}{}",
             name(solve.node),
             solve.world.width,
             solve.world.height,
             solve.world.cell,
-            bytes(solve.kept)
+            bytes(memory::rasters(solve)),
+            if solve.on_disk { ", the rest on disk" } else { "" }
         );
     }
     for step in plan.steps.iter().take(SHOWN) {

@@ -1,9 +1,10 @@
 //! How much memory a plan takes, known before the first sample.
 
 use super::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
-use super::steps::{Plan, Step};
+use super::steps::{Plan, Solve, Step};
 use crate::grid::Window;
 use crate::op::Op;
+use crate::pages;
 use crate::recipe::document::Recipe;
 
 /// Bytes of one grid over a window.
@@ -44,21 +45,68 @@ pub fn grids(plan: &Plan) -> u64 {
     most
 }
 
-/// Bytes a plan needs at most at any time, for `threads` threads: grids, registers, solutions, and making solvers' sources.
-pub fn needed(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
-    let mut beside = 0;
-    for step in &plan.steps {
-        beside = beside.max(match step {
-            Step::Fill { program, .. } => block_bytes(program).saturating_mul(threads as u64),
-            Step::Apply { node, window, .. } => match recipe.nodes()[*node].node.op() {
+/// What the steps take beside the grids: registers for each thread, or a filter's own.
+fn beside(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
+    let step = |step: &Step| match step {
+        Step::Fill { program, .. } => block_bytes(program).saturating_mul(threads as u64),
+        Step::Apply { node, inputs, window, halo, .. } => {
+            // An input that was made for others too is cut to what the filter may see.
+            let cut = |slot: &usize| plan.grids[*slot].window != window.grown(*halo);
+            let cuts = inputs.iter().flatten().filter(|slot| cut(slot)).count() as u64;
+            let own = match recipe.nodes()[*node].node.op() {
                 Op::Filter(filter) => filter.scratch(window),
                 _ => 0,
-            },
-        });
-    }
-    let steps = grids(plan).saturating_add(beside);
+            };
+            grid_bytes(&window.grown(*halo)).saturating_mul(cuts).saturating_add(own)
+        }
+    };
+    plan.steps.iter().map(step).max().unwrap_or(0)
+}
+
+/// Bytes that a plan's steps take at most, what they read being solved: those of a solver's tile.
+pub fn steps(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
+    grids(plan).saturating_add(beside(plan, recipe, threads))
+}
+
+/// Bytes of memory that a solver's rasters take.
+pub fn rasters(solve: &Solve) -> u64 {
+    let one = if solve.on_disk { pages::memory(&solve.padded) } else { grid_bytes(&solve.padded) };
+    one.saturating_mul(solve.rasters as u64)
+}
+
+/// Bytes a plan needs at most at any time, for `threads` threads: its text, grids, registers, solutions, and making solvers'
+/// sources.
+pub fn needed(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
     let solving = plan.solves.iter().map(|solve| solve.tile.saturating_add(solve.scratch)).max().unwrap_or(0);
-    let tiles = solving.saturating_add(beside);
-    let kept = plan.solves.iter().fold(0u64, |sum, solve| sum.saturating_add(solve.kept));
-    kept.saturating_add(steps.max(if plan.solves.is_empty() { 0 } else { tiles }))
+    let kept = plan.solves.iter().fold(0u64, |sum, solve| sum.saturating_add(rasters(solve)));
+    let own = plan.steps.iter().map(own_bytes).sum::<u64>();
+    own.saturating_add(kept).saturating_add(steps(plan, recipe, threads).max(solving))
+}
+
+/// Bytes that a step itself takes, as a value.
+fn own_bytes(step: &Step) -> u64 {
+    match step {
+        Step::Fill { program, .. } => 128 * program.instructions.len() as u64,
+        Step::Apply { .. } => 128,
+    }
+}
+
+/// Bytes of disk that a plan needs at most for what does not fit in memory.
+pub fn disk(plan: &Plan) -> u64 {
+    let on_disk = plan.solves.iter().filter(|solve| solve.on_disk);
+    on_disk.fold(0u64, |sum, solve| sum.saturating_add(pages::disk(&solve.padded).saturating_mul(solve.rasters as u64)))
+}
+
+/// Moves rasters to the disk, the largest first, until the plan fits in `allowed` bytes or there are no more to move. Returns whether it
+/// fits.
+pub fn fit(plan: &mut Plan, recipe: &Recipe, threads: usize, allowed: u64) -> bool {
+    while needed(plan, recipe, threads) > allowed {
+        let gain = |solve: &Solve| rasters(solve).saturating_sub(rasters(&Solve { on_disk: true, ..solve.clone() }));
+        let movable = plan.solves.iter_mut().filter(|solve| !solve.on_disk && gain(solve) > 0);
+        match movable.max_by_key(|solve| gain(solve)) {
+            Some(solve) => solve.on_disk = true,
+            None => return false,
+        }
+    }
+    true
 }

@@ -11,10 +11,10 @@ use crate::grid::Window;
 use crate::op::{Op, Setting};
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, Link, Target};
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-/// What solvers' tiles measure at most: large enough that halos cost little, small enough for any memory.
-pub const TILE: usize = 1024;
+/// What solvers' tiles may measure, the best first: large enough that halos cost little, small enough for any memory.
+pub const TILES: [usize; 3] = [1024, 512, 256];
 
 /// Samples that readers may go beyond a world's edge.
 pub const WORLD_MARGIN: usize = 2;
@@ -37,12 +37,52 @@ pub struct Planner<'a> {
     graph: &'a Graph,
     setting: Setting,
     keys: Vec<Key>,
+    /// Samples along a side of the tiles that solvers' sources are made in.
+    side: usize,
+    /// Threads that the plan will run on.
+    threads: usize,
 }
 
 impl<'a> Planner<'a> {
     /// A planner for a resolved recipe.
     pub fn new(recipe: &'a Recipe, graph: &'a Graph) -> Planner<'a> {
-        Planner { recipe, graph, setting: recipe.world.setting(), keys: keys(recipe, graph) }
+        Planner {
+            recipe,
+            graph,
+            setting: recipe.world.setting(),
+            keys: keys(recipe, graph),
+            side: TILES[0],
+            threads: 1,
+        }
+    }
+
+    /// A plan for layers over a window that needs at most `allowed` bytes on `threads` threads where that can be: solutions that
+    /// are too large go to the disk, and solvers' sources are made in smaller tiles.
+    ///
+    /// # Errors
+    /// As [`Planner::plan`]. A plan that does not fit is no error: what it needs tells.
+    pub fn fitting(
+        self,
+        targets: &[Link],
+        window: Window,
+        scattered: bool,
+        threads: usize,
+        allowed: Option<u64>,
+    ) -> Result<Plan> {
+        let mut planner = Planner { threads, ..self };
+        let mut first = planner.plan(targets, window, scattered)?;
+        let Some(allowed) = allowed else { return Ok(first) };
+        if memory::fit(&mut first, planner.recipe, threads, allowed) || first.solves.is_empty() {
+            return Ok(first);
+        }
+        for side in TILES.into_iter().skip(1) {
+            planner.side = side;
+            let mut plan = planner.plan(targets, window, scattered)?;
+            if memory::fit(&mut plan, planner.recipe, threads, allowed) {
+                return Ok(plan);
+            }
+        }
+        Ok(first)
     }
 
     /// A plan for layers over a window.
@@ -50,6 +90,18 @@ impl<'a> Planner<'a> {
     /// # Errors
     /// If the recipe multiplies into more evaluations than can be planned.
     pub fn plan(&self, targets: &[Link], window: Window, scattered: bool) -> Result<Plan> {
+        let mut plan = self.steps(targets, window, scattered)?;
+        plan.solves = self.solves(plan.solvers_read())?;
+        Ok(plan)
+    }
+
+    /// A plan for a solver's source over a tile. What it reads is solved by then, and so is not part of it.
+    pub fn source(&self, link: Link, tile: Window) -> Result<Plan> {
+        self.steps(&[link], tile, false)
+    }
+
+    /// A plan's steps, without what must be solved first.
+    fn steps(&self, targets: &[Link], window: Window, scattered: bool) -> Result<Plan> {
         // First what is a grid anyway is read instead of made again; of what is still made by several programs, what is dear.
         let mut kept = HashSet::new();
         let mut attempt = Attempt::new(self, HashSet::new(), scattered).run(targets, window)?;
@@ -60,7 +112,7 @@ impl<'a> Planner<'a> {
                 attempt = Attempt::new(self, kept.clone(), scattered).run(targets, window)?;
             }
         }
-        attempt.finish(self, window)
+        Ok(attempt.finish(window))
     }
 
     fn solve(&self, node: usize) -> Result<Solve> {
@@ -69,33 +121,45 @@ impl<'a> Planner<'a> {
         };
         let cell = solver.cell(self.setting.cell);
         let (world, padded) = world_windows(self.setting.size.unwrap_or([cell, cell]), cell);
-        let mut tile = 0;
-        for link in &self.graph.links[node] {
-            let window = Window { width: padded.width.min(TILE), height: padded.height.min(TILE), ..padded };
-            tile = tile.max(memory::grids(&self.plan(&[*link], window, false)?));
+        let window = Window { width: padded.width.min(self.side), height: padded.height.min(self.side), ..padded };
+        let share = padded.width as f64 * padded.height as f64 / window.len().max(1) as f64;
+        let (mut tile, mut reads, mut samples) = (0, BTreeSet::new(), 0);
+        for link in self.graph.links[node].iter().filter(|link| **link != Link::None) {
+            let plan = self.source(*link, window)?;
+            tile = tile.max(memory::steps(&plan, self.recipe, self.threads));
+            samples += (plan.samples() as f64 * share) as u64;
+            reads.append(&mut plan.solvers_read());
         }
-        let raster = memory::grid_bytes(&padded);
-        let kept = raster.saturating_mul(solver.rasters() as u64);
-        Ok(Solve { node, key: self.keys[node], world, padded, kept, scratch: solver.scratch(&padded), tile })
+        Ok(Solve {
+            node,
+            key: self.keys[node],
+            world,
+            padded,
+            rasters: solver.rasters(),
+            on_disk: false,
+            scratch: solver.scratch(&padded),
+            side: self.side,
+            tile,
+            reads: reads.into_iter().collect(),
+            samples,
+        })
     }
 
-    /// The solvers that a program reads and those that their sources read, sources first.
-    fn solves(&self, read: &HashSet<usize>) -> Result<Vec<Solve>> {
-        let mut needed: BTreeSet<usize> = BTreeSet::new();
+    /// The solvers read and those that their sources read, sources first.
+    fn solves(&self, read: BTreeSet<usize>) -> Result<Vec<Solve>> {
         let mut rank = vec![0usize; self.recipe.nodes().len()];
         self.graph.order.iter().enumerate().for_each(|(place, &node)| rank[node] = place);
-        let mut seen: HashSet<usize> = HashSet::new();
-        let mut stack: Vec<usize> = read.iter().copied().collect();
-        while let Some(node) = stack.pop() {
-            if !seen.insert(node) {
+        let mut solves: BTreeMap<usize, Solve> = BTreeMap::new();
+        let mut waiting: Vec<usize> = read.into_iter().collect();
+        while let Some(node) = waiting.pop() {
+            if solves.contains_key(&rank[node]) {
                 continue;
             }
-            if let Op::Solver(_) = self.recipe.nodes()[node].node.op() {
-                needed.insert(rank[node]);
-            }
-            stack.extend(self.graph.sources(node));
+            let solve = self.solve(node)?;
+            waiting.extend(&solve.reads);
+            solves.insert(rank[node], solve);
         }
-        needed.into_iter().map(|place| self.solve(self.graph.order[place])).collect()
+        Ok(solves.into_values().collect())
     }
 }
 
@@ -112,7 +176,6 @@ struct Attempt<'a> {
     grids: Vec<(Window, usize)>,
     steps: Vec<DraftStep>,
     outputs: Vec<usize>,
-    solvers: HashSet<usize>,
     /// Field nodes that were a step's target, and how often each was evaluated at a block itself.
     filled: HashSet<usize>,
     evaluated: HashMap<usize, usize>,
@@ -137,7 +200,6 @@ impl<'a> Attempt<'a> {
             grids: Vec::new(),
             steps: Vec::new(),
             outputs: Vec::new(),
-            solvers: HashSet::new(),
             filled: HashSet::new(),
             evaluated: HashMap::new(),
         }
@@ -175,7 +237,6 @@ impl<'a> Attempt<'a> {
         for node in draft.evaluated {
             *self.evaluated.entry(node).or_default() += 1;
         }
-        self.solvers.extend(draft.solvers);
         self.steps.push(DraftStep::Fill { program: draft.program, first, window, out });
     }
 
@@ -294,8 +355,7 @@ impl<'a> Attempt<'a> {
         again.filter(is_dear).collect()
     }
 
-    fn finish(self, planner: &Planner, window: Window) -> Result<Plan> {
-        let solves = planner.solves(&self.solvers)?;
+    fn finish(self, window: Window) -> Plan {
         let served = self.served;
         let mut steps: Vec<Step> = self
             .steps
@@ -324,7 +384,7 @@ impl<'a> Attempt<'a> {
             }
         }
         self.outputs.iter().for_each(|&grid| grids[grid].last_use = steps.len());
-        Ok(Plan { window, scattered: self.scattered, solves, steps, grids, outputs: self.outputs })
+        Plan { window, scattered: self.scattered, solves: Vec::new(), steps, grids, outputs: self.outputs }
     }
 }
 

@@ -4,6 +4,7 @@ use super::key::Key;
 use super::program::{Instruction, Program};
 use crate::grid::Window;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// What will be done to make some layers over a window: an owned value that touches no sample.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -33,12 +34,20 @@ pub struct Solve {
     pub world: Window,
     /// Those with the margin for readers.
     pub padded: Window,
-    /// Bytes of the rasters that it keeps or works in.
-    pub kept: u64,
+    /// Rasters that it keeps or works in, each over `padded`.
+    pub rasters: usize,
+    /// Whether they are on disk.
+    pub on_disk: bool,
     /// Bytes of memory that solving takes beside them.
     pub scratch: u64,
+    /// Samples along a side of the tiles that its sources are made in.
+    pub side: usize,
     /// Bytes that making a tile of its sources takes at most.
     pub tile: u64,
+    /// The solvers that its sources read.
+    pub reads: Vec<usize>,
+    /// Samples made for its sources, about.
+    pub samples: u64,
 }
 
 /// One step of a plan.
@@ -123,6 +132,20 @@ impl Plan {
             Some(Step::Fill { program, out, .. }) if self.scattered && out.is_empty() => Some(program),
             _ => None,
         }
+    }
+
+    /// The solvers that its steps read.
+    pub fn solvers_read(&self) -> BTreeSet<usize> {
+        let mut read = BTreeSet::new();
+        for step in &self.steps {
+            let Step::Fill { program, .. } = step else { continue };
+            for instruction in &program.instructions {
+                if let Instruction::Solved { node, .. } = instruction {
+                    read.insert(*node);
+                }
+            }
+        }
+        read
     }
 
     /// Samples that will be made, solvers' sources not counted.

@@ -1,0 +1,5 @@
+//! What has been solved: in memory, and in a folder that later runs find again.
+
+pub mod cache;
+mod entry;
+pub mod solutions;
