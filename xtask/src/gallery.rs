@@ -8,8 +8,8 @@ pub const ABOUT: &str = "make the pictures in docs/images anew";
 pub const HELP: &str = "
 Usage: cargo xtask gallery
 
-Makes docs/images/ anew: one relief map of each preset, a large one of the default preset as the README's first picture, and
-the page that shows the noises side by side.
+Makes docs/images/ anew: one relief map of each preset, a large one of the default preset as the README's first picture, the
+page that shows the noises side by side, and the chunks around a viewer.
 ";
 
 /// Samples along a side of a preset's picture, and of the first picture.
@@ -37,5 +37,11 @@ pub fn run(args: &[String]) -> Result {
     let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- compare --quiet -o");
     shell::run(orogen.arg(&page))?;
     println!("{}", shell::relative(&page));
+    // The example writes where it is run.
+    let mut example = shell::cargo("run --quiet --release --package orogen --example infinite_terrain");
+    shell::run(example.arg("--manifest-path").arg(shell::root().join("Cargo.toml")).current_dir(&work))?;
+    let chunks = images.join("chunks.png");
+    std::fs::copy(work.join("infinite_terrain.png"), &chunks).map_err(|e| on_file("write", &chunks, &e))?;
+    println!("{}", shell::relative(&chunks));
     Ok(())
 }

@@ -20,7 +20,7 @@
 //! finite halo (blur, slope); a **solver** looks at the whole bounded world, once (normalise, bake). So any tile equals the
 //! crop of the whole, bit for bit, whatever the tile size, the number of threads, the SIMD level or the machine.
 //!
-//! Where to go on: [`Recipe`] builds a world in code; a [`Sampler`] answers many questions quickly; [`node::Node::all`] lists the ops; [`presets`] are the recipes that come
+//! Where to go on: [`Recipe`] builds a world in code; a [`Sampler`] answers many questions quickly, [`Chunks`] follow a viewer; [`node::Node::all`] lists the ops; [`presets`] are the recipes that come
 //! with the library; [`mod@format`], [`map`] and [`palette`] make files and pictures of grids.
 #![forbid(unsafe_code)]
 
@@ -28,6 +28,7 @@
 pub mod declare;
 
 pub mod analysis;
+pub mod chunks;
 mod engine;
 pub mod error;
 pub mod field;
@@ -56,6 +57,9 @@ pub mod value;
 pub mod words;
 pub mod world;
 
+pub use chunks::id::ChunkId;
+pub use chunks::rings::Rings;
+pub use chunks::stream::{ChunkStep, Chunks};
 pub use error::{Error, ErrorKind, Result};
 pub use grid::{Grid, Window};
 /// The SIMD level that noise is made at, and the way to force one: the bits are the same at all of them.
