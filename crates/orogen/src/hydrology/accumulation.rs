@@ -70,13 +70,14 @@ fn inflows(receivers: &Receivers) -> Vec<u8> {
 mod tests {
     use super::*;
     use crate::hydrology::outlets::Outlets;
+    use crate::hydrology::steepest::Descent;
     use crate::hydrology::{flats, samples, steepest};
 
     #[test]
     fn areas_are_those_of_walking_from_every_cell() {
         for heights in samples::grids() {
             let outlets = Outlets::new(&heights, None);
-            let mut receivers = steepest::receivers(&heights, &outlets);
+            let mut receivers = steepest::receivers(&heights, &outlets, Descent::Steepest);
             flats::resolve(&heights, &outlets, &mut receivers);
             let mut expect = vec![0u32; heights.data().len()];
             for start in 0..expect.len() {

@@ -234,6 +234,7 @@ fn ordered(height: f32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hydrology::steepest::Descent;
     use crate::hydrology::{flats, samples, steepest};
 
     #[test]
@@ -248,7 +249,7 @@ mod tests {
     fn every_way_out_leaves_its_basin_and_ends_outside() {
         for heights in samples::grids() {
             let outlets = Outlets::new(&heights, None);
-            let mut receivers = steepest::receivers(&heights, &outlets);
+            let mut receivers = steepest::receivers(&heights, &outlets, Descent::Steepest);
             flats::resolve(&heights, &outlets, &mut receivers);
             let basins = basins(&heights, &outlets, &receivers);
             let strides = strides(heights.width());

@@ -2,9 +2,10 @@
 
 use super::basins::{Basins, WayOut, basins};
 use super::direction::opposite;
+use super::flats;
 use super::outlets::Outlets;
 use super::receivers::Receivers;
-use super::{flats, steepest};
+use super::steepest::{self, Descent};
 use crate::grid::Grid;
 
 /// Receivers that lead from every cell to an outlet.
@@ -21,8 +22,8 @@ pub struct Drainage {
 /// to the pit, taken backwards, over the pass and out (Cordonnier, Bovy and Braun 2019, who call it carving).
 ///
 /// So a lake's bed keeps its own valleys, where drainage of the *filled* surface has to be made up over level water.
-pub fn over_bed(heights: &Grid, outlets: &Outlets) -> Drainage {
-    let mut receivers = steepest::receivers(heights, outlets);
+pub fn over_bed(heights: &Grid, outlets: &Outlets, descent: Descent) -> Drainage {
+    let mut receivers = steepest::receivers(heights, outlets, descent);
     flats::resolve(heights, outlets, &mut receivers);
     let basins = basins(heights, outlets, &receivers);
     for basin in &basins.order {
@@ -46,8 +47,8 @@ fn lead_out(way: &WayOut, receivers: &mut Receivers) {
 
 /// Drainage of a surface without depressions, such as [`filled`](super::fill::filled) ground: steepest descent, and over level
 /// ground [`flats::resolve`].
-pub fn over_surface(filled: &Grid, outlets: &Outlets) -> Receivers {
-    let mut receivers = steepest::receivers(filled, outlets);
+pub fn over_surface(filled: &Grid, outlets: &Outlets, descent: Descent) -> Receivers {
+    let mut receivers = steepest::receivers(filled, outlets, descent);
     flats::resolve(filled, outlets, &mut receivers);
     receivers
 }
@@ -73,11 +74,12 @@ mod tests {
 
     #[test]
     fn every_cell_leads_to_an_outlet() {
-        for heights in samples::grids() {
+        for (k, heights) in samples::grids().into_iter().enumerate() {
             let outlets = Outlets::new(&heights, Some(2.0));
-            ends(&over_bed(&heights, &outlets).receivers, &outlets);
+            let descent = if k % 2 == 0 { Descent::Steepest } else { Descent::Scattered(k as u32) };
+            ends(&over_bed(&heights, &outlets, descent).receivers, &outlets);
             let filled = fill::fill(&heights, &outlets);
-            ends(&over_surface(&filled, &outlets), &outlets);
+            ends(&over_surface(&filled, &outlets, descent), &outlets);
         }
     }
 
@@ -85,7 +87,7 @@ mod tests {
     fn nothing_on_the_way_is_higher_than_the_water() {
         for heights in samples::grids() {
             let outlets = Outlets::new(&heights, None);
-            let drainage = over_bed(&heights, &outlets);
+            let drainage = over_bed(&heights, &outlets, Descent::Steepest);
             let filled = fill::filled(&heights, &drainage.basins);
             for c in 0..heights.data().len() {
                 let receiver = drainage.receivers.of(c);
@@ -104,8 +106,8 @@ mod tests {
             }
         }
         let outlets = Outlets::new(&cone, None);
-        let steepest = steepest::receivers(&cone, &outlets);
-        assert_eq!(over_bed(&cone, &outlets).receivers, steepest);
-        assert_eq!(over_surface(&cone, &outlets), steepest);
+        let steepest = steepest::receivers(&cone, &outlets, Descent::Steepest);
+        assert_eq!(over_bed(&cone, &outlets, Descent::Steepest).receivers, steepest);
+        assert_eq!(over_surface(&cone, &outlets, Descent::Steepest), steepest);
     }
 }

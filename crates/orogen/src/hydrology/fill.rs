@@ -3,6 +3,7 @@
 use super::basins::Basins;
 use super::drainage;
 use super::outlets::Outlets;
+use super::steepest::Descent;
 use crate::grid::Grid;
 use rayon::prelude::*;
 
@@ -12,7 +13,7 @@ use rayon::prelude::*;
 ///
 /// Heights that are not finite stay as they are, and water leaves at their rim. Costs O(cells).
 pub fn fill(heights: &Grid, outlets: &Outlets) -> Grid {
-    filled(heights, &drainage::over_bed(heights, outlets).basins)
+    filled(heights, &drainage::over_bed(heights, outlets, Descent::Steepest).basins)
 }
 
 /// The same where the basins are known.

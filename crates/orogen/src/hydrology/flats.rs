@@ -184,11 +184,12 @@ impl Flats<'_> {
 mod tests {
     use super::*;
     use crate::grid::Window;
+    use crate::hydrology::steepest::Descent;
     use crate::hydrology::{samples, steepest};
 
     fn resolved(heights: &Grid) -> (Outlets, Receivers) {
         let outlets = Outlets::new(heights, None);
-        let mut receivers = steepest::receivers(heights, &outlets);
+        let mut receivers = steepest::receivers(heights, &outlets, Descent::Steepest);
         resolve(heights, &outlets, &mut receivers);
         (outlets, receivers)
     }

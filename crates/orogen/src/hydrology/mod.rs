@@ -3,6 +3,7 @@
 
 pub mod accumulation;
 pub mod basins;
+pub mod creep;
 pub mod direction;
 pub mod drainage;
 pub mod fill;
@@ -13,4 +14,5 @@ pub mod receivers;
 mod samples;
 pub mod steepest;
 pub mod strahler;
+pub mod stream_power;
 pub mod watersheds;

@@ -1,4 +1,4 @@
-//! D8: each cell drains to its steepest lower neighbour.
+//! D8: each cell drains to one lower neighbour.
 
 use super::direction::{NONE, STEPS, hashed, one_of};
 use super::outlets::Outlets;
@@ -6,27 +6,51 @@ use super::receivers::Receivers;
 use crate::grid::Grid;
 use rayon::prelude::*;
 
-/// The neighbour to which each cell falls most steeply (O'Callaghan and Mark 1984): the drop, over square root of 2 on a
-/// diagonal. Outlets, and cells without a lower neighbour, have none. Between equals a hash of the cell's place on the lattice
-/// decides.
+/// Which lower neighbour a cell drains to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Descent {
+    /// The one to which it falls most steeply (O'Callaghan and Mark 1984): the drop, over square root of 2 on a diagonal.
+    Steepest,
+    /// The same with the diagonal's drop over a random length from 1 to 2, hashed from the cell's place and this number (Rho8,
+    /// Fairfield and Leymarie 1991): water on a slope that lies between two directions takes now the one, now the other, and
+    /// on the average goes where the slope does. D8 takes the same one all the way and draws straight parallel lines.
+    Scattered(u32),
+}
+
+/// The neighbour to which each cell drains. Outlets, and cells without a lower neighbour, have none. Between equals a hash of
+/// the cell's place on the lattice decides.
 ///
 /// Costs O(cells); rows side by side.
-pub fn receivers(heights: &Grid, outlets: &Outlets) -> Receivers {
+pub fn receivers(heights: &Grid, outlets: &Outlets, descent: Descent) -> Receivers {
     let mut receivers = Receivers::none(*heights.window());
     let window = *heights.window();
     if window.width < 3 || window.height < 3 {
         return receivers;
     }
     let rows = receivers.codes_mut().par_chunks_mut(window.width).enumerate();
-    rows.filter(|(j, _)| *j > 0 && j + 1 < window.height).for_each(|(j, codes)| {
-        let rows = [heights.row(j - 1), heights.row(j), heights.row(j + 1)];
-        steepest_sets(rows, codes);
-        let y = window.y + j as i64;
-        for (i, (code, outlet)) in codes.iter_mut().zip(outlets.mask().row(j)).enumerate() {
-            *code = if *outlet { NONE } else { chosen(*code, window.x + i as i64, y) };
-        }
-    });
+    rows.filter(|(j, _)| *j > 0 && j + 1 < window.height).for_each_init(
+        || vec![std::f32::consts::FRAC_1_SQRT_2; window.width - 2],
+        |diagonals, (j, codes)| {
+            let y = window.y + j as i64;
+            if let Descent::Scattered(salt) = descent {
+                for (i, diagonal) in diagonals.iter_mut().enumerate() {
+                    *diagonal = scattered(window.x + i as i64 + 1, y, salt);
+                }
+            }
+            steepest_sets([heights.row(j - 1), heights.row(j), heights.row(j + 1)], diagonals, codes);
+            for (i, (code, outlet)) in codes.iter_mut().zip(outlets.mask().row(j)).enumerate() {
+                *code = if *outlet { NONE } else { chosen(*code, window.x + i as i64, y) };
+            }
+        },
+    );
     receivers
+}
+
+/// One over a length from 1 to 2.
+#[inline]
+fn scattered(x: i64, y: i64, salt: u32) -> f32 {
+    let share = (hashed(x, y ^ (i64::from(salt) << 32)) >> 8) as f32 * (1.0 / (1 << 24) as f32);
+    1.0 / (2.0 - share)
 }
 
 #[inline(always)]
@@ -34,9 +58,9 @@ fn chosen(set: u8, x: i64, y: i64) -> u8 {
     if set & set.wrapping_sub(1) == 0 { set.trailing_zeros() as u8 } else { one_of(set, hashed(x, y)) }
 }
 
-/// The set of directions of steepest descent of every inner cell of the middle row. The first and last are left as they are.
-fn steepest_sets(rows: [&[f32]; 3], sets: &mut [u8]) {
-    const DIAGONAL: f32 = std::f32::consts::FRAC_1_SQRT_2;
+/// The set of directions of steepest descent of every inner cell of the middle row, when a drop along a diagonal counts as much
+/// as `diagonals` says. The first and last are left as they are.
+fn steepest_sets(rows: [&[f32]; 3], diagonals: &[f32], sets: &mut [u8]) {
     let count = sets.len() - 2;
     let middle = &rows[1][1..=count];
     // Eight rows of neighbours, each as long as the row of middles: loops over equal slices become SIMD.
@@ -45,17 +69,18 @@ fn steepest_sets(rows: [&[f32]; 3], sets: &mut [u8]) {
         &rows[(1 + south) as usize][start..start + count]
     });
     let [e, se, s, sw, w, nw, n, ne] = around.map(|row| &row[..count]);
+    let diagonals = &diagonals[..count];
     for (i, set) in sets[1..=count].iter_mut().enumerate() {
-        let h = middle[i];
+        let (h, diagonal) = (middle[i], diagonals[i]);
         let drops = [
             h - e[i],
-            (h - se[i]) * DIAGONAL,
+            (h - se[i]) * diagonal,
             h - s[i],
-            (h - sw[i]) * DIAGONAL,
+            (h - sw[i]) * diagonal,
             h - w[i],
-            (h - nw[i]) * DIAGONAL,
+            (h - nw[i]) * diagonal,
             h - n[i],
-            (h - ne[i]) * DIAGONAL,
+            (h - ne[i]) * diagonal,
         ];
         let most = drops.iter().fold(f32::MIN_POSITIVE, |most, drop| if *drop > most { *drop } else { most });
         let mut found = 0u32;
@@ -77,7 +102,7 @@ mod tests {
     fn no_neighbour_falls_more_steeply() {
         for heights in samples::grids() {
             let outlets = Outlets::new(&heights, None);
-            let receivers = receivers(&heights, &outlets);
+            let receivers = receivers(&heights, &outlets, Descent::Steepest);
             let (h, strides) = (heights.data(), strides(heights.width()));
             for (c, here) in h.iter().enumerate() {
                 if outlets.at(c) {
@@ -98,14 +123,36 @@ mod tests {
     #[test]
     fn a_shifted_window_chooses_the_same() {
         let heights = samples::steps(40, 30, 5);
-        let all = receivers(&heights, &Outlets::new(&heights, None));
+        let all = receivers(&heights, &Outlets::new(&heights, None), Descent::Scattered(3));
         let part = Window::new(20, 15, 1.0).at(heights.window().x + 9, heights.window().y + 6);
         let cropped = heights.crop(&part).unwrap();
-        let tile = receivers(&cropped, &Outlets::new(&cropped, None));
+        let tile = receivers(&cropped, &Outlets::new(&cropped, None), Descent::Scattered(3));
         for j in 1..14 {
             for i in 1..19 {
                 assert_eq!(tile.code(j * 20 + i), all.code((j + 6) * 40 + i + 9));
             }
+        }
+    }
+
+    #[test]
+    fn scattered_water_goes_where_the_slope_does() {
+        // A plane that falls 22.5 degrees south of east, between two directions. D8 goes straight east or straight south-east.
+        for angle in [10.0f64, 22.5, 40.0, 70.0] {
+            let (east, south) = (libm::cos(angle.to_radians()), libm::sin(angle.to_radians()));
+            let mut plane = Grid::filled(Window::new(202, 202, 1.0), 0.0);
+            for j in 0..202 {
+                for i in 0..202 {
+                    plane.row_mut(j)[i] = -(east * i as f64 + south * j as f64) as f32;
+                }
+            }
+            let receivers = receivers(&plane, &Outlets::new(&plane, None), Descent::Scattered(7));
+            let (mut x, mut y) = (0, 0);
+            for code in receivers.codes().iter().filter(|code| **code != NONE) {
+                x += STEPS[usize::from(*code)].0;
+                y += STEPS[usize::from(*code)].1;
+            }
+            let got = libm::atan2(y as f64, x as f64).to_degrees();
+            assert!((got - angle).abs() < 6.0, "{got}, not {angle}");
         }
     }
 }

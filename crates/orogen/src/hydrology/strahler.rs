@@ -33,12 +33,13 @@ mod tests {
     use super::*;
     use crate::hydrology::accumulation::accumulate;
     use crate::hydrology::outlets::Outlets;
+    use crate::hydrology::steepest::Descent;
     use crate::hydrology::{drainage, samples};
 
     #[test]
     fn orders_follow_from_the_inflows() {
         for heights in samples::grids() {
-            let receivers = drainage::over_bed(&heights, &Outlets::new(&heights, None)).receivers;
+            let receivers = drainage::over_bed(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
             let accumulation = accumulate(&receivers);
             for threshold in [1, 4, 20] {
                 let orders = orders(&receivers, &accumulation, threshold);

@@ -29,13 +29,14 @@ pub fn watersheds(receivers: &Receivers, outlets: &Outlets, accumulation: &Accum
 mod tests {
     use super::*;
     use crate::hydrology::accumulation::accumulate;
+    use crate::hydrology::steepest::Descent;
     use crate::hydrology::{drainage, samples};
 
     #[test]
     fn a_label_is_one_outlet_and_its_area() {
         for heights in samples::grids() {
             let outlets = Outlets::new(&heights, None);
-            let receivers = drainage::over_bed(&heights, &outlets).receivers;
+            let receivers = drainage::over_bed(&heights, &outlets, Descent::Steepest).receivers;
             let accumulation = accumulate(&receivers);
             let labels = watersheds(&receivers, &outlets, &accumulation);
             let count = labels.data().iter().copied().max().unwrap_or(0);

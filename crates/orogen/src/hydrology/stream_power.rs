@@ -1,0 +1,249 @@
+//! Rivers cut down as land rises: the stream power law with uplift, solved implicitly.
+//!
+//! ```text
+//! dh/dt = U - K A^m S^n        S = (h - h_receiver) / d
+//! ```
+//!
+//! with U the uplift (m/yr), K the erodibility, A the drainage area (m^2) and S the slope along the way water takes. One step of
+//! dt years, after Braun and Willett, "A very efficient O(n), implicit and parallel method to solve the stream power equation
+//! governing fluvial incision and landscape evolution" (2013): receivers first, so that the new height of each is known when its
+//! donors are solved; for n = 1
+//!
+//! ```text
+//! h' = (h + dt U + F h'_receiver) / (1 + F)        F = K dt A^m / d
+//! ```
+//!
+//! which is stable for any dt, and for other n Newton's method. In the same sweep no cell is left standing steeper above its
+//! receiver than the landslide limit, nor less than the gentlest slope above it: where the way out of a depression leads uphill,
+//! the ground is raised with sediment until water runs.
+
+use super::accumulation::Accumulation;
+use super::direction::DISTANCES;
+use super::receivers::Receivers;
+use crate::grid::Grid;
+
+/// How rivers cut.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StreamPower {
+    /// K, in m^(1 - 2 m) per year: 1e-6 for hard rock to 5e-5 for soft.
+    pub erodibility: f64,
+    /// m: how much more a large river cuts. 0.3 to 0.6.
+    pub area_exponent: f64,
+    /// n: how much more a steep one does. 0.5 to 3.
+    pub slope_exponent: f64,
+    /// U, in metres a year.
+    pub uplift: f64,
+    /// Rise over run that no slope exceeds: what is steeper slides.
+    pub steepest: f64,
+    /// Rise over run of ground that sediment has filled.
+    pub gentlest: f64,
+}
+
+impl Default for StreamPower {
+    fn default() -> StreamPower {
+        StreamPower {
+            erodibility: 2e-5,
+            area_exponent: 0.45,
+            slope_exponent: 1.0,
+            uplift: 2e-4,
+            steepest: 1.2,
+            gentlest: 1e-4,
+        }
+    }
+}
+
+/// What differs from place to place: factors of the law's numbers, on the grid of the heights.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Ground<'a> {
+    /// Of the erodibility; 1 everywhere if there is none. Less than 0 counts as 0.
+    pub softness: Option<&'a Grid>,
+    /// Of the uplift; 1 everywhere if there is none.
+    pub rise: Option<&'a Grid>,
+}
+
+impl StreamPower {
+    /// Goes on by `years`. Cells without a receiver, which are outlets, stay as they are.
+    ///
+    /// Every other cell then stands higher than its receiver, so the result has no depressions and no flats. Costs O(cells).
+    pub fn step(&self, heights: &mut Grid, receivers: &Receivers, drained: &Accumulation, ground: &Ground, years: f64) {
+        let cell = heights.window().cell;
+        let powers = Powers::new(self.area_exponent, cell * cell);
+        let distances = DISTANCES.map(|distance| distance * cell);
+        // All that does not differ between cells: years, erodibility, and the way to the power n.
+        let factors = distances.map(|d| years * self.erodibility * libm::pow(d, -self.slope_exponent));
+        let (rises, falls) = (distances.map(|d| d * self.gentlest), distances.map(|d| d * self.steepest));
+        let risen = years * self.uplift;
+        let (area, h) = (drained.area.data(), heights.data_mut());
+        for c in drained.order.iter().rev().map(|c| *c as usize) {
+            let receiver = receivers.of(c);
+            if receiver == c {
+                continue;
+            }
+            let k = usize::from(receivers.code(c) & 7);
+            let softness = ground.softness.map_or(1.0, |grid| f64::from(grid.data()[c]).max(0.0));
+            let rise = ground.rise.map_or(1.0, |grid| f64::from(grid.data()[c]));
+            let below = f64::from(h[receiver]);
+            let above = f64::from(h[c]) + risen * rise - below;
+            let cut = factors[k] * softness * powers.of(area[c]);
+            let left =
+                if self.slope_exponent == 1.0 { above / (1.0 + cut) } else { settled(above, cut, self.slope_exponent) };
+            // A landslide limit below the gentlest slope gives way to it.
+            let new = (below + left.min(falls[k]).max(rises[k])) as f32;
+            // In f32 the gentlest slope may come to nothing; water still has to run.
+            h[c] = if new > h[receiver] { new } else { h[receiver].next_up() };
+        }
+    }
+}
+
+/// The x at which x + cut x^n = above, for n other than 1: what is left of a drop after the step.
+///
+/// Newton's method on a form that is convex, from above: it comes down to the root and never passes it.
+fn settled(above: f64, cut: f64, n: f64) -> f64 {
+    if above <= 0.0 || !(above + cut).is_finite() {
+        return above.min(0.0);
+    }
+    // x + cut x^n is convex for n > 1; with y = x^n, y^(1/n) + cut y is convex for n < 1.
+    let (power, linear, bent) = if n > 1.0 { (n, 1.0, cut) } else { (1.0 / n, cut, 1.0) };
+    let mut x = if n > 1.0 { above } else { libm::pow(above, n) };
+    for _ in 0..60 {
+        let bend = bent * libm::pow(x, power - 1.0);
+        let over = linear * x + bend * x - above;
+        let next = x - over / (linear + power * bend);
+        if next >= x || next <= 0.0 {
+            break;
+        }
+        x = next;
+    }
+    if n > 1.0 { x } else { libm::pow(x, 1.0 / n) }
+}
+
+/// Areas to the power m. Few cells drain much, so nearly all are looked up.
+struct Powers {
+    exponent: f64,
+    cell_area: f64,
+    known: Vec<f64>,
+}
+
+impl Powers {
+    fn new(exponent: f64, cell_area: f64) -> Powers {
+        let known = (0..4096).map(|cells| libm::pow(f64::from(cells) * cell_area, exponent)).collect();
+        Powers { exponent, cell_area, known }
+    }
+
+    #[inline]
+    fn of(&self, cells: u32) -> f64 {
+        match self.known.get(cells as usize) {
+            Some(power) => *power,
+            None => libm::pow(f64::from(cells) * self.cell_area, self.exponent),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Window;
+    use crate::hydrology::accumulation::accumulate;
+    use crate::hydrology::drainage;
+    use crate::hydrology::outlets::Outlets;
+    use crate::hydrology::samples;
+    use crate::hydrology::steepest::Descent;
+
+    #[test]
+    fn settling_solves_the_equation() {
+        for n in [0.5, 0.8, 1.5, 2.0, 3.0] {
+            for cut in [0.0, 1e-6, 0.3, 40.0, 1e5] {
+                for above in [1e-3, 1.0, 700.0] {
+                    let x = settled(above, cut, n);
+                    let got = x + cut * libm::pow(x, n);
+                    assert!((got - above).abs() < 1e-9 * above, "n {n}, cut {cut}, above {above}: {x} gives {got}");
+                }
+            }
+            assert_eq!(settled(-3.0, 1.0, n), -3.0);
+        }
+    }
+
+    /// A valley one cell wide that drains to the east, between walls that drain nowhere near.
+    fn valley(length: usize, cell: f64) -> (Grid, Receivers) {
+        let window = Window::new(length, 3, cell);
+        let mut receivers = Receivers::none(window);
+        receivers.codes_mut()[length + 1..2 * length - 1].fill(0);
+        (Grid::filled(window, 0.0), receivers)
+    }
+
+    #[test]
+    fn a_river_comes_to_its_steady_profile() {
+        // Where uplift and cutting balance, S = (U / K)^(1/n) A^(-m/n) at every cell (Whipple and Tucker 1999).
+        for (m, n) in [(0.45, 1.0), (0.5, 1.0), (0.9, 2.0), (0.4, 0.8)] {
+            let (mut heights, receivers) = valley(60, 100.0);
+            let drained = accumulate(&receivers);
+            let law =
+                StreamPower { area_exponent: m, slope_exponent: n, steepest: 1e9, gentlest: 0.0, ..Default::default() };
+            for _ in 0..400 {
+                law.step(&mut heights, &receivers, &drained, &Ground::default(), 1e5);
+            }
+            for c in 61..118 {
+                let slope = f64::from(heights.data()[c] - heights.data()[c + 1]) / 100.0;
+                let area = f64::from(drained.area.data()[c]) * 1e4;
+                let expect = libm::pow(law.uplift / law.erodibility, 1.0 / n) * libm::pow(area, -m / n);
+                assert!((slope / expect - 1.0).abs() < 2e-3, "m {m}, n {n}, cell {c}: {slope}, not {expect}");
+            }
+        }
+    }
+
+    #[test]
+    fn one_step_is_the_equation() {
+        let (mut heights, receivers) = valley(5, 10.0);
+        heights.row_mut(1).copy_from_slice(&[0.0, 30.0, 20.0, 12.0, 5.0]);
+        let drained = accumulate(&receivers);
+        let (softness, rise) = (Grid::filled(*heights.window(), 0.5), Grid::filled(*heights.window(), 3.0));
+        let law = StreamPower { erodibility: 1e-3, area_exponent: 0.5, uplift: 1e-3, ..Default::default() };
+        law.step(&mut heights, &receivers, &drained, &Ground { softness: Some(&softness), rise: Some(&rise) }, 100.0);
+        // F = 0.5 * 1e-3 * 100 * (cells * 100 m^2)^0.5 / 10 m = 0.05 sqrt(cells); 0.3 m of uplift.
+        let mut below = 5.0;
+        for (c, (h, cells)) in [(3, (12.0, 3.0f64)), (2, (20.0, 2.0)), (1, (30.0, 1.0))] {
+            let f = 0.05 * cells.sqrt();
+            below = ((h + 0.3 + f * below) / (1.0 + f)).min(below + 12.0);
+            assert!((f64::from(heights.row(1)[c]) - below).abs() < 1e-4, "{:?}", heights.row(1));
+        }
+        assert_eq!(heights.row(1)[4], 5.0, "the outlet stays");
+    }
+
+    #[test]
+    fn what_is_left_drains_as_it_did_and_nothing_is_too_steep() {
+        for heights in samples::grids() {
+            let outlets = Outlets::new(&heights, None);
+            let receivers = drainage::over_bed(&heights, &outlets, Descent::Steepest).receivers;
+            let drained = accumulate(&receivers);
+            let mut eroded = heights.clone();
+            let law = StreamPower { steepest: 0.9, gentlest: 1e-3, ..Default::default() };
+            law.step(&mut eroded, &receivers, &drained, &Ground::default(), 1000.0);
+            for c in 0..heights.data().len() {
+                let (h, receiver) = (eroded.data()[c], receivers.of(c));
+                if receiver == c {
+                    assert!(h == heights.data()[c] || h.is_nan());
+                    continue;
+                }
+                let slope = f64::from(h - eroded.data()[receiver]) / DISTANCES[usize::from(receivers.code(c))];
+                assert!(h > eroded.data()[receiver] && slope < 0.9 + 1e-3, "{slope}");
+            }
+            let again = super::super::steepest::receivers(&eroded, &outlets, Descent::Steepest);
+            let pits = (0..again.codes().len()).filter(|c| !outlets.at(*c) && again.of(*c) == *c).count();
+            assert_eq!(pits, 0);
+        }
+    }
+
+    #[test]
+    fn hard_rock_stands_and_soft_rock_goes() {
+        let heights = samples::hills(48, 40, 1);
+        let receivers = drainage::over_bed(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
+        let drained = accumulate(&receivers);
+        let mean = |softness: f32| {
+            let (mut eroded, softness) = (heights.clone(), Grid::filled(*heights.window(), softness));
+            let law = StreamPower { steepest: 1e9, ..Default::default() };
+            law.step(&mut eroded, &receivers, &drained, &Ground { softness: Some(&softness), rise: None }, 3e4);
+            eroded.data().iter().map(|h| f64::from(*h)).sum::<f64>()
+        };
+        assert!(mean(0.1) > mean(1.0) && mean(1.0) > mean(10.0) && mean(-5.0) == mean(0.0));
+    }
+}
