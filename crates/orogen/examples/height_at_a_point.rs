@@ -1,0 +1,21 @@
+//! The height at a point, and along a walk: no tile is made, whatever the size of the world.
+//!
+//! `cargo run --release --example height_at_a_point`
+
+use orogen::{World, presets};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let preset = presets::find("alpine").ok_or("there is no such preset")?;
+    let world = World::open(preset.recipe()?)?;
+
+    let (east, south) = (30_720.0, 30_720.0);
+    println!("{east} m east and {south} m south stands {:.1} m high", world.height(east, south)?);
+
+    // Many points at once are faster than one by one.
+    let x: Vec<f64> = (0..=40).map(|step| 10_000.0 + 1000.0 * f64::from(step)).collect();
+    let y = vec![south; x.len()];
+    for (x, height) in x.iter().zip(world.points("height", &x, &y)?) {
+        println!("{:6.1} km {height:7.1} m {}", x / 1000.0, "#".repeat((height / 60.0).max(0.0) as usize));
+    }
+    Ok(())
+}
