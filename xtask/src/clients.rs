@@ -1,9 +1,11 @@
 //! `cargo xtask clients`: the programs of other people that open what we write.
 //!
-//! Each client is a row of a table and a script in xtask/clients/. A client that cannot be had is a failure, not a skip: a
+//! Each client is a row of a table and, but for the emulator, a script in xtask/clients/. A client that cannot be had is a failure, not a skip: a
 //! check that did not run has shown nothing.
 
+mod asan;
 mod install;
+mod neon;
 mod presets;
 
 use std::path::PathBuf;
@@ -20,8 +22,11 @@ Usage: cargo xtask clients [STEP...]
 Builds `orogen` for release, installs what is missing and runs every client, or only the steps named:
 
   build     cargo build --release -p orogen-cli
-  install   apt (as root on Debian), pip into target/clients/venv, npm into target/clients/node; versions pinned
+  install   apt (as root on Debian), pip into target/clients/venv, npm into target/clients/node; versions pinned; rustup's
+            aarch64-unknown-linux-gnu
+  neon      the tests of every SIMD level, built for ARM, in QEMU: the bits of NEON are the committed ones
   presets   every preset against golden/presets.txt, on one thread and two, at every SIMD level of this machine
+  asan      the tests of the SIMD levels under AddressSanitizer: no kernel reads or writes beside its slices
   numpy     NumPy reads .npy: the numbers of summary.json, and which way is east
   pillow    Pillow reads the pictures: what a grey value stands for, and what is sea
   rasterio  rasterio reads GeoTIFFs: the samples and where they lie; rio-cogeo validates their layout
@@ -32,9 +37,9 @@ Builds `orogen` for release, installs what is missing and runs every client, or 
 
 /// One foreign program, or a few that one script drives.
 struct Client {
-    /// The script in xtask/clients/, which is also the step's name.
+    /// The step's name, and that of its script in xtask/clients/.
     name: &'static str,
-    /// Debian packages, each with a program it brings.
+    /// Debian packages, each with a program (or, absolute, a file) it brings.
     apt: &'static [(&'static str, &'static str)],
     /// Python packages, pinned.
     pip: &'static [&'static str],
@@ -45,6 +50,7 @@ struct Client {
 const NUMPY: &str = "numpy==2.4.6";
 
 const CLIENTS: &[Client] = &[
+    Client { name: "neon", apt: neon::APT, pip: &[], npm: &[] },
     Client { name: "numpy", apt: &[], pip: &[NUMPY], npm: &[] },
     Client { name: "pillow", apt: &[], pip: &[NUMPY, "pillow==12.2.0"], npm: &[] },
     Client { name: "rasterio", apt: &[], pip: &[NUMPY, "rasterio==1.4.4", "rio-cogeo==7.0.4"], npm: &[] },
@@ -56,12 +62,21 @@ const BUILD: Step = Step {
     about: "cargo build --release -p orogen-cli",
     run: || sh(&mut cargo("build --quiet --release --package orogen-cli")),
 };
-const INSTALL: Step = Step { name: "install", about: "what the clients need", run: || install::all(CLIENTS) };
+const INSTALL: Step = Step {
+    name: "install",
+    about: "what the clients need",
+    run: || {
+        install::all(CLIENTS)?;
+        neon::install()
+    },
+};
 
 const STEPS: &[&Step] = &[
     &BUILD,
     &INSTALL,
     &Step { name: "presets", about: "the presets' golden hashes at every level and thread count", run: presets::check },
+    &Step { name: "neon", about: "the tests of every SIMD level on an emulated ARM processor", run: neon::check },
+    &Step { name: "asan", about: "the tests of the SIMD levels under AddressSanitizer", run: asan::check },
     &Step { name: "numpy", about: "NumPy reads .npy", run: || script("numpy") },
     &Step { name: "pillow", about: "Pillow reads the pictures", run: || script("pillow") },
     &Step { name: "rasterio", about: "rasterio and rio-cogeo read GeoTIFFs", run: || script("rasterio") },

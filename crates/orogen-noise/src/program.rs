@@ -19,6 +19,12 @@ const FARTHEST_TILED: f64 = 134_217_727.0;
 /// The most cells a period may have in any octave: two of them fit where positions are held.
 pub(crate) const MAX_PERIOD: f64 = 67_108_864.0;
 
+/// Factors of slopes are held within this size: the slopes of all octaves then have a finite sum.
+const STEEPEST: f32 = 1e36;
+
+/// The same where slopes damp octaves: there the square of their sum is finite, and so is the sum's product with another factor.
+const STEEPEST_WEIGHTED: f32 = 1e16;
+
 /// How lattice points get their numbers.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Source {
@@ -173,7 +179,7 @@ impl Program {
             offset: [0.0; 3],
             words: words(source, seed),
             amplitude: 1.0,
-            slope: defined32(frequency as f32),
+            slope: defined32(frequency as f32, STEEPEST),
             ratio: 1.0,
             ..Octave::default()
         };
@@ -208,11 +214,13 @@ impl Program {
                 offset: [0, 1, 2].map(|axis| seed::offset(seed, axis)),
                 words: words(source, seed),
                 amplitude: share as f32,
-                slope: defined32(match fractal.kind {
+                slope: match fractal.kind {
                     // The slope of the sum before it is normalised, per first wavelength.
-                    Kind::Weighted { .. } => amplitude * if frequency == 0.0 { 0.0 } else { ratio },
-                    _ => share * frequency,
-                } as f32),
+                    Kind::Weighted { .. } => {
+                        defined32((amplitude * if frequency == 0.0 { 0.0 } else { ratio }) as f32, STEEPEST_WEIGHTED)
+                    }
+                    _ => defined32((share * frequency) as f32, STEEPEST),
+                },
                 ratio,
                 ..Octave::default()
             };
@@ -225,9 +233,10 @@ impl Program {
             Kind::Ridged => Combine::Sizes { sign: -1.0 },
             Kind::Billow => Combine::Sizes { sign: 1.0 },
             Kind::Weighted { k, falloff } => Combine::Weighted {
-                k: if k >= 0.0 { k as f32 } else { 0.0 },
+                // Finite, so that where there is no slope its product is none.
+                k: if k >= 0.0 { k.min(f64::from(f32::MAX)) as f32 } else { 0.0 },
                 falloff,
-                gradient: if count == 0 { 0.0 } else { defined32((base / total) as f32) },
+                gradient: if count == 0 { 0.0 } else { defined32((base / total) as f32, STEEPEST_WEIGHTED) },
             },
         };
         Program { source, combine, limit: limit(fastest), count: count as usize, all }
@@ -278,8 +287,9 @@ fn defined(frequency: f64) -> f64 {
     if frequency.is_finite() { frequency } else { 0.0 }
 }
 
-fn defined32(factor: f32) -> f32 {
-    if factor.is_finite() { factor } else { 0.0 }
+/// The same for a factor of slopes, which is also held within a size.
+fn defined32(factor: f32, most: f32) -> f32 {
+    if factor.is_finite() { factor.clamp(-most, most) } else { 0.0 }
 }
 
 fn limit(frequency: f64) -> f64 {

@@ -48,17 +48,31 @@ fn sorted(mut names: Vec<&str>) -> Vec<&str> {
     names
 }
 
+/// Whether a program is on the path; of an absolute path, whether it is a file.
 fn on_path(name: &str) -> bool {
     let path = std::env::var_os("PATH").unwrap_or_default();
     std::env::split_paths(&path).any(|dir| dir.join(name).is_file())
+}
+
+/// Installs Debian's packages of another architecture.
+pub fn foreign_apt(architecture: &str, packages: &[&str]) -> Result {
+    if may_install() {
+        shell::run(shell::program("dpkg").args(["--add-architecture", architecture]))?;
+    }
+    apt(packages)
+}
+
+/// Whether this is a Debian, and we are root.
+fn may_install() -> bool {
+    let root = shell::capture(shell::program("id").arg("-u")).is_ok_and(|id| id.trim() == "0");
+    root && on_path("apt-get")
 }
 
 fn apt(packages: &[&str]) -> Result {
     if packages.is_empty() {
         return Ok(());
     }
-    let root = shell::capture(shell::program("id").arg("-u")).is_ok_and(|id| id.trim() == "0");
-    if !root || !on_path("apt-get") {
+    if !may_install() {
         return Err(Failure::new(format!(
             "these Debian packages, or what your system calls them, are missing; install them and run this again: {}",
             packages.join(" ")
@@ -111,7 +125,7 @@ fn npm(packages: &[&str]) -> Result {
 }
 
 /// Three tries with waits between them.
-fn patiently(command: impl Fn() -> Command) -> Result {
+pub fn patiently(command: impl Fn() -> Command) -> Result {
     for wait in BACK_OFF {
         match shell::run(&mut command()) {
             Ok(()) => return Ok(()),

@@ -50,17 +50,54 @@ fn improved_noise(x: f64, y: f64, z: f64) -> f64 {
     )
 }
 
+/// Published values of the 2002 reference, as independent ports of it test themselves. The first is Rosetta Code's ("Perlin noise"),
+/// which most ports use; those up to the origin are from ports to Zig (one of them gives the places of the first two at z = 0, where
+/// the sign of the second turns). Of negative places, and of places beyond the table's 256 entries, there is one each.
+const PUBLISHED: [([f64; 3], f64); 9] = [
+    #[allow(clippy::approx_constant)] // no pi: the place of the published value
+    ([3.14, 42.0, 7.0], 0.136_919_958_784_000_12),
+    ([-4.2, 10.0, 6.0], 0.142_080_000_000_000_43),
+    #[allow(clippy::approx_constant)]
+    ([3.14, 42.0, 0.0], 0.136_919_958_784_000_12),
+    ([-4.2, 10.0, 0.0], -0.142_080_000_000_000_43),
+    ([123.64, 456.3, 567.69], 0.207_417_247_084_922_98),
+    ([0.0, -37.603, 0.0], -0.461_327_430_182_440_55),
+    ([0.5, 0.5, 0.5], -0.25),
+    ([0.1, 0.1, 0.1], 0.186_160_714_354_483_2),
+    ([-1.0, -1.0, -1.0], 0.0),
+];
+
+/// The same along the diagonal x = y = z, from a port to Java that rounds places to f32 first.
+const PUBLISHED_DIAGONAL: [(f32, f64); 11] = [
+    (0.1, 0.186_160_716_667_925_97),
+    (0.5, -0.25),
+    (1.25, -0.395_530_935_376_882_55),
+    (1.5, -0.5),
+    (2.3, 0.303_202_912_418_742_1),
+    (2.5, 0.25),
+    (3.65, 0.171_395_828_917_756_95),
+    (3.3, -0.413_601_658_234_819_9),
+    (4.5, -0.125),
+    (4.7, -0.106_944_244_036_597_89),
+    (5.0, 0.0),
+];
+
 #[test]
 fn the_reference_values_are_met() {
-    #[allow(clippy::approx_constant)] // the place of the published value
-    let place = 3.14;
-    // Published: Rosetta Code, "Perlin noise", the value every port of the reference is checked with.
-    assert_eq!(improved_noise(place, 42.0, 7.0), 0.136_919_958_784_000_12);
+    let diagonal = PUBLISHED_DIAGONAL.map(|(at, value)| ([f64::from(at); 3], value));
     let noise = Classic::default();
+    let near = |[x, y, z]: [f64; 3], expected: f64| {
+        let found = f64::from(noise.sample3(x, y, z));
+        assert!((found - expected).abs() < 1e-6, "({x}, {y}, {z}): {found} is not {expected}");
+    };
+    for ([x, y, z], published) in PUBLISHED.into_iter().chain(diagonal) {
+        assert_eq!(improved_noise(x, y, z), published, "({x}, {y}, {z})");
+        near([x, y, z], published);
+    }
     let mut rng = Rng(1);
     for _ in 0..20_000 {
-        let [x, y, z] = [0; 3].map(|_| rng.between(-300.0, 300.0));
-        assert!((f64::from(noise.sample3(x, y, z)) - improved_noise(x, y, z)).abs() < 1e-6, "{x} {y} {z}");
+        let at = [0; 3].map(|_| rng.between(-300.0, 300.0));
+        near(at, improved_noise(at[0], at[1], at[2]));
     }
 }
 
