@@ -8,6 +8,7 @@ mod measure;
 mod noise;
 mod options;
 mod rows;
+mod world;
 
 use std::process::ExitCode;
 
@@ -16,7 +17,7 @@ use options::Options;
 /// An area of measurement: its name and what measures it.
 type Area = (&'static str, fn(&Options) -> Result<serde_json::Value, String>);
 
-const AREAS: &[Area] = &[("noise", noise::run), ("generate", generate::run)];
+const AREAS: &[Area] = &[("noise", noise::run), ("generate", generate::run), ("world", world::run)];
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();

@@ -18,6 +18,7 @@ Builds the benches at full optimisation, measures one area (or each in turn) and
 
   AREA         noise     noise kernels beside other crates, one thread, CPU time
                generate  every preset from the command to the last file, all cores, wall clock
+               world     chunks, tiles with halos and threads of the preset `hills`
   --json FILE  write the rows as JSON too; needs an AREA once there are several
   --case TEXT  only the cases with this in their name
   --quick      few repetitions: to see that it runs, not to quote
@@ -26,7 +27,7 @@ How to read the table: docs/benchmarks.md.
 ";
 
 /// Every area, as the bench program names it.
-const AREAS: &[&str] = &["noise", "generate"];
+const AREAS: &[&str] = &["noise", "generate", "world"];
 
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Options {

@@ -1,0 +1,25 @@
+//! The worlds that are measured, all of the preset `hills`.
+
+use orogen::filter::blur::Blur;
+use orogen::solver::normalise::Normalise;
+use orogen::{Options, Recipe, World, presets};
+
+/// The preset as it is: fields alone.
+pub fn fields() -> Result<Recipe, String> {
+    presets::find("hills").ok_or("there is no preset `hills`")?.recipe().map_err(|e| e.to_string())
+}
+
+/// The preset, its heights blurred with a halo of 32 samples at `cell` and then normalised.
+pub fn with_halo(cell: f64) -> Result<Recipe, String> {
+    let mut recipe = fields()?;
+    // The kernel ends at three radii: 31.5 samples.
+    recipe.add("soft", Blur { source: "terrain".into(), radius: 10.5 * cell });
+    recipe.add("stretched", Normalise { source: "soft".into(), low: 40.0, high: 340.0 });
+    recipe.output("stretched", "stretched");
+    Ok(recipe)
+}
+
+/// Opens a recipe on so many threads.
+pub fn open(recipe: Recipe, threads: usize) -> Result<World, String> {
+    World::with_options(recipe, Options { threads: Some(threads), ..Options::default() }).map_err(|e| e.to_string())
+}

@@ -1,0 +1,29 @@
+//! Area `world`: what windows, tiles and chunks of a world cost. The recipe is the preset `hills`.
+
+mod chunk;
+mod figure;
+mod hills;
+mod threads;
+mod tiles;
+
+use serde_json::{Value, json};
+
+use crate::options::Options;
+use figure::Figure;
+
+/// A case: what is measured, and how.
+type Case = (&'static str, fn(&Options) -> Result<Vec<Figure>, String>);
+
+/// Every case. Whole builds (to files, under a memory limit, resumed) take a file and a line here.
+const CASES: &[Case] = &[("chunk", chunk::measure), ("tiles", tiles::measure), ("threads", threads::measure)];
+
+/// Measures every case, or those named.
+pub fn run(options: &Options) -> Result<Value, String> {
+    let mut rows: Vec<Value> = Vec::new();
+    for (name, measure) in CASES.iter().filter(|(name, _)| name.contains(&options.case)) {
+        eprintln!("{name} ...");
+        rows.extend(measure(options)?.iter().map(Figure::json));
+    }
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    Ok(json!({ "area": "world", "simd": orogen_simd::Level::current().name(), "threads": threads, "rows": rows }))
+}
