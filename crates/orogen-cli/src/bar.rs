@@ -1,11 +1,14 @@
 //! A progress bar for long work, on a terminal.
 
+use std::fmt::Write;
 use std::io::{self, IsTerminal};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use orogen::Progress;
+
+use crate::interrupt;
 
 /// Work that is done sooner needs no bar.
 const PATIENCE: Duration = Duration::from_millis(400);
@@ -17,12 +20,12 @@ pub struct Bar {
 
 impl Bar {
     /// A bar, and the progress that moves it: on standard error if that is a terminal and `quiet` is not asked for, else
-    /// nowhere.
+    /// nowhere. Ctrl-C stops the work.
     pub fn new(quiet: bool) -> (Bar, Progress) {
         let shown = Arc::new(Mutex::new(None));
         let bar = Bar { shown: Arc::clone(&shown) };
         if quiet || !io::stderr().is_terminal() {
-            return (bar, Progress::none());
+            return (bar, Progress::none().stopped_by(interrupt::flag()));
         }
         let begun = Instant::now();
         let progress = Progress::new(move |done, total| {
@@ -35,7 +38,7 @@ impl Bar {
                 bar.set_position(done);
             }
         });
-        (bar, progress)
+        (bar, progress.stopped_by(interrupt::flag()))
     }
 }
 
@@ -51,8 +54,13 @@ impl Drop for Bar {
 
 fn ready() -> ProgressBar {
     let bar = ProgressBar::new(0);
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left") {
-        bar.set_style(style);
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {rate}, {eta} left") {
+        bar.set_style(style.with_key("rate", rate));
     }
     bar
+}
+
+/// The unit of progress is samples.
+fn rate(state: &ProgressState, out: &mut dyn Write) {
+    let _ = write!(out, "{:.1} Msamples/s", state.per_sec() / 1e6);
 }

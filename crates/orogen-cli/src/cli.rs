@@ -4,7 +4,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use orogen::Level;
 
-use crate::command::{compare, completions, explain, export, generate, new, noise, ops, presets, schema};
+use crate::command::{build, compare, completions, explain, export, generate, new, noise, ops, presets, schema};
 use crate::failure::Failure;
 
 /// Procedural terrain: a recipe describes a world, orogen makes it.
@@ -24,6 +24,8 @@ enum Command {
     Generate(generate::Args),
     /// Write one layer, or a window of it, to a file.
     Export(export::Args),
+    /// Build a world of any size into a GeoTIFF, a Zarr or a folder of tiles, and go on where it was interrupted.
+    Build(build::Args),
     /// Write a new recipe to start from.
     New(new::Args),
     /// List the built-in presets.
@@ -50,6 +52,7 @@ impl Cli {
         match self.command {
             Command::Generate(args) => generate::run(&args),
             Command::Export(args) => export::run(&args),
+            Command::Build(args) => build::run(&args),
             Command::New(args) => new::run(&args),
             Command::Presets => presets::run(),
             Command::Ops(args) => ops::run(&args),

@@ -5,6 +5,8 @@ use std::process::ExitCode;
 
 use orogen::{Error, ErrorKind};
 
+use crate::interrupt;
+
 /// Why a command did not do what it was asked to.
 #[derive(Debug)]
 pub enum Failure {
@@ -12,6 +14,8 @@ pub enum Failure {
     Usage(String),
     /// It could be asked for, but did not succeed: exit code 1.
     Engine(Error),
+    /// Somebody asked it to stop before it was done: exit code 130.
+    Interrupted(String),
     /// Whoever read our output has had enough of it: no failure of ours, and nothing to tell.
     BrokenPipe,
 }
@@ -37,6 +41,7 @@ impl Failure {
             Failure::Usage(_) => ExitCode::from(2),
             Failure::Engine(error) if error.kind() == ErrorKind::Request => ExitCode::from(2),
             Failure::Engine(_) => ExitCode::FAILURE,
+            Failure::Interrupted(_) => ExitCode::from(interrupt::CODE),
             Failure::BrokenPipe => ExitCode::SUCCESS,
         }
     }

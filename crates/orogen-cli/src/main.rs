@@ -6,10 +6,12 @@
 mod bar;
 mod cli;
 mod command;
+mod disk;
 mod draw;
 mod failure;
 mod folder;
 mod format;
+mod interrupt;
 mod memory;
 mod options;
 mod pictures;

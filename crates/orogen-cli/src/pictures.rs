@@ -11,6 +11,8 @@ use orogen::map::paint::Painter;
 use orogen::{Grid, Recipe, Result};
 use serde::Serialize;
 
+use crate::interrupt::Stoppable;
+
 /// `summary.json`. The order of its keys is the file's.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
@@ -56,7 +58,7 @@ pub fn write(folder: &Path, recipe: &Recipe, grid: &Grid, seconds: impl FnOnce()
     let notes = notes(grid, &levels);
     let notes: Vec<(&str, &str)> = notes.iter().map(|(keyword, text)| (*keyword, text.as_str())).collect();
     let stage = |name: &str, body: &(dyn Fn(&mut dyn Write) -> std::io::Result<()> + Sync)| {
-        file::stage(&folder.join(name), |out| body(out))
+        file::stage(&folder.join(name), |out| body(&mut Stoppable(out)))
     };
     let (pictures, summary) = rayon::join(
         || {

@@ -18,6 +18,7 @@ pub fn report(failure: &Failure) {
                 say::error(&paint.complaint(sentence, place.as_ref()));
             }
         }
+        Failure::Interrupted(sentence) => say::error(&printable(sentence)),
         Failure::BrokenPipe => {}
     }
 }

@@ -11,7 +11,7 @@ use orogen::{ErrorKind, Progress};
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::report::report;
-use crate::say;
+use crate::{interrupt, say};
 
 /// How often the file is looked at. Its content is compared, not its time: editors that touch a file change nothing.
 const INTERVAL: Duration = Duration::from_millis(200);
@@ -36,18 +36,22 @@ pub fn watch(
         drop(bar);
         match made {
             Ok(text) => say::out(&text)?,
-            Err(Failure::Engine(error)) if error.kind() == ErrorKind::Cancelled => {
+            Err(Failure::Engine(error)) if error.kind() == ErrorKind::Cancelled && !interrupt::asked() => {
                 seen.settle(path);
                 continue;
             }
             Err(Failure::BrokenPipe) => return Err(Failure::BrokenPipe),
+            Err(_) if interrupt::asked() => {}
             Err(failure) => report(&failure),
         }
-        if !quiet {
+        if !quiet && !interrupt::asked() {
             say::error(&format!("watching {}; Ctrl-C ends", path.display()));
         }
-        while !seen.changed(path) {
+        while !interrupt::asked() && !seen.changed(path) {
             std::thread::sleep(INTERVAL);
+        }
+        if interrupt::asked() {
+            return Err(Failure::Interrupted("stopped watching".into()));
         }
         seen.settle(path);
     }

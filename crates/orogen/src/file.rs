@@ -87,7 +87,7 @@ impl Staged {
     pub fn commit(self) -> Result<()> {
         if let Some((temporary, real)) = self.file {
             temporary.rename(&real).map_err(|cause| Error::file("write", &self.path, &cause))?;
-            sync_folder(&real);
+            sync_folder(folder(&real));
         }
         Ok(())
     }
@@ -280,10 +280,10 @@ pub(crate) fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Makes the rename itself survive a power cut. Not every system can open or sync a folder, and the file is in place either
-/// way, so a failure here is none.
-fn sync_folder(path: &Path) {
-    if let Ok(folder) = File::open(folder(path)) {
+/// Makes what was renamed in a folder survive a power cut. Not every system can open or sync a folder, and the files are in
+/// place either way, so a failure here is none.
+pub(crate) fn sync_folder(folder: &Path) {
+    if let Ok(folder) = File::open(folder) {
         let _ = folder.sync_all();
     }
 }

@@ -6,7 +6,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::op::Setting;
 use crate::plan::explain::explain;
-use crate::plan::key::Key;
+use crate::plan::key::{Key, keys, link_key};
 use crate::plan::memory;
 use crate::plan::planner::{Planner, world_windows};
 use crate::plan::steps::Plan;
@@ -186,6 +186,37 @@ impl World {
     /// What a plan does, in words.
     pub fn explain(&self, plan: &Plan) -> String {
         explain(plan, &self.recipe, &self.graph, self.pool.current_num_threads())
+    }
+
+    /// How many threads work on a request.
+    pub fn threads(&self) -> usize {
+        self.pool.current_num_threads()
+    }
+
+    /// A hash of all that a layer depends on: its nodes with their parameters, the seed, the world. Names of nodes do not
+    /// enter it.
+    ///
+    /// # Errors
+    /// If there is no such layer.
+    pub fn key(&self, layer: &str) -> Result<[u8; 32]> {
+        Ok(link_key(&self.target(layer)?, &keys(&self.recipe, &self.graph)))
+    }
+
+    /// The unit of a layer: metres for [`HEIGHT`], else what its node says of itself, which may be nothing.
+    ///
+    /// # Errors
+    /// If there is no such layer.
+    pub fn unit(&self, layer: &str) -> Result<&'static str> {
+        Ok(match self.target(layer)? {
+            _ if layer == HEIGHT => "m",
+            Link::Node(target) => self.recipe.nodes()[target.node].node.layers()[target.layer].unit,
+            _ => "",
+        })
+    }
+
+    /// Does work that shares itself out among this world's threads.
+    pub(crate) fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        self.pool.install(work)
     }
 
     /// Runs a plan: one grid a layer, in the order they were asked for.

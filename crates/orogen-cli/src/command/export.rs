@@ -11,11 +11,12 @@ use orogen::{Grid, Window, file};
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::format::Format;
+use crate::interrupt::Stoppable;
 use crate::options::{Limits, View};
 use crate::pictures;
 use crate::size::{Rectangle, cell, seed};
 use crate::source::Source;
-use crate::{say, view};
+use crate::{interrupt, say, view};
 
 /// What it takes.
 #[derive(Debug, clap::Args)]
@@ -75,7 +76,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let (bar, progress) = Bar::new(args.quiet);
     let grids = world.run(&plan, &progress);
     drop(bar);
-    let Some(grid) = grids?.pop() else {
+    let stopped = |failure| interrupt::explain(failure, "nothing was written");
+    let Some(grid) = grids.map_err(|error| stopped(error.into()))?.pop() else {
         return Ok(());
     };
     match to_stdout {
@@ -86,7 +88,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
                 .map_err(|cause| Failure::stdout(&cause))
         }
         false => {
-            file::write_whole(&args.out, |out| write(out, format, &grid, Spool::beside(&args.out)))?;
+            file::write_whole(&args.out, |out| write(&mut Stoppable(out), format, &grid, Spool::beside(&args.out)))
+                .map_err(|error| stopped(error.into()))?;
             if args.quiet { Ok(()) } else { say::out(&words(args, format, &grid)) }
         }
     }

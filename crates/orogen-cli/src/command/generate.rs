@@ -11,7 +11,7 @@ use crate::folder::Folder;
 use crate::options::{Limits, View};
 use crate::pictures::{self, FILES, Report};
 use crate::source::Source;
-use crate::{say, view, watch};
+use crate::{interrupt, say, view, watch};
 
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
@@ -51,7 +51,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             let (bar, progress) = Bar::new(args.quiet);
             let made = make(&source, args, &progress);
             drop(bar);
-            made.and_then(|text| say::out(&text))
+            made.and_then(|text| say::out(&text)).map_err(|failure| interrupt::explain(failure, "nothing was written"))
         }
     }
 }

@@ -44,8 +44,8 @@ impl Drawing {
         match (self.look, self.deep) {
             (Look::Grey, false) => Pixel::Grey8,
             (Look::Grey, true) => Pixel::Grey16,
-            (Look::Normal, false) => Pixel::Normal8,
-            (Look::Normal, true) => Pixel::Normal16,
+            (Look::Normal, false) => Pixel::Data8,
+            (Look::Normal, true) => Pixel::Data16,
             (Look::Texture(_), _) => Pixel::Rgb8,
         }
     }

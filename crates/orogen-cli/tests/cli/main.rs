@@ -4,6 +4,7 @@
 
 mod bad_places;
 mod bad_recipes;
+mod build;
 mod cache;
 mod compare;
 mod export;

@@ -4,3 +4,4 @@ pub mod geotiff;
 pub mod levels;
 pub mod npy;
 pub mod png;
+pub mod zarr;

@@ -23,10 +23,10 @@ pub enum Pixel {
     Grey16,
     /// Three bytes: red, green, blue, as sRGB.
     Rgb8,
-    /// Three bytes of data that are no colour: the parts of a normal.
-    Normal8,
-    /// Three numbers of two bytes, the higher first: the parts of a normal.
-    Normal16,
+    /// Three bytes of data that are no colour, such as the parts of a normal.
+    Data8,
+    /// Three numbers of two bytes, the higher first, that are no colour.
+    Data16,
 }
 
 impl Pixel {
@@ -35,8 +35,8 @@ impl Pixel {
         match self {
             Pixel::Grey8 => 1,
             Pixel::Grey16 => 2,
-            Pixel::Rgb8 | Pixel::Normal8 => 3,
-            Pixel::Normal16 => 6,
+            Pixel::Rgb8 | Pixel::Data8 => 3,
+            Pixel::Data16 => 6,
         }
     }
 }
@@ -114,8 +114,8 @@ fn encoder<'a>(out: &'a mut dyn Write, picture: &Picture) -> io::Result<Encoder<
     let (color, depth) = match picture.pixel {
         Pixel::Grey8 => (ColorType::Grayscale, BitDepth::Eight),
         Pixel::Grey16 => (ColorType::Grayscale, BitDepth::Sixteen),
-        Pixel::Rgb8 | Pixel::Normal8 => (ColorType::Rgb, BitDepth::Eight),
-        Pixel::Normal16 => (ColorType::Rgb, BitDepth::Sixteen),
+        Pixel::Rgb8 | Pixel::Data8 => (ColorType::Rgb, BitDepth::Eight),
+        Pixel::Data16 => (ColorType::Rgb, BitDepth::Sixteen),
     };
     encoder.set_color(color);
     encoder.set_depth(depth);
@@ -273,7 +273,7 @@ mod tests {
 
     #[test]
     fn an_animation_has_its_frames_in_order() {
-        let picture = Picture { width: 5, height: 4, pixel: Pixel::Normal16, notes: &[] };
+        let picture = Picture { width: 5, height: 4, pixel: Pixel::Data16, notes: &[] };
         let mut bytes = Vec::new();
         let animation = Animation { frames: 3, delay: 40 };
         write_animation(&mut bytes, &picture, animation, |frame, bytes| {

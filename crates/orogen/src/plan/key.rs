@@ -28,22 +28,33 @@ pub fn keys(recipe: &Recipe, graph: &Graph) -> Vec<Key> {
             hash.update([0]);
         }
         for link in graph.links[index].iter().chain([&graph.masks[index]]) {
-            match link {
-                Link::None => hash.update([0]),
-                Link::Value(value) => {
-                    hash.update([1]);
-                    hash.update(value.to_bits().to_le_bytes());
-                }
-                Link::Node(target) => {
-                    hash.update([2]);
-                    hash.update(keys[target.node]);
-                    hash.update((target.layer as u32).to_le_bytes());
-                }
-            }
+            put_link(&mut hash, link, &keys);
         }
         keys[index] = hash.finalize().into();
     }
     keys
+}
+
+/// The key of what a link leads to, given those of all nodes.
+pub fn link_key(link: &Link, keys: &[Key]) -> Key {
+    let mut hash = Sha256::new();
+    put_link(&mut hash, link, keys);
+    hash.finalize().into()
+}
+
+fn put_link(hash: &mut Sha256, link: &Link, keys: &[Key]) {
+    match link {
+        Link::None => hash.update([0]),
+        Link::Value(value) => {
+            hash.update([1]);
+            hash.update(value.to_bits().to_le_bytes());
+        }
+        Link::Node(target) => {
+            hash.update([2]);
+            hash.update(keys[target.node]);
+            hash.update((target.layer as u32).to_le_bytes());
+        }
+    }
 }
 
 fn world_key(setting: &Setting) -> Key {

@@ -22,8 +22,9 @@
 //! the rows arrive.
 
 mod directory;
-mod overview;
-mod tile;
+pub(crate) mod overview;
+pub(crate) mod pyramid;
+pub(crate) mod tile;
 pub mod writer;
 
 #[cfg(test)]

@@ -38,19 +38,21 @@ impl Span {
     }
 }
 
-/// The side below an overview's rows.
+/// What lies below some of an overview's rows: the raster's rows, or a part of them.
 pub struct Below<'a> {
-    /// Samples, whole rows.
+    /// Samples, row after row.
     pub rows: &'a [f32],
+    /// The column that they begin with.
+    pub left: usize,
     /// The row that they begin with.
     pub first: usize,
-    /// Samples a row.
+    /// Samples a row of these.
     pub width: usize,
     /// Rows of the whole raster.
     pub height: usize,
 }
 
-/// Makes the overview's rows from `made` on that `below` has all samples for, up to `until`. Samples that are NaN or `missing` are
+/// Makes the overview's rows from `made` on up to `until`, in the columns over the spans given, all of which `below` has. Samples that are NaN or `missing` are
 /// left out of the means; where nothing else is left, the overview has none either.
 pub fn reduce(below: &Below, columns: &[Span], made: usize, until: usize, missing: Option<f32>) -> Vec<f32> {
     let mut out = vec![0.0; columns.len() * (until - made)];
@@ -63,7 +65,7 @@ pub fn reduce(below: &Below, columns: &[Span], made: usize, until: usize, missin
         });
         for (sample, column) in row.iter_mut().zip(columns) {
             let last = column.end() - 1;
-            let at: [usize; 3] = std::array::from_fn(|k| (column.first + k).min(last));
+            let at: [usize; 3] = std::array::from_fn(|k| (column.first + k).min(last) - below.left);
             *sample = mean(rows, at, span.shares, column.shares, missing);
         }
     });
@@ -121,7 +123,7 @@ mod tests {
 
     fn small(width: usize, height: usize, samples: &[f32], missing: Option<f32>) -> Vec<f32> {
         let columns: Vec<Span> = (0..half(width)).map(|i| Span::of(i, width)).collect();
-        reduce(&Below { rows: samples, first: 0, width, height }, &columns, 0, half(height), missing)
+        reduce(&Below { rows: samples, left: 0, first: 0, width, height }, &columns, 0, half(height), missing)
     }
 
     #[test]

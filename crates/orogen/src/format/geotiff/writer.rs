@@ -4,8 +4,8 @@ use std::io::{self, Write};
 
 use rayon::prelude::*;
 
-use super::directory::{self, Description};
 use super::overview::{Below, Span, half, reduce};
+use super::pyramid::Pyramid;
 use super::tile::pack;
 use crate::grid::{Grid, Window};
 use crate::spool::Spool;
@@ -40,28 +40,12 @@ pub fn write(out: &mut dyn Write, grid: &Grid, options: &Options, spool: Spool) 
     writer.finish(out)
 }
 
-/// The size of each level, from the full raster to the one that fits a tile.
-fn sizes(window: &Window, tile: usize) -> impl Iterator<Item = [usize; 2]> {
-    std::iter::successors(Some([window.width, window.height]), move |size| {
-        size.iter().any(|side| *side > tile).then(|| size.map(half))
-    })
-}
-
-/// No raster has both a level 512 wide and one 384 wide.
-fn usual_tile(window: &Window) -> usize {
-    match sizes(window, 512).any(|[width, height]| width == 512 && height > 512) {
-        true => 384,
-        false => 512,
-    }
-}
-
 /// A raster on its way into a file: [`Writer::rows`] takes all rows, some at a time from the top, and [`Writer::finish`] writes.
 ///
 /// It holds a row of tiles of each level (two for each thread where rows are short), everything else lies in the spool: as many
 /// bytes as the file will have.
 pub struct Writer {
-    description: Description,
-    big: bool,
+    pyramid: Pyramid,
     levels: Vec<Level>,
     spool: Spool,
 }
@@ -91,22 +75,9 @@ impl Writer {
     /// Fails on a window without samples, without a cell or of more than 2^31 - 1 samples a side, and on a tile that TIFF or memory
     /// does not allow.
     pub fn new(window: &Window, options: &Options, spool: Spool) -> io::Result<Writer> {
-        let refuse = |why: String| Err(io::Error::new(io::ErrorKind::InvalidInput, why));
-        let tile = options.tile.unwrap_or_else(|| usual_tile(window));
-        if let Some(side) =
-            [window.width, window.height].into_iter().find(|side| !(1..=i32::MAX as usize).contains(side))
-        {
-            return refuse(format!("a GeoTIFF has 1 to 2147483647 samples a side, not {side}"));
-        }
-        if !(window.cell.is_finite() && window.cell > 0.0) {
-            return refuse(format!("a GeoTIFF cannot have cells of {} m", window.cell));
-        }
-        if !(16..=8192).contains(&tile) || !tile.is_multiple_of(16) {
-            return refuse(format!("a GeoTIFF's tiles have 16 to 8192 samples a side, a multiple of 16, not {tile}"));
-        }
-        let levels = sizes(window, tile).map(|[width, height]| Level::new(width, height)).collect();
-        let description = Description { window: *window, tile, nodata: options.nodata };
-        Ok(Writer { description, big: options.big, levels, spool })
+        let pyramid = Pyramid::new(window, options)?;
+        let levels = pyramid.sizes().iter().map(|[width, height]| Level::new(*width, *height)).collect();
+        Ok(Writer { pyramid, levels, spool })
     }
 
     /// Takes the next rows, any number of whole ones, each from west to east.
@@ -118,7 +89,7 @@ impl Writer {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "these are not rows of the raster"));
         }
         // In pieces, so that a whole grid is not held a second time.
-        for piece in samples.chunks(full.width * self.description.tile) {
+        for piece in samples.chunks(full.width * self.pyramid.tile()) {
             self.take(piece)?;
         }
         Ok(())
@@ -129,15 +100,15 @@ impl Writer {
         self.levels[0].rows.extend_from_slice(samples);
         for k in 0..self.levels.len() {
             let level = &mut self.levels[k];
-            let Some(until) = level.ready(self.description.tile) else {
+            let Some(until) = level.ready(self.pyramid.tile()) else {
                 return Ok(());
             };
-            for bytes in level.pack(self.description.tile, until) {
+            for bytes in level.pack(self.pyramid.tile(), until) {
                 level.places.push(self.spool.push(&bytes)?);
                 level.lengths.push(bytes.len() as u32);
             }
             if k + 1 < self.levels.len() {
-                let coarser = self.levels[k].reduce(self.description.nodata);
+                let coarser = self.levels[k].reduce(self.pyramid.nodata());
                 self.levels[k + 1].rows.extend_from_slice(&coarser);
             }
             self.levels[k].forget();
@@ -152,19 +123,9 @@ impl Writer {
         if self.levels.iter().any(|level| level.packed < level.height) {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "rows of the raster are missing"));
         }
-        let table: Vec<directory::Level> = self.levels.iter_mut().map(Level::table).collect();
-        out.write_all(&directory::head(&self.description, &table, self.big))?;
-        let mut bytes = Vec::new();
-        for (level, table) in self.levels.iter().zip(&table).rev() {
-            for (place, length) in level.places.iter().zip(&table.lengths) {
-                bytes.resize(*length as usize, 0);
-                self.spool.read(*place, &mut bytes)?;
-                out.write_all(&length.to_le_bytes())?;
-                out.write_all(&bytes)?;
-                out.write_all(&bytes[bytes.len() - directory::TRAILER as usize..])?;
-            }
-        }
-        Ok(())
+        let lengths = self.levels.iter_mut().map(|level| std::mem::take(&mut level.lengths)).collect();
+        let Writer { pyramid, levels, mut spool } = self;
+        pyramid.write(out, lengths, |level, tile, bytes| spool.read(levels[level].places[tile], bytes))
     }
 }
 
@@ -222,7 +183,7 @@ impl Level {
     fn reduce(&mut self, missing: Option<f32>) -> Vec<f32> {
         let arrived = self.arrived();
         let more = (self.made..half(self.height)).take_while(|j| Span::of(*j, self.height).end() <= arrived).count();
-        let below = Below { rows: &self.rows, first: self.first, width: self.width, height: self.height };
+        let below = Below { rows: &self.rows, left: 0, first: self.first, width: self.width, height: self.height };
         let coarser = reduce(&below, &self.columns, self.made, self.made + more, missing);
         self.made += more;
         coarser
@@ -236,9 +197,5 @@ impl Level {
         };
         self.rows.drain(..(needed - self.first) * self.width);
         self.first = needed;
-    }
-
-    fn table(&mut self) -> directory::Level {
-        directory::Level { width: self.width, height: self.height, lengths: std::mem::take(&mut self.lengths) }
     }
 }

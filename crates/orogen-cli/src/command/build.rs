@@ -1,0 +1,174 @@
+//! `orogen build`.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::ValueEnum;
+use orogen::build::builder::{Build, Report, Start};
+use orogen::build::order::{Form, Order, Samples};
+use orogen::build::terrarium;
+use orogen::words::bytes;
+use orogen::{Window, World};
+
+use crate::bar::Bar;
+use crate::failure::Failure;
+use crate::options::Limits;
+use crate::size::{Rectangle, cell, seed};
+use crate::source::Source;
+use crate::{disk, interrupt, say};
+
+/// What it takes.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A recipe's file, or the name of a preset
+    recipe: PathBuf,
+    /// What to build: NAME.tif a Cloud-Optimised GeoTIFF, NAME.zarr a Zarr v3 group, NAME a folder of --tiles
+    #[arg(short, long, value_name = "OUT")]
+    out: PathBuf,
+    /// What the tiles of a folder are
+    #[arg(long)]
+    tiles: Option<Tiles>,
+    /// Layers to build, with commas between them
+    #[arg(long, value_name = "A,B", value_delimiter = ',', default_value = orogen::world::HEIGHT)]
+    layers: Vec<String>,
+    /// Samples to build, at the cell asked for [default: the whole world]
+    #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
+    window: Option<Rectangle>,
+    /// Metres from one sample to the next [default: the world's cell; for terrarium the map's nearest]
+    #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
+    cell: Option<f64>,
+    /// Samples along a tile's side [default: 512; 513 for tiles that share their edges; 256 for terrarium]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536), allow_negative_numbers = true)]
+    tile: Option<u32>,
+    /// Seed of the world, instead of the recipe's
+    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
+    seed: Option<u64>,
+    /// Go on with a build that was interrupted, and make again what of it is damaged
+    #[arg(long, conflicts_with = "force")]
+    resume: bool,
+    /// Build anew over what a build has left there
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    limits: Limits,
+    /// Show neither needs, nor progress, nor the closing words
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// What the tiles of a folder are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Tiles {
+    /// 16-bit grey pictures over the range of all tiles, which share their edges
+    Png,
+    /// Headerless u16, little-endian, over the range of all tiles, which share their edges
+    R16,
+    /// Headerless f32, little-endian; the tiles share their edges
+    R32,
+    /// An XYZ tree of Terrarium pictures with TileJSON, for web maps
+    Terrarium,
+}
+
+/// Builds it.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let begun = Instant::now();
+    let form = form(args)?;
+    let mut recipe = Source::find(&args.recipe)?.read()?;
+    recipe.world.seed = args.seed.unwrap_or(recipe.world.seed);
+    let world = args.limits.open(recipe)?;
+    let tile = args.tile.map(|tile| tile as usize);
+    let order = Order { form, window: window(args, &world, form)?, tile, layers: args.layers.clone() };
+    let build = Build::new(&world, &order, &args.out)?;
+    let start = match (args.resume, args.force) {
+        (true, _) => Start::Resume,
+        (_, true) => Start::Force,
+        _ => Start::Fresh,
+    };
+    needs(args, &build, start)?;
+    let (bar, progress) = Bar::new(args.quiet);
+    let report = build.run(start, &progress);
+    drop(bar);
+    let report =
+        report.map_err(|error| interrupt::explain(error.into(), "the same command with --resume goes on from here"))?;
+    if args.quiet { Ok(()) } else { say::out(&words(args, &order, &report, begun.elapsed().as_secs_f64())) }
+}
+
+/// What OUT and --tiles say together.
+fn form(args: &Args) -> Result<Form, Failure> {
+    let tiles = args.tiles.map(|tiles| match tiles {
+        Tiles::Png => Form::Tiles(Samples::Png),
+        Tiles::R16 => Form::Tiles(Samples::R16),
+        Tiles::R32 => Form::Tiles(Samples::R32),
+        Tiles::Terrarium => Form::Terrarium,
+    });
+    let out = args.out.display();
+    match (Form::of(&args.out), tiles) {
+        (Some(form), None) => Ok(form),
+        (None, Some(tiles)) => Ok(tiles),
+        (Some(_), Some(_)) => Err(Failure::Usage(format!(
+            "--tiles makes a folder, and {out} has the extension of a file: leave out one of them"
+        ))),
+        (None, None) => Err(Failure::Usage(format!(
+            "{out} does not tell what to build: name a .tif or a .zarr, or say --tiles png, r16, r32 or terrarium"
+        ))),
+    }
+}
+
+/// The samples that are asked for.
+fn window(args: &Args, world: &World, form: Form) -> Result<Window, Failure> {
+    let cell = args.cell.unwrap_or(match form {
+        Form::Terrarium => {
+            let tile = args.tile.map(|tile| tile as usize).or(form.usual_tile()).unwrap_or(1);
+            terrarium::cell_near(world.recipe().world.cell, tile)
+        }
+        _ => world.recipe().world.cell,
+    });
+    Ok(match (args.window, form) {
+        (Some(Rectangle { x, y, width, height }), _) => Window { x, y, width, height, cell },
+        // Up to the far edge, which tiles share with the neighbours they do not have.
+        (None, Form::Tiles(_)) => {
+            let whole = world.whole(cell)?;
+            Window { width: whole.width + 1, height: whole.height + 1, ..whole }
+        }
+        (None, _) => world.whole(cell)?,
+    })
+}
+
+/// Says what it takes, and refuses what there is no room for.
+fn needs(args: &Args, build: &Build, start: Start) -> Result<(), Failure> {
+    let (disk, there) = build.disk();
+    let free = disk::free_at(&args.out);
+    let there = if start == Start::Resume { there } else { 0 };
+    if !args.quiet {
+        let (tiles, samples) = build.tiles();
+        let way = match disk.scratch {
+            0 => String::new(),
+            scratch => format!(", and until it is finished {} in {}", bytes(scratch), build.beside().display()),
+        };
+        let free = free.map_or(String::new(), |free| format!("; {} are free", bytes(free)));
+        say::error(&format!(
+            "{tiles} tiles of {:.1} million samples; up to {} of memory; up to {} of disk{way}{free}",
+            samples as f64 / 1e6,
+            bytes(build.memory()),
+            bytes(disk.result)
+        ));
+    }
+    disk::afford(&args.out, (disk.result + disk.scratch).saturating_sub(there), free)?;
+    Ok(())
+}
+
+/// The closing words.
+fn words(args: &Args, order: &Order, report: &Report, seconds: f64) -> String {
+    let Window { width, height, cell, .. } = order.window;
+    let made = match report {
+        Report { made: 0, .. } => "everything was there and sound".to_string(),
+        Report { made, kept: 0, .. } => format!("{made} tiles made"),
+        Report { made, kept, .. } => format!("{made} tiles made, {kept} kept"),
+    };
+    format!(
+        "{}: {}, {width} x {height} samples of {cell} m, {}\n{made} in {seconds:.1} s\n",
+        Path::new(&args.out).display(),
+        order.layers.join(", "),
+        bytes(report.bytes),
+    )
+}

@@ -1,0 +1,48 @@
+//! How much room there is on a disk.
+
+use std::path::Path;
+
+use orogen::{Error, ErrorKind, words};
+use sysinfo::Disks;
+
+/// Bytes that are free on the disk that `path` is on, or would be; `None` if the system does not tell.
+pub fn free_at(path: &Path) -> Option<u64> {
+    let real = path.ancestors().find_map(|path| match path.as_os_str().is_empty() {
+        true => Path::new(".").canonicalize().ok(),
+        false => path.canonicalize().ok(),
+    })?;
+    let disks = Disks::new_with_refreshed_list().ok()?;
+    let holding = disks.iter().filter(|disk| real.starts_with(disk.mount_point()));
+    holding.max_by_key(|disk| disk.mount_point().components().count()).map(sysinfo::Disk::available_space)
+}
+
+/// Refuses what would fill the disk that `path` is on: nothing starts that cannot finish.
+pub fn afford(path: &Path, needed: u64, free: Option<u64>) -> Result<(), Error> {
+    match free {
+        Some(free) if needed > free => Err(Error::new(
+            ErrorKind::File,
+            format!(
+                "this needs up to {} of disk where {} is, and {} are free: make room, or name another place",
+                words::bytes(needed),
+                path.display(),
+                words::bytes(free)
+            ),
+        )),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_is_some() {
+        let folder = std::env::temp_dir();
+        let free = free_at(&folder.join("not/yet/there"));
+        assert!(free.is_some_and(|free| free > 0), "{free:?}");
+        assert_eq!(free.is_some(), free_at(Path::new("x")).is_some());
+        assert!(afford(&folder, 2, Some(1)).unwrap_err().to_string().contains("1 bytes are free"));
+        assert!(afford(&folder, 1, Some(1)).is_ok() && afford(&folder, u64::MAX, None).is_ok());
+    }
+}

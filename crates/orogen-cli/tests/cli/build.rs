@@ -1,0 +1,213 @@
+//! `orogen build`: killed, interrupted, out of room, and still the same bytes in the end.
+
+use crate::harness::{Folder, Outcome};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+
+/// How many kills a run of the tests tries; the short number if nobody says.
+const KILLS: &str = "OROGEN_KILLS";
+const FEW: u32 = 8;
+
+/// What is built, and how: a name and what is asked for.
+const BUILDS: [(&str, &[&str]); 6] = [
+    ("a.tif", &["small.toml", "--tile", "64", "--cell", "0.7"]),
+    ("a.zarr", &["small.toml", "--tile", "100", "--layers", "height,noise", "--cell", "0.9"]),
+    ("png", &["small.toml", "--tiles", "png", "--tile", "65", "--cell", "0.9"]),
+    ("r16", &["hills", "--tiles", "r16", "--tile", "129", "--cell", "20"]),
+    ("r32", &["alpine", "--tiles", "r32", "--tile", "129", "--cell", "60"]),
+    ("map", &["hills", "--tiles", "terrarium"]),
+];
+
+/// The arguments that build `name`.
+fn arguments<'a>(name: &'a str, asked: &'a [&'a str], more: &'a [&'a str]) -> Vec<&'a str> {
+    [&["build"][..], asked, &["-o", name], more].concat()
+}
+
+/// All files of a result, by their paths within it.
+fn files(path: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut left = vec![path.to_path_buf()];
+    while let Some(next) = left.pop() {
+        if next.is_dir() {
+            left.extend(fs::read_dir(&next).unwrap().map(|entry| entry.unwrap().path()));
+        } else {
+            found.insert(next.strip_prefix(path).unwrap().to_path_buf(), fs::read(&next).unwrap());
+        }
+    }
+    found
+}
+
+fn start(folder: &Folder, arguments: &[&str]) -> Child {
+    folder.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+#[test]
+fn what_is_built_and_what_is_said() {
+    let folder = Folder::with_small();
+    for (name, asked) in BUILDS {
+        let outcome = folder.good(&arguments(name, asked, &[]));
+        assert!(outcome.err.contains(" tiles of ") && outcome.err.contains(" of disk"), "{}", outcome.err);
+        assert!(outcome.text().starts_with(&format!("{name}: height")), "{}", outcome.text());
+        assert!(outcome.text().contains(" tiles made in "), "{}", outcome.text());
+        let again = folder.good(&arguments(name, asked, &["--resume", "-q"]));
+        assert!(again.out.is_empty() && again.err.is_empty());
+        folder.bad(&arguments(name, asked, &["-q"]), 1, "is finished: --resume checks it, --force builds it anew");
+        folder.bad(
+            &arguments(name, asked, &["-q", "--resume", "--seed", "99"]),
+            1,
+            "it was begun from another recipe or seed",
+        );
+    }
+    folder.good(&["export", "small.toml", "--cell", "0.7", "-o", "b.tif"]);
+    folder.good(&["build", "small.toml", "--cell", "0.7", "-o", "c.tif"]);
+    assert!(folder.read("b.tif") == folder.read("c.tif"), "build and export write the same file");
+    // Tiles reach the far edge; everything else leaves it to the neighbour.
+    assert_eq!(folder.json("r16/manifest.json")["window"]["width"], 769);
+    assert_eq!(folder.json("a.zarr/height/zarr.json")["shape"][1], 711);
+    assert_eq!(folder.json("map/tiles.json")["map_metres_per_metre"], 1.0);
+}
+
+#[test]
+fn what_cannot_be_built_is_usage() {
+    let folder = Folder::with_small();
+    for (options, code, expect) in [
+        (&["-o", "a"][..], 2, "a does not tell what to build: name a .tif or a .zarr, or say --tiles"),
+        (&["-o", "a.tif", "--tiles", "png"], 2, "--tiles makes a folder, and a.tif has the extension of a file"),
+        (&["-o", "a", "--tiles", "bmp"], 2, "invalid value"),
+        (&["-o", "a.tif", "--layers", "height,noise"], 2, "a GeoTIFF holds one layer and 2 are asked for"),
+        (&["-o", "a.zarr", "--layers", "hieght"], 2, "did you mean `height`?"),
+        (&["-o", "a.zarr", "--window", "60,0,10,10"], 2, "not inside the world"),
+        (&["-o", "a.zarr", "--tile", "0"], 2, "invalid value"),
+        (&["-o", "a.tif", "--tile", "100"], 2, "a multiple of 16"),
+        (&["-o", "a.tif", "--resume", "--force"], 2, "cannot be used with"),
+        (&["-o", "none/a.tif"], 1, "cannot write into none: the folder does not exist"),
+        (&["-o", "a.zarr", "--memory", "1kB"], 1, "of memory"),
+        (&["-o", "small.toml", "--tiles", "png"], 1, "it is a file, and a folder has to be there"),
+    ] {
+        folder.bad(&[&["build", "small.toml", "-q"][..], options].concat(), code, expect);
+        assert_eq!(folder.names(""), ["small.toml"], "{options:?}");
+    }
+    folder.write("wide.toml", crate::harness::SMALL.replace("size = [640, 480]", "size = [1e9, 1e9]"));
+    folder.bad(&["build", "wide.toml", "-q", "-o", "a.zarr", "--cell", "1"], 1, "of disk where a.zarr is, and ");
+    assert_eq!(folder.names(""), ["small.toml", "wide.toml"]);
+}
+
+#[test]
+fn killed_at_any_moment_it_ends_with_the_same_bytes() {
+    let kills: u32 = std::env::var(KILLS).ok().and_then(|text| text.parse().ok()).unwrap_or(FEW);
+    let mut references = Vec::new();
+    for (name, asked) in BUILDS {
+        let folder = Folder::with_small();
+        let begun = Instant::now();
+        folder.good(&arguments(name, asked, &[]));
+        references.push((files(&folder.path(name)), begun.elapsed()));
+    }
+    let (mut killed, mut state) = (0, 88_172_645_463_325_252u64);
+    for ((name, asked), (expect, usual)) in BUILDS.iter().zip(&references).cycle() {
+        let folder = Folder::with_small();
+        // Killed again and again, until it is through; not more often than every build once on average.
+        let mut left = 1 + kills / BUILDS.len() as u32;
+        loop {
+            let mut child = start(&folder, &arguments(name, asked, &["--resume", "-q"]));
+            if left > 0 {
+                state ^= state << 13;
+                state ^= state >> 7;
+                state ^= state << 17;
+                std::thread::sleep(usual.mul_f64((state >> 11) as f64 / (1u64 << 53) as f64));
+                child.kill().unwrap();
+                left -= 1;
+            }
+            let output = child.wait_with_output().unwrap();
+            if output.status.success() {
+                break;
+            }
+            assert_eq!(output.status.code(), None, "{name}: {}", String::from_utf8_lossy(&output.stderr));
+            killed += 1;
+        }
+        assert!(files(&folder.path(name)) == *expect, "{name} is another after a kill");
+        let beside = folder.names(&format!("{name}.build"));
+        assert_eq!(beside, ["journal", "lock"], "{name}");
+        if killed >= kills {
+            break;
+        }
+    }
+}
+
+/// Asks a process to stop, as Ctrl-C does.
+#[cfg(unix)]
+fn interrupt(child: &Child, signal: &str) {
+    let status = std::process::Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+    assert!(status.success());
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_stops_cleanly() {
+    let folder = Folder::with_small();
+    let asked = ["small.toml", "--cell", "0.1", "--tile", "64", "--memory", "8MiB", "--threads", "1"];
+    for signal in ["-INT", "-TERM"] {
+        let child = start(&folder, &arguments("a.zarr", &asked, &["--resume"]));
+        // Not before it has begun.
+        while !folder.path("a.zarr/height").exists() {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        interrupt(&child, signal);
+        let output = child.wait_with_output().unwrap();
+        let err = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(130), "{err}");
+        assert!(err.ends_with("stopped: the same command with --resume goes on from here\n"), "{err}");
+        fs::remove_dir_all(folder.path("a.zarr")).unwrap();
+    }
+    for arguments in [
+        &["export", "small.toml", "--cell", "0.05", "-o", "a.npy"][..],
+        &["generate", "small.toml", "--cell", "0.05", "-o", "made"],
+    ] {
+        let child = start(&folder, arguments);
+        std::thread::sleep(Duration::from_millis(150));
+        interrupt(&child, "-INT");
+        let output = child.wait_with_output().unwrap();
+        let err = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(
+            (output.status.code(), err.as_str()),
+            (Some(130), "stopped: nothing was written\n"),
+            "{arguments:?}"
+        );
+        assert_eq!(folder.names(""), ["a.zarr.build", "small.toml"], "{arguments:?}");
+    }
+}
+
+/// Files that may not grow beyond a limit: the system ends the process in the middle of a write.
+#[cfg(unix)]
+#[test]
+fn a_limit_on_files_leaves_a_build_to_go_on_with() {
+    let folder = Folder::with_small();
+    let asked = ["small.toml", "--cell", "0.7", "-q", "-o"];
+    folder.good(&[&["build"][..], &asked, &["whole.tif"]].concat());
+    let line = format!("ulimit -f 300; exec {} build {} a.tif", env!("CARGO_BIN_EXE_orogen"), asked.join(" "));
+    let mut shell = std::process::Command::new("sh");
+    let output = shell.arg("-c").arg(&line).current_dir(&folder.0).output().unwrap();
+    assert!(!output.status.success(), "{output:?}");
+    assert!(!folder.path("a.tif").exists(), "no half file");
+    Outcome::of(&folder.command(&[&["build"][..], &asked, &["a.tif", "--resume"]].concat()).output().unwrap());
+    assert!(folder.read("a.tif") == folder.read("whole.tif"));
+}
+
+#[test]
+fn two_builds_do_not_work_on_one_place() {
+    let folder = Folder::with_small();
+    let asked = ["small.toml", "--cell", "0.1", "--tile", "64", "--memory", "8MiB", "--threads", "1"];
+    let mut child = start(&folder, &arguments("a.zarr", &asked, &["-q"]));
+    while !folder.path("a.zarr/height").exists() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    for more in [&["-q"][..], &["-q", "--resume"], &["-q", "--force"]] {
+        folder.bad(&arguments("a.zarr", &asked, more), 1, "another build is at work on ");
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    // The lock went with the process that held it.
+    folder.bad(&arguments("a.zarr", &asked, &["-q"]), 1, "was begun and not finished: --resume goes on with it");
+}

@@ -1,0 +1,49 @@
+//! What each kind of result has to know.
+
+use std::path::PathBuf;
+
+use super::job::{Job, Made, Place, Stage};
+use super::shelf::Shelf;
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+
+/// A kind of result: how it is cut into jobs, and what each makes.
+pub trait Target: Sync {
+    /// The stages, in order. The first one's jobs read the world.
+    fn stages(&self) -> Vec<Stage>;
+
+    /// The samples that a job of the first stage gets, at the cell of the order.
+    fn window(&self, row: usize, column: usize) -> Window;
+
+    /// The files that a job makes.
+    fn places(&self, job: Job) -> Vec<Place>;
+
+    /// The jobs, all of the stage before, whose files a job reads.
+    fn reads(&self, job: Job) -> Vec<Job>;
+
+    /// Does a job: `grids` are its window's samples, one grid a layer, in the first stage, and none later.
+    fn make(&self, job: Job, grids: &[Grid], shelf: &Shelf) -> Result<Made>;
+
+    /// Whether the result is one file, put together by [`Target::finish`] from all that lies on the shelf.
+    fn assembles(&self) -> bool {
+        false
+    }
+
+    /// Writes what belongs to no tile, once all tiles are there; returns the files' paths within the result.
+    fn finish(&self, shelf: &Shelf) -> Result<Vec<PathBuf>>;
+
+    /// Bytes that a job needs beside its samples.
+    fn scratch_memory(&self) -> u64;
+
+    /// The most bytes on disk: those of the result, and those needed on the way.
+    fn disk(&self) -> Disk;
+}
+
+/// Bytes on disk, at most.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Disk {
+    /// Of the result.
+    pub result: u64,
+    /// Beside it, until it is finished.
+    pub scratch: u64,
+}

@@ -1,0 +1,173 @@
+//! A Zarr group: an array a layer, a chunk a tile.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use super::identity::Identity;
+use super::job::{Job, Made, Place, Stage};
+use super::samples::square;
+use super::shelf::Shelf;
+use super::target::{Disk, Target};
+use crate::error::{Error, ErrorKind, Result};
+use crate::format::zarr::blosc;
+use crate::format::zarr::metadata::{self, Array, Number};
+use crate::grid::{Grid, Window};
+use crate::tiles::Tiling;
+
+/// The most coordinates a chunk holds.
+const COORDINATES: usize = 1 << 16;
+
+/// Chunks beyond which readers run out of memory when they hold a few.
+const LARGEST: usize = 8192;
+
+/// The group.
+pub struct Zarr {
+    identity: Identity,
+    about: String,
+    tiling: Tiling,
+}
+
+impl Zarr {
+    /// Of a build.
+    ///
+    /// # Errors
+    /// If no chunk can have such a side.
+    pub fn new(identity: &Identity, about: &str) -> Result<Zarr> {
+        if !(1..=LARGEST).contains(&identity.tile) {
+            let sentence = format!("the tiles of a .zarr have 1 to {LARGEST} samples a side, not {}", identity.tile);
+            return Err(Error::new(ErrorKind::Request, sentence));
+        }
+        let tiling = Tiling::of(identity.tile);
+        Ok(Zarr { identity: identity.clone(), about: about.to_string(), tiling })
+    }
+
+    fn stage(&self) -> Stage {
+        let [columns, rows] = self.tiling.layout(&self.identity.window);
+        Stage { rows, columns, samples: self.identity.tile * self.identity.tile * self.identity.layers.len() }
+    }
+
+    fn array(&self, layer: &str, unit: &str) -> Value {
+        let (Window { width, height, .. }, side) = (self.identity.window, self.identity.tile);
+        let mut attributes = json!({ "long_name": layer });
+        if !unit.is_empty() {
+            attributes["units"] = json!(unit);
+        }
+        metadata::array(&Array {
+            shape: &[height, width],
+            chunk: &[side, side],
+            sides: &["y", "x"],
+            number: Number::F32,
+            attributes,
+        })
+    }
+}
+
+/// A coordinate: its name, its values, and what it says of itself.
+struct Coordinate {
+    name: &'static str,
+    values: Vec<f64>,
+    attributes: Value,
+}
+
+fn coordinates(window: &Window) -> [Coordinate; 2] {
+    let east = json!({
+        "units": "m", "long_name": "metres east of the origin", "standard_name": "projection_x_coordinate", "axis": "X",
+    });
+    let north = json!({
+        "units": "m", "long_name": "metres north of the origin", "standard_name": "projection_y_coordinate", "axis": "Y",
+    });
+    // Added to 0, a south of 0 is no -0.
+    let northings = window.southings().into_iter().map(|south| 0.0 - south).collect();
+    [
+        Coordinate { name: "x", values: window.eastings(), attributes: east },
+        Coordinate { name: "y", values: northings, attributes: north },
+    ]
+}
+
+impl Target for Zarr {
+    fn stages(&self) -> Vec<Stage> {
+        vec![self.stage()]
+    }
+
+    fn window(&self, row: usize, column: usize) -> Window {
+        self.tiling.tile(&self.identity.window, column, row)
+    }
+
+    fn places(&self, job: Job) -> Vec<Place> {
+        let chunk = |layer: &String| Place::Result(format!("{layer}/c/{}/{}", job.row, job.column).into());
+        self.identity.layers.iter().map(chunk).collect()
+    }
+
+    fn reads(&self, _: Job) -> Vec<Job> {
+        Vec::new()
+    }
+
+    fn make(&self, _: Job, grids: &[Grid], _: &Shelf) -> Result<Made> {
+        let files =
+            grids.iter().map(|grid| pack(square(grid, self.identity.tile, f32::NAN).iter().map(|h| h.to_le_bytes())));
+        Ok(Made { files: files.collect::<Result<_>>()?, ranges: Vec::new() })
+    }
+
+    fn finish(&self, shelf: &Shelf) -> Result<Vec<PathBuf>> {
+        let mut written = Vec::new();
+        let mut put = |path: PathBuf, bytes: &[u8]| {
+            shelf.file(&Place::Result(path.clone()), bytes)?;
+            written.push(path);
+            Ok::<(), Error>(())
+        };
+        let mut arrays = Vec::new();
+        for coordinate in coordinates(&self.identity.window) {
+            let folder = Path::new(coordinate.name);
+            let chunk = coordinate.values.len().min(COORDINATES);
+            for (n, values) in coordinate.values.chunks(chunk).enumerate() {
+                // Chunks are whole; what lies beyond the side is never looked at.
+                let beyond = std::iter::repeat_n(0.0, chunk - values.len());
+                let bytes = pack(values.iter().copied().chain(beyond).map(f64::to_le_bytes))?;
+                put(folder.join(format!("c/{n}")), &bytes)?;
+            }
+            let array = metadata::array(&Array {
+                shape: &[coordinate.values.len()],
+                chunk: &[chunk],
+                sides: &[coordinate.name],
+                number: Number::F64,
+                attributes: coordinate.attributes,
+            });
+            arrays.push((coordinate.name.to_string(), array));
+        }
+        let layers = self.identity.layers.iter().zip(&self.identity.units);
+        arrays.extend(layers.map(|(layer, unit)| (layer.clone(), self.array(layer, unit))));
+        for (name, array) in &arrays {
+            put(Path::new(name).join("zarr.json"), format!("{array:#}\n").as_bytes())?;
+        }
+        let attributes = json!({
+            "title": self.about,
+            "source": format!("Orogen {}", self.identity.version),
+            "recipe_sha256": self.identity.recipe,
+            "cell": self.identity.window.cell,
+        });
+        // Last: without it there is no group, and so none that is half.
+        put("zarr.json".into(), format!("{:#}\n", metadata::group(&arrays, attributes)).as_bytes())?;
+        Ok(written)
+    }
+
+    fn scratch_memory(&self) -> u64 {
+        // Padded, as bytes, shuffled, packed.
+        16 * (self.identity.tile * self.identity.tile) as u64
+    }
+
+    fn disk(&self) -> Disk {
+        let stage = self.stage();
+        // Packed, a chunk is at most as long as it is unpacked, and a frame around it.
+        let (samples, chunks) = (stage.samples as u64, self.identity.layers.len() as u64);
+        let sides = 8 * (self.identity.window.width + self.identity.window.height + 2 * COORDINATES) as u64;
+        Disk { result: stage.len() as u64 * (4 * samples + 64 * chunks) + sides + (1 << 16), scratch: 0 }
+    }
+}
+
+/// A chunk of numbers.
+fn pack<const SIZE: usize>(numbers: impl Iterator<Item = [u8; SIZE]>) -> Result<Vec<u8>> {
+    let bytes: Vec<u8> = numbers.flatten().collect();
+    blosc::pack(&bytes, SIZE as u8)
+        .ok_or_else(|| Error::new(ErrorKind::Request, "a chunk of more than 2 GiB: ask for smaller tiles"))
+}

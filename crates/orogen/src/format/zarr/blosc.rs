@@ -1,0 +1,90 @@
+//! The codec `blosc`: bytes shuffled, then packed by zlib, in the frame of C-Blosc 1.
+//!
+//! The frame (C-Blosc `README_CHUNK_FORMAT.rst`, format version 2): sixteen bytes of header, where each block starts, then the blocks,
+//! each behind its length. Everything is one block here.
+
+use miniz_oxide::deflate::compress_to_vec_zlib;
+
+/// How hard to pack. Half of a height's bits are noise to deflate: its higher levels take longer and save a hundredth.
+pub const LEVEL: u8 = 3;
+
+/// The version of the frame, and that of zlib's part in it.
+const VERSIONS: [u8; 2] = [2, 1];
+
+/// Flags: bytes are shuffled, blocks are not split into a stream for each byte of a number, zlib packs.
+const SHUFFLED: u8 = 1;
+const WHOLE: u8 = 1 << 4;
+const ZLIB: u8 = 3 << 5;
+
+/// Before the block: the header, where the block starts, its length.
+const HEADER: usize = 16;
+const BEFORE: usize = HEADER + 4 + 4;
+
+/// Packs numbers of `size` bytes each; `None` if they are more bytes than a frame can hold (2 GiB less a little).
+pub fn pack(bytes: &[u8], size: u8) -> Option<Vec<u8>> {
+    let length = i32::try_from(bytes.len() + BEFORE).ok()? as usize - BEFORE;
+    let shuffled = shuffle(bytes, usize::from(size));
+    let packed = compress_to_vec_zlib(&shuffled, LEVEL);
+    // A block that is as long as what is in it is taken for one that could not be packed.
+    let block = if packed.len() < length { &packed } else { &shuffled };
+    let mut out = Vec::with_capacity(BEFORE + block.len());
+    out.extend_from_slice(&VERSIONS);
+    out.extend_from_slice(&[SHUFFLED | WHOLE | ZLIB, size]);
+    for number in [length, length, BEFORE + block.len(), HEADER + 4, block.len()] {
+        out.extend_from_slice(&(number as u32).to_le_bytes());
+    }
+    out.extend_from_slice(block);
+    Some(out)
+}
+
+/// All first bytes, then all second ones, and so on.
+fn shuffle(bytes: &[u8], size: usize) -> Vec<u8> {
+    let mut out = Vec::with_capacity(bytes.len());
+    for k in 0..size {
+        out.extend(bytes.iter().skip(k).step_by(size));
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use miniz_oxide::inflate::decompress_to_vec_zlib;
+
+    /// Reads a frame by the rules of its format; knows nothing of the writer.
+    fn unpack(frame: &[u8]) -> Vec<u8> {
+        let number = |at: usize| u32::from_le_bytes(frame[at..at + 4].try_into().unwrap()) as usize;
+        assert_eq!((frame[0], frame[1], frame[2] & 2, frame[2] >> 5), (2, 1, 0, 3));
+        let (size, length, block_size, all) = (usize::from(frame[3]), number(4), number(8), number(12));
+        assert_eq!(all, frame.len());
+        let mut out = Vec::new();
+        for block in 0..length.div_ceil(block_size) {
+            let start = number(16 + 4 * block);
+            let packed = &frame[start + 4..start + 4 + number(start)];
+            let here = block_size.min(length - block * block_size);
+            let block = if packed.len() == here { packed.to_vec() } else { decompress_to_vec_zlib(packed).unwrap() };
+            assert_eq!(block.len(), here);
+            let count = here / size;
+            out.extend((0..here).map(|at| block[at % size * count + at / size]));
+        }
+        out
+    }
+
+    #[test]
+    fn frames_come_back() {
+        let ramp: Vec<u8> = (0..1000).flat_map(|n| (n as f32 * 0.37).to_le_bytes()).collect();
+        let frame = pack(&ramp, 4).unwrap();
+        assert!(frame.len() < 3000, "{}", frame.len());
+        assert_eq!(unpack(&frame), ramp);
+        // What cannot be packed is kept as it is.
+        let mut state = 1u32;
+        let noise: Vec<u8> = (0..256)
+            .map(|_| {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                (state >> 24) as u8
+            })
+            .collect();
+        let frame = pack(&noise, 8).unwrap();
+        assert_eq!((frame.len(), unpack(&frame)), (BEFORE + noise.len(), noise));
+    }
+}
