@@ -20,11 +20,27 @@ pub struct Ask<'a> {
 
 type Fill = Box<dyn Fn(&Ask, &mut Columns) -> Result<(), Mismatch>>;
 
+/// What its documentation says of a noise's slopes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Slope {
+    /// There is none: zero, or not offered.
+    Flat,
+    /// Exact.
+    Exact,
+    /// Exact but on creases.
+    Creased,
+    /// Part of it is left out.
+    Approximate,
+}
+
 /// A noise that can be asked anything.
 pub struct Noise {
     pub name: String,
+    pub slope: Slope,
+    /// Whether its mean is zero.
+    pub centred: bool,
     /// Whether it offers slopes.
-    pub has_slopes: bool,
+    offers_slopes: bool,
     fill: Fill,
 }
 
@@ -32,11 +48,16 @@ impl Noise {
     /// Answers, in columns of the points' length; those that were not asked for are empty.
     pub fn ask(&self, ask: &Ask) -> Result<Columns, Mismatch> {
         let count = ask.points.len();
-        let slopes = if ask.slopes && self.has_slopes { count } else { 0 };
+        let slopes = if ask.slopes && self.offers_slopes { count } else { 0 };
         let mut out =
             [count, slopes, slopes, if ask.depth.is_some() { slopes } else { 0 }].map(|len| vec![f32::NAN; len]);
         (self.fill)(ask, &mut out)?;
         Ok(out)
+    }
+
+    /// The greatest size of its values in the plane and in space, as documented.
+    pub fn bounds(&self) -> [f32; 2] {
+        [1.0, if self.name.starts_with("classic ") { 1.036_36 } else { 1.0 }]
     }
 
     /// The values in the plane.
@@ -79,14 +100,33 @@ macro_rules! flat {
     }};
 }
 
-fn noise(name: impl Into<String>, (has_slopes, fill): (bool, Fill)) -> Noise {
-    Noise { name: name.into(), has_slopes, fill }
+fn noise(name: impl Into<String>, slope: Slope, (offers_slopes, fill): (bool, Fill)) -> Noise {
+    // One-sided are what counts sizes or distances.
+    Noise { name: name.into(), slope, centred: true, offers_slopes, fill }
+}
+
+impl Noise {
+    fn one_sided(self, one_sided: bool) -> Noise {
+        Noise { centred: !one_sided, ..self }
+    }
+}
+
+fn slope_of(basis: Basis, kind: Kind) -> Slope {
+    match kind {
+        _ if !basis.has_gradient() => Slope::Flat,
+        Kind::Fbm => Slope::Exact,
+        Kind::Ridged | Kind::Billow => Slope::Creased,
+        Kind::Weighted { .. } => Slope::Approximate,
+    }
 }
 
 /// Every basis by itself: a fractal of one octave, which moves its lattice and divides by its bound.
 pub fn bases(seed: u64, wavelength: f64) -> Vec<Noise> {
-    let one = |basis| Fractal { basis, seed, wavelength, octaves: 1, ..Fractal::default() };
-    Basis::all().iter().map(|&basis| noise(basis.name(), sloped!(one(basis)))).collect()
+    let one = |&basis: &Basis| {
+        let fractal = Fractal { basis, seed, wavelength, octaves: 1, ..Fractal::default() };
+        noise(basis.name(), slope_of(basis, Kind::Fbm), sloped!(fractal)).one_sided(basis.name().starts_with("worley"))
+    };
+    Basis::all().iter().map(one).collect()
 }
 
 const FALLOFFS: [Falloff; 4] = [Falloff::Reciprocal, Falloff::Exponential, Falloff::SquareRoot, Falloff::Smoothstep];
@@ -99,8 +139,11 @@ pub fn kinds() -> Vec<Kind> {
 
 /// Weighted fractals of every falloff.
 pub fn damped(k: f64, like: Fractal) -> Vec<Noise> {
-    let one = |falloff| Fractal { kind: Kind::Weighted { k, falloff }, ..like };
-    FALLOFFS.iter().map(|&falloff| noise(format!("{falloff:?}"), sloped!(one(falloff)))).collect()
+    let one = |&falloff: &Falloff| {
+        let fractal = Fractal { kind: Kind::Weighted { k, falloff }, ..like };
+        noise(format!("{falloff:?}"), slope_of(like.basis, fractal.kind), sloped!(fractal))
+    };
+    FALLOFFS.iter().map(one).collect()
 }
 
 /// Fractals: plain sums over every basis, every other kind over two of them.
@@ -109,7 +152,11 @@ pub fn fractals(like: Fractal) -> Vec<Noise> {
     for kind in kinds() {
         for &basis in Basis::all() {
             if kind == Kind::Fbm || matches!(basis, Basis::Value | Basis::Perlin) {
-                list.push(noise(format!("{kind:?} over {}", basis.name()), sloped!(Fractal { basis, kind, ..like })));
+                let name = format!("{kind:?} over {}", basis.name());
+                let symmetric = matches!(kind, Kind::Fbm | Kind::Weighted { .. });
+                let one_sided = !symmetric || basis.name().starts_with("worley");
+                let fractal = Fractal { basis, kind, ..like };
+                list.push(noise(name, slope_of(basis, kind), sloped!(fractal)).one_sided(one_sided));
             }
         }
     }
@@ -119,19 +166,26 @@ pub fn fractals(like: Fractal) -> Vec<Noise> {
 /// What stands for itself and is no basis: lattices on the origin, other fades, cells.
 pub fn singles(seed: u64, wavelength: f64) -> Vec<Noise> {
     let mut list = vec![
-        noise("white", sloped!(White { seed, wavelength })),
-        noise("perlin", sloped!(Perlin { seed, wavelength })),
+        noise("white noise", Slope::Flat, sloped!(White { seed, wavelength })),
+        noise("perlin noise", Slope::Exact, sloped!(Perlin { seed, wavelength })),
     ];
-    for fade in [Fade::Step, Fade::Linear, Fade::Cubic, Fade::Quintic] {
-        list.push(noise(format!("value {fade:?}"), sloped!(Value { seed, wavelength, fade })));
+    for (fade, slope) in [
+        (Fade::Step, Slope::Flat),
+        (Fade::Linear, Slope::Creased),
+        (Fade::Cubic, Slope::Exact),
+        (Fade::Quintic, Slope::Exact),
+    ] {
+        list.push(noise(format!("value {fade:?}"), slope, sloped!(Value { seed, wavelength, fade })));
     }
     for variant in [ClassicVariant::Diagonal, ClassicVariant::Eight, ClassicVariant::Angle] {
-        list.push(noise(format!("classic {variant:?}"), sloped!(Classic { seed, wavelength, variant })));
+        let name = format!("classic {variant:?}");
+        list.push(noise(name, Slope::Exact, sloped!(Classic { seed, wavelength, variant })));
     }
     for feature in [Feature::F1, Feature::F2, Feature::Difference, Feature::Product, Feature::Value, Feature::Edge] {
         for distance in [Distance::Euclidean, Distance::Manhattan, Distance::Chebyshev] {
             let worley = Worley { seed, wavelength, distance, feature, jitter: 0.9 };
-            list.push(noise(format!("worley {feature:?} {distance:?}"), flat!(worley)));
+            let name = format!("worley {feature:?} {distance:?}");
+            list.push(noise(name, Slope::Flat, flat!(worley)).one_sided(feature != Feature::Value));
         }
     }
     list
@@ -144,19 +198,25 @@ pub fn tiled(seed: u64, wavelength: f64) -> Vec<Noise> {
         Fractal { basis: Basis::ClassicEight, kind: Kind::Ridged, seed, wavelength, octaves: 3, ..Fractal::default() };
     let edges = Worley { seed, wavelength, feature: Feature::Edge, ..Worley::default() };
     vec![
-        noise("tiled white", sloped!(White { seed, wavelength }.tiled(PERIOD).unwrap())),
-        noise("tiled perlin", sloped!(Perlin { seed, wavelength }.tiled(PERIOD).unwrap())),
-        noise("tiled ridged", sloped!(ridged.tiled(PERIOD).unwrap())),
-        noise("tiled edges", sloped!(edges.tiled(PERIOD).unwrap())),
+        noise("tiled white", Slope::Flat, sloped!(White { seed, wavelength }.tiled(PERIOD).unwrap())),
+        noise("tiled perlin", Slope::Exact, sloped!(Perlin { seed, wavelength }.tiled(PERIOD).unwrap())),
+        noise("tiled ridged", Slope::Creased, sloped!(ridged.tiled(PERIOD).unwrap())).one_sided(true),
+        noise("tiled edges", Slope::Flat, sloped!(edges.tiled(PERIOD).unwrap())).one_sided(true),
     ]
 }
 
-/// All of them.
-pub fn all(seed: u64, wavelength: f64) -> Vec<Noise> {
+/// All that never repeat.
+pub fn endless(seed: u64, wavelength: f64) -> Vec<Noise> {
     let fractal = Fractal { seed, wavelength, octaves: 4, lacunarity: 1.9, gain: 0.6, ..Fractal::default() };
     let mut list = bases(seed, wavelength);
     list.extend(fractals(fractal));
     list.extend(singles(seed, wavelength));
+    list
+}
+
+/// All of them.
+pub fn all(seed: u64, wavelength: f64) -> Vec<Noise> {
+    let mut list = endless(seed, wavelength);
     list.extend(tiled(seed, wavelength));
     list
 }
