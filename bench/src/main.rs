@@ -7,6 +7,7 @@ mod generate;
 mod measure;
 mod noise;
 mod options;
+mod resolution;
 mod rows;
 mod world;
 
@@ -17,7 +18,8 @@ use options::Options;
 /// An area of measurement: its name and what measures it.
 type Area = (&'static str, fn(&Options) -> Result<serde_json::Value, String>);
 
-const AREAS: &[Area] = &[("noise", noise::run), ("generate", generate::run), ("world", world::run)];
+const AREAS: &[Area] =
+    &[("noise", noise::run), ("generate", generate::run), ("world", world::run), ("resolution", resolution::run)];
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();

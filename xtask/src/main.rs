@@ -8,6 +8,7 @@ mod codegen;
 mod failure;
 mod gallery;
 mod licences;
+mod resolution;
 mod shell;
 mod steps;
 mod table;
@@ -33,6 +34,7 @@ const COMMANDS: &[Command] = &[
     Command { name: "codegen", about: codegen::ABOUT, help: codegen::HELP, run: codegen::run },
     Command { name: "bless", about: bless::ABOUT, help: bless::HELP, run: bless::run },
     Command { name: "gallery", about: gallery::ABOUT, help: gallery::HELP, run: gallery::run },
+    Command { name: "resolution", about: resolution::ABOUT, help: resolution::HELP, run: resolution::run },
     Command { name: "bench", about: bench::ABOUT, help: bench::HELP, run: bench::run },
 ];
 
