@@ -47,6 +47,8 @@ pub struct Sampler<W: Borrow<World>> {
     patches: Mutex<Vec<Patch>>,
     /// Buffers that no thread is using.
     idle: Mutex<Vec<Buffers>>,
+    /// Tells nobody; kept, as making one asks for memory.
+    silence: Progress,
 }
 
 /// Ground made ready for points within it.
@@ -73,7 +75,14 @@ impl<W: Borrow<World>> Sampler<W> {
             let ready = world.ready(layer, world.around(&[0.0], &[0.0]))?;
             ready.anywhere().then_some(ready)
         };
-        Ok(Sampler { world, layer: layer.to_string(), everywhere, patches: Mutex::default(), idle: Mutex::default() })
+        Ok(Sampler {
+            world,
+            layer: layer.to_string(),
+            everywhere,
+            patches: Mutex::default(),
+            idle: Mutex::default(),
+            silence: Progress::none(),
+        })
     }
 
     /// The world.
@@ -156,8 +165,9 @@ impl<W: Borrow<World>> Sampler<W> {
             return Err(Error::new(ErrorKind::Request, sentence));
         }
         match &self.everywhere {
-            Some(ready) => self
-                .with_buffers(|buffers| self.world().engine(&Progress::none()).fill_alone(ready, window, buffers, out)),
+            Some(ready) => {
+                self.with_buffers(|buffers| self.world().engine(&self.silence).fill_alone(ready, window, buffers, out))
+            }
             None => {
                 out.copy_from_slice(self.world().window(&self.layer, window)?.data());
                 Ok(())
@@ -166,7 +176,7 @@ impl<W: Borrow<World>> Sampler<W> {
     }
 
     fn ask(&self, ready: &Ready, x: &[f64], y: &[f64], out: &mut [f32]) -> Result<()> {
-        self.with_buffers(|buffers| self.world().engine(&Progress::none()).points_alone(ready, (x, y), buffers, out))
+        self.with_buffers(|buffers| self.world().engine(&self.silence).points_alone(ready, (x, y), buffers, out))
     }
 
     /// Lends buffers that no other thread is using.
