@@ -31,6 +31,9 @@ nodes! {
     }
     solver {
         bake::Bake,
+        drainage::Drainage,
+        fill::Fill,
         normalise::Normalise,
+        stream_power::StreamPower,
     }
 }

@@ -6,6 +6,7 @@ pub mod basins;
 pub mod creep;
 pub mod direction;
 pub mod drainage;
+pub mod erosion;
 pub mod fill;
 pub mod flats;
 pub mod outlets;

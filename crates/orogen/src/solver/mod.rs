@@ -2,4 +2,7 @@
 
 // The list below is written by `cargo xtask codegen`.
 pub mod bake;
+pub mod drainage;
+pub mod fill;
 pub mod normalise;
+pub mod stream_power;

@@ -1,0 +1,104 @@
+//! Mountains that rivers cut while they rise.
+
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use crate::hydrology::erosion::Erosion;
+use crate::hydrology::stream_power::{Ground, StreamPower as Law};
+use crate::op::{Context, Solution, Solver, Sources};
+
+op! {
+    /// The source eroded by rivers while it is lifted: the stream power law, dh/dt = U - K A^m S^n, with landslides and creep.
+    ///
+    /// U is the uplift, K the erodibility, A the drainage area and S the slope. In every step water finds its way anew (over
+    /// the bed of depressions, see `drainage`), then the heights are solved implicitly from the outlets up (Braun and Willett
+    /// 2013), which is stable however long the step; what is steeper than the talus angle slides; then soil creeps by linear
+    /// diffusion (Culling 1960). The sea and the world's border stay as they are. In the end every cell is higher than the
+    /// one it drains to: no depressions, no flats. Ten steps turn any relief into valleys; some hundred bring it to where uplift and
+    /// erosion balance. Rock and uplift that differ from place to place (`softness`, `rise`) make it look real. What comes out
+    /// depends on the cell it is solved at. Time grows with the world and the steps; memory is 45 bytes a cell.
+    pub struct StreamPower = "stream-power", solver, revision 1;
+    inputs {
+        /// The heights to begin with.
+        source: required,
+        /// A factor of the erodibility, 1 if left out: small where rock is hard. Less than 0 counts as 0.
+        softness: optional,
+        /// A factor of the uplift, 1 if left out.
+        rise: optional,
+    }
+    params {
+        /// How long it goes on.
+        years: f64 = 3e5, unit "yr", range 0.0 to 1e9;
+        /// In how many steps.
+        steps: u32 = 10, range 1.0 to 10000.0;
+        /// K: how easily rivers cut, for m = 0.45 from 1e-6 (granite) to 5e-5 (mudstone).
+        erodibility: f64 = 2e-5, unit "m^(1-2m)/yr", range 0.0 to 1.0;
+        /// m: how much more a larger river cuts.
+        area_exponent: f64 = 0.45, range 0.0 to 2.0;
+        /// n: how much more a steeper river cuts.
+        slope_exponent: f64 = 1.0, range 0.2 to 5.0;
+        /// U: how fast the land rises.
+        uplift: f64 = 0.2, unit "mm/yr", range 0.0 to 100.0;
+        /// The steepest slope that stands.
+        talus_angle: f64 = 50.0, unit "deg", range 1.0 to 89.0;
+        /// How fast soil creeps: the diffusivity. Rounds crests, and widens hills to sqrt(creep * time).
+        creep: f64 = 0.01, unit "m^2/yr", range 0.0 to 100.0;
+        /// Whether water that runs between two of a grid's eight directions takes one of them by chance (Rho8, Fairfield and
+        /// Leymarie 1991), another in each step. Without it, slopes show straight parallel grooves.
+        scatter: bool = true;
+        /// Which chances.
+        seed: u64 = 0;
+        /// Whether the ground at or below sea level stays as it is, and water ends there.
+        sea: bool = true;
+    }
+    layers {
+        /// The heights in the end.
+        height: height, unit "m";
+        /// The drainage area: how much ground lies upstream.
+        flow: flow, unit "m^2";
+        /// How much higher the ground is than the source: below 0 where more was cut than rose.
+        change: height, unit "m";
+    }
+}
+
+impl Solver for StreamPower {
+    fn scratch(&self, padded: &Window) -> u64 {
+        padded.len() as u64 * 45
+    }
+
+    fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
+        let window = *sources.padded();
+        let mut change = sources.whole(0, &window)?;
+        let given = |i: usize| sources.given(i).then(|| sources.whole(i, &window)).transpose();
+        let (softness, rise) = (given(1)?, given(2)?);
+        let erosion = Erosion {
+            law: Law {
+                erodibility: self.erodibility,
+                area_exponent: self.area_exponent,
+                slope_exponent: self.slope_exponent,
+                uplift: self.uplift / 1000.0,
+                steepest: libm::tan(self.talus_angle.to_radians()),
+                gentlest: Law::default().gentlest,
+            },
+            creep: self.creep,
+            years: self.years,
+            steps: self.steps,
+            scattered: self.scatter.then_some(context.setting.seed_of(self.seed) as u32),
+        };
+        let ground = Ground { softness: softness.as_ref(), rise: rise.as_ref() };
+        let mut heights = change.clone();
+        let sea_level = self.sea.then_some(context.setting.sea_level as f32);
+        let drained = erosion.run(&mut heights, &ground, sea_level, &|| context.progress.check())?;
+        for (change, height) in change.data_mut().iter_mut().zip(heights.data()) {
+            *change = height - *change;
+        }
+        let cell_area = window.cell * window.cell;
+        let flow = drained.area.data().iter().map(|cells| (f64::from(*cells) * cell_area) as f32).collect();
+        let flow = Grid::from_data(window, flow).unwrap_or_else(|| Grid::filled(window, 0.0));
+        let layers = vec![sources.keep(heights)?, sources.keep(flow)?, sources.keep(change)?];
+        Ok(Solution { layers, scalars: Vec::new() })
+    }
+
+    fn cost(&self) -> f64 {
+        200.0 * f64::from(self.steps)
+    }
+}
