@@ -1,4 +1,4 @@
-"""rasterio reads exported GeoTIFFs: the samples of the .npy, at their places; rio-cogeo finds their layout fit for the cloud."""
+"""rasterio reads exported and built GeoTIFFs: the samples of the .npy, at their places; rio-cogeo finds their layout fit for the cloud."""
 
 import logging
 import subprocess
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy
 import rasterio
-from orogen import ROOT, WORK, Checks, export
+from orogen import ROOT, WORK, Checks, build, export
 from rasterio.errors import RasterioIOError
 from rio_cogeo.cogeo import cog_validate
 
@@ -93,6 +93,22 @@ for name, window in [("even", (24, 8, 1216, 896)), ("odd", (31, 15, 1203, 901))]
             # A quarter of a cell of the full raster, where sides are odd; half of one is what every second sample would be off.
             most = 1e-3 if name == "even" else 0.25 * CELL
             checks.that(f"plane {name}, overview {level}: in its place", worst <= most, f"(off by {worst}, allowed {most})")
+
+# What is built tile by tile is the same file, and one too large to be exported at once is read the same way.
+for name, recipe, options in [
+    ("built", "alpine", ("--cell", 30, "--window", "31,77,1237,899")),
+    ("built-plane", PLANE, ("--cell", CELL, "--window", "31,15,1203,901")),
+]:
+    path = build(recipe, f"{name}.tif", *options)
+    heights = numpy.load(export(recipe, f"{name}.npy", *options))
+    with rasterio.open(path) as tiff:
+        checks.that(f"{name}: bit-equal to the .npy", same_bits(tiff.read(1), heights))
+    valid, errors, complaints = cog_validate(path, strict=True, quiet=True)
+    checks.that(f"{name}: valid for rio-cogeo, strictly", valid and not errors and not complaints, (errors, complaints))
+checks.equal("built: the file that export writes", (WORK / "built.tif").read_bytes(), (WORK / "alpine.tif").read_bytes())
+with rasterio.open(WORK / "built-plane.tif") as tiff:
+    for (east, north), [height] in zip(places, tiff.sample(places)):
+        checks.near(f"built plane at {east}, {north}", float(height), 3.0 * east + 2.0 * north, 1e-3)
 
 checks.equal("nothing was grumbled about", grumbles, [])
 

@@ -35,6 +35,13 @@ def export(recipe, name, *options):
     return path
 
 
+def build(recipe, name, *options):
+    """Builds into a file or folder of this name; returns its path."""
+    path = WORK / name
+    orogen("build", recipe, "-o", path, "--quiet", *options)
+    return path
+
+
 class Checks:
     """Counts what holds; says what does not."""
 

@@ -30,6 +30,8 @@ Builds `orogen` for release, installs what is missing and runs every client, or 
   numpy     NumPy reads .npy: the numbers of summary.json, and which way is east
   pillow    Pillow reads the pictures: what a grey value stands for, and what is sea
   rasterio  rasterio reads GeoTIFFs: the samples and where they lie; rio-cogeo validates their layout
+  xarray    xarray and zarr-python read Zarr groups: the samples and where they lie
+  tiles     NumPy and Pillow read tiles: shared edges, one scale for all; Terrarium heights where a map has them
   taplo     taplo checks every recipe against the JSON Schema, and refuses broken ones
 
 `build` and `install` go first whatever is named. Elsewhere than on Debian, or not as root, it says what to install.
@@ -48,12 +50,15 @@ struct Client {
 }
 
 const NUMPY: &str = "numpy==2.4.6";
+const PILLOW: &str = "pillow==12.2.0";
 
 const CLIENTS: &[Client] = &[
     Client { name: "neon", apt: neon::APT, pip: &[], npm: &[] },
     Client { name: "numpy", apt: &[], pip: &[NUMPY], npm: &[] },
-    Client { name: "pillow", apt: &[], pip: &[NUMPY, "pillow==12.2.0"], npm: &[] },
+    Client { name: "pillow", apt: &[], pip: &[NUMPY, PILLOW], npm: &[] },
     Client { name: "rasterio", apt: &[], pip: &[NUMPY, "rasterio==1.4.4", "rio-cogeo==7.0.4"], npm: &[] },
+    Client { name: "xarray", apt: &[], pip: &[NUMPY, "xarray==2026.9.0", "zarr==3.1.6"], npm: &[] },
+    Client { name: "tiles", apt: &[], pip: &[NUMPY, PILLOW], npm: &[] },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
 
@@ -80,6 +85,8 @@ const STEPS: &[&Step] = &[
     &Step { name: "numpy", about: "NumPy reads .npy", run: || script("numpy") },
     &Step { name: "pillow", about: "Pillow reads the pictures", run: || script("pillow") },
     &Step { name: "rasterio", about: "rasterio and rio-cogeo read GeoTIFFs", run: || script("rasterio") },
+    &Step { name: "xarray", about: "xarray and zarr-python read Zarr groups", run: || script("xarray") },
+    &Step { name: "tiles", about: "NumPy and Pillow read tiles", run: || script("tiles") },
     &Step { name: "taplo", about: "taplo checks the recipes against the schema", run: || script("taplo") },
 ];
 

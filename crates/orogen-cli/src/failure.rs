@@ -5,7 +5,8 @@ use std::process::ExitCode;
 
 use orogen::{Error, ErrorKind};
 
-use crate::interrupt;
+/// What a process ends with that was interrupted: 128 and the number of the signal, as shells count it.
+pub const INTERRUPTED: u8 = 130;
 
 /// Why a command did not do what it was asked to.
 #[derive(Debug)]
@@ -14,7 +15,7 @@ pub enum Failure {
     Usage(String),
     /// It could be asked for, but did not succeed: exit code 1.
     Engine(Error),
-    /// Somebody asked it to stop before it was done: exit code 130.
+    /// Somebody asked it to stop before it was done: exit code [`INTERRUPTED`].
     Interrupted(String),
     /// Whoever read our output has had enough of it: no failure of ours, and nothing to tell.
     BrokenPipe,
@@ -41,7 +42,7 @@ impl Failure {
             Failure::Usage(_) => ExitCode::from(2),
             Failure::Engine(error) if error.kind() == ErrorKind::Request => ExitCode::from(2),
             Failure::Engine(_) => ExitCode::FAILURE,
-            Failure::Interrupted(_) => ExitCode::from(interrupt::CODE),
+            Failure::Interrupted(_) => ExitCode::from(INTERRUPTED),
             Failure::BrokenPipe => ExitCode::SUCCESS,
         }
     }

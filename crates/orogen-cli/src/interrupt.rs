@@ -6,10 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use orogen::{Error, ErrorKind};
 
-use crate::failure::Failure;
-
-/// What a process ends with that was interrupted: 128 and the number of the signal, as shells count it.
-pub const CODE: u8 = 130;
+use crate::failure::{Failure, INTERRUPTED};
 
 /// The flag that an interruption sets. The first one asks the work to stop, so that it puts away what it has begun; a second ends
 /// the process at once.
@@ -21,7 +18,7 @@ pub fn flag() -> Arc<AtomicBool> {
         // Where no handler can be set, Ctrl-C goes on to do what it always did.
         let _ = ctrlc::set_handler(move || {
             if handled.swap(true, Ordering::Relaxed) {
-                std::process::exit(i32::from(CODE));
+                std::process::exit(i32::from(INTERRUPTED));
             }
         });
         flag

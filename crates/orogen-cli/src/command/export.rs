@@ -124,7 +124,7 @@ fn write(out: &mut dyn Write, format: Format, grid: &Grid, spool: Spool) -> io::
             let notes: Vec<(&str, &str)> = notes.iter().map(|(keyword, text)| (*keyword, text.as_str())).collect();
             png::write_grey16(out, grid, &levels, &notes)
         }
-        Format::Tif => geotiff::writer::write(out, grid, &geotiff::writer::Options::default(), spool),
+        Format::Tif => geotiff::writer::write(out, grid, &geotiff::options::Options::default(), spool),
     }
 }
 

@@ -12,10 +12,10 @@ use super::samples;
 use super::shelf::Shelf;
 use super::target::{Disk, Target};
 use crate::error::{Error, ErrorKind, Result};
+use crate::format::geotiff::options::Options;
 use crate::format::geotiff::overview::{Below, Span, half, reduce};
 use crate::format::geotiff::pyramid::Pyramid;
 use crate::format::geotiff::tile::pack;
-use crate::format::geotiff::writer::Options;
 use crate::grid::{Grid, Window};
 
 /// The file. Each level is a stage; a job packs its tile and makes its part of the next level.

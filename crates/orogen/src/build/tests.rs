@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::builder::{Build, Report, Start};
 use super::order::{Form, Order, Samples};
 use crate::error::ErrorKind;
-use crate::format::geotiff::writer;
+use crate::format::geotiff::{options, writer};
 use crate::spool::Spool;
 use crate::{Options, Progress, Recipe, Window, World};
 
@@ -169,7 +169,7 @@ fn a_geotiff_is_the_one_that_export_writes() {
             let order = Order { form: Form::Cog, window, tile: Some(tile), layers: vec!["height".into()] };
             run(&world, &order, &folder.out(), Start::Fresh);
             let mut expect = Vec::new();
-            let options = writer::Options { tile: Some(tile), ..writer::Options::default() };
+            let options = options::Options { tile: Some(tile), ..options::Options::default() };
             writer::write(&mut expect, &world.window("height", &window).unwrap(), &options, Spool::in_memory())
                 .unwrap();
             assert!(fs::read(folder.out()).unwrap() == expect, "{width} x {height} in {tile}");

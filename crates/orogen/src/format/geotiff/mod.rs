@@ -22,6 +22,7 @@
 //! the rows arrive.
 
 mod directory;
+pub mod options;
 pub(crate) mod overview;
 pub(crate) mod pyramid;
 pub(crate) mod tile;

@@ -3,8 +3,9 @@
 use std::io::{self, Write};
 
 use super::directory::{self, Description, Level};
+use super::options::Options;
 use super::overview::half;
-use super::writer::Options;
+
 use crate::grid::Window;
 
 /// The levels of a raster, from the full one to the coarsest, cut into tiles.

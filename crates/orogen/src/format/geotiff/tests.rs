@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Write};
 
-use super::writer::{Options, Writer, write};
+use super::options::Options;
+use super::writer::{Writer, write};
 use crate::file;
 use crate::grid::{Grid, Window};
 use crate::spool::Spool;

@@ -4,28 +4,17 @@ use std::io::{self, Write};
 
 use rayon::prelude::*;
 
+use super::options::Options;
 use super::overview::{Below, Span, half, reduce};
 use super::pyramid::Pyramid;
 use super::tile::pack;
 use crate::grid::{Grid, Window};
 use crate::spool::Spool;
 
-/// How a file is laid out.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Options {
-    /// Samples along a tile's side, a multiple of 16; `None` for 512, or 384 where a level would be just one tile of 512 wide and
-    /// taller than that: some readers take it for strips.
-    pub tile: Option<usize>,
-    /// The value that stands for no value, if there is one. Overviews leave it out of their means.
-    pub nodata: Option<f32>,
-    /// BigTIFF even where the file does not pass 4 GiB.
-    pub big: bool,
-}
-
 /// Writes a grid. `spool` holds the packed tiles until their places in the file are known.
 ///
 /// ```
-/// use orogen::format::geotiff::writer::{self, Options};
+/// use orogen::format::geotiff::{options::Options, writer};
 /// use orogen::{Grid, Window, file, spool::Spool};
 ///
 /// let grid = Grid::filled(Window::new(600, 400, 30.0), 1200.0);
