@@ -13,14 +13,22 @@ pub(crate) const NOWHERE: (f64, f64) = (f64::NAN, f64::NAN);
 /// division says: cells such as 10.24, 0.1 and 1/3 included.
 pub fn split(position: f64, cell: f64) -> (i64, f32) {
     let steps = position / cell;
-    let nearest = steps.round();
-    if nearest * cell == position {
-        return (nearest as i64, 0.0);
+    // From here on every number is whole; what is beyond i64 saturates, as the nearest sample there is.
+    const WHOLE: f64 = (1u64 << 52) as f64;
+    if !(-WHOLE..=WHOLE).contains(&steps) {
+        return (steps as i64, 0.0);
     }
-    let index = steps.floor();
-    let share = (steps - index) as f32;
+    // Rounding by way of an integer: without SSE4.1 the library's `floor` and `round` are calls.
+    let cut = steps as i64;
+    let index = if (cut as f64) > steps { cut - 1 } else { cut };
+    let rest = steps - index as f64;
+    let nearest = if rest < 0.5 { index } else { index + 1 };
+    if nearest as f64 * cell == position {
+        return (nearest, 0.0);
+    }
+    let share = rest as f32;
     // Rounding to f32 can reach 1: that is the next sample.
-    if share >= 1.0 { (index as i64 + 1, 0.0) } else { (index as i64, share) }
+    if share >= 1.0 { (index + 1, 0.0) } else { (index, share) }
 }
 
 /// Reads `grid` at every point into `out`, between samples as the [`LayerKind`] says.
@@ -38,11 +46,19 @@ pub fn read(grid: &Grid, kind: LayerKind, at: &Points, out: &mut [f32]) {
                 }
             }
         }
+        (_, Points::Displaced { xs, ys, dx, dy }) if !xs.is_empty() => {
+            let width = xs.len();
+            let moved = dx.chunks(width).zip(dy.chunks(width));
+            for ((row, y), (dx, dy)) in out.chunks_mut(width).zip(ys.iter()).zip(moved) {
+                for ((sample, x), (dx, dy)) in row.iter_mut().zip(xs.iter()).zip(dx.iter().zip(dy)) {
+                    *sample = reader.at(kind, x + f64::from(*dx), y + f64::from(*dy));
+                }
+            }
+        }
         _ => {
             for (k, sample) in out.iter_mut().enumerate() {
                 let (x, y) = at.position(k).unwrap_or(NOWHERE);
-                let cell = grid.window().cell;
-                *sample = if x.is_finite() && y.is_finite() { reader.at(kind, x, y, cell) } else { f32::NAN };
+                *sample = reader.at(kind, x, y);
             }
         }
     }
@@ -60,12 +76,20 @@ struct Reader<'a> {
     y: i64,
     width: i64,
     height: i64,
+    cell: f64,
 }
 
 impl Reader<'_> {
     fn new(grid: &Grid) -> Reader<'_> {
         let window = grid.window();
-        Reader { data: grid.data(), x: window.x, y: window.y, width: window.width as i64, height: window.height as i64 }
+        Reader {
+            data: grid.data(),
+            x: window.x,
+            y: window.y,
+            width: window.width as i64,
+            height: window.height as i64,
+            cell: window.cell,
+        }
     }
 
     fn sample(&self, i: i64, j: i64) -> f32 {
@@ -74,15 +98,17 @@ impl Reader<'_> {
         self.data.get((j * self.width + i) as usize).copied().unwrap_or(f32::NAN)
     }
 
-    fn at(&self, kind: LayerKind, x: f64, y: f64, cell: f64) -> f32 {
-        if kind == LayerKind::Label {
-            return self.sample(nearest(x, cell), nearest(y, cell));
+    fn at(&self, kind: LayerKind, x: f64, y: f64) -> f32 {
+        if !(x.is_finite() && y.is_finite()) {
+            return f32::NAN;
         }
-        let ((i, u), (j, v)) = (split(x, cell), split(y, cell));
+        let label = || self.sample(nearest(x, self.cell), nearest(y, self.cell));
+        if kind == LayerKind::Label {
+            return label();
+        }
+        let ((i, u), (j, v)) = (split(x, self.cell), split(y, self.cell));
         match kind {
-            LayerKind::Flow => {
-                self.logarithmic(i, j, u, v).unwrap_or_else(|| self.sample(nearest(x, cell), nearest(y, cell)))
-            }
+            LayerKind::Flow => self.logarithmic(i, j, u, v).unwrap_or_else(label),
             _ => self.cubic(i, j, u, v),
         }
     }
@@ -104,8 +130,29 @@ impl Reader<'_> {
         Some(libm::exp(north * (1.0 - v) + south * v) as f32)
     }
 
+    /// The 4 x 4 samples around, if all are the grid's own: the common case, without a look at the border for each.
+    fn inner(&self, i: i64, j: i64) -> Option<[[f32; 4]; 4]> {
+        let (left, top) = (i.saturating_sub(self.x).saturating_sub(1), j.saturating_sub(self.y).saturating_sub(1));
+        if left < 0 || top < 0 || left > self.width - 4 || top > self.height - 4 {
+            return None;
+        }
+        let (left, top, width) = (left as usize, top as usize, self.width as usize);
+        let mut rows = [[0.0; 4]; 4];
+        for (j, row) in rows.iter_mut().enumerate() {
+            let from = (top + j) * width + left;
+            row.copy_from_slice(self.data.get(from..from + 4)?);
+        }
+        Some(rows)
+    }
+
     /// Catmull and Rom's cubic (1974) along x in four rows, then along y. Share 0 gives the sample itself, bit for bit.
     fn cubic(&self, i: i64, j: i64, u: f32, v: f32) -> f32 {
+        if u != 0.0
+            && v != 0.0
+            && let Some(rows) = self.inner(i, j)
+        {
+            return catmull_rom(rows.map(|row| catmull_rom(row, u)), v);
+        }
         let along = |j: i64| {
             if u == 0.0 {
                 return self.sample(i, j);
@@ -120,6 +167,8 @@ impl Reader<'_> {
     }
 }
 
+/// One polynomial through four samples, at `t` of the way from the second to the third.
+#[inline]
 fn catmull_rom([p0, p1, p2, p3]: [f32; 4], t: f32) -> f32 {
     p1 + 0.5 * t * ((p2 - p0) + t * ((2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3) + t * (3.0 * (p1 - p2) + p3 - p0)))
 }

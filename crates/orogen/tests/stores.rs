@@ -107,6 +107,7 @@ fn memory_disk_and_folder_make_the_same_bits() {
                 assert_eq!(on_disk > 0, memory.is_some(), "{name}: {}", world.explain(&plan));
                 assert!(memory.is_none_or(|memory| world.memory_of(&plan) <= memory), "{}", world.explain(&plan));
                 assert_eq!(world.disk_of(&plan) > 0, on_disk > 0);
+                assert_eq!(world.explain(&plan).contains("MiB while it runs"), on_disk > 0);
                 same(&name, &whole, &layers(&world, part));
             }
             let (i, j) = (390, 355);
@@ -236,6 +237,8 @@ fn a_chain_of_solvers_is_planned_in_no_time() {
     let begun = Instant::now();
     let plan = world.plan(&["height"], &Window::new(9, 9, 10.0)).unwrap();
     assert_eq!(plan.solves.len(), 199);
+    let told = world.explain(&plan);
+    assert!(told.contains("samples: ") && told.contains(" to solve the world once\n"), "{told}");
     assert!(begun.elapsed() < Duration::from_secs(5), "{:?}", begun.elapsed());
     let first = world.window("n0", &Window::new(9, 9, 10.0)).unwrap();
     assert_eq!(world.window("height", &Window::new(9, 9, 10.0)).unwrap(), first);

@@ -124,7 +124,7 @@ impl Field for Curve {
     }
 
     fn cost(&self) -> f64 {
-        5.0
+        1.5
     }
 }
 

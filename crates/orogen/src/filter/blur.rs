@@ -80,7 +80,7 @@ impl Filter for Blur {
     }
 
     fn cost(&self, cell: f64) -> f64 {
-        0.2 * (2 * self.halo(cell) + 1) as f64
+        0.33 * (2 * self.halo(cell) + 1) as f64
     }
 }
 

@@ -1,8 +1,9 @@
 //! A plan in words.
 
-use super::memory;
 use super::steps::{Plan, Step};
+use super::{cost, memory};
 use crate::declare::short;
+use crate::grid::Window;
 use crate::op::Op;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;
@@ -66,9 +67,8 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
                 let made: Vec<String> = out.iter().map(|&grid| format!("`{}`", name(plan.grids[grid].node))).collect();
                 writeln!(
                     text,
-                    "  fill {} x {} with {}: {} instructions over {} registers",
-                    window.width,
-                    window.height,
+                    "  fill {} with {}: {} instructions over {} registers",
+                    place(window),
                     made.join(", "),
                     program.instructions.len(),
                     program.registers
@@ -79,17 +79,58 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
                 let wanted: Vec<&str> =
                     layers.iter().zip(out).filter(|(_, out)| out.is_some()).map(|(layer, _)| layer.name).collect();
                 let which = if layers.len() > 1 { format!(" ({})", wanted.join(", ")) } else { String::new() };
-                writeln!(text, "  apply `{}`{which} to {} x {}, halo {halo}", name(*node), window.width, window.height)
+                writeln!(text, "  apply `{}`{which} to {}, halo {halo}", name(*node), place(window))
             }
         };
     }
-    let _ = writeln!(
-        text,
-        "\nmemory: {} at most, with {threads} thread{}",
-        bytes(memory::needed(plan, recipe, threads)),
-        if threads == 1 { "" } else { "s" }
-    );
+    if plan.steps.len() > SHOWN {
+        let _ = writeln!(text, "  and {} more", plan.steps.len() - SHOWN);
+    }
+    let _ = writeln!(text, "\nmemory: {} at most, with {}", bytes(memory::needed(plan, recipe, threads)), on(threads));
+    if let disk @ 1.. = memory::disk(plan) {
+        let _ = writeln!(text, "disk: {} while it runs", bytes(disk));
+    }
+    let solving = plan.solves.iter().fold(0u64, |sum, solve| sum.saturating_add(solve.samples));
+    let solved = if solving > 0 { format!(", and {} to solve the world once", count(solving)) } else { String::new() };
+    let _ = writeln!(text, "samples: {}{solved}", count(plan.samples()));
+    let nanoseconds = cost::needed(plan, recipe);
+    let _ = match duration(nanoseconds) {
+        None => writeln!(text, "time: less than 0.1 s"),
+        Some(one) => {
+            let all = duration(nanoseconds / threads as f64).unwrap_or_else(|| "less than 0.1 s".to_string());
+            writeln!(text, "time: about {one} of one core, {all} with {}; machines differ", on(threads))
+        }
+    };
     text
+}
+
+fn place(window: &Window) -> String {
+    format!("{} x {} at ({}, {})", window.width, window.height, window.x, window.y)
+}
+
+fn on(threads: usize) -> String {
+    format!("{threads} thread{}", if threads == 1 { "" } else { "s" })
+}
+
+/// A number of samples as people read it.
+fn count(samples: u64) -> String {
+    match samples as f64 {
+        n if n >= 1e9 => format!("{:.1} thousand million", n / 1e9),
+        n if n >= 1e6 => format!("{:.1} million", n / 1e6),
+        n if n >= 1e4 => format!("{:.0} thousand", n / 1e3),
+        _ => samples.to_string(),
+    }
+}
+
+/// A time as people read it, to one figure or two: no estimate knows more. None if it is over at once.
+fn duration(nanoseconds: f64) -> Option<String> {
+    Some(match nanoseconds / 1e9 {
+        s if s < 0.1 => return None,
+        s if s < 10.0 => format!("{s:.1} s"),
+        s if s < 100.0 => format!("{s:.0} s"),
+        s if s < 6000.0 => format!("{:.0} minutes", s / 60.0),
+        s => format!("{:.0} hours", s / 3600.0),
+    })
 }
 
 /// The first sentence, cut at a word where it is too long for a line.

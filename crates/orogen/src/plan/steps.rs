@@ -48,6 +48,8 @@ pub struct Solve {
     pub reads: Vec<usize>,
     /// Samples made for its sources, about.
     pub samples: u64,
+    /// Nanoseconds of one core that it takes, about.
+    pub work: f64,
 }
 
 /// One step of a plan.
