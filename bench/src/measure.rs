@@ -1,6 +1,7 @@
 //! Timing that survives a busy machine: CPU time of this thread, jobs taking turns, medians.
 
 use std::hint::black_box;
+use std::time::Instant;
 
 use cpu_time::ThreadTime;
 
@@ -28,9 +29,18 @@ const AT_LEAST: f64 = 0.01;
 /// How many fills one timing may hold.
 const AT_MOST: usize = 500;
 
+/// What a timing counts.
+#[derive(Clone, Copy)]
+pub enum Clock {
+    /// CPU time of the calling thread.
+    Thread,
+    /// Time on the wall: for jobs that have threads of their own. Other work on the machine shows.
+    Wall,
+}
+
 /// The rate of each job, in samples a second: the median of timings in which the jobs take turns, so that whatever slows the
 /// machine for a while slows all of them.
-pub fn rates(jobs: &mut [Job], samples: usize, repetitions: usize) -> Result<Vec<f64>, String> {
+pub fn rates(clock: Clock, jobs: &mut [Job], samples: usize, repetitions: usize) -> Result<Vec<f64>, String> {
     let mut buffer = vec![0.0; samples];
     let mut fills = Vec::new();
     for job in jobs.iter_mut() {
@@ -39,25 +49,28 @@ pub fn rates(jobs: &mut [Job], samples: usize, repetitions: usize) -> Result<Vec
         // The first fill sets up tables and faults pages in; the second tells how many make a timing.
         (job.fill)(&mut buffer);
         check(job.name, &buffer, samples)?;
-        let once = seconds(job, &mut buffer, 1);
+        let once = seconds(clock, job, &mut buffer, 1);
         fills.push(((AT_LEAST / once.max(1e-9)).ceil() as usize).clamp(1, AT_MOST));
     }
     let mut times: Vec<Vec<f64>> = vec![Vec::new(); jobs.len()];
     for _ in 0..repetitions {
         for ((job, &fills), times) in jobs.iter_mut().zip(&fills).zip(&mut times) {
-            times.push(seconds(job, &mut buffer, fills) / fills as f64);
+            times.push(seconds(clock, job, &mut buffer, fills) / fills as f64);
         }
     }
     Ok(times.iter_mut().map(|t| samples as f64 / median(t)).collect())
 }
 
-fn seconds(job: &mut Job, buffer: &mut Vec<f32>, fills: usize) -> f64 {
-    let start = ThreadTime::now();
+fn seconds(clock: Clock, job: &mut Job, buffer: &mut Vec<f32>, fills: usize) -> f64 {
+    let (thread, wall) = (ThreadTime::now(), Instant::now());
     for _ in 0..fills {
         (job.fill)(black_box(buffer));
         black_box(&buffer);
     }
-    start.elapsed().as_secs_f64()
+    match clock {
+        Clock::Thread => thread.elapsed().as_secs_f64(),
+        Clock::Wall => wall.elapsed().as_secs_f64(),
+    }
 }
 
 /// The middle one.
@@ -93,14 +106,14 @@ mod tests {
 
     #[test]
     fn a_job_that_does_nothing_is_found_out() {
-        let error = rates(&mut [Job::new("idle", |_| {})], 64, 1).expect_err("nothing was written");
+        let error = rates(Clock::Thread, &mut [Job::new("idle", |_| {})], 64, 1).expect_err("nothing was written");
         assert!(error.starts_with("idle wrote"), "{error}");
     }
 
     #[test]
     fn rates_of_real_work() {
         let count = |out: &mut Vec<f32>| out.iter_mut().enumerate().for_each(|(i, v)| *v = i as f32);
-        let rates = rates(&mut [Job::new("count", count)], 64, 3).expect("it counts");
+        let rates = rates(Clock::Thread, &mut [Job::new("count", count)], 64, 3).expect("it counts");
         assert!(rates.len() == 1 && rates[0] > 0.0, "{rates:?}");
     }
 }

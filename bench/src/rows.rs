@@ -16,7 +16,7 @@ pub struct Target {
 /// One case against one peer, or alone. Rates are in millions of samples a second.
 pub struct Row {
     /// What is measured.
-    pub case: &'static str,
+    pub case: String,
     /// Our rate; none if we do not offer it.
     pub ours: Option<f64>,
     /// The peer and its rate.
@@ -65,7 +65,7 @@ mod tests {
             (Some(50.0), Some(("p", 100.0)), target(0.8, Some(40.0)), json!(0.5), json!(true)),
             (None, None, target(3.0, None), json!(null), json!(false)),
         ] {
-            let row = Row { case: "c", ours, peer, target }.json();
+            let row = Row { case: "c".to_owned(), ours, peer, target }.json();
             assert_eq!((&row["ratio"], &row["met"], &row["peer"]), (&ratio, &met, &json!("p")), "{row}");
         }
     }

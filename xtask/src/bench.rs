@@ -16,7 +16,7 @@ Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
 
 Builds the benches at full optimisation, measures one area (or each in turn) and prints a table.
 
-  AREA         noise     noise kernels beside other crates, one thread, CPU time
+  AREA         noise     noise kernels beside other crates, one thread, CPU time; AVX2, memory and two threads
                generate  every preset from the command to the last file, all cores, wall clock
                world     chunks, tiles with halos and threads of the preset `hills`
   --json FILE  write the rows as JSON too; needs an AREA once there are several

@@ -1,0 +1,65 @@
+//! Two threads beside one, where arithmetic and not memory is the limit; by the clock on the wall.
+
+use orogen_noise::{Falloff, Fractal, Kind, Mismatch, Points, Worley};
+
+use super::cases::{OCTAVES, SEED};
+use crate::measure::{self, Clock, Job};
+use crate::options::Options;
+use crate::rows::{Row, Target};
+
+/// Samples a side: enough work that starting a thread is nothing beside it.
+const SIDE: usize = 2048;
+const TARGET: Target = Target { peer: "one thread", ratio: 1.9, or_rate: None };
+
+type Fill = fn(&Points, &mut [f32]) -> Result<(), Mismatch>;
+
+const CASES: &[(&str, Fill)] = &[
+    ("fBm 6 octaves, two threads", |at, out| fractal(Kind::Fbm).fill(at, out)),
+    ("ridged 6 octaves, two threads", |at, out| fractal(Kind::Ridged).fill(at, out)),
+    ("weighted fBm 6 octaves, two threads", |at, out| {
+        fractal(Kind::Weighted { k: 1.0, falloff: Falloff::Reciprocal }).fill(at, out)
+    }),
+    ("Worley F1 2D, two threads", |at, out| {
+        Worley { seed: SEED as u64, wavelength: 100.0, ..Worley::default() }.fill(at, out)
+    }),
+];
+
+fn fractal(kind: Kind) -> Fractal {
+    Fractal { kind, seed: SEED as u64, wavelength: 100.0, octaves: OCTAVES as u32, ..Fractal::default() }
+}
+
+/// Measures those that are asked for, where there are two processors.
+pub fn rows(options: &Options) -> Result<Vec<Row>, String> {
+    let mut rows = Vec::new();
+    if std::thread::available_parallelism().map_or(1, usize::from) < 2 {
+        return Ok(rows);
+    }
+    for (name, fill) in CASES.iter().filter(|(name, _)| name.contains(&options.case)) {
+        eprintln!("{name} ...");
+        let mut jobs = [job("two threads", *fill, 2), job(TARGET.peer, *fill, 1)];
+        let rates = measure::rates(Clock::Wall, &mut jobs, SIDE * SIDE, options.repetitions)?;
+        let [two, one] = [0, 1].map(|i| rates.get(i).map_or(0.0, |rate| rate / 1e6));
+        rows.push(Row {
+            case: (*name).to_owned(),
+            ours: Some(two),
+            peer: Some((TARGET.peer, one)),
+            target: Some(TARGET),
+        });
+    }
+    Ok(rows)
+}
+
+/// The picture in as many bands of rows, a thread for each; one is done without a thread.
+fn job(name: &'static str, fill: Fill, threads: usize) -> Job {
+    let axis: Vec<f64> = (0..SIDE).map(|i| i as f64).collect();
+    let rows = SIDE / threads;
+    Job::new(name, move |out| {
+        let band = |(out, ys): (&mut [f32], &[f64])| _ = fill(&Points::Lattice { xs: &axis, ys }, out);
+        let mut bands = out.chunks_mut(rows * SIDE).zip(axis.chunks(rows));
+        let first = bands.next();
+        std::thread::scope(|scope| {
+            bands.for_each(|work| _ = scope.spawn(move || band(work)));
+            first.map(band)
+        });
+    })
+}
