@@ -21,6 +21,8 @@ pub fn check() -> Result {
             // A named target keeps the flags from what runs while building.
             .env("CARGO_BUILD_TARGET", &host)
             .env("CARGO_TARGET_DIR", super::folder().join("asan"))
+            // The report names functions without it, and the build is shorter.
+            .env("CARGO_PROFILE_DEV_DEBUG", "false")
             .env("CARGO_INCREMENTAL", "0");
         shell::run(&mut command)?;
     }
