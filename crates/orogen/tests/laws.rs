@@ -5,10 +5,11 @@ mod support;
 
 use orogen::declare::Input;
 use orogen::field::{add::Add, constant::Constant, fbm::Fbm, perlin::Perlin, transform::Transform, warp::Warp};
+use orogen::filter::blur::Blur;
 use orogen::node::Node;
 use orogen::op::Op;
 use orogen::plan::steps::Step;
-use orogen::solver::normalise::Normalise;
+use orogen::solver::{bake::Bake, normalise::Normalise};
 use orogen::{Grid, Progress, Recipe, Window, World, WorldSpec};
 use support::{Random, open, recipe_of, world_of};
 
@@ -30,6 +31,7 @@ fn tiles_equal_crop(name: &str, recipe: &Recipe, cell: f64) {
     let warm = open(recipe, 1);
     let mut random = Random(name.len() as u64);
     let mut tiles = vec![(Window::new(31, 17, cell).at(13, 44), true)];
+    tiles.push((whole_window, true));
     for size in [1usize, 2, 7, 33, 64] {
         for _ in 0..2 {
             let x = random.below((97 - size) as u64 + 1) as i64;
@@ -61,6 +63,43 @@ fn tile_equals_crop_for_every_node() {
                 let name = format!("{}{} at {cell}", node.spec().op, if masked { " masked" } else { "" });
                 tiles_equal_crop(&name, &recipe, cell);
             }
+        }
+    }
+}
+
+/// A plan is plain data: a test may say that all solutions are on disk, and that their sources are made in tiny tiles.
+#[test]
+fn every_node_is_the_same_from_disk_and_in_tiles_of_any_size() {
+    for node in Node::all() {
+        let cell = 1.0 / 3.0;
+        let from = recipe_of(&node, world_of(cell), false);
+        let mut recipe = Recipe::new(from.world);
+        for named in from.nodes() {
+            recipe.add_masked(&named.name, named.node.clone(), named.mask.clone());
+        }
+        // Warps that read filters that read solvers that read the node.
+        let noise = Fbm { seed: 8, wavelength: 20.0 * cell, octaves: 2, ..Default::default() };
+        recipe.add("move", noise).add("kept", Bake { source: "node".into(), cell: 0.7 * cell });
+        recipe.add("soft2", Blur { source: "kept".into(), radius: 1.1 * cell });
+        recipe.add("last", Warp { source: "soft2".into(), x: "move".into(), y: "move".into(), strength: 9.0 * cell });
+        recipe.output("height", "last").output("node", "node");
+        let window = Window::new(60, 50, cell).at(30, 29);
+        let layers = ["height", "node"];
+        let expect = open(&recipe, 2).grids(&layers, &window, &Progress::none()).unwrap();
+        for (side, threads, tile) in
+            [(1 << 20, 1, window), (33, 2, window), (50, 2, Window::new(7, 1, cell).at(41, 77))]
+        {
+            let world = open(&recipe, threads);
+            let mut plan = world.plan(&layers, &tile).unwrap();
+            assert!(!plan.solves.is_empty());
+            for solve in &mut plan.solves {
+                (solve.on_disk, solve.side) = (true, side);
+            }
+            for (whole, made) in expect.iter().zip(world.run(&plan, &Progress::none()).unwrap()) {
+                same_bits(&format!("{} in tiles of {side}, on disk", node.spec().op), whole, &made);
+            }
+            // In memory again, from what is on disk.
+            same_bits(node.spec().op, &expect[0], &world.window("height", &tile).unwrap());
         }
     }
 }
