@@ -31,9 +31,12 @@ nodes! {
     }
     solver {
         bake::Bake,
+        breach::Breach,
         drainage::Drainage,
         fill::Fill,
+        lakes::Lakes,
         normalise::Normalise,
+        rivers::Rivers,
         stream_power::StreamPower,
     }
 }

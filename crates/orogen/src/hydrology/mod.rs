@@ -3,14 +3,17 @@
 
 pub mod accumulation;
 pub mod basins;
+pub mod breach;
 pub mod creep;
 pub mod direction;
 pub mod drainage;
 pub mod erosion;
 pub mod fill;
 pub mod flats;
+pub mod lakes;
 pub mod outlets;
 pub mod receivers;
+pub mod rivers;
 #[cfg(test)]
 mod samples;
 pub mod steepest;

@@ -2,7 +2,10 @@
 
 // The list below is written by `cargo xtask codegen`.
 pub mod bake;
+pub mod breach;
 pub mod drainage;
 pub mod fill;
+pub mod lakes;
 pub mod normalise;
+pub mod rivers;
 pub mod stream_power;

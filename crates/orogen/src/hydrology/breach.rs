@@ -1,0 +1,71 @@
+//! Depressions opened rather than filled.
+
+use super::accumulation::accumulate;
+use super::drainage::Drainage;
+use super::fill::filled;
+use super::outlets::Outlets;
+use crate::grid::Grid;
+
+/// The heights without depressions: each is drained by a channel cut along the way that `drainage` takes out of it, no deeper
+/// than `deepest` metres; what lies deeper is filled up to there first (after Lindsay 2016, "Efficient hybrid breaching-filling
+/// sink removal methods for flow path enforcement in digital elevation models"). 0 fills, infinity only cuts.
+///
+/// Water then nowhere runs uphill along the receivers of `drainage`. Outlets stay as they are. Costs O(cells).
+pub fn breach(heights: &Grid, outlets: &Outlets, drainage: &Drainage, deepest: f32) -> Grid {
+    let mut out = filled(heights, &drainage.basins);
+    for ((level, h), label) in out.data_mut().iter_mut().zip(heights.data()).zip(&drainage.basins.labels) {
+        // As far as a cut of that depth through the pass drains it.
+        let drained = drainage.basins.ways_out[*label as usize].level - deepest;
+        *level = if drained > *h { drained.min(*level) } else { *h };
+    }
+    let receivers = &drainage.receivers;
+    let h = out.data_mut();
+    for cell in accumulate(receivers).order.into_iter().map(|cell| cell as usize) {
+        let receiver = receivers.of(cell);
+        if h[cell] < h[receiver] && !outlets.at(receiver) {
+            h[receiver] = h[cell];
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Window;
+    use crate::hydrology::steepest::Descent;
+    use crate::hydrology::{drainage, samples};
+
+    #[test]
+    fn no_depression_is_left_and_no_cut_is_too_deep() {
+        for heights in samples::grids() {
+            for deepest in [0.0, 20.0, 150.0, f32::INFINITY] {
+                let outlets = Outlets::new(&heights, None);
+                let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+                let filled = filled(&heights, &drainage.basins);
+                let out = breach(&heights, &outlets, &drainage, deepest);
+                for c in (0..out.data().len()).filter(|c| !outlets.at(*c)) {
+                    let (new, old, full) = (out.data()[c], heights.data()[c], filled.data()[c]);
+                    assert!(new <= full && old - new <= deepest + 1e-3, "{old} to {new}, filled {full}");
+                    assert!(deepest > 0.0 || new == full);
+                    assert!(deepest < f32::INFINITY || new <= old, "only cut");
+                    let receiver = drainage.receivers.of(c);
+                    // An outlet is not cut, so a channel that comes out below it is its pond.
+                    assert!(outlets.at(receiver) || out.data()[receiver] <= new);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_dam_is_cut_through() {
+        let mut heights = Grid::filled(Window::new(9, 5, 1.0), 9.0);
+        heights.row_mut(2).copy_from_slice(&[9.0, 3.0, 2.0, 3.0, 6.0, 4.0, 1.0, 0.5, 0.0]);
+        let outlets = Outlets::new(&heights, None);
+        let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+        let cut = breach(&heights, &outlets, &drainage, f32::INFINITY);
+        assert_eq!(cut.row(2), [9.0, 3.0, 2.0, 2.0, 2.0, 2.0, 1.0, 0.5, 0.0]);
+        let both = breach(&heights, &outlets, &drainage, 1.5);
+        assert_eq!(both.row(2), [9.0, 4.5, 4.5, 4.5, 4.5, 4.0, 1.0, 0.5, 0.0]);
+    }
+}

@@ -1,0 +1,177 @@
+//! Lakes: what stands in depressions.
+
+use super::direction::{DISTANCES, neighbour, strides};
+use super::drainage::Drainage;
+use super::outlets::Outlets;
+use crate::grid::Grid;
+use crate::hydrology::accumulation::accumulate;
+
+/// One lake.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lake {
+    /// The height of its surface.
+    pub level: f32,
+    /// Where it is deepest; the first in row order if there are several.
+    pub deepest: u32,
+    /// The dry cell over which it spills.
+    pub outlet: u32,
+    /// How many cells it covers.
+    pub cells: u32,
+}
+
+/// A map's lakes.
+#[derive(Debug, Clone)]
+pub struct Lakes {
+    /// The lake of each cell, numbered from 1 in row order; 0 on land.
+    pub labels: Grid<u32>,
+    /// The lakes, by their label less 1.
+    pub lakes: Vec<Lake>,
+    /// The ground, depressions too small for a lake raised until their water runs out.
+    pub bed: Grid,
+    /// The lakes' surface, and the bed where there is none.
+    pub surface: Grid,
+}
+
+/// Rise over run of raised ground: as gentle as sediment lies.
+const GENTLEST: f64 = 1e-4;
+
+/// Fills every depression of at least `fewest` cells with water to where it spills, and smaller ones with ground.
+///
+/// `drainage` is that of [`over_bed`](super::drainage::over_bed) on the same heights. Then every cell of the land is higher than
+/// the one it drains to, up to a lake's shore, the sea or the border, and every lake's outlet drains. Costs O(cells).
+pub fn lakes(heights: &Grid, outlets: &Outlets, drainage: &Drainage, fewest: u32) -> Lakes {
+    let mut found = find(heights, drainage, fewest);
+    raise(&mut found, outlets, drainage);
+    found
+}
+
+/// The connected cells under water. Neighbours under water have one level, or the higher water would run off.
+fn find(heights: &Grid, drainage: &Drainage, fewest: u32) -> Lakes {
+    let (h, basins) = (heights.data(), &drainage.basins);
+    let under = |c: usize| h[c] < basins.ways_out[basins.labels[c] as usize].level;
+    let strides = strides(heights.width());
+    let mut labels = Grid::filled(*heights.window(), 0u32);
+    let mut lakes = Vec::new();
+    let mut seen = vec![false; h.len()];
+    let mut cells = Vec::new();
+    for start in 0..h.len() {
+        if seen[start] || !under(start) {
+            continue;
+        }
+        cells.clear();
+        cells.push(start);
+        seen[start] = true;
+        let mut next = 0;
+        while let Some(c) = cells.get(next).copied() {
+            next += 1;
+            // What is under water is no outlet, so all its neighbours are there.
+            for n in strides.map(|stride| neighbour(c, stride)) {
+                if !seen[n] && under(n) {
+                    seen[n] = true;
+                    cells.push(n);
+                }
+            }
+        }
+        if (cells.len() as u64) < u64::from(fewest.max(1)) {
+            continue;
+        }
+        let label = lakes.len() as u32 + 1;
+        cells.iter().for_each(|c| labels.data_mut()[*c] = label);
+        let deepest =
+            cells.iter().copied().fold(start, |best, c| match h[c] < h[best] || h[c] == h[best] && c < best {
+                true => c,
+                false => best,
+            });
+        let mut outlet = deepest;
+        while labels.data()[outlet] == label {
+            outlet = drainage.receivers.of(outlet);
+        }
+        let level = basins.ways_out[basins.labels[start] as usize].level;
+        lakes.push(Lake { level, deepest: deepest as u32, outlet: outlet as u32, cells: cells.len() as u32 });
+    }
+    Lakes { labels, lakes, bed: heights.clone(), surface: heights.clone() }
+}
+
+/// Raises land, from the outlets up, to stand above what it drains to, and lakes to where their outlet then lies.
+fn raise(found: &mut Lakes, outlets: &Outlets, drainage: &Drainage) {
+    let cell = found.bed.window().cell;
+    let (bed, surface) = (found.bed.data_mut(), found.surface.data_mut());
+    for c in accumulate(&drainage.receivers).order.into_iter().rev().map(|c| c as usize) {
+        let label = found.labels.data()[c];
+        if let Some(lake) = label.checked_sub(1).and_then(|k| found.lakes.get_mut(k as usize)) {
+            lake.level = surface[lake.outlet as usize].max(lake.level);
+            surface[c] = lake.level;
+        } else if !outlets.at(c) {
+            let below = surface[drainage.receivers.of(c)];
+            let rise = DISTANCES[usize::from(drainage.receivers.code(c) & 7)] * cell * GENTLEST;
+            let least = (f64::from(below) + rise) as f32;
+            // In f32 the gentlest rise may come to nothing; water still has to run. Dry ground higher than its receiver stays.
+            if bed[c] <= below {
+                bed[c] = if least > below { least } else { below.next_up() };
+            }
+            surface[c] = bed[c];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Window;
+    use crate::hydrology::direction::NONE;
+    use crate::hydrology::steepest::{self, Descent};
+    use crate::hydrology::{drainage, samples};
+
+    fn made(heights: &Grid, fewest: u32) -> (Outlets, Lakes) {
+        let outlets = Outlets::new(heights, Some(100.0));
+        let drainage = drainage::over_bed(heights, &outlets, Descent::Steepest);
+        let lakes = lakes(heights, &outlets, &drainage, fewest);
+        (outlets, lakes)
+    }
+
+    #[test]
+    fn land_drains_to_the_sea_the_border_or_a_lake() {
+        for heights in samples::grids() {
+            for fewest in [1, 4, 25, u32::MAX] {
+                let (outlets, lakes) = made(&heights, fewest);
+                let receivers = steepest::receivers(&lakes.surface, &outlets, Descent::Steepest);
+                for c in 0..heights.data().len() {
+                    let lake = lakes.labels.data()[c];
+                    assert!(outlets.at(c) || lake > 0 || receivers.code(c) != NONE, "cell {c}");
+                    if lake == 0 && !outlets.at(c) {
+                        assert!(lakes.bed.data()[c] >= heights.data()[c]);
+                    } else {
+                        assert_eq!(lakes.bed.data()[c].to_bits(), heights.data()[c].to_bits());
+                    }
+                }
+                let mut cells = vec![0u32; lakes.lakes.len() + 1];
+                lakes.labels.data().iter().for_each(|label| cells[*label as usize] += 1);
+                for (k, lake) in lakes.lakes.iter().enumerate() {
+                    assert!(lake.cells >= fewest && lake.cells == cells[k + 1]);
+                    let outlet = lake.outlet as usize;
+                    assert_eq!(lakes.surface.data()[lake.deepest as usize], lake.level);
+                    assert!(lakes.surface.data()[outlet] <= lake.level, "water can leave");
+                    assert_ne!(lakes.labels.data()[outlet], k as u32 + 1);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn two_bowls_one_too_small() {
+        let mut heights = Grid::filled(Window::new(14, 8, 10.0), 200.0);
+        for j in 2..5 {
+            heights.row_mut(j)[2..6].fill(150.0);
+        }
+        heights.row_mut(3)[3] = 140.0;
+        heights.row_mut(3)[1] = 170.0;
+        heights.row_mut(3)[0] = 160.0;
+        heights.row_mut(5)[10] = 190.0;
+        let (_, lakes) = made(&heights, 4);
+        let expect = Lake { level: 170.0, deepest: 3 * 14 + 3, outlet: 3 * 14 + 1, cells: 12 };
+        assert_eq!(lakes.lakes, [expect]);
+        assert_eq!(lakes.surface.get(4, 4), 170.0);
+        assert_eq!(lakes.bed.get(3, 3), 140.0);
+        assert!(lakes.bed.get(10, 5) > 200.0 && lakes.bed.get(10, 5) < 201.0);
+    }
+}

@@ -1,0 +1,165 @@
+//! Rivers: the network as lines, with how much water they carry and how wide they are.
+
+use super::accumulation::Accumulation;
+use super::receivers::Receivers;
+use crate::grid::Grid;
+
+/// A stretch of river without a confluence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reach {
+    /// Its cells downstream. The last is the first of the reach it flows into, or the outlet.
+    pub cells: Vec<u32>,
+    /// Strahler's order.
+    pub order: u8,
+    /// The reach it flows into; none at an outlet.
+    pub next: Option<u32>,
+}
+
+/// How much water a drainage area gives, and how wide a bed and how deep it needs (Leopold and Maddock 1953: w = a Q^0.5,
+/// d = c Q^0.4, with Q in m^3/s).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Channel {
+    /// Water that runs off, in metres a year.
+    pub runoff: f64,
+    /// a: the width of a river of 1 m^3/s, in metres.
+    pub width: f64,
+    /// c: its depth, in metres.
+    pub depth: f64,
+}
+
+/// Seconds in a year of 365.25 days.
+const YEAR: f64 = 31_557_600.0;
+
+impl Channel {
+    /// Q, in m^3/s, of a drainage area in m^2.
+    pub fn discharge(&self, area: f64) -> f64 {
+        area * self.runoff / YEAR
+    }
+
+    /// Metres from bank to bank.
+    pub fn width_of(&self, discharge: f64) -> f64 {
+        self.width * discharge.max(0.0).sqrt()
+    }
+
+    /// Metres from bank to bed.
+    pub fn depth_of(&self, discharge: f64) -> f64 {
+        self.depth * libm::pow(discharge.max(0.0), 0.4)
+    }
+}
+
+/// The network of all cells whose order, as [`orders`](super::strahler::orders) gives it, is above 0: reaches from spring or
+/// confluence to confluence or outlet, in row order of their first cells. Costs O(cells).
+pub fn network(receivers: &Receivers, orders: &Grid<u8>) -> Vec<Reach> {
+    let orders = orders.data();
+    let mut inflows = vec![0u8; orders.len()];
+    let river = |c: usize| orders[c] > 0;
+    for c in (0..orders.len()).filter(|c| river(*c)) {
+        let receiver = receivers.of(c);
+        if receiver != c {
+            inflows[receiver] += 1;
+        }
+    }
+    // A reach begins at a spring and at a confluence.
+    let starts: Vec<usize> = (0..orders.len()).filter(|c| river(*c) && inflows[*c] != 1).collect();
+    let mut reaches = Vec::with_capacity(starts.len());
+    for start in &starts {
+        let mut cells = vec![*start as u32];
+        let mut at = *start;
+        let end = loop {
+            let receiver = receivers.of(at);
+            if receiver == at {
+                break None;
+            }
+            cells.push(receiver as u32);
+            if inflows[receiver] != 1 {
+                break Some(receiver);
+            }
+            at = receiver;
+        };
+        let next = end.and_then(|end| starts.binary_search(&end).ok()).map(|k| k as u32);
+        reaches.push(Reach { cells, order: orders[*start], next });
+    }
+    reaches
+}
+
+/// Cuts the beds of rivers into ground on which no receiver is higher than its donor: by the depth their water needs. The area
+/// only grows downstream, so the beds fall as the ground does. Cells of order 0, and outlets, stay.
+pub fn carve(heights: &mut Grid, receivers: &Receivers, drained: &Accumulation, orders: &Grid<u8>, channel: &Channel) {
+    let cell_area = heights.window().cell * heights.window().cell;
+    for (c, h) in heights.data_mut().iter_mut().enumerate() {
+        if orders.data()[c] > 0 && receivers.of(c) != c {
+            let discharge = channel.discharge(f64::from(drained.area.data()[c]) * cell_area);
+            *h = (f64::from(*h) - channel.depth_of(discharge)) as f32;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hydrology::accumulation::accumulate;
+    use crate::hydrology::outlets::Outlets;
+    use crate::hydrology::steepest::Descent;
+    use crate::hydrology::{breach, drainage, samples, strahler};
+
+    const CHANNEL: Channel = Channel { runoff: 0.5, width: 5.0, depth: 0.3 };
+
+    #[test]
+    fn reaches_cover_the_rivers_once_and_join() {
+        for heights in samples::grids() {
+            let receivers = drainage::over_bed(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
+            let drained = accumulate(&receivers);
+            let orders = strahler::orders(&receivers, &drained, 5);
+            let reaches = network(&receivers, &orders);
+            let mut covered = vec![0u32; orders.data().len()];
+            for reach in &reaches {
+                for pair in reach.cells.windows(2) {
+                    assert_eq!(receivers.of(pair[0] as usize), pair[1] as usize);
+                }
+                let last = reach.cells[reach.cells.len() - 1];
+                match reach.next {
+                    Some(next) => {
+                        assert_eq!(reaches[next as usize].cells[0], last);
+                        assert!(reaches[next as usize].order >= reach.order);
+                        reach.cells[..reach.cells.len() - 1].iter().for_each(|c| covered[*c as usize] += 1);
+                    }
+                    None => {
+                        assert_eq!(receivers.of(last as usize), last as usize);
+                        reach.cells.iter().for_each(|c| covered[*c as usize] += 1);
+                    }
+                }
+            }
+            for (c, count) in covered.iter().enumerate() {
+                assert_eq!(*count, u32::from(orders.data()[c] > 0), "cell {c}");
+            }
+        }
+    }
+
+    #[test]
+    fn beds_never_rise_downstream() {
+        for heights in samples::grids() {
+            let outlets = Outlets::new(&heights, None);
+            let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+            let mut ground = breach::breach(&heights, &outlets, &drainage, 30.0);
+            let drained = accumulate(&drainage.receivers);
+            let orders = strahler::orders(&drainage.receivers, &drained, 5);
+            let before = ground.clone();
+            carve(&mut ground, &drainage.receivers, &drained, &orders, &CHANNEL);
+            for c in (0..ground.data().len()).filter(|c| !outlets.at(*c)) {
+                let receiver = drainage.receivers.of(c);
+                assert!(outlets.at(receiver) || ground.data()[receiver] <= ground.data()[c]);
+                assert_eq!(ground.data()[c] < before.data()[c], orders.data()[c] > 0);
+            }
+        }
+    }
+
+    #[test]
+    fn a_large_river_has_the_measures_of_one() {
+        // The Rhine at Basel: 36 000 km^2, about 1000 m^3/s, some 200 m wide.
+        let discharge = Channel { runoff: 0.9, width: 5.0, depth: 0.3 }.discharge(36e9);
+        assert!((discharge - 1000.0).abs() < 50.0, "{discharge}");
+        assert!((CHANNEL.width_of(discharge) - 160.0).abs() < 10.0);
+        assert!((CHANNEL.depth_of(discharge) - 4.8).abs() < 0.3);
+        assert_eq!(CHANNEL.width_of(0.0), 0.0);
+    }
+}

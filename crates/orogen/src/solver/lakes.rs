@@ -1,0 +1,69 @@
+//! Lakes in the depressions of the land.
+
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use crate::hydrology::outlets::Outlets;
+use crate::hydrology::steepest::Descent;
+use crate::hydrology::{drainage, lakes};
+use crate::op::{Context, Solution, Solver, Sources};
+
+op! {
+    /// Depressions of the source filled with water to where it spills; small ones filled with ground.
+    ///
+    /// Every lake has an outlet that drains, and all other land drains to a lake, the sea or the world's border: ground in
+    /// depressions too small for a lake is raised, as gently as sediment lies, until water runs off it (1 in 10 000). Time and
+    /// memory grow with the world, 35 bytes a cell.
+    pub struct Lakes = "lakes", solver, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// How large a lake is at least; it covers no fewer than 4 cells.
+        smallest: f64 = 20000.0, unit "m^2", range 0.0 to 1e15;
+        /// Whether water also leaves where the ground is at or below sea level.
+        sea: bool = true;
+    }
+    layers {
+        /// The ground: beds of lakes as they were, depressions too small for a lake raised.
+        height: height, unit "m";
+        /// How deep the water is; 0 on land.
+        depth: height, unit "m";
+        /// The lakes' surface, and the ground where there is none.
+        surface: height, unit "m";
+        /// Which lake it is, numbered from 1; 0 on land.
+        lake: label;
+    }
+}
+
+impl Solver for Lakes {
+    fn scratch(&self, padded: &Window) -> u64 {
+        padded.len() as u64 * 35
+    }
+
+    fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
+        let heights = sources.whole(0, sources.padded())?;
+        context.progress.check()?;
+        let window = *heights.window();
+        let outlets = Outlets::new(&heights, self.sea.then_some(context.setting.sea_level as f32));
+        let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+        context.progress.check()?;
+        let fewest = (self.smallest / (window.cell * window.cell)).ceil().clamp(4.0, f64::from(u32::MAX)) as u32;
+        let found = lakes::lakes(&heights, &outlets, &drainage, fewest);
+        let mut depth = heights;
+        for (depth, (surface, bed)) in
+            depth.data_mut().iter_mut().zip(found.surface.data().iter().zip(found.bed.data()))
+        {
+            *depth = surface - bed;
+        }
+        let labels = found.labels.data().iter().map(|label| *label as f32).collect();
+        let labels = Grid::from_data(window, labels).unwrap_or_else(|| Grid::filled(window, 0.0));
+        let layers = [found.bed, depth, found.surface, labels];
+        let layers = layers.into_iter().map(|grid| sources.keep(grid)).collect::<Result<Vec<_>>>()?;
+        Ok(Solution { layers, scalars: Vec::new() })
+    }
+
+    fn cost(&self) -> f64 {
+        100.0
+    }
+}

@@ -1,0 +1,88 @@
+//! Rivers and their beds.
+
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use crate::hydrology::accumulation::accumulate;
+use crate::hydrology::outlets::Outlets;
+use crate::hydrology::rivers::{Channel, carve};
+use crate::hydrology::steepest::Descent;
+use crate::hydrology::{breach, drainage, strahler};
+use crate::op::{Context, Solution, Solver, Sources};
+
+op! {
+    /// Rivers wherever enough ground drains, with beds cut into the source that fall all the way downstream.
+    ///
+    /// Depressions are drained first as `breach` does. A river of discharge Q (m^3/s) is `width` Q^0.5 metres wide and `depth`
+    /// Q^0.4 deep (Leopold and Maddock 1953); its bed is cut by that depth into the cells it runs through, whatever its width.
+    /// Time and memory grow with the world, 40 bytes a cell.
+    pub struct Rivers = "rivers", solver, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// Drainage area from which on there is a river.
+        stream: f64 = 5e6, unit "m^2", range 0.0 to 1e15;
+        /// Water that runs off the ground.
+        runoff: f64 = 0.5, unit "m/yr", range 0.0 to 1000.0;
+        /// Width of a river of 1 m^3/s.
+        width: f64 = 5.0, unit "m", range 0.0 to 1000.0;
+        /// Depth of a river of 1 m^3/s.
+        depth: f64 = 0.3, unit "m", range 0.0 to 1000.0;
+        /// The deepest cut through the rim of a depression; what lies deeper is filled.
+        deepest: f64 = 50.0, unit "m", range 0.0 to 1e6;
+        /// Whether water also leaves where the ground is at or below sea level.
+        sea: bool = true;
+    }
+    layers {
+        /// The ground with the rivers' beds.
+        height: height, unit "m";
+        /// The drainage area: how much ground lies upstream.
+        flow: flow, unit "m^2";
+        /// How wide the river is; 0 where there is none.
+        width: label, unit "m";
+        /// Strahler's order of the river; 0 where there is none.
+        strahler: label;
+    }
+}
+
+impl Solver for Rivers {
+    fn scratch(&self, padded: &Window) -> u64 {
+        padded.len() as u64 * 40
+    }
+
+    fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
+        let heights = sources.whole(0, sources.padded())?;
+        context.progress.check()?;
+        let window = *heights.window();
+        let outlets = Outlets::new(&heights, self.sea.then_some(context.setting.sea_level as f32));
+        let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+        let mut ground = breach::breach(&heights, &outlets, &drainage, self.deepest as f32);
+        drop(heights);
+        context.progress.check()?;
+        let drained = accumulate(&drainage.receivers);
+        let cell_area = window.cell * window.cell;
+        let threshold = (self.stream / cell_area).ceil().clamp(1.0, f64::from(u32::MAX)) as u32;
+        let orders = strahler::orders(&drainage.receivers, &drained, threshold);
+        let channel = Channel { runoff: self.runoff, width: self.width, depth: self.depth };
+        carve(&mut ground, &drainage.receivers, &drained, &orders, &channel);
+        let area = |c: usize| f64::from(drained.area.data()[c]) * cell_area;
+        let wide = |c: usize| if orders.data()[c] > 0 { channel.width_of(channel.discharge(area(c))) } else { 0.0 };
+        let layers = vec![
+            sources.keep(ground)?,
+            sources.keep(made(window, area))?,
+            sources.keep(made(window, wide))?,
+            sources.keep(made(window, |c| f64::from(orders.data()[c])))?,
+        ];
+        Ok(Solution { layers, scalars: Vec::new() })
+    }
+
+    fn cost(&self) -> f64 {
+        100.0
+    }
+}
+
+fn made(window: Window, value: impl Fn(usize) -> f64) -> Grid {
+    let data = (0..window.len()).map(|c| value(c) as f32).collect();
+    Grid::from_data(window, data).unwrap_or_else(|| Grid::filled(window, 0.0))
+}
