@@ -18,7 +18,8 @@ Builds the benches at full optimisation, measures one area (or each in turn) and
 
   AREA         noise     noise kernels beside other crates, one thread, CPU time; AVX2, memory and two threads
                generate  every preset from the command to the last file, all cores, wall clock
-               world     chunks, tiles with halos and threads of the preset `hills`
+               world     chunks, tiles with halos, threads and whole builds of the preset `hills`; the builds (--case build) take
+                         minutes and a dozen GiB of disk
   --json FILE  write the rows as JSON too; needs an AREA once there are several
   --case TEXT  only the cases with this in their name
   --quick      few repetitions: to see that it runs, not to quote

@@ -9,13 +9,24 @@ pub fn fields() -> Result<Recipe, String> {
     presets::find("hills").ok_or("there is no preset `hills`")?.recipe().map_err(|e| e.to_string())
 }
 
+/// The layer of the recipes that end with a normalised one.
+pub const STRETCHED: &str = "stretched";
+
+/// The preset, its heights normalised.
+pub fn stretched() -> Result<Recipe, String> {
+    let mut recipe = fields()?;
+    recipe.add("stretched", Normalise { source: "terrain".into(), low: 40.0, high: 340.0 });
+    recipe.output(STRETCHED, "stretched");
+    Ok(recipe)
+}
+
 /// The preset, its heights blurred with a halo of 32 samples at `cell` and then normalised.
 pub fn with_halo(cell: f64) -> Result<Recipe, String> {
     let mut recipe = fields()?;
     // The kernel ends at three radii: 31.5 samples.
     recipe.add("soft", Blur { source: "terrain".into(), radius: 10.5 * cell });
     recipe.add("stretched", Normalise { source: "soft".into(), low: 40.0, high: 340.0 });
-    recipe.output("stretched", "stretched");
+    recipe.output(STRETCHED, "stretched");
     Ok(recipe)
 }
 

@@ -1,8 +1,10 @@
-//! Area `world`: what windows, tiles and chunks of a world cost. The recipe is the preset `hills`.
+//! Area `world`: what windows, tiles, chunks and whole builds of a world cost. The recipe is the preset `hills`.
 
+mod build;
 mod chunk;
 mod figure;
 mod hills;
+mod process;
 mod threads;
 mod tiles;
 
@@ -14,8 +16,9 @@ use figure::Figure;
 /// A case: what is measured, and how.
 type Case = (&'static str, fn(&Options) -> Result<Vec<Figure>, String>);
 
-/// Every case. Whole builds (to files, under a memory limit, resumed) take a file and a line here.
-const CASES: &[Case] = &[("chunk", chunk::measure), ("tiles", tiles::measure), ("threads", threads::measure)];
+/// Every case.
+const CASES: &[Case] =
+    &[("chunk", chunk::measure), ("tiles", tiles::measure), ("threads", threads::measure), ("build", build::measure)];
 
 /// Measures every case, or those named.
 pub fn run(options: &Options) -> Result<Value, String> {

@@ -83,9 +83,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     match to_stdout {
         true => {
             let mut out = BufWriter::new(io::stdout().lock());
-            write(&mut out, format, &grid, Spool::in_memory())
-                .and_then(|()| out.flush())
-                .map_err(|cause| Failure::stdout(&cause))
+            let written = write(&mut Stoppable(&mut out), format, &grid, Spool::in_memory()).and_then(|()| out.flush());
+            written.map_err(|cause| match interrupt::asked() {
+                true => Failure::Interrupted("stopped: what was written is cut short".to_string()),
+                false => Failure::stdout(&cause),
+            })
         }
         false => {
             file::write_whole(&args.out, |out| write(&mut Stoppable(out), format, &grid, Spool::beside(&args.out)))

@@ -1,0 +1,161 @@
+//! Whole builds by the program that users run: 32768 x 32768 samples under a gibibyte, beside small ones; two threads; resumed.
+//!
+//! Needs a dozen GiB of disk for temporary files, and minutes. What is compared is processor time, which a busy machine hardly changes,
+//! but for the threads.
+
+use std::path::{Path, PathBuf};
+
+use super::figure::{Figure, Target};
+use super::hills;
+use super::process::{Cost, watch};
+use crate::options::Options;
+
+/// Names the program to run: `cargo xtask bench` builds it and sets this.
+const PROGRAM: &str = "OROGEN_BIN";
+
+/// Samples a side: of what is large, of what it is compared with, and of what is timed on the wall.
+const LARGE: usize = 32_768;
+const SMALL: usize = 4_096;
+const MIDDLE: usize = 8_192;
+
+/// What a build may use, and what it may be found to hold, code and all.
+const MEMORY: &str = "1GiB";
+const MOST_GIB: f64 = 1.2;
+
+/// How much dearer a sample of the large build may be.
+const DEARER: f64 = 1.15;
+
+/// How many times faster two threads have to be.
+const FASTER: f64 = 1.9;
+
+/// The share of a whole build that resuming after a kill at half time may take.
+const RESUMED: f64 = 0.55;
+
+const FORMS: [(&str, &str); 2] = [("Zarr", "zarr"), ("COG", "tif")];
+
+/// Where builds are made; removed in the end.
+struct Bench {
+    program: PathBuf,
+    folder: PathBuf,
+    cell: f64,
+}
+
+impl Drop for Bench {
+    fn drop(&mut self) {
+        // Only what was made here, in a folder of our own, is removed.
+        let _ = std::fs::remove_dir_all(&self.folder);
+    }
+}
+
+/// Measures.
+pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
+    let program = std::env::var_os(PROGRAM).map(PathBuf::from);
+    let program = program.ok_or_else(|| format!("{PROGRAM} is not set: run `cargo xtask bench world`"))?;
+    let folder = std::env::temp_dir().join(format!("orogen-bench-build-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let recipe = hills::stretched()?;
+    let length = recipe.world.size.ok_or("`hills` has bounds")?[0];
+    let bench = Bench { program, folder, cell: length / LARGE as f64 };
+    let path = bench.folder.join("hills.toml");
+    std::fs::write(&path, recipe.to_toml()).map_err(|e| format!("{}: {e}", path.display()))?;
+    // A quick run shows that it works, at a size that takes seconds.
+    let large = if options.repetitions < 9 { MIDDLE } else { LARGE };
+    let mut figures = Vec::new();
+    for (name, extension) in FORMS {
+        bench.form(name, extension, large, &mut figures)?;
+    }
+    Ok(figures)
+}
+
+impl Bench {
+    fn form(&self, name: &str, extension: &str, large: usize, figures: &mut Vec<Figure>) -> Result<(), String> {
+        let per_sample = |cost: Cost, side: usize| cost.cpu * 1e9 / (side * side) as f64;
+        let mut add =
+            |case: String, ours, unit, other, target| figures.push(Figure { case, ours, unit, other, target });
+        let small = self.best(extension, SMALL, 3, &[])?;
+        let whole = self.best(extension, large, 1, &[])?;
+        let what = format!("build {large} x {large} to {name} under {MEMORY}");
+        let gib = whole.memory as f64 / f64::from(1 << 30);
+        add(format!("{what}, memory at most"), gib, "GiB", None, Target::AtMost(MOST_GIB));
+        let compared = Some(("4096 x 4096", per_sample(small, SMALL)));
+        add(
+            format!("{what}, ratio at most"),
+            per_sample(whole, large),
+            "ns/sample",
+            compared,
+            Target::RatioAtMost(DEARER),
+        );
+        let resumed = self.resumed(extension, large, whole.cpu / 2.0)?;
+        let compared = Some(("whole build", whole.cpu));
+        add(
+            format!("{what}, resumed after a kill at half time, ratio at most"),
+            resumed.cpu,
+            "s of processors",
+            compared,
+            Target::RatioAtMost(RESUMED),
+        );
+        let one = self.best(extension, MIDDLE, 3, &["--threads", "1"])?;
+        let two = self.best(extension, MIDDLE, 3, &["--threads", "2"])?;
+        add(
+            format!("build {MIDDLE} x {MIDDLE} to {name}, two threads, faster by"),
+            two.wall,
+            "s on the wall",
+            Some(("one thread", one.wall)),
+            Target::FasterBy(FASTER),
+        );
+        Ok(())
+    }
+
+    /// The arguments of a build of the middle of the world, so that samples are alike at any size.
+    fn arguments(&self, out: &Path, side: usize, more: &[&str]) -> Vec<String> {
+        let corner = (LARGE - side) / 2;
+        let fixed = ["build", "hills.toml", "--layers", hills::STRETCHED, "--memory", MEMORY, "--no-cache", "-q"];
+        let mut arguments: Vec<String> = fixed.iter().chain(more).map(ToString::to_string).collect();
+        arguments[1] = self.folder.join("hills.toml").display().to_string();
+        arguments.extend(["--cell".to_string(), self.cell.to_string()]);
+        arguments.extend(["--window".to_string(), format!("{corner},{corner},{side},{side}")]);
+        arguments.extend(["-o".to_string(), out.display().to_string()]);
+        arguments
+    }
+
+    fn run(&self, out: &Path, side: usize, more: &[&str], most: f64) -> Result<(Cost, bool), String> {
+        let arguments = self.arguments(out, side, more);
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        watch(&self.program, &arguments, most)
+    }
+
+    /// The best of a few builds: whatever else the machine does only makes them worse.
+    fn best(&self, extension: &str, side: usize, times: usize, more: &[&str]) -> Result<Cost, String> {
+        let out = self.folder.join(format!("out.{extension}"));
+        let mut best = Cost { cpu: f64::INFINITY, wall: f64::INFINITY, memory: 0 };
+        for _ in 0..times {
+            let (cost, _) = self.run(&out, side, &[more, &["--force"]].concat(), f64::INFINITY)?;
+            best = Cost {
+                cpu: best.cpu.min(cost.cpu),
+                wall: best.wall.min(cost.wall),
+                memory: best.memory.max(cost.memory),
+            };
+        }
+        self.remove(&out);
+        Ok(best)
+    }
+
+    /// What is left to pay after a kill.
+    fn resumed(&self, extension: &str, side: usize, half: f64) -> Result<Cost, String> {
+        let out = self.folder.join(format!("killed.{extension}"));
+        let (_, ended) = self.run(&out, side, &[], half)?;
+        if ended {
+            return Err("the build was done before it could be killed".to_string());
+        }
+        let (cost, _) = self.run(&out, side, &["--resume"], f64::INFINITY)?;
+        self.remove(&out);
+        Ok(cost)
+    }
+
+    fn remove(&self, out: &Path) {
+        let _ = std::fs::remove_dir_all(out).or_else(|_| std::fs::remove_file(out));
+        let mut beside = out.as_os_str().to_os_string();
+        beside.push(".build");
+        let _ = std::fs::remove_dir_all(beside);
+    }
+}
