@@ -3,7 +3,7 @@
 use std::io;
 use std::process::ExitCode;
 
-use orogen::{Error, ErrorKind};
+use orogen::{Error, ErrorKind, file};
 
 /// What a process ends with that was interrupted: 128 and the number of the signal, as shells count it.
 pub const INTERRUPTED: u8 = 130;
@@ -32,7 +32,7 @@ impl Failure {
     pub fn stdout(cause: &io::Error) -> Failure {
         match cause.kind() {
             io::ErrorKind::BrokenPipe => Failure::BrokenPipe,
-            _ => Failure::Engine(Error::file("write to", std::path::Path::new("standard output"), cause)),
+            _ => Failure::Engine(file::explain("write to", std::path::Path::new("standard output"), cause)),
         }
     }
 

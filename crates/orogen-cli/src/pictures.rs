@@ -55,7 +55,7 @@ pub const FILES: [&str; 5] = ["height.png", "height8.png", "map.png", "recipe.to
 /// `seconds` tells the time it all took.
 pub fn write(folder: &Path, recipe: &Recipe, grid: &Grid, seconds: impl FnOnce() -> f64) -> Result<Report> {
     let levels = Levels::of(grid);
-    let notes = notes(grid, &levels);
+    let notes = notes(grid.window().cell, &levels);
     let notes: Vec<(&str, &str)> = notes.iter().map(|(keyword, text)| (*keyword, text.as_str())).collect();
     let stage = |name: &str, body: &(dyn Fn(&mut dyn Write) -> std::io::Result<()> + Sync)| {
         file::stage(&folder.join(name), |out| body(&mut Stoppable(out)))
@@ -99,8 +99,7 @@ fn again(recipe: &Recipe, grid: &Grid) -> String {
 }
 
 /// What a grey picture tells whoever opens it without its summary.
-pub fn notes(grid: &Grid, levels: &Levels) -> Vec<(&'static str, String)> {
-    let cell = grid.window().cell;
+pub fn notes(cell: f64, levels: &Levels) -> Vec<(&'static str, String)> {
     let heights = match levels.is_flat() {
         true => format!("flat at {}; {cell} metres a sample", levels.low()),
         false => format!("black is {}, white is {}; {cell} metres a sample", levels.low(), levels.high()),

@@ -28,6 +28,7 @@
 pub mod declare;
 
 pub mod analysis;
+pub mod bands;
 pub mod build;
 pub mod chunks;
 mod engine;

@@ -6,7 +6,7 @@ mod support;
 use orogen::chunks::seam::{Sides, stitch};
 use orogen::node::Node;
 use orogen::op::Op;
-use orogen::{ChunkId, ChunkStep, Chunks, Grid, Rings, Sampler, World, WorldSpec, presets};
+use orogen::{ChunkId, ChunkStep, Chunks, Grid, Options, Progress, Rings, Sampler, Window, World, WorldSpec, presets};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex};
 use support::{Random, open, recipe_of, world_of};
@@ -335,4 +335,26 @@ fn any_number_of_threads_makes_the_same_chunks() {
         }
     });
     assert_eq!(one, made.into_inner().unwrap());
+}
+
+#[test]
+fn bands_of_rows_are_the_window_in_little_memory() {
+    let recipe = recipe_of(&Node::named("blur").unwrap(), world_of(10.0), true);
+    let whole_window = Window::new(900, 700, 1.0).at(31, 17);
+    let whole = open(&recipe, 2).window("height", &whole_window).unwrap();
+    // 900 x 700 samples alone are 2.4 MiB.
+    for (memory, beside, threads) in [(4 << 20, 0, 1), (8 << 20, 1 << 20, 2)] {
+        let options = Options { threads: Some(threads), memory: Some(memory), ..Options::default() };
+        let world = World::with_options(recipe.clone(), options).unwrap();
+        let mut rows = 0;
+        for band in world.bands("height", &whole_window, beside, &Progress::none()).unwrap() {
+            let band = band.unwrap();
+            assert_eq!((band.width(), band.window().y), (900, 17 + rows as i64));
+            assert_eq!(whole.crop(band.window()).unwrap(), band);
+            rows += band.height();
+        }
+        assert_eq!(rows, 700);
+        let error = world.bands("height", &whole_window, memory, &Progress::none()).err().unwrap().to_string();
+        assert!(error.contains("this needs at least") && error.contains("4 rows at a time"), "{error}");
+    }
 }

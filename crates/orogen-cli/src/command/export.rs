@@ -3,7 +3,9 @@
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-use orogen::format::levels::Levels;
+use orogen::bands::Bands;
+use orogen::format::levels::{Levels, NO_SAMPLES, extremes};
+use orogen::format::png::{Picture, Pixel};
 use orogen::format::{geotiff, npy, png};
 use orogen::spool::Spool;
 use orogen::{Grid, Window, file};
@@ -68,31 +70,31 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
         None => view::whole(&world, &view)?,
     };
-    let plan = world.plan(&[args.layer.as_str()], &window)?;
-    if !to_stdout {
-        let folder = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        file::check_folder(folder)?;
-    }
     let (bar, progress) = Bar::new(args.quiet);
-    let grids = world.run(&plan, &progress);
-    drop(bar);
+    let bands = world.bands(&args.layer, &window, beside(format, &window), &progress)?;
     let stopped = |failure| interrupt::explain(failure, "nothing was written");
-    let Some(grid) = grids.map_err(|error| stopped(error.into()))?.pop() else {
-        return Ok(());
-    };
     match to_stdout {
         true => {
             let mut out = BufWriter::new(io::stdout().lock());
-            let written = write(&mut Stoppable(&mut out), format, &grid, Spool::in_memory()).and_then(|()| out.flush());
+            // Standard output has no disk of its own to put rows aside on.
+            let spool = Spool::beside(&std::env::temp_dir().join("orogen"));
+            let written = write(&mut Stoppable(&mut out), format, &window, bands, spool).and_then(|_| out.flush());
             written.map_err(|cause| match interrupt::asked() {
                 true => Failure::Interrupted("stopped: what was written is cut short".to_string()),
                 false => Failure::stdout(&cause),
             })
         }
         false => {
-            file::write_whole(&args.out, |out| write(&mut Stoppable(out), format, &grid, Spool::beside(&args.out)))
-                .map_err(|error| stopped(error.into()))?;
-            if args.quiet { Ok(()) } else { say::out(&words(args, format, &grid)) }
+            let folder = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            file::check_folder(folder)?;
+            let mut levels = Levels::new(0.0, 0.0);
+            file::write_whole(&args.out, |out| {
+                levels = write(&mut Stoppable(out), format, &window, bands, Spool::beside(&args.out))?;
+                Ok(())
+            })
+            .map_err(|error| stopped(error.into()))?;
+            drop(bar);
+            if args.quiet { Ok(()) } else { say::out(&words(args, format, &window, &levels)) }
         }
     }
 }
@@ -116,24 +118,78 @@ fn format(args: &Args) -> Result<Format, Failure> {
     }
 }
 
-/// `spool` is for what cannot be written before all is known.
-fn write(out: &mut dyn Write, format: Format, grid: &Grid, spool: Spool) -> io::Result<()> {
+/// What a spool keeps in memory before it goes to the disk.
+const SPOOL_MEMORY: u64 = 64 << 20;
+
+/// Bytes that writing such a file holds beside the rows at hand.
+fn beside(format: Format, window: &Window) -> u64 {
+    let row = (window.width as u64).saturating_mul(4);
+    let spooled = row.saturating_mul(window.height as u64).min(SPOOL_MEMORY);
     match format {
-        Format::Npy => npy::write(out, grid),
-        Format::Png => {
-            let levels = Levels::of(grid);
-            let notes = pictures::notes(grid, &levels);
-            let notes: Vec<(&str, &str)> = notes.iter().map(|(keyword, text)| (*keyword, text.as_str())).collect();
-            png::write_grey16(out, grid, &levels, &notes)
-        }
-        Format::Tif => geotiff::writer::write(out, grid, &geotiff::options::Options::default(), spool),
+        Format::Npy => 0,
+        Format::Png => spooled,
+        // A row of tiles of each level while the next one comes in, and as much again while it is packed.
+        Format::Tif => spooled.saturating_add(row.saturating_mul(4 * 512)),
     }
 }
 
-fn words(args: &Args, format: Format, grid: &Grid) -> String {
+/// Writes all rows as they are made; tells their range. `spool` is for what cannot be written before all is known.
+fn write(out: &mut dyn Write, format: Format, window: &Window, bands: Bands, mut spool: Spool) -> io::Result<Levels> {
+    let mut range = NO_SAMPLES;
+    let mut rows = bands.map(|band| {
+        let band = band?;
+        range = extremes(range, band.data());
+        Ok::<Grid, io::Error>(band)
+    });
+    let levels = |[low, high]: [f32; 2]| Levels::new(low, high);
+    match format {
+        Format::Npy => {
+            npy::write_header(out, window.width, window.height)?;
+            rows.try_for_each(|band| npy::write_rows(out, band?.data()))?;
+        }
+        Format::Tif => {
+            let mut writer = geotiff::writer::Writer::new(window, &geotiff::options::Options::default(), spool)?;
+            rows.try_for_each(|band| writer.rows(band?.data()))?;
+            writer.finish(out)?;
+        }
+        Format::Png => {
+            // Which height is white is known at the end: the heights wait for it.
+            rows.try_for_each(|band| npy::write_rows(&mut Aside(&mut spool), band?.data()))?;
+            let levels = levels(range);
+            let notes = pictures::notes(window.cell, &levels);
+            let notes: Vec<(&str, &str)> = notes.iter().map(|(keyword, text)| (*keyword, text.as_str())).collect();
+            let picture = Picture { width: window.width, height: window.height, pixel: Pixel::Grey16, notes: &notes };
+            let mut heights = Vec::new();
+            png::write(out, &picture, |rows, pixels| {
+                heights.resize(2 * pixels.len(), 0);
+                spool.read(4 * (rows.start * window.width) as u64, &mut heights)?;
+                for (pixel, height) in pixels.chunks_exact_mut(2).zip(heights.chunks_exact(4)) {
+                    let height = f32::from_le_bytes([height[0], height[1], height[2], height[3]]);
+                    pixel.copy_from_slice(&levels.to_u16(height).to_be_bytes());
+                }
+                Ok(())
+            })?;
+        }
+    }
+    Ok(levels(range))
+}
+
+/// What is written goes into a spool.
+struct Aside<'a>(&'a mut Spool);
+
+impl Write for Aside<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.push(bytes).map(|_| bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+fn words(args: &Args, format: Format, window: &Window, levels: &Levels) -> String {
     let (file, layer) = (args.out.display(), &args.layer);
-    let size = format!("{} x {} samples of {} m", grid.width(), grid.height(), grid.window().cell);
-    let levels = Levels::of(grid);
+    let size = format!("{} x {} samples of {} m", window.width, window.height, window.cell);
     match format {
         Format::Npy | Format::Tif => format!("{file}: {layer}, {size}, {} to {}\n", levels.low(), levels.high()),
         Format::Png if levels.is_flat() => {

@@ -24,8 +24,7 @@ impl Levels {
 
     /// From the lowest to the highest finite sample of a grid; flat if there is none.
     pub fn of(grid: &Grid) -> Levels {
-        let finite = grid.data().iter().copied().filter(|h| h.is_finite());
-        let (low, high) = finite.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), h| (low.min(h), high.max(h)));
+        let [low, high] = extremes(NO_SAMPLES, grid.data());
         Levels::new(low, high)
     }
 
@@ -63,6 +62,15 @@ impl Levels {
         let share = (f64::from(height).clamp(low, high) - low) / (high - low);
         (share * most + 0.5).floor()
     }
+}
+
+/// The lowest and the highest of no samples: what [`extremes`] begins with.
+pub const NO_SAMPLES: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
+
+/// The lowest and the highest of more samples, the finite ones, and of those that came before.
+pub fn extremes(before: [f32; 2], samples: &[f32]) -> [f32; 2] {
+    let finite = samples.iter().copied().filter(|sample| sample.is_finite());
+    finite.fold(before, |[low, high], sample| [low.min(sample), high.max(sample)])
 }
 
 #[cfg(test)]
