@@ -220,4 +220,42 @@ mod tests {
         assert_eq!(spilled.get(&window).unwrap(), pattern(window));
         assert!(Pages::scratch(Path::new("/dev/null/no"), window).is_err());
     }
+
+    /// One pass over all tiles: every sample becomes the mean of itself and its neighbours, read from `from`.
+    fn sweep(from: &Raster, to: &mut Raster, side: usize) {
+        let whole = *from.window();
+        for tile in whole.tiles(side) {
+            let near = tile.grown(1);
+            let (left, top) = (near.x.max(whole.x), near.y.max(whole.y));
+            let (right, bottom) = (near.right().min(whole.right()), near.bottom().min(whole.bottom()));
+            let (width, height) = ((right - left) as usize, (bottom - top) as usize);
+            let seen = from.get(&Window { x: left, y: top, width, height, ..whole }).unwrap();
+            let at = |x: i64, y: i64| {
+                seen.get((x.clamp(left, right - 1) - left) as usize, (y.clamp(top, bottom - 1) - top) as usize)
+            };
+            let mut out = Grid::filled(tile, 0.0);
+            for j in 0..tile.height {
+                for i in 0..tile.width {
+                    let (x, y) = (tile.x + i as i64, tile.y + j as i64);
+                    let sum = at(x, y) + at(x - 1, y) + at(x + 1, y) + at(x, y - 1) + at(x, y + 1);
+                    out.row_mut(j)[i] = sum / 5.0;
+                }
+            }
+            to.put(&out).unwrap();
+        }
+    }
+
+    #[test]
+    fn several_passes_over_tiles_on_disk_are_those_over_the_whole_in_memory() {
+        let window = Window::new(530, 270, 1.0).at(-2, -2);
+        let [mut a, mut b] = [pattern(window), Grid::filled(window, 0.0)].map(Raster::in_memory);
+        let (mut c, mut d) = (scratch(window), scratch(window));
+        c.put(&pattern(window)).unwrap();
+        for side in [100, 256, 333] {
+            sweep(&a, &mut b, 1000);
+            sweep(&c, &mut d, side);
+            (a, b, c, d) = (b, a, d, c);
+            assert_eq!(a.get(&window).unwrap(), c.get(&window).unwrap(), "tiles of {side}");
+        }
+    }
 }

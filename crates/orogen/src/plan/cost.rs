@@ -3,7 +3,7 @@
 //! The figures are nanoseconds of one core and were measured once: each op alone over 1024 x 1024 samples at 10 m, on its lattice
 //! and behind a warp, on an AMD EPYC with AVX-512, what an empty program takes subtracted. Machines differ by a factor of three
 //! or so either way, and noise of short wavelengths takes longer than what was measured: an estimate tells seconds from hours, not
-//! more.
+//! more. There it was within a third of what the presets took at 4096 samples a side.
 
 use super::program::{Instruction, Program};
 use super::steps::{Plan, Step};

@@ -86,7 +86,7 @@ impl Solver for Drainage {
     }
 
     fn cost(&self) -> f64 {
-        80.0
+        35.0
     }
 }
 

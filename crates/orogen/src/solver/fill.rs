@@ -43,7 +43,7 @@ impl Solver for Fill {
     }
 
     fn cost(&self) -> f64 {
-        40.0
+        17.0
     }
 }
 

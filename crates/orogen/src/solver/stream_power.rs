@@ -99,6 +99,6 @@ impl Solver for StreamPower {
     }
 
     fn cost(&self) -> f64 {
-        200.0 * f64::from(self.steps)
+        45.0 * f64::from(self.steps)
     }
 }
