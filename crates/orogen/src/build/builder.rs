@@ -153,7 +153,7 @@ impl<'a> Build<'a> {
         self.world.install(|| self.make(&wanted, &shelf, progress))?;
         progress.check()?;
         let extra = self.target.finish(&shelf)?;
-        let bytes = self.close(shelf, &extra)?;
+        let bytes = self.close(shelf, extra)?;
         Ok(Report { made, kept, bytes })
     }
 
@@ -295,13 +295,13 @@ impl<'a> Build<'a> {
     }
 
     /// Makes all of it last, says so in the journal, and removes what is needed no more. Returns the bytes of the result.
-    fn close(&self, shelf: Shelf, extra: &[PathBuf]) -> Result<u64> {
+    fn close(&self, shelf: Shelf, extra: Vec<(PathBuf, Piece)>) -> Result<u64> {
         let mut records = shelf.into_records();
         if self.target.assembles() {
             // The file is what there is to check from now on.
             records.clear();
         }
-        let mut paths: Vec<PathBuf> = extra.to_vec();
+        let mut paths: Vec<PathBuf> = extra.iter().map(|(path, _)| path.clone()).collect();
         for job in records.keys() {
             paths.extend(self.target.places(*job).into_iter().filter_map(|place| match place {
                 Place::Result(path) => Some(path),
@@ -309,14 +309,8 @@ impl<'a> Build<'a> {
             }));
         }
         self.site.sync(&paths)?;
-        let piece = |path: &PathBuf| {
-            let real = self.site.result(path);
-            let piece = Piece::of_file(&real).map_err(|cause| Error::file("read", &real, &cause))?;
-            Ok((path.clone(), piece))
-        };
-        let finished = extra.iter().map(piece).collect::<Result<Vec<(PathBuf, Piece)>>>()?;
-        let bytes = self.bytes(&records, finished.iter().map(|(_, piece)| piece.length).sum());
-        let story = Story { identity: self.identity.clone(), records, finished: Some(finished) };
+        let bytes = self.bytes(&records, extra.iter().map(|(_, piece)| piece.length).sum());
+        let story = Story { identity: self.identity.clone(), records, finished: Some(extra) };
         Journal::write(&self.site.journal(), &self.site.temporary(0), &story)?;
         self.site.sweep()?;
         Ok(bytes)

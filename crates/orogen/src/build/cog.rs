@@ -8,6 +8,7 @@ use std::path::PathBuf;
 
 use super::identity::Identity;
 use super::job::{Job, Made, Place, Stage};
+use super::piece::Piece;
 use super::samples;
 use super::shelf::Shelf;
 use super::target::{Disk, Target};
@@ -226,7 +227,7 @@ impl Target for Cog {
         true
     }
 
-    fn finish(&self, shelf: &Shelf) -> Result<Vec<PathBuf>> {
+    fn finish(&self, shelf: &Shelf) -> Result<Vec<(PathBuf, Piece)>> {
         let job = |level: usize, tile: usize| {
             let [columns, _] = self.pyramid.tiles(level);
             Job { stage: level, row: tile / columns, column: tile % columns }
@@ -241,7 +242,7 @@ impl Target for Cog {
                 (0..columns * rows).map(|tile| length(level, tile)).collect()
             })
             .collect();
-        shelf.assemble(|out| {
+        let file = shelf.assemble(|out| {
             self.pyramid.write(out, lengths, |level, tile, bytes| {
                 let (place, length) = (Cog::packed(job(level, tile)), bytes.len());
                 shelf.read(&place, bytes)?;
@@ -251,7 +252,7 @@ impl Target for Cog {
                 }
             })
         })?;
-        Ok(vec![PathBuf::new()])
+        Ok(vec![(PathBuf::new(), file)])
     }
 
     fn scratch_memory(&self) -> u64 {

@@ -8,6 +8,7 @@ use serde_json::{Map, Value, json};
 use super::identity::Identity;
 use super::job::{Job, Made, Place, Stage};
 use super::order::{Form, Samples};
+use super::piece::Piece;
 use super::samples::{self, range, square_repeated};
 use super::shelf::Shelf;
 use super::target::{Disk, Target};
@@ -175,7 +176,7 @@ impl Target for Folder {
         Ok(Made { files, ranges: grids.iter().map(range).collect() })
     }
 
-    fn finish(&self, shelf: &Shelf) -> Result<Vec<PathBuf>> {
+    fn finish(&self, shelf: &Shelf) -> Result<Vec<(PathBuf, Piece)>> {
         let Window { x, y, width, height, cell } = self.identity.window;
         let stage = self.stage();
         let layers: Vec<Value> = (0..self.identity.layers.len()).map(|layer| self.layer(shelf, layer)).collect();
@@ -201,8 +202,8 @@ impl Target for Folder {
             "tiles": tiles,
         });
         let path = PathBuf::from("manifest.json");
-        shelf.file(&Place::Result(path.clone()), format!("{manifest:#}\n").as_bytes())?;
-        Ok(vec![path])
+        let piece = shelf.file(&Place::Result(path.clone()), format!("{manifest:#}\n").as_bytes())?;
+        Ok(vec![(path, piece)])
     }
 
     fn scratch_memory(&self) -> u64 {

@@ -1,7 +1,7 @@
 //! A file and its checksum.
 
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 use sha2::{Digest, Sha256};
@@ -48,6 +48,38 @@ impl Piece {
     }
 }
 
+/// A writer that knows in the end what was written.
+pub struct Measured<W> {
+    inner: W,
+    hash: Sha256,
+    length: u64,
+}
+
+impl<W: Write> Measured<W> {
+    /// Around a writer that has got nothing yet.
+    pub fn new(inner: W) -> Measured<W> {
+        Measured { inner, hash: Sha256::new(), length: 0 }
+    }
+
+    /// The writer, and what it got.
+    pub fn end(self) -> (W, Piece) {
+        (self.inner, Piece { length: self.length, sha256: digits(&self.hash.finalize()) })
+    }
+}
+
+impl<W: Write> Write for Measured<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.inner.write(bytes)?;
+        self.hash.update(&bytes[..count]);
+        self.length += count as u64;
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
+    }
+}
+
 /// Bytes in hexadecimal.
 pub fn digits(bytes: &[u8]) -> String {
     use std::fmt::Write as _;
@@ -67,7 +99,9 @@ mod tests {
         let bytes: Vec<u8> = (0..3_000_000u32).map(|n| n.wrapping_mul(n) as u8).collect();
         let piece = Piece::of(&bytes);
         assert!(!piece.is_at(&path), "it is not there");
-        std::fs::write(&path, &bytes).unwrap();
+        let mut out = Measured::new(File::create(&path).unwrap());
+        bytes.chunks(700_001).for_each(|chunk| out.write_all(chunk).unwrap());
+        assert_eq!(out.end().1, piece);
         assert!(piece.is_at(&path));
         for at in [0, 1_500_000, bytes.len() - 1] {
             let mut other = bytes.clone();

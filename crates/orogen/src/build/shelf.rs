@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::job::{Job, Made, Place, Record};
 use super::journal::Journal;
-use super::piece::Piece;
+use super::piece::{Measured, Piece};
 use super::site::Site;
 use crate::error::{Error, Result};
 use crate::file;
@@ -42,8 +42,7 @@ impl<'a> Shelf<'a> {
     pub fn keep(&self, job: Job, places: &[Place], made: &Made) -> Result<()> {
         let mut pieces = Vec::with_capacity(made.files.len());
         for (place, bytes) in places.iter().zip(&made.files) {
-            self.file(place, bytes)?;
-            pieces.push(Piece::of(bytes));
+            pieces.push(self.file(place, bytes)?);
         }
         let record = Record { pieces, ranges: made.ranges.clone() };
         self.journal.enter(job, &record)?;
@@ -55,32 +54,34 @@ impl<'a> Shelf<'a> {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn file(&self, place: &Place, bytes: &[u8]) -> Result<()> {
+    pub fn file(&self, place: &Place, bytes: &[u8]) -> Result<Piece> {
         let path = self.site.path(place);
         let temporary = self.temporary();
         let put = || {
             (self.put)(&temporary, bytes)?;
             settle(&temporary, &path)
         };
-        put().map_err(|cause| Error::file("write", &path, &cause))
+        put().map_err(|cause| Error::file("write", &path, &cause))?;
+        Ok(Piece::of(bytes))
     }
 
     /// Puts together the result that is one file: `body` writes it; it takes its place when it is whole and synced.
     ///
     /// # Errors
     /// If it cannot be written, or as `body` does.
-    pub fn assemble(&self, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    pub fn assemble(&self, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Piece> {
         let (path, temporary) = (self.site.out(), self.temporary());
-        let put = || -> io::Result<()> {
-            let mut out = BufWriter::with_capacity(BUFFER, File::create(&temporary)?);
+        let put = || -> io::Result<Piece> {
+            let mut out = BufWriter::with_capacity(BUFFER, Measured::new(File::create(&temporary)?));
             body(&mut out)?;
-            let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+            let (file, piece) = out.into_inner().map_err(io::IntoInnerError::into_error)?.end();
             if let Ok(there) = fs::metadata(path) {
                 // Some file systems have no permissions to keep; the file matters more.
                 let _ = file.set_permissions(there.permissions());
             }
             file.sync_all()?;
-            settle(&temporary, path)
+            settle(&temporary, path)?;
+            Ok(piece)
         };
         put().map_err(|cause| file::explain("write", path, &cause))
     }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::job::{Job, Made, Place, Stage};
+use super::piece::Piece;
 use super::shelf::Shelf;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
@@ -29,8 +30,8 @@ pub trait Target: Sync {
         false
     }
 
-    /// Writes what belongs to no tile, once all tiles are there; returns the files' paths within the result.
-    fn finish(&self, shelf: &Shelf) -> Result<Vec<PathBuf>>;
+    /// Writes what belongs to no tile, once all tiles are there; returns the files, by their paths within the result.
+    fn finish(&self, shelf: &Shelf) -> Result<Vec<(PathBuf, Piece)>>;
 
     /// Bytes that a job needs beside its samples.
     fn scratch_memory(&self) -> u64;

@@ -16,6 +16,7 @@ use serde_json::json;
 
 use super::identity::Identity;
 use super::job::{Job, Made, Place, Stage};
+use super::piece::Piece;
 use super::samples;
 use super::shelf::Shelf;
 use super::target::{Disk, Target};
@@ -263,7 +264,7 @@ impl Target for Terrarium {
         Ok(Made { files, ranges: Vec::new() })
     }
 
-    fn finish(&self, shelf: &Shelf) -> Result<Vec<PathBuf>> {
+    fn finish(&self, shelf: &Shelf) -> Result<Vec<(PathBuf, Piece)>> {
         let [west, south, east, north] = self.bounds();
         let lowest = self.zoom + 1 - self.stages.len() as u32;
         let tiles = json!({
@@ -287,8 +288,8 @@ impl Target for Terrarium {
             },
         });
         let path = PathBuf::from("tiles.json");
-        shelf.file(&Place::Result(path.clone()), format!("{tiles:#}\n").as_bytes())?;
-        Ok(vec![path])
+        let piece = shelf.file(&Place::Result(path.clone()), format!("{tiles:#}\n").as_bytes())?;
+        Ok(vec![(path, piece)])
     }
 
     fn scratch_memory(&self) -> u64 {

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::identity::Identity;
 use super::job::{Job, Made, Place, Stage};
+use super::piece::Piece;
 use super::samples::square;
 use super::shelf::Shelf;
 use super::target::{Disk, Target};
@@ -109,11 +110,11 @@ impl Target for Zarr {
         Ok(Made { files: files.collect::<Result<_>>()?, ranges: Vec::new() })
     }
 
-    fn finish(&self, shelf: &Shelf) -> Result<Vec<PathBuf>> {
+    fn finish(&self, shelf: &Shelf) -> Result<Vec<(PathBuf, Piece)>> {
         let mut written = Vec::new();
         let mut put = |path: PathBuf, bytes: &[u8]| {
-            shelf.file(&Place::Result(path.clone()), bytes)?;
-            written.push(path);
+            let piece = shelf.file(&Place::Result(path.clone()), bytes)?;
+            written.push((path, piece));
             Ok::<(), Error>(())
         };
         let mut arrays = Vec::new();
