@@ -143,6 +143,24 @@ fn interrupt(child: &Child, signal: &str) {
     assert!(status.success());
 }
 
+/// Waits until a process handles the signal of Ctrl-C itself: before that, the system would end it.
+#[cfg(unix)]
+fn wait_until_it_listens(child: &Child) {
+    let status = format!("/proc/{}/status", child.id());
+    for _ in 0..1000 {
+        let Ok(status) = fs::read_to_string(&status) else {
+            // A system without /proc.
+            return std::thread::sleep(Duration::from_millis(500));
+        };
+        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
+        if u64::from_str_radix(caught.trim(), 16).unwrap() & 0b10 != 0 {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    panic!("it never listens");
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_stops_cleanly() {
@@ -162,11 +180,11 @@ fn ctrl_c_stops_cleanly() {
         fs::remove_dir_all(folder.path("a.zarr")).unwrap();
     }
     for arguments in [
-        &["export", "small.toml", "--cell", "0.05", "-o", "a.npy"][..],
-        &["generate", "small.toml", "--cell", "0.05", "-o", "made"],
+        &["export", "small.toml", "--cell", "0.1", "-o", "a.npy"][..],
+        &["generate", "small.toml", "--cell", "0.1", "-o", "made"],
     ] {
         let child = start(&folder, arguments);
-        std::thread::sleep(Duration::from_millis(150));
+        wait_until_it_listens(&child);
         interrupt(&child, "-INT");
         let output = child.wait_with_output().unwrap();
         let err = String::from_utf8_lossy(&output.stderr).into_owned();
