@@ -225,6 +225,38 @@ fn every_chunk_is_the_window_and_shares_its_borders() {
 }
 
 #[test]
+fn chunks_of_bounded_worlds_are_windows_too() {
+    for node in Node::all() {
+        let bound = match node.op() {
+            Op::Solver(_) => true,
+            Op::Field(field) => field.needs_bounds(),
+            Op::Filter(_) => false,
+        };
+        if !bound {
+            continue;
+        }
+        let (recipe, op) = (recipe_of(&node, world_of(10.24), true), node.spec().op);
+        let (world, sampler) = (open(&recipe, 2), Sampler::new(open(&recipe, 1), "height").unwrap());
+        let rings = Rings { cells: 8, cell: 10.24, levels: 3, range: 5000.0, ..Rings::default() };
+        let mut chunks = world.chunks(rings).unwrap();
+        // Beyond a corner: chunks of every level, those at the far edges cut.
+        chunks.look(1000.0, 900.0).unwrap();
+        let mut levels = [0; 3];
+        while let Some(id) = chunks.take() {
+            let window = chunks.window(id);
+            let grid = sampler.window(&window).unwrap();
+            assert_eq!(grid, world.window("height", &window).unwrap(), "{op} {id:?}");
+            if id.level == 0 {
+                let height = world.height(window.east(1), window.south(1)).unwrap();
+                assert_eq!(height.to_bits(), grid.get(1, 1).to_bits(), "{op} {id:?}");
+            }
+            levels[usize::from(id.level)] += 1;
+        }
+        assert!(levels.iter().all(|count| *count > 0), "{op}: {levels:?}");
+    }
+}
+
+#[test]
 fn levels_meet_without_cracks() {
     let world = World::open(presets::find("hills").unwrap().recipe().unwrap()).unwrap();
     let sampler = Sampler::new(&world, "height").unwrap();
