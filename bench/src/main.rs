@@ -3,6 +3,7 @@
 //! Prints one JSON object, {"area", "simd", "threads", "rows"}; progress goes to the error output.
 #![forbid(unsafe_code)]
 
+mod erosion;
 mod generate;
 mod measure;
 mod noise;
@@ -18,8 +19,13 @@ use options::Options;
 /// An area of measurement: its name and what measures it.
 type Area = (&'static str, fn(&Options) -> Result<serde_json::Value, String>);
 
-const AREAS: &[Area] =
-    &[("noise", noise::run), ("generate", generate::run), ("world", world::run), ("resolution", resolution::run)];
+const AREAS: &[Area] = &[
+    ("noise", noise::run),
+    ("erosion", erosion::run),
+    ("generate", generate::run),
+    ("world", world::run),
+    ("resolution", resolution::run),
+];
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();

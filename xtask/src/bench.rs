@@ -1,6 +1,7 @@
 //! `cargo xtask bench`: the one door to every figure the project claims.
 
 mod host;
+mod peers;
 mod report;
 
 use std::path::PathBuf;
@@ -17,6 +18,9 @@ Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
 Builds the benches at full optimisation, measures one area (or each in turn) and prints a table.
 
   AREA         noise     noise kernels beside other crates, one thread, CPU time; AVX2, memory and two threads
+               erosion   depressions, drainage and a stream power step beside richdem and fastscapelib (by pip; one that does
+                         not install is left out), one thread, CPU time; OROGEN_RICHDEM and OROGEN_FASTSCAPELIB name
+                         the Python that has them
                generate  every preset from the command to the last file, all cores, wall clock
                world     chunks, tiles with halos, threads and whole builds of the preset `hills`; the builds (--case build) take
                          minutes and a dozen GiB of disk
@@ -28,7 +32,7 @@ How to read the table: docs/benchmarks.md.
 ";
 
 /// Every area, as the bench program names it.
-const AREAS: &[&str] = &["noise", "generate", "world"];
+const AREAS: &[&str] = &["noise", "erosion", "generate", "world"];
 
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Options {
@@ -50,6 +54,9 @@ pub fn run(args: &[String]) -> Result {
     let program = shell::target_dir().join("release").join(format!("orogen{}", std::env::consts::EXE_SUFFIX));
     for area in areas {
         let mut command = shell::cargo("run --quiet --profile bench --package orogen-bench --features peers --");
+        if area == "erosion" {
+            command.envs(peers::installed());
+        }
         let measured = shell::capture(command.arg(area).args(&options.passed).env("OROGEN_BIN", &program))?;
         let report = report::Report::read(&measured)?;
         println!("{}", report.heading());
@@ -96,7 +103,7 @@ mod tests {
         assert_eq!(options.json, Some("a.json".into()));
         assert_eq!(options.passed, ["--case", "perlin", "--quick"]);
         for (line, expect) in [
-            ("nois", "there is no area 'nois'; there are: noise, generate"),
+            ("nois", "there is no area 'nois'; there are: noise, erosion, generate"),
             ("--json", "--json needs a value"),
             ("noise --fast", "no option '--fast'"),
         ] {

@@ -16,7 +16,9 @@ pub mod receivers;
 pub mod rivers;
 #[cfg(test)]
 mod samples;
+pub mod statistics;
 pub mod steepest;
 pub mod strahler;
 pub mod stream_power;
 pub mod watersheds;
+pub mod wetness;

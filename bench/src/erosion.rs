@@ -1,0 +1,169 @@
+//! Area `erosion`: hydrology beside richdem and fastscapelib, in memory, CPU time of one thread.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use cpu_time::ThreadTime;
+use orogen::hydrology::accumulation::accumulate;
+use orogen::hydrology::outlets::Outlets;
+use orogen::hydrology::steepest::Descent;
+use orogen::hydrology::stream_power::{Ground, StreamPower};
+use orogen::hydrology::{drainage, fill};
+use orogen::{Grid, Recipe, Window, World};
+use serde_json::{Value, json};
+
+use crate::measure::median;
+use crate::options::Options;
+
+const CELL: f64 = 60.0;
+
+/// Where a peer's Python is, each in the variable of its name: `cargo xtask bench` installs them and sets these.
+const PEERS: [(&str, &str); 2] = [("richdem", "OROGEN_RICHDEM"), ("fastscapelib", "OROGEN_FASTSCAPELIB")];
+
+/// One measured case: its name, side, our seconds, the peer and its parts that do the same, and how many times faster to be.
+struct Case {
+    name: &'static str,
+    side: usize,
+    ours: fn(&Grid),
+    peer: usize,
+    parts: &'static [&'static str],
+    target: Option<f64>,
+}
+
+const CASES: &[Case] = &[
+    Case { name: "depressions filled", side: 2048, ours: |g| drop(filled(g)), peer: 0, parts: &["fill"], target: None },
+    Case {
+        name: "filled, flats drained, D8, accumulation",
+        side: 2048,
+        ours: over_surface,
+        peer: 0,
+        parts: &["fill", "flats", "accumulation"],
+        target: Some(3.0),
+    },
+    Case {
+        name: "filled, drained over the bed, accumulation (richdem: flats left undrained)",
+        side: 2048,
+        ours: over_bed,
+        peer: 0,
+        parts: &["fill", "accumulation"],
+        target: Some(3.0),
+    },
+    Case {
+        name: "stream power step with routing",
+        side: 1024,
+        ours: step,
+        peer: 1,
+        parts: &["step"],
+        target: Some(5.0),
+    },
+    Case {
+        name: "stream power step with routing",
+        side: 2048,
+        ours: step,
+        peer: 1,
+        parts: &["step"],
+        target: Some(5.0),
+    },
+];
+
+/// Runs the cases.
+pub fn run(options: &Options) -> Result<Value, String> {
+    let folder = std::env::temp_dir().join(format!("orogen-bench-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let rows = measured(options, &folder);
+    // Only what was made here, in a folder of our own, is removed.
+    let _ = std::fs::remove_dir_all(&folder);
+    Ok(json!({ "area": "erosion", "simd": orogen_simd::Level::current().name(), "threads": 1, "rows": rows? }))
+}
+
+fn measured(options: &Options, folder: &Path) -> Result<Vec<Value>, String> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|e| e.to_string())?;
+    let mut rows = Vec::new();
+    for case in CASES.iter().filter(|case| case.name.contains(&options.case)) {
+        eprintln!("{} ...", case.name);
+        let ground = ground(case.side)?;
+        let (peer, variable) = PEERS[case.peer];
+        let theirs = match std::env::var_os(variable) {
+            Some(python) => {
+                Some(peer_seconds(Path::new(&python), peer, &ground, folder, options.repetitions, case.parts)?)
+            }
+            None => None,
+        };
+        let mut times: Vec<f64> =
+            (0..options.repetitions).map(|_| pool.install(|| seconds(case.ours, &ground))).collect();
+        let ours = median(&mut times);
+        let ratio = theirs.map(|theirs| theirs / ours);
+        let round = |x: f64| (x * 1000.0).round() / 1000.0;
+        rows.push(json!({
+            "case": format!("{}, {side} x {side}", case.name, side = case.side),
+            "ours": round(ours), "unit": "s of CPU",
+            "peer": theirs.map(|_| peer), "peer_value": theirs.map(round), "ratio": ratio.map(round),
+            "target": case.target, "met": case.target.map(|target| ratio.is_some_and(|ratio| ratio >= target)),
+        }));
+    }
+    Ok(rows)
+}
+
+/// Rough ground with depressions: ten octaves of fBm, 3000 m from low to high.
+fn ground(side: usize) -> Result<Grid, String> {
+    let text = "orogen = 1\n[world]\nseed = 3\n[nodes.noise]\nop = \"fbm\"\nwavelength = 20000\noctaves = 10\n\
+                [nodes.ground]\nop = \"remap\"\nsource = \"noise\"\nto = [0, 3000]\n[outputs]\nheight = \"ground\"\n";
+    let world = Recipe::parse(text, "ground").and_then(World::open).map_err(|e| e.to_string())?;
+    world.window("height", &Window::new(side, side, CELL)).map_err(|e| e.to_string())
+}
+
+fn seconds(work: fn(&Grid), ground: &Grid) -> f64 {
+    let start = ThreadTime::now();
+    work(std::hint::black_box(ground));
+    start.elapsed().as_secs_f64()
+}
+
+fn filled(ground: &Grid) -> Grid {
+    fill::fill(ground, &Outlets::new(ground, None))
+}
+
+fn over_surface(ground: &Grid) {
+    let outlets = Outlets::new(ground, None);
+    let filled = fill::fill(ground, &outlets);
+    std::hint::black_box(accumulate(&drainage::over_surface(&filled, &outlets, Descent::Steepest)));
+}
+
+fn over_bed(ground: &Grid) {
+    let outlets = Outlets::new(ground, None);
+    let drained = drainage::over_bed(ground, &outlets, Descent::Steepest);
+    std::hint::black_box((fill::filled(ground, &drained.basins), accumulate(&drained.receivers)));
+}
+
+fn step(ground: &Grid) {
+    let mut heights = ground.clone();
+    let receivers = drainage::over_bed(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
+    StreamPower::default().step(&mut heights, &receivers, &accumulate(&receivers), &Ground::default(), 3e4);
+    std::hint::black_box(heights);
+}
+
+/// The peer's median seconds for these parts.
+fn peer_seconds(
+    python: &Path,
+    peer: &str,
+    ground: &Grid,
+    folder: &Path,
+    repetitions: usize,
+    parts: &[&str],
+) -> Result<f64, String> {
+    let file = folder.join("ground.npy");
+    let written = std::fs::File::create(&file).and_then(|mut out| orogen::format::npy::write(&mut out, ground));
+    written.map_err(|e| format!("{}: {e}", file.display()))?;
+    let script = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("peers/erosion.py");
+    let mut command = Command::new(python);
+    command.arg(script).arg(peer).arg(&file).args([CELL.to_string(), repetitions.to_string()]);
+    let output = command.output().map_err(|e| format!("{}: {e}", python.display()))?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let last = text.lines().last().unwrap_or_default();
+    let times: Value = serde_json::from_str(last)
+        .map_err(|_| format!("{peer} measured nothing: {}", String::from_utf8_lossy(&output.stderr)))?;
+    let one = |part: &&str| -> Result<f64, String> {
+        let mut times: Vec<f64> = times[*part].as_array().into_iter().flatten().filter_map(Value::as_f64).collect();
+        if times.is_empty() { Err(format!("{peer} did not measure {part}")) } else { Ok(median(&mut times)) }
+    };
+    parts.iter().map(one).sum()
+}

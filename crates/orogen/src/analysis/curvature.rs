@@ -1,0 +1,112 @@
+//! How the ground bends.
+//!
+//! Over the 3 x 3 neighbourhood a b c / d e f / g h i of cells of c metres, a quadric is fitted (Zevenbergen and Thorne,
+//! "Quantitative analysis of land surface topography", 1987):
+//!
+//! ```text
+//! r = (d - 2 e + f) / c^2      s = (a - c - g + i) / 4 c^2 (rows down the page)      t = (b - 2 e + h) / c^2
+//! p = (f - d) / 2 c            q = (h - b) / 2 c
+//! ```
+//!
+//! with p and r along x, q and t along y (south). Curvatures are positive where the ground is convex, such as on ridges and
+//! brows, and in 1/m.
+
+use super::slope::inner;
+use crate::grid::Grid;
+
+/// A curvature of the ground at one sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Curvature {
+    /// Down the slope: convex where it gets steeper downhill. 0 on level ground, which has no downhill.
+    Profile,
+    /// Along the contour, seen from above: convex where water spreads. 0 on level ground.
+    Plan,
+    /// Both axes together: minus the Laplacian, -(r + t). Convex on tops, concave in pits.
+    Total,
+}
+
+/// The curvature at every sample of `grid` but those of its border; NaN where a sample of the nine is not finite.
+pub fn curvature(grid: &Grid, kind: Curvature) -> Grid {
+    let window = inner(grid.window());
+    let mut out = Grid::filled(window, 0.0f32);
+    let c = window.cell;
+    for j in 0..window.height {
+        let rows = [grid.row(j), grid.row(j + 1), grid.row(j + 2)];
+        for (i, out) in out.row_mut(j).iter_mut().enumerate() {
+            let z = |y: usize, x: usize| f64::from(rows[y][i + x]);
+            let r = (z(1, 0) - 2.0 * z(1, 1) + z(1, 2)) / (c * c);
+            let t = (z(0, 1) - 2.0 * z(1, 1) + z(2, 1)) / (c * c);
+            let s = (z(0, 0) - z(0, 2) - z(2, 0) + z(2, 2)) / (4.0 * c * c);
+            let (p, q) = ((z(1, 2) - z(1, 0)) / (2.0 * c), (z(2, 1) - z(0, 1)) / (2.0 * c));
+            let steep = p * p + q * q;
+            let bend = match kind {
+                Curvature::Total => -(r + t),
+                _ if steep == 0.0 => 0.0 * (r + s + t),
+                Curvature::Profile => {
+                    let one = 1.0 + steep;
+                    -(r * p * p + 2.0 * s * p * q + t * q * q) / (steep * one * one.sqrt())
+                }
+                Curvature::Plan => -(r * q * q - 2.0 * s * p * q + t * p * p) / (steep * steep.sqrt()),
+            };
+            // The corners enter only by s; a missing one must not go unnoticed.
+            *out = if s.is_finite() { bend as f32 } else { f32::NAN };
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Window;
+
+    fn made(f: impl Fn(f64, f64) -> f64) -> Grid {
+        let window = Window::new(21, 21, 2.0).at(-10, -10);
+        let mut grid = Grid::filled(window, 0.0);
+        for j in 0..21 {
+            for i in 0..21 {
+                grid.row_mut(j)[i] = f(window.east(i), window.south(j)) as f32;
+            }
+        }
+        grid
+    }
+
+    #[test]
+    fn quadrics_have_their_own_curvatures() {
+        // A cylinder's crest along y at x = 0 with z = -x^2 / 2: at (x, y) the slope is -x, all bending down the slope.
+        let crest = made(|x, _| -x * x / 2.0);
+        let profile = curvature(&crest, Curvature::Profile);
+        let expect = |x: f64| 1.0 / libm::pow(1.0 + x * x, 1.5);
+        for i in [2usize, 5, 14] {
+            let x = crest.window().east(i + 1);
+            assert!((f64::from(profile.get(i, 7)) - expect(x)).abs() < 1e-5);
+        }
+        assert!(curvature(&crest, Curvature::Plan).data().iter().all(|v| v.abs() < 1e-6));
+        assert!(curvature(&crest, Curvature::Total).data().iter().all(|v| (v - 1.0).abs() < 1e-5));
+        // A saddle has none in total.
+        assert!(curvature(&made(|x, y| x * y), Curvature::Total).data().iter().all(|v| v.abs() < 1e-5));
+    }
+
+    #[test]
+    fn contours_of_a_cone_bend_by_their_radius() {
+        let cone = made(|x, y| -(x * x + y * y).sqrt());
+        let plan = curvature(&cone, Curvature::Plan);
+        let (x, y) = (cone.window().east(17), cone.window().south(16));
+        let radius = (x * x + y * y).sqrt();
+        assert!((f64::from(plan.get(16, 15)) * radius - 1.0).abs() < 0.02);
+        // A valley gathers water: the other sign.
+        let hollow = curvature(&made(|x, y| (x * x + y * y).sqrt()), Curvature::Plan);
+        assert!(hollow.get(16, 15) < 0.0);
+    }
+
+    #[test]
+    fn any_missing_sample_of_the_nine_is_noticed() {
+        for (x, y) in [(0, 0), (1, 0), (1, 1), (2, 2)] {
+            let mut grid = Grid::filled(Window::new(3, 3, 1.0), 1.0);
+            grid.row_mut(y)[x] = f32::NAN;
+            for kind in [Curvature::Profile, Curvature::Plan, Curvature::Total] {
+                assert!(curvature(&grid, kind).get(0, 0).is_nan(), "{x} {y} {kind:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Geomorphons: what form the ground has, from what is seen around.
+//!
+//! Jasiewicz and Stepinski, "Geomorphons: a pattern recognition approach to classification and mapping of landforms" (2013): in
+//! each of the eight directions, the ground as far as one looks is higher, lower or level, by the angles from nadir and from
+//! zenith to the horizon; how many are higher and how many lower names the form.
+
+use crate::grid::{Grid, Window};
+use rayon::prelude::*;
+
+/// The ten forms, in the order of their codes from 1.
+pub const FORMS: [&str; 10] =
+    ["flat", "peak", "ridge", "shoulder", "spur", "slope", "hollow", "footslope", "valley", "pit"];
+
+/// The code of a form by how many directions are lower (row) and higher (column): the paper's table.
+const CODES: [[u8; 9]; 9] = [
+    [1, 1, 1, 8, 8, 9, 9, 9, 10],
+    [1, 1, 8, 8, 8, 9, 9, 9, 0],
+    [1, 4, 6, 6, 7, 7, 9, 0, 0],
+    [4, 4, 6, 6, 6, 7, 0, 0, 0],
+    [4, 4, 5, 6, 6, 0, 0, 0, 0],
+    [3, 3, 5, 5, 0, 0, 0, 0, 0],
+    [3, 3, 3, 0, 0, 0, 0, 0, 0],
+    [3, 3, 0, 0, 0, 0, 0, 0, 0],
+    [2, 0, 0, 0, 0, 0, 0, 0, 0],
+];
+
+const STEPS: [(isize, isize); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
+
+/// The form of every sample of `grid` that is `radius` samples or more from its border, as a code from 1 (see [`FORMS`]); 0
+/// where it or a sample in sight is not finite. Ground counts as level within `flat` degrees.
+///
+/// Costs O(samples times 8 radius); rows side by side.
+pub fn geomorphons(grid: &Grid, radius: usize, flat: f64) -> Grid<u8> {
+    let from = *grid.window();
+    let window = Window {
+        x: from.x + radius as i64,
+        y: from.y + radius as i64,
+        width: from.width.saturating_sub(2 * radius),
+        height: from.height.saturating_sub(2 * radius),
+        cell: from.cell,
+    };
+    let mut out = Grid::filled(window, 0u8);
+    if window.is_empty() {
+        return out;
+    }
+    let level = libm::tan(flat.to_radians());
+    out.data_mut().par_chunks_mut(window.width).enumerate().for_each(|(j, row)| {
+        for (i, form) in row.iter_mut().enumerate() {
+            *form = form_at(grid, i + radius, j + radius, radius, level).unwrap_or(0);
+        }
+    });
+    out
+}
+
+fn form_at(grid: &Grid, i: usize, j: usize, radius: usize, level: f64) -> Option<u8> {
+    let here = f64::from(grid.get(i, j));
+    let (mut lower, mut higher) = (0usize, 0usize);
+    for (east, south) in STEPS {
+        let length = ((east * east + south * south) as f64).sqrt() * grid.window().cell;
+        let (mut up, mut down) = (f64::NEG_INFINITY, f64::INFINITY);
+        for step in 1..=radius as isize {
+            let there = grid.get(i.wrapping_add_signed(east * step), j.wrapping_add_signed(south * step));
+            let slope = (f64::from(there) - here) / (length * step as f64);
+            if !slope.is_finite() {
+                return None;
+            }
+            up = up.max(slope);
+            down = down.min(slope);
+        }
+        // With the highest line of sight at angle b and the lowest at d, nadir less zenith is b + d; its tangent is sum / rest.
+        let (sum, rest) = (up + down, 1.0 - up * down);
+        let tells = rest <= 0.0 || sum.abs() > level * rest;
+        higher += usize::from(tells && sum > 0.0);
+        lower += usize::from(tells && sum < 0.0);
+    }
+    Some(CODES[lower][higher])
+}
+
+/// The share of each form among the samples that have one, in the order of [`FORMS`]; zeros if none has.
+pub fn shares(forms: &Grid<u8>) -> [f64; 10] {
+    let mut counts = [0u64; 11];
+    forms.data().iter().for_each(|form| counts[usize::from(*form).min(10)] += 1);
+    let total: u64 = counts[1..].iter().sum();
+    std::array::from_fn(|k| if total == 0 { 0.0 } else { counts[k + 1] as f64 / total as f64 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn form_of(f: impl Fn(f64, f64) -> f64) -> &'static str {
+        let window = Window::new(9, 9, 10.0).at(-4, -4);
+        let mut grid = Grid::filled(window, 0.0);
+        for j in 0..9 {
+            for i in 0..9 {
+                grid.row_mut(j)[i] = f(window.east(i), window.south(j)) as f32;
+            }
+        }
+        let forms = geomorphons(&grid, 4, 1.0);
+        assert_eq!((forms.width(), forms.height()), (1, 1));
+        FORMS[usize::from(forms.get(0, 0)) - 1]
+    }
+
+    #[test]
+    fn plain_forms_have_their_names() {
+        assert_eq!(form_of(|_, _| 5.0), "flat");
+        assert_eq!(form_of(|x, y| -(x * x + y * y).sqrt()), "peak");
+        assert_eq!(form_of(|x, y| (x * x + y * y).sqrt()), "pit");
+        assert_eq!(form_of(|x, _| -x.abs()), "ridge");
+        assert_eq!(form_of(|x, _| x.abs()), "valley");
+        assert_eq!(form_of(|x, _| x), "slope");
+        assert_eq!(form_of(|x, _| x.min(0.0)), "shoulder");
+        assert_eq!(form_of(|x, _| x.max(0.0)), "footslope");
+        assert_eq!(form_of(|x, y| x - 0.5 * y.abs()), "spur");
+        assert_eq!(form_of(|x, y| x + 0.5 * y.abs()), "hollow");
+        assert_eq!(form_of(|x, _| 0.005 * x), "flat", "within a degree");
+    }
+
+    #[test]
+    fn shares_sum_to_one_and_missing_samples_have_no_form() {
+        let mut grid = Grid::filled(Window::new(20, 20, 1.0), 1.0);
+        grid.row_mut(10)[10] = f32::NAN;
+        let forms = geomorphons(&grid, 3, 1.0);
+        assert_eq!(forms.data().iter().filter(|f| **f == 0).count(), 25);
+        assert_eq!(shares(&forms)[0], 1.0);
+        assert_eq!(shares(&Grid::filled(Window::new(2, 2, 1.0), 0)), [0.0; 10]);
+        assert!(geomorphons(&grid, 10, 1.0).window().is_empty());
+    }
+}

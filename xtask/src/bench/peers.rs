@@ -1,0 +1,60 @@
+//! The peers of area `erosion`: Python packages, each in a virtual environment of its own.
+
+use std::path::PathBuf;
+
+use crate::shell;
+
+/// A peer: the variable in which the bench program looks for its Python, what to install, and the Pythons it installs on.
+struct Peer {
+    variable: &'static str,
+    name: &'static str,
+    packages: &'static [&'static str],
+    pythons: &'static [&'static str],
+}
+
+const PEERS: &[Peer] = &[
+    // Its last release on PyPI is source that compiles with no newer Python.
+    Peer {
+        variable: "OROGEN_RICHDEM",
+        name: "richdem",
+        packages: &["numpy<2", "richdem==0.3.4"],
+        pythons: &["python3.10", "python3.9", "python3.8"],
+    },
+    Peer {
+        variable: "OROGEN_FASTSCAPELIB",
+        name: "fastscapelib",
+        packages: &["numpy", "fastscapelib==0.3.0"],
+        pythons: &["python3", "python3.12", "python3.11", "python3.10"],
+    },
+];
+
+/// The Pythons of the peers that can be had, each with its variable; one that is set already is taken as it is. What cannot be
+/// had is named on the error output.
+pub fn installed() -> Vec<(&'static str, PathBuf)> {
+    PEERS.iter().filter_map(|peer| Some((peer.variable, install(peer)?))).collect()
+}
+
+fn install(peer: &Peer) -> Option<PathBuf> {
+    if let Some(python) = std::env::var_os(peer.variable) {
+        return Some(python.into());
+    }
+    let venv = shell::target_dir().join("bench").join(peer.name);
+    let python = venv.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    let imports = || shell::succeeds(shell::program(&python).args(["-c", &format!("import {}", peer.name)]));
+    if python.is_file() && imports() {
+        return Some(python);
+    }
+    for base in peer.pythons {
+        if !shell::succeeds(shell::program(base).args(["-c", "import venv, ensurepip"])) {
+            continue;
+        }
+        eprintln!("installing {} for {base} ...", peer.name);
+        let made = shell::succeeds(shell::program(base).args(["-m", "venv", "--clear"]).arg(&venv));
+        let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+        if made && shell::succeeds(shell::program(&python).args(install).args(peer.packages)) && imports() {
+            return Some(python);
+        }
+    }
+    eprintln!("{} cannot be installed with any of {}: measured without it", peer.name, peer.pythons.join(", "));
+    None
+}
