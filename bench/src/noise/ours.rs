@@ -1,6 +1,6 @@
 //! What we offer.
 
-use orogen_noise::{Depth, Falloff, Fractal, Kind, Mismatch, Perlin, Points, Value, White, Worley};
+use orogen_noise::{Depth, Falloff, Fractal, Kind, Mismatch, Perlin, Points, Simplex, Value, White, Worley};
 use orogen_simd::Level;
 
 use super::cases::{Case, OCTAVES, SEED, SIZE, SLICE, WARP, Work, scattered};
@@ -11,14 +11,14 @@ pub fn level() -> &'static str {
     Level::current().name()
 }
 
-/// Our job for the case; none if it is not built yet.
-pub fn job(case: &Case) -> Option<Job> {
+/// Our job for the case.
+pub fn job(case: &Case) -> Job {
     let seed = SEED as u64;
     let wavelength = case.wavelength;
     let perlin = Perlin { seed, wavelength };
     let fractal = |kind| Fractal { kind, seed, wavelength, octaves: OCTAVES as u32, ..Fractal::default() };
     let weighted = Kind::Weighted { k: 1.0, falloff: Falloff::Reciprocal };
-    Some(match case.work {
+    match case.work {
         Work::White => lattice(move |at, out| White { seed, wavelength }.fill(at, out)),
         Work::Value => lattice(move |at, out| Value { seed, wavelength, ..Value::default() }.fill(at, out)),
         Work::Perlin => lattice(move |at, out| perlin.fill(at, out)),
@@ -32,8 +32,9 @@ pub fn job(case: &Case) -> Option<Job> {
         Work::WeightedFbm => whole(fractal(weighted)),
         Work::WarpedFbm => warped(fractal(Kind::Fbm), wavelength),
         Work::Worley => lattice(move |at, out| Worley { seed, wavelength, ..Worley::default() }.fill(at, out)),
-        Work::Simplex | Work::SimplexSlice => return None,
-    })
+        Work::Simplex => lattice(move |at, out| Simplex { seed, wavelength }.fill(at, out)),
+        Work::SimplexSlice => lattice(move |at, out| Simplex { seed, wavelength }.fill3(at, &Depth::Slice(SLICE), out)),
+    }
 }
 
 /// An error writes no sample; the check before the timings then speaks up.

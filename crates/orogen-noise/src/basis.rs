@@ -1,6 +1,6 @@
 //! The list of bases, by name.
 
-use crate::tables::reference::BOUND_3D;
+use crate::tables::reference::{BOUND_3D, BOUND_4D};
 
 /// A coherent noise that a [`crate::Fractal`] can be made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -18,11 +18,32 @@ pub enum Basis {
     ClassicEight,
     /// [`crate::Classic`] with [`crate::ClassicVariant::Angle`].
     ClassicAngle,
+    /// [`crate::Simplex`]: gradients on the corners of triangles.
+    Simplex,
+    /// [`crate::OpenSimplex2`] with [`crate::Smoothness::Fast`].
+    OpenSimplex2,
+    /// [`crate::OpenSimplex2`] with [`crate::Smoothness::Smooth`].
+    OpenSimplex2Smooth,
+    /// [`crate::Worley`] with [`crate::Feature::F1`] and euclidean distance.
+    Worley,
+    /// [`crate::Worley`] with [`crate::Feature::Edge`] and euclidean distance.
+    WorleyEdge,
 }
 
 impl Basis {
-    const ALL: [Basis; 6] =
-        [Basis::White, Basis::Value, Basis::Perlin, Basis::ClassicDiagonal, Basis::ClassicEight, Basis::ClassicAngle];
+    const ALL: [Basis; 11] = [
+        Basis::White,
+        Basis::Value,
+        Basis::Perlin,
+        Basis::ClassicDiagonal,
+        Basis::ClassicEight,
+        Basis::ClassicAngle,
+        Basis::Simplex,
+        Basis::OpenSimplex2,
+        Basis::OpenSimplex2Smooth,
+        Basis::Worley,
+        Basis::WorleyEdge,
+    ];
 
     /// Every basis.
     #[must_use]
@@ -40,6 +61,11 @@ impl Basis {
             Basis::ClassicDiagonal => "classic-diagonal",
             Basis::ClassicEight => "classic-eight",
             Basis::ClassicAngle => "classic-angle",
+            Basis::Simplex => "simplex",
+            Basis::OpenSimplex2 => "opensimplex2",
+            Basis::OpenSimplex2Smooth => "opensimplex2-smooth",
+            Basis::Worley => "worley",
+            Basis::WorleyEdge => "worley-edge",
         }
     }
 
@@ -49,25 +75,28 @@ impl Basis {
         Basis::ALL.into_iter().find(|basis| basis.name() == name)
     }
 
-    /// Whether the noise is smooth. White noise is not: its gradient is given as zero everywhere.
+    /// Whether the noise has a slope to give. White noise has none and that of Worley's is not worked out: their gradients are given
+    /// as zero everywhere.
     #[must_use]
     pub const fn has_gradient(self) -> bool {
-        !matches!(self, Basis::White)
+        !matches!(self, Basis::White | Basis::Worley | Basis::WorleyEdge)
     }
 
-    /// The greatest size a value of the basis reaches in 2D; a [`crate::Fractal`] divides by it.
+    /// Whether its lattice can be made to repeat along the axes; lattices of simplices cannot.
     #[must_use]
-    pub const fn bound(self) -> f64 {
-        1.0
+    pub const fn is_tileable(self) -> bool {
+        !matches!(self, Basis::Simplex | Basis::OpenSimplex2 | Basis::OpenSimplex2Smooth)
     }
 
-    /// The greatest size a value of the basis reaches in 3D. Perlin's reference noise is not bounded by 1: where its
-    /// gradients agree best, at (.355, .519, .5) in a cell, it reaches 1.03635.
+    /// The greatest size a value of the basis reaches in so many dimensions, 2 to 4; a [`crate::Fractal`] divides by it. Perlin's
+    /// reference noise is not bounded by 1 beyond the plane: where its gradients agree best it reaches 1.03635 in 3D and 1.53658
+    /// in 4D.
     #[must_use]
-    pub const fn bound3(self) -> f64 {
-        match self {
-            Basis::White | Basis::Value | Basis::Perlin => 1.0,
-            Basis::ClassicDiagonal | Basis::ClassicEight | Basis::ClassicAngle => BOUND_3D,
+    pub const fn bound(self, dimensions: usize) -> f64 {
+        match (self, dimensions) {
+            (Basis::ClassicDiagonal | Basis::ClassicEight | Basis::ClassicAngle, 3) => BOUND_3D,
+            (Basis::ClassicDiagonal | Basis::ClassicEight | Basis::ClassicAngle, 4..) => BOUND_4D,
+            _ => 1.0,
         }
     }
 }

@@ -53,6 +53,66 @@ pub enum Kind {
         /// Shape of the damping.
         falloff: Falloff,
     },
+    /// The sum of triangle waves of the noise: contour bands, like agate.
+    ///
+    /// ```text
+    /// t = strength (n_i + 1);  h += gain^i (2 |t - 2 floor(t / 2) ... folded at 1| - 1)
+    /// ```
+    ///
+    /// Its gradient is exact except on the creases.
+    PingPong {
+        /// How many times the range of the noise is folded: 1 gives the noise itself, 2 (usual) one fold.
+        strength: f64,
+    },
+    /// Musgrave's hybrid multifractal: an octave counts as much as the product of those before it, so that lowlands are smooth and
+    /// heights rough.
+    ///
+    /// ```text
+    /// s_i = gain^i (n_i + offset);  h += w s_i;  w = clamp(w s_i, 0, 1), starting at 1
+    /// ```
+    ///
+    /// Its gradient is exact except where w is held. F. K. Musgrave in Ebert et al., "Texturing and Modeling" (1994).
+    Hybrid {
+        /// Added to the noise: where the sum of both is small, ground is smooth. Usual: 0.7.
+        offset: f64,
+    },
+    /// Musgrave's heterogeneous terrain: an octave counts as much as the height so far.
+    ///
+    /// ```text
+    /// h = n_0 + offset;  h += h gain^i (n_i + offset)
+    /// ```
+    ///
+    /// Its gradient is exact. F. K. Musgrave in Ebert et al., "Texturing and Modeling" (1994).
+    Hetero {
+        /// Added to the noise: where the sum of both is small, ground is smooth. Usual: 0.7.
+        offset: f64,
+    },
+    /// De Carpentier's swiss turbulence: ridges that pull the finer octaves down their slopes, so that crests branch.
+    ///
+    /// ```text
+    /// n_i at p + warp d;  h += a_i (1 - |n_i|);  d -= a_i n_i grad n_i;  a_i+1 = a_i gain clamp(h, 0, 1)
+    /// ```
+    ///
+    /// with grad n_i per cell of octave i and p in first wavelengths. Its gradient leaves out how places move and amplitudes
+    /// change: an approximation. G. de Carpentier, "Scape: procedural basics" (2011).
+    Swiss {
+        /// How far slopes move what comes after, in first wavelengths. Usual: 0.15.
+        warp: f64,
+    },
+    /// De Carpentier's jordan turbulence: squared noise, moved and damped by the slopes so far: rounded massifs with worn flanks.
+    ///
+    /// ```text
+    /// n_i at p lacunarity^i + warp d;  h += a_i n_i^2;  d += n_i grad n_i;  a_i = gain^i (1 - 1 / (1 + |damp d|^2)), a_0 = 1
+    /// ```
+    ///
+    /// with grad n_i per cell of octave i. Its gradient leaves out how places move and amplitudes change: an approximation. G. de
+    /// Carpentier, "Scape: procedural basics" (2011).
+    Jordan {
+        /// How far slopes move what comes after, in cells of the octave. Usual: 0.35.
+        warp: f64,
+        /// How much slopes so far let the finer octaves through; 0 leaves the first one alone. Usual: 0.8.
+        damp: f64,
+    },
 }
 
 /// The damping factor of [`Kind::Weighted`] for a squared slope m, 1 at no slope.
@@ -67,6 +127,16 @@ pub enum Falloff {
     SquareRoot,
     /// 1 - smoothstep(k m): no detail at all from k m = 1 on.
     Smoothstep,
+}
+
+/// How far the corners of [`crate::OpenSimplex2`] reach.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Smoothness {
+    /// As few corners to a sample as there can be.
+    #[default]
+    Fast,
+    /// Wider, rounder kernels and more of them: softer noise, about twice the work.
+    Smooth,
 }
 
 /// How [`crate::Worley`] measures distance.

@@ -11,7 +11,7 @@ use crate::tiled::tileable;
 /// z)` of the reference. [`crate::Perlin`] is better noise and faster. The table holds no seed; other seeds move the
 /// lattice by whole cells, so two seeds are two places of one endless noise.
 ///
-/// Range: within [-1, 1] in 2D, both reached; within 1.03635 in 3D. Zero at every lattice point. Its gradient is exact.
+/// Range: within [-1, 1] in 2D, both reached; within 1.03635 in 3D, within 1.53658 in 4D. Zero at every lattice point. Its gradient is exact.
 ///
 /// K. Perlin, "Improving noise", SIGGRAPH 2002; reference code at <https://mrl.cs.nyu.edu/~perlin/noise/>.
 ///
@@ -36,11 +36,8 @@ impl Default for Classic {
 }
 
 impl Classic {
-    pub(crate) fn program(&self) -> Program {
+    pub(crate) fn program(&self, _: usize) -> Program {
         Program::single(Source::Classic(self.variant), self.seed, self.wavelength)
-    }
-    pub(crate) fn program3(&self) -> Program {
-        self.program()
     }
 }
 

@@ -1,10 +1,11 @@
 //! Fractal sums of octaves.
 
 use crate::basis::Basis;
-use crate::choices::{ClassicVariant, Fade, Kind};
+use crate::choices::{ClassicVariant, Fade, Feature, Kind, Smoothness};
 use crate::methods::noise_methods;
 use crate::program::{Octaves, Program, Source};
 use crate::tiled::tileable;
+use crate::worley::Worley;
 
 /// Octaves of one basis, each finer and weaker than the one before.
 ///
@@ -29,7 +30,7 @@ pub struct Fractal {
     /// Wavelength of the first octave, metres. One that is zero, or too small to divide by, gives a constant. Default 1.
     pub wavelength: f64,
     /// How many octaves, up to [`crate::MAX_OCTAVES`]; more are left out. None at all gives the sum of nothing: 0 (1 for
-    /// ridged, -1 for billow). Default 6.
+    /// ridged; -1 for billow, swiss and jordan). Default 6.
     pub octaves: u32,
     /// Frequency ratio from one octave to the next. Default 2.
     pub lacunarity: f64,
@@ -60,12 +61,17 @@ impl Fractal {
             Basis::ClassicDiagonal => Source::Classic(ClassicVariant::Diagonal),
             Basis::ClassicEight => Source::Classic(ClassicVariant::Eight),
             Basis::ClassicAngle => Source::Classic(ClassicVariant::Angle),
+            Basis::Simplex => Source::Simplex,
+            Basis::OpenSimplex2 => Source::OpenSimplex2(Smoothness::Fast),
+            Basis::OpenSimplex2Smooth => Source::OpenSimplex2(Smoothness::Smooth),
+            Basis::Worley => Source::Worley(Worley::default().cellular()),
+            Basis::WorleyEdge => Source::Worley(Worley { feature: Feature::Edge, ..Worley::default() }.cellular()),
         }
     }
-    fn octaves(&self, bound: f64) -> Program {
+    pub(crate) fn program(&self, dims: usize) -> Program {
         Program::octaves_of(&Octaves {
             source: self.source(),
-            bound,
+            bound: self.basis.bound(dims),
             kind: self.kind,
             seed: self.seed,
             wavelength: self.wavelength,
@@ -73,12 +79,6 @@ impl Fractal {
             lacunarity: self.lacunarity,
             gain: self.gain,
         })
-    }
-    pub(crate) fn program(&self) -> Program {
-        self.octaves(self.basis.bound())
-    }
-    pub(crate) fn program3(&self) -> Program {
-        self.octaves(self.basis.bound3())
     }
 }
 

@@ -15,9 +15,11 @@
 //! # Ok::<(), orogen_noise::Mismatch>(())
 //! ```
 //!
-//! A noise is a plain struct: [`White`], [`Value`], [`Perlin`], [`Classic`], [`Worley`], or a [`Fractal`] over any [`Basis`]. Each has
-//! `sample` and `fill`, `fill_with_gradient`, and their 3D counterparts `sample3`, `fill3`, `fill3_with_gradient`. Positions and wavelengths are metres (or any unit
-//! you like); values have no unit and lie in [-1, 1].
+//! A noise is a plain struct: [`White`], [`Value`], [`Perlin`], [`Classic`], [`Simplex`], [`OpenSimplex2`], [`Worley`], or a
+//! [`Fractal`] over any [`Basis`]. Each has `sample` and `fill`, `fill_with_gradient` where it has slopes, and their counterparts in
+//! three and four dimensions: `sample3`, `fill3`, `fill3_with_gradient`, `sample4` ... Positions and wavelengths are metres (or any unit
+//! you like); values have no unit and lie in [-1, 1]. [`Phacelle`] draws stripes along directions of yours; a [`Warp`] moves places
+//! before a noise is asked there.
 //!
 //! **The bits.** A value depends on the noise's parameters and the position, and on nothing else: not on the processor, the SIMD
 //! level ([`Level`]), the build, how the points are given ([`Points`]) or cut into calls.
@@ -25,8 +27,8 @@
 //! **Without a seam.** Each noise has a `tiled` variant that repeats after whole numbers of cells: see [`Tiled`].
 //!
 //! **Far away.** Positions are f64; each octave splits them into a whole cell and a fraction before anything is rounded to f32, so
-//! noise at 1e9 m is as smooth as at 0. Positions beyond 2^50 cells of the finest octave are held there; so are infinite ones,
-//! and NaN counts as the lower end. The result is always finite.
+//! noise at 1e9 m is as smooth as at 0. Positions beyond 2^50 cells of the finest octave (2^47 on lattices of
+//! simplices) are held there; so are infinite ones, and NaN counts as the lower end. The result is always finite.
 //!
 //! **Octave coordinates.** Octave i looks at `x * lacunarity^i / wavelength + offset`, in f64 and in this order.
 
@@ -38,27 +40,35 @@ mod classic;
 mod fractal;
 mod kernel;
 mod methods;
+mod open_simplex2;
 mod perlin;
+mod phacelle;
 mod points;
 mod program;
 mod seed;
+mod simplex;
 mod tables;
 #[cfg(test)]
 mod tests;
 mod tiled;
 mod value;
+mod warp;
 mod white;
 mod worley;
 
 pub use basis::Basis;
-pub use choices::{ClassicVariant, Distance, Fade, Falloff, Feature, Kind};
+pub use choices::{ClassicVariant, Distance, Fade, Falloff, Feature, Kind, Smoothness};
 pub use classic::Classic;
 pub use fractal::Fractal;
+pub use open_simplex2::OpenSimplex2;
 pub use orogen_simd::{Level, LevelError};
 pub use perlin::Perlin;
+pub use phacelle::Phacelle;
 pub use points::{Depth, Mismatch, Points};
 pub use program::{MAX_OCTAVES, Untileable};
-pub use tiled::Tiled;
+pub use simplex::Simplex;
+pub use tiled::{Period, Tiled};
 pub use value::Value;
+pub use warp::{Warp, WarpKind};
 pub use white::White;
 pub use worley::Worley;

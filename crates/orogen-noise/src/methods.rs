@@ -6,16 +6,16 @@ use crate::points::{Depth, Mismatch, Points};
 use crate::program::Program;
 use orogen_simd::{Level, LevelError, dispatch, dispatch_at};
 
-/// Runs a program at the level in force. Slopes: two slices in 2D, three in 3D.
+/// Runs a program at the level in force. `depths` are z and w as far as there are these axes; slopes, one slice for each axis.
 pub(crate) fn fill(
     program: &Program,
     points: &Points,
-    depth: Option<&Depth>,
+    depths: &[Depth],
     value: &mut [f32],
-    slopes: Option<[&mut [f32]; 3]>,
+    slopes: Option<[&mut [f32]; 4]>,
 ) -> Result<(), Mismatch> {
-    check(points, depth, value, slopes.as_ref())?;
-    dispatch(Fill { program, points: *points, depth: depth.copied(), outputs: Outputs { value, slopes } });
+    check(points, depths, value, slopes.as_ref())?;
+    dispatch(Fill { program, points: *points, depths, outputs: Outputs { value, slopes } });
     Ok(())
 }
 
@@ -24,49 +24,44 @@ pub(crate) fn fill_at(
     level: Level,
     program: &Program,
     points: &Points,
-    depth: Option<&Depth>,
+    depths: &[Depth],
     value: &mut [f32],
-    slopes: Option<[&mut [f32]; 3]>,
+    slopes: Option<[&mut [f32]; 4]>,
 ) -> Result<Result<(), Mismatch>, LevelError> {
-    if let Err(mismatch) = check(points, depth, value, slopes.as_ref()) {
+    if let Err(mismatch) = check(points, depths, value, slopes.as_ref()) {
         return Ok(Err(mismatch));
     }
-    dispatch_at(level, Fill { program, points: *points, depth: depth.copied(), outputs: Outputs { value, slopes } })?;
+    dispatch_at(level, Fill { program, points: *points, depths, outputs: Outputs { value, slopes } })?;
     Ok(Ok(()))
 }
 
-fn check(
-    points: &Points,
-    depth: Option<&Depth>,
-    value: &[f32],
-    slopes: Option<&[&mut [f32]; 3]>,
-) -> Result<(), Mismatch> {
+fn check(points: &Points, depths: &[Depth], value: &[f32], slopes: Option<&[&mut [f32]; 4]>) -> Result<(), Mismatch> {
     points.check()?;
     let check = |slice, length| Mismatch::check(slice, length, points.len());
     check("value", value.len())?;
-    if let Some([dx, dy, dz]) = slopes {
-        check("dx", dx.len())?;
-        check("dy", dy.len())?;
-        if depth.is_some() {
-            check("dz", dz.len())?;
+    if let Some(slopes) = slopes {
+        let names = ["dx", "dy", "dz", "dw"];
+        for (slope, name) in slopes.iter().zip(names).take(2 + depths.len()) {
+            check(name, slope.len())?;
         }
     }
-    if let Some(Depth::Each(z)) = depth {
-        check("depth", z.len())?;
+    for (depth, name) in depths.iter().zip(["z", "w"]) {
+        if let Depth::Each(depth) = depth {
+            check(name, depth.len())?;
+        }
     }
     Ok(())
 }
 
 /// One sample.
-pub(crate) fn sample(program: &Program, x: f64, y: f64, z: Option<f64>) -> f32 {
+pub(crate) fn sample(program: &Program, x: f64, y: f64, depths: &[Depth]) -> f32 {
     let mut value = [0.0];
-    let depth = z.map(Depth::Slice);
     // The lengths agree, so there is no error to hand on.
-    let _ = fill(program, &Points::Scattered { x: &[x], y: &[y] }, depth.as_ref(), &mut value, None);
+    let _ = fill(program, &Points::Scattered { x: &[x], y: &[y] }, depths, &mut value, None);
     value[0]
 }
 
-/// The methods of a noise that has `program()` and `program3()`, without slopes.
+/// The methods of a noise that has a `program` for each number of dimensions, without slopes.
 macro_rules! value_methods {
     ($noise:ident) => {
         impl $noise {
@@ -74,13 +69,19 @@ macro_rules! value_methods {
             /// points, [`fill`](Self::fill) is many times faster and gives the same bits.
             #[must_use]
             pub fn sample(&self, x: f64, y: f64) -> f32 {
-                $crate::methods::sample(&self.program(), x, y, None)
+                $crate::methods::sample(&self.program(2), x, y, &[])
             }
 
             /// The value at (x, y, z), metres.
             #[must_use]
             pub fn sample3(&self, x: f64, y: f64, z: f64) -> f32 {
-                $crate::methods::sample(&self.program3(), x, y, Some(z))
+                $crate::methods::sample(&self.program(3), x, y, &[$crate::Depth::Slice(z)])
+            }
+
+            /// The value at (x, y, z, w), metres.
+            #[must_use]
+            pub fn sample4(&self, x: f64, y: f64, z: f64, w: f64) -> f32 {
+                $crate::methods::sample(&self.program(4), x, y, &[$crate::Depth::Slice(z), $crate::Depth::Slice(w)])
             }
 
             /// The values at the points, in their order.
@@ -88,7 +89,7 @@ macro_rules! value_methods {
             /// # Errors
             /// A slice does not have the points' length; nothing is written.
             pub fn fill(&self, points: &$crate::Points, value: &mut [f32]) -> Result<(), $crate::Mismatch> {
-                $crate::methods::fill(&self.program(), points, None, value, None)
+                $crate::methods::fill(&self.program(2), points, &[], value, None)
             }
 
             /// The values at the points in space.
@@ -101,7 +102,20 @@ macro_rules! value_methods {
                 depth: &$crate::Depth,
                 value: &mut [f32],
             ) -> Result<(), $crate::Mismatch> {
-                $crate::methods::fill(&self.program3(), points, Some(depth), value, None)
+                $crate::methods::fill(&self.program(3), points, &[*depth], value, None)
+            }
+
+            /// The values at the points in four dimensions: `depths` are z and w.
+            ///
+            /// # Errors
+            /// A slice does not have the points' length; nothing is written.
+            pub fn fill4(
+                &self,
+                points: &$crate::Points,
+                depths: &[$crate::Depth; 2],
+                value: &mut [f32],
+            ) -> Result<(), $crate::Mismatch> {
+                $crate::methods::fill(&self.program(4), points, depths, value, None)
             }
 
             /// [`fill`](Self::fill) at a chosen SIMD level, for tests and bug reports: the bits are the same.
@@ -114,7 +128,7 @@ macro_rules! value_methods {
                 points: &$crate::Points,
                 value: &mut [f32],
             ) -> Result<Result<(), $crate::Mismatch>, $crate::LevelError> {
-                $crate::methods::fill_at(level, &self.program(), points, None, value, None)
+                $crate::methods::fill_at(level, &self.program(2), points, &[], value, None)
             }
         }
     };
@@ -138,7 +152,7 @@ macro_rules! noise_methods {
                 dx: &mut [f32],
                 dy: &mut [f32],
             ) -> Result<(), $crate::Mismatch> {
-                $crate::methods::fill(&self.program(), points, None, value, Some([dx, dy, &mut []]))
+                $crate::methods::fill(&self.program(2), points, &[], value, Some([dx, dy, &mut [], &mut []]))
             }
 
             /// The values at the points in space and their slopes along x, y and z, per metre, in `gradient`.
@@ -152,7 +166,23 @@ macro_rules! noise_methods {
                 value: &mut [f32],
                 gradient: [&mut [f32]; 3],
             ) -> Result<(), $crate::Mismatch> {
-                $crate::methods::fill(&self.program3(), points, Some(depth), value, Some(gradient))
+                let [dx, dy, dz] = gradient;
+                $crate::methods::fill(&self.program(3), points, &[*depth], value, Some([dx, dy, dz, &mut []]))
+            }
+
+            /// The values at the points in four dimensions and their slopes along x, y, z and w, per metre, in `gradient`;
+            /// `depths` are z and w.
+            ///
+            /// # Errors
+            /// A slice does not have the points' length; nothing is written.
+            pub fn fill4_with_gradient(
+                &self,
+                points: &$crate::Points,
+                depths: &[$crate::Depth; 2],
+                value: &mut [f32],
+                gradient: [&mut [f32]; 4],
+            ) -> Result<(), $crate::Mismatch> {
+                $crate::methods::fill(&self.program(4), points, depths, value, Some(gradient))
             }
         }
     };

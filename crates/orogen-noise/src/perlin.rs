@@ -35,11 +35,8 @@ impl Default for Perlin {
 }
 
 impl Perlin {
-    pub(crate) fn program(&self) -> Program {
+    pub(crate) fn program(&self, _: usize) -> Program {
         Program::single(Source::Perlin, self.seed, self.wavelength)
-    }
-    pub(crate) fn program3(&self) -> Program {
-        self.program()
     }
 }
 

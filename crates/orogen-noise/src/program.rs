@@ -1,6 +1,6 @@
 //! What the kernels run: one noise, as a list of octaves. Every public noise boils down to this.
 
-use crate::choices::{ClassicVariant, Distance, Fade, Falloff, Feature, Kind};
+use crate::choices::{ClassicVariant, Distance, Fade, Falloff, Feature, Kind, Smoothness};
 use crate::seed;
 use std::f32::consts::SQRT_2;
 use std::fmt;
@@ -12,6 +12,9 @@ pub const MAX_OCTAVES: u32 = 32;
 /// Positions are held inside this many cells of the finest octave, where f64 still resolves a quarter of a cell. It keeps every
 /// cell number exact and every result finite, for NaN and infinite positions too.
 const FARTHEST: f64 = 1_125_899_906_842_624.0;
+
+/// The same on lattices of simplices, whose slant adds up to as many cells again along each axis.
+const FARTHEST_SLANTED: f64 = FARTHEST / 8.0;
 
 /// The same where lattices repeat: there coordinates are rounded to 2^-24 of a cell in a way that holds up to here.
 const FARTHEST_TILED: f64 = 134_217_727.0;
@@ -34,12 +37,33 @@ pub(crate) enum Source {
     Perlin,
     /// Gradients from the 2002 table.
     Classic(ClassicVariant),
-    /// Points, one in each cell; one octave.
+    /// Points, one in each cell.
     Worley(Cellular),
+    /// Gradients on the corners of simplices.
+    Simplex,
+    /// The same lattice with other kernels and gradients.
+    OpenSimplex2(Smoothness),
+}
+
+impl Source {
+    /// Whether an octave is a sum of few products of a column's and a row's numbers: see [`crate::kernel::basis`].
+    pub(crate) fn low_rank(self) -> bool {
+        matches!(self, Source::Value(_) | Source::Perlin | Source::Classic(_))
+    }
+
+    /// Whether it has slopes; else they are zero.
+    pub(crate) fn sloped(self) -> bool {
+        !matches!(self, Source::Value(Fade::Step) | Source::Worley(_))
+    }
+
+    /// Whether its lattice can be made to repeat along the axes.
+    fn repeats(self) -> bool {
+        !matches!(self, Source::Simplex | Source::OpenSimplex2(_))
+    }
 }
 
 /// What cellular noise is made of.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Cellular {
     pub distance: Distance,
     pub feature: Feature,
@@ -53,24 +77,24 @@ impl Cellular {
     /// A sample whose nearest lattice corner is x, y (and z) off, each at most 1/2, has its own cell's point within
     /// (1 - x, 1 - y), and that of the neighbour across the side nearest to it within 2 min(x, y) more along one axis; the greatest
     /// of these over all places bound the nearest and the second nearest, and points in the farthest corners reach them. An edge is at
-    /// most sqrt 2 (sqrt 3) minus the nearest distance away, or that far off a place would be without a point, and at most half the
-    /// sum of the nearest two: together less than 1 (2 / sqrt 3).
-    pub(crate) fn bound(self, deep: bool) -> f32 {
-        let pick = |plane: f32, space: f32| if deep { space } else { plane };
+    /// most sqrt 2 (sqrt 3, 2) minus the nearest distance away, or that far off a place would be without a point, and at most half the
+    /// sum of the nearest two: together less than 1 (2 / sqrt 3, 4 / 3).
+    pub(crate) fn bound(self, dims: usize) -> f32 {
+        let pick = |bounds: [f32; 3]| bounds[dims.clamp(2, 4) - 2];
         let second = match self.distance {
-            Distance::Euclidean => pick(1.581_138_8, 1.732_050_8),
-            Distance::Manhattan => pick(2.0, 3.0),
+            Distance::Euclidean => pick([1.581_138_8, 1.732_050_8, 2.0]),
+            Distance::Manhattan => pick([2.0, 3.0, 4.0]),
             Distance::Chebyshev => 1.5,
         };
         match (self.feature, self.distance) {
-            (Feature::F1, Distance::Euclidean) => pick(SQRT_2, 1.732_050_8),
-            (Feature::F1, Distance::Manhattan) => pick(2.0, 3.0),
+            (Feature::F1, Distance::Euclidean) => pick([SQRT_2, 1.732_050_8, 2.0]),
+            (Feature::F1, Distance::Manhattan) => pick([2.0, 3.0, 4.0]),
             (Feature::F1 | Feature::Product, Distance::Chebyshev) => 1.0,
             (Feature::F2 | Feature::Difference, _) => second,
-            (Feature::Product, Distance::Euclidean) => pick(2.0, 3.0),
-            (Feature::Product, Distance::Manhattan) => pick(4.0, 9.0),
+            (Feature::Product, Distance::Euclidean) => pick([2.0, 3.0, 4.0]),
+            (Feature::Product, Distance::Manhattan) => pick([4.0, 9.0, 16.0]),
             (Feature::Value, _) => 1.0,
-            (Feature::Edge, Distance::Euclidean) => pick(1.0, 1.154_700_5),
+            (Feature::Edge, Distance::Euclidean) => pick([1.0, 1.154_700_5, 1.333_333_4]),
             (Feature::Edge, _) => second * 0.5,
         }
     }
@@ -82,19 +106,21 @@ pub(crate) struct Octave {
     /// Cells per metre.
     pub frequency: f64,
     /// Added to position times frequency, in cells.
-    pub offset: [f64; 3],
+    pub offset: [f64; 4],
     /// What the lattice hash mixes in, per axis.
-    pub words: [[u32; 2]; 3],
+    pub words: [[u32; 2]; 4],
     /// Factor of the value.
     pub amplitude: f32,
     /// Factor of the gradient by cell coordinates.
     pub slope: f32,
+    /// Its weight in sums that are no plain ones.
+    pub gain: f32,
     /// The octave's frequency over the first one's.
     pub ratio: f64,
     /// Whether coordinates are rounded so that a seam's two sides agree.
     pub tiled: bool,
     /// After how many cells the lattice repeats, per axis; 0 where it does not.
-    pub period: [f64; 3],
+    pub period: [f64; 4],
 }
 
 /// What a sum of octaves is made from: the parameters of a fractal.
@@ -131,6 +157,42 @@ pub(crate) enum Combine {
         /// From the kernels' gradient unit to 1 / metre of the normalised sum.
         gradient: f32,
     },
+    /// What is no plain sum: octaves reach the combination as numbers from -1 to 1, with slopes per first wavelength.
+    Shaped {
+        /// The shape.
+        shape: Shape,
+        /// From the shape's own range to -1 ..= 1.
+        scale: f32,
+        /// From the kernels' gradient unit to 1 / metre of the result.
+        gradient: f32,
+    },
+}
+
+/// How octaves become one number where it is no plain sum; see [`Kind`] for what they are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Shape {
+    /// Folded values, summed.
+    PingPong { strength: f32 },
+    /// Each octave weighted by the product of those before.
+    Hybrid { offset: f32 },
+    /// Each octave scaled by the sum so far.
+    Hetero { offset: f32 },
+    /// Ridges that move what comes after.
+    Swiss { warp: f32 },
+    /// Squares that move and damp what comes after.
+    Jordan { warp: f32, damp: f32 },
+}
+
+impl Combine {
+    /// Whether octaves move the places of those after them: then a row of samples is no row any more.
+    pub(crate) fn moves(self) -> bool {
+        matches!(self, Combine::Shaped { shape: Shape::Swiss { .. } | Shape::Jordan { .. }, .. })
+    }
+
+    /// Whether slopes are needed whoever asks.
+    pub(crate) fn needs_slopes(self) -> bool {
+        matches!(self, Combine::Weighted { .. }) || self.moves()
+    }
 }
 
 /// A noise for the kernels.
@@ -146,24 +208,37 @@ pub(crate) struct Program {
 
 /// Why a noise cannot repeat.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Untileable {
-    /// The octave that does not close, counted from 0.
-    pub octave: usize,
-    /// Along which axis: 0 for x, 1 for y, 2 for z.
-    pub axis: usize,
-    /// How many of its cells would have to fit into one period: the first octave's times a power of the lacunarity.
-    pub cells: f64,
+pub enum Untileable {
+    /// An octave does not close.
+    Octave {
+        /// The octave, counted from 0.
+        octave: usize,
+        /// Along which axis: 0 for x, 1 for y, 2 for z, 3 for w.
+        axis: usize,
+        /// How many of its cells would have to fit into one period: the first octave's times a power of the lacunarity.
+        cells: f64,
+    },
+    /// The noise stands on a lattice of simplices, which closes along its own slanted axes only.
+    Slanted,
 }
 
 impl fmt::Display for Untileable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let axis = ["x", "y", "z"].get(self.axis).unwrap_or(&"?");
-        write!(
-            f,
-            "octave {} would have to repeat after {} cells along {axis}; a period is a whole number of cells from 1 to {MAX_PERIOD}, so \
-             periods times powers of the lacunarity must be such numbers",
-            self.octave, self.cells
-        )
+        match *self {
+            Untileable::Octave { octave, axis, cells } => {
+                let axis = ["x", "y", "z", "w"].get(axis).unwrap_or(&"?");
+                write!(
+                    f,
+                    "octave {octave} would have to repeat after {cells} cells along {axis}; a period is a whole number of cells from 1 to \
+                     {MAX_PERIOD}, so periods times powers of the lacunarity must be such numbers"
+                )
+            }
+            Untileable::Slanted => write!(
+                f,
+                "a lattice of simplices closes along its own slanted axes only, so this noise cannot repeat along x and y; take \
+                 Perlin, value or Worley noise, or a ring through the third and fourth dimension"
+            ),
+        }
     }
 }
 
@@ -176,14 +251,15 @@ impl Program {
         let mut all = [Octave::default(); MAX_OCTAVES as usize];
         all[0] = Octave {
             frequency,
-            offset: [0.0; 3],
+            offset: [0.0; 4],
             words: words(source, seed),
             amplitude: 1.0,
             slope: defined32(frequency as f32, STEEPEST),
+            gain: 1.0,
             ratio: 1.0,
             ..Octave::default()
         };
-        Program { source, combine: Combine::Sum, limit: limit(frequency), count: 1, all }
+        Program { source, combine: Combine::Sum, limit: limit(source, frequency), count: 1, all }
     }
 
     /// A sum of octaves.
@@ -200,27 +276,33 @@ impl Program {
         }
         // A hair above the sum, so that rounding in f32 cannot carry the result past 1.
         total *= bound * (1.0 + 1.0 / 1_048_576.0);
-        let per_octave = match fractal.kind {
-            Kind::Fbm | Kind::Weighted { .. } => 1.0,
-            Kind::Ridged | Kind::Billow => 2.0,
-        };
+        let shape = shape(fractal.kind);
         let (mut amplitude, mut ratio, mut fastest) = (1.0, 1.0, 0.0_f64);
         for (octave, i) in all.iter_mut().zip(0..count) {
             let seed = seed::octave_seed(fractal.seed, u64::from(i));
             let frequency = defined(base * ratio);
-            let share = per_octave * amplitude / total;
+            let turns = if frequency == 0.0 { 0.0 } else { ratio };
+            let share = amplitude / total;
+            let [value, slope] = match fractal.kind {
+                Kind::Fbm => [share, share * frequency],
+                Kind::Ridged | Kind::Billow => [2.0 * share, 2.0 * share * frequency],
+                // The slope of the sum before it is normalised, per first wavelength.
+                Kind::Weighted { .. } => [share, amplitude * turns],
+                _ => [1.0 / bound, turns / bound],
+            };
             *octave = Octave {
                 frequency,
-                offset: [0, 1, 2].map(|axis| seed::offset(seed, axis)),
+                offset: [0, 1, 2, 3].map(|axis| seed::offset(seed, axis)),
                 words: words(source, seed),
-                amplitude: share as f32,
-                slope: match fractal.kind {
-                    // The slope of the sum before it is normalised, per first wavelength.
-                    Kind::Weighted { .. } => {
-                        defined32((amplitude * if frequency == 0.0 { 0.0 } else { ratio }) as f32, STEEPEST_WEIGHTED)
-                    }
-                    _ => defined32((share * frequency) as f32, STEEPEST),
-                },
+                amplitude: value as f32,
+                slope: defined32(
+                    slope as f32,
+                    match fractal.kind {
+                        Kind::Fbm | Kind::Ridged | Kind::Billow => STEEPEST,
+                        _ => STEEPEST_WEIGHTED,
+                    },
+                ),
+                gain: defined32(amplitude as f32, STEEPEST_WEIGHTED),
                 ratio,
                 ..Octave::default()
             };
@@ -228,24 +310,35 @@ impl Program {
             amplitude *= gain;
             ratio *= fractal.lacunarity;
         }
-        let combine = match fractal.kind {
-            Kind::Fbm => Combine::Sum,
-            Kind::Ridged => Combine::Sizes { sign: -1.0 },
-            Kind::Billow => Combine::Sizes { sign: 1.0 },
-            Kind::Weighted { k, falloff } => Combine::Weighted {
+        let combine = match (fractal.kind, shape) {
+            (Kind::Ridged, _) => Combine::Sizes { sign: -1.0 },
+            (Kind::Billow, _) => Combine::Sizes { sign: 1.0 },
+            (Kind::Weighted { k, falloff }, _) => Combine::Weighted {
                 // Finite, so that where there is no slope its product is none.
                 k: if k >= 0.0 { k.min(f64::from(f32::MAX)) as f32 } else { 0.0 },
                 falloff,
                 gradient: if count == 0 { 0.0 } else { defined32((base / total) as f32, STEEPEST_WEIGHTED) },
             },
+            (_, Some(shape)) => {
+                let scale = 1.0 / greatest(shape, gain, count);
+                Combine::Shaped {
+                    shape,
+                    scale: scale as f32,
+                    gradient: defined32((base * scale) as f32, STEEPEST_WEIGHTED),
+                }
+            }
+            (_, None) => Combine::Sum,
         };
-        Program { source, combine, limit: limit(fastest), count: count as usize, all }
+        Program { source, combine, limit: limit(source, fastest), count: count as usize, all }
     }
 
-    /// The same noise on lattices that repeat: the first octave's after `period` cells along x, y and z, 0 for never.
-    pub(crate) fn tiled(mut self, period: [u32; 3]) -> Result<Program, Untileable> {
-        if period == [0; 3] {
+    /// The same noise on lattices that repeat: the first octave's after `period` cells along x, y, z and w, 0 for never.
+    pub(crate) fn tiled(mut self, period: [u32; 4]) -> Result<Program, Untileable> {
+        if period == [0; 4] {
             return Ok(self);
+        }
+        if !self.source.repeats() {
+            return Err(Untileable::Slanted);
         }
         let mut fastest = 0.0_f64;
         for (number, octave) in self.all.iter_mut().take(self.count).enumerate() {
@@ -260,7 +353,7 @@ impl Program {
                 }
                 let cells = f64::from(cells) * octave.ratio.abs();
                 if !(1.0..=MAX_PERIOD).contains(&cells) || cells.floor() != cells {
-                    return Err(Untileable { octave: number, axis, cells });
+                    return Err(Untileable::Octave { octave: number, axis, cells });
                 }
                 octave.period[axis] = cells;
             }
@@ -275,10 +368,37 @@ impl Program {
     }
 }
 
-fn words(source: Source, seed: u64) -> [[u32; 2]; 3] {
+/// The shape a kind of fractal needs; parameters that are no numbers count as 0.
+fn shape(kind: Kind) -> Option<Shape> {
+    let held = |number: f64, most: f64| if number.is_nan() { 0.0 } else { number.clamp(-most, most) as f32 };
+    match kind {
+        Kind::Fbm | Kind::Ridged | Kind::Billow | Kind::Weighted { .. } => None,
+        Kind::PingPong { strength } => Some(Shape::PingPong { strength: held(strength, 1024.0) }),
+        Kind::Hybrid { offset } => Some(Shape::Hybrid { offset: held(offset, 1024.0) }),
+        Kind::Hetero { offset } => Some(Shape::Hetero { offset: held(offset, 1024.0) }),
+        Kind::Swiss { warp } => Some(Shape::Swiss { warp: held(warp, 1024.0) }),
+        Kind::Jordan { warp, damp } => Some(Shape::Jordan { warp: held(warp, 1024.0), damp: held(damp, 1024.0) }),
+    }
+}
+
+/// The greatest size of a shape's result before it is scaled, a hair above so that rounding in f32 cannot carry it past 1.
+fn greatest(shape: Shape, gain: f64, count: u32) -> f64 {
+    let gains = || (0..count).scan(1.0, move |next, _| Some(std::mem::replace(next, *next * gain.abs())));
+    let size = match shape {
+        Shape::PingPong { .. } | Shape::Swiss { .. } | Shape::Jordan { .. } => gains().sum::<f64>(),
+        Shape::Hybrid { offset } => (1.0 + f64::from(offset.abs())) * gains().sum::<f64>(),
+        Shape::Hetero { offset } => {
+            let one = 1.0 + f64::from(offset.abs());
+            gains().skip(1).fold(one, |product, gain| product * (1.0 + one * gain))
+        }
+    };
+    size.max(f64::MIN_POSITIVE) * (1.0 + 1.0 / 1_048_576.0)
+}
+
+fn words(source: Source, seed: u64) -> [[u32; 2]; 4] {
     match source {
         Source::Classic(_) => seed::reference_words(seed),
-        Source::Value(_) | Source::Perlin | Source::Worley(_) => seed::lattice_words(seed),
+        _ => seed::lattice_words(seed),
     }
 }
 
@@ -292,8 +412,8 @@ fn defined32(factor: f32, most: f32) -> f32 {
     if factor.is_finite() { factor.clamp(-most, most) } else { 0.0 }
 }
 
-fn limit(frequency: f64) -> f64 {
-    limit_of(FARTHEST, frequency)
+fn limit(source: Source, frequency: f64) -> f64 {
+    limit_of(if source.repeats() { FARTHEST } else { FARTHEST_SLANTED }, frequency)
 }
 
 fn limit_of(cells: f64, frequency: f64) -> f64 {

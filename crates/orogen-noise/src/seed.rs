@@ -15,16 +15,16 @@ pub(crate) const fn word(seed: u64, n: u64) -> u64 {
 }
 
 /// The words of one octave's seed that the lattice hash mixes in: two for each axis.
-pub(crate) fn lattice_words(seed: u64) -> [[u32; 2]; 3] {
-    [0, 1, 2].map(|axis| {
+pub(crate) fn lattice_words(seed: u64) -> [[u32; 2]; 4] {
+    [0, 1, 2, 3].map(|axis| {
         let word = word(seed, axis);
         [word as u32, (word >> 32) as u32]
     })
 }
 
 /// The same for the 2002 table, which holds no seed: by how many cells a seed moves the lattice, per axis.
-pub(crate) fn reference_words(seed: u64) -> [[u32; 2]; 3] {
-    if seed == 0 { [[0; 2]; 3] } else { lattice_words(seed).map(|[word, _]| [word & 255, 0]) }
+pub(crate) fn reference_words(seed: u64) -> [[u32; 2]; 4] {
+    if seed == 0 { [[0; 2]; 4] } else { lattice_words(seed).map(|[word, _]| [word & 255, 0]) }
 }
 
 /// The seed of a fractal's octave.

@@ -18,29 +18,49 @@ use crate::program::{Program, Untileable};
 /// use orogen_noise::{Fractal, Points};
 ///
 /// // Repeats every 4 wavelengths of 100 m.
-/// let hills = Fractal { wavelength: 100.0, ..Default::default() }.tiled([4, 4, 0])?;
+/// let hills = Fractal { wavelength: 100.0, ..Default::default() }.tiled([4, 4])?;
 /// assert_eq!(hills.sample(12.5, 70.0), hills.sample(412.5, -330.0));
 ///
 /// // The second octave would need 6.4 cells in the same place.
 /// let odd = Fractal { lacunarity: 1.6, ..Default::default() };
-/// assert_eq!(odd.tiled([4, 4, 0]).unwrap_err().octave, 1);
+/// assert!(odd.tiled([4, 4]).unwrap_err().to_string().starts_with("octave 1 would have to repeat after 6.4 cells"));
 /// # Ok::<(), orogen_noise::Untileable>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Tiled {
-    plane: Program,
-    space: Program,
+    /// In two, three and four dimensions.
+    programs: [Program; 3],
+}
+
+/// After how many cells a lattice repeats along x, y, z and w; 0 where it need not. Made of as many numbers as there are to say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Period([u32; 4]);
+
+impl From<[u32; 2]> for Period {
+    fn from([x, y]: [u32; 2]) -> Period {
+        Period([x, y, 0, 0])
+    }
+}
+
+impl From<[u32; 3]> for Period {
+    fn from([x, y, z]: [u32; 3]) -> Period {
+        Period([x, y, z, 0])
+    }
+}
+
+impl From<[u32; 4]> for Period {
+    fn from(period: [u32; 4]) -> Period {
+        Period(period)
+    }
 }
 
 impl Tiled {
-    pub(crate) fn new(plane: Program, space: Program, period: [u32; 3]) -> Result<Tiled, Untileable> {
-        Ok(Tiled { plane: plane.tiled(period)?, space: space.tiled(period)? })
+    pub(crate) fn new(programs: [Program; 3], period: Period) -> Result<Tiled, Untileable> {
+        let [plane, space, time] = programs;
+        Ok(Tiled { programs: [plane.tiled(period.0)?, space.tiled(period.0)?, time.tiled(period.0)?] })
     }
-    pub(crate) fn program(&self) -> Program {
-        self.plane
-    }
-    pub(crate) fn program3(&self) -> Program {
-        self.space
+    pub(crate) fn program(&self, dims: usize) -> Program {
+        self.programs[dims.clamp(2, 4) - 2]
     }
 }
 
@@ -50,12 +70,13 @@ noise_methods!(Tiled);
 macro_rules! tileable {
     ($noise:ident) => {
         impl $noise {
-            /// The noise on a lattice that repeats after `period` cells of the first octave along x, y and z; 0 where it need not.
+            /// The noise on a lattice that repeats after `period` cells of the first octave along x, y, z and w: `[4, 4]`, `[4, 4, 2]` ...;
+            /// 0 where it need not.
             ///
             /// # Errors
-            /// An octave does not fit: see [`Tiled`](crate::Tiled).
-            pub fn tiled(&self, period: [u32; 3]) -> Result<$crate::Tiled, $crate::Untileable> {
-                $crate::tiled::Tiled::new(self.program(), self.program3(), period)
+            /// An octave does not fit, or the noise stands on simplices: see [`Tiled`](crate::Tiled).
+            pub fn tiled(&self, period: impl Into<$crate::Period>) -> Result<$crate::Tiled, $crate::Untileable> {
+                $crate::tiled::Tiled::new([self.program(2), self.program(3), self.program(4)], period.into())
             }
         }
     };

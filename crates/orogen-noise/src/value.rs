@@ -31,11 +31,8 @@ impl Default for Value {
 }
 
 impl Value {
-    pub(crate) fn program(&self) -> Program {
+    pub(crate) fn program(&self, _: usize) -> Program {
         Program::single(Source::Value(self.fade), self.seed, self.wavelength)
-    }
-    pub(crate) fn program3(&self) -> Program {
-        self.program()
     }
 }
 

@@ -29,11 +29,8 @@ impl Default for White {
 }
 
 impl White {
-    pub(crate) fn program(&self) -> Program {
+    pub(crate) fn program(&self, _: usize) -> Program {
         Program::single(Source::Value(Fade::Step), self.seed, self.wavelength)
-    }
-    pub(crate) fn program3(&self) -> Program {
-        self.program()
     }
 }
 

@@ -15,12 +15,12 @@ use crate::tiled::tileable;
 ///
 /// | | euclidean | manhattan | chebyshev |
 /// |---|---|---|---|
-/// | F1 | sqrt 2, sqrt 3 | 2, 3 | 1 |
-/// | F2, F2 - F1 | sqrt 5/2, sqrt 3 | 2, 3 | 1.5 |
-/// | F1 * F2 | 2, 3 | 4, 9 | 1 |
-/// | edge | 1, 2 / sqrt 3 (never quite reached) | 1, 1.5 | 0.75 |
+/// | F1 | sqrt 2, sqrt 3, 2 | 2, 3, 4 | 1 |
+/// | F2, F2 - F1 | sqrt 5/2, sqrt 3, 2 | 2, 3, 4 | 1.5 |
+/// | F1 * F2 | 2, 3, 4 | 4, 9, 16 | 1 |
+/// | edge | 1, 2 / sqrt 3, 4 / 3 (never quite reached) | 1, 1.5, 2 | 0.75 |
 ///
-/// in the plane and in space. It has no gradient here.
+/// in two, three and four dimensions. It has no gradient here.
 ///
 /// S. Worley, "A cellular texture basis function", SIGGRAPH 1996.
 ///
@@ -51,13 +51,12 @@ impl Default for Worley {
 }
 
 impl Worley {
-    pub(crate) fn program(&self) -> Program {
+    pub(crate) fn cellular(&self) -> Cellular {
         let jitter = if self.jitter >= 0.0 { self.jitter.min(1.0) as f32 } else { 0.0 };
-        let cellular = Cellular { distance: self.distance, feature: self.feature, jitter };
-        Program::single(Source::Worley(cellular), self.seed, self.wavelength)
+        Cellular { distance: self.distance, feature: self.feature, jitter }
     }
-    pub(crate) fn program3(&self) -> Program {
-        self.program()
+    pub(crate) fn program(&self, _: usize) -> Program {
+        Program::single(Source::Worley(self.cellular()), self.seed, self.wavelength)
     }
 }
 

@@ -3,8 +3,8 @@
 //! `OROGEN_BLESS=1 cargo test -p orogen-noise --test goldens` writes the file anew.
 
 use orogen_noise::{
-    Basis, Classic, ClassicVariant, Depth, Distance, Fade, Falloff, Feature, Fractal, Kind, Level, Perlin, Points,
-    Value, White, Worley,
+    Basis, Classic, ClassicVariant, Depth, Distance, Fade, Falloff, Feature, Fractal, Kind, Level, OpenSimplex2,
+    Perlin, Points, Simplex, Smoothness, Value, White, Worley,
 };
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/goldens.txt");
@@ -55,6 +55,25 @@ macro_rules! golden_values {
     }};
 }
 
+/// The same in four dimensions.
+macro_rules! golden_time {
+    ($list:expr, $name:expr, $noise:expr) => {{
+        let noise = $noise;
+        let mut bits = Vec::new();
+        for start in [-150.0, 3e8] {
+            let xs: Vec<f64> = (0..37).map(|i| start + f64::from(i) * 7.3).collect();
+            let ys: Vec<f64> = (0..5).map(|i| f64::from(i) * 10.24 - start).collect();
+            let points = Points::Lattice { xs: &xs, ys: &ys };
+            let mut out = [0; 5].map(|_| vec![0.0_f32; points.len()]);
+            let [value, slopes @ ..] = &mut out;
+            let depths = [Depth::Slice(start * 0.3), Depth::Slice(start * 0.7)];
+            noise.fill4_with_gradient(&points, &depths, value, slopes.each_mut().map(|s| &mut s[..])).unwrap();
+            bits.extend(out.concat());
+        }
+        $list.push(format!("{} {:016x}", $name, hash(&bits)));
+    }};
+}
+
 fn goldens() -> Vec<String> {
     let mut list = Vec::new();
     golden!(list, "white", White { seed: 11, wavelength: 20.0 });
@@ -76,6 +95,24 @@ fn goldens() -> Vec<String> {
         let kind = Kind::Weighted { k: 1.3, falloff };
         golden!(list, format!("weighted {falloff:?} perlin"), Fractal { kind, ..fractal });
         golden!(list, format!("weighted {falloff:?} value"), Fractal { kind, basis: Basis::Value, ..fractal });
+    }
+    golden!(list, "simplex", Simplex { seed: 11, wavelength: 90.0 });
+    for smoothness in [Smoothness::Fast, Smoothness::Smooth] {
+        golden!(list, format!("opensimplex2 {smoothness:?}"), OpenSimplex2 { seed: 11, wavelength: 90.0, smoothness });
+    }
+    for kind in [
+        Kind::PingPong { strength: 2.0 },
+        Kind::Hybrid { offset: 0.7 },
+        Kind::Hetero { offset: 0.7 },
+        Kind::Swiss { warp: 0.15 },
+        Kind::Jordan { warp: 0.35, damp: 0.8 },
+    ] {
+        for basis in [Basis::Perlin, Basis::Simplex] {
+            golden!(list, format!("{kind:?} {}", basis.name()), Fractal { kind, basis, ..fractal });
+        }
+    }
+    for &basis in Basis::all() {
+        golden_time!(list, format!("4D fbm {}", basis.name()), Fractal { basis, octaves: 2, ..fractal });
     }
     if let Ok(tiled) = (Fractal { octaves: 4, ..fractal }).tiled([3, 2, 5]) {
         golden!(list, "tiled fbm perlin", tiled);

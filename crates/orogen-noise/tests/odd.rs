@@ -180,7 +180,7 @@ fn wrong_lengths_are_named_and_nothing_is_written() {
             assert_eq!(ask(displaced, None), wrong("dy", 4, 6));
             assert_eq!(ask(Points::Scattered { x: &three, y: &two }, None), wrong("y", 2, 3));
             let lattice = Points::Lattice { xs: &three, ys: &two };
-            assert_eq!(ask(lattice, Some(Depth::Each(&three))), wrong("depth", 3, 6));
+            assert_eq!(ask(lattice, Some(Depth::Each(&three))), wrong("z", 3, 6));
         }
     });
 }

@@ -84,8 +84,8 @@ impl Level {
     #[must_use]
     pub const fn lanes(self) -> usize {
         match self {
-            Level::Scalar | Level::Avx2 => 8,
-            Level::Neon => 4,
+            Level::Scalar | Level::Neon => 4,
+            Level::Avx2 => 8,
             Level::Avx512 => 16,
         }
     }

@@ -81,7 +81,7 @@ pub fn dispatch<B: Body>(body: B) -> B::Output {
         Level::Avx2 => unsafe { Avx2::new_unchecked() }.run(body),
         #[cfg(target_arch = "aarch64")]
         Level::Neon => Neon::new().run(body),
-        _ => Scalar::<8>.run(body),
+        _ => Scalar::<4>.run(body),
     }
 }
 
@@ -91,7 +91,7 @@ pub fn dispatch<B: Body>(body: B) -> B::Output {
 /// This machine lacks the level; the body has not run.
 pub fn dispatch_at<B: Body>(level: Level, body: B) -> Result<B::Output, LevelError> {
     match level {
-        Level::Scalar => Ok(Scalar::<8>.run(body)),
+        Level::Scalar => Ok(Scalar::<4>.run(body)),
         #[cfg(target_arch = "x86_64")]
         Level::Avx2 => Avx2::detect().map(|token| token.run(body)).ok_or(LevelError::Unavailable(level)),
         #[cfg(target_arch = "x86_64")]

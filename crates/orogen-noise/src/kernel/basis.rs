@@ -19,10 +19,10 @@ use crate::kernel::cell::Cell;
 use crate::program::{Octave, Source};
 use orogen_simd::{F32Lanes, Simd};
 
-/// The numbers of a lattice point: those that make values, then (from the third or fourth place on) their slopes along z.
-pub(crate) type Numbers<S> = [<S as Simd>::F32; 6];
-/// The row vectors of one lattice line: two that make values, two for the slope along x, two for that along z.
-pub(crate) type Rows<S> = [<S as Simd>::F32; 6];
+/// The numbers of a lattice point: those that make values, then as many for their slopes along z, then for those along w.
+pub(crate) type Numbers<S> = [<S as Simd>::F32; 9];
+/// The row vectors of one lattice line: two that make values, two for the slope along x, two for those along z and w each.
+pub(crate) type Rows<S> = [<S as Simd>::F32; 8];
 
 /// What one axis contributes: fractions and fades. Made per column for rows, per row for coefficients.
 #[derive(Clone, Copy)]
@@ -60,7 +60,7 @@ impl<S: Simd> Weights<S> {
 pub(crate) struct Coefficients<S: Simd> {
     /// Of the value.
     pub value: [S::F32; 4],
-    /// Of the slopes along x and z, over their own row vectors.
+    /// Of the slopes along x, z and w, over their own row vectors.
     pub along: [S::F32; 4],
     /// Of the slope along y, over the value's row vectors.
     pub across: [S::F32; 4],
@@ -72,28 +72,36 @@ pub(crate) trait Basis<S: Simd>: Copy {
     const FLAT: bool = false;
     /// Row vectors per line.
     const RANK: usize;
-    /// Numbers per lattice point without slopes along z; the slopes come after them.
+    /// Numbers per lattice point without slopes along z and w; those come after them.
     const NUMBERS: usize;
-    /// Whether there is a third axis.
-    const DEEP: bool;
-
-    /// What the third axis contributes.
-    type Depth: Copy;
+    /// How many axes there are: 2, 3 or 4.
+    const DIMS: usize;
 
     /// The basis as the octave needs it.
     fn new(simd: S, source: Source, octave: &Octave) -> Self;
-    /// The keys of a cell and the next along an axis (0 or 1).
+    /// The keys of a cell and the next along an axis.
     fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2];
-    /// The third axis's part.
-    fn depth(self, simd: S, cell: &Cell<S>) -> Self::Depth;
-    /// The numbers of a lattice point; with `SLOPES`, also their slopes along z.
-    fn point<const SLOPES: bool>(self, simd: S, x: S::U32, y: S::U32, depth: &Self::Depth) -> Numbers<S>;
+    /// The numbers of a lattice point; with `SLOPES`, also their slopes along z and w.
+    fn point<const SLOPES: bool>(self, simd: S, x: S::U32, y: S::U32, depths: &Depths<S>) -> Numbers<S>;
     /// The fade of a fraction and its slope.
     fn fade(self, simd: S, t: S::F32) -> [S::F32; 2];
     /// The row vectors between two lattice points of a line.
     fn rows<const SLOPES: bool>(self, simd: S, left: &Numbers<S>, right: &Numbers<S>, column: &Weights<S>) -> Rows<S>;
     /// The coefficients of a row of samples.
     fn coefficients(self, simd: S, row: &Weights<S>, amplitude: S::F32, slope: S::F32) -> Coefficients<S>;
+    /// What the axes beyond the plane contribute, in their cells.
+    #[inline(always)]
+    fn depths(self, simd: S, cells: &[Cell<S>; 2]) -> Depths<S> {
+        let none = simd.f32(0.0);
+        let nothing = DepthPart { keys: [simd.u32(0); 2], weights: Weights::new(simd, none, [none; 2]) };
+        let mut depths = [nothing; 2];
+        for axis in 2..Self::DIMS {
+            let cell = &cells[axis - 2];
+            let weights = Weights::new(simd, cell.t, self.fade(simd, cell.t));
+            depths[axis - 2] = DepthPart { keys: self.keys(simd, axis, cell), weights };
+        }
+        depths
+    }
 }
 
 /// Work whatever the basis.
@@ -102,7 +110,10 @@ pub(crate) trait Visit<S: Simd> {
     fn visit<B: Basis<S>>(self, simd: S);
 }
 
-/// What the third axis contributes to noise in space.
+/// What the axes beyond the plane contribute: z and w.
+pub(crate) type Depths<S> = [DepthPart<S>; 2];
+
+/// What one axis beyond the plane contributes.
 #[derive(Clone, Copy)]
 pub(crate) struct DepthPart<S: Simd> {
     pub keys: [S::U32; 2],

@@ -1,7 +1,7 @@
 //! From positions to cells and fractions.
 
 use crate::program::Octave;
-use orogen_simd::{F64Lanes, Simd, U32Lanes};
+use orogen_simd::{F32Lanes, F64Lanes, Simd, U32Lanes};
 
 /// 1.5 * 2^28: a number of size below 2^27 added to it is rounded to a multiple of 2^-24.
 const SNAP: f64 = 402_653_184.0;
@@ -20,14 +20,34 @@ pub(crate) struct Cell<S: Simd> {
     pub t: S::F32,
 }
 
+/// The octave's coordinate, in cells, of a position along an axis. The position is within the program's limit.
+#[inline(always)]
+pub(crate) fn coordinate<S: Simd>(simd: S, octave: &Octave, axis: usize, position: S::F64) -> S::F64 {
+    snapped(simd, octave, position * simd.f64(octave.frequency) + simd.f64(octave.offset[axis]))
+}
+
+/// A coordinate moved by so many cells.
+#[inline(always)]
+pub(crate) fn moved<S: Simd>(simd: S, octave: &Octave, coordinate: S::F64, by: S::F32) -> S::F64 {
+    coordinate + snapped(simd, octave, by.widen())
+}
+
+/// Where lattices repeat, coordinates are rounded so that both sides of a seam agree.
+#[inline(always)]
+fn snapped<S: Simd>(simd: S, octave: &Octave, u: S::F64) -> S::F64 {
+    if octave.tiled { (u + simd.f64(SNAP)) - simd.f64(SNAP) } else { u }
+}
+
 impl<S: Simd> Cell<S> {
     /// The cell and fraction of a position along an axis of the octave. The position is within the program's limit.
     #[inline(always)]
     pub(crate) fn split(simd: S, octave: &Octave, axis: usize, position: S::F64) -> Cell<S> {
-        let mut u = position * simd.f64(octave.frequency) + simd.f64(octave.offset[axis]);
-        if octave.tiled {
-            u = (u + simd.f64(SNAP)) - simd.f64(SNAP);
-        }
+        Cell::of(simd, coordinate(simd, octave, axis, position))
+    }
+
+    /// The cell and fraction of a coordinate in cells.
+    #[inline(always)]
+    pub(crate) fn of(simd: S, u: S::F64) -> Cell<S> {
         let (whole, low, high) = simd.whole(u);
         Cell { whole, low, high, t: (u - whole).narrow() }
     }

@@ -4,10 +4,13 @@
 
 use crate::choices::{Distance, Feature};
 use crate::kernel::cell::{Cell, clamp};
+use crate::kernel::combine::Sample;
 use crate::kernel::outputs::Outputs;
+use crate::kernel::pointwise::{Pointwise, with_family};
+use crate::kernel::scattered::Call;
 use crate::kernel::sites::{Field, HashedSites, Site, Sites, evaluate};
 use crate::kernel::source::{Hashed, Lattice};
-use crate::program::{Cellular, Octave, Program};
+use crate::program::{self, Octave, Program, Source};
 use orogen_simd::{Body, F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
 
 /// Columns worked on at a time.
@@ -17,36 +20,29 @@ const SPAN: usize = WIDTH + 48;
 /// The most lanes of any level.
 const MOST_LANES: usize = 16;
 
-/// Evaluates cellular noise at points: a function of its own for each level.
-pub(crate) struct Scatter<'a, const DEEP: bool> {
-    pub program: &'a Program,
-    pub octave: &'a Octave,
-    pub cellular: Cellular,
-    /// x, y and (in space) z of the points, metres: as many of each as there are results.
-    pub at: [&'a [f64]; 3],
-    pub target: Outputs<'a>,
-}
+/// Cellular noise, sample by sample. It has no slopes.
+#[derive(Clone, Copy)]
+pub(crate) struct Cellular<S: Simd, const DIMS: usize>(Field<S>);
 
-impl<const DEEP: bool> Body for Scatter<'_, DEEP> {
-    type Output = ();
+impl<S: Simd, const DIMS: usize> Pointwise<S> for Cellular<S, DIMS> {
+    type Coordinate = Cell<S>;
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        let Scatter { program, octave, cellular, at, target } = self;
-        let field = Field { lattice: Hashed::new(simd, octave), cellular };
-        let mut start = 0;
-        while start < target.value.len() {
-            let mut cells = [Cell::at(simd, simd.f64(0.0)); 3];
-            for axis in 0..if DEEP { 3 } else { 2 } {
-                let from = at[axis].get(start..).unwrap_or_default();
-                let held = clamp(simd, simd.load_f64_partial(from, 0.0), program.limit);
-                cells[axis] = Cell::split(simd, octave, axis, held);
-            }
-            let sites = HashedSites::new(simd, field, &cells, DEEP);
-            let noise = evaluate::<S, _, DEEP>(simd, &field, &sites, &cells);
-            noise.store_partial(&mut target.value[start..]);
-            start += S::LANES;
-        }
+    fn new(simd: S, source: Source, octave: &Octave) -> Self {
+        let cellular = if let Source::Worley(cellular) = source { cellular } else { program::Cellular::default() };
+        Self(Field { lattice: Hashed::new(simd, octave), cellular })
+    }
+
+    #[inline(always)]
+    fn split(simd: S, coordinate: S::F64) -> Cell<S> {
+        Cell::of(simd, coordinate)
+    }
+
+    #[inline(always)]
+    fn add<const SLOPES: bool>(self, simd: S, octave: &Octave, at: &[Cell<S>; 4], sum: &mut Sample<S>) {
+        let sites = HashedSites::<S, DIMS>::new(simd, self.0, at);
+        let noise = evaluate::<S, _, DIMS>(simd, &self.0, &sites, at);
+        sum[0] = simd.f32(octave.amplitude).mul_add(noise, sum[0]);
     }
 }
 
@@ -78,10 +74,11 @@ struct Strip {
 
 /// Fills a lattice; `z` is the depth of the slice in space.
 #[inline(always)]
-pub(crate) fn fill<S: Simd, const DEEP: bool>(
+pub(crate) fn fill<S: Simd, const DIMS: usize>(
     simd: S,
-    (program, octave, cellular): (&Program, &Octave, Cellular),
-    (xs, ys, z): (&[f64], &[f64], f64),
+    (program, octave, cellular): (&Program, &Octave, program::Cellular),
+    (xs, ys): (&[f64], &[f64]),
+    z: f64,
     outputs: &mut Outputs,
 ) {
     let mut strip = Box::new(Strip {
@@ -106,14 +103,14 @@ pub(crate) fn fill<S: Simd, const DEEP: bool>(
             if strip.dense {
                 let (y, to) = (*y, target.value);
                 if matches!((cellular.feature, cellular.distance), (Feature::F1, Distance::Euclidean)) {
-                    simd.run(Row::<DEEP, true> { job, strip: &mut strip, y, to });
+                    simd.run(Row::<DIMS, true> { job, strip: &mut strip, y, to });
                 } else {
-                    simd.run(Row::<DEEP, false> { job, strip: &mut strip, y, to });
+                    simd.run(Row::<DIMS, false> { job, strip: &mut strip, y, to });
                 }
             } else {
                 let (rows, depths) = ([*y; WIDTH], [z; WIDTH]);
-                let at = [columns, &rows[..columns.len()], &depths[..columns.len()]];
-                simd.run(Scatter::<DEEP> { program, octave, cellular, at, target });
+                let at = [columns, &rows[..columns.len()], &depths[..columns.len()], &[]];
+                with_family::<_, DIMS>(program.source, Call::<S, DIMS> { simd, program, at, target });
             }
         }
     }
@@ -124,7 +121,7 @@ pub(crate) fn fill<S: Simd, const DEEP: bool>(
 struct Job<'a> {
     limit: f64,
     octave: &'a Octave,
-    cellular: Cellular,
+    cellular: program::Cellular,
     z: f64,
 }
 
@@ -184,14 +181,14 @@ impl Body for Columns<'_> {
 }
 
 /// One row of samples within a strip; `PLAIN`: of the usual noise, whose kernel is worth making without the others' choices.
-struct Row<'a, const DEEP: bool, const PLAIN: bool> {
+struct Row<'a, const DIMS: usize, const PLAIN: bool> {
     job: Job<'a>,
     strip: &'a mut Strip,
     y: f64,
     to: &'a mut [f32],
 }
 
-impl<const DEEP: bool, const PLAIN: bool> Body for Row<'_, DEEP, PLAIN> {
+impl<const DIMS: usize, const PLAIN: bool> Body for Row<'_, DIMS, PLAIN> {
     type Output = ();
 
     #[inline(always)]
@@ -214,22 +211,24 @@ impl<const DEEP: bool, const PLAIN: bool> Body for Row<'_, DEEP, PLAIN> {
             thirds[line] = third;
             if strip.held[third] != Some(number) {
                 strip.held[third] = Some(number);
-                build::<S, DEEP>(simd, &field, strip, (third, field.key(simd, 1, &y, line as i32 - 1)), &z);
+                build::<S, DIMS>(simd, &field, strip, (third, field.key(simd, 1, &y, line as i32 - 1)), &z);
             }
         }
         let mut at = 0;
         while at < to.len().min(WIDTH) {
             let v = at / S::LANES;
             let (t, whole) = (simd.load(&strip.t[at..]), simd.load_f64(&strip.wholes[at..]));
-            let cells = [Cell { whole, low: simd.u32(0), high: simd.u32(0), t }, y, z];
+            let cells = [Cell { whole, low: simd.u32(0), high: simd.u32(0), t }, y, z, z];
             let first = (strip.first[v] as usize).min(SPAN - S::LANES - 2);
             let noise = if strip.alone[v] {
-                evaluate::<S, _, DEEP>(simd, &field, &LoneSites { strip, thirds, first }, &cells)
+                evaluate::<S, _, DIMS>(simd, &field, &LoneSites { strip, thirds, first }, &cells)
             } else {
                 let sites = KeptSites::<S> { strip, thirds, first, index: simd.load_u32(&strip.index[at..]) };
-                evaluate::<S, _, DEEP>(simd, &field, &sites, &cells)
+                evaluate::<S, _, DIMS>(simd, &field, &sites, &cells)
             };
-            noise.store_partial(&mut to[at..]);
+            // As [`Cellular`] adds it.
+            let scaled = simd.f32(job.octave.amplitude).mul_add(noise, simd.f32(0.0));
+            scaled.store_partial(&mut to[at..]);
             at += S::LANES;
         }
     }
@@ -237,19 +236,19 @@ impl<const DEEP: bool, const PLAIN: bool> Body for Row<'_, DEEP, PLAIN> {
 
 /// Makes the points of one line of cells (at three depths).
 #[inline(always)]
-fn build<S: Simd, const DEEP: bool>(
+fn build<S: Simd, const DIMS: usize>(
     simd: S,
     field: &Field<S>,
     strip: &mut Strip,
     (third, row): (usize, S::U32),
     z: &Cell<S>,
 ) {
-    for step in if DEEP { 0..3 } else { 1..2 } {
-        let depth = if DEEP { field.key(simd, 2, z, step as i32 - 1) } else { simd.u32(0) };
+    for step in if DIMS > 2 { 0..3 } else { 1..2 } {
+        let depth = if DIMS > 2 { field.key(simd, 2, z, step as i32 - 1) } else { simd.u32(0) };
         let table = 3 * step + third;
         for p in (0..strip.cells.min(SPAN)).step_by(S::LANES) {
-            let (place, hash) = field.site(simd, DEEP, [simd.load_u32(&strip.keys[p..]), row, depth]);
-            for axis in 0..if DEEP { 3 } else { 2 } {
+            let (place, hash) = field.site::<DIMS>(simd, [simd.load_u32(&strip.keys[p..]), row, depth, depth]);
+            for axis in 0..DIMS {
                 place[axis].store(&mut strip.places[table][axis][p..]);
             }
             hash.store(&mut strip.hashes[table][p..]);
@@ -274,21 +273,25 @@ struct LoneSites<'a> {
 
 impl<S: Simd> Sites<S> for LoneSites<'_> {
     #[inline(always)]
-    fn near(&self, simd: S, [x, y, z]: [i32; 3]) -> Site<S> {
+    fn near(&self, simd: S, [x, y, z, _]: [i32; 4]) -> Site<S> {
         let table = (3 * (z + 1) as usize + self.thirds[(y + 1) as usize % 3]).min(8);
         let at = (self.first as i32 + 1 + x) as usize;
         let (places, hashes) = (&self.strip.places[table], &self.strip.hashes[table]);
-        ([simd.f32(places[0][at]), simd.f32(places[1][at]), simd.f32(places[2][at])], simd.u32(hashes[at]))
+        let mut place = [simd.f32(0.0); 4];
+        for axis in 0..3 {
+            place[axis] = simd.f32(places[axis][at]);
+        }
+        (place, simd.u32(hashes[at]))
     }
 }
 
 impl<S: Simd> Sites<S> for KeptSites<'_, S> {
     #[inline(always)]
-    fn near(&self, simd: S, [x, y, z]: [i32; 3]) -> Site<S> {
+    fn near(&self, simd: S, [x, y, z, _]: [i32; 4]) -> Site<S> {
         let table = (3 * (z + 1) as usize + self.thirds[(y + 1) as usize % 3]).min(8);
         let at = (self.first as i32 + 1 + x) as usize;
         let (places, hashes) = (&self.strip.places[table], &self.strip.hashes[table]);
-        let mut place = [simd.f32(0.0); 3];
+        let mut place = [simd.f32(0.0); 4];
         for axis in 0..3 {
             place[axis] = simd.load(&places[axis][at..]).permute(self.index);
         }

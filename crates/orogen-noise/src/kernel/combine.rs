@@ -3,10 +3,172 @@
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
 use crate::choices::Falloff;
+use crate::program::{Combine, Octave, Shape};
 use orogen_simd::{F32Lanes, Simd, U32Lanes};
 
-/// A value and its slopes along x, y and z.
-pub(crate) type Sample<S> = [<S as Simd>::F32; 4];
+/// A value and its slopes along x, y, z and w.
+pub(crate) type Sample<S> = [<S as Simd>::F32; 5];
+
+/// What is known after some octaves.
+#[derive(Clone, Copy)]
+pub(crate) struct State<S: Simd> {
+    pub sum: Sample<S>,
+    /// The slope of the plain sum (weighted), of the weight (hybrid) or what moves the next octave (swiss, jordan), in places
+    /// 1 to 4.
+    slope: Sample<S>,
+    weight: S::F32,
+}
+
+impl<S: Simd> State<S> {
+    #[inline(always)]
+    pub(crate) fn new(simd: S) -> State<S> {
+        State { sum: [simd.f32(0.0); 5], slope: [simd.f32(0.0); 5], weight: simd.f32(1.0) }
+    }
+
+    /// How far along an axis the octave about to come is moved, in its cells.
+    #[inline(always)]
+    pub(crate) fn shift(&self, simd: S, combine: &Combine, octave: &Octave, axis: usize) -> S::F32 {
+        let factor = match *combine {
+            Combine::Shaped { shape: Shape::Swiss { warp }, .. } => warp * octave.ratio as f32,
+            Combine::Shaped { shape: Shape::Jordan { warp, .. }, .. } => warp,
+            _ => 0.0,
+        };
+        let shift = self.slope[1 + axis] * simd.f32(factor);
+        // Far beyond any sense, and no number at all: not moved.
+        shift.select(shift.abs().lt(simd.f32(1_048_576.0)), simd.f32(0.0))
+    }
+
+    /// Takes an octave into account: its value and slopes, scaled by its amplitude and slope factor. Slopes are there with
+    /// `SLOPES` and where the combination needs them; `axes` of them.
+    #[inline(always)]
+    pub(crate) fn add<const SLOPES: bool>(
+        &mut self,
+        simd: S,
+        combine: &Combine,
+        octave: &Octave,
+        one: &Sample<S>,
+        axes: usize,
+    ) {
+        let kept = if SLOPES { axes } else { 0 };
+        match *combine {
+            Combine::Sum => {
+                for place in 0..=kept {
+                    self.sum[place] = self.sum[place] + one[place];
+                }
+            }
+            Combine::Sizes { .. } => add_size(simd, &mut self.sum, one, kept),
+            Combine::Weighted { k, falloff, .. } => {
+                add_weighted::<S, SLOPES>(simd, &mut self.sum, &mut self.slope, one, (k, falloff), axes);
+            }
+            Combine::Shaped { shape, .. } => self.add_shaped::<SLOPES>(simd, shape, octave, one, axes),
+        }
+    }
+
+    /// [`State::add`] for shapes.
+    #[inline(always)]
+    fn add_shaped<const SLOPES: bool>(&mut self, simd: S, shape: Shape, octave: &Octave, one: &Sample<S>, axes: usize) {
+        let kept = if SLOPES { axes } else { 0 };
+        let (zero, unit, gain) = (simd.f32(0.0), simd.f32(1.0), simd.f32(octave.gain));
+        let noise = one[0];
+        match shape {
+            Shape::PingPong { strength } => {
+                let strength = simd.f32(strength);
+                let t = (noise + unit) * strength;
+                let t = (t * simd.f32(0.5)).floor().mul_add(simd.f32(-2.0), t);
+                let rising = t.lt(unit);
+                let folded = t.select(rising, simd.f32(2.0) - t);
+                self.sum[0] = (folded * simd.f32(2.0) - unit).mul_add(gain, self.sum[0]);
+                let steep = gain * strength * simd.f32(2.0);
+                let steep = steep.select(rising, -steep);
+                for axis in 1..=kept {
+                    self.sum[axis] = one[axis].mul_add(steep, self.sum[axis]);
+                }
+            }
+            Shape::Hybrid { offset } => {
+                let signal = (noise + simd.f32(offset)) * gain;
+                let weighted = self.weight * signal;
+                self.sum[0] = self.sum[0] + weighted;
+                let held = weighted.max(zero).min(unit);
+                for axis in 1..=kept {
+                    let slope = self.slope[axis].mul_add(signal, self.weight * gain * one[axis]);
+                    self.sum[axis] = self.sum[axis] + slope;
+                    self.slope[axis] = slope.select(held.eq(weighted), zero);
+                }
+                self.weight = held;
+            }
+            Shape::Hetero { offset } => {
+                // The weight is the height so far: 1 for the first octave, which is added to nothing.
+                let signal = (noise + simd.f32(offset)) * gain;
+                let added = self.weight * signal;
+                for axis in 1..=kept {
+                    let slope = self.sum[axis].mul_add(signal, self.weight * gain * one[axis]);
+                    self.sum[axis] = self.sum[axis] + slope;
+                }
+                self.sum[0] = self.sum[0] + added;
+                self.weight = self.sum[0];
+            }
+            Shape::Swiss { .. } => {
+                let amplitude = self.weight * gain;
+                let cells = simd.f32((1.0 / octave.ratio) as f32);
+                self.sum[0] = amplitude.mul_add(unit - noise.abs(), self.sum[0]);
+                let sign = noise.bits() & simd.u32(0x8000_0000);
+                for axis in 1..=axes {
+                    self.slope[axis] = (amplitude * noise).neg_mul_add(one[axis] * cells, self.slope[axis]);
+                    if SLOPES {
+                        let down = (one[axis].bits() ^ sign).as_f32();
+                        self.sum[axis] = amplitude.neg_mul_add(down, self.sum[axis]);
+                    }
+                }
+                self.weight = self.weight * self.sum[0].max(zero).min(unit);
+            }
+            Shape::Jordan { damp, .. } => {
+                let cells = simd.f32((1.0 / octave.ratio) as f32);
+                let amplitude = gain * self.weight;
+                self.sum[0] = (amplitude * noise).mul_add(noise, self.sum[0]);
+                let mut squared = zero;
+                for axis in 1..=axes {
+                    self.slope[axis] = noise.mul_add(one[axis] * cells, self.slope[axis]);
+                    let damped = self.slope[axis] * simd.f32(damp);
+                    squared = damped.mul_add(damped, squared);
+                    if SLOPES {
+                        self.sum[axis] = (amplitude * noise * simd.f32(2.0)).mul_add(one[axis], self.sum[axis]);
+                    }
+                }
+                self.weight = unit - unit / (squared + unit);
+            }
+        }
+    }
+
+    /// What comes after the last octave.
+    #[inline(always)]
+    pub(crate) fn finish<const SLOPES: bool>(&mut self, simd: S, combine: &Combine, axes: usize) {
+        let kept = if SLOPES { axes } else { 0 };
+        match *combine {
+            Combine::Sum => {}
+            Combine::Sizes { sign } => finish_sizes(simd, &mut self.sum, sign, kept),
+            Combine::Weighted { gradient, .. } => {
+                for axis in 1..=kept {
+                    self.sum[axis] = self.sum[axis] * simd.f32(gradient);
+                }
+            }
+            Combine::Shaped { shape, scale, gradient } => {
+                let (one, most) = (simd.f32(1.0), simd.f32(f32::MAX));
+                let mut gradient = gradient;
+                self.sum[0] = self.sum[0] * simd.f32(scale);
+                if matches!(shape, Shape::Swiss { .. } | Shape::Jordan { .. }) {
+                    // These go from 0 up.
+                    self.sum[0] = self.sum[0] * simd.f32(2.0) - one;
+                    gradient *= 2.0;
+                }
+                self.sum[0] = self.sum[0].max(-one).min(one);
+                for axis in 1..=kept {
+                    let slope = self.sum[axis] * simd.f32(gradient);
+                    self.sum[axis] = slope.select(slope.abs().lt(most), simd.f32(0.0));
+                }
+            }
+        }
+    }
+}
 
 /// Adds one octave's size to a sum of sizes; slopes turn with the sign.
 #[inline(always)]
@@ -70,7 +232,7 @@ fn damping<S: Simd>(simd: S, squared: S::F32, k: f32, falloff: Falloff) -> S::F3
 
 /// e^-x for x of 0 and more, within 3 units in the last place; what would be below e^-87 is e^-87.
 #[inline(always)]
-fn exp_minus<S: Simd>(simd: S, x: S::F32) -> S::F32 {
+pub(crate) fn exp_minus<S: Simd>(simd: S, x: S::F32) -> S::F32 {
     let x = x.min(simd.f32(87.0));
     // x = n ln 2 + r, with ln 2 in two pieces so that r keeps its bits.
     let n = x.mul_add(simd.f32(std::f32::consts::LOG2_E), simd.f32(0.5)).floor();

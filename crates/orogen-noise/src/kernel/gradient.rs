@@ -1,19 +1,17 @@
-//! Gradient noise as a basis, in the plane and in space, over any lattice that has gradients.
+//! Gradient noise as a basis, in two to four dimensions, over any lattice that has gradients.
 
-use crate::kernel::basis::{Basis, Coefficients, DepthPart, Numbers, Rows, Weights, blend};
+use crate::kernel::basis::{Basis, Coefficients, DepthPart, Depths, Numbers, Rows, Weights, blend};
 use crate::kernel::cell::Cell;
 use crate::kernel::fade::quintic;
 use crate::kernel::source::Gradients;
 use crate::program::{Octave, Source};
 use orogen_simd::{F32Lanes, Simd};
 
-/// Gradient noise in the plane.
+/// Gradient noise.
 #[derive(Clone, Copy)]
-pub(crate) struct Gradient2<G>(pub G);
-/// Gradient noise in space.
-#[derive(Clone, Copy)]
-pub(crate) struct Gradient3<G>(pub G);
-/// The row vector X in space: the ramps along x, then what the ramps along z left.
+pub(crate) struct Gradient<G, const DIMS: usize>(G);
+
+/// The row vector X in space: the ramps along x, then what the ramps along z (and w) left.
 #[inline(always)]
 fn ramp_in_space<S: Simd>(
     column: &Weights<S>,
@@ -32,83 +30,20 @@ fn scaled_ramps<S: Simd>(row: &Weights<S>, factor: S::F32) -> [S::F32; 4] {
     [a, a * row.t[0], c, c * row.t[1]]
 }
 
+/// A lattice point blended along z: gradients along x and y, what the ramp along z left, the slopes of these along z; the
+/// gradient along w, and its slope along z.
 #[inline(always)]
-fn gradient_coefficients<S: Simd>(row: &Weights<S>, amplitude: S::F32, slope: S::F32) -> Coefficients<S> {
-    let steep = row.du * slope;
-    Coefficients {
-        value: scaled_ramps(row, amplitude),
-        along: scaled_ramps(row, slope),
-        across: [-steep, row.dramp[0] * slope, steep, row.dramp[1] * slope],
-    }
-}
-
-impl<S: Simd, G: Gradients<S>> Basis<S> for Gradient2<G> {
-    const RANK: usize = 2;
-    const NUMBERS: usize = 2;
-    const DEEP: bool = false;
-    type Depth = ();
-
-    #[inline(always)]
-    fn new(simd: S, source: Source, octave: &Octave) -> Self {
-        Self(G::new(simd, source, octave))
-    }
-    #[inline(always)]
-    fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2] {
-        self.0.keys(simd, axis, cell)
-    }
-    #[inline(always)]
-    fn depth(self, _: S, _: &Cell<S>) {}
-    #[inline(always)]
-    fn point<const SLOPES: bool>(self, simd: S, x: S::U32, y: S::U32, (): &()) -> Numbers<S> {
-        let [gx, gy] = self.0.gradient2(simd, self.0.hash2(simd, x, y));
-        let none = simd.f32(0.0);
-        [gx, gy, none, none, none, none]
-    }
-    #[inline(always)]
-    fn fade(self, simd: S, t: S::F32) -> [S::F32; 2] {
-        quintic(simd, t)
-    }
-    #[inline(always)]
-    fn rows<const SLOPES: bool>(self, simd: S, left: &Numbers<S>, right: &Numbers<S>, column: &Weights<S>) -> Rows<S> {
-        let none = simd.f32(0.0);
-        [
-            blend::<S>(column.ramp, left[0], right[0]),
-            blend::<S>(column.u, left[1], right[1]),
-            blend::<S>(column.dramp, left[0], right[0]),
-            column.du * (right[1] - left[1]),
-            none,
-            none,
-        ]
-    }
-    #[inline(always)]
-    fn coefficients(self, _: S, row: &Weights<S>, amplitude: S::F32, slope: S::F32) -> Coefficients<S> {
-        gradient_coefficients(row, amplitude, slope)
-    }
-}
-
-impl<S: Simd, G: Gradients<S>> Basis<S> for Gradient3<G> {
-    const RANK: usize = 2;
-    const NUMBERS: usize = 3;
-    const DEEP: bool = true;
-    type Depth = DepthPart<S>;
-
-    #[inline(always)]
-    fn new(simd: S, source: Source, octave: &Octave) -> Self {
-        Self(G::new(simd, source, octave))
-    }
-    #[inline(always)]
-    fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2] {
-        self.0.keys(simd, axis, cell)
-    }
-    #[inline(always)]
-    fn depth(self, simd: S, cell: &Cell<S>) -> DepthPart<S> {
-        DepthPart { keys: self.0.keys(simd, 2, cell), weights: Weights::new(simd, cell.t, quintic(simd, cell.t)) }
-    }
-    #[inline(always)]
-    fn point<const SLOPES: bool>(self, simd: S, x: S::U32, y: S::U32, depth: &DepthPart<S>) -> Numbers<S> {
-        let near = self.0.gradient3(simd, self.0.hash3(simd, x, y, depth.keys[0]));
-        let far = self.0.gradient3(simd, self.0.hash3(simd, x, y, depth.keys[1]));
-        let weights = &depth.weights;
+fn along_z<S: Simd, G: Gradients<S>, const DIMS: usize>(
+    lattice: G,
+    simd: S,
+    [x, y]: [S::U32; 2],
+    z: &DepthPart<S>,
+    w: S::U32,
+) -> ([S::F32; 6], [S::F32; 2]) {
+    let near = lattice.gradient::<DIMS>(simd, lattice.hash::<DIMS>(simd, [x, y, z.keys[0], w]));
+    let far = lattice.gradient::<DIMS>(simd, lattice.hash::<DIMS>(simd, [x, y, z.keys[1], w]));
+    let weights = &z.weights;
+    (
         [
             blend::<S>(weights.u, near[0], far[0]),
             blend::<S>(weights.u, near[1], far[1]),
@@ -116,26 +51,86 @@ impl<S: Simd, G: Gradients<S>> Basis<S> for Gradient3<G> {
             weights.du * (far[0] - near[0]),
             weights.du * (far[1] - near[1]),
             blend::<S>(weights.dramp, near[2], far[2]),
-        ]
+        ],
+        [blend::<S>(weights.u, near[3], far[3]), weights.du * (far[3] - near[3])],
+    )
+}
+
+impl<S: Simd, G: Gradients<S>, const DIMS: usize> Basis<S> for Gradient<G, DIMS> {
+    const RANK: usize = 2;
+    const NUMBERS: usize = if DIMS == 2 { 2 } else { 3 };
+    const DIMS: usize = DIMS;
+
+    #[inline(always)]
+    fn new(simd: S, source: Source, octave: &Octave) -> Self {
+        Self(G::new(simd, source, octave))
+    }
+    #[inline(always)]
+    fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2] {
+        self.0.keys(simd, axis, cell)
+    }
+    #[inline(always)]
+    fn point<const SLOPES: bool>(self, simd: S, x: S::U32, y: S::U32, depths: &Depths<S>) -> Numbers<S> {
+        let none = simd.f32(0.0);
+        let mut numbers = [none; 9];
+        let [z, w] = depths;
+        match DIMS {
+            2 => {
+                let gradient = self.0.gradient::<DIMS>(simd, self.0.hash::<DIMS>(simd, [x, y, x, x]));
+                (numbers[0], numbers[1]) = (gradient[0], gradient[1]);
+            }
+            3 => {
+                let (along, _) = along_z::<S, G, DIMS>(self.0, simd, [x, y], z, x);
+                numbers[..6].copy_from_slice(&along);
+            }
+            _ => {
+                let (here, ramp) = along_z::<S, G, DIMS>(self.0, simd, [x, y], z, w.keys[0]);
+                let (there, next) = along_z::<S, G, DIMS>(self.0, simd, [x, y], z, w.keys[1]);
+                let weights = &w.weights;
+                for place in 0..6 {
+                    numbers[place] = blend::<S>(weights.u, here[place], there[place]);
+                }
+                numbers[2] = numbers[2] + blend::<S>(weights.ramp, ramp[0], next[0]);
+                numbers[5] = numbers[5] + blend::<S>(weights.ramp, ramp[1], next[1]);
+                for place in 0..3 {
+                    numbers[6 + place] = weights.du * (there[place] - here[place]);
+                }
+                numbers[8] = numbers[8] + blend::<S>(weights.dramp, ramp[0], next[0]);
+            }
+        }
+        numbers
     }
     #[inline(always)]
     fn fade(self, simd: S, t: S::F32) -> [S::F32; 2] {
         quintic(simd, t)
     }
     #[inline(always)]
-    fn rows<const SLOPES: bool>(self, _: S, left: &Numbers<S>, right: &Numbers<S>, column: &Weights<S>) -> Rows<S> {
+    fn rows<const SLOPES: bool>(self, simd: S, left: &Numbers<S>, right: &Numbers<S>, column: &Weights<S>) -> Rows<S> {
+        let mut rows = [simd.f32(0.0); 8];
         let slope = blend::<S>(column.dramp, left[0], right[0]);
-        [
-            ramp_in_space::<S>(column, left[0], left[2], right[0], right[2]),
-            blend::<S>(column.u, left[1], right[1]),
-            column.du.mul_add(right[2] - left[2], slope),
-            column.du * (right[1] - left[1]),
-            ramp_in_space::<S>(column, left[3], left[5], right[3], right[5]),
-            blend::<S>(column.u, left[4], right[4]),
-        ]
+        rows[1] = blend::<S>(column.u, left[1], right[1]);
+        rows[3] = column.du * (right[1] - left[1]);
+        if DIMS == 2 {
+            rows[0] = blend::<S>(column.ramp, left[0], right[0]);
+            rows[2] = slope;
+            return rows;
+        }
+        rows[0] = ramp_in_space::<S>(column, left[0], left[2], right[0], right[2]);
+        rows[2] = column.du.mul_add(right[2] - left[2], slope);
+        for axis in 2..DIMS {
+            let (place, to) = (3 * (axis - 1), 2 * axis);
+            rows[to] = ramp_in_space::<S>(column, left[place], left[place + 2], right[place], right[place + 2]);
+            rows[to + 1] = blend::<S>(column.u, left[place + 1], right[place + 1]);
+        }
+        rows
     }
     #[inline(always)]
     fn coefficients(self, _: S, row: &Weights<S>, amplitude: S::F32, slope: S::F32) -> Coefficients<S> {
-        gradient_coefficients(row, amplitude, slope)
+        let steep = row.du * slope;
+        Coefficients {
+            value: scaled_ramps(row, amplitude),
+            along: scaled_ramps(row, slope),
+            across: [-steep, row.dramp[0] * slope, steep, row.dramp[1] * slope],
+        }
     }
 }

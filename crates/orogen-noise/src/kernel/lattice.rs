@@ -2,12 +2,16 @@
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
-use crate::kernel::combine::{Sample, add_size, add_weighted, finish_sizes};
+use crate::kernel::combine::{Sample, State};
 use crate::kernel::outputs::Outputs;
 use crate::kernel::strip::{Columns, Job, NO_POINTS, Points, Rows, StripOctave, WIDTH};
-use crate::program::{Combine, Program, Source};
+use crate::program::{Combine, Octave, Program, Source};
 use orogen_simd::{Body, F32Lanes, Simd};
 use std::cell::Cell;
+
+/// Columns from which on a window is wide, and how many rows of one are filled strip by strip before the next ones.
+const WIDE: usize = 4096;
+const BAND: usize = 64;
 
 /// Buffers a thread keeps from call to call.
 struct Scratch {
@@ -19,12 +23,19 @@ thread_local! {
     static SCRATCH: Cell<Option<Box<Scratch>>> = const { Cell::new(None) };
 }
 
-/// Fills a lattice; `z` is the depth of the slice in space.
+/// Whether there are kernels for it here. What is rare is asked point by point: kernels of its own would be as many again.
+pub(crate) fn covers(program: &Program, dims: usize, slopes: bool) -> bool {
+    let shaped = matches!(program.combine, Combine::Shaped { .. });
+    !(slopes && shaped) && !(dims == 4 && (slopes || program.combine.needs_slopes()))
+}
+
+/// Fills a lattice, as far as this [`covers`] it; `depths` are z and w of the slice, as far as there are `dims`.
 #[inline(always)]
 pub(crate) fn fill<S: Simd>(
     simd: S,
     program: &Program,
-    (xs, ys, z): (&[f64], &[f64], Option<f64>),
+    (xs, ys): (&[f64], &[f64]),
+    (dims, depths): (usize, [f64; 2]),
     outputs: &mut Outputs,
 ) {
     // Taken out and put back: nothing is borrowed while the kernels run.
@@ -35,31 +46,40 @@ pub(crate) fn fill<S: Simd>(
     }
     let Scratch { octaves: strips, points } = &mut *scratch;
     let strips = &mut strips[..octaves.len()];
-    let slopes = outputs.slopes.is_some() || matches!(program.combine, Combine::Weighted { .. });
-    for (s, columns) in xs.chunks(WIDTH).enumerate() {
-        let job = Job {
-            source: program.source,
-            octave: &octaves.first().copied().unwrap_or_default(),
-            limit: program.limit,
-            slopes,
-            z: z.unwrap_or_default(),
-            deep: z.is_some(),
-            columns: columns.len(),
-        };
-        for (strip, octave) in strips.iter_mut().zip(octaves) {
-            simd.run(Columns { job: Job { octave, ..job }, strip, xs: columns });
-        }
-        for (g, rows) in ys.chunks(S::LANES).enumerate() {
+    let slopes = outputs.slopes.is_some() || program.combine.needs_slopes();
+    // Rows far apart in memory are in pages of their own: a strip of a wide window goes down only so far before the next.
+    let band = if xs.len() > WIDE { BAND } else { ys.len().max(1) };
+    for (b, band_ys) in ys.chunks(band).enumerate() {
+        for (s, columns) in xs.chunks(WIDTH).enumerate() {
+            let job = Job {
+                source: program.source,
+                octave: &octaves.first().copied().unwrap_or_default(),
+                limit: program.limit,
+                slopes,
+                dims,
+                depths,
+                columns: columns.len(),
+            };
             for (strip, octave) in strips.iter_mut().zip(octaves) {
-                simd.run(Rows { job: Job { octave, ..job }, strip, ys: rows });
+                simd.run(Columns { job: Job { octave, ..job }, strip, xs: columns });
             }
-            for r in 0..rows.len() {
+            for (g, rows) in band_ys.chunks(S::LANES).enumerate() {
                 for (strip, octave) in strips.iter_mut().zip(octaves) {
-                    strip.hold(simd, &Job { octave, ..job }, points, r);
+                    simd.run(Rows { job: Job { octave, ..job }, strip, ys: rows });
                 }
-                let start = (g * S::LANES + r) * xs.len() + s * WIDTH;
-                let target = outputs.part(start, columns.len());
-                row(simd, program, z.is_some(), Row { combine: program.combine, strips, r, target });
+                for r in 0..rows.len() {
+                    for (strip, octave) in strips.iter_mut().zip(octaves) {
+                        strip.hold(simd, &Job { octave, ..job }, points, r);
+                    }
+                    let start = (b * band + g * S::LANES + r) * xs.len() + s * WIDTH;
+                    let target = outputs.part(start, columns.len());
+                    let row = Row { combine: program.combine, octaves, strips, r, target };
+                    if matches!(program.source, Source::Value(_)) {
+                        in_dimensions::<S, 1>(simd, dims, row);
+                    } else {
+                        in_dimensions::<S, 2>(simd, dims, row);
+                    }
+                }
             }
         }
     }
@@ -68,25 +88,25 @@ pub(crate) fn fill<S: Simd>(
 
 /// Runs the kernel made for the row: by the rank of its basis, by how octaves are combined, and by what is wanted.
 #[inline(always)]
-fn row<S: Simd>(simd: S, program: &Program, deep: bool, row: Row) {
-    match (matches!(program.source, Source::Value(_)), deep) {
-        (true, false) => rank_and_depth::<S, 1, false>(simd, row),
-        (true, true) => rank_and_depth::<S, 1, true>(simd, row),
-        (false, false) => rank_and_depth::<S, 2, false>(simd, row),
-        (false, true) => rank_and_depth::<S, 2, true>(simd, row),
+fn in_dimensions<S: Simd, const RANK: usize>(simd: S, dims: usize, row: Row) {
+    // Without slopes all dimensions are the same.
+    match (dims, row.target.slopes.is_some() || row.combine.needs_slopes()) {
+        (_, false) => of_kind::<S, RANK, 2>(simd, row),
+        (2, true) => of_kind::<S, RANK, 2>(simd, row),
+        (_, true) => of_kind::<S, RANK, 3>(simd, row),
     }
 }
 
 #[inline(always)]
-fn rank_and_depth<S: Simd, const RANK: usize, const DEEP: bool>(simd: S, row: Row) {
-    // Without slopes, space and plane are the same.
+fn of_kind<S: Simd, const RANK: usize, const DIMS: usize>(simd: S, row: Row) {
     match (row.combine, row.target.slopes.is_some()) {
-        (Combine::Sum, false) => simd.run(RowOf::<RANK, SUM, false, false>(row)),
-        (Combine::Sum, true) => simd.run(RowOf::<RANK, SUM, DEEP, true>(row)),
-        (Combine::Sizes { .. }, false) => simd.run(RowOf::<RANK, SIZES, false, false>(row)),
-        (Combine::Sizes { .. }, true) => simd.run(RowOf::<RANK, SIZES, DEEP, true>(row)),
-        (Combine::Weighted { .. }, false) => simd.run(RowOf::<RANK, WEIGHTED, DEEP, false>(row)),
-        (Combine::Weighted { .. }, true) => simd.run(RowOf::<RANK, WEIGHTED, DEEP, true>(row)),
+        (Combine::Sum, false) => simd.run(RowOf::<RANK, SUM, DIMS, false>(row)),
+        (Combine::Sum, true) => simd.run(RowOf::<RANK, SUM, DIMS, true>(row)),
+        (Combine::Sizes { .. }, false) => simd.run(RowOf::<RANK, SIZES, DIMS, false>(row)),
+        (Combine::Sizes { .. }, true) => simd.run(RowOf::<RANK, SIZES, DIMS, true>(row)),
+        (Combine::Weighted { .. }, false) => simd.run(RowOf::<RANK, WEIGHTED, DIMS, false>(row)),
+        (Combine::Weighted { .. }, true) => simd.run(RowOf::<RANK, WEIGHTED, DIMS, true>(row)),
+        (Combine::Shaped { .. }, _) => simd.run(RowOf::<RANK, SHAPED, DIMS, false>(row)),
     }
 }
 
@@ -94,10 +114,12 @@ fn rank_and_depth<S: Simd, const RANK: usize, const DEEP: bool>(simd: S, row: Ro
 const SUM: usize = 0;
 const SIZES: usize = 1;
 const WEIGHTED: usize = 2;
+const SHAPED: usize = 3;
 
 /// One row of samples within a strip.
 struct Row<'a> {
     combine: Combine,
+    octaves: &'a [Octave],
     strips: &'a [StripOctave],
     /// Its place in the group of rows.
     r: usize,
@@ -105,10 +127,10 @@ struct Row<'a> {
 }
 
 /// The kernel of a row.
-struct RowOf<'a, const RANK: usize, const KIND: usize, const DEEP: bool, const SLOPES: bool>(Row<'a>);
+struct RowOf<'a, const RANK: usize, const KIND: usize, const DIMS: usize, const SLOPES: bool>(Row<'a>);
 
-impl<const RANK: usize, const KIND: usize, const DEEP: bool, const SLOPES: bool> Body
-    for RowOf<'_, RANK, KIND, DEEP, SLOPES>
+impl<const RANK: usize, const KIND: usize, const DIMS: usize, const SLOPES: bool> Body
+    for RowOf<'_, RANK, KIND, DIMS, SLOPES>
 {
     type Output = ();
 
@@ -121,11 +143,13 @@ impl<const RANK: usize, const KIND: usize, const DEEP: bool, const SLOPES: bool>
             // multiply-adds, few enough to stay in registers. All of them divide a strip's width.
             at += S::LANES
                 * match (KIND, SLOPES, S::LANES) {
-                    (SUM, false, _) => block::<S, DEEP, RANK, 8, KIND, SLOPES>(simd, &mut row, at),
+                    (SUM, false, _) => block::<S, DIMS, RANK, 8, KIND, SLOPES>(simd, &mut row, at),
                     // 32 registers instead of 16.
-                    (SIZES, false, 16) => block::<S, DEEP, RANK, 8, KIND, SLOPES>(simd, &mut row, at),
-                    (SIZES, false, _) | (_, _, 16) => block::<S, DEEP, RANK, 4, KIND, SLOPES>(simd, &mut row, at),
-                    _ => block::<S, DEEP, RANK, 2, KIND, SLOPES>(simd, &mut row, at),
+                    (SIZES, false, 16) => block::<S, DIMS, RANK, 8, KIND, SLOPES>(simd, &mut row, at),
+                    (SIZES, false, _) | (WEIGHTED, _, 16) | (SUM | SIZES, true, 16) => {
+                        block::<S, DIMS, RANK, 4, KIND, SLOPES>(simd, &mut row, at)
+                    }
+                    _ => block::<S, DIMS, RANK, 2, KIND, SLOPES>(simd, &mut row, at),
                 };
         }
     }
@@ -134,63 +158,65 @@ impl<const RANK: usize, const KIND: usize, const DEEP: bool, const SLOPES: bool>
 /// `N` registers of one row, from column `at` on; returns `N`. What lies beyond the last column is made from what an earlier strip
 /// left there, and dropped.
 #[inline(always)]
-fn block<S: Simd, const DEEP: bool, const RANK: usize, const N: usize, const KIND: usize, const SLOPES: bool>(
+fn block<S: Simd, const DIMS: usize, const RANK: usize, const N: usize, const KIND: usize, const SLOPES: bool>(
     simd: S,
     row: &mut Row,
     at: usize,
 ) -> usize {
-    let (combine, strips, r) = (row.combine, row.strips, row.r);
-    let target = &mut row.target;
-    let axes = if DEEP { 3 } else { 2 };
-    let none = [simd.f32(0.0); 4];
-    let mut sums = [none; N];
-    match combine {
-        Combine::Sum if KIND == SUM => {
-            for strip in strips {
-                add_octave::<S, DEEP, RANK, N, SLOPES>(simd, strip, r, at, &mut sums);
-            }
-        }
-        Combine::Sizes { sign } if KIND == SIZES => {
-            let axes = if SLOPES { axes } else { 0 };
-            for strip in strips {
-                let mut one = [none; N];
-                add_octave::<S, DEEP, RANK, N, SLOPES>(simd, strip, r, at, &mut one);
+    let (combine, r) = (row.combine, row.r);
+    let none = [simd.f32(0.0); 5];
+    let mut states = [State::new(simd); N];
+    for o in 0..row.strips.len().min(row.octaves.len()) {
+        let (strip, octave) = (&row.strips[o], &row.octaves[o]);
+        let mut one = [none; N];
+        match combine {
+            // A plain sum runs on from octave to octave.
+            Combine::Sum if KIND == SUM => {
                 for n in 0..N {
-                    add_size(simd, &mut sums[n], &one[n], axes);
+                    one[n] = states[n].sum;
+                }
+                add_octave::<S, DIMS, RANK, N, SLOPES>(simd, strip, r, at, &mut one);
+                for n in 0..N {
+                    states[n].sum = one[n];
                 }
             }
-            for n in 0..N {
-                finish_sizes(simd, &mut sums[n], sign, axes);
-            }
-        }
-        Combine::Weighted { k, falloff, gradient } if KIND == WEIGHTED => {
-            let mut slopes = [none; N];
-            for strip in strips {
-                let mut one = [none; N];
-                add_octave::<S, DEEP, RANK, N, true>(simd, strip, r, at, &mut one);
+            Combine::Sizes { .. } if KIND == SIZES => {
+                add_octave::<S, DIMS, RANK, N, SLOPES>(simd, strip, r, at, &mut one);
                 for n in 0..N {
-                    add_weighted::<S, SLOPES>(simd, &mut sums[n], &mut slopes[n], &one[n], (k, falloff), axes);
+                    states[n].add::<SLOPES>(simd, &combine, octave, &one[n], DIMS);
                 }
             }
-            if SLOPES {
+            Combine::Weighted { .. } if KIND == WEIGHTED => {
+                add_octave::<S, DIMS, RANK, N, true>(simd, strip, r, at, &mut one);
                 for n in 0..N {
-                    for axis in 1..4 {
-                        sums[n][axis] = sums[n][axis] * simd.f32(gradient);
-                    }
+                    states[n].add::<SLOPES>(simd, &combine, octave, &one[n], DIMS);
                 }
             }
+            Combine::Shaped { .. } if KIND == SHAPED => {
+                add_octave::<S, DIMS, RANK, N, SLOPES>(simd, strip, r, at, &mut one);
+                for n in 0..N {
+                    states[n].add::<SLOPES>(simd, &combine, octave, &one[n], DIMS);
+                }
+            }
+            _ => {}
         }
-        _ => {}
     }
+    let target = &mut row.target;
     for n in 0..N {
+        match combine {
+            Combine::Sizes { .. } if KIND == SIZES => states[n].finish::<SLOPES>(simd, &combine, DIMS),
+            Combine::Weighted { .. } if KIND == WEIGHTED => states[n].finish::<SLOPES>(simd, &combine, DIMS),
+            Combine::Shaped { .. } if KIND == SHAPED => states[n].finish::<SLOPES>(simd, &combine, DIMS),
+            _ => {}
+        }
         let at = at + n * S::LANES;
         if at >= target.value.len() {
             break;
         }
-        sums[n][0].store_partial(&mut target.value[at..]);
+        states[n].sum[0].store_partial(&mut target.value[at..]);
         if let (true, Some(slopes)) = (SLOPES, &mut target.slopes) {
-            for axis in 0..axes {
-                sums[n][1 + axis].store_partial(&mut slopes[axis][at..]);
+            for axis in 0..DIMS {
+                states[n].sum[1 + axis].store_partial(&mut slopes[axis][at..]);
             }
         }
     }
@@ -199,7 +225,7 @@ fn block<S: Simd, const DEEP: bool, const RANK: usize, const N: usize, const KIN
 
 /// Adds one octave to `N` registers of samples.
 #[inline(always)]
-fn add_octave<S: Simd, const DEEP: bool, const RANK: usize, const N: usize, const SLOPES: bool>(
+fn add_octave<S: Simd, const DIMS: usize, const RANK: usize, const N: usize, const SLOPES: bool>(
     simd: S,
     strip: &StripOctave,
     r: usize,
@@ -223,10 +249,10 @@ fn add_octave<S: Simd, const DEEP: bool, const RANK: usize, const N: usize, cons
                     sums[n][1] = along.mul_add(simd.load(&alongs[n * S::LANES..]), sums[n][1]);
                     sums[n][2] = across.mul_add(simd.load(&values[n * S::LANES..]), sums[n][2]);
                 }
-                if DEEP {
-                    let deeps = &strip.row(line, 4 + vector)[at..at + N * S::LANES];
+                for axis in 2..DIMS {
+                    let deeps = &strip.row(line, 2 * axis + vector)[at..at + N * S::LANES];
                     for n in 0..N {
-                        sums[n][3] = along.mul_add(simd.load(&deeps[n * S::LANES..]), sums[n][3]);
+                        sums[n][1 + axis] = along.mul_add(simd.load(&deeps[n * S::LANES..]), sums[n][1 + axis]);
                     }
                 }
             }

@@ -1,13 +1,20 @@
 //! Where results go.
 
-/// Where results go: values, and slopes along x, y and z where they are wanted. Lengths are checked.
+/// Where results go: values, and slopes along x, y, z and w where they are wanted. Lengths are checked.
 pub(crate) struct Outputs<'a> {
     pub value: &'a mut [f32],
-    pub slopes: Option<[&'a mut [f32]; 3]>,
+    pub slopes: Option<[&'a mut [f32]; 4]>,
 }
 
 impl Outputs<'_> {
-    /// The `count` samples from `start` on. In 2D there is no slope along z: that slice is empty.
+    /// Sets all slopes to zero, for a noise that has none.
+    pub(crate) fn flatten(&mut self) {
+        for slope in self.slopes.iter_mut().flatten() {
+            slope.fill(0.0);
+        }
+    }
+
+    /// The `count` samples from `start` on. Where an axis is missing, the slice of its slopes is empty.
     #[inline(always)]
     pub(crate) fn part(&mut self, start: usize, count: usize) -> Outputs<'_> {
         Outputs {

@@ -2,73 +2,97 @@
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
-use crate::kernel::bases::with_basis;
-use crate::kernel::basis::{Basis, Coefficients, Rows, Visit, Weights};
-use crate::kernel::cell::{Cell, clamp};
-use crate::kernel::combine::{Sample, add_size, add_weighted, finish_sizes};
+use crate::kernel::cell::{clamp, coordinate, moved};
+use crate::kernel::combine::State;
 use crate::kernel::outputs::Outputs;
-use crate::program::{Combine, Octave, Program};
+use crate::kernel::pointwise::{Family, Pointwise, VisitFamily};
+use crate::program::{Combine, Program};
 use orogen_simd::{Body, F32Lanes, Simd};
+use std::marker::PhantomData;
 
-/// Evaluates a program at points, in the plane or (`DEEP`) in space; slopes are made with `SLOPES`. A function of its own for each
-/// level.
-pub(crate) struct Scatter<'a, const DEEP: bool, const SLOPES: bool> {
+/// How many registers of samples go through an octave at a time.
+const REGISTERS: usize = 16;
+
+/// A call of [`Scatter`] to be made for the noise a source names.
+pub(crate) struct Call<'a, S: Simd, const DIMS: usize> {
+    pub simd: S,
     pub program: &'a Program,
-    /// x, y and (in space) z of the points, metres: as many of each as there are results.
-    pub at: [&'a [f64]; 3],
+    /// x, y, z and w of the points, metres: of the first `DIMS` as many as there are results.
+    pub at: [&'a [f64]; 4],
     pub target: Outputs<'a>,
 }
 
-impl<const DEEP: bool, const SLOPES: bool> Body for Scatter<'_, DEEP, SLOPES> {
+impl<S: Simd, const DIMS: usize> VisitFamily for Call<'_, S, DIMS> {
+    #[inline(always)]
+    fn visit<F: Family>(self) {
+        let Call { simd, program, at, target } = self;
+        let family = PhantomData::<F>;
+        if matches!(program.combine, Combine::Sum) && (target.slopes.is_none() || !F::SLOPED) {
+            simd.run(Sums::<F, DIMS> { program, at, target: target.value, family });
+        } else {
+            simd.run(Scatter::<F, DIMS> { program, at, target, family });
+        }
+    }
+}
+
+/// Evaluates a program at points, with slopes where the noise has any. A function of its own for each level and noise.
+struct Scatter<'a, F, const DIMS: usize> {
+    program: &'a Program,
+    at: [&'a [f64]; 4],
+    target: Outputs<'a>,
+    family: PhantomData<F>,
+}
+
+impl<F: Family, const DIMS: usize> Body for Scatter<'_, F, DIMS> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        with_basis::<S, _, DEEP>(simd, self.program.source, self);
+        // Where all slopes are zero, what needs them adds nothing but zeros.
+        if F::SLOPED { self.go::<S, true>(simd) } else { self.go::<S, false>(simd) }
     }
 }
 
-impl<S: Simd, const DEEP: bool, const SLOPES: bool> Visit<S> for Scatter<'_, DEEP, SLOPES> {
+impl<F: Family, const DIMS: usize> Scatter<'_, F, DIMS> {
     #[inline(always)]
-    fn visit<B: Basis<S>>(self, simd: S) {
-        let Scatter { program, at, mut target } = self;
-        let none = simd.f32(0.0);
-        let axes = if DEEP { 3 } else { 2 };
-        let kept = if SLOPES { axes } else { 0 };
+    fn go<S: Simd, const SLOPES: bool>(self, simd: S) {
+        let Scatter { program, at, mut target, .. } = self;
+        let combine = &program.combine;
+        let moves = combine.moves();
+        let none = simd.f64(0.0);
         let mut start = 0;
         while start < target.value.len() {
-            let mut position = [simd.f64(0.0); 3];
-            for axis in 0..axes {
+            let mut position = [none; 4];
+            for axis in 0..DIMS {
                 let from = at[axis].get(start..).unwrap_or_default();
                 position[axis] = clamp(simd, simd.load_f64_partial(from, 0.0), program.limit);
             }
-            let (mut sum, mut slope): (Sample<S>, Sample<S>) = ([none; 4], [none; 4]);
+            let mut state = State::new(simd);
             for octave in program.octaves() {
-                let basis = B::new(simd, program.source, octave);
+                let noise = F::At::<S>::new(simd, program.source, octave);
+                let mut place = [F::At::<S>::split(simd, none); 4];
+                for axis in 0..DIMS {
+                    let mut u = coordinate(simd, octave, axis, position[axis]);
+                    if SLOPES && moves {
+                        u = moved(simd, octave, u, state.shift(simd, combine, octave, axis));
+                    }
+                    place[axis] = F::At::<S>::split(simd, u);
+                }
                 // A plain sum runs on from octave to octave. One call for all: it is inlined, and long.
-                let mut one = if matches!(program.combine, Combine::Sum) { sum } else { [none; 4] };
-                add_octave::<S, B, SLOPES>(simd, basis, octave, &position, &mut one);
-                match program.combine {
-                    Combine::Sum => sum = one,
-                    Combine::Sizes { .. } => add_size(simd, &mut sum, &one, kept),
-                    Combine::Weighted { k, falloff, .. } => {
-                        add_weighted::<S, SLOPES>(simd, &mut sum, &mut slope, &one, (k, falloff), axes);
-                    }
+                let runs_on = matches!(combine, Combine::Sum);
+                let mut one = if runs_on { state.sum } else { [simd.f32(0.0); 5] };
+                noise.add::<SLOPES>(simd, octave, &place, &mut one);
+                if runs_on {
+                    state.sum = one;
+                } else {
+                    state.add::<SLOPES>(simd, combine, octave, &one, DIMS);
                 }
             }
-            match program.combine {
-                Combine::Sum => {}
-                Combine::Sizes { sign } => finish_sizes(simd, &mut sum, sign, kept),
-                Combine::Weighted { gradient, .. } => {
-                    for axis in 1..4 {
-                        sum[axis] = sum[axis] * simd.f32(gradient);
-                    }
-                }
-            }
-            sum[0].store_partial(&mut target.value[start..]);
+            state.finish::<SLOPES>(simd, combine, DIMS);
+            state.sum[0].store_partial(&mut target.value[start..]);
             if let (true, Some(slopes)) = (SLOPES, &mut target.slopes) {
-                for axis in 0..axes {
-                    sum[1 + axis].store_partial(slopes[axis].get_mut(start..).unwrap_or_default());
+                for axis in 0..DIMS {
+                    state.sum[1 + axis].store_partial(slopes[axis].get_mut(start..).unwrap_or_default());
                 }
             }
             start += S::LANES;
@@ -76,69 +100,57 @@ impl<S: Simd, const DEEP: bool, const SLOPES: bool> Visit<S> for Scatter<'_, DEE
     }
 }
 
-/// Adds one octave's value (and slopes) to a sample.
-#[inline(always)]
-fn add_octave<S: Simd, B: Basis<S>, const SLOPES: bool>(
-    simd: S,
-    basis: B,
-    octave: &Octave,
-    position: &[S::F64; 3],
-    sum: &mut Sample<S>,
-) {
-    let (x, y) = (Cell::split(simd, octave, 0, position[0]), Cell::split(simd, octave, 1, position[1]));
-    let z = if B::DEEP { Cell::split(simd, octave, 2, position[2]) } else { x };
-    let depth = basis.depth(simd, &z);
-    let (columns, lines) = (basis.keys(simd, 0, &x), basis.keys(simd, 1, &y));
-    let (amplitude, slope) = (simd.f32(octave.amplitude), simd.f32(octave.slope));
-    if B::FLAT {
-        let number = basis.point::<SLOPES>(simd, columns[0], lines[0], &depth)[0];
-        sum[0] = amplitude.mul_add(number, sum[0]);
-        return;
-    }
-    let column = Weights::new(simd, x.t, basis.fade(simd, x.t));
-    let row = Weights::new(simd, y.t, basis.fade(simd, y.t));
-    let rows = [
-        line::<S, B, SLOPES>(simd, basis, columns, lines[0], &depth, &column),
-        line::<S, B, SLOPES>(simd, basis, columns, lines[1], &depth, &column),
-    ];
-    let coefficients = basis.coefficients(simd, &row, amplitude, slope);
-    accumulate::<S, B, SLOPES>(&coefficients, &rows, sum);
+/// Plain sums at points, without slopes.
+struct Sums<'a, F, const DIMS: usize> {
+    program: &'a Program,
+    at: [&'a [f64]; 4],
+    target: &'a mut [f32],
+    family: PhantomData<F>,
 }
 
-/// The row vectors between a point's two lattice columns, on the line with that key.
-#[inline(always)]
-fn line<S: Simd, B: Basis<S>, const SLOPES: bool>(
-    simd: S,
-    basis: B,
-    columns: [S::U32; 2],
-    key: S::U32,
-    depth: &B::Depth,
-    column: &Weights<S>,
-) -> Rows<S> {
-    let left = basis.point::<SLOPES>(simd, columns[0], key, depth);
-    let right = basis.point::<SLOPES>(simd, columns[1], key, depth);
-    basis.rows::<SLOPES>(simd, &left, &right, column)
-}
+impl<F: Family, const DIMS: usize> Body for Sums<'_, F, DIMS> {
+    type Output = ();
 
-/// Adds the octave's value (and slopes) to a sample: the order of these additions is the order of the lattice path.
-#[inline(always)]
-fn accumulate<S: Simd, B: Basis<S>, const SLOPES: bool>(
-    coefficients: &Coefficients<S>,
-    lines: &[Rows<S>; 2],
-    sum: &mut Sample<S>,
-) {
-    for line in 0..2 {
-        let rows = &lines[line];
-        for vector in 0..B::RANK {
-            let place = 2 * line + vector;
-            sum[0] = coefficients.value[place].mul_add(rows[vector], sum[0]);
-            if SLOPES {
-                sum[1] = coefficients.along[place].mul_add(rows[2 + vector], sum[1]);
-                sum[2] = coefficients.across[place].mul_add(rows[vector], sum[2]);
-                if B::DEEP {
-                    sum[3] = coefficients.along[place].mul_add(rows[4 + vector], sum[3]);
-                }
-            }
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let mut start = 0;
+        while start < self.target.len() {
+            let count = (self.target.len() - start).min(REGISTERS * S::LANES);
+            let target = &mut self.target[start..start + count];
+            sums::<S, F::At<S>, DIMS>(simd, self.program, &self.at, start, target);
+            start += count;
         }
+    }
+}
+
+/// Some registers of plain sums, octave by octave, so that what an octave needs is made once for all of them.
+#[inline(always)]
+fn sums<S: Simd, P: Pointwise<S>, const DIMS: usize>(
+    simd: S,
+    program: &Program,
+    at: &[&[f64]; 4],
+    start: usize,
+    target: &mut [f32],
+) {
+    let none = simd.f64(0.0);
+    let count = target.len().div_ceil(S::LANES).min(REGISTERS);
+    let mut sums = [simd.f32(0.0); REGISTERS];
+    for octave in program.octaves() {
+        let noise = P::new(simd, program.source, octave);
+        for r in 0..count {
+            let mut place = [P::split(simd, none); 4];
+            for axis in 0..DIMS {
+                let from = at[axis].get(start + r * S::LANES..).unwrap_or_default();
+                let position = clamp(simd, simd.load_f64_partial(from, 0.0), program.limit);
+                place[axis] = P::split(simd, coordinate(simd, octave, axis, position));
+            }
+            let mut one = [simd.f32(0.0); 5];
+            one[0] = sums[r];
+            noise.add::<false>(simd, octave, &place, &mut one);
+            sums[r] = one[0];
+        }
+    }
+    for r in 0..count {
+        sums[r].store_partial(&mut target[r * S::LANES..]);
     }
 }

@@ -22,12 +22,12 @@ const MARGIN: f32 = 1.0 - 1e-6;
 const EDGE_MARGIN: f32 = 1.0 - 1e-5;
 
 /// A point: its place in its cell, and its cell's hash.
-pub(crate) type Site<S> = ([<S as Simd>::F32; 3], <S as Simd>::U32);
+pub(crate) type Site<S> = ([<S as Simd>::F32; 4], <S as Simd>::U32);
 
 /// Where the points of the cells next to a sample's come from.
 pub(crate) trait Sites<S: Simd> {
     /// The point of the cell that many cells on from the sample's own; each offset is -1, 0 or 1.
-    fn near(&self, simd: S, offset: [i32; 3]) -> Site<S>;
+    fn near(&self, simd: S, offset: [i32; 4]) -> Site<S>;
 }
 
 /// The numbers of one octave of cellular noise.
@@ -40,15 +40,16 @@ pub(crate) struct Field<S: Simd> {
 impl<S: Simd> Field<S> {
     /// The point of the cell with those keys. Coordinates are successive rounds of the hash's own mixing.
     #[inline(always)]
-    pub(crate) fn site(&self, simd: S, deep: bool, [x, y, z]: [S::U32; 3]) -> Site<S> {
-        let hash = if deep { self.lattice.hash3(simd, x, y, z) } else { self.lattice.hash2(simd, x, y) };
-        let second = (hash ^ hash.shr(16)) * simd.u32(0x93D7_65DD);
+    pub(crate) fn site<const DIMS: usize>(&self, simd: S, keys: [S::U32; 4]) -> Site<S> {
+        const ROUNDS: [(u32, u32); 4] = [(0, 0), (16, 0x93D7_65DD), (15, 0x915F_77F5), (16, 0xADB4_A92D)];
+        let hash = self.lattice.hash::<DIMS>(simd, keys);
         let (jitter, rest) = (simd.f32(self.cellular.jitter), simd.f32(0.5 - 0.5 * self.cellular.jitter));
-        let third = if deep { (second ^ second.shr(15)) * simd.u32(0x915F_77F5) } else { second };
-        let mut place = [simd.f32(0.0); 3];
-        let words = [hash, second, third];
-        for axis in 0..if deep { 3 } else { 2 } {
-            let unit = words[axis].shr(8).i32_to_f32() * simd.f32(1.0 / 16_777_216.0);
+        let (mut place, mut word) = ([simd.f32(0.0); 4], hash);
+        for axis in 0..DIMS {
+            if axis > 0 {
+                word = (word ^ word.shr(ROUNDS[axis].0)) * simd.u32(ROUNDS[axis].1);
+            }
+            let unit = word.shr(8).i32_to_f32() * simd.f32(1.0 / 16_777_216.0);
             place[axis] = unit.mul_add(jitter, rest);
         }
         (place, hash)
@@ -63,31 +64,32 @@ impl<S: Simd> Field<S> {
 }
 
 /// Points hashed for each sample.
-pub(crate) struct HashedSites<S: Simd> {
+pub(crate) struct HashedSites<S: Simd, const DIMS: usize> {
     field: Field<S>,
-    deep: bool,
-    keys: [[S::U32; 3]; 3],
+    keys: [[S::U32; 3]; 4],
 }
 
-impl<S: Simd> HashedSites<S> {
+impl<S: Simd, const DIMS: usize> HashedSites<S, DIMS> {
     #[inline(always)]
-    pub(crate) fn new(simd: S, field: Field<S>, cells: &[Cell<S>; 3], deep: bool) -> HashedSites<S> {
-        let mut keys = [[simd.u32(0); 3]; 3];
-        for axis in 0..if deep { 3 } else { 2 } {
+    pub(crate) fn new(simd: S, field: Field<S>, cells: &[Cell<S>; 4]) -> HashedSites<S, DIMS> {
+        let mut keys = [[simd.u32(0); 3]; 4];
+        for axis in 0..DIMS {
             for step in 0..3 {
                 keys[axis][step] = field.key(simd, axis, &cells[axis], step as i32 - 1);
             }
         }
-        HashedSites { field, deep, keys }
+        HashedSites { field, keys }
     }
 }
 
-impl<S: Simd> Sites<S> for HashedSites<S> {
+impl<S: Simd, const DIMS: usize> Sites<S> for HashedSites<S, DIMS> {
     #[inline(always)]
-    fn near(&self, simd: S, [x, y, z]: [i32; 3]) -> Site<S> {
-        let [columns, rows, depths] = &self.keys;
-        let keys = [columns[(x + 1) as usize % 3], rows[(y + 1) as usize % 3], depths[(z + 1) as usize % 3]];
-        self.field.site(simd, self.deep, keys)
+    fn near(&self, simd: S, offset: [i32; 4]) -> Site<S> {
+        let mut keys = [simd.u32(0); 4];
+        for axis in 0..DIMS {
+            keys[axis] = self.keys[axis][(offset[axis] + 1) as usize % 3];
+        }
+        self.field.site::<DIMS>(simd, keys)
     }
 }
 
@@ -97,34 +99,43 @@ struct Nearest<S: Simd> {
     first: S::F32,
     second: S::F32,
     /// From the sample to the nearest point, and the hash of its cell.
-    way: [S::F32; 3],
+    way: [S::F32; 4],
     hash: S::U32,
 }
 
 /// The distance of a vector; of the euclidean one, its square.
 #[inline(always)]
-fn measure<S: Simd, const DEEP: bool>(distance: Distance, way: &[S::F32; 3]) -> S::F32 {
+fn measure<S: Simd, const DIMS: usize>(distance: Distance, way: &[S::F32; 4]) -> S::F32 {
     match distance {
         Distance::Euclidean => {
-            let flat = way[1].mul_add(way[1], way[0] * way[0]);
-            if DEEP { way[2].mul_add(way[2], flat) } else { flat }
+            let mut sum = way[0] * way[0];
+            for axis in 1..DIMS {
+                sum = way[axis].mul_add(way[axis], sum);
+            }
+            sum
         }
         Distance::Manhattan => {
-            let flat = way[0].abs() + way[1].abs();
-            if DEEP { flat + way[2].abs() } else { flat }
+            let mut sum = way[0].abs();
+            for axis in 1..DIMS {
+                sum = sum + way[axis].abs();
+            }
+            sum
         }
         Distance::Chebyshev => {
-            let flat = way[0].abs().max(way[1].abs());
-            if DEEP { flat.max(way[2].abs()) } else { flat }
+            let mut most = way[0].abs();
+            for axis in 1..DIMS {
+                most = most.max(way[axis].abs());
+            }
+            most
         }
     }
 }
 
 /// From the sample, `t` into its cell, to a site in the cell `offset` on.
 #[inline(always)]
-fn way<S: Simd, const DEEP: bool>(simd: S, place: &[S::F32; 3], t: &[S::F32; 3], offset: [i32; 3]) -> [S::F32; 3] {
-    let mut way = [simd.f32(0.0); 3];
-    for axis in 0..if DEEP { 3 } else { 2 } {
+fn way<S: Simd, const DIMS: usize>(simd: S, place: &[S::F32; 4], t: &[S::F32; 4], offset: [i32; 4]) -> [S::F32; 4] {
+    let mut way = [simd.f32(0.0); 4];
+    for axis in 0..DIMS {
         way[axis] = (place[axis] + simd.f32(offset[axis] as f32)) - t[axis];
     }
     way
@@ -132,9 +143,9 @@ fn way<S: Simd, const DEEP: bool>(simd: S, place: &[S::F32; 3], t: &[S::F32; 3],
 
 /// Takes a point into account, as far as the feature needs it.
 #[inline(always)]
-fn keep<S: Simd, const DEEP: bool>(field: &Field<S>, nearest: &mut Nearest<S>, way: [S::F32; 3], hash: S::U32) {
+fn keep<S: Simd, const DIMS: usize>(field: &Field<S>, nearest: &mut Nearest<S>, way: [S::F32; 4], hash: S::U32) {
     let Cellular { distance, feature, .. } = field.cellular;
-    let d = measure::<S, DEEP>(distance, &way);
+    let d = measure::<S, DIMS>(distance, &way);
     if feature == Feature::F1 {
         nearest.first = nearest.first.min(d);
         return;
@@ -144,7 +155,7 @@ fn keep<S: Simd, const DEEP: bool>(field: &Field<S>, nearest: &mut Nearest<S>, w
     nearest.first = nearest.first.min(d);
     if matches!(feature, Feature::Value | Feature::Edge) {
         nearest.hash = hash.select(closer, nearest.hash);
-        for axis in 0..if DEEP { 3 } else { 2 } {
+        for axis in 0..DIMS {
             nearest.way[axis] = way[axis].select(closer, nearest.way[axis]);
         }
     }
@@ -152,37 +163,44 @@ fn keep<S: Simd, const DEEP: bool>(field: &Field<S>, nearest: &mut Nearest<S>, w
 
 /// How far the sample is from the nearest side of its cell.
 #[inline(always)]
-fn side<S: Simd, const DEEP: bool>(simd: S, t: &[S::F32; 3]) -> S::F32 {
+fn side<S: Simd, const DIMS: usize>(simd: S, t: &[S::F32; 4]) -> S::F32 {
     let mut side = t[0].min(simd.f32(1.0) - t[0]);
-    for axis in 1..if DEEP { 3 } else { 2 } {
+    for axis in 1..DIMS {
         side = side.min(t[axis].min(simd.f32(1.0) - t[axis]));
     }
     side
 }
 
+/// The offset of the cell's own neighbours by number, itself among them.
+#[inline(always)]
+fn neighbour<const DIMS: usize>(number: usize) -> [i32; 4] {
+    let (mut offset, mut rest) = ([0; 4], number);
+    for axis in 0..DIMS {
+        offset[axis] = (rest % 3) as i32 - 1;
+        rest /= 3;
+    }
+    offset
+}
+
 /// The noise of one register of samples, from -1 to 1. `cells` are the samples' own.
 #[inline(always)]
-pub(crate) fn evaluate<S: Simd, P: Sites<S>, const DEEP: bool>(
+pub(crate) fn evaluate<S: Simd, P: Sites<S>, const DIMS: usize>(
     simd: S,
     field: &Field<S>,
     sites: &P,
-    cells: &[Cell<S>; 3],
+    cells: &[Cell<S>; 4],
 ) -> S::F32 {
     let Cellular { distance, feature, .. } = field.cellular;
     let squared = distance == Distance::Euclidean;
-    let t = [cells[0].t, cells[1].t, cells[2].t];
+    let t = [cells[0].t, cells[1].t, cells[2].t, cells[3].t];
     let far = simd.f32(1e9);
-    let mut nearest = Nearest { first: far, second: far, way: [far; 3], hash: simd.u32(0) };
-    for z in if DEEP { -1..2 } else { 0..1 } {
-        for y in -1..2 {
-            for x in -1..2 {
-                let (place, hash) = sites.near(simd, [x, y, z]);
-                let way = way::<S, DEEP>(simd, &place, &t, [x, y, z]);
-                keep::<S, DEEP>(field, &mut nearest, way, hash);
-            }
-        }
+    let mut nearest = Nearest { first: far, second: far, way: [far; 4], hash: simd.u32(0) };
+    for number in 0..3_usize.pow(DIMS as u32) {
+        let offset = neighbour::<DIMS>(number);
+        let (place, hash) = sites.near(simd, offset);
+        keep::<S, DIMS>(field, &mut nearest, way::<S, DIMS>(simd, &place, &t, offset), hash);
     }
-    let side = side::<S, DEEP>(simd, &t);
+    let side = side::<S, DIMS>(simd, &t);
     let one = match feature {
         Feature::F1 | Feature::Value => true,
         Feature::Edge => squared,
@@ -194,10 +212,10 @@ pub(crate) fn evaluate<S: Simd, P: Sites<S>, const DEEP: bool>(
         if !if squared { reach * reach } else { reach }.lt(found).any() {
             break;
         }
-        let mut at = Shell::new(shell + 1, DEEP);
+        let mut at = Shell::<DIMS>::new(shell + 1);
         while let Some(offset) = at.advance() {
-            let (place, hash) = distant::<S, DEEP>(simd, field, cells, offset);
-            keep::<S, DEEP>(field, &mut nearest, way::<S, DEEP>(simd, &place, &t, offset), hash);
+            let (place, hash) = distant::<S, DIMS>(simd, field, cells, offset);
+            keep::<S, DIMS>(field, &mut nearest, way::<S, DIMS>(simd, &place, &t, offset), hash);
         }
     }
     let (mut first, mut second) = (nearest.first, nearest.second);
@@ -210,31 +228,28 @@ pub(crate) fn evaluate<S: Simd, P: Sites<S>, const DEEP: bool>(
         Feature::Difference => second - first,
         Feature::Product => first * second,
         Feature::Value => return value(simd, (nearest.hash ^ nearest.hash.shr(16)) * simd.u32(0xADB4_A92D)),
-        Feature::Edge if squared => edge::<S, P, DEEP>(simd, field, sites, cells, (&nearest, first, side)),
+        Feature::Edge if squared => edge::<S, P, DIMS>(simd, field, sites, cells, (&nearest, first, side)),
         Feature::Edge => (second - first) * simd.f32(0.5),
     };
-    raw.mul_add(simd.f32(2.0 / field.cellular.bound(DEEP)), simd.f32(-1.0)).min(simd.f32(1.0))
+    raw.mul_add(simd.f32(2.0 / field.cellular.bound(DIMS)), simd.f32(-1.0)).min(simd.f32(1.0))
 }
 
 /// The distance to the nearest edge: to the nearest of the planes midway between the nearest point and each other one.
 #[inline(always)]
-fn edge<S: Simd, P: Sites<S>, const DEEP: bool>(
+fn edge<S: Simd, P: Sites<S>, const DIMS: usize>(
     simd: S,
     field: &Field<S>,
     sites: &P,
-    cells: &[Cell<S>; 3],
+    cells: &[Cell<S>; 4],
     (nearest, first, side): (&Nearest<S>, S::F32, S::F32),
 ) -> S::F32 {
-    let t = [cells[0].t, cells[1].t, cells[2].t];
+    let t = [cells[0].t, cells[1].t, cells[2].t, cells[3].t];
     let mut least = simd.f32(1e9);
-    for z in if DEEP { -1..2 } else { 0..1 } {
-        for y in -1..2 {
-            for x in -1..2 {
-                let (place, _) = sites.near(simd, [x, y, z]);
-                let way = way::<S, DEEP>(simd, &place, &t, [x, y, z]);
-                least = least.min(midway::<S, DEEP>(simd, &nearest.way, &way));
-            }
-        }
+    for number in 0..3_usize.pow(DIMS as u32) {
+        let offset = neighbour::<DIMS>(number);
+        let (place, _) = sites.near(simd, offset);
+        let way = way::<S, DIMS>(simd, &place, &t, offset);
+        least = least.min(midway::<S, DIMS>(simd, &nearest.way, &way));
     }
     for shell in 1..SHELLS {
         // A point R away has its plane at least (R - first) / 2 away.
@@ -242,11 +257,11 @@ fn edge<S: Simd, P: Sites<S>, const DEEP: bool>(
         if !reach.lt(least.mul_add(simd.f32(2.0), first)).any() {
             break;
         }
-        let mut at = Shell::new(shell + 1, DEEP);
+        let mut at = Shell::<DIMS>::new(shell + 1);
         while let Some(offset) = at.advance() {
-            let (place, _) = distant::<S, DEEP>(simd, field, cells, offset);
-            let way = way::<S, DEEP>(simd, &place, &t, offset);
-            least = least.min(midway::<S, DEEP>(simd, &nearest.way, &way));
+            let (place, _) = distant::<S, DIMS>(simd, field, cells, offset);
+            let way = way::<S, DIMS>(simd, &place, &t, offset);
+            least = least.min(midway::<S, DIMS>(simd, &nearest.way, &way));
         }
     }
     least
@@ -254,9 +269,9 @@ fn edge<S: Simd, P: Sites<S>, const DEEP: bool>(
 
 /// From the sample to the plane midway between two points; far where they are one.
 #[inline(always)]
-fn midway<S: Simd, const DEEP: bool>(simd: S, near: &[S::F32; 3], other: &[S::F32; 3]) -> S::F32 {
+fn midway<S: Simd, const DIMS: usize>(simd: S, near: &[S::F32; 4], other: &[S::F32; 4]) -> S::F32 {
     let (mut along, mut apart) = (simd.f32(0.0), simd.f32(0.0));
-    for axis in 0..if DEEP { 3 } else { 2 } {
+    for axis in 0..DIMS {
         let between = other[axis] - near[axis];
         along = (other[axis] + near[axis]).mul_add(between, along);
         apart = between.mul_add(between, apart);
@@ -267,45 +282,49 @@ fn midway<S: Simd, const DEEP: bool>(simd: S, near: &[S::F32; 3], other: &[S::F3
 
 /// A point farther than one cell away.
 #[inline(always)]
-fn distant<S: Simd, const DEEP: bool>(simd: S, field: &Field<S>, cells: &[Cell<S>; 3], offset: [i32; 3]) -> Site<S> {
-    let mut keys = [simd.u32(0); 3];
-    for axis in 0..if DEEP { 3 } else { 2 } {
+fn distant<S: Simd, const DIMS: usize>(simd: S, field: &Field<S>, cells: &[Cell<S>; 4], offset: [i32; 4]) -> Site<S> {
+    let mut keys = [simd.u32(0); 4];
+    for axis in 0..DIMS {
         keys[axis] = field.key(simd, axis, &cells[axis], offset[axis]);
     }
-    field.site(simd, DEEP, keys)
+    field.site::<DIMS>(simd, keys)
 }
 
 /// The cells that many away, in a fixed order.
-struct Shell {
+struct Shell<const DIMS: usize> {
     radius: i32,
-    next: [i32; 3],
-    deep: bool,
+    next: [i32; 4],
 }
 
-impl Shell {
+impl<const DIMS: usize> Shell<DIMS> {
     #[inline(always)]
-    fn new(radius: i32, deep: bool) -> Shell {
-        Shell { radius, next: [-radius, -radius, if deep { -radius } else { 0 }], deep }
+    fn new(radius: i32) -> Shell<DIMS> {
+        let mut next = [0; 4];
+        for axis in 0..DIMS {
+            next[axis] = -radius;
+        }
+        Shell { radius, next }
     }
 
     /// The next cell. (Not an iterator: see kernel/mod.rs.)
     #[inline(always)]
-    fn advance(&mut self) -> Option<[i32; 3]> {
+    fn advance(&mut self) -> Option<[i32; 4]> {
         let radius = self.radius;
-        let last = if self.deep { radius } else { 0 };
-        if self.next[2] > last {
+        let here = self.next;
+        if here[DIMS - 1] > radius {
             return None;
         }
-        let here = self.next;
-        let [x, y, z] = &mut self.next;
         // Inside the square (or cube) of the shell there are only the two ends of a row.
-        let whole = y.abs() == radius || z.abs() == radius;
-        *x += if whole { 1 } else { 2 * radius };
-        if *x > radius {
-            (*x, *y) = (-radius, *y + 1);
+        let mut whole = false;
+        for axis in 1..DIMS {
+            whole |= here[axis].abs() == radius;
         }
-        if *y > radius {
-            (*y, *z) = (-radius, *z + 1);
+        self.next[0] += if whole { 1 } else { 2 * radius };
+        for axis in 0..DIMS - 1 {
+            if self.next[axis] > radius {
+                self.next[axis] = -radius;
+                self.next[axis + 1] += 1;
+            }
         }
         Some(here)
     }

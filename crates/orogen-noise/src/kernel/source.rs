@@ -1,5 +1,7 @@
 //! How lattice points get their numbers: hashes, values and gradients.
 
+#![allow(clippy::needless_range_loop)] // see kernel/mod.rs
+
 use crate::choices::ClassicVariant;
 use crate::kernel::cell::Cell;
 use crate::program::{Octave, Source};
@@ -11,20 +13,16 @@ use orogen_simd::{F32Lanes, Simd, U32Lanes};
 pub(crate) trait Lattice<S: Simd>: Copy {
     /// The keys of a cell and of the next one.
     fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2];
-    /// The hash of a point; the top bits are the good ones.
-    fn hash2(self, simd: S, x: S::U32, y: S::U32) -> S::U32;
-    /// The hash of a point in 3D.
-    fn hash3(self, simd: S, x: S::U32, y: S::U32, z: S::U32) -> S::U32;
+    /// The hash of a point with those keys along its first `DIMS` axes; the top bits are the good ones.
+    fn hash<const DIMS: usize>(self, simd: S, keys: [S::U32; 4]) -> S::U32;
 }
 
 /// A lattice whose points have gradients.
 pub(crate) trait Gradients<S: Simd>: Lattice<S> {
     /// The lattice as the octave needs it.
     fn new(simd: S, source: Source, octave: &Octave) -> Self;
-    /// The gradient a hash stands for.
-    fn gradient2(self, simd: S, hash: S::U32) -> [S::F32; 2];
-    /// The gradient a hash stands for in 3D.
-    fn gradient3(self, simd: S, hash: S::U32) -> [S::F32; 3];
+    /// The gradient a hash stands for in `DIMS` dimensions; the rest is not to be used.
+    fn gradient<const DIMS: usize>(self, simd: S, hash: S::U32) -> [S::F32; 4];
 }
 
 /// The hashed lattice: 64-bit cells and 64 bits of seed per axis go into a 32-bit key, the keys into a 32-bit hash.
@@ -34,8 +32,8 @@ pub(crate) trait Gradients<S: Simd>: Lattice<S> {
 /// spectral behaviour modulo 2^32 (G. Steele and S. Vigna, "Computationally easy, spectrally good multipliers", 2021).
 #[derive(Clone, Copy)]
 pub(crate) struct Hashed<S: Simd> {
-    words: [[S::U32; 2]; 3],
-    period: [f64; 3],
+    words: [[S::U32; 2]; 4],
+    period: [f64; 4],
 }
 
 const ROUND_1: u32 = 0x915F_77F5;
@@ -45,11 +43,11 @@ const ROUND_3: u32 = 0xADB4_A92D;
 impl<S: Simd> Hashed<S> {
     #[inline(always)]
     pub(crate) fn new(simd: S, octave: &Octave) -> Hashed<S> {
-        let [[a, b], [c, d], [e, f]] = octave.words;
-        Hashed {
-            words: [[simd.u32(a), simd.u32(b)], [simd.u32(c), simd.u32(d)], [simd.u32(e), simd.u32(f)]],
-            period: octave.period,
+        let mut words = [[simd.u32(0); 2]; 4];
+        for axis in 0..4 {
+            words[axis] = [simd.u32(octave.words[axis][0]), simd.u32(octave.words[axis][1])];
         }
+        Hashed { words, period: octave.period }
     }
 
     /// The hash of keys joined by xor.
@@ -81,12 +79,12 @@ impl<S: Simd> Lattice<S> for Hashed<S> {
         ]
     }
     #[inline(always)]
-    fn hash2(self, simd: S, x: S::U32, y: S::U32) -> S::U32 {
-        Self::finish(simd, x ^ y)
-    }
-    #[inline(always)]
-    fn hash3(self, simd: S, x: S::U32, y: S::U32, z: S::U32) -> S::U32 {
-        Self::finish(simd, x ^ y ^ z)
+    fn hash<const DIMS: usize>(self, simd: S, keys: [S::U32; 4]) -> S::U32 {
+        let mut joined = keys[0];
+        for axis in 1..DIMS {
+            joined = joined ^ keys[axis];
+        }
+        Self::finish(simd, joined)
     }
 }
 
@@ -104,7 +102,8 @@ pub(crate) struct PerlinSource<S: Simd> {
     // The same directions twice: sixteen where one instruction looks them up, else eight and a sign.
     wide: [S::Table16; 2],
     half: [S::Table8; 2],
-    deep: [S::Table16; 3],
+    space: [S::Table16; 3],
+    time: [S::Table16; 4],
 }
 
 impl<S: Simd> Lattice<S> for PerlinSource<S> {
@@ -113,12 +112,8 @@ impl<S: Simd> Lattice<S> for PerlinSource<S> {
         self.lattice.keys(simd, axis, cell)
     }
     #[inline(always)]
-    fn hash2(self, simd: S, x: S::U32, y: S::U32) -> S::U32 {
-        self.lattice.hash2(simd, x, y)
-    }
-    #[inline(always)]
-    fn hash3(self, simd: S, x: S::U32, y: S::U32, z: S::U32) -> S::U32 {
-        self.lattice.hash3(simd, x, y, z)
+    fn hash<const DIMS: usize>(self, simd: S, keys: [S::U32; 4]) -> S::U32 {
+        self.lattice.hash::<DIMS>(simd, keys)
     }
 }
 
@@ -134,39 +129,44 @@ impl<S: Simd> Gradients<S> for PerlinSource<S> {
             lattice: Hashed::new(simd, octave),
             wide: [simd.table16(&WIDE[0]), simd.table16(&WIDE[1])],
             half: [simd.table8(&directions::X_2D), simd.table8(&directions::Y_2D)],
-            deep: [simd.table16(&directions::X_3D), simd.table16(&directions::Y_3D), simd.table16(&directions::Z_3D)],
+            space: [simd.table16(&directions::X_3D), simd.table16(&directions::Y_3D), simd.table16(&directions::Z_3D)],
+            time: [
+                simd.table16(&directions::X_4D),
+                simd.table16(&directions::Y_4D),
+                simd.table16(&directions::Z_4D),
+                simd.table16(&directions::W_4D),
+            ],
         }
     }
     #[inline(always)]
-    fn gradient2(self, simd: S, hash: S::U32) -> [S::F32; 2] {
-        // The top bit is the sign, the next three the direction in the upper half plane.
-        if S::WIDE_LOOKUP {
+    fn gradient<const DIMS: usize>(self, simd: S, hash: S::U32) -> [S::F32; 4] {
+        let mut gradient = [simd.f32(0.0); 4];
+        if DIMS == 2 && S::WIDE_LOOKUP {
             let index = hash.shr(28);
-            [simd.lookup16(self.wide[0], index), simd.lookup16(self.wide[1], index)]
-        } else {
-            let index = hash.shr(28);
-            let sign = hash & simd.u32(0x8000_0000);
-            let [x, y] = [simd.lookup8(self.half[0], index), simd.lookup8(self.half[1], index)];
-            [(x.bits() ^ sign).as_f32(), (y.bits() ^ sign).as_f32()]
+            gradient[0] = simd.lookup16(self.wide[0], index);
+            gradient[1] = simd.lookup16(self.wide[1], index);
+            return gradient;
         }
-    }
-    #[inline(always)]
-    fn gradient3(self, simd: S, hash: S::U32) -> [S::F32; 3] {
-        let index = hash.shr(27);
+        // The top bit is the sign, the next ones the direction in the upper half.
         let sign = hash & simd.u32(0x8000_0000);
-        [
-            (simd.lookup16(self.deep[0], index).bits() ^ sign).as_f32(),
-            (simd.lookup16(self.deep[1], index).bits() ^ sign).as_f32(),
-            (simd.lookup16(self.deep[2], index).bits() ^ sign).as_f32(),
-        ]
+        let index = hash.shr(if DIMS == 2 { 28 } else { 27 });
+        for axis in 0..DIMS {
+            let upper = match DIMS {
+                2 => simd.lookup8(self.half[axis & 1], index),
+                3 => simd.lookup16(self.space[axis % 3], index),
+                _ => simd.lookup16(self.time[axis], index),
+            };
+            gradient[axis] = (upper.bits() ^ sign).as_f32();
+        }
+        gradient
     }
 }
 
 /// The lattice of Perlin's 2002 reference: a permutation of 0 ..= 255, looked up once per axis.
 #[derive(Clone, Copy)]
 pub(crate) struct ClassicSource<S: Simd> {
-    shift: [S::U32; 3],
-    period: [f64; 3],
+    shift: [S::U32; 4],
+    period: [f64; 4],
     variant: ClassicVariant,
 }
 
@@ -189,24 +189,55 @@ impl<S: Simd> Lattice<S> for ClassicSource<S> {
         if axis == 0 { [Self::permuted(simd, here), Self::permuted(simd, next)] } else { [here, next] }
     }
     #[inline(always)]
-    fn hash2(self, simd: S, x: S::U32, y: S::U32) -> S::U32 {
-        Self::permuted(simd, x + y)
-    }
-    #[inline(always)]
-    fn hash3(self, simd: S, x: S::U32, y: S::U32, z: S::U32) -> S::U32 {
-        Self::permuted(simd, Self::permuted(simd, x + y) + z)
+    fn hash<const DIMS: usize>(self, simd: S, keys: [S::U32; 4]) -> S::U32 {
+        let mut hash = keys[0];
+        for axis in 1..DIMS {
+            hash = Self::permuted(simd, hash + keys[axis]);
+        }
+        hash
     }
 }
 
 impl<S: Simd> Gradients<S> for ClassicSource<S> {
     #[inline(always)]
     fn new(simd: S, source: Source, octave: &Octave) -> ClassicSource<S> {
-        let [x, y, z] = octave.words;
         let variant = if let Source::Classic(variant) = source { variant } else { ClassicVariant::Diagonal };
-        ClassicSource { shift: [simd.u32(x[0]), simd.u32(y[0]), simd.u32(z[0])], period: octave.period, variant }
+        let mut shift = [simd.u32(0); 4];
+        for axis in 0..4 {
+            shift[axis] = simd.u32(octave.words[axis][0]);
+        }
+        ClassicSource { shift, period: octave.period, variant }
     }
     #[inline(always)]
-    fn gradient2(self, simd: S, hash: S::U32) -> [S::F32; 2] {
+    fn gradient<const DIMS: usize>(self, simd: S, hash: S::U32) -> [S::F32; 4] {
+        let none = simd.f32(0.0);
+        match DIMS {
+            2 => {
+                let [x, y] = self.plane(simd, hash);
+                [x, y, none, none]
+            }
+            3 => [
+                simd.lookup16(simd.table16(&reference::REFERENCE_X), hash),
+                simd.lookup16(simd.table16(&reference::REFERENCE_Y), hash),
+                simd.lookup16(simd.table16(&reference::REFERENCE_Z), hash),
+                none,
+            ],
+            _ => {
+                let index = hash & simd.u32(31);
+                [
+                    simd.gather(&reference::REFERENCE_4D_X, index),
+                    simd.gather(&reference::REFERENCE_4D_Y, index),
+                    simd.gather(&reference::REFERENCE_4D_Z, index),
+                    simd.gather(&reference::REFERENCE_4D_W, index),
+                ]
+            }
+        }
+    }
+}
+
+impl<S: Simd> ClassicSource<S> {
+    #[inline(always)]
+    fn plane(self, simd: S, hash: S::U32) -> [S::F32; 2] {
         let [x, y] = match self.variant {
             ClassicVariant::Diagonal => [&reference::DIAGONAL_X, &reference::DIAGONAL_Y],
             ClassicVariant::Eight => [&reference::EIGHT_X, &reference::EIGHT_Y],
@@ -219,13 +250,5 @@ impl<S: Simd> Gradients<S> for ClassicSource<S> {
             }
         };
         [simd.lookup8(simd.table8(x), hash), simd.lookup8(simd.table8(y), hash)]
-    }
-    #[inline(always)]
-    fn gradient3(self, simd: S, hash: S::U32) -> [S::F32; 3] {
-        [
-            simd.lookup16(simd.table16(&reference::REFERENCE_X), hash),
-            simd.lookup16(simd.table16(&reference::REFERENCE_Y), hash),
-            simd.lookup16(simd.table16(&reference::REFERENCE_Z), hash),
-        ]
     }
 }

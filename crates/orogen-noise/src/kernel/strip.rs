@@ -18,9 +18,10 @@ pub(crate) const MOST_LANES: usize = 16;
 /// One octave over the strip. Each array begins on a cache line: a register that straddles two costs twice.
 #[repr(C, align(64))]
 pub(crate) struct StripOctave {
-    /// The row vectors of two lattice lines.
-    lines: [[[f32; WIDTH]; 6]; 2],
-    /// Rows: coefficients of value, slope along x (and z), slope across; four places each.
+    /// The row vectors of two lattice lines, side by side: those of values, which are read most, lie in one page, so that octaves
+    /// do not push each other out of the cache.
+    lines: [[[f32; WIDTH]; 2]; 8],
+    /// Rows: coefficients of value, slope along x (and z and w), slope across; four places each.
     pub coefficients: [[[f32; MOST_LANES]; 4]; 3],
     /// Fractions and fades per column: (1 - u) t, u (t - 1), 1 - u, u, then the slopes of the first two and of u.
     weights: [[f32; WIDTH]; 7],
@@ -53,7 +54,7 @@ impl StripOctave {
             first: [0; WIDTH / 4],
             points: 0,
             keys: [[0; SPAN]; 2],
-            lines: [[[0.0; WIDTH]; 6]; 2],
+            lines: [[[0.0; WIDTH]; 2]; 8],
             upper: 0,
             held: None,
             cells: [0; MOST_LANES],
@@ -65,7 +66,7 @@ impl StripOctave {
     /// A row vector of the upper (0) or lower (1) line.
     #[inline(always)]
     pub(crate) fn row(&self, line: usize, vector: usize) -> &[f32; WIDTH] {
-        &self.lines[(self.upper ^ line) & 1][vector]
+        &self.lines[vector & 7][(self.upper ^ line) & 1]
     }
 
     /// Makes the lines those around the group's row `r`. Only what changed is built: rows mostly share their lines, and the
@@ -93,21 +94,22 @@ impl StripOctave {
     #[inline(always)]
     fn build<S: Simd>(&mut self, simd: S, job: &Job, points: &mut Points, line: usize, key: u32) {
         let (job, strip) = (*job, self);
-        match (job.deep, job.slopes) {
-            (false, false) => simd.run(Line::<false, false> { job, strip, points, line, key }),
-            (false, true) => simd.run(Line::<false, true> { job, strip, points, line, key }),
-            (true, false) => simd.run(Line::<true, false> { job, strip, points, line, key }),
-            (true, true) => simd.run(Line::<true, true> { job, strip, points, line, key }),
+        match (job.dims, job.slopes) {
+            (2, false) => simd.run(Line::<2, false> { job, strip, points, line, key }),
+            (2, true) => simd.run(Line::<2, true> { job, strip, points, line, key }),
+            (3, false) => simd.run(Line::<3, false> { job, strip, points, line, key }),
+            (3, true) => simd.run(Line::<3, true> { job, strip, points, line, key }),
+            (_, _) => simd.run(Line::<4, false> { job, strip, points, line, key }),
         }
     }
 }
 
 /// The numbers of a line's lattice points.
 #[repr(align(64))]
-pub(crate) struct Points([[f32; SPAN]; 6]);
+pub(crate) struct Points([[f32; SPAN]; 9]);
 
 /// An empty [`Points`].
-pub(crate) const NO_POINTS: Points = Points([[0.0; SPAN]; 6]);
+pub(crate) const NO_POINTS: Points = Points([[0.0; SPAN]; 9]);
 
 /// What is the same for all strips and rows of an octave.
 #[derive(Clone, Copy)]
@@ -116,10 +118,10 @@ pub(crate) struct Job<'a> {
     pub octave: &'a Octave,
     pub limit: f64,
     pub slopes: bool,
-    /// Depth of the slice, metres; unused in the plane.
-    pub z: f64,
-    /// Whether there is a third axis.
-    pub deep: bool,
+    /// How many axes there are.
+    pub dims: usize,
+    /// z and w of the slice, metres, as far as there are these axes.
+    pub depths: [f64; 2],
     /// Columns of the strip.
     pub columns: usize,
 }
@@ -156,8 +158,8 @@ impl Body for Columns<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        // What depends on x or y alone is the same in the plane and in space.
-        with_basis::<S, _, false>(simd, self.job.source, self);
+        // What depends on x or y alone is the same in all dimensions.
+        with_basis::<S, _, 2>(simd, self.job.source, self);
     }
 }
 
@@ -229,8 +231,8 @@ impl Body for Rows<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        // What depends on x or y alone is the same in the plane and in space.
-        with_basis::<S, _, false>(simd, self.job.source, self);
+        // What depends on x or y alone is the same in all dimensions.
+        with_basis::<S, _, 2>(simd, self.job.source, self);
     }
 }
 
@@ -261,7 +263,7 @@ impl<S: Simd> Visit<S> for Rows<'_> {
 }
 
 /// Builds the row vectors of one lattice line.
-struct Line<'a, const DEEP: bool, const SLOPES: bool> {
+struct Line<'a, const DIMS: usize, const SLOPES: bool> {
     job: Job<'a>,
     strip: &'a mut StripOctave,
     points: &'a mut Points,
@@ -270,38 +272,39 @@ struct Line<'a, const DEEP: bool, const SLOPES: bool> {
     key: u32,
 }
 
-impl<const DEEP: bool, const SLOPES: bool> Body for Line<'_, DEEP, SLOPES> {
+impl<const DIMS: usize, const SLOPES: bool> Body for Line<'_, DIMS, SLOPES> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        with_basis::<S, _, DEEP>(simd, self.job.source, self);
+        with_basis::<S, _, DIMS>(simd, self.job.source, self);
     }
 }
 
-impl<S: Simd, const DEEP: bool, const SLOPES: bool> Visit<S> for Line<'_, DEEP, SLOPES> {
+impl<S: Simd, const DIMS: usize, const SLOPES: bool> Visit<S> for Line<'_, DIMS, SLOPES> {
     #[inline(always)]
     fn visit<B: Basis<S>>(self, simd: S) {
         let basis = B::new(simd, self.job.source, self.job.octave);
         let Line { job, strip, points, line, key } = self;
         let points = &mut points.0;
         let key = simd.u32(key);
-        let depth = basis.depth(simd, &job.split(simd, simd.f64(job.z), 2));
-        let numbers = if SLOPES && B::DEEP { 2 * B::NUMBERS } else { B::NUMBERS };
+        let depths = basis
+            .depths(simd, &[job.split(simd, simd.f64(job.depths[0]), 2), job.split(simd, simd.f64(job.depths[1]), 3)]);
+        let numbers = if SLOPES { (B::DIMS - 1) * B::NUMBERS } else { B::NUMBERS };
         let dense = strip.dense;
         if dense {
             for p in (0..strip.points.min(SPAN)).step_by(S::LANES) {
-                let made = basis.point::<SLOPES>(simd, simd.load_u32(&strip.keys[0][p..]), key, &depth);
+                let made = basis.point::<SLOPES>(simd, simd.load_u32(&strip.keys[0][p..]), key, &depths);
                 for place in 0..numbers {
                     made[place].store(&mut points[place][p..]);
                 }
             }
         }
-        let rows = &mut strip.lines[(strip.upper ^ line) & 1];
+        let which = (strip.upper ^ line) & 1;
         for v in 0..job.registers::<S>() {
             let at = at::<S>(v);
             let none = simd.f32(0.0);
-            let (mut left, mut right): (Numbers<S>, Numbers<S>) = ([none; 6], [none; 6]);
+            let (mut left, mut right): (Numbers<S>, Numbers<S>) = ([none; 9], [none; 9]);
             if dense {
                 let first = (strip.first[v & (WIDTH / 4 - 1)] as usize).min(SPAN - 1 - S::LANES);
                 let index = simd.load_u32(&strip.index[at..]);
@@ -310,8 +313,8 @@ impl<S: Simd, const DEEP: bool, const SLOPES: bool> Visit<S> for Line<'_, DEEP, 
                     right[place] = simd.load(&points[place][first + 1..]).permute(index);
                 }
             } else {
-                left = basis.point::<SLOPES>(simd, simd.load_u32(&strip.keys[0][at..]), key, &depth);
-                right = basis.point::<SLOPES>(simd, simd.load_u32(&strip.keys[1][at..]), key, &depth);
+                left = basis.point::<SLOPES>(simd, simd.load_u32(&strip.keys[0][at..]), key, &depths);
+                right = basis.point::<SLOPES>(simd, simd.load_u32(&strip.keys[1][at..]), key, &depths);
             }
             let weights = &strip.weights;
             let column = Weights {
@@ -322,15 +325,9 @@ impl<S: Simd, const DEEP: bool, const SLOPES: bool> Visit<S> for Line<'_, DEEP, 
                 du: if SLOPES { simd.load(&weights[6][at..]) } else { none },
             };
             let made = basis.rows::<SLOPES>(simd, &left, &right, &column);
-            for place in 0..6 {
-                let lanes = made[place];
-                let wanted = match place / 2 {
-                    0 => true,
-                    1 => SLOPES,
-                    _ => SLOPES && B::DEEP,
-                };
-                if wanted && place % 2 < B::RANK {
-                    lanes.store(&mut rows[place][at..]);
+            for place in 0..if SLOPES { 2 * B::DIMS } else { 2 } {
+                if place % 2 < B::RANK {
+                    made[place].store(&mut strip.lines[place][which][at..]);
                 }
             }
         }

@@ -21,16 +21,15 @@ pub(crate) fn fill<S: Simd>(
     simd: S,
     program: &Program,
     octave: &Octave,
-    (xs, ys, z): (&[f64], &[f64], Option<f64>),
+    (xs, ys): (&[f64], &[f64]),
+    (dims, depths): (usize, [f64; 2]),
     outputs: &mut Outputs,
 ) {
-    for slope in outputs.slopes.iter_mut().flatten() {
-        slope.fill(0.0);
-    }
     let limit = program.limit;
-    let (mut columns, mut rows, mut depth) = (Aligned([0; WIDTH]), [0; ROWS], [0]);
-    if let Some(z) = z {
-        simd.run(Keys { octave, limit, axis: 2, at: &[z], keys: &mut depth });
+    let (mut columns, mut rows, mut depth) = (Aligned([0; WIDTH]), [0; ROWS], [0; 2]);
+    for axis in 2..dims.min(4) {
+        let (at, keys) = (&depths[axis - 2..axis - 1], &mut depth[axis - 2..axis - 1]);
+        simd.run(Keys { octave, limit, axis, at, keys });
     }
     for (s, part) in xs.chunks(WIDTH).enumerate() {
         simd.run(Keys { octave, limit, axis: 0, at: part, keys: &mut columns.0 });
@@ -39,8 +38,13 @@ pub(crate) fn fill<S: Simd>(
             for r in 0..group.len() {
                 let start = (g * ROWS + r) * xs.len() + s * WIDTH;
                 let to = &mut outputs.value[start..start + part.len()];
-                // Keys are joined by xor, so that depth counts once per row.
-                simd.run(Row { columns: &columns.0, key: rows[r] ^ depth[0], amplitude: octave.amplitude, to });
+                // Keys are joined by xor, so that depths count once per row.
+                simd.run(Row {
+                    columns: &columns.0,
+                    key: rows[r] ^ depth[0] ^ depth[1],
+                    amplitude: octave.amplitude,
+                    to,
+                });
             }
         }
     }

@@ -5,6 +5,9 @@ const SCALE_2D: f64 = 1.438_117_6;
 /// sqrt(4/3), a millionth less.
 const SCALE_3D: f64 = 1.154_699_3;
 
+/// 1 / 1.536582335, a millionth less.
+const SCALE_4D: f64 = 0.650_793_8;
+
 const C1: f64 = 0.980_785_280_403_230_4;
 const S1: f64 = 0.195_090_322_016_128_27;
 const C3: f64 = 0.831_469_612_302_545_2;
@@ -38,3 +41,45 @@ pub(crate) const X_3D: [f32; 16] = scaled([0.0, 0.0, A, A, B, -B, D, D, D, -D, 0
 pub(crate) const Y_3D: [f32; 16] = scaled([A, A, B, -B, 0.0, 0.0, D, D, -D, D, E, E, F, -F, 0.0, 0.0], SCALE_3D);
 /// Their z.
 pub(crate) const Z_3D: [f32; 16] = scaled([B, -B, 0.0, 0.0, A, A, D, -D, D, D, F, -F, 0.0, 0.0, E, E], SCALE_3D);
+
+/// x of sixteen directions, one of each pair of opposites: the middles of the 32 edges of a tesseract.
+pub(crate) const X_4D: [f32; 16] =
+    scaled([1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0], SCALE_4D);
+/// Their y.
+pub(crate) const Y_4D: [f32; 16] =
+    scaled([1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0], SCALE_4D);
+/// Their z.
+pub(crate) const Z_4D: [f32; 16] =
+    scaled([1.0, -1.0, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0], SCALE_4D);
+/// Their w.
+pub(crate) const W_4D: [f32; 16] =
+    scaled([0.0, 0.0, 0.0, 0.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0], SCALE_4D);
+
+/// x of twelve directions of the upper half plane, counter-clockwise from 7.5 degrees; four places are not used.
+#[rustfmt::skip]
+pub(crate) const OPEN_X_2D: [f32; 16] = scaled([
+    0.9914448613738104, 0.9238795325112867, 0.7933533402912352, 0.6087614290087207, 0.38268343236508984, 0.1305261922200517,
+    -0.1305261922200516, -0.3826834323650895, -0.6087614290087207, -0.793353340291235, -0.9238795325112867, -0.9914448613738104,
+    0.0, 0.0, 0.0, 0.0,
+], 1.0);
+/// Their y.
+#[rustfmt::skip]
+pub(crate) const OPEN_Y_2D: [f32; 16] = scaled([
+    0.13052619222005157, 0.3826834323650898, 0.6087614290087207, 0.7933533402912352, 0.9238795325112867, 0.9914448613738104,
+    0.9914448613738104, 0.9238795325112868, 0.7933533402912352, 0.6087614290087209, 0.3826834323650899, 0.130526192220052,
+    0.0, 0.0, 0.0, 0.0,
+], 1.0);
+
+// The 48 directions of OpenSimplex2 in space, a rounded cuboctahedron: (P, P, O) and (Q, R, 0) in every order, with every sign. The
+// first sort has eight signs to an order and is here twice, the second four.
+const P: f64 = 0.673887338679005;
+const O: f64 = 0.3029054465278827;
+const Q: f64 = 0.9348469228350482;
+const R: f64 = 0.3550510257214325;
+
+/// x of those directions without their signs; four places are not used.
+pub(crate) const OPEN_X_3D: [f32; 16] = scaled([O, O, P, P, P, P, Q, Q, R, 0.0, R, 0.0, 0.0, 0.0, 0.0, 0.0], 1.0);
+/// Their y.
+pub(crate) const OPEN_Y_3D: [f32; 16] = scaled([P, P, O, O, P, P, R, 0.0, Q, Q, 0.0, R, 0.0, 0.0, 0.0, 0.0], 1.0);
+/// Their z.
+pub(crate) const OPEN_Z_3D: [f32; 16] = scaled([P, P, P, P, O, O, 0.0, R, 0.0, R, Q, Q, 0.0, 0.0, 0.0, 0.0], 1.0);

@@ -16,6 +16,31 @@ pub(crate) const REFERENCE_Y: [f32; 16] =
 pub(crate) const REFERENCE_Z: [f32; 16] =
     [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 0.0, 1.0, 0.0, -1.0];
 
+/// The greatest size of the 4D reference: where its gradients agree best, at (.644, .482, .5, .508) in a cell.
+pub(crate) const BOUND_4D: f64 = 1.536_584;
+
+// The 32 gradients of the 4D reference: the low three bits are signs, the two above pick the axes.
+#[rustfmt::skip]
+pub(crate) static REFERENCE_4D_X: [f32; 32] = [
+    1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0,
+    1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+];
+#[rustfmt::skip]
+pub(crate) static REFERENCE_4D_Y: [f32; 32] = [
+    1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0,
+    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0,
+];
+#[rustfmt::skip]
+pub(crate) static REFERENCE_4D_Z: [f32; 32] = [
+    1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+    1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0,
+];
+#[rustfmt::skip]
+pub(crate) static REFERENCE_4D_W: [f32; 32] = [
+    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0,
+    1.0, 1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0,
+];
+
 /// The permutation of the 2002 reference.
 #[rustfmt::skip]
 pub(crate) static TABLE: [u32; 256] = [

@@ -5,34 +5,18 @@ use crate::kernel::outputs::Outputs;
 use crate::program::Program;
 use crate::tests::common::programs;
 use crate::{Depth, Level, Points};
-use orogen_simd::{Scalar, Simd, dispatch_at};
-
-/// Where a fill runs: the real levels and the widths that stand in for other machines.
-#[derive(Clone, Copy, Debug)]
-enum Machine {
-    Real(Level),
-    Four,
-    Sixteen,
-}
-
-fn machines() -> Vec<Machine> {
-    let real = Level::available().into_iter().map(Machine::Real);
-    real.chain([Machine::Four, Machine::Sixteen]).collect()
-}
+use orogen_simd::dispatch_at;
 
 /// Value and slopes at the points, as bits.
-fn run(machine: Machine, program: &Program, points: Points, depth: Option<Depth>, slopes: bool) -> [Vec<u32>; 4] {
+fn run(level: Level, program: &Program, points: Points, depths: &[Depth], slopes: bool) -> [Vec<u32>; 5] {
     let n = points.len();
-    let mut out = [0; 4].map(|_| vec![f32::NAN; n]);
-    let [value, dx, dy, dz] = &mut out;
-    let dz: &mut [f32] = if depth.is_some() { dz } else { &mut [] };
-    let outputs = Outputs { value, slopes: slopes.then_some([dx, dy, dz]) };
-    let fill = Fill { program, points, depth, outputs };
-    match machine {
-        Machine::Real(level) => dispatch_at(level, fill).unwrap(),
-        Machine::Four => Scalar::<4>.run(fill),
-        Machine::Sixteen => Scalar::<16>.run(fill),
-    }
+    let mut out = [0; 5].map(|_| vec![f32::NAN; n]);
+    let [value, dx, dy, dz, dw] = &mut out;
+    let dz: &mut [f32] = if depths.is_empty() { &mut [] } else { dz };
+    let dw: &mut [f32] = if depths.len() < 2 { &mut [] } else { dw };
+    let outputs = Outputs { value, slopes: slopes.then_some([dx, dy, dz, dw]) };
+    let fill = Fill { program, points, depths, outputs };
+    dispatch_at(level, fill).unwrap();
     out.map(|values| values.into_iter().map(f32::to_bits).collect())
 }
 
@@ -57,20 +41,26 @@ fn every_machine_and_every_way_of_asking_gives_the_same_bits() {
         let displaced = Points::Displaced { xs: &xs, ys: &ys, dx: &none, dy: &none };
         let (x, y): (Vec<f64>, Vec<f64>) = (0..lattice.len()).map(|k| lattice.position(k).unwrap()).unzip();
         let scattered = Points::Scattered { x: &x, y: &y };
-        let z = vec![7.3 * cell; width * height];
-        for deep in [false, true] {
-            let (slice, each) = (Depth::Slice(z[0]), Depth::Each(&z));
-            for (name, program) in programs(wavelength, deep) {
-                let expected = run(Machine::Real(Level::Scalar), &program, scattered, deep.then_some(each), true);
-                assert!(expected.iter().take(3).flatten().all(|&bits| f32::from_bits(bits).is_finite()), "{name}");
-                for machine in machines() {
-                    for (points, depth) in [(lattice, slice), (displaced, slice), (scattered, slice), (lattice, each)] {
+        let (z, w) = (vec![7.3 * cell; width * height], vec![-2.9 * cell; width * height]);
+        for dims in 2..=4 {
+            let slices = &[Depth::Slice(z[0]), Depth::Slice(w[0])][..dims - 2];
+            let each = &[Depth::Each(&z), Depth::Each(&w)][..dims - 2];
+            for (name, program) in programs(wavelength, dims) {
+                let expected = run(Level::Scalar, &program, scattered, each, true);
+                assert!(
+                    expected.iter().take(1 + dims).flatten().all(|&bits| f32::from_bits(bits).is_finite()),
+                    "{name}"
+                );
+                for level in Level::available() {
+                    for (points, depths) in
+                        [(lattice, slices), (displaced, slices), (scattered, slices), (lattice, each)]
+                    {
                         for slopes in [true, false] {
-                            let found = run(machine, &program, points, deep.then_some(depth), slopes);
-                            for place in 0..if slopes { 3 + usize::from(deep) } else { 1 } {
+                            let found = run(level, &program, points, depths, slopes);
+                            for place in 0..if slopes { 1 + dims } else { 1 } {
                                 assert!(
                                     found[place] == expected[place],
-                                    "{name} differs on {machine:?} at place {place}, deep {deep}, {width} x {height}, slopes {slopes}, {:?}: {:?} {:?}",
+                                    "{name} differs at level {level} at place {place}, {dims} dimensions, {width} x {height}, slopes {slopes}, {:?}: {:?} {:?}",
                                     std::mem::discriminant(&points),
                                     f32::from_bits(found[place][0]),
                                     f32::from_bits(expected[place][0]),

@@ -2,6 +2,7 @@
 
 mod bits;
 mod common;
+mod phacelle;
 mod seams;
 mod statistics;
 mod twins;

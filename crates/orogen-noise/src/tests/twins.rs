@@ -1,10 +1,10 @@
 //! Twins of every noise in f64, written the textbook way: values against them, gradients against their differences.
 
-use crate::program::{Combine, Octave, Program, Source};
+use crate::program::{Combine, Octave, Program, Shape, Source};
 use crate::tables::directions;
 use crate::tables::reference::{self, TABLE};
 use crate::tests::common::{Rng, programs};
-use crate::{Classic, ClassicVariant, Depth, Fade, Falloff, Points};
+use crate::{Classic, ClassicVariant, Depth, Fade, Falloff, Points, Smoothness};
 
 fn lerp(t: f64, a: f64, b: f64) -> f64 {
     a + t * (b - a)
@@ -101,7 +101,7 @@ fn the_reference_values_are_met() {
     }
 }
 
-/// The hash of a lattice point; the third cell is there in space.
+/// The hash of a lattice point with as many cells as there are dimensions.
 pub(crate) fn hash(source: Source, octave: &Octave, cells: &[f64]) -> u32 {
     if let Source::Classic(_) = source {
         let step = |sum: u32, (cell, words): (&f64, &[u32; 2])| {
@@ -127,19 +127,42 @@ fn corner(source: Source, octave: &Octave, cells: &[f64], from: &[f64]) -> f64 {
         Source::Value(_) => f64::from(hash as i32) / 2_147_483_648.0 * (1.0 - 1.0 / 1_048_576.0),
         Source::Perlin => {
             let sign = if hash >> 31 == 1 { -1.0 } else { 1.0 };
-            if from.len() == 2 {
-                // 16 directions, 22.5 degrees apart, scaled to a maximum of 1.
-                let angle = (f64::from(hash >> 28 & 7) + 0.5) * std::f64::consts::PI / 8.0;
-                sign * 1.438_117_6 * dot(&[libm::cos(angle), libm::sin(angle)])
-            } else {
-                sign * dot(&pick(
-                    &[&directions::X_3D, &directions::Y_3D, &directions::Z_3D],
-                    (hash >> 27 & 15) as usize,
-                ))
+            let index = (hash >> 27 & 15) as usize;
+            match from.len() {
+                2 => {
+                    // 16 directions, 22.5 degrees apart, scaled to a maximum of 1.
+                    let angle = (f64::from(hash >> 28 & 7) + 0.5) * std::f64::consts::PI / 8.0;
+                    sign * 1.438_117_6 * dot(&[libm::cos(angle), libm::sin(angle)])
+                }
+                3 => sign * dot(&pick(&[&directions::X_3D, &directions::Y_3D, &directions::Z_3D], index)),
+                _ => {
+                    let tables: [&[f32]; 4] =
+                        [&directions::X_4D, &directions::Y_4D, &directions::Z_4D, &directions::W_4D];
+                    sign * dot(&pick(&tables, index))
+                }
             }
         }
+        Source::OpenSimplex2(_) if from.len() == 4 => corner(Source::Perlin, octave, cells, from),
+        Source::OpenSimplex2(_) => {
+            let twelfths = (hash >> 16) * 12;
+            let index = (twelfths >> 16) as usize;
+            let sign = |bit: u32| if twelfths >> bit & 1 == 1 { -1.0 } else { 1.0 };
+            if from.len() == 2 {
+                let angle = (index as f64 + 0.5) * std::f64::consts::PI / 12.0;
+                sign(15) * dot(&[libm::cos(angle), libm::sin(angle)])
+            } else {
+                let sizes = pick(&[&directions::OPEN_X_3D, &directions::OPEN_Y_3D, &directions::OPEN_Z_3D], index);
+                dot(&[sign(15) * sizes[0], sign(14) * sizes[1], sign(13) * sizes[2]])
+            }
+        }
+        Source::Simplex => corner(Source::Perlin, octave, cells, from),
         // These have a twin of their own.
         Source::Worley(_) => 0.0,
+        Source::Classic(_) if from.len() == 4 => {
+            // As the 4D reference has it.
+            let axes = [[0, 1, 2], [3, 0, 1], [2, 3, 0], [1, 2, 3]][(hash >> 3 & 3) as usize];
+            (0..3).map(|k| if hash >> (2 - k) & 1 == 0 { from[axes[k]] } else { -from[axes[k]] }).sum()
+        }
         Source::Classic(_) if from.len() == 3 => dot(&pick(
             &[&reference::REFERENCE_X, &reference::REFERENCE_Y, &reference::REFERENCE_Z],
             (hash & 15) as usize,
@@ -159,8 +182,71 @@ fn corner(source: Source, octave: &Octave, cells: &[f64], from: &[f64]) -> f64 {
     }
 }
 
+/// Noise on corners of simplices, the slow way: every corner of a lattice that may reach.
+fn corners_at(source: Source, octave: &Octave, at: &[f64]) -> f64 {
+    let n = at.len();
+    let smooth = matches!(source, Source::OpenSimplex2(Smoothness::Smooth));
+    let reach = if smooth { [2.0 / 3.0, 0.75, 0.8][n - 2] } else { 0.5 };
+    let scale = match source {
+        Source::Simplex => [69.129_1, 93.230_6, 96.463_1],
+        _ if smooth => [18.241_9, 11.867_1, 8.491_0],
+        _ => [99.836_6, 108.291_0, 96.463_1],
+    }[n - 2];
+    let cubes = n == 3 && !matches!(source, Source::Simplex);
+    // The lattices: where the sample is in each, how far a step along all axes is taken back, and what tells them apart.
+    let lattices: Vec<(Vec<f64>, f64, u32)> = if cubes {
+        let third = 1.0 / libm::sqrt(3.0);
+        let both = (at[0] + at[1]) * (third - 1.0) / 2.0 + at[2] * third;
+        let turned = [at[0] + both, at[1] + both, (at[2] - at[0] - at[1]) * third];
+        vec![(turned.to_vec(), 0.0, 0), (turned.map(|x| x - 0.5).to_vec(), 0.0, 0x5851_F42D)]
+    } else {
+        let root = libm::sqrt(n as f64 + 1.0);
+        let skew = at.iter().sum::<f64>() * (root - 1.0) / n as f64;
+        vec![(at.iter().map(|x| x + skew).collect(), (1.0 - 1.0 / root) / n as f64, 0)]
+    };
+    let mut sum = 0.0;
+    for (place, unskew, salt) in lattices {
+        for number in 0..4_usize.pow(n as u32) {
+            let cells: Vec<f64> =
+                (0..n).map(|axis| place[axis].floor() + f64::from(number as u32 >> (2 * axis) & 3) - 1.0).collect();
+            let way: Vec<f64> = place.iter().zip(&cells).map(|(place, cell)| place - cell).collect();
+            let back = way.iter().sum::<f64>() * unskew;
+            let way: Vec<f64> = way.iter().map(|x| x - back).collect();
+            let left = reach - way.iter().map(|x| x * x).sum::<f64>();
+            if left > 0.0 {
+                // The second lattice of cubes has the same keys but for these bits.
+                let mut octave = *octave;
+                let hashed = if salt == 0 { cells.clone() } else { salted(&mut octave, &cells, salt) };
+                sum += left * left * left * left * corner(source, &octave, &hashed, &way);
+            }
+        }
+    }
+    sum * scale
+}
+
+/// An octave and cells whose joined keys are those of the given ones, xor the salt: along x the key is made to be so.
+fn salted(octave: &mut Octave, cells: &[f64], salt: u32) -> Vec<f64> {
+    let key = |words: &[u32; 2], cell: f64| {
+        let bits = (cell + 6_755_399_441_055_744.0).to_bits();
+        let (low, high) = (bits as u32, (bits >> 32) as u32);
+        let first = low.wrapping_mul(0x915F_77F5).wrapping_add(words[0]);
+        (first, high, (first ^ first >> 15 ^ high ^ words[1]).wrapping_mul(0x93D7_65DD))
+    };
+    let (first, high, wanted) = key(&octave.words[0], cells[0]);
+    // The last multiplication undone: the inverse of an odd number modulo 2^32, by Newton.
+    let mut inverse = 0x93D7_65DD_u32;
+    for _ in 0..5 {
+        inverse = inverse.wrapping_mul(2_u32.wrapping_sub(0x93D7_65DD_u32.wrapping_mul(inverse)));
+    }
+    octave.words[0][1] = (wanted ^ salt).wrapping_mul(inverse) ^ first ^ first >> 15 ^ high;
+    cells.to_vec()
+}
+
 /// One octave, without its amplitude, at cell coordinates.
 fn octave_at(source: Source, octave: &Octave, at: &[f64]) -> f64 {
+    if matches!(source, Source::Simplex | Source::OpenSimplex2(_)) {
+        return corners_at(source, octave, at);
+    }
     let mut sum = 0.0;
     for corner_bits in 0..1 << at.len() {
         let (mut cells, mut from, mut weight) = (Vec::new(), Vec::new(), 1.0);
@@ -217,6 +303,59 @@ fn twin(program: &Program, position: &[f64]) -> f64 {
             }
             sum
         }
+        Combine::Shaped { shape, scale, .. } => shaped(program, shape, f64::from(scale), &coordinates),
+    }
+}
+
+/// The shapes, as [`crate::Kind`] states them.
+fn shaped(program: &Program, shape: Shape, scale: f64, coordinates: &dyn Fn(&Octave) -> Vec<f64>) -> f64 {
+    let (mut h, mut w, mut d) = (0.0_f64, 1.0_f64, [0.0; 4]);
+    for octave in program.octaves() {
+        let mut at = coordinates(octave);
+        let noise = |at: &[f64]| f64::from(octave.amplitude) * octave_at(program.source, octave, at);
+        let (gain, ratio) = (f64::from(octave.gain), octave.ratio);
+        let moved = match shape {
+            Shape::Swiss { warp } => f64::from(warp) * ratio,
+            Shape::Jordan { warp, .. } => f64::from(warp),
+            _ => 0.0,
+        };
+        for (u, d) in at.iter_mut().zip(&d) {
+            *u += moved * d;
+        }
+        let n = noise(&at);
+        let slopes: Vec<f64> = (0..at.len()).map(|axis| difference(&at, axis, 1e-5, noise)).collect();
+        match shape {
+            Shape::PingPong { strength } => {
+                let t = (f64::from(strength) * (n + 1.0)).rem_euclid(2.0);
+                h += gain * (2.0 * t.min(2.0 - t) - 1.0);
+            }
+            Shape::Hybrid { offset } => {
+                let s = gain * (n + f64::from(offset));
+                h += w * s;
+                w = (w * s).clamp(0.0, 1.0);
+            }
+            Shape::Hetero { offset } => {
+                let s = gain * (n + f64::from(offset));
+                h += w * s;
+                w = h;
+            }
+            Shape::Swiss { .. } => {
+                let a = w * gain;
+                h += a * (1.0 - n.abs());
+                d.iter_mut().zip(&slopes).for_each(|(d, slope)| *d -= a * n * slope);
+                w *= h.clamp(0.0, 1.0);
+            }
+            Shape::Jordan { damp, .. } => {
+                h += gain * w * n * n;
+                d.iter_mut().zip(&slopes).for_each(|(d, slope)| *d += n * slope);
+                let damped = d.iter().map(|d| d * d).sum::<f64>() * f64::from(damp) * f64::from(damp);
+                w = 1.0 - 1.0 / (1.0 + damped);
+            }
+        }
+    }
+    match shape {
+        Shape::Swiss { .. } | Shape::Jordan { .. } => 2.0 * h * scale - 1.0,
+        _ => h * scale,
     }
 }
 
@@ -230,28 +369,34 @@ fn difference(at: &[f64], axis: usize, step: f64, f: impl Fn(&[f64]) -> f64) -> 
 #[test]
 fn values_and_gradients_are_those_of_the_twins() {
     const WAVELENGTH: f64 = 37.0;
-    for deep in [false, true] {
-        for (name, program) in programs(WAVELENGTH, deep) {
+    for dims in 2..=4 {
+        for (name, program) in programs(WAVELENGTH, dims) {
             if matches!(program.source, Source::Worley(_)) {
                 continue;
             }
             let mut rng = Rng(7);
-            let n = 600;
+            let n = [600, 600, 60][dims - 2];
             let mut axis = || (0..n).map(|_| rng.between(-2000.0, 2000.0)).collect::<Vec<f64>>();
-            let (x, y, z) = (axis(), axis(), axis());
-            let mut out = [0; 4].map(|_| vec![0.0; n]);
-            let [value, dx, dy, dz] = &mut out;
-            let dz: &mut [f32] = if deep { dz } else { &mut [] };
-            let (points, depth) = (Points::Scattered { x: &x, y: &y }, Depth::Each(&z));
-            crate::methods::fill(&program, &points, deep.then_some(&depth), value, Some([dx, dy, dz])).unwrap();
-            let weighted = matches!(program.combine, Combine::Weighted { .. });
-            let creased = matches!(program.combine, Combine::Sizes { .. });
+            let (x, y, z, w) = (axis(), axis(), axis(), axis());
+            let mut out = [0; 5].map(|_| vec![0.0; n]);
+            let [value, slopes @ ..] = &mut out;
+            let points = Points::Scattered { x: &x, y: &y };
+            let depths = &[Depth::Each(&z), Depth::Each(&w)][..dims - 2];
+            crate::methods::fill(&program, &points, depths, value, Some(slopes.each_mut().map(|slope| &mut slope[..])))
+                .unwrap();
+            let weighted = matches!(program.combine, Combine::Weighted { .. }) || program.combine.moves();
+            let creased = matches!(program.combine, Combine::Sizes { .. } | Combine::Shaped { .. });
             let (mut error, mut size) = (0.0, 0.0);
             for k in 0..n {
-                let position = [x[k], y[k], z[k]];
-                let position = &position[..if deep { 3 } else { 2 }];
+                let position = [x[k], y[k], z[k], w[k]];
+                let position = &position[..dims];
                 let expected = twin(&program, position);
-                let tolerance = if weighted { 3e-6 } else { 1e-6 };
+                let tolerance = match () {
+                    // Places moved by slopes, which are f32 and steep.
+                    () if program.combine.moves() => 1e-4,
+                    () if weighted || creased || !program.source.low_rank() => 3e-6,
+                    () => 1e-6,
+                };
                 assert!(
                     (f64::from(out[0][k]) - expected).abs() < tolerance,
                     "{name} at {position:?}: {} is not {expected}",
@@ -277,7 +422,7 @@ fn values_and_gradients_are_those_of_the_twins() {
             }
             if size > 0.0 {
                 let relative = libm::sqrt(error / size);
-                assert!(relative < 1e-3, "{name}, deep {deep}: the gradient is {relative} off");
+                assert!(relative < 1e-3, "{name}, {dims} dimensions: the gradient is {relative} off");
             }
         }
     }
@@ -286,7 +431,7 @@ fn values_and_gradients_are_those_of_the_twins() {
 #[test]
 fn the_linear_fade_has_its_slope_inside_cells() {
     let noise = crate::Value { seed: 3, wavelength: 10.0, fade: Fade::Linear };
-    let program = noise.program();
+    let program = noise.program(2);
     let (mut value, mut dx, mut dy) = ([0.0], [0.0], [0.0]);
     let points = Points::Scattered { x: &[33.0], y: &[-7.5] };
     noise.fill_with_gradient(&points, &mut value, &mut dx, &mut dy).unwrap();

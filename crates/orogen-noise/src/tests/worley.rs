@@ -31,7 +31,8 @@ fn site(octave: &Octave, jitter: f64, at: &[f64], offset: &[f64]) -> (Vec<f64>, 
     let cell: Vec<f64> = at.iter().zip(offset).map(|(u, o)| u.floor() + o).collect();
     let first = hash(Source::Perlin, octave, &cell);
     let second = (first ^ first >> 16).wrapping_mul(0x93D7_65DD);
-    let words = [first, second, (second ^ second >> 15).wrapping_mul(0x915F_77F5)];
+    let third = (second ^ second >> 15).wrapping_mul(0x915F_77F5);
+    let words = [first, second, third, (third ^ third >> 16).wrapping_mul(0xADB4_A92D)];
     let place = |axis: usize| f64::from(words[axis] >> 8) / 16_777_216.0 * jitter + 0.5 - 0.5 * jitter;
     ((0..at.len()).map(|axis| cell[axis] + place(axis) - at[axis]).collect(), first)
 }
@@ -67,30 +68,31 @@ fn twin(octave: &Octave, cellular: Cellular, at: &[f64]) -> (f64, f64) {
         }
         Feature::Edge => (second - first) / 2.0,
     };
-    (raw * 2.0 / f64::from(cellular.bound(at.len() == 3)) - 1.0, second - first)
+    (raw * 2.0 / f64::from(cellular.bound(at.len())) - 1.0, second - first)
 }
 
 #[test]
 fn no_nearer_point_is_ever_missed() {
-    for deep in [false, true] {
+    for dims in 2..=4 {
         for distance in DISTANCES {
             for feature in FEATURES {
                 for jitter in [1.0, 0.6] {
                     let noise = Worley { seed: 5, wavelength: 37.0, distance, feature, jitter };
-                    let program = noise.program();
+                    let program = noise.program(dims);
                     let Source::Worley(cellular) = program.source else { unreachable!() };
                     let mut rng = Rng(8);
-                    let n = if deep { 80 } else { 500 };
+                    let n = [500, 80, 8][dims - 2];
                     let mut axis = || (0..n).map(|_| rng.between(-2000.0, 2000.0)).collect::<Vec<f64>>();
-                    let (x, y, z) = (axis(), axis(), axis());
+                    let (x, y, z, w) = (axis(), axis(), axis(), axis());
                     let (points, mut out) = (Points::Scattered { x: &x, y: &y }, vec![0.0; n]);
-                    match deep {
-                        false => noise.fill(&points, &mut out).unwrap(),
-                        true => noise.fill3(&points, &Depth::Each(&z), &mut out).unwrap(),
+                    match dims {
+                        2 => noise.fill(&points, &mut out).unwrap(),
+                        3 => noise.fill3(&points, &Depth::Each(&z), &mut out).unwrap(),
+                        _ => noise.fill4(&points, &[Depth::Each(&z), Depth::Each(&w)], &mut out).unwrap(),
                     }
                     for k in 0..n {
-                        let position = [x[k], y[k], z[k]].map(|x| x * program.all[0].frequency);
-                        let (expected, lead) = twin(&program.all[0], cellular, &position[..if deep { 3 } else { 2 }]);
+                        let position = [x[k], y[k], z[k], w[k]].map(|x| x * program.all[0].frequency);
+                        let (expected, lead) = twin(&program.all[0], cellular, &position[..dims]);
                         if feature == Feature::Value && lead < 1e-5 {
                             continue;
                         }
@@ -105,11 +107,11 @@ fn no_nearer_point_is_ever_missed() {
 
 #[test]
 fn the_stated_bounds_are_the_true_ones() {
-    for axes in [2, 3] {
+    for axes in 2..=4 {
         for distance in DISTANCES {
             let (mut first, mut second, mut product) = (0.0_f64, 0.0_f64, 0.0_f64);
             // From every place of a cell: with each point as far away as it can be, how far the nearest two are.
-            let steps = if axes == 2 { 40_i32 } else { 12 };
+            let steps = [40_i32, 12, 4][axes - 2];
             for k in 0..(steps + 1).pow(axes as u32) {
                 let at: Vec<f64> = (0..axes)
                     .map(|axis| f64::from(k / (steps + 1).pow(axis as u32) % (steps + 1)) / f64::from(steps))
@@ -128,7 +130,7 @@ fn the_stated_bounds_are_the_true_ones() {
                 product = product.max(far[0] * far[1]);
             }
             for (feature, found) in [(Feature::F1, first), (Feature::F2, second), (Feature::Product, product)] {
-                let stated = f64::from(Cellular { distance, feature, jitter: 1.0 }.bound(axes == 3));
+                let stated = f64::from(Cellular { distance, feature, jitter: 1.0 }.bound(axes));
                 assert!((found - stated).abs() < 1e-6, "{feature:?} {distance:?} {axes}: {found} is not {stated}");
             }
         }

@@ -1,8 +1,8 @@
 //! The one list of noises for the tests that ask as a user asks: a new basis, kind, feature or distance joins every law by being here.
 
 use orogen_noise::{
-    Basis, Classic, ClassicVariant, Depth, Distance, Fade, Falloff, Feature, Fractal, Kind, Level, Mismatch, Perlin,
-    Points, Value, White, Worley,
+    Basis, Classic, ClassicVariant, Depth, Distance, Fade, Falloff, Feature, Fractal, Kind, Level, Mismatch,
+    OpenSimplex2, Perlin, Points, Simplex, Smoothness, Value, White, Worley,
 };
 use std::sync::{Mutex, PoisonError};
 
@@ -115,8 +115,9 @@ fn slope_of(basis: Basis, kind: Kind) -> Slope {
     match kind {
         _ if !basis.has_gradient() => Slope::Flat,
         Kind::Fbm => Slope::Exact,
-        Kind::Ridged | Kind::Billow => Slope::Creased,
-        Kind::Weighted { .. } => Slope::Approximate,
+        Kind::Ridged | Kind::Billow | Kind::PingPong { .. } | Kind::Hybrid { .. } => Slope::Creased,
+        Kind::Hetero { .. } => Slope::Exact,
+        Kind::Weighted { .. } | Kind::Swiss { .. } | Kind::Jordan { .. } => Slope::Approximate,
     }
 }
 
@@ -134,7 +135,17 @@ const FALLOFFS: [Falloff; 4] = [Falloff::Reciprocal, Falloff::Exponential, Fallo
 /// Every way to sum octaves, with one set of usual parameters each.
 pub fn kinds() -> Vec<Kind> {
     let weighted = FALLOFFS.map(|falloff| Kind::Weighted { k: 1.5, falloff });
-    [Kind::Fbm, Kind::Ridged, Kind::Billow].into_iter().chain(weighted).collect()
+    let plain = [
+        Kind::Fbm,
+        Kind::Ridged,
+        Kind::Billow,
+        Kind::PingPong { strength: 2.0 },
+        Kind::Hybrid { offset: 0.7 },
+        Kind::Hetero { offset: 0.7 },
+        Kind::Swiss { warp: 0.15 },
+        Kind::Jordan { warp: 0.35, damp: 0.8 },
+    ];
+    plain.into_iter().chain(weighted).collect()
 }
 
 /// Weighted fractals of every falloff.
@@ -151,7 +162,7 @@ pub fn fractals(like: Fractal) -> Vec<Noise> {
     let mut list = Vec::new();
     for kind in kinds() {
         for &basis in Basis::all() {
-            if kind == Kind::Fbm || matches!(basis, Basis::Value | Basis::Perlin) {
+            if kind == Kind::Fbm || matches!(basis, Basis::Value | Basis::Perlin | Basis::Simplex) {
                 let name = format!("{kind:?} over {}", basis.name());
                 let symmetric = matches!(kind, Kind::Fbm | Kind::Weighted { .. });
                 let one_sided = !symmetric || basis.name().starts_with("worley");
@@ -180,6 +191,11 @@ pub fn singles(seed: u64, wavelength: f64) -> Vec<Noise> {
     for variant in [ClassicVariant::Diagonal, ClassicVariant::Eight, ClassicVariant::Angle] {
         let name = format!("classic {variant:?}");
         list.push(noise(name, Slope::Exact, sloped!(Classic { seed, wavelength, variant })));
+    }
+    list.push(noise("simplex noise", Slope::Exact, sloped!(Simplex { seed, wavelength })));
+    for smoothness in [Smoothness::Fast, Smoothness::Smooth] {
+        let name = format!("opensimplex2 {smoothness:?}");
+        list.push(noise(name, Slope::Exact, sloped!(OpenSimplex2 { seed, wavelength, smoothness })));
     }
     for feature in [Feature::F1, Feature::F2, Feature::Difference, Feature::Product, Feature::Value, Feature::Edge] {
         for distance in [Distance::Euclidean, Distance::Manhattan, Distance::Chebyshev] {

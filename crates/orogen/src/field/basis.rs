@@ -27,6 +27,11 @@ fn about(basis: Basis) -> &'static str {
         Basis::ClassicDiagonal => "Perlin's 2002 table, four diagonal gradients, as most textbooks have it.",
         Basis::ClassicEight => "Perlin's 2002 table, eight gradients.",
         Basis::ClassicAngle => "Perlin's 2002 table, unit gradients at 256 angles.",
+        Basis::Simplex => "Perlin's Simplex noise: gradients on the corners of triangles.",
+        Basis::OpenSimplex2 => "OpenSimplex2, fast: Simplex noise with more directions.",
+        Basis::OpenSimplex2Smooth => "OpenSimplex2, smooth: wider, rounder kernels.",
+        Basis::Worley => "Worley's cellular noise: the distance to the nearest point.",
+        Basis::WorleyEdge => "Worley's cellular noise: the distance to the nearest edge of a cell.",
     }
 }
 

@@ -1,0 +1,229 @@
+//! Gradients on the corners of simplices: Simplex noise, and what OpenSimplex2 shares with it.
+//!
+//! The plane is cut into triangles (space into tetrahedra ...) by a lattice of cubes that is squeezed along its main diagonal. A
+//! coordinate u_i of cell and fraction w_i + t_i becomes the skewed u_i + F sum u_j; each F u_j is split into a whole number and a
+//! fraction of its own, so that a sample adds small fractions and whole numbers only, wherever it is. The fractions, sorted, say which
+//! simplex a sample is in. A corner at distance d contributes (r^2 - d^2)^4 g . d while that is positive.
+
+#![allow(clippy::needless_range_loop)] // see kernel/mod.rs
+
+use crate::kernel::cell::Cell;
+use crate::kernel::combine::Sample;
+use crate::kernel::pointwise::Pointwise;
+use crate::kernel::source::{Gradients, Lattice, PerlinSource};
+use crate::program::{Octave, Source};
+use orogen_simd::{F32Lanes, Simd, U32Lanes};
+
+/// A coordinate and its share of the skew.
+#[derive(Clone, Copy)]
+pub(crate) struct Slanted<S: Simd> {
+    /// Its cell's number.
+    pub whole: S::F64,
+    /// Its fraction.
+    pub t: S::F32,
+    /// The whole number of F times it.
+    pub skew: S::F64,
+    /// The fraction of F times it.
+    pub rest: S::F32,
+}
+
+/// (sqrt(n + 1) - 1) / n: what the sum of the coordinates is skewed by.
+const SKEW: [f64; 3] = [0.366_025_403_784_438_65, 1.0 / 3.0, 0.309_016_994_374_947_45];
+/// (1 - 1 / sqrt(n + 1)) / n: what the sum of skewed coordinates is taken back by.
+pub(crate) const UNSKEW: [f32; 3] = [0.211_324_87, 1.0 / 6.0, 0.138_196_6];
+
+/// Splits a coordinate.
+#[inline(always)]
+pub(crate) fn slanted<S: Simd, const DIMS: usize>(simd: S, coordinate: S::F64) -> Slanted<S> {
+    let here = Cell::of(simd, coordinate);
+    let skew = Cell::of(simd, coordinate * simd.f64(SKEW[DIMS - 2]));
+    Slanted { whole: here.whole, t: here.t, skew: skew.whole, rest: skew.t }
+}
+
+/// A sample in the skewed lattice: its cube's number and the fractions, from 0 to 1.
+pub(crate) struct Place<S: Simd> {
+    pub whole: [S::F64; 4],
+    pub t: [S::F32; 4],
+}
+
+/// Where coordinates come together.
+#[inline(always)]
+pub(crate) fn place<S: Simd, const DIMS: usize>(simd: S, at: &[Slanted<S>; 4]) -> Place<S> {
+    // The axes beyond x first: a row of samples has them in common.
+    let (rest, skew) = beyond_x::<S, DIMS>(at);
+    let (carry, rest) = wrapped(simd, at[0].rest + rest);
+    let skew = at[0].skew + skew + carry.widen();
+    let mut place = Place { whole: [skew; 4], t: [rest; 4] };
+    for axis in 0..DIMS {
+        let (carry, t) = wrapped(simd, at[axis].t + rest);
+        place.whole[axis] = at[axis].whole + skew + carry.widen();
+        place.t[axis] = t;
+    }
+    place
+}
+
+/// The skew of the axes beyond x: its fraction and its whole number.
+#[inline(always)]
+pub(crate) fn beyond_x<S: Simd, const DIMS: usize>(at: &[Slanted<S>; 4]) -> (S::F32, S::F64) {
+    let (mut rest, mut skew) = (at[1].rest, at[1].skew);
+    for axis in 2..DIMS {
+        rest = rest + at[axis].rest;
+        skew = skew + at[axis].skew;
+    }
+    if DIMS > 2 {
+        let carry = rest.floor();
+        rest = rest - carry;
+        skew = skew + carry.widen();
+    }
+    (rest, skew)
+}
+
+/// A number from 0 to 2 as 0 or 1 and what is left.
+#[inline(always)]
+pub(crate) fn wrapped<S: Simd>(simd: S, t: S::F32) -> (S::F32, S::F32) {
+    let one = simd.f32(1.0);
+    let carry = simd.f32(0.0).select(t.lt(one), one);
+    (carry, t - carry)
+}
+
+/// Adds a corner's contribution to value and slopes (in cells): `way` leads from the corner to the sample.
+#[inline(always)]
+pub(crate) fn corner<S: Simd, const DIMS: usize, const SLOPES: bool>(
+    simd: S,
+    reach: f32,
+    gradient: &[S::F32; 4],
+    way: &[S::F32; 4],
+    sum: &mut Sample<S>,
+) {
+    let mut left = simd.f32(reach);
+    let mut ramp = gradient[0] * way[0];
+    for axis in 0..DIMS {
+        left = way[axis].neg_mul_add(way[axis], left);
+    }
+    for axis in 1..DIMS {
+        ramp = gradient[axis].mul_add(way[axis], ramp);
+    }
+    let left = left.max(simd.f32(0.0));
+    let squared = left * left;
+    let weight = squared * squared;
+    sum[0] = weight.mul_add(ramp, sum[0]);
+    if SLOPES {
+        let steep = squared * left * ramp * simd.f32(8.0);
+        for axis in 0..DIMS {
+            let slope = steep.neg_mul_add(way[axis], sum[1 + axis]);
+            sum[1 + axis] = weight.mul_add(gradient[axis], slope);
+        }
+    }
+}
+
+/// Adds an octave's raw value and slopes, scaled, to a sample.
+#[inline(always)]
+pub(crate) fn scaled<S: Simd, const DIMS: usize, const SLOPES: bool>(
+    simd: S,
+    octave: &Octave,
+    scale: f32,
+    raw: &Sample<S>,
+    sum: &mut Sample<S>,
+) {
+    sum[0] = simd.f32(octave.amplitude * scale).mul_add(raw[0], sum[0]);
+    if SLOPES {
+        let slope = simd.f32(octave.slope * scale);
+        for axis in 1..=DIMS {
+            sum[axis] = slope.mul_add(raw[axis], sum[axis]);
+        }
+    }
+}
+
+/// What differs between noises on corners of simplices.
+pub(crate) trait Corners: Copy {
+    /// The lattice and its gradients.
+    type Lattice<S: Simd>: Gradients<S>;
+    /// One over the greatest raw value, in two to four dimensions.
+    const SCALE: [f32; 3];
+}
+
+/// Noise on corners of simplices.
+#[derive(Clone, Copy)]
+pub(crate) struct Simplices<S: Simd, C: Corners, const DIMS: usize>(pub C::Lattice<S>);
+
+/// The square of how far a corner reaches: as far as the opposite face.
+pub(crate) const REACH: f32 = 0.5;
+
+impl<S: Simd, C: Corners, const DIMS: usize> Simplices<S, C, DIMS> {
+    /// The raw value and slopes in a place of the skewed lattice, with the keys of its cube and the next along each axis.
+    #[inline(always)]
+    pub(crate) fn raw<const SLOPES: bool>(self, simd: S, t: &[S::F32; 4], keys: &[[S::U32; 2]; 4]) -> Sample<S> {
+        let (zero, one) = (simd.f32(0.0), simd.f32(1.0));
+        let mut total = t[0];
+        for axis in 1..DIMS {
+            total = total + t[axis];
+        }
+        let unskew = UNSKEW[DIMS - 2];
+        // How many coordinates are smaller: the corners step along the greatest first.
+        let mut rank = [zero; 4];
+        for a in 0..DIMS {
+            for b in a + 1..DIMS {
+                let behind = t[a].lt(t[b]);
+                rank[a] = rank[a] + zero.select(behind, one);
+                rank[b] = rank[b] + one.select(behind, zero);
+            }
+        }
+        let mut from = [zero; 4];
+        for axis in 0..DIMS {
+            from[axis] = total.neg_mul_add(simd.f32(unskew), t[axis]);
+        }
+        let mut raw = [zero; 5];
+        for corner_number in 0..=DIMS {
+            let back = simd.f32(corner_number as f32 * unskew);
+            let (mut way, mut key) = ([zero; 4], [keys[0][0]; 4]);
+            for axis in 0..DIMS {
+                // Corner k has stepped along the k greatest.
+                let waits = rank[axis].lt(simd.f32((DIMS - corner_number) as f32));
+                (way[axis], key[axis]) = if corner_number == 0 {
+                    (from[axis], keys[axis][0])
+                } else if corner_number == DIMS {
+                    (from[axis] + (back - one), keys[axis][1])
+                } else {
+                    (from[axis] + back.select(waits, back - one), keys[axis][0].select(waits, keys[axis][1]))
+                };
+            }
+            let gradient = self.0.gradient::<DIMS>(simd, self.0.hash::<DIMS>(simd, key));
+            corner::<S, DIMS, SLOPES>(simd, REACH, &gradient, &way, &mut raw);
+        }
+        raw
+    }
+}
+
+impl<S: Simd, C: Corners, const DIMS: usize> Pointwise<S> for Simplices<S, C, DIMS> {
+    type Coordinate = Slanted<S>;
+
+    #[inline(always)]
+    fn new(simd: S, source: Source, octave: &Octave) -> Self {
+        Self(C::Lattice::<S>::new(simd, source, octave))
+    }
+
+    #[inline(always)]
+    fn split(simd: S, coordinate: S::F64) -> Slanted<S> {
+        slanted::<S, DIMS>(simd, coordinate)
+    }
+
+    #[inline(always)]
+    fn add<const SLOPES: bool>(self, simd: S, octave: &Octave, at: &[Slanted<S>; 4], sum: &mut Sample<S>) {
+        let place = place::<S, DIMS>(simd, at);
+        let mut keys = [[simd.u32(0); 2]; 4];
+        for axis in 0..DIMS {
+            keys[axis] = self.0.keys(simd, axis, &Cell::at(simd, place.whole[axis]));
+        }
+        let raw = self.raw::<SLOPES>(simd, &place.t, &keys);
+        scaled::<S, DIMS, SLOPES>(simd, octave, C::SCALE[DIMS - 2], &raw, sum);
+    }
+}
+
+/// Simplex noise: the gradients of hashed Perlin noise.
+#[derive(Clone, Copy)]
+pub(crate) struct Plain;
+
+impl Corners for Plain {
+    type Lattice<S: Simd> = PerlinSource<S>;
+    const SCALE: [f32; 3] = [69.129_1, 93.230_6, 96.463_1];
+}
