@@ -3,13 +3,16 @@
 use crate::failure::{Failure, Result, on_file};
 use crate::shell;
 
-pub const ABOUT: &str = "make the pictures in docs/images anew";
+mod noises;
+
+pub const ABOUT: &str = "make the pictures in docs/images and in the noises' docs anew";
 
 pub const HELP: &str = "
 Usage: cargo xtask gallery
 
 Makes docs/images/ anew: one relief map of each preset, a large one of the default preset as the README's first picture, the
-page that shows the noises side by side, and the chunks around a viewer.
+page that shows the noises side by side, and the chunks around a viewer. Then crates/orogen-noise/docs/gallery.md: the pictures that the
+documentation of orogen-noise opens with, which are in that file themselves, so that they show wherever it is read.
 ";
 
 /// Samples along a side of a preset's picture, and of the first picture.
@@ -43,5 +46,5 @@ pub fn run(args: &[String]) -> Result {
     let chunks = images.join("chunks.png");
     std::fs::copy(work.join("infinite_terrain.png"), &chunks).map_err(|e| on_file("write", &chunks, &e))?;
     println!("{}", shell::relative(&chunks));
-    Ok(())
+    noises::write(&work)
 }

@@ -56,12 +56,12 @@ pub enum Kind {
     /// The sum of triangle waves of the noise: contour bands, like agate.
     ///
     /// ```text
-    /// t = strength (n_i + 1);  h += gain^i (2 |t - 2 floor(t / 2) ... folded at 1| - 1)
+    /// t = strength (n_i + 1);  h += gain^i (1 - 2 |1 - (t - 2 floor(t / 2))|)
     /// ```
     ///
     /// Its gradient is exact except on the creases.
     PingPong {
-        /// How many times the range of the noise is folded: 1 gives the noise itself, 2 (usual) one fold.
+        /// How often the range of the noise is folded, 2 strength - 1 times: 0.5 gives the noise itself, 1 its ridges, 2 (usual) three folds.
         strength: f64,
     },
     /// Musgrave's hybrid multifractal: an octave counts as much as the product of those before it, so that lowlands are smooth and

@@ -15,6 +15,8 @@
 //! # Ok::<(), orogen_noise::Mismatch>(())
 //! ```
 //!
+#![doc = include_str!("../docs/gallery.md")]
+//!
 //! A noise is a plain struct: [`White`], [`Value`], [`Perlin`], [`Classic`], [`Simplex`], [`OpenSimplex2`], [`Worley`], or a
 //! [`Fractal`] over any [`Basis`]. Each has `sample` and `fill`, `fill_with_gradient` where it has slopes, and their counterparts in
 //! three and four dimensions: `sample3`, `fill3`, `fill3_with_gradient`, `sample4` ... Positions and wavelengths are metres (or any unit

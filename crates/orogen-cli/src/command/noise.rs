@@ -4,19 +4,19 @@ use std::f64::consts::TAU;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use orogen::file;
 use orogen::format::png::{Animation, Picture};
 use orogen::format::{npy, png};
-use orogen_noise::{Basis, Fractal, Kind, MAX_OCTAVES};
+use orogen_noise::{Basis, Fractal, MAX_OCTAVES, Untileable};
 
 use crate::draw::look::{Drawing, Look};
 use crate::draw::slice::Slice;
+use crate::draw::sum;
 use crate::draw::texture::Texture;
 use crate::failure::Failure;
 use crate::format::Format;
-use crate::size::{Bytes, MOST, Size, finite, not_negative, positive, seed, wavelength};
+use crate::size::{Bytes, MOST, Size, finite, positive, seed, wavelength};
 use crate::{memory, say};
 
 /// Milliseconds that a frame is shown.
@@ -31,7 +31,8 @@ const BAND: usize = 1 << 22;
 /// What it takes.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Sample (i, j) is the noise at (i, j), exactly as the library orogen-noise gives it for the \
-                        Fractal of these parameters (also with one octave). -1 is black and 1 is white.")]
+                        Fractal of these parameters (also with one octave); with --tileable the whole of it is a period, as \
+                        its method tiled gives it. -1 is black and 1 is white.")]
 pub struct Args {
     /// The noise
     #[arg(value_parser = basis())]
@@ -57,15 +58,12 @@ pub struct Args {
     /// Frequency from one octave to the next
     #[arg(long, value_name = "L", value_parser = positive, default_value = "2", allow_negative_numbers = true)]
     lacunarity: f64,
-    /// How octaves become one number
-    #[arg(long, default_value = "fbm", conflicts_with = "texture")]
-    fractal: Sum,
-    /// How strongly slope damps the octaves of --fractal weighted [default: 1]
-    #[arg(long, value_name = "K", value_parser = not_negative, allow_negative_numbers = true)]
-    k: Option<f64>,
-    /// The shape of that damping, m being the squared slope [default: reciprocal]
+    #[command(flatten)]
+    sum: sum::Options,
+    /// Make it repeat without a seam, across and down, and through the frames or the slices of a block: steps are lengthened or
+    /// shortened a little so that a whole number of wavelengths fits
     #[arg(long)]
-    falloff: Option<Falloff>,
+    tileable: bool,
     /// Draw the noise in space, cut at this depth (in samples), instead of the noise of the plane
     #[arg(long, value_name = "Z", value_parser = finite, allow_negative_numbers = true)]
     z: Option<f64>,
@@ -80,7 +78,7 @@ pub struct Args {
     #[arg(long, value_name = "8|16", value_parser = ["8", "16"], default_value = "8")]
     bits: String,
     /// Write an animation (APNG) of so many frames: each a slice of the noise in space, forth from --z and back, slowing
-    /// where it turns, so that it repeats without a jump
+    /// where it turns, so that it repeats without a jump; with --tileable onwards all the way
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true,
           conflicts_with = "volume")]
     frames: Option<u32>,
@@ -103,32 +101,6 @@ fn basis() -> impl TypedValueParser<Value = Basis> {
 
 fn octaves() -> impl TypedValueParser<Value = u32> {
     clap::value_parser!(u32).range(1..=i64::from(MAX_OCTAVES))
-}
-
-/// How octaves are summed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Sum {
-    /// Fractional Brownian motion: the plain sum
-    Fbm,
-    /// Sharp crests
-    Ridged,
-    /// Round hills between sharp valleys
-    Billow,
-    /// Each octave damped by the slope of those before
-    Weighted,
-}
-
-/// How slope damps an octave.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Falloff {
-    /// 1 / (1 + k m)
-    Reciprocal,
-    /// e^(-k m)
-    Exponential,
-    /// 1 / (1 + k sqrt m)
-    SquareRoot,
-    /// 1 - smoothstep(k m): nothing beyond k m = 1
-    Smoothstep,
 }
 
 /// What is to be drawn, all of it settled and checked.
@@ -160,6 +132,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let task = Task { args, out, format, noise: noise(args)?, look, width, height };
     task.check()?;
     task.afford()?;
+    if let (false, Some(note)) = (args.quiet, task.note()) {
+        say::error(&note);
+    }
     file::write_whole(out, |out| match format {
         Format::Npy => task.write_array(out),
         _ => task.write_picture(out),
@@ -168,24 +143,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn noise(args: &Args) -> Result<Fractal, Failure> {
-    if args.fractal != Sum::Weighted && (args.k.is_some() || args.falloff.is_some()) {
-        return Err(Failure::Usage("--k and --falloff are for --fractal weighted".into()));
-    }
-    let falloff = match args.falloff {
-        None | Some(Falloff::Reciprocal) => orogen_noise::Falloff::Reciprocal,
-        Some(Falloff::Exponential) => orogen_noise::Falloff::Exponential,
-        Some(Falloff::SquareRoot) => orogen_noise::Falloff::SquareRoot,
-        Some(Falloff::Smoothstep) => orogen_noise::Falloff::Smoothstep,
-    };
-    let kind = match args.fractal {
-        Sum::Fbm => Kind::Fbm,
-        Sum::Ridged => Kind::Ridged,
-        Sum::Billow => Kind::Billow,
-        Sum::Weighted => Kind::Weighted { k: args.k.unwrap_or(1.0), falloff },
-    };
     Ok(Fractal {
         basis: args.basis,
-        kind,
+        kind: args.sum.kind().map_err(Failure::Usage)?,
         seed: args.seed,
         wavelength: args.wavelength.or(args.texture.map(Texture::wavelength)).unwrap_or(64.0),
         octaves: args.octaves.or(args.texture.map(Texture::octaves)).unwrap_or(1),
@@ -200,15 +160,32 @@ impl Task<'_> {
         let Args { texture, frames, volume, gradient, basis, .. } = self.args;
         let (png, deep) = (self.format == Format::Png, self.deep());
         let wrong = match () {
+            () if *gradient && *basis == Basis::White => {
+                "white is made of squares of one value each and has no slope to draw".into()
+            }
             () if *gradient && !basis.has_gradient() => {
-                format!("{} is made of squares of one value each and has no slope to draw", basis.name())
+                format!(
+                    "the slope of {} is not worked out; take perlin, value or simplex, or draw its values",
+                    basis.name()
+                )
             }
             () if volume.is_some() && png => "--volume makes an array; name a file that ends in .npy".into(),
             () if frames.is_some() && !png => "--frames makes pictures; name a file that ends in .png".into(),
             () if texture.is_some() && !png => "--texture makes a picture; name a file that ends in .png".into(),
             () if texture.is_some() && deep => "--bits 16 is for greys and normals; a texture is in colours".into(),
             () if !png && deep => "--bits is for pictures; an array holds f32".into(),
-            () => return Ok(()),
+            () => match self.look.made_of(&self.slice(None)).tiled() {
+                Ok(_) => return Ok(()),
+                Err(Untileable::Slanted) => format!(
+                    "{} cannot be made to repeat: its lattice of triangles closes along slanted axes only; take perlin, value \
+                     or worley",
+                    basis.name()
+                ),
+                Err(reason) if self.noise.lacunarity.fract() != 0.0 => {
+                    format!("--tileable needs a whole number for --lacunarity, such as 2: {reason}")
+                }
+                Err(reason) => format!("--tileable: {reason}"),
+            },
         };
         Err(Failure::Usage(wrong))
     }
@@ -232,7 +209,23 @@ impl Task<'_> {
     }
 
     fn drawing(&self) -> Drawing {
-        Drawing::new(self.noise, self.width, self.look, self.deep())
+        Drawing::new(self.slice(None), self.look, self.deep())
+    }
+
+    /// The samples, at a depth or in the plane.
+    fn slice(&self, depth: Option<f64>) -> Slice {
+        let through = match (self.args.frames, self.args.volume) {
+            (Some(frames), _) => self.waves(frames) * self.noise.wavelength,
+            (_, Some(slices)) => slices as f64,
+            _ => 0.0,
+        };
+        let repeat = if self.args.tileable { [self.width as f64, self.height as f64, through] } else { [0.0; 3] };
+        Slice { noise: self.noise, width: self.width, depth, stretch: 1.0, repeat }
+    }
+
+    /// How many whole wavelengths an animation goes through.
+    fn waves(&self, frames: u32) -> f64 {
+        (f64::from(frames) / FRAMES_A_WAVELENGTH).round().max(1.0)
     }
 
     fn rows_a_band(&self) -> usize {
@@ -256,15 +249,22 @@ impl Task<'_> {
         })
     }
 
-    /// Where a frame cuts. A walk in a circle would need a fourth dimension; this one goes there and back on a cosine.
+    /// Where a frame cuts. Noise that repeats is gone through; in other noise a walk in a circle would need a fourth dimension, so
+    /// this one goes there and back on a cosine.
     fn depth(&self, frame: u32, frames: u32) -> f64 {
-        let farthest = f64::from(frames) / 2.0 * self.noise.wavelength / FRAMES_A_WAVELENGTH;
         let turn = f64::from(frame) / f64::from(frames);
-        self.args.z.unwrap_or(0.0) + farthest * (1.0 - libm::cos(TAU * turn)) / 2.0
+        let way = match self.args.tileable {
+            true => self.waves(frames) * self.noise.wavelength * turn,
+            false => {
+                let farthest = f64::from(frames) / 2.0 * self.noise.wavelength / FRAMES_A_WAVELENGTH;
+                farthest * (1.0 - libm::cos(TAU * turn)) / 2.0
+            }
+        };
+        self.args.z.unwrap_or(0.0) + way
     }
 
     fn write_array(&self, out: &mut dyn Write) -> io::Result<()> {
-        let slice = Slice { noise: self.noise, width: self.width, depth: self.args.z, stretch: 1.0 };
+        let slice = self.slice(self.args.z);
         let (width, height) = (self.width, self.height);
         if let Some(slices) = self.args.volume {
             npy::write_shape(out, &[slices as usize, height, width])?;
@@ -304,17 +304,49 @@ impl Task<'_> {
 
     /// What was drawn, in one line.
     fn description(&self) -> String {
-        let Fractal { basis, seed, wavelength, octaves, .. } = self.noise;
+        let Fractal { basis, seed, octaves, .. } = self.noise;
         let sum = match self.look {
-            Look::Texture(texture) => name(texture),
-            _ => name(self.args.fractal),
+            Look::Texture(texture) => texture.name(),
+            _ => self.args.sum.fractal.name(),
         };
         let depth = self.args.z.map(|z| format!(", depth {z}")).unwrap_or_default();
         let plural = if octaves == 1 { "" } else { "s" };
+        let repeating = if self.args.tileable { ", repeating" } else { "" };
+        let (basis, wavelength) = (basis.name(), self.wavelength());
         format!(
-            "{sum} of {octaves} octave{plural} of {} noise, wavelength {wavelength}{depth}, seed {seed}",
-            basis.name()
+            "{sum} of {octaves} octave{plural} of {basis} noise, wavelength {wavelength}{depth}, seed {seed}{repeating}"
         )
+    }
+
+    /// The wavelength drawn: along each axis, where they differ.
+    fn wavelength(&self) -> String {
+        let asked = self.noise.wavelength;
+        if !self.args.tileable {
+            return asked.to_string();
+        }
+        let slice = self.look.made_of(&self.slice(None));
+        let [x, y] = slice.fit().wavelengths(asked);
+        // A material may be drawn out.
+        let [x, y] = [x, y / slice.stretch].map(|wavelength| (wavelength * 100.0).round() / 100.0);
+        if x == y { x.to_string() } else { format!("{x} x {y}") }
+    }
+
+    /// What was rounded.
+    fn note(&self) -> Option<String> {
+        let (asked, drawn) = (self.noise.wavelength, self.wavelength());
+        let fit = self.look.made_of(&self.slice(None)).fit();
+        let [x, y, deep] = fit.cells;
+        let [across, down, through] = fit.steps.map(|step| (step - 1.0).abs() > 1e-9);
+        let plane = format!("it is {drawn}, so that {x} x {y} fit");
+        let depth = format!("through the slices it is {}, so that {deep} fit", asked / fit.steps[2]);
+        let rounded = match (across || down, through) {
+            _ if !self.args.tileable => return None,
+            (false, false) => return None,
+            (true, false) => plane,
+            (false, true) => depth,
+            (true, true) => format!("{plane}; {depth}"),
+        };
+        Some(format!("note: a wavelength of {asked} does not fit a whole number of times; {rounded}"))
     }
 
     fn words(&self) -> String {
@@ -326,8 +358,4 @@ impl Task<'_> {
         };
         format!("{}: {}; {size} samples\n", self.out.display(), self.description())
     }
-}
-
-fn name(value: impl ValueEnum) -> String {
-    value.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default()
 }

@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use orogen::format::levels::Levels;
 use orogen::format::png::Pixel;
-use orogen_noise::Fractal;
 
 use super::slice::Slice;
 use super::texture::{Painter, Texture};
@@ -26,17 +25,26 @@ pub enum Look {
 /// A noise and its look.
 #[derive(Debug)]
 pub struct Drawing {
-    noise: Fractal,
-    width: usize,
+    slice: Slice,
     deep: bool,
     look: Look,
     painter: Painter,
 }
 
+impl Look {
+    /// What is drawn of a slice: a material changes how octaves are summed, and may draw it out.
+    pub fn made_of(self, slice: &Slice) -> Slice {
+        match self {
+            Look::Texture(texture) => texture.made_of(slice),
+            _ => *slice,
+        }
+    }
+}
+
 impl Drawing {
-    /// Of rows of `width` samples, with 16 bits a number if `deep` and not a texture.
-    pub fn new(noise: Fractal, width: usize, look: Look, deep: bool) -> Drawing {
-        Drawing { noise, width, deep, look, painter: Painter::default() }
+    /// Of a slice at any depth, with 16 bits a number if `deep` and not a texture.
+    pub fn new(slice: Slice, look: Look, deep: bool) -> Drawing {
+        Drawing { slice, deep, look, painter: Painter::default() }
     }
 
     /// What its pixels are.
@@ -52,8 +60,8 @@ impl Drawing {
 
     /// Draws some rows, at a depth or in the plane.
     pub fn paint(&self, depth: Option<f64>, rows: Range<usize>, bytes: &mut [u8]) {
-        let slice = Slice { noise: self.noise, width: self.width, depth, stretch: 1.0 };
-        let mut value = vec![0.0; rows.len() * self.width];
+        let slice = Slice { depth, ..self.slice };
+        let mut value = vec![0.0; rows.len() * slice.width];
         match self.look {
             Look::Grey => {
                 slice.fill(rows, &mut value);
@@ -62,7 +70,7 @@ impl Drawing {
             Look::Normal => {
                 let mut dy = vec![0.0; value.len()];
                 slice.fill_slopes(rows, &mut value, &mut dy);
-                let relief = (RELIEF * self.noise.wavelength) as f32;
+                let relief = (RELIEF * slice.noise.wavelength) as f32;
                 let normals: Vec<f32> =
                     value.iter().zip(&dy).flat_map(|(&dx, &dy)| normal(dx * relief, dy * relief)).collect();
                 self.numbers(&normals, bytes);
@@ -94,6 +102,7 @@ fn normal(dx: f32, dy: f32) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use orogen_noise::Fractal;
 
     #[test]
     fn normals_face_downhill() {
@@ -106,7 +115,8 @@ mod tests {
 
     #[test]
     fn greys_span_all_levels() {
-        let drawing = Drawing::new(Fractal::default(), 3, Look::Grey, true);
+        let slice = Slice { noise: Fractal::default(), width: 3, depth: None, stretch: 1.0, repeat: [0.0; 3] };
+        let drawing = Drawing::new(slice, Look::Grey, true);
         let mut bytes = [0; 6];
         drawing.numbers(&[-1.0, 0.0, 1.0], &mut bytes);
         assert_eq!(bytes, [0, 0, 0x80, 0, 0xff, 0xff]);

@@ -2,26 +2,42 @@
 
 use std::ops::Range;
 
-use orogen_noise::{Depth, Fractal, Mismatch, Points};
+use orogen_noise::{Depth, Fractal, Mismatch, Points, Tiled, Untileable};
 use rayon::prelude::*;
+
+use super::fit::{Fit, Lengths};
 
 /// How many samples one thread makes at a time.
 const PIECE: usize = 1 << 16;
 
-/// A noise in the plane, or a slice of it in space. Sample (i, j) stands at (i, stretch j).
+/// A noise in the plane, or a slice of it in space. Sample (i, j) stands at (i, stretch j), unless the picture repeats: then
+/// steps are a little longer or shorter, so that a whole number of wavelengths fits.
 #[derive(Debug, Clone, Copy)]
 pub struct Slice {
     /// The noise.
     pub noise: Fractal,
     /// Samples a row.
     pub width: usize,
-    /// Where it cuts through space; nowhere is the noise of the plane, another one.
+    /// Where it cuts through space, in samples; nowhere is the noise of the plane, another one.
     pub depth: Option<f64>,
     /// From one row to the next.
     pub stretch: f64,
+    /// Until it repeats.
+    pub repeat: Lengths,
 }
 
 impl Slice {
+    /// How the noise fits what is to repeat.
+    pub fn fit(&self) -> Fit {
+        let [x, y, depth] = self.repeat;
+        Fit::new(self.noise.wavelength, [x, y * self.stretch, depth])
+    }
+
+    /// The noise, made to repeat where it is to.
+    pub fn tiled(&self) -> Result<Tiled, Untileable> {
+        self.noise.tiled(self.fit().cells)
+    }
+
     /// The values of some rows.
     pub fn fill(&self, rows: Range<usize>, value: &mut [f32]) {
         let piece = self.rows_a_piece();
@@ -29,9 +45,9 @@ impl Slice {
         value.par_chunks_mut(piece * self.width).enumerate().for_each(|(n, value)| {
             let ys = self.southings(&rows, n * piece, value.len());
             let points = Points::Lattice { xs: &xs, ys: &ys };
-            settle(value, |value| match self.depth {
-                None => self.noise.fill(&points, value),
-                Some(depth) => self.noise.fill3(&points, &Depth::Slice(depth), value),
+            self.settle(value, |noise, value| match self.cut() {
+                None => noise.fill(&points, value),
+                Some(depth) => noise.fill3(&points, &depth, value),
             });
         });
     }
@@ -40,18 +56,23 @@ impl Slice {
     pub fn fill_slopes(&self, rows: Range<usize>, dx: &mut [f32], dy: &mut [f32]) {
         let piece = self.rows_a_piece();
         let xs = self.columns();
+        let [east, south, _] = self.fit().steps.map(|step| step as f32);
         let pieces = dx.par_chunks_mut(piece * self.width).zip(dy.par_chunks_mut(piece * self.width));
         pieces.enumerate().for_each(|(n, (dx, dy))| {
             let ys = self.southings(&rows, n * piece, dx.len());
             let points = Points::Lattice { xs: &xs, ys: &ys };
             let (mut value, mut dz) = (vec![0.0; dx.len()], vec![0.0; dx.len()]);
-            settle(dx, |dx| match self.depth {
-                None => self.noise.fill_with_gradient(&points, &mut value, dx, dy),
-                Some(depth) => {
-                    self.noise.fill3_with_gradient(&points, &Depth::Slice(depth), &mut value, [dx, dy, &mut dz])
-                }
+            self.settle(dx, |noise, dx| match self.cut() {
+                None => noise.fill_with_gradient(&points, &mut value, dx, dy),
+                Some(depth) => noise.fill3_with_gradient(&points, &depth, &mut value, [dx, dy, &mut dz]),
             });
+            dx.iter_mut().for_each(|slope| *slope *= east);
+            dy.iter_mut().for_each(|slope| *slope *= south);
         });
+    }
+
+    fn cut(&self) -> Option<Depth<'static>> {
+        self.depth.map(|depth| Depth::Slice(depth * self.fit().steps[2]))
     }
 
     fn rows_a_piece(&self) -> usize {
@@ -59,20 +80,24 @@ impl Slice {
     }
 
     fn columns(&self) -> Vec<f64> {
-        (0..self.width).map(|i| i as f64).collect()
+        let step = self.fit().steps[0];
+        (0..self.width).map(|i| i as f64 * step).collect()
     }
 
     /// Where the rows of a piece stand that begins `skip` rows into `rows` and has `samples`.
     fn southings(&self, rows: &Range<usize>, skip: usize, samples: usize) -> Vec<f64> {
         let first = rows.start + skip;
-        (first..first + samples / self.width).map(|j| j as f64 * self.stretch).collect()
+        let step = self.stretch * self.fit().steps[1];
+        (first..first + samples / self.width).map(|j| j as f64 * step).collect()
     }
-}
 
-/// The slices above always have the length of their points; were one ever wrong, it would be NaN and seen.
-fn settle(out: &mut [f32], fill: impl FnOnce(&mut [f32]) -> Result<(), Mismatch>) {
-    if fill(out).is_err() {
-        out.fill(f32::NAN);
+    /// The slices above always have the length of their points, and whether a noise can repeat is asked before; were either ever wrong,
+    /// it would be NaN and seen.
+    fn settle(&self, out: &mut [f32], fill: impl FnOnce(&Tiled, &mut [f32]) -> Result<(), Mismatch>) {
+        match self.tiled() {
+            Ok(noise) if fill(&noise, out).is_ok() => {}
+            _ => out.fill(f32::NAN),
+        }
     }
 }
 
@@ -84,7 +109,7 @@ mod tests {
     fn pieces_are_the_noises_own_samples() {
         let noise = Fractal { seed: 5, wavelength: 31.0, octaves: 3, ..Fractal::default() };
         for (width, height, depth) in [(7, 5, None), (300, 501, Some(2.5)), (PIECE + 3, 3, None)] {
-            let slice = Slice { noise, width, depth, stretch: 1.0 };
+            let slice = Slice { noise, width, depth, stretch: 1.0, repeat: [0.0; 3] };
             let mut value = vec![0.0; width * (height - 1)];
             slice.fill(1..height, &mut value);
             let (mut dx, mut dy) = (vec![0.0; value.len()], vec![0.0; value.len()]);
@@ -98,6 +123,23 @@ mod tests {
                 let south = (at(x, y + step) - at(x, y - step)) * 32.0;
                 assert!((dx[k] - east).abs() < 1e-3 && (dy[k] - south).abs() < 1e-3, "{k} of {width} x {height}");
             }
+        }
+    }
+    #[test]
+    fn what_repeats_is_the_tiled_noise_at_steps_that_fit() {
+        let noise = Fractal { seed: 5, wavelength: 30.0, octaves: 3, ..Fractal::default() };
+        let slice = Slice { noise, width: 70, depth: Some(4.0), stretch: 0.5, repeat: [70.0, 90.0, 20.0] };
+        let tiled = noise.tiled([2, 2, 1]).unwrap();
+        let (mut value, mut dx, mut dy) = (vec![0.0; 6300], vec![0.0; 6300], vec![0.0; 6300]);
+        slice.fill(0..90, &mut value);
+        slice.fill_slopes(0..90, &mut dx, &mut dy);
+        let at = |i: f64, j: f64| tiled.sample3(i * (60.0 / 70.0), j * (0.5 * (60.0 / 45.0)), 4.0 * 1.5);
+        for k in [0, 69, 70, 3333, 6299] {
+            let (i, j) = ((k % 70) as f64, (k / 70) as f64);
+            assert_eq!(value[k], at(i, j), "{k}");
+            assert_eq!(value[k], at(i - 70.0, j + 90.0), "across both seams, {k}");
+            let east = (at(i + 0.01, j) - at(i - 0.01, j)) * 50.0;
+            assert!((dx[k] - east).abs() < 2e-3, "{k}: {} {east}", dx[k]);
         }
     }
 }

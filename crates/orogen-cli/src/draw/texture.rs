@@ -24,6 +24,11 @@ pub enum Texture {
 }
 
 impl Texture {
+    /// Its name on the command line.
+    pub fn name(self) -> String {
+        self.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default()
+    }
+
     /// The octaves it looks best with.
     pub fn octaves(self) -> u32 {
         match self {
@@ -40,6 +45,16 @@ impl Texture {
             Texture::Marble => 150.0,
             Texture::Wood => 128.0,
         }
+    }
+
+    /// The noise behind it: how its octaves are summed is the material's own matter.
+    pub fn made_of(self, slice: &Slice) -> Slice {
+        let (kind, stretch) = match self {
+            Texture::Clouds => (Kind::Fbm, 1.0),
+            Texture::Marble => (Kind::Billow, 1.0),
+            Texture::Wood => (Kind::Fbm, 1.0 / STRETCH),
+        };
+        Slice { noise: Fractal { kind, ..slice.noise }, stretch, ..*slice }
     }
 }
 
@@ -90,17 +105,12 @@ impl Default for Painter {
 }
 
 impl Painter {
-    /// Paints some rows of a material made of a slice's noise; how its octaves are summed is the material's own matter.
+    /// Paints some rows of a material made of a slice's noise.
     pub fn paint(&self, texture: Texture, slice: &Slice, rows: Range<usize>, bytes: &mut [u8]) {
-        let Slice { noise, width, .. } = *slice;
-        let (kind, stretch) = match texture {
-            Texture::Clouds => (Kind::Fbm, 1.0),
-            Texture::Marble => (Kind::Billow, 1.0),
-            Texture::Wood => (Kind::Fbm, 1.0 / STRETCH),
-        };
-        let mut value = vec![0.0; rows.len() * width];
-        let made_of = Slice { noise: Fractal { kind, ..noise }, stretch, ..*slice };
+        let made_of = texture.made_of(slice);
+        let mut value = vec![0.0; rows.len() * slice.width];
         made_of.fill(rows.clone(), &mut value);
+        let [wavelength, _] = made_of.fit().wavelengths(slice.noise.wavelength);
         let grain = match texture {
             Texture::Wood => grain(slice, rows),
             _ => Vec::new(),
@@ -110,7 +120,7 @@ impl Painter {
                 Texture::Clouds => self.sky.at(1.0 - libm::expf(-DENSITY * (value - COVER).max(0.0))),
                 Texture::Marble => {
                     // In f64 until it is within one wave: a wide picture has no fewer veins at its far end.
-                    let waves = (k % width) as f64 / noise.wavelength;
+                    let waves = (k % slice.width) as f64 / wavelength;
                     let turns = (waves - waves.floor()) as f32 + TURBULENCE * (value + 1.0) / 2.0;
                     self.stone.at(0.5 + 0.5 * libm::sinf(TAU * (turns - turns.floor())))
                 }

@@ -7,10 +7,11 @@ use rayon::prelude::*;
 use super::panel::{self, Pictures};
 use super::row::{COLUMNS, Row, SIDE};
 
-const PAPER: Ink = [254, 253, 250];
-const INK: Ink = [28, 28, 30];
-const SOFT: Ink = [96, 96, 100];
-const LINE: Ink = [196, 194, 188];
+/// All of them greys: the page is then written as greys, in half the bytes.
+const PAPER: Ink = [253; 3];
+const INK: Ink = [28; 3];
+const SOFT: Ink = [97; 3];
+const LINE: Ink = [194; 3];
 
 /// Measures for pictures of [`SIDE`] samples; larger ones have everything larger.
 const MARGIN: f64 = 52.0;
@@ -53,15 +54,15 @@ pub fn draw(rows: &[Row], side: usize, seed: u64) -> orogen::Result<Canvas> {
     let pictures: Vec<Vec<Pictures>> =
         rows.par_iter().map(|row| row.noises.par_iter().map(|shown| panel::draw(shown, side)).collect()).collect();
     let mut top = layout.header();
-    let mut letter = 'a';
+    let mut number = 1;
     for (row, pictures) in rows.iter().zip(&pictures) {
         layout.heading(row, top);
         let shown_at = top + layout.at(ROW_HEADING);
         for (column, (shown, pictures)) in row.noises.iter().zip(pictures).enumerate() {
             let left = layout.left(column);
             let caption_at = layout.pictures(pictures, left, shown_at);
-            layout.caption([&letter.to_string(), shown.name, shown.about], left, caption_at);
-            letter = char::from_u32(u32::from(letter) + 1).unwrap_or('*');
+            layout.caption([&number.to_string(), shown.name, shown.about], left, caption_at);
+            number += 1;
         }
         top += layout.at(ROW_HEADING) + 2.0 * side as f64 + layout.at(SEAM) + layout.at(CAPTION) + layout.at(ROW_GAP);
     }
@@ -127,10 +128,10 @@ impl Layout<'_> {
         below + self.side as f64
     }
 
-    fn caption(&mut self, [letter, name, about]: [&str; 3], left: f64, top: f64) {
+    fn caption(&mut self, [number, name, about]: [&str; 3], left: f64, top: f64) {
         let (bold, soft) = (self.style(Face::Bold, 14.0, INK), self.style(Face::Regular, 13.0, SOFT));
         let baseline = top + self.at(20.0);
-        let end = self.write(letter, [left, baseline], self.style(Face::Italic, 14.0, SOFT));
+        let end = self.write(number, [left, baseline], self.style(Face::Italic, 14.0, SOFT));
         let left = end.max(left + self.at(9.0)) + self.at(6.0);
         self.write(name, [left, baseline], bold);
         self.write(about, [left, baseline + self.at(18.0)], soft);

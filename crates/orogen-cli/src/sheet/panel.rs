@@ -3,7 +3,6 @@
 use orogen::analysis::hillshade::{Light, hillshade};
 use orogen::format::levels::Levels;
 use orogen::{Grid, Window};
-use orogen_noise::{Mismatch, Points};
 
 use super::row::{SIDE, Shown};
 
@@ -28,7 +27,7 @@ pub fn draw(shown: &Shown, side: usize) -> Pictures {
     let window = Window::new(side, side, SIDE / side as f64).grown(1);
     let mut grid = Grid::filled(window, f32::NAN);
     // The lengths always fit; were one ever wrong, the picture would be black and seen.
-    let _ = fill(shown, &window, grid.data_mut());
+    let _ = shown.noise.fill(&window.eastings(), &window.southings(), grid.data_mut());
     let levels = levels(&grid);
     let heights = (1..=side).flat_map(|j| grid.row(j)[1..=side].iter().map(|&h| levels.to_u8(h))).collect();
     // However far a noise reaches into -1 to 1, here it has the same relief.
@@ -47,22 +46,6 @@ fn levels(grid: &Grid) -> Levels {
         (Some(&low), Some(&high)) => Levels::new(low, high),
         _ => Levels::of(grid),
     }
-}
-
-fn fill(shown: &Shown, window: &Window, out: &mut [f32]) -> Result<(), Mismatch> {
-    let (xs, ys) = (window.eastings(), window.southings());
-    let lattice = Points::Lattice { xs: &xs, ys: &ys };
-    let Some((warp, strength)) = shown.warp else {
-        return shown.noise.fill(&lattice, out);
-    };
-    let (mut dx, mut dy) = (vec![0.0; out.len()], vec![0.0; out.len()]);
-    warp.fill(&lattice, &mut dx)?;
-    // A neighbouring seed is another noise altogether.
-    orogen_noise::Fractal { seed: warp.seed ^ 1, ..warp }.fill(&lattice, &mut dy)?;
-    for part in dx.iter_mut().chain(&mut dy) {
-        *part *= strength;
-    }
-    shown.noise.fill(&Points::Displaced { xs: &xs, ys: &ys, dx: &dx, dy: &dy }, out)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What the page shows: its rows and the noises in them.
 
-use orogen_noise::{Basis, Falloff, Fractal, Kind};
+use orogen_noise::{Basis, Falloff, Feature, Fractal, Kind, Mismatch, Points, Worley};
 
 /// A row of noises that belong together.
 #[derive(Debug)]
@@ -21,13 +21,50 @@ pub struct Shown {
     /// Its parameters.
     pub about: &'static str,
     /// The noise itself.
-    pub noise: Fractal,
-    /// What it is read through, if it is warped: a noise for each direction, and how far one of 1 moves.
-    pub warp: Option<(Fractal, f32)>,
+    pub noise: Noise,
+}
+
+/// What a picture is made of.
+#[derive(Debug)]
+pub enum Noise {
+    /// Octaves, or one.
+    Fractal(Fractal),
+    /// Cells.
+    Worley(Worley),
+    /// Octaves read through a warp.
+    Warped {
+        /// What is read.
+        noise: Fractal,
+        /// What moves it: a noise for each direction, the other of the next seed.
+        by: Fractal,
+        /// How far a noise of 1 moves.
+        strength: f32,
+    },
+}
+
+impl Noise {
+    /// Its samples over columns and rows.
+    pub fn fill(&self, xs: &[f64], ys: &[f64], out: &mut [f32]) -> Result<(), Mismatch> {
+        let lattice = Points::Lattice { xs, ys };
+        match *self {
+            Noise::Fractal(noise) => noise.fill(&lattice, out),
+            Noise::Worley(noise) => noise.fill(&lattice, out),
+            Noise::Warped { noise, by, strength } => {
+                let (mut dx, mut dy) = (vec![0.0; out.len()], vec![0.0; out.len()]);
+                by.fill(&lattice, &mut dx)?;
+                // A neighbouring seed is another noise altogether.
+                Fractal { seed: by.seed ^ 1, ..by }.fill(&lattice, &mut dy)?;
+                for part in dx.iter_mut().chain(&mut dy) {
+                    *part *= strength;
+                }
+                noise.fill(&Points::Displaced { xs, ys, dx: &dx, dy: &dy }, out)
+            }
+        }
+    }
 }
 
 /// How many noises stand side by side.
-pub const COLUMNS: usize = 4;
+pub const COLUMNS: usize = 6;
 
 /// The side of each picture in the noises' unit of length: however many samples it has, it shows the same.
 pub const SIDE: f64 = 200.0;
@@ -44,40 +81,75 @@ pub fn rows(seed: u64) -> Vec<Row> {
         lacunarity: 2.0,
     };
     let summed = |kind| Fractal { octaves: 6, kind, ..single(Basis::Perlin, 100.0) };
-    let weighted = |k| summed(Kind::Weighted { k, falloff: Falloff::Reciprocal });
-    let plain = |name, about, noise| Shown { name, about, noise, warp: None };
-    let warp = Fractal { octaves: 2, seed: seed ^ 0xa11ce, ..summed(Kind::Fbm) };
+    let weighted = |k, falloff| summed(Kind::Weighted { k, falloff });
+    let shown = |name, about, noise| Shown { name, about, noise };
+    let plain = |name, about, noise| shown(name, about, Noise::Fractal(noise));
+    let cells = |name, about, feature| {
+        shown(name, about, Noise::Worley(Worley { seed, wavelength: 40.0, feature, ..Worley::default() }))
+    };
+    let by = Fractal { octaves: 2, seed: seed ^ 0xa11ce, ..summed(Kind::Fbm) };
+    let warped = Noise::Warped { noise: summed(Kind::Fbm), by, strength: 80.0 };
     vec![
         Row {
             title: "One octave",
-            about: "random numbers, and three ways to make hills of them",
+            about: "random numbers, and five ways to make hills of them",
             noises: vec![
                 plain("White noise", "a number a square, 4 wide", single(Basis::White, 4.0)),
                 plain("Value noise", "wavelength 50", single(Basis::Value, 50.0)),
                 plain("Perlin noise", "wavelength 50", single(Basis::Perlin, 50.0)),
                 plain("Classic Perlin noise", "wavelength 50, table of 256", single(Basis::ClassicDiagonal, 50.0)),
+                plain("Simplex noise", "wavelength 70, on triangles", single(Basis::Simplex, 70.0)),
+                plain("OpenSimplex2", "wavelength 70, smooth", single(Basis::OpenSimplex2Smooth, 70.0)),
+            ],
+        },
+        Row {
+            title: "Cells",
+            about: "Worley noise: points at random, one in each square 40 wide, and how far away the nearest are",
+            noises: vec![
+                cells("Worley F1", "the nearest point", Feature::F1),
+                cells("Worley F2", "the second nearest", Feature::F2),
+                cells("Worley F2 − F1", "0 between two cells", Feature::Difference),
+                cells("Worley F1 × F2", "both together", Feature::Product),
+                cells("Worley edge", "the nearest edge of a cell", Feature::Edge),
+                cells("Worley value", "a number a cell", Feature::Value),
             ],
         },
         Row {
             title: "Six octaves",
-            about: "Perlin noise from wavelength 100 down, each octave half as long and half as high",
+            about: "from wavelength 100 down, each half as long and half as high; Perlin noise, but for the last",
             noises: vec![
                 plain("fBm", "the sum", summed(Kind::Fbm)),
                 plain("Ridged fBm", "the sum of 1 − 2 |noise|", summed(Kind::Ridged)),
                 plain("Billow", "the sum of 2 |noise| − 1", summed(Kind::Billow)),
-                Shown {
-                    warp: Some((warp, 80.0)),
-                    ..plain("Domain-warped fBm", "moved by fBm, up to 80", summed(Kind::Fbm))
-                },
+                plain("Ping-pong", "folded, strength 4", summed(Kind::PingPong { strength: 4.0 })),
+                shown("Domain-warped fBm", "moved by fBm, up to 80", warped),
+                plain("fBm of Worley F1", "cells in cells", Fractal { basis: Basis::Worley, ..summed(Kind::Fbm) }),
             ],
         },
         Row {
             title: "Weighted by slope",
-            about: "each octave over 1 + k m, where m is the squared slope of the sum so far",
+            about: "each octave damped by a falloff of k m, where m is the squared slope of the sum so far",
             noises: vec![
-                plain("Weighted fBm, k = 0", "the plain sum", weighted(0.0)),
-                plain("Weighted fBm, k = 1", "smooth where it is steep", weighted(1.0)),
-                plain("Weighted fBm, k = 10", "detail on crests and floors only", weighted(10.0)),
+                plain("Weighted fBm, k = 0", "the plain sum", weighted(0.0, Falloff::Reciprocal)),
+                plain("Weighted fBm, k = 1", "1 / (1 + k m)", weighted(1.0, Falloff::Reciprocal)),
+                plain("Weighted fBm, k = 10", "1 / (1 + k m)", weighted(10.0, Falloff::Reciprocal)),
+                plain("Exponential, k = 1", "exp(−k m)", weighted(1.0, Falloff::Exponential)),
+                plain("Square root, k = 1", "1 / (1 + k √m)", weighted(1.0, Falloff::SquareRoot)),
+                plain("Smoothstep, k = 1", "1 − smoothstep(k m)", weighted(1.0, Falloff::Smoothstep)),
+            ],
+        },
+        Row {
+            title: "Shaped by what came before",
+            about: "six octaves, scaled by the height so far or moved by its slope",
+            noises: vec![
+                plain(
+                    "Hybrid multifractal",
+                    "gain 0.8: rough heights",
+                    Fractal { gain: 0.8, ..summed(Kind::Hybrid { offset: 0.7 }) },
+                ),
+                plain("Heterogeneous", "rougher the higher it is", summed(Kind::Hetero { offset: 0.7 })),
+                plain("Swiss turbulence", "crests that branch", summed(Kind::Swiss { warp: 0.15 })),
+                plain("Jordan turbulence", "worn massifs", summed(Kind::Jordan { warp: 0.35, damp: 0.8 })),
             ],
         },
     ]

@@ -60,6 +60,16 @@ fn every_parameter_reaches_the_noise() {
         (&["--fractal", "billow", "--z", "-7.5"], Kind::Billow, Some(-7.5)),
         (&["--fractal", "weighted", "--k", "2.5", "--falloff", "square-root"], weighted, None),
         (&["--z", "0"], Kind::Fbm, Some(0.0)),
+        (&["--fractal", "ping-pong"], Kind::PingPong { strength: 2.0 }, None),
+        (&["--fractal", "ping-pong", "--strength", "3.5", "--z", "1"], Kind::PingPong { strength: 3.5 }, Some(1.0)),
+        (&["--fractal", "hybrid"], Kind::Hybrid { offset: 0.7 }, None),
+        (&["--fractal", "hybrid", "--offset", "0.9"], Kind::Hybrid { offset: 0.9 }, None),
+        (&["--fractal", "hetero"], Kind::Hetero { offset: 0.7 }, None),
+        (&["--fractal", "hetero", "--offset", "-0.2"], Kind::Hetero { offset: -0.2 }, None),
+        (&["--fractal", "swiss"], Kind::Swiss { warp: 0.15 }, None),
+        (&["--fractal", "swiss", "--warp", "0.3"], Kind::Swiss { warp: 0.3 }, None),
+        (&["--fractal", "jordan"], Kind::Jordan { warp: 0.35, damp: 0.8 }, None),
+        (&["--fractal", "jordan", "--warp", "0.1", "--damp", "2"], Kind::Jordan { warp: 0.1, damp: 2.0 }, None),
     ] {
         folder.good(&[&["noise", "value", "-o", "a.npy"], &options[..], more].concat());
         let expect = samples(&Fractal { basis: Basis::Value, kind, ..noise }, 33, 33, depth);
@@ -145,6 +155,91 @@ fn slopes_are_arrays_or_normals() {
 }
 
 #[test]
+fn what_is_tileable_repeats_to_the_bit() {
+    let folder = Folder::new();
+    let noise = Fractal { wavelength: 30.0, octaves: 3, seed: 9, ..Fractal::default() };
+    let options = ["--wavelength", "30", "--octaves", "3", "--seed", "9", "--tileable"];
+    for &basis in Basis::all().iter().filter(|basis| basis.is_tileable()) {
+        let outcome = folder.good(&[&["noise", basis.name(), "--size", "60x90", "-o", "a.npy"], &options[..]].concat());
+        assert!(outcome.text().ends_with("wavelength 30, seed 9, repeating; 60 x 90 samples\n"), "{}", outcome.text());
+        assert_eq!(outcome.err, "");
+        let tiled = Fractal { basis, ..noise }.tiled([2, 3]).unwrap();
+        for (k, &value) in npy(&folder.read("a.npy")).data().iter().enumerate() {
+            let (x, y) = ((k % 60) as f64, (k / 60) as f64);
+            assert_eq!((value, value), (tiled.sample(x, y), tiled.sample(x + 60.0, y - 90.0)), "{basis:?} {x} {y}");
+        }
+    }
+}
+
+#[test]
+fn wavelengths_are_rounded_to_fit_and_it_is_said() {
+    let folder = Folder::new();
+    let size = ["--size", "128x50", "--tileable", "-o", "a.npy"];
+    let outcome = folder.good(&[&["noise", "perlin", "--wavelength", "30"], &size[..]].concat());
+    assert_eq!(
+        outcome.err,
+        "note: a wavelength of 30 does not fit a whole number of times; it is 32 x 25, so that 4 x 2 fit\n"
+    );
+    assert!(outcome.text().contains("wavelength 32 x 25, seed 0, repeating"), "{}", outcome.text());
+    let tiled = Fractal { wavelength: 1.0, octaves: 1, ..Fractal::default() }.tiled([4, 2]).unwrap();
+    for (k, &value) in npy(&folder.read("a.npy")).data().iter().enumerate() {
+        let expect = tiled.sample((k % 128) as f64 / 32.0, (k / 128) as f64 / 25.0);
+        assert!((value - expect).abs() < 1e-5, "{k}: {value} {expect}");
+    }
+    let quiet = folder.good(&[&["noise", "perlin", "--wavelength", "30", "-q"], &size[..]].concat());
+    assert_eq!(quiet.err, "");
+    // A wavelength longer than the picture is the picture's.
+    let outcome = folder.good(&["noise", "value", "--wavelength", "500", "--size", "40", "--tileable"]);
+    assert!(outcome.err.contains("it is 40, so that 1 x 1 fit"), "{}", outcome.err);
+}
+
+#[test]
+fn tileable_animations_blocks_slopes_and_materials_close() {
+    let folder = Folder::new();
+    let options = ["--size", "48", "--wavelength", "16", "--tileable"];
+    // A block of 20 slices holds one wavelength of 20 along its depth.
+    let outcome =
+        folder.good(&[&["noise", "perlin", "--volume", "20", "--z", "3", "-o", "a.npy"], &options[..]].concat());
+    assert!(outcome.err.ends_with("times; through the slices it is 20, so that 1 fit\n"), "{}", outcome.err);
+    let (values, _) = array(&folder.read("a.npy"), 48 * 48 * 20);
+    let tiled = Fractal { wavelength: 16.0, octaves: 1, ..Fractal::default() }.tiled([3, 3, 1]).unwrap();
+    for k in (0..values.len()).step_by(97) {
+        let (x, y, z) = ((k % 48) as f64, (k / 48 % 48) as f64, (k / 2304 + 3) as f64 * 0.8);
+        assert_eq!(values[k], tiled.sample3(x + 48.0, y, z), "{k}");
+        assert_eq!(tiled.sample3(x, y, z), tiled.sample3(x, y - 48.0, z + 16.0), "{k}");
+    }
+    // As many frames as a wavelength takes: frame 12 of 24 is half way, and the step after the last leads to the first.
+    folder.good(&[&["noise", "perlin", "--frames", "24", "-o", "a.png"], &options[..]].concat());
+    let bytes = folder.read("a.png");
+    let mut reader = ::png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+    let frames: Vec<Vec<u8>> = (0..24)
+        .map(|_| {
+            let mut data = vec![0; reader.output_buffer_size().unwrap()];
+            reader.next_frame(&mut data).unwrap();
+            data
+        })
+        .collect();
+    for (frame, data) in frames.iter().enumerate() {
+        let z = 16.0 * frame as f64 / 24.0;
+        for k in (0..data.len()).step_by(53) {
+            let value = tiled.sample3((k % 48) as f64, (k / 48) as f64, z + 16.0);
+            assert!((f32::from(data[k]) - (value + 1.0) * 127.5).abs() <= 0.501, "{frame} {k}");
+        }
+    }
+    // Seams of what is made of the noise are no steeper than its inside.
+    for more in [&["--gradient"][..], &["--texture", "marble"], &["--texture", "wood"], &["--texture", "clouds"]] {
+        let options = ["--size", "96", "--wavelength", "32", "--tileable", "-q", "-o", "b.png"];
+        folder.good(&[&["noise", "perlin"], more, &options[..]].concat());
+        let picture = png(&folder.read("b.png"));
+        let at = |x: usize, y: usize| picture.data[(y % 96 * 96 + x % 96) * 3 + 1];
+        let across = |x: usize| (0..96).map(|y| u64::from(at(x, y).abs_diff(at(x + 1, y)))).sum::<u64>();
+        let down = |y: usize| (0..96).map(|x| u64::from(at(x, y).abs_diff(at(x, y + 1)))).sum::<u64>();
+        let [inside, below] = [(0..95).map(across).max().unwrap(), (0..95).map(down).max().unwrap()];
+        assert!(across(95) <= inside + inside / 4 && down(95) <= below + below / 4, "{more:?}");
+    }
+}
+
+#[test]
 fn textures_are_coloured_each_in_its_way() {
     let folder = Folder::new();
     for texture in ["clouds", "marble", "wood"] {
@@ -180,7 +275,27 @@ fn what_cannot_be_drawn_is_a_sentence_and_leaves_nothing() {
         (&["perlin", "--octaves", "33"], 2, "1..=32"),
         (&["perlin", "--gain", "inf"], 2, "it is a number"),
         (&["perlin", "--lacunarity", "0"], 2, "a number above 0"),
-        (&["perlin", "--k", "1"], 2, "for --fractal weighted"),
+        (&["perlin", "--k", "1"], 2, "--k is for --fractal weighted, not for fbm"),
+        (&["perlin", "--fractal", "ridged", "--falloff", "smoothstep"], 2, "--falloff is for --fractal weighted"),
+        (
+            &["perlin", "--fractal", "swiss", "--strength", "1"],
+            2,
+            "--strength is for --fractal ping-pong, not for swiss",
+        ),
+        (&["perlin", "--offset", "1"], 2, "--offset is for --fractal hybrid or --fractal hetero, not for fbm"),
+        (&["perlin", "--warp", "1"], 2, "--warp is for --fractal swiss or --fractal jordan"),
+        (&["perlin", "--fractal", "swiss", "--damp", "1"], 2, "--damp is for --fractal jordan"),
+        (&["perlin", "--fractal", "jordan", "--damp", "-1"], 2, "0 or a number above"),
+        (&["simplex", "--tileable"], 2, "simplex cannot be made to repeat: its lattice of triangles"),
+        (&["opensimplex2-smooth", "--tileable"], 2, "take perlin, value or worley"),
+        (
+            &["perlin", "--tileable", "--octaves", "3", "--lacunarity", "1.9"],
+            2,
+            "a whole number for --lacunarity, such as 2",
+        ),
+        (&["perlin", "--tileable", "--octaves", "32"], 2, "--tileable: octave"),
+        (&["perlin", "--tileable", "--wavelength", "1e-300"], 2, "--tileable: octave 0 would have to repeat after"),
+        (&["worley", "--gradient"], 2, "the slope of worley is not worked out"),
         (&["perlin", "--fractal", "weighted", "--k", "-1"], 2, "0 or a number above"),
         (&["perlin", "--fractal", "rigded"], 2, "ridged"),
         (&["perlin", "--z", "deep"], 2, "it is a number"),

@@ -42,3 +42,44 @@ pub(super) fn fill(out: &mut [f32], noise: impl FnOnce(&mut [f32]) -> Result<(),
         out.fill(f32::NAN);
     }
 }
+
+/// How many nanoseconds a sample takes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cost {
+    /// Anywhere.
+    pub anywhere: f64,
+    /// Where samples stand in columns and rows.
+    pub in_rows: f64,
+}
+
+impl Cost {
+    /// Of so many octaves.
+    pub(super) fn octaves(self, octaves: u32) -> Cost {
+        let octaves = f64::from(octaves);
+        Cost { anywhere: octaves * self.anywhere, in_rows: octaves * self.in_rows }
+    }
+
+    /// Of octaves that move those after them: then a row is no row any more. What they are moved by takes its time, too.
+    pub(super) fn moved(self) -> Cost {
+        let each = self.anywhere + 1.1;
+        Cost { anywhere: each, in_rows: each }
+    }
+}
+
+/// What an octave over a basis takes, measured like the figures of `plan/cost.rs`: 512 x 512 samples, wavelength 100 samples,
+/// 6 octaves.
+pub(super) fn cost(basis: Basis) -> Cost {
+    let (anywhere, in_rows) = match basis {
+        Basis::White => (0.4, 0.06),
+        Basis::Value => (0.8, 0.1),
+        Basis::Perlin => (1.0, 0.15),
+        Basis::ClassicDiagonal | Basis::ClassicEight => (2.2, 0.15),
+        Basis::ClassicAngle => (10.0, 0.15),
+        Basis::Simplex => (1.8, 1.8),
+        Basis::OpenSimplex2 => (2.0, 2.0),
+        Basis::OpenSimplex2Smooth => (5.0, 5.0),
+        Basis::Worley => (5.5, 4.0),
+        Basis::WorleyEdge => (18.0, 16.0),
+    };
+    Cost { anywhere, in_rows }
+}

@@ -1,6 +1,6 @@
 //! Billowing fractal noise.
 
-use super::basis::fill;
+use super::basis::{cost, fill};
 use crate::op::{Field, Setting, Slots};
 use orogen_noise::{Kind, Points};
 
@@ -17,6 +17,10 @@ impl Field for Billow {
     }
 
     fn cost(&self) -> f64 {
-        f64::from(self.octaves)
+        cost(self.basis).octaves(self.octaves).anywhere
+    }
+
+    fn cost_in_rows(&self) -> f64 {
+        cost(self.basis).octaves(self.octaves).in_rows
     }
 }

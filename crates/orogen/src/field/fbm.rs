@@ -1,6 +1,6 @@
 //! Fractional Brownian motion.
 
-use super::basis::fill;
+use super::basis::{cost, fill};
 use crate::op::{Field, Setting, Slots};
 use orogen_noise::{Kind, Points};
 
@@ -20,6 +20,10 @@ impl Field for Fbm {
     }
 
     fn cost(&self) -> f64 {
-        f64::from(self.octaves)
+        cost(self.basis).octaves(self.octaves).anywhere
+    }
+
+    fn cost_in_rows(&self) -> f64 {
+        cost(self.basis).octaves(self.octaves).in_rows
     }
 }

@@ -68,11 +68,17 @@ impl Canvas {
         }
     }
 
-    /// Writes the page as a PNG.
+    /// Writes the page as a PNG: of greys, if there is no colour on it.
     pub fn write_png(&self, out: &mut dyn Write, notes: &[(&str, &str)]) -> io::Result<()> {
-        let picture = Picture { width: self.width, height: self.height, pixel: Pixel::Rgb8, notes };
+        let grey = self.pixels.iter().all(|[red, green, blue]| red == green && green == blue);
+        let pixel = if grey { Pixel::Grey8 } else { Pixel::Rgb8 };
+        let picture = Picture { width: self.width, height: self.height, pixel, notes };
         png::write(out, &picture, |rows, bytes| {
-            bytes.copy_from_slice(self.pixels[rows.start * self.width..rows.end * self.width].as_flattened());
+            let pixels = &self.pixels[rows.start * self.width..rows.end * self.width];
+            match grey {
+                true => bytes.iter_mut().zip(pixels).for_each(|(byte, [grey, ..])| *byte = *grey),
+                false => bytes.copy_from_slice(pixels.as_flattened()),
+            }
             Ok(())
         })
     }
@@ -118,11 +124,22 @@ mod tests {
     fn the_file_is_the_page() {
         let mut canvas = Canvas::new(3, 2, [255; 3]);
         canvas.set(2, 1, [1, 2, 3]);
+        assert_eq!(written(&canvas), [&[255; 15][..], &[1, 2, 3]].concat());
+    }
+
+    #[test]
+    fn a_page_without_colour_is_written_as_greys() {
+        let mut canvas = Canvas::new(3, 2, [255; 3]);
+        canvas.set(2, 1, [7; 3]);
+        assert_eq!(written(&canvas), [255, 255, 255, 255, 255, 7]);
+    }
+
+    fn written(canvas: &Canvas) -> Vec<u8> {
         let mut bytes = Vec::new();
         canvas.write_png(&mut bytes, &[]).unwrap();
         let mut reader = ::png::Decoder::new(io::Cursor::new(bytes)).read_info().unwrap();
         let mut data = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut data).unwrap();
-        assert_eq!((&data[..15], &data[15..]), (&[255; 15][..], &[1, 2, 3][..]));
+        data
     }
 }

@@ -20,8 +20,6 @@ const BETWEEN: f64 = 25.0;
 const MOVED: f64 = 3.0;
 /// A sample of a mask.
 const MASKED: f64 = 0.5;
-/// What is made of nothing but the position takes this share of its cost where all samples stand in columns and rows.
-const IN_ROWS: f64 = 0.15;
 
 /// Nanoseconds of one core that a plan's steps take.
 pub fn steps(plan: &Plan, recipe: &Recipe) -> f64 {
@@ -52,7 +50,7 @@ fn program_cost(program: &Program, scattered: bool, recipe: &Recipe) -> f64 {
         sum += match instruction {
             Instruction::Constant { .. } => 0.05,
             Instruction::Field { node, place, inputs, .. } => match recipe.nodes()[*node].node.op() {
-                Op::Field(field) if inputs.is_empty() && !moved[*place] => field.cost() * IN_ROWS,
+                Op::Field(field) if inputs.is_empty() && !moved[*place] => field.cost_in_rows(),
                 Op::Field(field) => field.cost(),
                 _ => 0.0,
             },

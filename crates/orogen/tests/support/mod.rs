@@ -34,6 +34,8 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("radial", "radius") => Value::Number(40.0 * world.cell),
             ("transform", "angle") => Value::Number(33.0),
             ("transform", "offset") => pair(17.3 * world.cell, -5.1 * world.cell),
+            // A number of folds, not a length.
+            ("ping-pong", "strength") => continue,
             (_, "wavelength" | "width" | "length" | "strength") => Value::Number(11.3 * world.cell),
             _ => continue,
         };

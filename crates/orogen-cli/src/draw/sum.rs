@@ -1,0 +1,121 @@
+//! How octaves become one number, as the command line says it.
+
+use clap::ValueEnum;
+use orogen_noise::Kind;
+
+use crate::size::{finite, not_negative};
+
+/// What it takes: the kind of fractal, and the parameters of some kinds.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    /// How octaves become one number
+    #[arg(long, default_value = "fbm", conflicts_with = "texture")]
+    pub fractal: Sum,
+    /// How strongly slope damps the octaves of weighted [default: 1]
+    #[arg(long, value_name = "K", value_parser = not_negative, allow_negative_numbers = true)]
+    k: Option<f64>,
+    /// The shape of that damping, m being the squared slope [default: reciprocal]
+    #[arg(long)]
+    falloff: Option<Falloff>,
+    /// How often ping-pong folds the noise, 2 S - 1 times: 0.5 not at all, 1 like ridged, 4 in many bands [default: 2]
+    #[arg(long, value_name = "S", value_parser = not_negative, allow_negative_numbers = true)]
+    strength: Option<f64>,
+    /// Added to the noise of hybrid and hetero: where the sum is small, ground is smooth [default: 0.7]
+    #[arg(long, value_name = "O", value_parser = finite, allow_negative_numbers = true)]
+    offset: Option<f64>,
+    /// How far slopes move what comes after, in first wavelengths (swiss) or cells of the octave (jordan) [default: 0.15; 0.35]
+    #[arg(long, value_name = "W", value_parser = finite, allow_negative_numbers = true)]
+    warp: Option<f64>,
+    /// How much slopes let the finer octaves of jordan through; 0 leaves the first one alone [default: 0.8]
+    #[arg(long, value_name = "D", value_parser = not_negative, allow_negative_numbers = true)]
+    damp: Option<f64>,
+}
+
+/// How octaves are summed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Sum {
+    /// Fractional Brownian motion: the plain sum
+    Fbm,
+    /// Sharp crests
+    Ridged,
+    /// Round hills between sharp valleys
+    Billow,
+    /// Each octave damped by the slope of those before
+    Weighted,
+    /// Contour bands, as in agate
+    PingPong,
+    /// Hybrid multifractal: lowlands smooth, heights rough
+    Hybrid,
+    /// Heterogeneous terrain: rougher the higher it is
+    Hetero,
+    /// Swiss turbulence: crests that branch
+    Swiss,
+    /// Jordan turbulence: rounded massifs with worn flanks
+    Jordan,
+}
+
+/// How slope damps an octave.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Falloff {
+    /// 1 / (1 + k m)
+    Reciprocal,
+    /// e^(-k m)
+    Exponential,
+    /// 1 / (1 + k sqrt m)
+    SquareRoot,
+    /// 1 - smoothstep(k m): nothing beyond k m = 1
+    Smoothstep,
+}
+
+impl Falloff {
+    fn noise(self) -> orogen_noise::Falloff {
+        match self {
+            Falloff::Reciprocal => orogen_noise::Falloff::Reciprocal,
+            Falloff::Exponential => orogen_noise::Falloff::Exponential,
+            Falloff::SquareRoot => orogen_noise::Falloff::SquareRoot,
+            Falloff::Smoothstep => orogen_noise::Falloff::Smoothstep,
+        }
+    }
+}
+
+impl Options {
+    /// The kind, or which parameter is another kind's.
+    pub fn kind(&self) -> Result<Kind, String> {
+        let owners = [
+            ("--k", self.k.is_some(), &[Sum::Weighted][..]),
+            ("--falloff", self.falloff.is_some(), &[Sum::Weighted]),
+            ("--strength", self.strength.is_some(), &[Sum::PingPong]),
+            ("--offset", self.offset.is_some(), &[Sum::Hybrid, Sum::Hetero]),
+            ("--warp", self.warp.is_some(), &[Sum::Swiss, Sum::Jordan]),
+            ("--damp", self.damp.is_some(), &[Sum::Jordan]),
+        ];
+        for (option, given, owners) in owners {
+            if given && !owners.contains(&self.fractal) {
+                let owners: Vec<String> = owners.iter().map(|owner| format!("--fractal {}", owner.name())).collect();
+                return Err(format!("{option} is for {}, not for {}", owners.join(" or "), self.fractal.name()));
+            }
+        }
+        let offset = self.offset.unwrap_or(0.7);
+        Ok(match self.fractal {
+            Sum::Fbm => Kind::Fbm,
+            Sum::Ridged => Kind::Ridged,
+            Sum::Billow => Kind::Billow,
+            Sum::Weighted => Kind::Weighted {
+                k: self.k.unwrap_or(1.0),
+                falloff: self.falloff.unwrap_or(Falloff::Reciprocal).noise(),
+            },
+            Sum::PingPong => Kind::PingPong { strength: self.strength.unwrap_or(2.0) },
+            Sum::Hybrid => Kind::Hybrid { offset },
+            Sum::Hetero => Kind::Hetero { offset },
+            Sum::Swiss => Kind::Swiss { warp: self.warp.unwrap_or(0.15) },
+            Sum::Jordan => Kind::Jordan { warp: self.warp.unwrap_or(0.35), damp: self.damp.unwrap_or(0.8) },
+        })
+    }
+}
+
+impl Sum {
+    /// Its name on the command line.
+    pub fn name(self) -> String {
+        self.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default()
+    }
+}

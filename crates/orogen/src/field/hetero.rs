@@ -1,0 +1,33 @@
+//! Musgrave's heterogeneous terrain.
+
+use super::basis::{cost, fill};
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::{Kind, Points};
+
+op! {
+    /// Heterogeneous terrain: an octave counts as much as the height so far, so low ground is smooth and high ground rough. In -1 ..= 1.
+    ///
+    /// h = n_0 + offset; h += h gain^i (n_i + offset). Divided by the greatest the product could be, which it seldom comes near:
+    /// `normalise` or `remap` it. Musgrave in Ebert et al., "Texturing and Modeling" (1994).
+    pub struct Hetero = "hetero", field, revision 1;
+    octaves;
+    params {
+        /// Added to the noise: where the sum of both is small, ground is smooth.
+        offset: f64 = 0.7, range -4.0 to 4.0;
+    }
+}
+
+impl Field for Hetero {
+    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+        let noise = self.fractal(setting, Kind::Hetero { offset: self.offset });
+        fill(out, |out| noise.fill(at, out));
+    }
+
+    fn cost(&self) -> f64 {
+        cost(self.basis).octaves(self.octaves).anywhere
+    }
+
+    fn cost_in_rows(&self) -> f64 {
+        cost(self.basis).octaves(self.octaves).in_rows
+    }
+}

@@ -1,0 +1,34 @@
+//! Musgrave's hybrid multifractal.
+
+use super::basis::{cost, fill};
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::{Kind, Points};
+
+op! {
+    /// Hybrid multifractal: an octave counts as much as the product of those before it, so valleys stay smooth and heights grow
+    /// rough. In -1 ..= 1.
+    ///
+    /// s_i = gain^i (n_i + offset); height += w s_i; w = clamp(w s_i, 0, 1), starting at 1. Divided by the greatest the sum could be, which it
+    /// seldom comes near: `normalise` or `remap` it. Musgrave in Ebert et al., "Texturing and Modeling" (1994).
+    pub struct Hybrid = "hybrid", field, revision 1;
+    octaves;
+    params {
+        /// Added to the noise: at 0.7 lowlands are plains; higher, detail is everywhere.
+        offset: f64 = 0.7, range -4.0 to 4.0;
+    }
+}
+
+impl Field for Hybrid {
+    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+        let noise = self.fractal(setting, Kind::Hybrid { offset: self.offset });
+        fill(out, |out| noise.fill(at, out));
+    }
+
+    fn cost(&self) -> f64 {
+        cost(self.basis).octaves(self.octaves).anywhere
+    }
+
+    fn cost_in_rows(&self) -> f64 {
+        cost(self.basis).octaves(self.octaves).in_rows
+    }
+}

@@ -1,0 +1,36 @@
+//! Jordan turbulence.
+
+use super::basis::{cost, fill};
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::{Kind, Points};
+
+op! {
+    /// Jordan turbulence: squared noise, moved and damped by the slopes so far. Rounded massifs with worn flanks. In -1 ..= 1.
+    ///
+    /// n_i at p + warp d, in cells of octave i; height += a_i n_i^2; d += n_i grad n_i; a_0 = 1, a_i = gain^i (1 - 1 / (1 + |damp d|^2)).
+    /// Over `white` and the `worley` bases, which have no slopes, only the first octave is left. De Carpentier, "Scape: procedural basics"
+    /// (2011).
+    pub struct Jordan = "jordan", field, revision 1;
+    octaves;
+    params {
+        /// How far slopes move the octaves above, in their cells: 0 not at all, 0.35 usual.
+        warp: f64 = 0.35, range -4.0 to 4.0;
+        /// How much slopes let the octaves above through: 0 leaves the first one alone, 0.8 usual.
+        damp: f64 = 0.8, range 0.0 to 100.0;
+    }
+}
+
+impl Field for Jordan {
+    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+        let noise = self.fractal(setting, Kind::Jordan { warp: self.warp, damp: self.damp });
+        fill(out, |out| noise.fill(at, out));
+    }
+
+    fn cost(&self) -> f64 {
+        cost(self.basis).moved().octaves(self.octaves).anywhere
+    }
+
+    fn cost_in_rows(&self) -> f64 {
+        cost(self.basis).moved().octaves(self.octaves).in_rows
+    }
+}

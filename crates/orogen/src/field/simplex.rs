@@ -1,0 +1,34 @@
+//! Simplex noise.
+
+use super::basis::{cost, fill};
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::{Basis, Points};
+
+op! {
+    /// Perlin's Simplex noise (2001), in -1 ..= 1: gradients on the corners of triangles, so no lines along the axes.
+    ///
+    /// Features are about 0.7 times as wide as those of `perlin` at the same wavelength. Gustavson, "Simplex noise demystified"
+    /// (2005).
+    pub struct Simplex = "simplex", field, revision 1;
+    params {
+        /// Seed of its own, hashed with the world's: two nodes of one seed are the same noise.
+        seed: u64 = 0;
+        /// Side of the squares that the triangles are skewed from.
+        wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
+    }
+}
+
+impl Field for Simplex {
+    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+        let noise = orogen_noise::Simplex { seed: setting.seed_of(self.seed), wavelength: self.wavelength };
+        fill(out, |out| noise.fill(at, out));
+    }
+
+    fn cost(&self) -> f64 {
+        cost(Basis::Simplex).anywhere
+    }
+
+    fn cost_in_rows(&self) -> f64 {
+        cost(Basis::Simplex).in_rows
+    }
+}

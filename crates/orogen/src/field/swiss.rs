@@ -1,0 +1,33 @@
+//! Swiss turbulence.
+
+use super::basis::{cost, fill};
+use crate::op::{Field, Setting, Slots};
+use orogen_noise::{Kind, Points};
+
+op! {
+    /// Swiss turbulence: ridges whose slopes pull the finer octaves along, so that crests branch into spurs. In -1 ..= 1.
+    ///
+    /// n_i at p + warp d; height += a_i (1 - |n_i|); d -= a_i n_i grad n_i; a_i+1 = a_i gain clamp(height, 0, 1). Over `white` and the
+    /// `worley` bases, which have no slopes, nothing is pulled. De Carpentier, "Scape: procedural basics" (2011).
+    pub struct Swiss = "swiss", field, revision 1;
+    octaves;
+    params {
+        /// How far slopes move the octaves above, in first wavelengths: 0 not at all, 0.15 usual.
+        warp: f64 = 0.15, range -4.0 to 4.0;
+    }
+}
+
+impl Field for Swiss {
+    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+        let noise = self.fractal(setting, Kind::Swiss { warp: self.warp });
+        fill(out, |out| noise.fill(at, out));
+    }
+
+    fn cost(&self) -> f64 {
+        cost(self.basis).moved().octaves(self.octaves).anywhere
+    }
+
+    fn cost_in_rows(&self) -> f64 {
+        cost(self.basis).moved().octaves(self.octaves).in_rows
+    }
+}
