@@ -74,12 +74,12 @@ pub(super) fn cost(basis: Basis) -> Cost {
         Basis::Value => (0.8, 0.1),
         Basis::Perlin => (1.0, 0.15),
         Basis::ClassicDiagonal | Basis::ClassicEight => (2.2, 0.15),
-        Basis::ClassicAngle => (10.0, 0.15),
-        Basis::Simplex => (1.8, 1.8),
-        Basis::OpenSimplex2 => (2.0, 2.0),
-        Basis::OpenSimplex2Smooth => (5.0, 5.0),
-        Basis::Worley => (5.5, 4.0),
-        Basis::WorleyEdge => (18.0, 16.0),
+        Basis::ClassicAngle => (5.0, 0.15),
+        Basis::Simplex => (1.8, 0.9),
+        Basis::OpenSimplex2 => (2.0, 1.0),
+        Basis::OpenSimplex2Smooth => (2.5, 2.5),
+        Basis::Worley => (2.7, 2.7),
+        Basis::WorleyEdge => (7.2, 7.2),
     };
     Cost { anywhere, in_rows }
 }
