@@ -46,7 +46,7 @@ pub(crate) enum Source {
 }
 
 impl Source {
-    /// Whether an octave is a sum of few products of a column's and a row's numbers: see [`crate::kernel::basis`].
+    /// Whether an octave is a sum of few products of a column's and a row's numbers: see kernel/basis.rs.
     pub(crate) fn low_rank(self) -> bool {
         matches!(self, Source::Value(_) | Source::Perlin | Source::Classic(_))
     }

@@ -1,18 +1,16 @@
 //! The way in: picks the level and the path.
 
 use crate::choices::{Fade, Smoothness};
+use crate::kernel::families::with_family;
 use crate::kernel::open_simplex::Open;
 use crate::kernel::outputs::Outputs;
-use crate::kernel::pointwise::with_family;
+use crate::kernel::places::{BLOCK, positions};
 use crate::kernel::scattered::Call;
 use crate::kernel::simplex::Plain;
-use crate::kernel::{cellular, lattice, slanted, white};
+use crate::kernel::{cellular_rows, lattice, slanted, white};
 use crate::points::{Depth, Points};
 use crate::program::{Combine, Program, Source};
-use orogen_simd::{Body, F32Lanes, F64Lanes, Simd};
-
-/// How many points are worked on at a time where their positions have to be put together: they stay in the first-level cache.
-pub(crate) const BLOCK: usize = 256;
+use orogen_simd::{Body, Simd};
 
 /// One call of a public `fill`. Depths are z and w, as far as there are these axes.
 pub(crate) struct Fill<'a> {
@@ -57,7 +55,7 @@ fn fill<S: Simd, const DIMS: usize>(simd: S, call: Fill) {
                     white::fill(simd, program, octave, xs_ys, depths, &mut outputs);
                 }
                 (Source::Worley(kind), Combine::Sum, [octave]) if DIMS < 4 => {
-                    cellular::fill::<S, DIMS>(simd, (program, octave, kind), xs_ys, slice[0], &mut outputs);
+                    cellular_rows::fill::<S, DIMS>(simd, (program, octave, kind), xs_ys, slice[0], &mut outputs);
                 }
                 (Source::Simplex, Combine::Sum, _) if outputs.slopes.is_none() => {
                     slanted::fill::<S, Plain, DIMS>(simd, program, xs_ys, slice, &mut outputs);
@@ -101,74 +99,5 @@ fn blocks<S: Simd, const DIMS: usize>(
             }
         }
         with_family::<_, DIMS>(program.source, Call::<S, DIMS> { simd, program, at, target });
-    }
-}
-
-/// x and y of as many points from `start` on as there is room for: where they are, or put together in that room.
-#[inline(always)]
-pub(crate) fn positions<'a, S: Simd>(
-    simd: S,
-    points: &Points<'a>,
-    start: usize,
-    [x, y]: [&'a mut [f64]; 2],
-) -> [&'a [f64]; 2] {
-    let count = x.len();
-    match *points {
-        Points::Scattered { x, y } => [&x[start..start + count], &y[start..start + count]],
-        Points::Lattice { xs, ys } => {
-            gather(simd, (xs, ys), None, start, [x, y]);
-            [x, y]
-        }
-        Points::Displaced { xs, ys, dx, dy } => {
-            gather(simd, (xs, ys), Some([dx, dy]), start, [x, y]);
-            [x, y]
-        }
-    }
-}
-
-/// Collects the positions of lattice samples from `start` on, row by row.
-#[inline(always)]
-fn gather<S: Simd>(
-    simd: S,
-    (xs, ys): (&[f64], &[f64]),
-    displaced: Option<[&[f32]; 2]>,
-    start: usize,
-    [x, y]: [&mut [f64]; 2],
-) {
-    let mut done = 0;
-    while done < x.len() {
-        let at = start + done;
-        let (row, column) = (at / xs.len(), at % xs.len());
-        let run = (xs.len() - column).min(x.len() - done);
-        let (x, y) = (&mut x[done..done + run], &mut y[done..done + run]);
-        x.copy_from_slice(&xs[column..column + run]);
-        y.fill(ys[row]);
-        if let Some([dx, dy]) = displaced {
-            simd.run(Displace { to: x, by: &dx[at..at + run] });
-            simd.run(Displace { to: y, by: &dy[at..at + run] });
-        }
-        done += run;
-    }
-}
-
-/// Adds displacements to positions.
-struct Displace<'a> {
-    to: &'a mut [f64],
-    by: &'a [f32],
-}
-
-impl Body for Displace<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        let whole = self.by.len() / S::LANES * S::LANES;
-        for at in (0..whole).step_by(S::LANES) {
-            let sum = simd.load_f64(&self.to[at..]) + simd.load(&self.by[at..]).widen();
-            sum.store(&mut self.to[at..]);
-        }
-        for at in whole..self.by.len() {
-            self.to[at] += f64::from(self.by[at]);
-        }
     }
 }

@@ -4,7 +4,7 @@
 
 use crate::kernel::cell::{Cell, clamp, coordinate};
 use crate::kernel::combine::exp_minus;
-use crate::kernel::fill::{BLOCK, positions};
+use crate::kernel::places::{BLOCK, positions};
 use crate::kernel::source::{Hashed, Lattice};
 use crate::points::Points;
 use crate::program::Program;

@@ -4,8 +4,9 @@
 
 use crate::kernel::cell::{clamp, coordinate, moved};
 use crate::kernel::combine::State;
+use crate::kernel::families::{Family, VisitFamily};
 use crate::kernel::outputs::Outputs;
-use crate::kernel::pointwise::{Family, Pointwise, VisitFamily};
+use crate::kernel::pointwise::Pointwise;
 use crate::program::{Combine, Program};
 use orogen_simd::{Body, F32Lanes, Simd};
 use std::marker::PhantomData;

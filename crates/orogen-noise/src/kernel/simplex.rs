@@ -159,15 +159,7 @@ impl<S: Simd, C: Corners, const DIMS: usize> Simplices<S, C, DIMS> {
             total = total + t[axis];
         }
         let unskew = UNSKEW[DIMS - 2];
-        // How many coordinates are smaller: the corners step along the greatest first.
-        let mut rank = [zero; 4];
-        for a in 0..DIMS {
-            for b in a + 1..DIMS {
-                let behind = t[a].lt(t[b]);
-                rank[a] = rank[a] + zero.select(behind, one);
-                rank[b] = rank[b] + one.select(behind, zero);
-            }
-        }
+        let waiting = waiting::<S, DIMS>(simd, t);
         let mut from = [zero; 4];
         for axis in 0..DIMS {
             from[axis] = total.neg_mul_add(simd.f32(unskew), t[axis]);
@@ -177,8 +169,7 @@ impl<S: Simd, C: Corners, const DIMS: usize> Simplices<S, C, DIMS> {
             let back = simd.f32(corner_number as f32 * unskew);
             let (mut way, mut key) = ([zero; 4], [keys[0][0]; 4]);
             for axis in 0..DIMS {
-                // Corner k has stepped along the k greatest.
-                let waits = rank[axis].lt(simd.f32((DIMS - corner_number) as f32));
+                let waits = waiting[corner_number][axis];
                 (way[axis], key[axis]) = if corner_number == 0 {
                     (from[axis], keys[axis][0])
                 } else if corner_number == DIMS {
@@ -192,6 +183,40 @@ impl<S: Simd, C: Corners, const DIMS: usize> Simplices<S, C, DIMS> {
         }
         raw
     }
+}
+
+/// Which axes corner k, from the cube's lower one on, has not stepped along: it has along the k greatest fractions. Of the first and the
+/// last corner it is not told.
+#[inline(always)]
+fn waiting<S: Simd, const DIMS: usize>(simd: S, t: &[S::F32; 4]) -> [[S::Mask; 4]; 5] {
+    let (zero, one) = (simd.f32(0.0), simd.f32(1.0));
+    let mut waiting = [[zero.lt(zero); 4]; 5];
+    if DIMS == 4 {
+        // How many fractions are smaller.
+        let mut rank = [zero; 4];
+        for a in 0..DIMS {
+            for b in a + 1..DIMS {
+                let behind = t[a].lt(t[b]);
+                rank[a] = rank[a] + zero.select(behind, one);
+                rank[b] = rank[b] + one.select(behind, zero);
+            }
+        }
+        for number in 1..DIMS {
+            for axis in 0..DIMS {
+                waiting[number][axis] = rank[axis].lt(simd.f32((DIMS - number) as f32));
+            }
+        }
+        return waiting;
+    }
+    let behind = t[0].lt(t[1]);
+    if DIMS == 2 {
+        waiting[1] = [behind, !behind, behind, behind];
+        return waiting;
+    }
+    let (x, y) = (t[0].lt(t[2]), t[1].lt(t[2]));
+    waiting[1] = [behind | x, !behind | y, !x | !y, x];
+    waiting[2] = [behind & x, !behind & y, !x & !y, x];
+    waiting
 }
 
 impl<S: Simd, C: Corners, const DIMS: usize> Pointwise<S> for Simplices<S, C, DIMS> {

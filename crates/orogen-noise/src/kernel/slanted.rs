@@ -6,8 +6,9 @@
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
 use crate::kernel::cell::{Cell, clamp, coordinate};
+use crate::kernel::families::with_family;
 use crate::kernel::outputs::Outputs;
-use crate::kernel::pointwise::{Pointwise, with_family};
+use crate::kernel::pointwise::Pointwise;
 use crate::kernel::scattered::Call;
 use crate::kernel::simplex::{Corners, Simplices, Slanted, beyond_x, scaled, slanted, wrapped};
 use crate::kernel::source::Lattice;

@@ -1,0 +1,83 @@
+//! The list of noises that can be asked sample by sample: from a source's name to its kernels.
+
+use crate::choices::{Fade, Smoothness};
+use crate::kernel::cellular::Cellular;
+use crate::kernel::gradient::Gradient;
+use crate::kernel::open_simplex::{Cubes, Open, Wide};
+use crate::kernel::pointwise::{LowRank, Pointwise};
+use crate::kernel::simplex::{Plain, Simplices};
+use crate::kernel::source::{ClassicSource, PerlinSource};
+use crate::kernel::value::{Blended, Flat};
+use crate::program::Source;
+use orogen_simd::Simd;
+
+/// A noise at any level: what [`Pointwise`] noise a source means.
+pub(crate) trait Family {
+    /// The noise at a level.
+    type At<S: Simd>: Pointwise<S>;
+    /// Whether it has slopes; else they are zero.
+    const SLOPED: bool = true;
+}
+
+/// Work whatever the noise.
+pub(crate) trait VisitFamily {
+    /// The work.
+    fn visit<F: Family>(self);
+}
+
+/// Does the work with the noise the source names, in that many dimensions.
+#[inline(always)]
+pub(crate) fn with_family<V: VisitFamily, const DIMS: usize>(source: Source, work: V) {
+    match source {
+        Source::Value(Fade::Step) => work.visit::<FlatFamily<DIMS>>(),
+        Source::Value(_) => work.visit::<ValueFamily<DIMS>>(),
+        Source::Perlin => work.visit::<PerlinFamily<DIMS>>(),
+        Source::Classic(_) => work.visit::<ClassicFamily<DIMS>>(),
+        Source::Worley(_) => work.visit::<WorleyFamily<DIMS>>(),
+        Source::Simplex => work.visit::<SimplexFamily<DIMS>>(),
+        Source::OpenSimplex2(Smoothness::Fast) if DIMS == 3 => work.visit::<CubesFamily<false>>(),
+        Source::OpenSimplex2(Smoothness::Fast) => work.visit::<OpenFamily<DIMS>>(),
+        Source::OpenSimplex2(Smoothness::Smooth) if DIMS == 3 => work.visit::<CubesFamily<true>>(),
+        Source::OpenSimplex2(Smoothness::Smooth) => work.visit::<WideFamily<DIMS>>(),
+    }
+}
+
+struct FlatFamily<const DIMS: usize>;
+struct ValueFamily<const DIMS: usize>;
+struct PerlinFamily<const DIMS: usize>;
+struct ClassicFamily<const DIMS: usize>;
+struct WorleyFamily<const DIMS: usize>;
+struct SimplexFamily<const DIMS: usize>;
+struct OpenFamily<const DIMS: usize>;
+struct WideFamily<const DIMS: usize>;
+struct CubesFamily<const SMOOTH: bool>;
+
+impl<const DIMS: usize> Family for FlatFamily<DIMS> {
+    type At<S: Simd> = LowRank<Flat<S, DIMS>>;
+    const SLOPED: bool = false;
+}
+impl<const DIMS: usize> Family for ValueFamily<DIMS> {
+    type At<S: Simd> = LowRank<Blended<S, DIMS>>;
+}
+impl<const DIMS: usize> Family for PerlinFamily<DIMS> {
+    type At<S: Simd> = LowRank<Gradient<PerlinSource<S>, DIMS>>;
+}
+impl<const DIMS: usize> Family for ClassicFamily<DIMS> {
+    type At<S: Simd> = LowRank<Gradient<ClassicSource<S>, DIMS>>;
+}
+impl<const DIMS: usize> Family for WorleyFamily<DIMS> {
+    type At<S: Simd> = Cellular<S, DIMS>;
+    const SLOPED: bool = false;
+}
+impl<const DIMS: usize> Family for SimplexFamily<DIMS> {
+    type At<S: Simd> = Simplices<S, Plain, DIMS>;
+}
+impl<const DIMS: usize> Family for OpenFamily<DIMS> {
+    type At<S: Simd> = Simplices<S, Open, DIMS>;
+}
+impl<const DIMS: usize> Family for WideFamily<DIMS> {
+    type At<S: Simd> = Wide<S, DIMS>;
+}
+impl<const SMOOTH: bool> Family for CubesFamily<SMOOTH> {
+    type At<S: Simd> = Cubes<S, SMOOTH>;
+}

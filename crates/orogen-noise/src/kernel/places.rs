@@ -1,0 +1,76 @@
+//! Positions of points, some at a time.
+
+use crate::points::Points;
+use orogen_simd::{Body, F32Lanes, F64Lanes, Simd};
+
+/// How many points are worked on at a time where their positions have to be put together: they stay in the first-level cache.
+pub(crate) const BLOCK: usize = 256;
+
+/// x and y of as many points from `start` on as there is room for: where they are, or put together in that room.
+#[inline(always)]
+pub(crate) fn positions<'a, S: Simd>(
+    simd: S,
+    points: &Points<'a>,
+    start: usize,
+    [x, y]: [&'a mut [f64]; 2],
+) -> [&'a [f64]; 2] {
+    let count = x.len();
+    match *points {
+        Points::Scattered { x, y } => [&x[start..start + count], &y[start..start + count]],
+        Points::Lattice { xs, ys } => {
+            gather(simd, (xs, ys), None, start, [x, y]);
+            [x, y]
+        }
+        Points::Displaced { xs, ys, dx, dy } => {
+            gather(simd, (xs, ys), Some([dx, dy]), start, [x, y]);
+            [x, y]
+        }
+    }
+}
+
+/// Collects the positions of lattice samples from `start` on, row by row.
+#[inline(always)]
+fn gather<S: Simd>(
+    simd: S,
+    (xs, ys): (&[f64], &[f64]),
+    displaced: Option<[&[f32]; 2]>,
+    start: usize,
+    [x, y]: [&mut [f64]; 2],
+) {
+    let mut done = 0;
+    while done < x.len() {
+        let at = start + done;
+        let (row, column) = (at / xs.len(), at % xs.len());
+        let run = (xs.len() - column).min(x.len() - done);
+        let (x, y) = (&mut x[done..done + run], &mut y[done..done + run]);
+        x.copy_from_slice(&xs[column..column + run]);
+        y.fill(ys[row]);
+        if let Some([dx, dy]) = displaced {
+            simd.run(Displace { to: x, by: &dx[at..at + run] });
+            simd.run(Displace { to: y, by: &dy[at..at + run] });
+        }
+        done += run;
+    }
+}
+
+/// Adds displacements to positions.
+struct Displace<'a> {
+    to: &'a mut [f64],
+    by: &'a [f32],
+}
+
+impl Body for Displace<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let whole = self.by.len() / S::LANES * S::LANES;
+        for at in (0..whole).step_by(S::LANES) {
+            let sum = simd.load_f64(&self.to[at..]) + simd.load(&self.by[at..]).widen();
+            sum.store(&mut self.to[at..]);
+        }
+        for at in whole..self.by.len() {
+            self.to[at] += f64::from(self.by[at]);
+        }
+    }
+}
