@@ -49,7 +49,7 @@ pub struct Args {
     /// Samples from one hill to the next, more or less [default: 64; a texture has its own]
     #[arg(long, value_name = "N", value_parser = wavelength, allow_negative_numbers = true)]
     wavelength: Option<f64>,
-    /// Octaves, each finer and weaker than the one before [default: 1; a texture has its own]
+    /// Octaves, each finer and weaker than the one before [default: 1, with --fractal 6; a texture has its own]
     #[arg(long, value_name = "N", value_parser = octaves(), allow_negative_numbers = true)]
     octaves: Option<u32>,
     /// Amplitude from one octave to the next
@@ -148,7 +148,7 @@ fn noise(args: &Args) -> Result<Fractal, Failure> {
         kind: args.sum.kind().map_err(Failure::Usage)?,
         seed: args.seed,
         wavelength: args.wavelength.or(args.texture.map(Texture::wavelength)).unwrap_or(64.0),
-        octaves: args.octaves.or(args.texture.map(Texture::octaves)).unwrap_or(1),
+        octaves: args.octaves.or(args.texture.map(Texture::octaves)).unwrap_or(args.sum.octaves()),
         lacunarity: args.lacunarity,
         gain: args.gain,
     })
@@ -307,7 +307,7 @@ impl Task<'_> {
         let Fractal { basis, seed, octaves, .. } = self.noise;
         let sum = match self.look {
             Look::Texture(texture) => texture.name(),
-            _ => self.args.sum.fractal.name(),
+            _ => self.args.sum.sum().name(),
         };
         let depth = self.args.z.map(|z| format!(", depth {z}")).unwrap_or_default();
         let plural = if octaves == 1 { "" } else { "s" };

@@ -8,9 +8,9 @@ use crate::size::{finite, not_negative};
 /// What it takes: the kind of fractal, and the parameters of some kinds.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// How octaves become one number
-    #[arg(long, default_value = "fbm", conflicts_with = "texture")]
-    pub fractal: Sum,
+    /// How octaves become one number [default: fbm]
+    #[arg(long, conflicts_with = "texture")]
+    fractal: Option<Sum>,
     /// How strongly slope damps the octaves of weighted [default: 1]
     #[arg(long, value_name = "K", value_parser = not_negative, allow_negative_numbers = true)]
     k: Option<f64>,
@@ -79,6 +79,16 @@ impl Falloff {
 }
 
 impl Options {
+    /// How octaves are summed.
+    pub fn sum(&self) -> Sum {
+        self.fractal.unwrap_or(Sum::Fbm)
+    }
+
+    /// How many octaves there are where nobody says: whoever asks for a fractal wants more than one.
+    pub fn octaves(&self) -> u32 {
+        if self.fractal.is_some() { 6 } else { 1 }
+    }
+
     /// The kind, or which parameter is another kind's.
     pub fn kind(&self) -> Result<Kind, String> {
         let owners = [
@@ -90,13 +100,13 @@ impl Options {
             ("--damp", self.damp.is_some(), &[Sum::Jordan]),
         ];
         for (option, given, owners) in owners {
-            if given && !owners.contains(&self.fractal) {
+            if given && !owners.contains(&self.sum()) {
                 let owners: Vec<String> = owners.iter().map(|owner| format!("--fractal {}", owner.name())).collect();
-                return Err(format!("{option} is for {}, not for {}", owners.join(" or "), self.fractal.name()));
+                return Err(format!("{option} is for {}, not for {}", owners.join(" or "), self.sum().name()));
             }
         }
         let offset = self.offset.unwrap_or(0.7);
-        Ok(match self.fractal {
+        Ok(match self.sum() {
             Sum::Fbm => Kind::Fbm,
             Sum::Ridged => Kind::Ridged,
             Sum::Billow => Kind::Billow,

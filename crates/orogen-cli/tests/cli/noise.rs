@@ -75,6 +75,12 @@ fn every_parameter_reaches_the_noise() {
         let expect = samples(&Fractal { basis: Basis::Value, kind, ..noise }, 33, 33, depth);
         assert_eq!(npy(&folder.read("a.npy")).data(), expect, "{more:?}");
     }
+    // A fractal has six octaves where nobody says, a noise by itself one.
+    for (more, octaves) in [(&["--fractal", "fbm"][..], 6), (&[], 1)] {
+        folder.good(&[&["noise", "value", "-o", "a.npy", "--size", "33"], more].concat());
+        let expect = Fractal { basis: Basis::Value, wavelength: 64.0, octaves, ..Fractal::default() };
+        assert_eq!(npy(&folder.read("a.npy")).data(), samples(&expect, 33, 33, None), "{more:?}");
+    }
 }
 
 #[test]

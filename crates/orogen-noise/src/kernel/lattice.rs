@@ -9,11 +9,9 @@ use crate::program::{Combine, Octave, Program, Source};
 use orogen_simd::{Body, F32Lanes, Simd};
 use std::cell::Cell;
 
-/// Columns from which on a window is wide, how many rows of one are filled before the next strips, and how many strips abreast: a
-/// page of 4 KiB.
+/// Columns from which on a window is wide, and how many rows of one are filled strip by strip before the next ones.
 const WIDE: usize = 4096;
 const BAND: usize = 64;
-const ABREAST: usize = 4;
 
 /// Buffers a thread keeps from call to call.
 struct Scratch {
@@ -43,52 +41,43 @@ pub(crate) fn fill<S: Simd>(
     // Taken out and put back: nothing is borrowed while the kernels run.
     let mut scratch = SCRATCH.take().unwrap_or_else(|| Box::new(Scratch { octaves: Vec::new(), points: NO_POINTS }));
     let octaves = program.octaves();
-    // Rows far apart in memory are in pages of their own: in a wide window, strips of few octaves are filled a page's width at a time,
-    // and go down only so far before the next.
-    let wide = xs.len() > WIDE;
-    let abreast = if wide && octaves.len() == 1 { ABREAST } else { 1 };
-    let band = if wide { BAND } else { ys.len().max(1) };
-    if scratch.octaves.len() < octaves.len() * abreast {
-        scratch.octaves.resize_with(octaves.len() * abreast, StripOctave::new);
+    if scratch.octaves.len() < octaves.len() {
+        scratch.octaves.resize_with(octaves.len(), StripOctave::new);
     }
     let Scratch { octaves: strips, points } = &mut *scratch;
-    let job = Job {
-        source: program.source,
-        octave: &octaves.first().copied().unwrap_or_default(),
-        limit: program.limit,
-        slopes: outputs.slopes.is_some() || program.combine.needs_slopes(),
-        dims,
-        depths,
-        columns: 0,
-    };
+    let strips = &mut strips[..octaves.len()];
+    let slopes = outputs.slopes.is_some() || program.combine.needs_slopes();
+    // Rows far apart in memory are in pages of their own: a strip of a wide window goes down only so far before the next.
+    let band = if xs.len() > WIDE { BAND } else { ys.len().max(1) };
     for (b, band_ys) in ys.chunks(band).enumerate() {
-        for (p, page) in xs.chunks(WIDTH * abreast).enumerate() {
-            for (s, columns) in page.chunks(WIDTH).enumerate() {
-                for (strip, octave) in strips[s * octaves.len()..].iter_mut().zip(octaves) {
-                    let job = Job { octave, columns: columns.len(), ..job };
-                    simd.run(Columns { job, strip, xs: columns });
-                }
+        for (s, columns) in xs.chunks(WIDTH).enumerate() {
+            let job = Job {
+                source: program.source,
+                octave: &octaves.first().copied().unwrap_or_default(),
+                limit: program.limit,
+                slopes,
+                dims,
+                depths,
+                columns: columns.len(),
+            };
+            for (strip, octave) in strips.iter_mut().zip(octaves) {
+                simd.run(Columns { job: Job { octave, ..job }, strip, xs: columns });
             }
             for (g, rows) in band_ys.chunks(S::LANES).enumerate() {
-                for s in 0..page.len().div_ceil(WIDTH) {
-                    for (strip, octave) in strips[s * octaves.len()..].iter_mut().zip(octaves) {
-                        simd.run(Rows { job: Job { octave, ..job }, strip, ys: rows });
-                    }
+                for (strip, octave) in strips.iter_mut().zip(octaves) {
+                    simd.run(Rows { job: Job { octave, ..job }, strip, ys: rows });
                 }
                 for r in 0..rows.len() {
-                    for (s, columns) in page.chunks(WIDTH).enumerate() {
-                        let strips = &mut strips[s * octaves.len()..(s + 1) * octaves.len()];
-                        for (strip, octave) in strips.iter_mut().zip(octaves) {
-                            strip.hold(simd, &Job { octave, columns: columns.len(), ..job }, points, r);
-                        }
-                        let start = (b * band + g * S::LANES + r) * xs.len() + (p * abreast + s) * WIDTH;
-                        let target = outputs.part(start, columns.len());
-                        let row = Row { combine: program.combine, octaves, strips, r, target };
-                        if matches!(program.source, Source::Value(_)) {
-                            in_dimensions::<S, 1>(simd, dims, row);
-                        } else {
-                            in_dimensions::<S, 2>(simd, dims, row);
-                        }
+                    for (strip, octave) in strips.iter_mut().zip(octaves) {
+                        strip.hold(simd, &Job { octave, ..job }, points, r);
+                    }
+                    let start = (b * band + g * S::LANES + r) * xs.len() + s * WIDTH;
+                    let target = outputs.part(start, columns.len());
+                    let row = Row { combine: program.combine, octaves, strips, r, target };
+                    if matches!(program.source, Source::Value(_)) {
+                        in_dimensions::<S, 1>(simd, dims, row);
+                    } else {
+                        in_dimensions::<S, 2>(simd, dims, row);
                     }
                 }
             }

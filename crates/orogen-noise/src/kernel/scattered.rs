@@ -11,9 +11,6 @@ use crate::program::{Combine, Program};
 use orogen_simd::{Body, F32Lanes, Simd};
 use std::marker::PhantomData;
 
-/// How many registers of samples go through an octave at a time.
-const REGISTERS: usize = 16;
-
 /// A call of [`Scatter`] to be made for the noise a source names.
 pub(crate) struct Call<'a, S: Simd, const DIMS: usize> {
     pub simd: S,
@@ -114,44 +111,26 @@ impl<F: Family, const DIMS: usize> Body for Sums<'_, F, DIMS> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
+        let Sums { program, at, target, .. } = self;
+        let none = simd.f64(0.0);
         let mut start = 0;
-        while start < self.target.len() {
-            let count = (self.target.len() - start).min(REGISTERS * S::LANES);
-            let target = &mut self.target[start..start + count];
-            sums::<S, F::At<S>, DIMS>(simd, self.program, &self.at, start, target);
-            start += count;
-        }
-    }
-}
-
-/// Some registers of plain sums, octave by octave, so that what an octave needs is made once for all of them.
-#[inline(always)]
-fn sums<S: Simd, P: Pointwise<S>, const DIMS: usize>(
-    simd: S,
-    program: &Program,
-    at: &[&[f64]; 4],
-    start: usize,
-    target: &mut [f32],
-) {
-    let none = simd.f64(0.0);
-    let count = target.len().div_ceil(S::LANES).min(REGISTERS);
-    let mut sums = [simd.f32(0.0); REGISTERS];
-    for octave in program.octaves() {
-        let noise = P::new(simd, program.source, octave);
-        for r in 0..count {
-            let mut place = [P::split(simd, none); 4];
+        while start < target.len() {
+            let mut position = [none; 4];
             for axis in 0..DIMS {
-                let from = at[axis].get(start + r * S::LANES..).unwrap_or_default();
-                let position = clamp(simd, simd.load_f64_partial(from, 0.0), program.limit);
-                place[axis] = P::split(simd, coordinate(simd, octave, axis, position));
+                let from = at[axis].get(start..).unwrap_or_default();
+                position[axis] = clamp(simd, simd.load_f64_partial(from, 0.0), program.limit);
             }
-            let mut one = [simd.f32(0.0); 5];
-            one[0] = sums[r];
-            noise.add::<false>(simd, octave, &place, &mut one);
-            sums[r] = one[0];
+            let mut sum = [simd.f32(0.0); 5];
+            for octave in program.octaves() {
+                let noise = F::At::<S>::new(simd, program.source, octave);
+                let mut place = [F::At::<S>::split(simd, none); 4];
+                for axis in 0..DIMS {
+                    place[axis] = F::At::<S>::split(simd, coordinate(simd, octave, axis, position[axis]));
+                }
+                noise.add::<false>(simd, octave, &place, &mut sum);
+            }
+            sum[0].store_partial(&mut target[start..]);
+            start += S::LANES;
         }
-    }
-    for r in 0..count {
-        sums[r].store_partial(&mut target[r * S::LANES..]);
     }
 }
