@@ -10,6 +10,8 @@ mod presets;
 
 use std::path::PathBuf;
 
+pub use asan::host;
+
 use crate::failure::{Failure, Result};
 use crate::shell::{cargo, program, root, run as sh, target_dir};
 use crate::steps::{self, Step};
@@ -32,6 +34,7 @@ Builds `orogen` for release, installs what is missing and runs every client, or 
   rasterio  rasterio reads GeoTIFFs: the samples and where they lie; rio-cogeo validates their layout
   xarray    xarray and zarr-python read Zarr groups: the samples and where they lie
   tiles     NumPy and Pillow read tiles: shared edges, one scale for all; Terrarium heights where a map has them
+  dems      files of heights that rasterio writes in every kind there is: orogen reads the very samples, and keeps where they lie
   taplo     taplo checks every recipe against the JSON Schema, and refuses broken ones
 
 `build` and `install` go first whatever is named. Elsewhere than on Debian, or not as root, it says what to install.
@@ -50,15 +53,17 @@ struct Client {
 }
 
 const NUMPY: &str = "numpy==2.4.6";
+const RASTERIO: &str = "rasterio==1.4.4";
 const PILLOW: &str = "pillow==12.2.0";
 
 const CLIENTS: &[Client] = &[
     Client { name: "neon", apt: neon::APT, pip: &[], npm: &[] },
     Client { name: "numpy", apt: &[], pip: &[NUMPY], npm: &[] },
     Client { name: "pillow", apt: &[], pip: &[NUMPY, PILLOW], npm: &[] },
-    Client { name: "rasterio", apt: &[], pip: &[NUMPY, "rasterio==1.4.4", "rio-cogeo==7.0.4"], npm: &[] },
+    Client { name: "rasterio", apt: &[], pip: &[NUMPY, RASTERIO, "rio-cogeo==7.0.4"], npm: &[] },
     Client { name: "xarray", apt: &[], pip: &[NUMPY, "xarray==2026.9.0", "zarr==3.1.6"], npm: &[] },
     Client { name: "tiles", apt: &[], pip: &[NUMPY, PILLOW], npm: &[] },
+    Client { name: "dems", apt: &[], pip: &[NUMPY, RASTERIO], npm: &[] },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
 
@@ -87,6 +92,7 @@ const STEPS: &[&Step] = &[
     &Step { name: "rasterio", about: "rasterio and rio-cogeo read GeoTIFFs", run: || script("rasterio") },
     &Step { name: "xarray", about: "xarray and zarr-python read Zarr groups", run: || script("xarray") },
     &Step { name: "tiles", about: "NumPy and Pillow read tiles", run: || script("tiles") },
+    &Step { name: "dems", about: "orogen reads what rasterio writes", run: || script("dems") },
     &Step { name: "taplo", about: "taplo checks the recipes against the schema", run: || script("taplo") },
 ];
 

@@ -6,6 +6,7 @@ mod bless;
 mod clients;
 mod codegen;
 mod failure;
+mod fuzz;
 mod gallery;
 mod licences;
 mod resolution;
@@ -35,6 +36,7 @@ const COMMANDS: &[Command] = &[
     Command { name: "bless", about: bless::ABOUT, help: bless::HELP, run: bless::run },
     Command { name: "gallery", about: gallery::ABOUT, help: gallery::HELP, run: gallery::run },
     Command { name: "resolution", about: resolution::ABOUT, help: resolution::HELP, run: resolution::run },
+    Command { name: "fuzz", about: fuzz::ABOUT, help: fuzz::HELP, run: fuzz::run },
     Command { name: "bench", about: bench::ABOUT, help: bench::HELP, run: bench::run },
 ];
 

@@ -1,12 +1,15 @@
-//! RECIPE on the command line: a file, or the name of a preset.
+//! RECIPE on the command line: a file, the name of a preset, or a file of heights.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use orogen::dem::ground::{Ground, USUAL_MEMORY};
+use orogen::format::import;
 use orogen::recipe::presets::{self, Preset};
 use orogen::{Recipe, nearest};
 
 use crate::failure::Failure;
-use crate::say;
+use crate::{memory, say};
 
 /// Where a recipe comes from.
 #[derive(Debug, Clone)]
@@ -15,6 +18,8 @@ pub enum Source {
     File(PathBuf),
     /// A preset.
     Preset(&'static Preset),
+    /// Heights of a real place, as a recipe of nothing else.
+    Dem(PathBuf),
 }
 
 impl Source {
@@ -31,6 +36,7 @@ impl Source {
                 Ok(Source::File(argument.to_path_buf()))
             }
             Some(preset) => Ok(Source::Preset(preset)),
+            None if import::is_dem(argument) => Ok(Source::Dem(argument.to_path_buf())),
             None if argument.exists() || looks_like_a_path(argument) => Ok(Source::File(argument.to_path_buf())),
             None => Err(Failure::Usage(unknown(argument))),
         }
@@ -41,6 +47,11 @@ impl Source {
         Ok(match self {
             Source::File(path) => Recipe::read(path)?,
             Source::Preset(preset) => preset.recipe()?,
+            Source::Dem(path) => {
+                let ground = Ground::read(path, None, memory::share_of_free().unwrap_or(USUAL_MEMORY))?;
+                ground.notes.iter().for_each(|note| say::error(&format!("note: {}: {note}", path.display())));
+                Recipe::of_place(path, &Arc::new(ground))
+            }
         })
     }
 }

@@ -3,6 +3,7 @@
 //! One `op!` block gives the struct, its defaults, reading and checking from a recipe, writing back, the JSON Schema, the
 //! command line's help and a user interface's sliders.
 
+use crate::dem::held::Imported;
 use crate::layer::Layer;
 use crate::value::{Spanned, Value};
 use serde::{Deserialize, Serialize};
@@ -91,6 +92,8 @@ pub enum Shape {
     Pair,
     /// Control points [[x, y], ...], at least two, x rising.
     Curve,
+    /// The path of a file.
+    File,
 }
 
 /// A bound as people write it: 1e9 rather than 1000000000.
@@ -147,6 +150,36 @@ pub trait Param: Sized {
     fn within(&self, range: [f64; 2]) -> bool {
         let _ = range;
         true
+    }
+    /// What decides about results: the parameter itself, or of a file what is in it.
+    fn key(&self) -> Value {
+        self.write()
+    }
+    /// The file that it names, if it is a file.
+    fn file(&mut self) -> Option<&mut Imported> {
+        None
+    }
+}
+
+impl Param for Imported {
+    const SHAPE: Shape = Shape::File;
+    fn read(value: &Value) -> Option<Imported> {
+        match value {
+            Value::Text(path) => Some(Imported::from(path.as_str())),
+            _ => None,
+        }
+    }
+    fn write(&self) -> Value {
+        Value::Text(self.text())
+    }
+    fn key(&self) -> Value {
+        match self.ground() {
+            Some(ground) => Value::Text(ground.hash.iter().map(|byte| format!("{byte:02x}")).collect()),
+            None => self.write(),
+        }
+    }
+    fn file(&mut self) -> Option<&mut Imported> {
+        Some(self)
     }
 }
 
@@ -269,6 +302,7 @@ impl ParamSpec {
             Shape::Curve => format!(
                 "a list of at least two points [[x, y], ...] of finite numbers{range}, each x greater than the one before"
             ),
+            Shape::File => "the path of a file, in quotes".to_string(),
         }
     }
 }
@@ -302,6 +336,10 @@ pub trait Declared {
     fn param(&self, i: usize) -> Value;
     /// Sets parameter `i`, or says what was expected.
     fn set_param(&mut self, i: usize, value: &Value) -> Result<(), String>;
+    /// What of parameter `i` decides about results.
+    fn param_key(&self, i: usize) -> Value;
+    /// The files that parameters name.
+    fn files(&mut self) -> Vec<&mut Imported>;
     /// What a single parameter cannot see: a sentence if parameters contradict each other, with the key it is about.
     fn consistent(&self) -> Result<(), (&'static str, String)>;
 }
@@ -488,6 +526,19 @@ macro_rules! op {
                     at += 1;
                 )* )?
                 Ok(())
+            }
+
+            #[allow(unused_variables, unused_mut, unused_assignments, reason = "not every op has parameters")]
+            fn param_key(&self, i: usize) -> $crate::value::Value {
+                let mut at = 0;
+                $( $( if i == at { return $crate::declare::Param::key(&self.$param); } at += 1; )* )?
+                $crate::value::Value::Other("nothing")
+            }
+
+            fn files(&mut self) -> Vec<&mut $crate::dem::held::Imported> {
+                let files: Vec<Option<&mut $crate::dem::held::Imported>> =
+                    vec![$( $( $crate::declare::Param::file(&mut self.$param), )* )?];
+                files.into_iter().flatten().collect()
             }
 
             fn consistent(&self) -> std::result::Result<(), (&'static str, String)> {

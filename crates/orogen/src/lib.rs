@@ -31,6 +31,7 @@ pub mod analysis;
 pub mod bands;
 pub mod build;
 pub mod chunks;
+pub mod dem;
 mod engine;
 pub mod error;
 pub mod field;

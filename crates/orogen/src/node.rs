@@ -1,6 +1,7 @@
 //! The list of all ops: one enum that a recipe is made of.
 
 use crate::declare::{Declared, Input, Spec};
+use crate::dem::held::Imported;
 use crate::layer::Layer;
 use crate::op::{Field, Filter, Op, Solver};
 use crate::value::Value;
@@ -86,6 +87,16 @@ impl Node {
     /// Sets parameter `i`, or says what was expected.
     pub fn set_param(&mut self, i: usize, value: &Value) -> Result<(), String> {
         self.declared_mut().set_param(i, value)
+    }
+
+    /// What of parameter `i` decides about the node's result.
+    pub fn param_key(&self, i: usize) -> Value {
+        self.declared().param_key(i)
+    }
+
+    /// The files that its parameters name.
+    pub fn files(&mut self) -> Vec<&mut Imported> {
+        self.declared_mut().files()
     }
 
     /// A sentence and its key if parameters contradict each other.

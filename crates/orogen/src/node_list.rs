@@ -7,6 +7,7 @@ nodes! {
         classic::Classic,
         constant::Constant,
         curve::Curve,
+        dem::Dem,
         edge::Edge,
         fbm::Fbm,
         hetero::Hetero,

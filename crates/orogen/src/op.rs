@@ -2,6 +2,7 @@
 
 use crate::declare::Declared;
 use crate::error::Result;
+use crate::format::dem::Georeference;
 use crate::grid::{Grid, Window};
 use crate::layer::LayerKind;
 use crate::progress::Progress;
@@ -73,6 +74,16 @@ pub trait Field: Send + Sync {
     /// Whether the field only makes sense in a world with bounds.
     fn needs_bounds(&self) -> bool {
         false
+    }
+
+    /// Bytes of memory that it holds of files, for as long as its world is open.
+    fn memory(&self) -> u64 {
+        0
+    }
+
+    /// How the world's metres lie on a map, if this is a real place that says so.
+    fn georeference(&self) -> Option<Georeference> {
+        None
     }
 
     /// About how many nanoseconds a sample takes: what is dear is made once and kept rather than made again.

@@ -1,5 +1,6 @@
 //! The front door: a recipe opened, asked for windows and points.
 
+use crate::dem::ground::USUAL_MEMORY;
 use crate::engine::alone::Ready;
 use crate::engine::run::Engine;
 use crate::error::{Error, ErrorKind, Result};
@@ -83,9 +84,10 @@ impl World {
     /// Opens a recipe with options.
     ///
     /// # Errors
-    /// If the recipe is not valid, or no threads can be started.
-    pub fn with_options(recipe: Recipe, options: Options) -> Result<World> {
+    /// If the recipe is not valid, a file that it names cannot be read, or no threads can be started.
+    pub fn with_options(mut recipe: Recipe, options: Options) -> Result<World> {
         let graph = Graph::resolve(&recipe).map_err(Graph::error)?;
+        recipe.load(options.memory.unwrap_or(USUAL_MEMORY))?;
         if recipe.outputs().next().is_none() {
             let sentence = "the recipe has no outputs: name at least one, such as `height`";
             return Err(Error::new(ErrorKind::Recipe, sentence));

@@ -30,7 +30,7 @@ pub fn check() -> Result {
 }
 
 /// The target this compiler builds for by itself.
-fn host() -> Result<String> {
+pub fn host() -> Result<String> {
     let version = shell::capture(shell::program("rustc").arg("-vV"))?;
     let host = version.lines().find_map(|line| line.strip_prefix("host: "));
     host.map(str::to_owned).ok_or_else(|| Failure::new("`rustc -vV` names no host"))

@@ -20,7 +20,7 @@ use crate::{disk, interrupt, say};
 /// What it takes.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A recipe's file, or the name of a preset
+    /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
     /// What to build: NAME.tif a Cloud-Optimised GeoTIFF, NAME.zarr a Zarr v3 group, NAME a folder of --tiles
     #[arg(short, long, value_name = "OUT")]

@@ -10,7 +10,7 @@ use crate::{say, view};
 /// What it takes.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A recipe's file, or the name of a preset
+    /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     #[arg(default_value = orogen::recipe::presets::DEFAULT)]
     recipe: PathBuf,
     #[command(flatten)]

@@ -4,6 +4,7 @@ use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use orogen::bands::Bands;
+use orogen::format::dem::Georeference;
 use orogen::format::levels::{Levels, NO_SAMPLES, extremes};
 use orogen::format::png::{Picture, Pixel};
 use orogen::format::{geotiff, npy, png};
@@ -23,7 +24,7 @@ use crate::{interrupt, say, view};
 /// What it takes.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A recipe's file, or the name of a preset
+    /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
     /// File to write, its extension one of the formats; `-` is standard output
     #[arg(short, long, value_name = "FILE")]
@@ -72,13 +73,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     };
     let (bar, progress) = Bar::new(args.quiet);
     let bands = world.bands(&args.layer, &window, beside(format, &window), &progress)?;
+    let what = What { format, window, map: world.recipe().georeference() };
     let stopped = |failure| interrupt::explain(failure, "nothing was written");
     match to_stdout {
         true => {
             let mut out = BufWriter::new(io::stdout().lock());
             // Standard output has no disk of its own to put rows aside on.
             let spool = Spool::beside(&std::env::temp_dir().join("orogen"));
-            let written = write(&mut Stoppable(&mut out), format, &window, bands, spool).and_then(|_| out.flush());
+            let written = write(&mut Stoppable(&mut out), &what, bands, spool).and_then(|_| out.flush());
             written.map_err(|cause| match interrupt::asked() {
                 true => Failure::Interrupted("stopped: what was written is cut short".to_string()),
                 false => Failure::stdout(&cause),
@@ -89,7 +91,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             file::check_folder(folder)?;
             let mut levels = Levels::new(0.0, 0.0);
             file::write_whole(&args.out, |out| {
-                levels = write(&mut Stoppable(out), format, &window, bands, Spool::beside(&args.out))?;
+                levels = write(&mut Stoppable(out), &what, bands, Spool::beside(&args.out))?;
                 Ok(())
             })
             .map_err(|error| stopped(error.into()))?;
@@ -133,8 +135,17 @@ fn beside(format: Format, window: &Window) -> u64 {
     }
 }
 
+/// What is written.
+struct What {
+    format: Format,
+    window: Window,
+    /// How metres lie on a map.
+    map: Option<Georeference>,
+}
+
 /// Writes all rows as they are made; tells their range. `spool` is for what cannot be written before all is known.
-fn write(out: &mut dyn Write, format: Format, window: &Window, bands: Bands, mut spool: Spool) -> io::Result<Levels> {
+fn write(out: &mut dyn Write, what: &What, bands: Bands, mut spool: Spool) -> io::Result<Levels> {
+    let What { format, window, map } = what;
     let mut range = NO_SAMPLES;
     let mut rows = bands.map(|band| {
         let band = band?;
@@ -142,13 +153,14 @@ fn write(out: &mut dyn Write, format: Format, window: &Window, bands: Bands, mut
         Ok::<Grid, io::Error>(band)
     });
     let levels = |[low, high]: [f32; 2]| Levels::new(low, high);
-    match format {
+    match *format {
         Format::Npy => {
             npy::write_header(out, window.width, window.height)?;
             rows.try_for_each(|band| npy::write_rows(out, band?.data()))?;
         }
         Format::Tif => {
-            let mut writer = geotiff::writer::Writer::new(window, &geotiff::options::Options::default(), spool)?;
+            let options = geotiff::options::Options { map: map.clone(), ..Default::default() };
+            let mut writer = geotiff::writer::Writer::new(window, &options, spool)?;
             rows.try_for_each(|band| writer.rows(band?.data()))?;
             writer.finish(out)?;
         }

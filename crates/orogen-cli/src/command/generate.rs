@@ -16,7 +16,7 @@ use crate::{interrupt, say, view, watch};
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Args {
-    /// A recipe's file, or the name of a preset
+    /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     #[arg(default_value = orogen::recipe::presets::DEFAULT)]
     recipe: PathBuf,
     #[command(flatten)]
@@ -43,6 +43,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let again = |progress: &Progress| make(&source, args, progress);
     match (&source, args.watch) {
         (Source::File(path), true) => watch::watch(path, args.quiet, again),
+        (Source::Dem(path), true) => Err(Failure::Usage(format!(
+            "--watch waits for changes of a recipe, and {} holds heights; name it in a recipe's node with op = \"dem\"",
+            path.display()
+        ))),
         (Source::Preset(preset), true) => Err(Failure::Usage(format!(
             "--watch waits for changes of a file, and `{0}` is a preset; `orogen new NAME --preset {0}` makes a file of it",
             preset.name

@@ -17,6 +17,31 @@ fn a_window_is_the_crop_of_the_whole() {
 }
 
 #[test]
+fn a_file_of_heights_is_a_recipe() {
+    let folder = Folder::with_small();
+    folder.good(&["export", "small.toml", "-o", "a.tif", "-q"]);
+    folder.good(&["export", "a.tif", "-o", "b.npy", "-q"]);
+    folder.good(&["export", "small.toml", "-o", "c.npy", "-q"]);
+    assert!(folder.read("b.npy") == folder.read("c.npy"));
+    // A node of another recipe: the path counts from the recipe's folder, wherever the command runs.
+    let text = "orogen = 1\n[world]\nsize = 200\ncell = 10\n[nodes.a]\nop = \"dem\"\npath = \"../a.tif\"\nat = [-100, -50]\n\
+                [outputs]\nheight = \"a\"\n";
+    std::fs::create_dir(folder.path("sub")).unwrap();
+    std::fs::write(folder.path("sub/place.toml"), text).unwrap();
+    folder.good(&["export", "sub/place.toml", "-o", "d.npy", "-q"]);
+    let (all, part) = (npy(&folder.read("c.npy")), npy(&folder.read("d.npy")));
+    assert!((0..20).all(|j| (0..20).all(|i| part.get(i, j) == all.get(i + 10, j + 5))));
+    std::fs::write(folder.path("cut.tif"), &folder.read("a.tif")[..900]).unwrap();
+    folder.bad(&["generate", "cut.tif"], 1, "cannot read cut.tif: it ends within its");
+    folder.bad(&["generate", "a.tif", "--watch"], 2, "a.tif holds heights");
+    folder.bad(&["generate", "gone.tif"], 1, "cannot read gone.tif: no such file");
+    // A height picture with the summary beside it.
+    folder.good(&["generate", "small.toml", "-o", "made", "-q"]);
+    let told = folder.good(&["export", "made/height.png", "-o", "e.npy"]).text().to_string();
+    assert!(told.contains("64 x 48 samples of 10 m"), "{told}");
+}
+
+#[test]
 fn what_does_not_fit_in_memory_is_written_as_it_is_made() {
     let folder = Folder::with_small();
     // 3200 x 2400 samples are 29 MiB.

@@ -98,7 +98,7 @@ impl Cog {
     /// # Errors
     /// If no GeoTIFF can have such sides or tiles.
     pub fn new(identity: &Identity) -> Result<Cog> {
-        let options = Options { tile: Some(identity.tile), ..Options::default() };
+        let options = Options { tile: Some(identity.tile), map: identity.map.clone(), ..Options::default() };
         Ok(Cog { window: identity.window, pyramid: pyramid(&identity.window, &options)? })
     }
 

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::order::Order;
 use super::piece::digits;
 use crate::error::Result;
+use crate::format::dem::Georeference;
 use crate::grid::Window;
 use crate::words;
 use crate::world::World;
@@ -27,6 +28,9 @@ pub struct Identity {
     pub window: Window,
     /// Samples along a tile's side.
     pub tile: usize,
+    /// How metres lie on a map, if a real place is part of the world.
+    #[serde(default)]
+    pub map: Option<Georeference>,
 }
 
 impl Identity {
@@ -49,6 +53,7 @@ impl Identity {
             units,
             window: order.window,
             tile,
+            map: world.recipe().georeference(),
         })
     }
 
@@ -75,6 +80,9 @@ impl Identity {
         if begun.tile != self.tile {
             return say(format!("with tiles of {}", begun.tile), self.tile.to_string());
         }
+        if begun.map != self.map {
+            return Some("elsewhere on the map".to_string());
+        }
         (begun.recipe != self.recipe).then(|| {
             let short = |hash: &str| hash.get(..12).unwrap_or(hash).to_string();
             format!(
@@ -100,6 +108,7 @@ mod tests {
             units: vec!["m".into()],
             window: Window::new(5, 6, 10.0),
             tile: 512,
+            map: None,
         };
         assert_eq!(ours.difference(&ours), None);
         for (begun, expect) in [

@@ -170,6 +170,7 @@ mod tests {
             units: vec![String::new(); 2],
             window: Window::new(5, 6, 0.1 + 0.2).at(-3, 1 << 52),
             tile: 512,
+            map: None,
         };
         let mut story = Story::begun(identity);
         for n in 0..4usize {

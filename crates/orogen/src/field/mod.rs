@@ -8,6 +8,7 @@ pub mod clamp;
 pub mod classic;
 pub mod constant;
 pub mod curve;
+pub mod dem;
 pub mod edge;
 pub mod fbm;
 pub mod hetero;

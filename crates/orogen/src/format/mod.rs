@@ -1,7 +1,15 @@
-//! File formats, one a file. Writers stream into any [`Write`](std::io::Write) and hold a few rows at a time.
+//! File formats, one a file. Writers stream into any [`Write`](std::io::Write) and hold a few rows at a time; readers of heights
+//! ([`import`]) never believe a file further than its bytes go.
 
+pub mod asc;
+pub mod dem;
 pub mod geotiff;
+pub mod grey;
+pub mod hgt;
+pub mod import;
 pub mod levels;
 pub mod npy;
 pub mod png;
+pub mod raw;
+pub mod sidecar;
 pub mod zarr;

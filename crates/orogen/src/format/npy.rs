@@ -7,6 +7,7 @@
 
 use std::io::{self, Read, Write};
 
+use super::dem::afford;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 
@@ -66,8 +67,14 @@ pub fn write_rows(out: &mut dyn Write, samples: &[f32]) -> io::Result<()> {
 ///
 /// `name` is what errors call the file.
 pub fn read(input: &mut dyn Read, name: &str, cell: f64) -> Result<Grid> {
+    read_within(input, name, cell, u64::MAX)
+}
+
+/// As [`read`], the samples taking no more than `allowed` bytes as f32.
+pub fn read_within(input: &mut dyn Read, name: &str, cell: f64, allowed: u64) -> Result<Grid> {
     let refuse = |why: String| Error::new(ErrorKind::File, format!("cannot read {name}: {why}"));
     let header = read_header(input).map_err(refuse)?;
+    afford(header.shape[1] as u64, header.shape[0] as u64, allowed).map_err(refuse)?;
     let data = read_samples(input, &header).map_err(refuse)?;
     let [height, width] = header.shape;
     Grid::from_data(Window::new(width, height, cell), data)

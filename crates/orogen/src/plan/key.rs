@@ -24,7 +24,7 @@ pub fn keys(recipe: &Recipe, graph: &Graph) -> Vec<Key> {
         for (i, param) in spec.params.iter().enumerate() {
             hash.update(param.name.as_bytes());
             hash.update([0]);
-            hash.update(node.param(i).to_toml().as_bytes());
+            hash.update(node.param_key(i).to_toml().as_bytes());
             hash.update([0]);
         }
         for link in graph.links[index].iter().chain([&graph.masks[index]]) {

@@ -74,13 +74,13 @@ pub fn rasters(solve: &Solve) -> u64 {
     one.saturating_mul(solve.rasters as u64)
 }
 
-/// Bytes a plan needs at most at any time, for `threads` threads: its text, grids, registers, solutions, and making solvers'
+/// Bytes a plan needs at most at any time, for `threads` threads: its text, the files that the recipe names, grids, registers, solutions, and making solvers'
 /// sources.
 pub fn needed(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
     let solving = plan.solves.iter().map(|solve| solve.tile.saturating_add(solve.scratch)).max().unwrap_or(0);
     let kept = plan.solves.iter().fold(0u64, |sum, solve| sum.saturating_add(rasters(solve)));
     let own = plan.steps.iter().map(own_bytes).sum::<u64>();
-    own.saturating_add(kept).saturating_add(steps(plan, recipe, threads).max(solving))
+    own.saturating_add(recipe.held()).saturating_add(kept).saturating_add(steps(plan, recipe, threads).max(solving))
 }
 
 /// Bytes that a step itself takes, as a value.

@@ -1,10 +1,18 @@
 //! A recipe in memory: the world, its nodes and its outputs.
 
 use crate::declare::Input;
+use crate::dem::ground::Ground;
+use crate::dem::held::Imported;
+use crate::error::{Error, ErrorKind, Result};
+use crate::field::dem::Dem;
+use crate::format::dem::Georeference;
 use crate::node::Node;
-use crate::op::Setting;
+use crate::op::{Op, Setting};
 use crate::value::{toml_key, toml_string};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The version of recipes that this program writes.
 pub const VERSION: i64 = 1;
@@ -75,12 +83,13 @@ pub struct Recipe {
     pub world: WorldSpec,
     nodes: Vec<NamedNode>,
     outputs: Vec<(String, Input)>,
+    held: u64,
 }
 
 impl Recipe {
     /// A recipe without nodes.
     pub fn new(world: WorldSpec) -> Recipe {
-        Recipe { about: String::new(), world, nodes: Vec::new(), outputs: Vec::new() }
+        Recipe { about: String::new(), world, nodes: Vec::new(), outputs: Vec::new(), held: 0 }
     }
 
     /// Adds a node. What is wrong with it is told when the world is opened.
@@ -103,6 +112,63 @@ impl Recipe {
     /// The nodes in the order they were written.
     pub fn nodes(&self) -> &[NamedNode] {
         &self.nodes
+    }
+
+    /// Says which folder the paths in it count from: that of its file.
+    pub fn lies_in(&mut self, folder: &Path) {
+        self.nodes.iter_mut().flat_map(|named| named.node.files()).for_each(|file| file.lies_in(folder));
+    }
+
+    /// Reads the files that its nodes name, each once and not again where it was read, so that together their heights take no more than `allowed` bytes.
+    ///
+    /// # Errors
+    /// If one cannot be read: with the node that names it.
+    pub fn load(&mut self, allowed: u64) -> Result<()> {
+        let mut known: BTreeMap<PathBuf, Arc<Ground>> = BTreeMap::new();
+        self.held = 0;
+        for NamedNode { name, node, .. } in &mut self.nodes {
+            for file in node.files() {
+                let path = file.path();
+                let ground = match file.ground().or(known.get(&path)) {
+                    Some(ground) => Arc::clone(ground),
+                    None => Arc::new(
+                        Ground::read(&path, None, allowed.saturating_sub(self.held))
+                            .map_err(|error| Error::new(ErrorKind::File, format!("node `{name}`: {error}")))?,
+                    ),
+                };
+                if known.insert(path, Arc::clone(&ground)).is_none() {
+                    self.held = self.held.saturating_add(ground.memory());
+                }
+                file.hold(ground);
+            }
+        }
+        Ok(())
+    }
+
+    /// How its metres lie on a map: as the first real place in it says. Known once its files are read.
+    pub fn georeference(&self) -> Option<Georeference> {
+        self.nodes.iter().find_map(|named| match named.node.op() {
+            Op::Field(field) => field.georeference(),
+            _ => None,
+        })
+    }
+
+    /// A recipe of nothing but a real place at hand, which makes its very samples.
+    pub fn of_place(path: &Path, ground: &Arc<Ground>) -> Recipe {
+        let window = *ground.grid.window();
+        let size = [window.width, window.height].map(|samples| samples as f64 * window.cell);
+        let mut recipe = Recipe::new(WorldSpec { size: Some(size), cell: window.cell, ..WorldSpec::default() });
+        let mut file = Imported::from(path.to_string_lossy().as_ref());
+        file.lies_in(Path::new(""));
+        file.hold(Arc::clone(ground));
+        recipe.about = format!("The place in {}", path.display());
+        recipe.add("place", Dem { path: file, ..Dem::default() }).output("height", "place");
+        recipe
+    }
+
+    /// Bytes of memory that its files take, once they are read.
+    pub fn held(&self) -> u64 {
+        self.held
     }
 
     /// The names of the layers it offers.

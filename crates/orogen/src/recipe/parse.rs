@@ -48,7 +48,11 @@ impl Recipe {
             return Err(too_long(&path.display().to_string()));
         }
         match String::from_utf8(bytes) {
-            Ok(text) => Recipe::parse(&text, &path.display().to_string()),
+            Ok(text) => {
+                let mut recipe = Recipe::parse(&text, &path.display().to_string())?;
+                recipe.lies_in(path.parent().unwrap_or(Path::new("")));
+                Ok(recipe)
+            }
             Err(fault) => Err(Error::new(
                 ErrorKind::Recipe,
                 format!(

@@ -143,6 +143,7 @@ fn keys(text: &mut String, node: &Node) {
             _ => param.expected(),
         };
         let default = match node.param(i) {
+            Value::Text(text) if text.is_empty() => "required".to_string(),
             Value::Text(text) => format!("`{text}`"),
             other => format!("`{}`", other.to_toml()),
         };

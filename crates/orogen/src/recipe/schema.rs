@@ -212,6 +212,7 @@ fn param_schema(spec: &ParamSpec, default: Option<&Value>) -> Json {
         Shape::Choice(choices) => json!({
             "oneOf": choices().iter().map(|(name, doc)| json!({ "const": name, "description": short(doc) })).collect::<Vec<_>>(),
         }),
+        Shape::File => json!({ "type": "string" }),
         Shape::Pair => json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": number }),
         Shape::Curve => json!({
             "type": "array",

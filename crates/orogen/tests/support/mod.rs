@@ -21,6 +21,9 @@ impl Random {
     }
 }
 
+/// Heights for the node that reads them.
+const DEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/f32-tiles-deflate-p3.tif");
+
 /// The node alone: each input a noise of its own, lengths fitted so that a small world shows every effect.
 pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     let mut node = node.clone();
@@ -32,6 +35,9 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("blur", "radius") => Value::Number(3.7 * world.cell),
             ("bake", "cell") => Value::Number(2.5 * world.cell),
             ("radial", "radius") => Value::Number(40.0 * world.cell),
+            ("dem", "path") => Value::Text(DEM.into()),
+            ("dem", "at") => pair(17.3 * world.cell, -5.1 * world.cell),
+            ("dem", "fade") => Value::Number(20.0 * world.cell),
             ("transform", "angle") => Value::Number(33.0),
             ("transform", "offset") => pair(17.3 * world.cell, -5.1 * world.cell),
             // A number of folds, not a length.

@@ -1,5 +1,6 @@
 //! Everything of the file but the samples: header, ghost area, a directory for each level.
 
+use crate::format::dem::{GeoKeys, Georeference};
 use crate::grid::Window;
 
 /// What readers may count on. The space at its end leaves room for whoever edits the file to turn the NO into YES.
@@ -36,6 +37,8 @@ pub struct Description {
     pub tile: usize,
     /// The value that stands for no value.
     pub nodata: Option<f32>,
+    /// How metres lie on a map.
+    pub map: Option<Georeference>,
 }
 
 /// The file's first bytes, behind which the tiles follow, from the last level to the first: as classic TIFF if `big` is not
@@ -129,7 +132,7 @@ impl Field {
 
 /// The entries of level `k`, in the order of their tags. Only the full raster says where it lies: the overviews lie there too.
 fn fields(description: &Description, level: &Level, offsets: &[u64], k: usize, form: Form) -> Vec<Field> {
-    let Description { window, tile, nodata } = description;
+    let Description { window, tile, nodata, map } = description;
     let (width, height, tile) = (level.width as u32, level.height as u32, *tile as u32);
     let mut fields = vec![
         // Of what there is more than one: 1 marks a coarser copy of the first.
@@ -153,11 +156,25 @@ fn fields(description: &Description, level: &Level, offsets: &[u64], k: usize, f
     if k == 0 {
         // The tie point is column 0, row 0, whatever GeoKey 1025 says of pixels; here it says that they are points, so this is the
         // first sample's own place. Added to 0, a south of 0 is no -0.
-        let (east, north) = (window.east(0), 0.0 - window.south(0));
-        fields.push(Field::doubles(33550, &[window.cell, window.cell, 0.0]));
+        let local = ([window.east(0), 0.0 - window.south(0)], [window.cell; 2]);
+        let ([east, north], steps) = map.as_ref().map_or(local, |map| map.of(window));
+        fields.push(Field::doubles(33550, &[steps[0], steps[1], 0.0]));
         fields.push(Field::doubles(33922, &[0.0, 0.0, 0.0, east, north, 0.0]));
-        fields.push(Field::shorts(34735, &geo_keys()));
-        fields.push(Field::text(34737, CITATION));
+        match map.as_ref().and_then(|map| map.keys.as_ref()) {
+            Some(keys) => {
+                fields.push(Field::shorts(34735, &of_points(keys)));
+                if !keys.doubles.is_empty() {
+                    fields.push(Field::doubles(34736, &keys.doubles));
+                }
+                if !keys.text.is_empty() {
+                    fields.push(Field::text(34737, &keys.text));
+                }
+            }
+            None => {
+                fields.push(Field::shorts(34735, &geo_keys()));
+                fields.push(Field::text(34737, CITATION));
+            }
+        }
     }
     if let Some(nodata) = nodata {
         // In f64, whose digits every reader takes for the very same number.
@@ -175,6 +192,17 @@ fn geo_keys() -> Vec<u16> {
     let keys =
         [[1024, 0, 1, USER_DEFINED], [1025, 0, 1, POINT], [1026, TEXTS, CITATION.len() as u16, 0], [3076, 0, 1, METRE]];
     [[1, 1, 0, keys.len() as u16]].iter().chain(&keys).flatten().copied().collect()
+}
+
+/// A foreign directory of keys, with pixels that are points as all are here. Keys are sorted by their numbers.
+fn of_points(keys: &GeoKeys) -> Vec<u16> {
+    const RASTER_TYPE: u16 = 1025;
+    let head = keys.directory.get(..3).unwrap_or(&[1, 1, 0]);
+    let mut entries: Vec<&[u16]> = keys.directory.chunks_exact(4).skip(1).filter(|key| key[0] != RASTER_TYPE).collect();
+    let at = entries.partition_point(|key| key[0] < RASTER_TYPE);
+    entries.insert(at, &[RASTER_TYPE, 0, 1, 2]);
+    let count = [entries.len() as u16];
+    head.iter().chain(&count).chain(entries.into_iter().flatten()).copied().collect()
 }
 
 fn put_directory(out: &mut Vec<u8>, fields: &[Field], last: bool, form: Form) {
@@ -278,7 +306,7 @@ mod tests {
 
     #[test]
     fn a_file_past_four_gibibytes_is_big() {
-        let description = Description { window: Window::new(1, 1, 1.0), tile: 512, nodata: None };
+        let description = Description { window: Window::new(1, 1, 1.0), tile: 512, nodata: None, map: None };
         let classic = |levels: &[Level]| head(&description, levels, false)[2] == 42;
         let mut levels = levels(4, 1 << 30);
         assert!(!classic(&levels));
@@ -294,7 +322,7 @@ mod tests {
     #[test]
     fn the_ghost_area_is_as_long_as_it_says() {
         assert_eq!(PROMISES.len(), 140);
-        let description = Description { window: Window::new(1, 1, 1.0), tile: 512, nodata: None };
+        let description = Description { window: Window::new(1, 1, 1.0), tile: 512, nodata: None, map: None };
         for (big, start, first) in [(false, 8, 192), (true, 16, 200)] {
             let head = head(&description, &levels(1, 9), big);
             assert!(

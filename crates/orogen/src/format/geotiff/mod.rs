@@ -7,7 +7,7 @@
 //! overview, then the samples from the coarsest overview to the full raster. So a reader that wants a preview gets it from the
 //! file's first kilobytes. Each tile has its length in the four bytes before it and its own last four bytes repeated behind it.
 //!
-//! **Where it lies.** In local metres without an EPSG code: easting = x, northing = -y, one user-defined system of metres. Samples
+//! **Where it lies.** Where a real place lies that was read from a file: its map and coordinate system are kept. Else in local metres without an EPSG code: easting = x, northing = -y, one user-defined system of metres. Samples
 //! stand at lattice points, so the raster is *pixel-is-point*: the tie point is the first sample itself. Readers that think in
 //! areas (GDAL, rasterio) put the corner of the raster half a cell to the north-west of it, and the middle of their first pixel
 //! on the sample.
@@ -22,10 +22,14 @@
 //! the rows arrive.
 
 mod directory;
+mod entries;
 pub mod options;
 pub(crate) mod overview;
+mod place;
 pub(crate) mod pyramid;
+pub mod reader;
 pub(crate) mod tile;
+mod unpack;
 pub mod writer;
 
 #[cfg(test)]

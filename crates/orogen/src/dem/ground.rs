@@ -1,0 +1,107 @@
+//! A real place, ready to be worked with.
+
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+
+use super::fill::fill;
+use super::square::{Layout, steps};
+use crate::error::Result;
+use crate::format::dem::{Dem, Georeference, Unit, afford, refused};
+use crate::format::import;
+use crate::grid::Grid;
+
+/// Most bytes of heights where nobody says.
+pub const USUAL_MEMORY: u64 = 4 << 30;
+
+/// Heights of a real place on a lattice of square metres, without holes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ground {
+    /// The heights; the first sample is the north-west corner, at the origin.
+    pub grid: Grid,
+    /// How many samples of the file had no height and were made up.
+    pub missing: usize,
+    /// How many samples the file has.
+    pub samples: usize,
+    /// Where it lies on a map, if the file says so.
+    pub georeference: Option<Georeference>,
+    /// What was done to it, in sentences.
+    pub notes: Vec<String>,
+    /// SHA-256 of size, cell and heights.
+    pub hash: [u8; 32],
+}
+
+impl Ground {
+    /// Reads a file whose extension tells its format: holes are filled ([`fill`]), degrees and oblong cells become square metres
+    /// ([`Layout`]). `cell` is the distance between samples in metres, where the file's own is not to be used or it has none; heights take no more
+    /// than `allowed` bytes.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is too large, or nobody tells how far its samples stand apart.
+    pub fn read(path: &Path, cell: Option<f64>, allowed: u64) -> Result<Ground> {
+        let name = path.display().to_string();
+        let dem = import::read(path, allowed)?;
+        Ground::of(dem, cell, allowed).map_err(|why| refused(&name, why))
+    }
+
+    /// The same of a DEM at hand.
+    ///
+    /// # Errors
+    /// As [`Ground::read`], as a sentence.
+    pub fn of(mut dem: Dem, cell: Option<f64>, allowed: u64) -> std::result::Result<Ground, String> {
+        let steps = match (cell, &dem.place) {
+            (Some(cell), _) => [cell; 2],
+            (None, Some(place)) => steps(place, dem.height),
+            (None, None) => {
+                return Err("it does not tell how far its samples stand apart: say so as `cell`, in metres".into());
+            }
+        };
+        if !steps.iter().all(|step| (1e-3..=1e6).contains(step)) {
+            return Err(format!("its samples stand {} x {} m apart, which no terrain has", steps[0], steps[1]));
+        }
+        let layout = Layout::new([dem.width, dem.height], steps);
+        afford(layout.size[0] as u64, layout.size[1] as u64, allowed)?;
+        let samples = dem.heights.len();
+        let mut notes = Vec::new();
+        let missing = fill(&mut dem.heights, dem.width, dem.height);
+        if missing > 0 {
+            let share = 100.0 * missing as f64 / samples as f64;
+            notes.push(format!("{missing} samples ({share:.2} %) have no height and were filled from around them"));
+        }
+        let degrees = dem.place.as_ref().is_some_and(|place| place.unit == Unit::Degrees) && cell.is_none();
+        if !layout.is_square() {
+            let what = if degrees { "its degrees, at the middle latitude cells" } else { "its cells" };
+            notes.push(format!(
+                "{what} of {:.2} x {:.2} m, were laid on squares of {:.2} m",
+                steps[0], steps[1], layout.cell
+            ));
+        }
+        let georeference = dem.place.as_ref().map(|place| Georeference {
+            origin: place.origin,
+            per_metre: [place.step[0] / steps[0], place.step[1] / steps[1]],
+            keys: place.keys.clone(),
+        });
+        let grid = layout.apply(dem).ok_or("it has another number of samples than it says")?;
+        let hash = hash(&grid);
+        Ok(Ground { grid, missing, samples, georeference, notes, hash })
+    }
+
+    /// Bytes of memory that it takes.
+    pub fn memory(&self) -> u64 {
+        self.grid.data().len() as u64 * 4
+    }
+}
+
+fn hash(grid: &Grid) -> [u8; 32] {
+    let mut hash = Sha256::new();
+    hash.update((grid.width() as u64).to_le_bytes());
+    hash.update((grid.height() as u64).to_le_bytes());
+    hash.update(grid.window().cell.to_bits().to_le_bytes());
+    let mut bytes = Vec::with_capacity(1 << 16);
+    for piece in grid.data().chunks(1 << 14) {
+        bytes.clear();
+        bytes.extend(piece.iter().flat_map(|sample| sample.to_le_bytes()));
+        hash.update(&bytes);
+    }
+    hash.finalize().into()
+}

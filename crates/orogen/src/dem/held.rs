@@ -1,0 +1,65 @@
+//! A file that a recipe names, and what was read of it.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::ground::Ground;
+
+/// A file of heights named by a recipe. What is in it is read once, when the world is opened.
+#[derive(Debug, Clone, Default)]
+pub struct Imported {
+    path: String,
+    folder: Option<PathBuf>,
+    ground: Option<Arc<Ground>>,
+}
+
+/// Two are the same if they name the same file: what was read of it makes no difference.
+impl PartialEq for Imported {
+    fn eq(&self, other: &Imported) -> bool {
+        self.path() == other.path()
+    }
+}
+
+impl From<&str> for Imported {
+    fn from(path: &str) -> Imported {
+        Imported { path: path.to_string(), folder: None, ground: None }
+    }
+}
+
+impl Imported {
+    /// Whether no file is named.
+    pub fn is_empty(&self) -> bool {
+        self.path.is_empty()
+    }
+
+    /// Where the file is: a relative path counts from the folder of the recipe, or, of a recipe that is no file, from the working folder.
+    pub fn path(&self) -> PathBuf {
+        match &self.folder {
+            Some(folder) => folder.join(&self.path),
+            None => PathBuf::from(&self.path),
+        }
+    }
+
+    /// What a recipe that may lie anywhere calls it.
+    pub fn text(&self) -> String {
+        match &self.folder {
+            Some(_) => std::path::absolute(self.path()).unwrap_or_else(|_| self.path()).display().to_string(),
+            None => self.path.clone(),
+        }
+    }
+
+    /// Says which folder the recipe lies in.
+    pub fn lies_in(&mut self, folder: &Path) {
+        self.folder = Some(folder.to_path_buf());
+    }
+
+    /// What was read of it.
+    pub fn ground(&self) -> Option<&Arc<Ground>> {
+        self.ground.as_ref()
+    }
+
+    /// Takes what was read of it.
+    pub fn hold(&mut self, ground: Arc<Ground>) {
+        self.ground = Some(ground);
+    }
+}

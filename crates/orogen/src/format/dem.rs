@@ -1,0 +1,171 @@
+//! A digital elevation model as a file holds it: heights, and where they stand.
+
+use std::io::{Read, Seek};
+
+use crate::error::{Error, ErrorKind};
+use crate::grid::Window;
+use crate::words::bytes;
+use serde::{Deserialize, Serialize};
+
+/// What readers read from: a file, or bytes in memory.
+pub trait Input: Read + Seek {}
+
+impl<T: Read + Seek> Input for T {}
+
+/// Heights of a real place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dem {
+    /// Samples a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Metres, row after row from the north, each from west to east; NaN where the file has no height.
+    pub heights: Vec<f32>,
+    /// Where they stand, if the file says so.
+    pub place: Option<Place>,
+}
+
+/// Where samples stand on a map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Place {
+    /// East and north of the first sample itself: of the middle of its pixel, where the file speaks of pixels as areas.
+    pub origin: [f64; 2],
+    /// From a column to the next one east, and from a row to the next one south: both above 0.
+    pub step: [f64; 2],
+    /// What origin and steps are measured in.
+    pub unit: Unit,
+    /// What a GeoTIFF says of its coordinates; kept on the way out.
+    pub keys: Option<GeoKeys>,
+}
+
+/// What coordinates are measured in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Unit {
+    /// So many metres.
+    Metres(f64),
+    /// Degrees of longitude and latitude.
+    Degrees,
+}
+
+/// GeoTIFF's own directory (OGC 19-008r4, 7.1.2): which coordinate system its numbers are in.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct GeoKeys {
+    /// Tag 34735, its four numbers of head included.
+    pub directory: Vec<u16>,
+    /// Tag 34736.
+    pub doubles: Vec<f64>,
+    /// Tag 34737.
+    pub text: String,
+}
+
+/// How a lattice lies on a map.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Georeference {
+    /// East and north of the lattice's origin, in the map's own unit.
+    pub origin: [f64; 2],
+    /// The map's units in a metre of the lattice, east and north.
+    pub per_metre: [f64; 2],
+    /// What a GeoTIFF says of its coordinates.
+    pub keys: Option<GeoKeys>,
+}
+
+impl Georeference {
+    /// East and north of a position in metres of the lattice, in the map's unit.
+    pub fn at(&self, x: f64, y: f64) -> [f64; 2] {
+        [self.origin[0] + x * self.per_metre[0], self.origin[1] - y * self.per_metre[1]]
+    }
+
+    /// The same map, the lattice's origin moved to a position of a world.
+    pub fn moved(&self, x: f64, y: f64) -> Georeference {
+        Georeference { origin: self.at(-x, -y), ..self.clone() }
+    }
+
+    /// How the first sample of a window lies, and the steps between its samples, in the map's unit.
+    pub fn of(&self, window: &Window) -> ([f64; 2], [f64; 2]) {
+        (self.at(window.east(0), window.south(0)), self.per_metre.map(|unit| unit * window.cell))
+    }
+}
+
+/// Heights beyond this are no heights: some programs write the largest float where they have none.
+const HIGHEST: f32 = 1e30;
+
+impl Dem {
+    /// A DEM of samples read, its missing ones made NaN.
+    ///
+    /// # Errors
+    /// If there is no height among them.
+    pub fn new(size: [usize; 2], mut heights: Vec<f32>, place: Option<Place>) -> Result<Dem, String> {
+        let [width, height] = size;
+        let mut found = false;
+        for sample in &mut heights {
+            if sample.abs() < HIGHEST {
+                found = true;
+            } else {
+                *sample = f32::NAN;
+            }
+        }
+        match found {
+            true => Ok(Dem { width, height, heights, place }),
+            false => Err(format!("all of its {width} x {height} samples are missing: it holds no height")),
+        }
+    }
+
+    /// How many samples have no height.
+    pub fn missing(&self) -> usize {
+        self.heights.iter().filter(|height| height.is_nan()).count()
+    }
+}
+
+/// What is refused, in one sentence that names the file.
+pub fn refused(name: &str, why: impl AsRef<str>) -> Error {
+    Error::new(ErrorKind::File, format!("cannot read {name}: {}", why.as_ref()))
+}
+
+/// Checks that heights of this size can be held in `allowed` bytes, before any is.
+///
+/// # Errors
+/// A sentence with both figures.
+pub fn afford(width: u64, height: u64, allowed: u64) -> Result<usize, String> {
+    if width == 0 || height == 0 {
+        return Err(format!("it says that it has {width} x {height} samples: there are none"));
+    }
+    let needed = width.saturating_mul(height).saturating_mul(4);
+    match needed > allowed || needed > isize::MAX as u64 {
+        true => Err(format!(
+            "it says that it has {width} x {height} samples, whose heights take {}, and {} is allowed: cut a part out of it, or \
+             allow more memory",
+            bytes(needed),
+            bytes(allowed)
+        )),
+        false => Ok((width * height) as usize),
+    }
+}
+
+/// How long an input is; it stands at its beginning afterwards.
+pub fn length(input: &mut dyn Input) -> Result<u64, String> {
+    let length = input.seek(std::io::SeekFrom::End(0)).map_err(|cause| cause.to_string())?;
+    input.rewind().map_err(|cause| cause.to_string())?;
+    Ok(length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_height_is_missing() {
+        let dem = Dem::new([4, 1], vec![1.0, f32::INFINITY, f32::MIN, f32::NAN], None).unwrap();
+        assert_eq!((dem.missing(), dem.heights[0]), (3, 1.0));
+        let why = Dem::new([2, 1], vec![f32::NAN; 2], None).unwrap_err();
+        assert!(why.contains("2 x 1 samples are missing"), "{why}");
+    }
+
+    #[test]
+    fn sizes_are_known_before_memory_is_taken() {
+        assert_eq!(afford(1 << 10, 1 << 10, 1 << 22), Ok(1 << 20));
+        let why = afford(1 << 16, 1 << 16, 1 << 30).unwrap_err();
+        assert!(why.contains("16 GiB") && why.contains("1.0 GiB"), "{why}");
+        assert!(afford(u64::MAX, u64::MAX, u64::MAX).is_err());
+        assert!(afford(0, 5, 100).unwrap_err().contains("there are none"));
+    }
+}

@@ -1,0 +1,166 @@
+//! A TIFF's first directory, taken apart without believing it.
+
+use std::io::SeekFrom;
+
+use crate::format::dem::{self, Input};
+
+/// The most entries a directory may have: TIFF knows far fewer tags.
+const MOST_ENTRIES: u64 = 4096;
+
+/// The most directories looked through for the full raster.
+const MOST_DIRECTORIES: usize = 64;
+
+/// A TIFF opened: the entries of the directory that describes its full raster.
+pub struct Tiff<'a> {
+    input: &'a mut dyn Input,
+    /// Bytes of the file.
+    pub length: u64,
+    /// Whether its numbers begin with their highest byte.
+    pub big_endian: bool,
+    big: bool,
+    entries: Vec<Entry>,
+}
+
+struct Entry {
+    tag: u16,
+    kind: u16,
+    count: u64,
+    /// Where its values lie.
+    at: u64,
+}
+
+type Fallible<T> = Result<T, String>;
+
+impl<'a> Tiff<'a> {
+    /// Reads the header and the directory.
+    pub fn open(input: &'a mut dyn Input) -> Fallible<Tiff<'a>> {
+        let length = dem::length(input)?;
+        let mut tiff = Tiff { input, length, big_endian: false, big: false, entries: Vec::new() };
+        let head = tiff.bytes(0, length.min(8), "header")?;
+        let (big_endian, version) = match head.get(..4) {
+            Some([b'I', b'I', low, 0]) => (false, *low),
+            Some([b'M', b'M', 0, low]) => (true, *low),
+            _ => return Err("it is not a TIFF".into()),
+        };
+        (tiff.big_endian, tiff.big) = match version {
+            42 => (big_endian, false),
+            43 => (big_endian, true),
+            _ => return Err("it is not a TIFF".into()),
+        };
+        let mut at = if tiff.big { tiff.number(8, 8)? } else { tiff.number(4, 4)? };
+        for _ in 0..MOST_DIRECTORIES {
+            if at == 0 {
+                break;
+            }
+            let next = tiff.directory(at)?;
+            // Bit 0 marks a coarser copy, bit 2 a mask.
+            if tiff.one(254)?.unwrap_or(0) & 5 == 0 {
+                return Ok(tiff);
+            }
+            at = next;
+        }
+        Err("it has no full raster, only overviews or masks".into())
+    }
+
+    /// `count` bytes at `at`.
+    pub fn bytes(&mut self, at: u64, count: u64, what: &str) -> Fallible<Vec<u8>> {
+        if at.checked_add(count).is_none_or(|end| end > self.length) {
+            return Err(format!(
+                "it ends within its {what}: that is said to reach byte {}, and the file has {}",
+                at.saturating_add(count),
+                self.length
+            ));
+        }
+        self.input.seek(SeekFrom::Start(at)).map_err(|cause| cause.to_string())?;
+        let mut bytes = vec![0; count as usize];
+        self.input.read_exact(&mut bytes).map_err(|cause| cause.to_string())?;
+        Ok(bytes)
+    }
+
+    /// A whole number of `size` bytes.
+    pub fn whole(&self, bytes: &[u8]) -> u64 {
+        match self.big_endian {
+            true => bytes.iter().fold(0, |number, byte| number << 8 | u64::from(*byte)),
+            false => bytes.iter().rev().fold(0, |number, byte| number << 8 | u64::from(*byte)),
+        }
+    }
+
+    fn number(&mut self, at: u64, size: u64) -> Fallible<u64> {
+        let bytes = self.bytes(at, size, "directory")?;
+        Ok(self.whole(&bytes))
+    }
+
+    /// Reads the directory at `at`; tells where the next one is.
+    fn directory(&mut self, at: u64) -> Fallible<u64> {
+        let (count_size, word) = if self.big { (8, 8) } else { (2, 4) };
+        let count = self.number(at, count_size)?;
+        if count > MOST_ENTRIES {
+            return Err(format!("its directory claims {count} entries; it is damaged"));
+        }
+        let each = 4 + 2 * word;
+        let first = at + count_size;
+        let table = self.bytes(first, count * each, "directory")?;
+        self.entries.clear();
+        for (k, entry) in table.chunks_exact(each as usize).enumerate() {
+            let [tag, kind] = [&entry[..2], &entry[2..4]].map(|bytes| self.whole(bytes) as u16);
+            let count = self.whole(&entry[4..4 + word as usize]);
+            let inline = first + k as u64 * each + 4 + word;
+            let fits = size_of_kind(kind).and_then(|size| size.checked_mul(count)).is_some_and(|size| size <= word);
+            let at = if fits { inline } else { self.whole(&entry[4 + word as usize..]) };
+            self.entries.push(Entry { tag, kind, count, at });
+        }
+        self.number(first + count * each, word)
+    }
+
+    /// A tag's values as bytes, with their type; none if it is not there.
+    fn values(&mut self, tag: u16) -> Fallible<Option<(u16, Vec<u8>)>> {
+        let Some(entry) = self.entries.iter().find(|entry| entry.tag == tag) else { return Ok(None) };
+        let (kind, count, at) = (entry.kind, entry.count, entry.at);
+        let size = size_of_kind(kind).ok_or_else(|| format!("its tag {tag} is of the unknown type {kind}"))?;
+        let bytes = self.bytes(at, size.saturating_mul(count), &format!("tag {tag}"))?;
+        Ok(Some((kind, bytes)))
+    }
+
+    /// A tag's whole numbers.
+    pub fn wholes(&mut self, tag: u16) -> Fallible<Option<Vec<u64>>> {
+        let Some((kind, bytes)) = self.values(tag)? else { return Ok(None) };
+        match kind {
+            1 | 3 | 4 | 13 | 16 => {
+                let size = size_of_kind(kind).unwrap_or(1) as usize;
+                Ok(Some(bytes.chunks_exact(size).map(|bytes| self.whole(bytes)).collect()))
+            }
+            _ => Err(format!("its tag {tag} does not hold whole numbers")),
+        }
+    }
+
+    /// A tag's first whole number.
+    pub fn one(&mut self, tag: u16) -> Fallible<Option<u64>> {
+        Ok(self.wholes(tag)?.and_then(|values| values.first().copied()))
+    }
+
+    /// A tag's f64s.
+    pub fn doubles(&mut self, tag: u16) -> Fallible<Option<Vec<f64>>> {
+        let Some((kind, bytes)) = self.values(tag)? else { return Ok(None) };
+        match kind {
+            12 => Ok(Some(bytes.chunks_exact(8).map(|bytes| f64::from_bits(self.whole(bytes))).collect())),
+            _ => Err(format!("its tag {tag} does not hold numbers of 64 bits")),
+        }
+    }
+
+    /// A tag's text without what ends it.
+    pub fn text(&mut self, tag: u16) -> Fallible<Option<String>> {
+        let Some((_, bytes)) = self.values(tag)? else { return Ok(None) };
+        Ok(Some(String::from_utf8_lossy(&bytes).trim_end_matches('\0').to_string()))
+    }
+}
+
+/// Bytes of one value of a type.
+fn size_of_kind(kind: u16) -> Option<u64> {
+    match kind {
+        1 | 2 | 6 | 7 => Some(1),
+        3 | 8 => Some(2),
+        4 | 9 | 11 | 13 => Some(4),
+        5 | 10 | 12 | 16 | 17 | 18 => Some(8),
+        _ => None,
+    }
+}

@@ -1,0 +1,207 @@
+//! From a strip's or tile's packed bytes to its samples' bytes.
+
+use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
+
+/// How much longer what was packed can be than its bytes, whichever way it was packed: LZW's longest run of a 12-bit code.
+pub const MOST_GROWTH: u64 = 4096;
+
+/// Unpacks exactly `length` bytes; what a file packs beyond them is refused, not read.
+pub fn unpack(compression: u64, packed: Vec<u8>, length: usize) -> Result<Vec<u8>, String> {
+    let out = match compression {
+        1 => packed,
+        5 => lzw(&packed, length)?,
+        8 | 32946 => decompress_to_vec_zlib_with_limit(&packed, length)
+            .map_err(|fault| format!("a block packed by deflate is damaged ({fault})"))?,
+        32773 => pack_bits(&packed, length),
+        50000 => return Err(other("Zstandard")),
+        50001 => return Err(other("WebP")),
+        6 | 7 => return Err(other("JPEG")),
+        34887 => return Err(other("LERC")),
+        34925 => return Err(other("LZMA")),
+        method => return Err(other(&format!("method {method}"))),
+    };
+    match out.len() >= length {
+        true => Ok(out),
+        false => Err(format!("a block holds {} bytes where {length} are due", out.len())),
+    }
+}
+
+fn other(method: &str) -> String {
+    format!(
+        "it is packed by {method}; known are none, LZW, deflate and PackBits: pack it again, such as by gdal_translate -co \
+         COMPRESS=DEFLATE"
+    )
+}
+
+/// TIFF 6.0's LZW: codes of 9 to 12 bits, highest bit first, one wider a code early. Stops when it has `most` bytes.
+fn lzw(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
+    const CLEAR: usize = 256;
+    const END: usize = 257;
+    const FIRST: usize = 258;
+    let mut out: Vec<u8> = Vec::with_capacity(most.min(packed.len() * 4));
+    // Where in `out` each code's string stands, and its length: a string is the one before it and the byte behind that.
+    let mut table: Vec<(usize, usize)> = Vec::with_capacity(4096 - FIRST);
+    let (mut width, mut bits, mut held) = (9u32, 0u32, 0u32);
+    let mut last: Option<(usize, usize)> = None;
+    let mut bytes = packed.iter();
+    while out.len() < most {
+        while held < width {
+            let Some(byte) = bytes.next() else { return Ok(out) };
+            bits = bits << 8 | u32::from(*byte);
+            held += 8;
+        }
+        held -= width;
+        let code = (bits >> held) as usize;
+        bits &= (1 << held) - 1;
+        match code {
+            CLEAR => {
+                table.clear();
+                (width, last) = (9, None);
+                continue;
+            }
+            END => return Ok(out),
+            _ => {}
+        }
+        if let Some((start, length)) = last
+            && FIRST + table.len() < 4096
+        {
+            table.push((start, length + 1));
+            if FIRST + table.len() >= (1 << width) - 1 && width < 12 {
+                width += 1;
+            }
+        }
+        let start = out.len();
+        let length = if code < CLEAR {
+            out.push(code as u8);
+            1
+        } else {
+            let damaged = || "a block packed by LZW is damaged".to_string();
+            let (from, length) = code.checked_sub(FIRST).and_then(|k| table.get(k)).copied().ok_or_else(damaged)?;
+            // One by one: the string may end in the byte that it begins with.
+            for k in from..from + length {
+                let byte = out.get(k).copied().ok_or_else(damaged)?;
+                out.push(byte);
+            }
+            length
+        };
+        last = Some((start, length));
+    }
+    Ok(out)
+}
+
+/// Apple's PackBits: runs and literals. Stops when it has `most` bytes.
+fn pack_bits(packed: &[u8], most: usize) -> Vec<u8> {
+    let mut out = Vec::with_capacity(most.min(packed.len() * 4));
+    let mut rest = packed;
+    while let Some((&head, tail)) = rest.split_first() {
+        rest = match head {
+            0..=127 => {
+                let count = (usize::from(head) + 1).min(tail.len());
+                out.extend_from_slice(&tail[..count]);
+                &tail[count..]
+            }
+            128 => tail,
+            129..=255 => {
+                let Some((&byte, tail)) = tail.split_first() else { break };
+                out.resize(out.len() + 257 - usize::from(head), byte);
+                tail
+            }
+        };
+        if out.len() >= most {
+            break;
+        }
+    }
+    out
+}
+
+/// How rows' bytes become samples.
+#[derive(Debug, Clone, Copy)]
+pub struct Layout {
+    /// Bytes a sample: 1, 2, 4 or 8.
+    pub size: usize,
+    /// Whether samples begin with their highest byte.
+    pub big_endian: bool,
+    /// TIFF's tag 317: 1 none, 2 differences of whole numbers, 3 of floats' bytes.
+    pub predictor: u64,
+}
+
+impl Layout {
+    /// A row's samples as bits, right-aligned in 64, its predictor undone.
+    pub fn row(&self, bytes: &mut [u8], out: &mut Vec<u64>) {
+        let count = bytes.len() / self.size;
+        out.clear();
+        if self.predictor == 3 {
+            for k in 1..bytes.len() {
+                bytes[k] = bytes[k].wrapping_add(bytes[k - 1]);
+            }
+            // All samples' highest bytes, then all their next ones, whatever the order of the file.
+            let sample =
+                |i: usize| (0..self.size).fold(0, |bits, plane| bits << 8 | u64::from(bytes[plane * count + i]));
+            out.extend((0..count).map(sample));
+            return;
+        }
+        let whole = |sample: &[u8]| match self.big_endian {
+            true => sample.iter().fold(0u64, |bits, byte| bits << 8 | u64::from(*byte)),
+            false => sample.iter().rev().fold(0u64, |bits, byte| bits << 8 | u64::from(*byte)),
+        };
+        out.extend(bytes.chunks_exact(self.size).map(whole));
+        if self.predictor == 2 {
+            let mask = u64::MAX >> (64 - 8 * self.size);
+            for i in 1..out.len() {
+                out[i] = out[i].wrapping_add(out[i - 1]) & mask;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lzw_of_the_specification() {
+        // TIFF 6.0, section 13: 7 7 7 8 8 7 7 6 6 becomes clear, 7, 258, 8, 8, 258, 6, 6, end.
+        let codes = [256u32, 7, 258, 8, 8, 258, 6, 6, 257];
+        let mut bits = String::new();
+        codes.iter().for_each(|code| bits.push_str(&format!("{code:09b}")));
+        while !bits.len().is_multiple_of(8) {
+            bits.push('0');
+        }
+        let packed: Vec<u8> = bits
+            .as_bytes()
+            .chunks(8)
+            .map(|b| u8::from_str_radix(std::str::from_utf8(b).unwrap(), 2).unwrap())
+            .collect();
+        assert_eq!(lzw(&packed, 9).unwrap(), [7, 7, 7, 8, 8, 7, 7, 6, 6]);
+        assert_eq!(unpack(5, packed[..4].to_vec(), 9).unwrap_err(), "a block holds 3 bytes where 9 are due");
+        assert!(lzw(&[0xff, 0xff, 0xff, 0xff], 9).unwrap_err().contains("damaged"));
+    }
+
+    #[test]
+    fn pack_bits_of_apples_note() {
+        let packed = [0xFE, 0xAA, 0x02, 0x80, 0x00, 0x2A, 0xFD, 0xAA, 0x03, 0x80, 0x00, 0x2A, 0x22, 0xF7, 0xAA];
+        let out = unpack(32773, packed.to_vec(), 24).unwrap();
+        assert_eq!(&out[..10], [0xAA, 0xAA, 0xAA, 0x80, 0x00, 0x2A, 0xAA, 0xAA, 0xAA, 0xAA]);
+        assert_eq!(out.len(), 24);
+    }
+
+    #[test]
+    fn predictors() {
+        let mut out = Vec::new();
+        Layout { size: 2, big_endian: true, predictor: 2 }.row(&mut [1, 0, 0, 2, 0xff, 0xff], &mut out);
+        assert_eq!(out, [256, 258, 257]);
+        // Two floats, 1.0 and 2.0: planes 3f 40, 80 00, 00 00, 00 00, then differences.
+        let planes = [0x3fu8, 0x40, 0x80, 0, 0, 0, 0, 0];
+        let mut bytes: Vec<u8> =
+            (0..8).map(|k| if k == 0 { planes[0] } else { planes[k].wrapping_sub(planes[k - 1]) }).collect();
+        Layout { size: 4, big_endian: false, predictor: 3 }.row(&mut bytes, &mut out);
+        assert_eq!(out, [u64::from(1f32.to_bits()), u64::from(2f32.to_bits())]);
+    }
+
+    #[test]
+    fn other_methods_are_named() {
+        for (method, name) in [(50000, "Zstandard"), (7, "JPEG"), (99, "method 99")] {
+            assert!(unpack(method, vec![1], 1).unwrap_err().contains(name));
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! `cargo xtask fuzz`: libFuzzer on every reader of foreign files, with the compiler that all else is built with.
+
+use crate::failure::{Failure, Result};
+use crate::shell;
+
+pub const ABOUT: &str = "run libFuzzer on the readers of foreign files";
+
+pub const HELP: &str = "
+Usage: cargo xtask fuzz [TARGET...] [--seconds N]
+
+Builds fuzz/ with coverage counters and AddressSanitizer into target/fuzz and runs each target, or those named, for 60 seconds or as many as
+said, from the files in fuzz/corpus/TARGET. New inputs go into target/fuzz/found, not into the committed corpus. What breaks a reader is left in
+fuzz/artifacts. Needs a C++ compiler for libFuzzer; cargo-fuzz is not needed, and works too.
+";
+
+const TARGETS: [&str; 2] = ["dem", "recipe"];
+
+/// What makes a program tell libFuzzer where it has been (the flags of cargo-fuzz).
+const FLAGS: &str = "--cfg fuzzing -Zsanitizer=address -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
+    -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
+    -Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1 -Cdebug-assertions";
+
+/// Builds and runs.
+pub fn run(args: &[String]) -> Result {
+    let (mut seconds, mut named, mut args) = (60, Vec::new(), args.iter());
+    while let Some(arg) = args.next() {
+        match arg.as_str() {
+            "--seconds" => {
+                let number = args.next().and_then(|number| number.parse().ok());
+                seconds = number.ok_or_else(|| Failure::usage("--seconds takes a whole number"))?;
+            }
+            target if TARGETS.contains(&target) => named.push(target),
+            other => {
+                return Err(Failure::usage(format!("there is no target '{other}'; there are {}", TARGETS.join(", "))));
+            }
+        }
+    }
+    if named.is_empty() {
+        named = TARGETS.to_vec();
+    }
+    let folder = shell::target_dir().join("fuzz");
+    let artifacts = shell::root().join("fuzz/artifacts");
+    for target in named {
+        let found = folder.join("found").join(target);
+        for folder in [&found, &artifacts.join(target)] {
+            std::fs::create_dir_all(folder).map_err(|cause| crate::failure::on_file("make", folder, &cause))?;
+        }
+        let host = crate::clients::host()?;
+        let mut command = shell::cargo("run --quiet --release --manifest-path fuzz/Cargo.toml --bin");
+        command
+            .arg(target)
+            .arg("--")
+            .args([&found, &shell::root().join("fuzz/corpus").join(target)])
+            .arg(format!("-max_total_time={seconds}"))
+            .arg(format!("-artifact_prefix={}/", artifacts.join(target).display()))
+            .args(["-rss_limit_mb=1024", "-malloc_limit_mb=256", "-timeout=10", "-print_final_stats=1"])
+            // Sanitizers are not stable yet; the compiler is the one that all else is built with.
+            .env("RUSTC_BOOTSTRAP", "1")
+            .env("RUSTFLAGS", FLAGS)
+            // A named target keeps the flags from what runs while building.
+            .env("CARGO_BUILD_TARGET", &host)
+            .env("CARGO_TARGET_DIR", &folder)
+            .env("CARGO_INCREMENTAL", "0");
+        shell::run(&mut command)?;
+    }
+    Ok(())
+}
