@@ -61,36 +61,66 @@ pub fn basins(heights: &Grid, outlets: &Outlets, receivers: &Receivers) -> Basin
     basins
 }
 
-/// The basin of each cell and the pit of each basin; the outside's is no cell.
+/// The basin of each cell and the pit of each basin; the outside's is no cell. Only what drains to a pit is walked over.
 fn label(outlets: &Outlets, receivers: &Receivers) -> (Vec<u32>, Vec<u32>) {
-    const UNKNOWN: u32 = u32::MAX;
-    let count = receivers.codes().len();
-    let mut labels = vec![UNKNOWN; count];
+    let codes = receivers.codes();
+    let mut labels = vec![OUTSIDE; codes.len()];
     let mut pits = vec![u32::MAX];
-    let mut path = Vec::new();
-    for start in 0..count {
-        let mut cell = start;
-        while labels[cell] == UNKNOWN {
-            path.push(cell as u32);
-            let receiver = receivers.of(cell);
-            if receiver == cell {
-                labels[cell] = match outlets.at(cell) {
-                    true => OUTSIDE,
-                    false => {
-                        pits.push(cell as u32);
-                        pits.len() as u32 - 1
-                    }
-                };
-                break;
-            }
-            cell = receiver;
-        }
-        let found = labels[cell];
-        for cell in path.drain(..) {
-            labels[cell as usize] = found;
-        }
+    pits.extend((0..codes.len()).filter(|c| codes[*c] == NONE && !outlets.at(*c)).map(|c| c as u32));
+    if pits.len() == 1 {
+        return (labels, pits);
+    }
+    let (donors, children) = (receivers.donors(), children(receivers.window().width));
+    let mut waiting = Vec::new();
+    for (label, pit) in pits.iter().enumerate().skip(1) {
+        waiting.push(*pit);
+        climb(&mut waiting, &donors, &children, |cell| labels[cell as usize] = label as u32);
     }
     (labels, pits)
+}
+
+/// For each set of directions, how many it holds and how far they lead.
+type Children = [(u32, [i32; 8]); 256];
+
+/// [`Children`] on a grid of this width.
+fn children(width: usize) -> Box<Children> {
+    let strides = strides(width);
+    let mut table = Box::new([(0, [0; 8]); 256]);
+    for (set, (count, steps)) in table.iter_mut().enumerate() {
+        for (k, stride) in strides.iter().enumerate() {
+            if set & 1 << k != 0 {
+                steps[*count as usize] = *stride as i32;
+                *count += 1;
+            }
+        }
+    }
+    table
+}
+
+/// Takes cells off the end of a list and puts what drains to them there, until none are left; visits all of them.
+///
+/// Sixteen at a time, and eight donors are written for each cell whether it has them or not: there is no branch to guess.
+fn climb(waiting: &mut Vec<u32>, donors: &[u8], children: &Children, mut visit: impl FnMut(u32)) {
+    const BATCH: usize = 16;
+    let mut count = waiting.len();
+    while count > 0 {
+        let taken = count.min(BATCH);
+        let mut batch = [0u32; BATCH];
+        count -= taken;
+        batch[..taken].copy_from_slice(&waiting[count..count + taken]);
+        if waiting.len() < count + 8 * BATCH {
+            waiting.resize(2 * (count + 8 * BATCH), 0);
+        }
+        for cell in &batch[..taken] {
+            visit(*cell);
+            let (more, steps) = &children[usize::from(donors[*cell as usize])];
+            if let Some(places) = waiting[count..].first_chunk_mut::<8>() {
+                *places = steps.map(|step| cell.wrapping_add_signed(step));
+            }
+            count += *more as usize;
+        }
+    }
+    waiting.clear();
 }
 
 /// The lowest step between two basins.
@@ -104,6 +134,9 @@ struct Pass {
     /// The basins, `from`'s first.
     basins: [u32; 2],
 }
+
+/// Cells of a row looked at together.
+const RUN: usize = 16;
 
 /// A hash of one multiplication: the keys are pairs of labels, spread well enough, and nobody chooses them to collide.
 #[derive(Default)]
@@ -128,20 +161,19 @@ fn passes(heights: &Grid, labels: &[u32]) -> Vec<Pass> {
     let mut found = Found { passes: Vec::new(), known: HashMap::default(), last_key: u64::MAX, last: 0 };
     for (j, (here, below)) in labels.chunks(width).zip(labels.chunks(width).skip(1)).enumerate() {
         let (h, h_below) = (heights.row(j), heights.row(j + 1));
-        for i in 0..width {
-            let mine = here[i];
-            // At the two ends a neighbour that is not there becomes one on the border, which is outside as the cell is.
-            let (west, east) = (i.max(1) - 1, (i + 1).min(width - 1));
-            let around = [here[east], below[east], below[i], below[west]];
-            if around.iter().all(|theirs| *theirs == mine) {
+        let mut i = 0;
+        while i < width {
+            // Most ground lies amid its own basin.
+            if let (Some(run), Some(beneath)) = (here.get(i..=i + RUN), below.get(i.max(1) - 1..=i + RUN))
+                && run.iter().chain(beneath).fold(0, |differ, label| differ | (label ^ here[i])) == 0
+            {
+                i += RUN;
                 continue;
             }
-            let heights = [h[east], h_below[east], h_below[i], h_below[west]];
-            for (code, (theirs, other)) in around.into_iter().zip(heights).enumerate() {
-                if theirs != mine {
-                    let height = if other > h[i] { other } else { h[i] };
-                    found.add(Pass { height, from: (j * width + i) as u32, code: code as u8, basins: [mine, theirs] });
-                }
+            let end = (i + RUN).min(width);
+            while i < end {
+                found.look([here, below], [h, h_below], i, (j * width) as u32);
+                i += 1;
             }
         }
     }
@@ -157,6 +189,24 @@ struct Found {
 }
 
 impl Found {
+    /// Looks from column `i` of the upper of two rows to the east and down; `start` is the row's first cell.
+    fn look(&mut self, [here, below]: [&[u32]; 2], [h, h_below]: [&[f32]; 2], i: usize, start: u32) {
+        let mine = here[i];
+        // At the two ends a neighbour that is not there becomes one on the border, which is outside as the cell is.
+        let (west, east) = (i.max(1) - 1, (i + 1).min(here.len() - 1));
+        let around = [here[east], below[east], below[i], below[west]];
+        if around.iter().all(|theirs| *theirs == mine) {
+            return;
+        }
+        let heights = [h[east], h_below[east], h_below[i], h_below[west]];
+        for (code, (theirs, other)) in around.into_iter().zip(heights).enumerate() {
+            if theirs != mine {
+                let height = if other > h[i] { other } else { h[i] };
+                self.add(Pass { height, from: start + i as u32, code: code as u8, basins: [mine, theirs] });
+            }
+        }
+    }
+
     fn add(&mut self, pass: Pass) {
         let [a, b] = pass.basins;
         let key = u64::from(a.min(b)) << 32 | u64::from(a.max(b));

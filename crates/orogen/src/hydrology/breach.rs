@@ -20,7 +20,7 @@ pub fn breach(heights: &Grid, outlets: &Outlets, drainage: &Drainage, deepest: f
     }
     let receivers = &drainage.receivers;
     let h = out.data_mut();
-    for cell in accumulate(receivers).order.into_iter().map(|cell| cell as usize) {
+    for cell in accumulate(receivers).upstream_first() {
         let receiver = receivers.of(cell);
         if h[cell] < h[receiver] && !outlets.at(receiver) {
             h[receiver] = h[cell];

@@ -12,6 +12,11 @@ use rayon::prelude::*;
 /// plain step. So it costs O(cells) times 1 + 5.3 sqrt(amount) / cell; rows side by side. What would spread further than the map is
 /// wide counts as that wide.
 pub fn creep(heights: &mut Grid, outlets: &Outlets, amount: f64) {
+    creep_again(heights, outlets, amount, &mut Vec::new());
+}
+
+/// The same many times over on one map: `buffers`, empty at first, spares asking for memory anew.
+pub(super) fn creep_again(heights: &mut Grid, outlets: &Outlets, amount: f64, buffers: &mut Vec<Grid>) {
     let window = *heights.window();
     let widest = (window.width * window.width + window.height * window.height) as f64;
     let whole = (amount / (window.cell * window.cell)).min(widest);
@@ -25,15 +30,16 @@ pub fn creep(heights: &mut Grid, outlets: &Outlets, amount: f64) {
         stages += 1.0;
     }
     let share = whole / strides * 2.0 / (stages * (stages + 1.0));
-    let mut last = heights.clone();
-    let mut next = heights.clone();
+    buffers.resize_with(2, || heights.clone());
+    let [last, next] = &mut buffers[..] else { return };
+    [&mut *last, &mut *next].into_iter().for_each(|buffer| buffer.data_mut().copy_from_slice(heights.data()));
     for stage in (0..strides as u64).flat_map(|_| 1..=stages as u64) {
         // Y_j = mu Y_(j-1) + nu Y_(j-2) + mu share L Y_(j-1), with mu = (2j - 1) / j and nu = (1 - j) / j.
         let j = stage as f64;
         let factors = [(j - 1.0) / j, (2.0 * j - 1.0) / j * share / 6.0].map(|factor| factor as f32);
-        advance(heights, &last, outlets, factors, &mut next);
-        std::mem::swap(&mut last, heights);
-        std::mem::swap(heights, &mut next);
+        advance(heights, last, outlets, factors, next);
+        std::mem::swap(last, heights);
+        std::mem::swap(heights, next);
     }
 }
 

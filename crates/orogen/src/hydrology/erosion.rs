@@ -1,7 +1,7 @@
 //! Land that rises and is cut, step by step.
 
 use super::accumulation::{Accumulation, accumulate};
-use super::creep::creep;
+use super::creep::creep_again;
 use super::drainage;
 use super::outlets::Outlets;
 use super::steepest::Descent;
@@ -42,12 +42,13 @@ impl Erosion {
     ) -> Result<Accumulation> {
         let outlets = Outlets::new(heights, sea_level);
         let years = self.years / f64::from(self.steps.max(1));
+        let mut buffers = Vec::new();
         for step in 0..self.steps {
             go_on()?;
             // Other ways in each step: over the steps a slope's water spreads as wide as it would in nature.
             let descent = self.scattered.map_or(Descent::Steepest, |seed| Descent::Scattered(seed.wrapping_add(step)));
             self.cut(heights, &outlets, ground, descent, years);
-            creep(heights, &outlets, years * self.creep);
+            creep_again(heights, &outlets, years * self.creep, &mut buffers);
         }
         go_on()?;
         self.cut(heights, &outlets, ground, Descent::Steepest, 0.0);

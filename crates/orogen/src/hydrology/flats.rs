@@ -14,6 +14,8 @@ use super::direction::{NONE, hashed, neighbour, one_of, strides};
 use super::outlets::Outlets;
 use super::receivers::Receivers;
 use crate::grid::Grid;
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 /// Gives a receiver to every cell that has none, but for outlets and one cell of each closed flat.
 ///
@@ -28,96 +30,135 @@ pub fn resolve(heights: &Grid, outlets: &Outlets, receivers: &mut Receivers) {
     let mut field = Flats {
         heights: heights.data(),
         strides: strides(heights.width()),
-        away: vec![0; heights.data().len()],
-        toward: vec![0; heights.data().len()],
+        places: Places::new(&flat, codes.len()),
+        away: vec![UNMEASURED; flat.len()],
+        toward: vec![0; flat.len()],
+        cells: flat,
     };
-    field.mark(&flat);
-    field.measure_away(&flat);
-    field.measure_toward_rims(&flat);
-    field.measure_toward_pits(&flat);
+    field.measure_away();
+    field.measure_toward_rims();
+    field.measure_toward_pits();
     let window = *heights.window();
-    let chosen: Vec<u8> = flat
-        .iter()
-        .map(|c| {
-            let c = *c as usize;
-            let (x, y) = ((c % window.width) as i64, (c / window.width) as i64);
-            field.receiver(c, hashed(window.x + x, window.y + y))
-        })
-        .collect();
-    for (c, code) in flat.iter().zip(chosen) {
-        receivers.codes_mut()[*c as usize] = code;
+    for (place, c) in field.cells.iter().enumerate() {
+        let c = *c as usize;
+        let (x, y) = ((c % window.width) as i64, (c / window.width) as i64);
+        receivers.codes_mut()[c] = field.receiver(place, hashed(window.x + x, window.y + y));
     }
 }
 
-/// `away` is 0 outside of flats and before a flat cell is measured it is [`UNMEASURED`].
+/// Where in the list of a map's flat cells each is. Most land has few, and then a list as long as the map would mostly be zeros.
+enum Places {
+    Few(HashMap<u32, u32, BuildHasherDefault<CellHasher>>),
+    Many(Vec<u32>),
+}
+
+impl Places {
+    fn new(flat: &[u32], cells: usize) -> Places {
+        let places = flat.iter().copied().zip(0..);
+        if flat.len() < cells / 50 {
+            return Places::Few(places.collect());
+        }
+        let mut all = vec![NO_PLACE; cells];
+        places.for_each(|(cell, place)| all[cell as usize] = place);
+        Places::Many(all)
+    }
+
+    #[inline]
+    fn of(&self, cell: usize) -> Option<usize> {
+        let place = match self {
+            Places::Few(places) => places.get(&(cell as u32)).copied(),
+            Places::Many(places) => Some(places[cell]).filter(|place| *place != NO_PLACE),
+        };
+        place.map(|place| place as usize)
+    }
+}
+
+const NO_PLACE: u32 = u32::MAX;
+
+/// Cells spread by one multiplication.
+#[derive(Default)]
+struct CellHasher(u64);
+
+impl Hasher for CellHasher {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.write_u32(self.0 as u32 ^ u32::from(*byte)));
+    }
+    fn write_u32(&mut self, cell: u32) {
+        let product = u128::from(cell) * 0x9E37_79B9_7F4A_7C15_D1B5;
+        self.0 = (product >> 32) as u64 ^ product as u64;
+    }
+}
+
+/// A flat cell that is not measured yet.
 const UNMEASURED: u32 = u32::MAX;
 
 struct Flats<'a> {
     heights: &'a [f32],
     strides: [isize; 8],
-    /// Steps from the higher ground, from 1; 0 where a cell is in no flat.
+    /// All cells of flats, in row order.
+    cells: Vec<u32>,
+    places: Places,
+    /// Steps from the higher ground, from 1, by place.
     away: Vec<u32>,
     /// Steps from the rim, from 1; 0 where not measured.
     toward: Vec<u32>,
 }
 
 impl Flats<'_> {
-    fn mark(&mut self, flat: &[u32]) {
-        for c in flat {
-            self.away[*c as usize] = UNMEASURED;
-        }
+    /// The neighbours of a cell that are as high and in a flat, and in which direction and place.
+    fn beside(&self, cell: usize) -> impl Iterator<Item = (usize, usize)> {
+        let h = self.heights[cell];
+        let level = move |(k, stride): (usize, &isize)| {
+            let n = neighbour(cell, *stride);
+            if self.heights[n] == h { Some((k, self.places.of(n)?)) } else { None }
+        };
+        self.strides.iter().enumerate().filter_map(level)
     }
 
-    fn in_flat(&self, cell: usize) -> bool {
-        self.away[cell] != 0
-    }
-
-    fn measure_away(&mut self, flat: &[u32]) {
+    fn measure_away(&mut self) {
         let mut queue = Vec::new();
-        for c in flat {
+        for (place, c) in self.cells.iter().enumerate() {
             let cell = *c as usize;
             let h = self.heights[cell];
             if self.strides.iter().any(|stride| self.heights[neighbour(cell, *stride)] > h) {
-                self.away[cell] = 1;
-                queue.push(*c);
+                self.away[place] = 1;
+                queue.push(place as u32);
             }
         }
         let mut next = 0;
-        while let Some(c) = queue.get(next).copied() {
+        while let Some(place) = queue.get(next).map(|place| *place as usize) {
             next += 1;
-            let (cell, steps) = (c as usize, self.away[c as usize] + 1);
-            let h = self.heights[cell];
-            for stride in self.strides {
-                let n = neighbour(cell, stride);
-                if self.away[n] == UNMEASURED && self.heights[n] == h {
-                    self.away[n] = steps;
-                    queue.push(n as u32);
+            let steps = self.away[place] + 1;
+            let mut near = [NO_PLACE; 8];
+            self.beside(self.cells[place] as usize).for_each(|(k, place)| near[k] = place as u32);
+            for n in near {
+                if n != NO_PLACE && self.away[n as usize] == UNMEASURED {
+                    self.away[n as usize] = steps;
+                    queue.push(n);
                 }
             }
         }
         // A flat that nothing stands above.
-        for c in flat {
-            let away = &mut self.away[*c as usize];
-            if *away == UNMEASURED {
-                *away = 1;
-            }
-        }
+        self.away.iter_mut().filter(|away| **away == UNMEASURED).for_each(|away| *away = 1);
     }
 
-    fn measure_toward_rims(&mut self, flat: &[u32]) {
-        let rim = |c: &&u32| self.drained_beside(**c as usize) != 0;
-        let mut queue: Vec<u32> = flat.iter().filter(rim).copied().collect();
-        for c in &queue {
-            self.toward[*c as usize] = 1;
+    fn measure_toward_rims(&mut self) {
+        let rim = |place: &u32| self.drained_beside(self.cells[*place as usize] as usize) != 0;
+        let mut queue: Vec<u32> = (0..self.cells.len() as u32).filter(rim).collect();
+        for place in &queue {
+            self.toward[*place as usize] = 1;
         }
         self.spread(&mut queue);
     }
 
-    fn measure_toward_pits(&mut self, flat: &[u32]) {
-        for c in flat {
-            if self.toward[*c as usize] == 0 {
-                self.toward[*c as usize] = 1;
-                self.spread(&mut vec![*c]);
+    fn measure_toward_pits(&mut self) {
+        for place in 0..self.cells.len() {
+            if self.toward[place] == 0 {
+                self.toward[place] = 1;
+                self.spread(&mut vec![place as u32]);
             }
         }
     }
@@ -125,15 +166,15 @@ impl Flats<'_> {
     /// Measures steps from the cells in the queue over the flats they lie in.
     fn spread(&mut self, queue: &mut Vec<u32>) {
         let mut next = 0;
-        while let Some(c) = queue.get(next).copied() {
+        while let Some(place) = queue.get(next).map(|place| *place as usize) {
             next += 1;
-            let (cell, steps) = (c as usize, self.toward[c as usize] + 1);
-            let h = self.heights[cell];
-            for stride in self.strides {
-                let n = neighbour(cell, stride);
-                if self.away[n] != 0 && self.toward[n] == 0 && self.heights[n] == h {
-                    self.toward[n] = steps;
-                    queue.push(n as u32);
+            let steps = self.toward[place] + 1;
+            let mut near = [NO_PLACE; 8];
+            self.beside(self.cells[place] as usize).for_each(|(k, place)| near[k] = place as u32);
+            for n in near {
+                if n != NO_PLACE && self.toward[n as usize] == 0 {
+                    self.toward[n as usize] = steps;
+                    queue.push(n);
                 }
             }
         }
@@ -146,29 +187,25 @@ impl Flats<'_> {
         for (k, stride) in self.strides.into_iter().enumerate() {
             let n = neighbour(cell, stride);
             // What is as high and in no flat drains or is an outlet.
-            if self.heights[n] == h && !self.in_flat(n) {
+            if self.heights[n] == h && self.places.of(n).is_none() {
                 set |= 1 << k;
             }
         }
         set
     }
 
-    fn sum(&self, cell: usize) -> i64 {
-        2 * i64::from(self.toward[cell]) - i64::from(self.away[cell])
+    fn sum(&self, place: usize) -> i64 {
+        2 * i64::from(self.toward[place]) - i64::from(self.away[place])
     }
 
-    fn receiver(&self, cell: usize, hash: u32) -> u8 {
-        if self.toward[cell] == 1 {
+    fn receiver(&self, place: usize, hash: u32) -> u8 {
+        let cell = self.cells[place] as usize;
+        if self.toward[place] == 1 {
             // At the rim, or the pit of a closed flat, for which the set is empty.
             return one_of(self.drained_beside(cell), hash);
         }
-        let h = self.heights[cell];
-        let (mut least, mut set) = (self.sum(cell), 0);
-        for (k, stride) in self.strides.into_iter().enumerate() {
-            let n = neighbour(cell, stride);
-            if !self.in_flat(n) || self.heights[n] != h {
-                continue;
-            }
+        let (mut least, mut set) = (self.sum(place), 0);
+        for (k, n) in self.beside(cell) {
             let sum = self.sum(n);
             if sum < least {
                 (least, set) = (sum, 1 << k);

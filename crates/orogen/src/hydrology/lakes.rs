@@ -96,7 +96,7 @@ fn find(heights: &Grid, drainage: &Drainage, fewest: u32) -> Lakes {
 fn raise(found: &mut Lakes, outlets: &Outlets, drainage: &Drainage) {
     let cell = found.bed.window().cell;
     let (bed, surface) = (found.bed.data_mut(), found.surface.data_mut());
-    for c in accumulate(&drainage.receivers).order.into_iter().rev().map(|c| c as usize) {
+    for c in accumulate(&drainage.receivers).downstream_first() {
         let label = found.labels.data()[c];
         if let Some(lake) = label.checked_sub(1).and_then(|k| found.lakes.get_mut(k as usize)) {
             lake.level = surface[lake.outlet as usize].max(lake.level);

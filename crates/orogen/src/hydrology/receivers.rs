@@ -1,7 +1,8 @@
 //! Which neighbour each cell drains to.
 
-use super::direction::{NONE, neighbour, strides};
+use super::direction::{NONE, neighbour, opposite, strides};
 use crate::grid::{Grid, Window};
+use rayon::prelude::*;
 
 /// The receiver of every cell, as the code of a direction ([`NONE`] for outlets and pits).
 ///
@@ -48,9 +49,61 @@ impl Receivers {
         neighbour(index, self.strides[usize::from(code.min(NONE))])
     }
 
+    /// Which neighbours drain into each cell: bit k of a cell's set stands for the one in direction k. Rows side by side.
+    pub fn donors(&self) -> Vec<u8> {
+        let (width, height) = (self.window().width, self.window().height);
+        let mut donors = vec![0u8; width * height];
+        donors.par_chunks_mut(width.max(1)).enumerate().for_each(|(j, row)| {
+            for (south, east) in [(-1, 7), (0, 0), (1, 1)] {
+                let Some(from) = j.checked_add_signed(south).filter(|from| *from < height) else { continue };
+                let from = self.codes.row(from);
+                // The directions in which the row's cells lie one column to the east, in this one and one to the west.
+                let straight = if south < 0 { 6 } else { 2 };
+                let west = if south < 0 { 5 } else { 4 - south as u8 };
+                mark(row, &from[1..], east);
+                if south != 0 {
+                    mark(row, from, straight);
+                }
+                mark(&mut row[1..], from, west);
+            }
+        });
+        donors
+    }
+
     /// The code of cell `index`.
     #[inline(always)]
     pub fn code(&self, index: usize) -> u8 {
         self.codes.data()[index]
+    }
+}
+
+/// Marks the cells into which the neighbour in this direction drains.
+fn mark(sets: &mut [u8], neighbours: &[u8], direction: u8) {
+    let here = opposite(direction);
+    sets.iter_mut().zip(neighbours).for_each(|(set, code)| *set |= u8::from(*code == here) << direction);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hydrology::direction::hashed;
+
+    #[test]
+    fn donors_are_those_whose_receiver_a_cell_is() {
+        for (width, height) in [(9, 7), (3, 3), (1, 5), (5, 1), (0, 3)] {
+            let mut receivers = Receivers::none(Window::new(width, height, 1.0));
+            for j in 1..height.saturating_sub(1) {
+                for i in 1..width.saturating_sub(1) {
+                    receivers.codes_mut()[j * width + i] = (hashed(i as i64, j as i64) % 9) as u8;
+                }
+            }
+            let donors = receivers.donors();
+            let strides = strides(width);
+            let mut expect = vec![0u8; width * height];
+            for c in (0..width * height).filter(|c| receivers.code(*c) != NONE) {
+                expect[neighbour(c, strides[usize::from(receivers.code(c))])] |= 1 << opposite(receivers.code(c));
+            }
+            assert_eq!(donors, expect);
+        }
     }
 }

@@ -50,8 +50,8 @@ pub fn concavity(filled: &Grid, receivers: &Receivers, drained: &Accumulation, t
 
 /// How far water has come at most, in cells.
 fn longest_ways(receivers: &Receivers, drained: &Accumulation) -> Vec<f64> {
-    let mut ways = vec![0.0f64; drained.order.len()];
-    for c in drained.order.iter().map(|c| *c as usize) {
+    let mut ways = vec![0.0f64; drained.area.data().len()];
+    for c in drained.upstream_first() {
         let receiver = receivers.of(c);
         if receiver != c {
             let way = ways[c] + DISTANCES[usize::from(receivers.code(c) & 7)];

@@ -13,7 +13,7 @@ pub fn orders(receivers: &Receivers, accumulation: &Accumulation, threshold: u32
     let mut orders = Grid::filled(*receivers.window(), 0u8);
     // Whether the highest order that has flowed in so far has done so more than once.
     let mut met = vec![false; area.len()];
-    for cell in accumulation.order.iter().map(|cell| *cell as usize) {
+    for cell in accumulation.upstream_first() {
         if area[cell] < threshold {
             continue;
         }

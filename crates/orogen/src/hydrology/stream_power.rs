@@ -21,6 +21,8 @@ use super::accumulation::Accumulation;
 use super::direction::DISTANCES;
 use super::receivers::Receivers;
 use crate::grid::Grid;
+use rayon::prelude::*;
+use std::ops::Range;
 
 /// How rivers cut.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,40 +66,110 @@ pub struct Ground<'a> {
 impl StreamPower {
     /// Goes on by `years`. Cells without a receiver, which are outlets, stay as they are.
     ///
-    /// Every other cell then stands higher than its receiver, so the result has no depressions and no flats. Costs O(cells).
+    /// Every other cell then stands higher than its receiver, so the result has no depressions and no flats. Costs O(cells), on
+    /// as many threads as `drained` was counted by.
     pub fn step(&self, heights: &mut Grid, receivers: &Receivers, drained: &Accumulation, ground: &Ground, years: f64) {
-        let cell = heights.window().cell;
-        let powers = Powers::new(self.area_exponent, cell * cell);
-        let distances = DISTANCES.map(|distance| distance * cell);
-        // All that does not differ between cells: years, erodibility, and the way to the power n.
-        let factors = distances.map(|d| years * self.erodibility * libm::pow(d, -self.slope_exponent));
-        let (rises, falls) = (distances.map(|d| d * self.gentlest), distances.map(|d| d * self.steepest));
-        let risen = years * self.uplift;
-        let (area, h) = (drained.area.data(), heights.data_mut());
-        for c in drained.order.iter().rev().map(|c| *c as usize) {
+        let window = *heights.window();
+        let step = Step::new(self, receivers, drained, ground, years);
+        let (trunk, bands) = drained.parts();
+        let h = heights.data_mut();
+        for c in trunk.iter().map(|c| *c as usize) {
             let receiver = receivers.of(c);
-            if receiver == c {
-                continue;
+            if receiver != c {
+                h[c] = step.height(c, h[c], h[receiver]);
             }
-            let k = usize::from(receivers.code(c) & 7);
-            let softness = ground.softness.map_or(1.0, |grid| f64::from(grid.data()[c]).max(0.0));
-            let rise = ground.rise.map_or(1.0, |grid| f64::from(grid.data()[c]));
-            let below = f64::from(h[receiver]);
-            let above = f64::from(h[c]) + risen * rise - below;
-            let cut = factors[k] * softness * powers.of(area[c]);
-            let left =
-                if self.slope_exponent == 1.0 { above / (1.0 + cut) } else { settled(above, cut, self.slope_exponent) };
-            // A landslide limit below the gentlest slope gives way to it.
-            let new = (below + left.min(falls[k]).max(rises[k])) as f32;
-            // In f32 the gentlest slope may come to nothing; water still has to run.
-            h[c] = if new > h[receiver] { new } else { h[receiver].next_up() };
         }
+        let mut rest = h;
+        let mut shares = Vec::with_capacity(bands.len());
+        let mut above = Vec::new();
+        for band in bands {
+            let cells = band.cells.len().min(rest.len());
+            let (own, after) = std::mem::take(&mut rest).split_at_mut(cells);
+            // What lies beyond the band's ends is read only where it is the trunk's, which is settled.
+            let below = after[..window.width.min(after.len())].to_vec();
+            let last = own[own.len().saturating_sub(window.width)..].to_vec();
+            shares.push((band, own, std::mem::replace(&mut above, last), below));
+            rest = after;
+        }
+        shares.into_par_iter().for_each(|(band, own, above, below)| {
+            let Range { start, end } = band.cells;
+            for c in band.order.iter().map(|c| *c as usize) {
+                let receiver = receivers.of(c);
+                if receiver != c {
+                    let beneath = match receiver {
+                        r if r < start => above[r + above.len() - start],
+                        r if r >= end => below[r - end],
+                        r => own[r - start],
+                    };
+                    own[c - start] = step.height(c, own[c - start], beneath);
+                }
+            }
+        });
+    }
+}
+
+/// All that a step does not have to find out cell by cell.
+struct Step<'a> {
+    codes: &'a [u8],
+    area: &'a [u32],
+    softness: Option<&'a [f32]>,
+    rise: Option<&'a [f32]>,
+    powers: Powers,
+    slope_exponent: f64,
+    /// Years, erodibility and the way to the power n, by direction; the least and the most that a cell stands above its receiver.
+    factors: [[f64; 3]; 8],
+    /// Metres of uplift.
+    risen: f64,
+}
+
+impl<'a> Step<'a> {
+    fn new(
+        law: &StreamPower,
+        receivers: &'a Receivers,
+        drained: &'a Accumulation,
+        ground: &'a Ground,
+        years: f64,
+    ) -> Step<'a> {
+        let cell = receivers.window().cell;
+        let factors = DISTANCES.map(|distance| distance * cell).map(|d| {
+            let factor = years * law.erodibility * libm::pow(d, -law.slope_exponent);
+            [factor, d * law.gentlest, d * law.steepest]
+        });
+        Step {
+            codes: receivers.codes(),
+            area: drained.area.data(),
+            softness: ground.softness.map(Grid::data),
+            rise: ground.rise.map(Grid::data),
+            powers: Powers::new(law.area_exponent, cell * cell),
+            slope_exponent: law.slope_exponent,
+            factors,
+            risen: years * law.uplift,
+        }
+    }
+
+    /// The height of cell `c` after the step, from that before and the receiver's after it.
+    #[inline(always)]
+    fn height(&self, c: usize, before: f32, receiver: f32) -> f32 {
+        let [factor, least, most] = self.factors[usize::from(self.codes[c] & 7)];
+        let softness = self.softness.map_or(1.0, |factors| f64::from(factors[c]).max(0.0));
+        let rise = self.rise.map_or(1.0, |factors| f64::from(factors[c]));
+        let below = f64::from(receiver);
+        let above = f64::from(before) + self.risen * rise - below;
+        let cut = factor * softness * self.powers.of(self.area[c]);
+        let left =
+            if self.slope_exponent == 1.0 { above / (1.0 + cut) } else { settled(above, cut, self.slope_exponent) };
+        // A landslide limit below the gentlest slope gives way to it. (What is no number counts as the limit, as with `min`.)
+        let left = if left < most { left } else { most };
+        let new = (below + if left > least { left } else { least }) as f32;
+        // In f32 the gentlest slope may come to nothing; water still has to run.
+        if new > receiver { new } else { receiver.next_up() }
     }
 }
 
 /// The x at which x + cut x^n = above, for n other than 1: what is left of a drop after the step.
 ///
 /// Newton's method on a form that is convex, from above: it comes down to the root and never passes it.
+#[inline(never)]
 fn settled(above: f64, cut: f64, n: f64) -> f64 {
     if above <= 0.0 || !(above + cut).is_finite() {
         return above.min(0.0);

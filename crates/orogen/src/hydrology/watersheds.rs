@@ -16,7 +16,7 @@ pub fn watersheds(receivers: &Receivers, outlets: &Outlets, accumulation: &Accum
             labels.data_mut()[cell] = count;
         }
     }
-    for cell in accumulation.order.iter().rev().map(|cell| *cell as usize) {
+    for cell in accumulation.downstream_first() {
         let receiver = receivers.of(cell);
         if receiver != cell {
             labels.data_mut()[cell] = labels.data()[receiver];
