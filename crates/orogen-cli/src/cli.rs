@@ -4,7 +4,9 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use orogen::Level;
 
-use crate::command::{build, compare, completions, explain, export, generate, new, noise, ops, presets, schema};
+use crate::command::{
+    analyze, build, compare, completions, explain, export, generate, new, noise, ops, presets, schema,
+};
 use crate::failure::Failure;
 
 /// Procedural terrain: a recipe describes a world, orogen makes it.
@@ -26,6 +28,8 @@ enum Command {
     Export(export::Args),
     /// Build a world of any size into a GeoTIFF, a Zarr or a folder of tiles, and go on where it was interrupted.
     Build(build::Args),
+    /// Measure a terrain: a table beside what real land is like, and a page with its charts.
+    Analyze(analyze::Args),
     /// Write a new recipe to start from.
     New(new::Args),
     /// List the built-in presets.
@@ -53,6 +57,7 @@ impl Cli {
             Command::Generate(args) => generate::run(&args),
             Command::Export(args) => export::run(&args),
             Command::Build(args) => build::run(&args),
+            Command::Analyze(args) => analyze::run(&args),
             Command::New(args) => new::run(&args),
             Command::Presets => presets::run(),
             Command::Ops(args) => ops::run(&args),

@@ -55,6 +55,7 @@ pub mod sampler;
 pub mod solver;
 pub mod spool;
 mod store;
+pub mod survey;
 pub mod tiles;
 pub mod value;
 pub mod words;

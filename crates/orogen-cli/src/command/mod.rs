@@ -1,5 +1,6 @@
 //! The commands, one a file: what each takes and does.
 
+pub mod analyze;
 pub mod build;
 pub mod compare;
 pub mod completions;

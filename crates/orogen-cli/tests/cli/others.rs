@@ -124,3 +124,24 @@ fn a_simd_level_that_is_not_there_is_refused_and_the_bits_are_the_same_at_all() 
     };
     assert_eq!(hash("scalar", "a"), hash("", "b"));
 }
+
+#[test]
+fn analyze_measures_recipes_and_files_of_heights() {
+    let folder = Folder::new();
+    let window = ["--window", "10,20,128,96"];
+    let table = folder.good(&[&["analyze", "hills"], &window[..], &["-o", "page.png"]].concat()).text().to_string();
+    for told in ["128 x 96 samples of", "mean slope", "Hack's exponent", "geomorphons  flat", "page.png: the page"] {
+        assert!(table.contains(told), "{told} is not told in\n{table}");
+    }
+    folder.good(&[&["export", "hills", "-o", "hills.tif", "-q"], &window[..]].concat());
+    let json = folder.good(&["analyze", "hills.tif", "--json"]).text().to_string();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let recipe = folder.good(&[&["analyze", "hills", "--json"], &window[..]].concat()).text().to_string();
+    let recipe: serde_json::Value = serde_json::from_str(&recipe).unwrap();
+    assert_eq!(json["height_max"], recipe["height_max"]);
+    assert_eq!(json["hypsometric_curve"].as_array().unwrap().len(), 101);
+    assert!(json["figures"]["slope_mean"]["value"].as_f64().unwrap() > 0.1);
+    folder.bad(&["analyze", "hills", "-o", "page.tif"], 2, "ends in .png");
+    folder.bad(&["analyze", "hills", "--window", "0,0,20,20"], 2, "64 x 64 samples");
+    assert_eq!(folder.names(""), ["hills.tif", "page.png"]);
+}

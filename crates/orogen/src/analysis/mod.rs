@@ -2,8 +2,11 @@
 
 pub mod aspect;
 pub mod curvature;
+pub mod fourier;
 pub mod geomorphons;
 pub mod hillshade;
 pub mod hypsometry;
+pub mod roughness;
 pub mod slope;
+pub mod spectrum;
 pub mod summary;

@@ -161,7 +161,8 @@ impl Recipe {
         let mut file = Imported::from(path.to_string_lossy().as_ref());
         file.lies_in(Path::new(""));
         file.hold(Arc::clone(ground));
-        recipe.about = format!("The place in {}", path.display());
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+        recipe.about = format!("The place in {name}");
         recipe.add("place", Dem { path: file, ..Dem::default() }).output("height", "place");
         recipe
     }

@@ -1,0 +1,153 @@
+//! `orogen analyze`.
+
+use std::path::PathBuf;
+
+use orogen::survey::measures::Measures;
+use orogen::survey::page::{self, Title};
+use orogen::survey::real::{FIGURES, SOURCE, table};
+use orogen::{Error, ErrorKind, Window, file};
+use serde_json::{Map, Value, json};
+
+use crate::bar::Bar;
+use crate::failure::Failure;
+use crate::format::Format;
+use crate::options::{Limits, View};
+use crate::size::Rectangle;
+use crate::source::Source;
+use crate::{interrupt, say, view};
+
+/// What it takes.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
+    recipe: PathBuf,
+    #[command(flatten)]
+    view: View,
+    /// Samples to measure, at the cell asked for [default: the whole world]
+    #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
+    window: Option<Rectangle>,
+    /// Layer to measure
+    #[arg(long, value_name = "L", default_value = orogen::world::HEIGHT)]
+    layer: String,
+    /// Picture of one page to write, a .png
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    limits: Limits,
+    /// Print all numbers as JSON instead of a table
+    #[arg(long)]
+    json: bool,
+    /// Show neither progress nor the table
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Measures and tells.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    if let Some(out) = &args.out
+        && Format::of(out, Format::ALL).map_err(Failure::Usage)? != Format::Png
+    {
+        return Err(Failure::Usage("the page is a picture; name a file that ends in .png".into()));
+    }
+    let source = Source::find(&args.recipe)?;
+    let mut recipe = source.read()?;
+    recipe.world.seed = args.view.seed.unwrap_or(recipe.world.seed);
+    let world = args.limits.open(recipe)?;
+    let window = match args.window {
+        Some(Rectangle { x, y, width, height }) => {
+            Window { x, y, width, height, cell: args.view.cell.unwrap_or(world.recipe().world.cell) }
+        }
+        None => view::whole(&world, &args.view)?,
+    };
+    // A file of heights tells nothing of a sea: all of it is land.
+    let sea_level = match source {
+        Source::Dem(_) => None,
+        _ => Some(world.recipe().world.sea_level as f32),
+    };
+    let (bar, progress) = Bar::new(args.quiet);
+    let grids = world.grids(&[&args.layer], &window, &progress);
+    let mut grids = grids.map_err(|error| interrupt::explain(error.into(), "nothing was measured"))?;
+    drop(bar);
+    let Some(heights) = grids.pop() else { return Ok(()) };
+    let measures = Measures::of(&heights, sea_level).ok_or_else(|| {
+        let sentence = "there is too little land to measure: it takes 64 x 64 samples, a hundredth of them above the sea, and some relief";
+        Error::new(ErrorKind::Request, sentence)
+    })?;
+    if let Some(out) = &args.out {
+        let title = Title { name: name(&args.recipe), about: about(args, &world) };
+        let page = page::draw(&title, &heights, sea_level, &measures)?;
+        let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+        file::write_whole(out, |out| page.write_png(out, &[("Software", &software)]))?;
+    }
+    match (args.json, args.quiet) {
+        (true, _) => say::out(&json(args, &window, &measures)),
+        (false, true) => Ok(()),
+        (false, false) => say::out(&words(args, &window, &measures)),
+    }
+}
+
+fn name(path: &std::path::Path) -> String {
+    path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+fn about(args: &Args, world: &orogen::World) -> String {
+    let spec = &world.recipe().world;
+    match world.recipe().about.as_str() {
+        "" => format!("{}, seed {}", args.recipe.display(), spec.seed),
+        about if world.recipe().nodes().len() == 1 => about.to_string(),
+        about => format!("{about}; seed {}", spec.seed),
+    }
+}
+
+fn words(args: &Args, window: &Window, measures: &Measures) -> String {
+    let page = args.out.as_ref().map_or(String::new(), |out| format!("\n{}: the page\n", out.display()));
+    let [low, mean, high] = measures.heights;
+    let land = match measures.land_share {
+        share if share < 1.0 => format!(", {:.1} % land", 100.0 * share),
+        _ => String::new(),
+    };
+    format!(
+        "{}: {} x {} samples of {} m, heights {low:.1} to {high:.1} m, {mean:.1} m on average{land}\n\n{}\nreal: {SOURCE}\n{page}",
+        args.recipe.display(),
+        window.width,
+        window.height,
+        (window.cell * 1000.0).round() / 1000.0,
+        table(measures),
+    )
+}
+
+fn json(args: &Args, window: &Window, measures: &Measures) -> String {
+    let mut figures = Map::new();
+    for figure in FIGURES {
+        let value = figure.value(measures);
+        figures.insert(
+            figure.key.to_string(),
+            json!({ "value": value, "unit": figure.unit, "real": figure.real, "verdict": value.map(|v| figure.verdict(v)) }),
+        );
+    }
+    let forms: Map<String, Value> = (orogen::analysis::geomorphons::FORMS.iter().zip(&measures.forms))
+        .map(|(name, share)| ((*name).to_string(), json!(share)))
+        .collect();
+    let bands: Vec<Value> =
+        measures.bands.iter().map(|band| json!({ "wavelength": band.wavelength, "power": band.power })).collect();
+    let whole = json!({
+        "of": args.recipe.display().to_string(),
+        "layer": args.layer,
+        "width": window.width,
+        "height": window.height,
+        "cell": window.cell,
+        "height_min": measures.heights[0],
+        "height_mean": measures.heights[1],
+        "height_max": measures.heights[2],
+        "land_share": measures.land_share,
+        "figures": figures,
+        "geomorphons": forms,
+        "hypsometric_curve": measures.hypsometry,
+        "slope_histogram": measures.slopes,
+        "aspect_rose": measures.aspects,
+        "spectrum": bands,
+        "strahler_order": measures.water.order,
+    });
+    // A tree of numbers and strings always has a JSON text.
+    serde_json::to_string_pretty(&whole).unwrap_or_default() + "\n"
+}
