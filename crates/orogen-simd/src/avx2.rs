@@ -413,6 +413,7 @@ impl F64Lanes<Avx2> for F64x8 {
 }
 
 impl MaskLanes for Mask8 {
+    const LANES: usize = 8;
     #[inline(always)]
     fn to_bits(self) -> u32 {
         // SAFETY: see the head of the file.

@@ -437,6 +437,7 @@ impl F64Lanes<Avx512> for F64x16 {
 }
 
 impl MaskLanes for Mask16 {
+    const LANES: usize = 16;
     #[inline(always)]
     fn to_bits(self) -> u32 {
         u32::from(self.0)

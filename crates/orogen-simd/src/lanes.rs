@@ -23,7 +23,7 @@ pub trait Simd: Copy + Send + Sync + 'static {
     /// Sixteen f32 to look up in registers.
     type Table16: Copy;
 
-    /// How many lanes the types of this level have: 4, 8 or 16.
+    /// How many lanes the types of this level have: 4, 8 or 16, or twice that ([`crate::Double`]).
     const LANES: usize;
     /// The level this token proves.
     const LEVEL: Level;
@@ -50,7 +50,7 @@ pub trait Simd: Copy + Send + Sync + 'static {
         if from.len() >= Self::LANES {
             return self.load(from);
         }
-        let mut lanes = [rest; 16];
+        let mut lanes = [rest; 32];
         lanes[..from.len()].copy_from_slice(from);
         self.load(&lanes)
     }
@@ -62,7 +62,7 @@ pub trait Simd: Copy + Send + Sync + 'static {
         if from.len() >= Self::LANES {
             return self.load_u32(from);
         }
-        let mut lanes = [rest; 16];
+        let mut lanes = [rest; 32];
         lanes[..from.len()].copy_from_slice(from);
         self.load_u32(&lanes)
     }
@@ -74,7 +74,7 @@ pub trait Simd: Copy + Send + Sync + 'static {
         if from.len() >= Self::LANES {
             return self.load_f64(from);
         }
-        let mut lanes = [rest; 16];
+        let mut lanes = [rest; 32];
         lanes[..from.len()].copy_from_slice(from);
         self.load_f64(&lanes)
     }
@@ -124,7 +124,7 @@ pub trait F32Lanes<S: Simd>:
         if to.len() >= S::LANES {
             return self.store(to);
         }
-        let mut lanes = [0.0; 16];
+        let mut lanes = [0.0; 32];
         self.store(&mut lanes);
         let room = to.len();
         to.copy_from_slice(&lanes[..room]);
@@ -183,7 +183,7 @@ pub trait U32Lanes<S: Simd>:
         if to.len() >= S::LANES {
             return self.store(to);
         }
-        let mut lanes = [0; 16];
+        let mut lanes = [0; 32];
         self.store(&mut lanes);
         let room = to.len();
         to.copy_from_slice(&lanes[..room]);
@@ -230,6 +230,9 @@ pub trait F64Lanes<S: Simd>:
 pub trait MaskLanes:
     Copy + Send + Sync + 'static + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
 {
+    /// How many truth values there are.
+    const LANES: usize;
+
     /// Lane i in bit i; the bits beyond the lanes are 0.
     fn to_bits(self) -> u32;
     /// Whether any lane holds.

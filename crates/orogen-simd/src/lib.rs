@@ -36,6 +36,7 @@
 //! This is the only crate of the workspace with `unsafe` code. It is sound because lane values and the tokens of the hardware
 //! levels have private contents: a token comes from [`dispatch`] or from detection, a lane value from a token.
 
+mod double;
 mod fma;
 mod lanes;
 mod level;
@@ -48,6 +49,7 @@ mod avx512;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 
+pub use double::{Double, Pair};
 pub use fma::fma;
 pub use lanes::{F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
 pub use level::{LEVEL_VARIABLE, Level, LevelError};

@@ -409,6 +409,7 @@ impl F64Lanes<Neon> for F64x4 {
 }
 
 impl MaskLanes for Mask4 {
+    const LANES: usize = 4;
     #[inline(always)]
     fn to_bits(self) -> u32 {
         // SAFETY: see the head of the file.

@@ -298,6 +298,7 @@ impl<const N: usize> F64Lanes<Scalar<N>> for ScalarF64<N> {
 }
 
 impl<const N: usize> MaskLanes for ScalarMask<N> {
+    const LANES: usize = N;
     #[inline]
     fn to_bits(self) -> u32 {
         self.0.iter().enumerate().fold(0, |bits, (i, &lane)| bits | (u32::from(lane) << i))

@@ -45,15 +45,15 @@ impl Rng {
     }
 }
 
-/// All results of one round, 16 lanes at a time, NaNs made one.
+/// All results of one round of 32 lanes, NaNs made one.
 type Results = Vec<(&'static str, Vec<u64>)>;
 
 struct Round {
-    a: [u32; 16],
-    b: [u32; 16],
-    c: [u32; 16],
-    x: [f64; 16],
-    y: [f64; 16],
+    a: [u32; 32],
+    b: [u32; 32],
+    c: [u32; 32],
+    x: [f64; 32],
+    y: [f64; 32],
 }
 
 fn quiet(bits: u32) -> u64 {
@@ -67,11 +67,11 @@ impl Body for Round {
     fn run<S: Simd>(self, s: S) -> Results {
         let mut results: Results = Vec::new();
         let mut float = |name: &'static str, lanes: S::F32| {
-            let mut out = [0.0; 16];
+            let mut out = [0.0; 32];
             lanes.store(&mut out);
             keep(&mut results, name, out[..S::LANES].iter().map(|x| quiet(x.to_bits())).collect());
         };
-        for at in (0..16).step_by(S::LANES) {
+        for at in (0..32).step_by(S::LANES) {
             let a = s.load_u32(&self.a[at..]).as_f32();
             let b = s.load_u32(&self.b[at..]).as_f32();
             let c = s.load_u32(&self.c[at..]).as_f32();
@@ -102,11 +102,11 @@ impl Body for Round {
             float("partial", s.load_partial(&table[..3 + at.min(1)], 9.0).select(a.lt(a), a));
         }
         let mut word = |name: &'static str, lanes: S::U32| {
-            let mut out = [0; 16];
+            let mut out = [0; 32];
             lanes.store(&mut out);
             keep(&mut results, name, out[..S::LANES].iter().map(|&x| u64::from(x)).collect());
         };
-        for at in (0..16).step_by(S::LANES) {
+        for at in (0..32).step_by(S::LANES) {
             let (a, b, c) = (s.load_u32(&self.a[at..]), s.load_u32(&self.b[at..]), s.load_u32(&self.c[at..]));
             word("add", a + b);
             word("sub", a - b);
@@ -139,7 +139,7 @@ impl Body for Round {
                 ("f64 floor", x.floor()),
             ] {
                 // A NaN of f64 is quieted by hand: its low word is unspecified too.
-                let mut out = [0.0; 16];
+                let mut out = [0.0; 32];
                 lanes.store(&mut out);
                 let out = out.map(|x: f64| if x.is_nan() { f64::NAN } else { x });
                 let (low, high) = s.load_f64(&out).words();
@@ -148,6 +148,18 @@ impl Body for Round {
             }
         }
         results
+    }
+}
+
+/// The body with two registers abreast.
+struct Twice<B>(B);
+
+impl<B: Body> Body for Twice<B> {
+    type Output = B::Output;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> B::Output {
+        Double(simd).run(self.0)
     }
 }
 
@@ -182,6 +194,7 @@ fn every_level_gives_the_same_bits() {
         let mut found = vec![("4", Scalar::<4>.run(round())), ("8", Scalar::<8>.run(round()))];
         for level in Level::available() {
             found.push((level.name(), dispatch_at(level, round()).unwrap()));
+            found.push((level.name(), dispatch_at(level, Twice(round())).unwrap()));
         }
         for (level, found) in found {
             for ((name, expected), (_, mut found)) in expected.iter().zip(found) {
@@ -204,21 +217,23 @@ fn permute_reads_its_own_lanes() {
         type Output = Vec<f32>;
         #[inline(always)]
         fn run<S: Simd>(self, s: S) -> Vec<f32> {
-            let mut out = [0.0; 16];
+            let mut out = [0.0; 32];
             let reversed = s.u32(S::LANES as u32 - 1) - s.iota();
             let lanes = s.iota().i32_to_f32().permute(reversed + s.u32(5 * S::LANES as u32));
             lanes.store(&mut out);
-            let mut words = [0; 16];
+            let mut words = [0; 32];
             s.iota().permute(reversed).store(&mut words);
             assert!(words[..S::LANES].iter().zip(&out).all(|(&word, &lane)| word as f32 == lane));
             assert_eq!(s.iota().lt_i32(s.u32(3)).to_bits(), 7);
-            assert_eq!(s.f32(1.5).widen().narrow().bits().eq(s.f32(1.5).bits()).to_bits(), (1 << S::LANES) - 1);
+            assert_eq!(s.f32(1.5).widen().narrow().bits().eq(s.f32(1.5).bits()).to_bits(), ((1_u64 << S::LANES) - 1) as u32);
             out[..S::LANES].to_vec()
         }
     }
     for level in Level::available() {
         let expected: Vec<f32> = (0..level.lanes()).rev().map(|i| i as f32).collect();
         assert_eq!(dispatch_at(level, Permute), Ok(expected));
+        let expected: Vec<f32> = (0..2 * level.lanes()).rev().map(|i| i as f32).collect();
+        assert_eq!(dispatch_at(level, Twice(Permute)), Ok(expected));
     }
     assert_eq!(Scalar::<4>.run(Permute), [3.0, 2.0, 1.0, 0.0]);
 }
@@ -240,6 +255,9 @@ fn tails_are_read_and_written_whole() {
             let from: Vec<f32> = (0..length).map(|i| i as f32).collect();
             let mut to = vec![-1.0; length];
             dispatch_at(level, Copy(&from, &mut to)).unwrap();
+            assert_eq!(from, to);
+            to.fill(-1.0);
+            dispatch_at(level, Twice(Copy(&from, &mut to))).unwrap();
             assert_eq!(from, to);
         }
     }

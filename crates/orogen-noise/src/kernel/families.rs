@@ -17,6 +17,8 @@ pub(crate) trait Family {
     type At<S: Simd>: Pointwise<S>;
     /// Whether it has slopes; else they are zero.
     const SLOPED: bool = true;
+    /// Whether its plain sums are quicker with two registers of points abreast: not where one takes all the registers there are.
+    const PAIRED: bool = false;
 }
 
 /// Work whatever the noise.
@@ -55,15 +57,19 @@ struct CubesFamily<const SMOOTH: bool>;
 impl<const DIMS: usize> Family for FlatFamily<DIMS> {
     type At<S: Simd> = LowRank<Flat<S, DIMS>>;
     const SLOPED: bool = false;
+    const PAIRED: bool = true;
 }
 impl<const DIMS: usize> Family for ValueFamily<DIMS> {
     type At<S: Simd> = LowRank<Blended<S, DIMS>>;
+    const PAIRED: bool = DIMS < 4;
 }
 impl<const DIMS: usize> Family for PerlinFamily<DIMS> {
     type At<S: Simd> = LowRank<Gradient<PerlinSource<S>, DIMS>>;
+    const PAIRED: bool = DIMS == 2;
 }
 impl<const DIMS: usize> Family for ClassicFamily<DIMS> {
     type At<S: Simd> = LowRank<Gradient<ClassicSource<S>, DIMS>>;
+    const PAIRED: bool = DIMS == 2;
 }
 impl<const DIMS: usize> Family for WorleyFamily<DIMS> {
     type At<S: Simd> = Cellular<S, DIMS>;
@@ -71,9 +77,11 @@ impl<const DIMS: usize> Family for WorleyFamily<DIMS> {
 }
 impl<const DIMS: usize> Family for SimplexFamily<DIMS> {
     type At<S: Simd> = Simplices<S, Plain, DIMS>;
+    const PAIRED: bool = DIMS == 2;
 }
 impl<const DIMS: usize> Family for OpenFamily<DIMS> {
     type At<S: Simd> = Simplices<S, Open, DIMS>;
+    const PAIRED: bool = DIMS == 2;
 }
 impl<const DIMS: usize> Family for WideFamily<DIMS> {
     type At<S: Simd> = Wide<S, DIMS>;

@@ -43,19 +43,23 @@ fn gather<S: Simd>(
         let (row, column) = (at / xs.len(), at % xs.len());
         let run = (xs.len() - column).min(x.len() - done);
         let (x, y) = (&mut x[done..done + run], &mut y[done..done + run]);
-        x.copy_from_slice(&xs[column..column + run]);
-        y.fill(ys[row]);
+        let (from, line) = (&xs[column..column + run], ys[row]);
         if let Some([dx, dy]) = displaced {
-            simd.run(Displace { to: x, by: &dx[at..at + run] });
-            simd.run(Displace { to: y, by: &dy[at..at + run] });
+            simd.run(Displace { to: x, from: Some(from), line, by: &dx[at..at + run] });
+            simd.run(Displace { to: y, from: None, line, by: &dy[at..at + run] });
+        } else {
+            x.copy_from_slice(from);
+            y.fill(line);
         }
         done += run;
     }
 }
 
-/// Adds displacements to positions.
+/// Adds displacements to positions: to each its own, or all on one line.
 struct Displace<'a> {
     to: &'a mut [f64],
+    from: Option<&'a [f64]>,
+    line: f64,
     by: &'a [f32],
 }
 
@@ -64,13 +68,15 @@ impl Body for Displace<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let whole = self.by.len() / S::LANES * S::LANES;
+        let Displace { to, from, line, by } = self;
+        let whole = by.len() / S::LANES * S::LANES;
+        let lines = simd.f64(line);
         for at in (0..whole).step_by(S::LANES) {
-            let sum = simd.load_f64(&self.to[at..]) + simd.load(&self.by[at..]).widen();
-            sum.store(&mut self.to[at..]);
+            let from = if let Some(from) = from { simd.load_f64(&from[at..]) } else { lines };
+            (from + simd.load(&by[at..]).widen()).store(&mut to[at..]);
         }
-        for at in whole..self.by.len() {
-            self.to[at] += f64::from(self.by[at]);
+        for at in whole..by.len() {
+            to[at] = from.map_or(line, |from| from[at]) + f64::from(by[at]);
         }
     }
 }

@@ -7,8 +7,8 @@ use crate::kernel::combine::State;
 use crate::kernel::families::{Family, VisitFamily};
 use crate::kernel::outputs::Outputs;
 use crate::kernel::pointwise::Pointwise;
-use crate::program::{Combine, Program};
-use orogen_simd::{Body, F32Lanes, Simd};
+use crate::program::{Combine, Octave, Program};
+use orogen_simd::{Body, Double, F32Lanes, Simd};
 use std::marker::PhantomData;
 
 /// A call of [`Scatter`] to be made for the noise a source names.
@@ -26,7 +26,8 @@ impl<S: Simd, const DIMS: usize> VisitFamily for Call<'_, S, DIMS> {
         let Call { simd, program, at, target } = self;
         let family = PhantomData::<F>;
         if matches!(program.combine, Combine::Sum) && (target.slopes.is_none() || !F::SLOPED) {
-            simd.run(Sums::<F, DIMS> { program, at, target: target.value, family });
+            let sums = Sums::<F, DIMS> { program, at, target: target.value, family };
+            if F::PAIRED && S::LANES > 4 { Double(simd).run(sums) } else { simd.run(sums) }
         } else {
             simd.run(Scatter::<F, DIMS> { program, at, target, family });
         }
@@ -60,11 +61,7 @@ impl<F: Family, const DIMS: usize> Scatter<'_, F, DIMS> {
         let none = simd.f64(0.0);
         let mut start = 0;
         while start < target.value.len() {
-            let mut position = [none; 4];
-            for axis in 0..DIMS {
-                let from = at[axis].get(start..).unwrap_or_default();
-                position[axis] = clamp(simd, simd.load_f64_partial(from, 0.0), program.limit);
-            }
+            let position = positions::<S, DIMS>(simd, program, &at, start);
             let mut state = State::new(simd);
             for octave in program.octaves() {
                 let noise = F::At::<S>::new(simd, program.source, octave);
@@ -112,25 +109,54 @@ impl<F: Family, const DIMS: usize> Body for Sums<'_, F, DIMS> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Sums { program, at, target, .. } = self;
-        let none = simd.f64(0.0);
+        let octaves = program.octaves();
         let mut start = 0;
-        while start < target.len() {
-            let mut position = [none; 4];
-            for axis in 0..DIMS {
-                let from = at[axis].get(start..).unwrap_or_default();
-                position[axis] = clamp(simd, simd.load_f64_partial(from, 0.0), program.limit);
+        if let (true, [octave]) = (F::PAIRED, octaves) {
+            // What the one octave needs stays in registers from point to point.
+            let noise = F::At::<S>::new(simd, program.source, octave);
+            while start < target.len() {
+                let position = positions::<S, DIMS>(simd, program, &at, start);
+                let mut sum = [simd.f32(0.0); 5];
+                noise.add::<false>(simd, octave, &places::<S, F, DIMS>(simd, octave, &position), &mut sum);
+                sum[0].store_partial(&mut target[start..]);
+                start += S::LANES;
             }
+            return;
+        }
+        while start < target.len() {
+            let position = positions::<S, DIMS>(simd, program, &at, start);
             let mut sum = [simd.f32(0.0); 5];
-            for octave in program.octaves() {
+            for octave in octaves {
                 let noise = F::At::<S>::new(simd, program.source, octave);
-                let mut place = [F::At::<S>::split(simd, none); 4];
-                for axis in 0..DIMS {
-                    place[axis] = F::At::<S>::split(simd, coordinate(simd, octave, axis, position[axis]));
-                }
-                noise.add::<false>(simd, octave, &place, &mut sum);
+                noise.add::<false>(simd, octave, &places::<S, F, DIMS>(simd, octave, &position), &mut sum);
             }
             sum[0].store_partial(&mut target[start..]);
             start += S::LANES;
         }
     }
+}
+
+/// The positions of a register of points, within the program's limit.
+#[inline(always)]
+fn positions<S: Simd, const DIMS: usize>(simd: S, program: &Program, at: &[&[f64]; 4], start: usize) -> [S::F64; 4] {
+    let mut position = [simd.f64(0.0); 4];
+    for axis in 0..DIMS {
+        let from = at[axis].get(start..).unwrap_or_default();
+        position[axis] = clamp(simd, simd.load_f64_partial(from, 0.0), program.limit);
+    }
+    position
+}
+
+/// Where positions are in an octave, as its noise needs them.
+#[inline(always)]
+fn places<S: Simd, F: Family, const DIMS: usize>(
+    simd: S,
+    octave: &Octave,
+    position: &[S::F64; 4],
+) -> [<F::At<S> as Pointwise<S>>::Coordinate; 4] {
+    let mut place = [F::At::<S>::split(simd, simd.f64(0.0)); 4];
+    for axis in 0..DIMS {
+        place[axis] = F::At::<S>::split(simd, coordinate(simd, octave, axis, position[axis]));
+    }
+    place
 }
