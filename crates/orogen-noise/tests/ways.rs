@@ -7,7 +7,7 @@
 mod noises;
 
 use noises::{Ask, Columns, Noise, all, at_each_level, same_bits};
-use orogen_noise::{Depth, Points};
+use orogen_noise::{Depth, Fractal, Points};
 
 /// Columns and rows of samples, and a depth.
 struct Window {
@@ -108,4 +108,25 @@ fn every_way_of_asking_gives_the_same_bits_at_every_level() {
         }
     });
     assert!(expected.iter().flat_map(|columns| &columns[0]).all(|x| x.abs() <= 1.0));
+}
+
+/// Windows larger than caches are written past them, in whole registers from where one begins in memory: wherever the window lies
+/// there, and however its rows do, it is the small one's crop.
+#[test]
+fn huge_windows_are_what_small_ones_are() {
+    let noise = Fractal { seed: 5, wavelength: 90.0, octaves: 2, ..Fractal::default() };
+    for (width, begin) in [(4112, 0), (4112, 5), (4099, 3)] {
+        let height = (1_usize << 24).div_ceil(width);
+        let axis = |count: usize| (0..count).map(|i| i as f64 - 1000.0).collect::<Vec<f64>>();
+        let (xs, ys) = (axis(width), axis(height));
+        let mut memory = vec![9.0; begin + width * height + 1];
+        noise.fill(&Points::Lattice { xs: &xs, ys: &ys }, &mut memory[begin..begin + width * height]).unwrap();
+        assert!(memory[..begin].iter().chain(&memory[begin + width * height..]).all(|&around| around == 9.0));
+        for row in [0, 1, 63, 64, height / 2, height - 1] {
+            let mut alone = vec![0.0; width];
+            noise.fill(&Points::Lattice { xs: &xs, ys: &ys[row..=row] }, &mut alone).unwrap();
+            let found = &memory[begin + row * width..][..width];
+            assert!(found.iter().zip(&alone).all(|(a, b)| a.to_bits() == b.to_bits()), "row {row} of {width} columns");
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! AVX2 with FMA: 8 lanes in one register, f64 in two.
 
 use crate::avx512::last_index;
-use crate::{Body, F32Lanes, F64Lanes, Level, MaskLanes, Simd, U32Lanes};
+use crate::{Body, F32Lanes, F64Lanes, Level, MaskLanes, Simd, Stream, U32Lanes};
 use core::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
@@ -232,6 +232,15 @@ impl F32Lanes<Avx2> for F32x8 {
         let to = &mut to[..8];
         // SAFETY: see the head of the file.
         unsafe { _mm256_storeu_ps(to.as_mut_ptr(), self.0) }
+    }
+    #[inline(always)]
+    fn stream(self, to: &mut [f32], _: &Stream) {
+        if to.len() >= 8 && to.as_ptr().addr().is_multiple_of(32) {
+            // SAFETY: see the head of the file; it is aligned, and a `Stream` waits for what was written when it is dropped.
+            unsafe { _mm256_stream_ps(to.as_mut_ptr(), self.0) }
+        } else {
+            self.store_partial(to);
+        }
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, term: Self) -> Self {

@@ -1,6 +1,6 @@
 //! AVX-512: 16 lanes in one register, f64 in two.
 
-use crate::{Body, F32Lanes, F64Lanes, Level, MaskLanes, Simd, U32Lanes};
+use crate::{Body, F32Lanes, F64Lanes, Level, MaskLanes, Simd, Stream, U32Lanes};
 use core::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
@@ -254,6 +254,15 @@ impl F32Lanes<Avx512> for F32x16 {
         let to = &mut to[..16];
         // SAFETY: see the head of the file.
         unsafe { _mm512_storeu_ps(to.as_mut_ptr(), self.0) }
+    }
+    #[inline(always)]
+    fn stream(self, to: &mut [f32], _: &Stream) {
+        if to.len() >= 16 && to.as_ptr().addr().is_multiple_of(64) {
+            // SAFETY: see the head of the file; it is aligned, and a `Stream` waits for what was written when it is dropped.
+            unsafe { _mm512_stream_ps(to.as_mut_ptr(), self.0) }
+        } else {
+            self.store_partial(to);
+        }
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, term: Self) -> Self {

@@ -132,7 +132,8 @@ impl<S: Simd> Simd for Double<S> {
 #[inline(always)]
 fn half<S: Simd>(from: Pair<S::F32>, index: S::U32) -> S::F32 {
     let sign = 31 - S::LANES.trailing_zeros();
-    let upper = index.shl(sign).lt_i32(index ^ index);
+    let zero = index.shr(31).shr(1);
+    let upper = index.shl(sign).lt_i32(zero);
     from.1.permute(index).select(upper, from.0.permute(index))
 }
 

@@ -2,7 +2,7 @@
 //!
 //! The rules hold at every level, bit for bit, but for the payload and sign of a NaN, which are unspecified.
 
-use crate::{Body, Level};
+use crate::{Body, Level, Stream};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
 /// Proof that a level's instructions may be used, and the way to its lanes. Lane values come from a token only, so safe code
@@ -128,6 +128,13 @@ pub trait F32Lanes<S: Simd>:
         self.store(&mut lanes);
         let room = to.len();
         to.copy_from_slice(&lanes[..room]);
+    }
+    /// Writes as many lanes as `to` has room for: past the caches where `to` begins at a register's boundary in memory (and the level
+    /// can), else as [`store_partial`](Self::store_partial) does.
+    #[inline(always)]
+    fn stream(self, to: &mut [f32], stream: &Stream) {
+        let _ = stream;
+        self.store_partial(to);
     }
     /// `self * factor + term`, rounded once.
     fn mul_add(self, factor: Self, term: Self) -> Self;

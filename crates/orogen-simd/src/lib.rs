@@ -41,6 +41,7 @@ mod fma;
 mod lanes;
 mod level;
 mod scalar;
+mod stream;
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -54,6 +55,7 @@ pub use fma::fma;
 pub use lanes::{F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
 pub use level::{LEVEL_VARIABLE, Level, LevelError};
 pub use scalar::{Scalar, ScalarF32, ScalarF64, ScalarMask, ScalarU32};
+pub use stream::{Stream, streaming};
 
 #[cfg(target_arch = "x86_64")]
 pub use avx2::Avx2;

@@ -225,7 +225,10 @@ fn permute_reads_its_own_lanes() {
             s.iota().permute(reversed).store(&mut words);
             assert!(words[..S::LANES].iter().zip(&out).all(|(&word, &lane)| word as f32 == lane));
             assert_eq!(s.iota().lt_i32(s.u32(3)).to_bits(), 7);
-            assert_eq!(s.f32(1.5).widen().narrow().bits().eq(s.f32(1.5).bits()).to_bits(), ((1_u64 << S::LANES) - 1) as u32);
+            assert_eq!(
+                s.f32(1.5).widen().narrow().bits().eq(s.f32(1.5).bits()).to_bits(),
+                ((1_u64 << S::LANES) - 1) as u32
+            );
             out[..S::LANES].to_vec()
         }
     }

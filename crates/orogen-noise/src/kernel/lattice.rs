@@ -6,12 +6,15 @@ use crate::kernel::combine::{Sample, State};
 use crate::kernel::outputs::Outputs;
 use crate::kernel::strip::{Columns, Job, NO_POINTS, Points, Rows, StripOctave, WIDTH};
 use crate::program::{Combine, Octave, Program, Source};
-use orogen_simd::{Body, F32Lanes, Simd};
+use orogen_simd::{Body, F32Lanes, Simd, Stream, streaming};
 use std::cell::Cell;
 
 /// Columns from which on a window is wide, and how many rows of one are filled strip by strip before the next ones.
 const WIDE: usize = 4096;
 const BAND: usize = 64;
+
+/// Samples from which on results are larger than caches are.
+const HUGE: usize = 1 << 24;
 
 /// Buffers a thread keeps from call to call.
 struct Scratch {
@@ -46,44 +49,75 @@ pub(crate) fn fill<S: Simd>(
     }
     let Scratch { octaves: strips, points } = &mut *scratch;
     let strips = &mut strips[..octaves.len()];
-    let slopes = outputs.slopes.is_some() || program.combine.needs_slopes();
-    // Rows far apart in memory are in pages of their own: a strip of a wide window goes down only so far before the next.
-    let band = if xs.len() > WIDE { BAND } else { ys.len().max(1) };
-    for (b, band_ys) in ys.chunks(band).enumerate() {
-        for (s, columns) in xs.chunks(WIDTH).enumerate() {
-            let job = Job {
-                source: program.source,
-                octave: &octaves.first().copied().unwrap_or_default(),
-                limit: program.limit,
-                slopes,
-                dims,
-                depths,
-                columns: columns.len(),
-            };
-            for (strip, octave) in strips.iter_mut().zip(octaves) {
-                simd.run(Columns { job: Job { octave, ..job }, strip, xs: columns });
-            }
-            for (g, rows) in band_ys.chunks(S::LANES).enumerate() {
+    let whole = Whole { simd, program, xs, ys, dims, depths };
+    if xs.len() > WIDE && xs.len() * ys.len() >= HUGE {
+        // Written past the caches, whole registers at a time: the first strip ends where one begins in memory.
+        let register = S::LANES * size_of::<f32>();
+        let beyond = outputs.value.as_ptr().addr() % register;
+        let lead = (register - beyond) % register / size_of::<f32>();
+        streaming(|stream| whole.fill((strips, points), outputs, lead, Some(stream)));
+    } else {
+        whole.fill((strips, points), outputs, 0, None);
+    }
+    SCRATCH.set(Some(scratch));
+}
+
+/// A lattice to be filled.
+struct Whole<'a, S> {
+    simd: S,
+    program: &'a Program,
+    xs: &'a [f64],
+    ys: &'a [f64],
+    dims: usize,
+    depths: [f64; 2],
+}
+
+impl<S: Simd> Whole<'_, S> {
+    /// Fills it, strip by strip, the first of them of `lead` columns.
+    #[inline(always)]
+    fn fill(
+        &self,
+        (strips, points): (&mut [StripOctave], &mut Points),
+        outputs: &mut Outputs,
+        lead: usize,
+        stream: Option<&Stream>,
+    ) {
+        let Whole { simd, program, xs, ys, dims, depths } = *self;
+        let octaves = program.octaves();
+        let slopes = outputs.slopes.is_some() || program.combine.needs_slopes();
+        let (first, others) = xs.split_at(lead.min(xs.len()));
+        // Rows far apart in memory are in pages of their own: a strip of a wide window goes down only so far before the next.
+        let band = if xs.len() > WIDE { BAND } else { ys.len().max(1) };
+        for (b, band_ys) in ys.chunks(band).enumerate() {
+            let mut column = 0;
+            for columns in first.chunks(WIDTH).chain(others.chunks(WIDTH)) {
+                let (source, limit) = (program.source, program.limit);
+                let job = Job { source, limit, slopes, dims, depths, columns: columns.len() };
                 for (strip, octave) in strips.iter_mut().zip(octaves) {
-                    simd.run(Rows { job: Job { octave, ..job }, strip, ys: rows });
+                    simd.run(Columns { job: &job, octave, strip, xs: columns });
                 }
-                for r in 0..rows.len() {
+                for (g, rows) in band_ys.chunks(S::LANES).enumerate() {
                     for (strip, octave) in strips.iter_mut().zip(octaves) {
-                        strip.hold(simd, &Job { octave, ..job }, points, r);
+                        simd.run(Rows { job: &job, octave, strip, ys: rows });
                     }
-                    let start = (b * band + g * S::LANES + r) * xs.len() + s * WIDTH;
-                    let target = outputs.part(start, columns.len());
-                    let row = Row { combine: program.combine, octaves, strips, r, target };
-                    if matches!(program.source, Source::Value(_)) {
-                        in_dimensions::<S, 1>(simd, dims, row);
-                    } else {
-                        in_dimensions::<S, 2>(simd, dims, row);
+                    for r in 0..rows.len() {
+                        for (strip, octave) in strips.iter_mut().zip(octaves) {
+                            strip.hold(simd, &job, octave, points, r);
+                        }
+                        let start = (b * band + g * S::LANES + r) * xs.len() + column;
+                        let target = outputs.part(start, columns.len());
+                        let row = Row { combine: &program.combine, octaves, strips, r, target, stream };
+                        if matches!(program.source, Source::Value(_)) {
+                            in_dimensions::<S, 1>(simd, dims, row);
+                        } else {
+                            in_dimensions::<S, 2>(simd, dims, row);
+                        }
                     }
                 }
+                column += columns.len();
             }
         }
     }
-    SCRATCH.set(Some(scratch));
 }
 
 /// Runs the kernel made for the row: by the rank of its basis, by how octaves are combined, and by what is wanted.
@@ -118,12 +152,14 @@ const SHAPED: usize = 3;
 
 /// One row of samples within a strip.
 struct Row<'a> {
-    combine: Combine,
+    combine: &'a Combine,
     octaves: &'a [Octave],
     strips: &'a [StripOctave],
     /// Its place in the group of rows.
     r: usize,
     target: Outputs<'a>,
+    /// Set where values are written past the caches.
+    stream: Option<&'a Stream>,
 }
 
 /// The kernel of a row.
@@ -183,37 +219,47 @@ fn block<S: Simd, const DIMS: usize, const RANK: usize, const N: usize, const KI
             Combine::Sizes { .. } if KIND == SIZES => {
                 add_octave::<S, DIMS, RANK, N, SLOPES>(simd, strip, r, at, &mut one);
                 for n in 0..N {
-                    states[n].add::<SLOPES>(simd, &combine, octave, &one[n], DIMS);
+                    states[n].add::<SLOPES>(simd, combine, octave, &one[n], DIMS);
                 }
             }
             Combine::Weighted { .. } if KIND == WEIGHTED => {
                 add_octave::<S, DIMS, RANK, N, true>(simd, strip, r, at, &mut one);
                 for n in 0..N {
-                    states[n].add::<SLOPES>(simd, &combine, octave, &one[n], DIMS);
+                    states[n].add::<SLOPES>(simd, combine, octave, &one[n], DIMS);
                 }
             }
             Combine::Shaped { .. } if KIND == SHAPED => {
                 add_octave::<S, DIMS, RANK, N, SLOPES>(simd, strip, r, at, &mut one);
                 for n in 0..N {
-                    states[n].add::<SLOPES>(simd, &combine, octave, &one[n], DIMS);
+                    states[n].add::<SLOPES>(simd, combine, octave, &one[n], DIMS);
                 }
             }
             _ => {}
         }
     }
-    let target = &mut row.target;
     for n in 0..N {
         match combine {
-            Combine::Sizes { .. } if KIND == SIZES => states[n].finish::<SLOPES>(simd, &combine, DIMS),
-            Combine::Weighted { .. } if KIND == WEIGHTED => states[n].finish::<SLOPES>(simd, &combine, DIMS),
-            Combine::Shaped { .. } if KIND == SHAPED => states[n].finish::<SLOPES>(simd, &combine, DIMS),
+            Combine::Sizes { .. } if KIND == SIZES => states[n].finish::<SLOPES>(simd, combine, DIMS),
+            Combine::Weighted { .. } if KIND == WEIGHTED => states[n].finish::<SLOPES>(simd, combine, DIMS),
+            Combine::Shaped { .. } if KIND == SHAPED => states[n].finish::<SLOPES>(simd, combine, DIMS),
             _ => {}
         }
+    }
+    let target = &mut row.target;
+    if let Some(stream) = row.stream {
+        for n in 0..N {
+            let from = (at + n * S::LANES).min(target.value.len());
+            states[n].sum[0].stream(&mut target.value[from..], stream);
+        }
+    }
+    for n in 0..N {
         let at = at + n * S::LANES;
         if at >= target.value.len() {
             break;
         }
-        states[n].sum[0].store_partial(&mut target.value[at..]);
+        if row.stream.is_none() {
+            states[n].sum[0].store_partial(&mut target.value[at..]);
+        }
         if let (true, Some(slopes)) = (SLOPES, &mut target.slopes) {
             for axis in 0..DIMS {
                 states[n].sum[1 + axis].store_partial(&mut slopes[axis][at..]);

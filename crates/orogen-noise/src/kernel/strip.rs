@@ -72,7 +72,7 @@ impl StripOctave {
     /// Makes the lines those around the group's row `r`. Only what changed is built: rows mostly share their lines, and the
     /// next row of cells keeps one.
     #[inline(always)]
-    pub(crate) fn hold<S: Simd>(&mut self, simd: S, job: &Job, numbers: &mut Points, r: usize) {
+    pub(crate) fn hold<S: Simd>(&mut self, simd: S, job: &Job, octave: &Octave, points: &mut Points, r: usize) {
         let cell = self.cells[r];
         if self.held == Some(cell) {
             return;
@@ -81,25 +81,25 @@ impl StripOctave {
         let held = self.held.replace(cell);
         if held.map(|held| held.wrapping_add(1)) == Some(cell) {
             self.upper ^= 1;
-            self.build(simd, job, numbers, 1, below);
+            self.build(simd, (job, octave), points, 1, below);
         } else if held.map(|held| held.wrapping_sub(1)) == Some(cell) {
             self.upper ^= 1;
-            self.build(simd, job, numbers, 0, above);
+            self.build(simd, (job, octave), points, 0, above);
         } else {
-            self.build(simd, job, numbers, 0, above);
-            self.build(simd, job, numbers, 1, below);
+            self.build(simd, (job, octave), points, 0, above);
+            self.build(simd, (job, octave), points, 1, below);
         }
     }
 
     #[inline(always)]
-    fn build<S: Simd>(&mut self, simd: S, job: &Job, points: &mut Points, line: usize, key: u32) {
-        let (job, strip) = (*job, self);
+    fn build<S: Simd>(&mut self, simd: S, (job, octave): (&Job, &Octave), points: &mut Points, line: usize, key: u32) {
+        let strip = self;
         match (job.dims, job.slopes) {
-            (2, false) => simd.run(Line::<2, false> { job, strip, points, line, key }),
-            (2, true) => simd.run(Line::<2, true> { job, strip, points, line, key }),
-            (3, false) => simd.run(Line::<3, false> { job, strip, points, line, key }),
-            (3, true) => simd.run(Line::<3, true> { job, strip, points, line, key }),
-            (_, _) => simd.run(Line::<4, false> { job, strip, points, line, key }),
+            (2, false) => simd.run(Line::<2, false> { job, octave, strip, points, line, key }),
+            (2, true) => simd.run(Line::<2, true> { job, octave, strip, points, line, key }),
+            (3, false) => simd.run(Line::<3, false> { job, octave, strip, points, line, key }),
+            (3, true) => simd.run(Line::<3, true> { job, octave, strip, points, line, key }),
+            (_, _) => simd.run(Line::<4, false> { job, octave, strip, points, line, key }),
         }
     }
 }
@@ -111,11 +111,9 @@ pub(crate) struct Points([[f32; SPAN]; 9]);
 /// An empty [`Points`].
 pub(crate) const NO_POINTS: Points = Points([[0.0; SPAN]; 9]);
 
-/// What is the same for all strips and rows of an octave.
-#[derive(Clone, Copy)]
-pub(crate) struct Job<'a> {
+/// What is the same for all octaves of a strip. Kernels are given where it is: what is copied piece by piece is slow to read at once.
+pub(crate) struct Job {
     pub source: Source,
-    pub octave: &'a Octave,
     pub limit: f64,
     pub slopes: bool,
     /// How many axes there are.
@@ -126,11 +124,11 @@ pub(crate) struct Job<'a> {
     pub columns: usize,
 }
 
-impl Job<'_> {
+impl Job {
     #[inline(always)]
-    fn split<S: Simd>(&self, simd: S, position: S::F64, axis: usize) -> Cell<S> {
+    fn split<S: Simd>(&self, simd: S, octave: &Octave, position: S::F64, axis: usize) -> Cell<S> {
         let held = clamp(simd, position, self.limit);
-        Cell::split(simd, self.octave, axis, held)
+        Cell::split(simd, octave, axis, held)
     }
 
     #[inline(always)]
@@ -147,7 +145,8 @@ fn at<S: Simd>(v: usize) -> usize {
 
 /// Prepares the columns of a strip.
 pub(crate) struct Columns<'a> {
-    pub job: Job<'a>,
+    pub job: &'a Job,
+    pub octave: &'a Octave,
     pub strip: &'a mut StripOctave,
     /// x of the columns, metres; at least one.
     pub xs: &'a [f64],
@@ -166,19 +165,19 @@ impl Body for Columns<'_> {
 impl<S: Simd> Visit<S> for Columns<'_> {
     #[inline(always)]
     fn visit<B: Basis<S>>(self, simd: S) {
-        let basis = B::new(simd, self.job.source, self.job.octave);
-        let Columns { job, strip, xs } = self;
+        let basis = B::new(simd, self.job.source, self.octave);
+        let Columns { job, octave, strip, xs } = self;
         strip.held = None;
         let Some(&last) = xs.last() else { return };
         let registers = job.registers::<S>();
         let mut lanes = [0.0; MOST_LANES];
-        job.split(simd, simd.load_f64_partial(xs, last), 0).whole.store(&mut lanes);
+        job.split(simd, octave, simd.load_f64_partial(xs, last), 0).whole.store(&mut lanes);
         let origin = lanes[0];
 
         let mut reach = simd.u32(0);
         let mut farthest = 0;
         for v in 0..registers {
-            let cell = job.split(simd, simd.load_f64_partial(&xs[v * S::LANES..], last), 0);
+            let cell = job.split(simd, octave, simd.load_f64_partial(&xs[v * S::LANES..], last), 0);
             let column = Weights::new(simd, cell.t, basis.fade(simd, cell.t));
             let kept =
                 [column.ramp[0], column.ramp[1], column.u[0], column.u[1], column.dramp[0], column.dramp[1], column.du];
@@ -209,7 +208,7 @@ impl<S: Simd> Visit<S> for Columns<'_> {
             }
         } else {
             for v in 0..registers {
-                let cell = job.split(simd, simd.load_f64_partial(&xs[v * S::LANES..], last), 0);
+                let cell = job.split(simd, octave, simd.load_f64_partial(&xs[v * S::LANES..], last), 0);
                 let [here, next] = basis.keys(simd, 0, &cell);
                 here.store(&mut strip.keys[0][at::<S>(v)..]);
                 next.store(&mut strip.keys[1][at::<S>(v)..]);
@@ -220,7 +219,8 @@ impl<S: Simd> Visit<S> for Columns<'_> {
 
 /// Prepares a group of rows, one per lane.
 pub(crate) struct Rows<'a> {
-    pub job: Job<'a>,
+    pub job: &'a Job,
+    pub octave: &'a Octave,
     pub strip: &'a mut StripOctave,
     /// y of the rows, metres; one to as many as there are lanes.
     pub ys: &'a [f64],
@@ -239,10 +239,10 @@ impl Body for Rows<'_> {
 impl<S: Simd> Visit<S> for Rows<'_> {
     #[inline(always)]
     fn visit<B: Basis<S>>(self, simd: S) {
-        let basis = B::new(simd, self.job.source, self.job.octave);
-        let Rows { job, strip, ys } = self;
+        let basis = B::new(simd, self.job.source, self.octave);
+        let Rows { job, octave, strip, ys } = self;
         let Some(&last) = ys.last() else { return };
-        let cell = job.split(simd, simd.load_f64_partial(ys, last), 1);
+        let cell = job.split(simd, octave, simd.load_f64_partial(ys, last), 1);
         let [above, below] = basis.keys(simd, 1, &cell);
         above.store(&mut strip.line_keys[0]);
         below.store(&mut strip.line_keys[1]);
@@ -253,7 +253,7 @@ impl<S: Simd> Visit<S> for Rows<'_> {
             *cell = u64::from(high) << 32 | u64::from(low);
         }
         let row = Weights::new(simd, cell.t, basis.fade(simd, cell.t));
-        let made = basis.coefficients(simd, &row, simd.f32(job.octave.amplitude), simd.f32(job.octave.slope));
+        let made = basis.coefficients(simd, &row, simd.f32(octave.amplitude), simd.f32(octave.slope));
         for place in 0..4 {
             made.value[place].store(&mut strip.coefficients[0][place]);
             made.along[place].store(&mut strip.coefficients[1][place]);
@@ -264,7 +264,8 @@ impl<S: Simd> Visit<S> for Rows<'_> {
 
 /// Builds the row vectors of one lattice line.
 struct Line<'a, const DIMS: usize, const SLOPES: bool> {
-    job: Job<'a>,
+    job: &'a Job,
+    octave: &'a Octave,
     strip: &'a mut StripOctave,
     points: &'a mut Points,
     /// The upper (0) or lower (1) line.
@@ -284,12 +285,14 @@ impl<const DIMS: usize, const SLOPES: bool> Body for Line<'_, DIMS, SLOPES> {
 impl<S: Simd, const DIMS: usize, const SLOPES: bool> Visit<S> for Line<'_, DIMS, SLOPES> {
     #[inline(always)]
     fn visit<B: Basis<S>>(self, simd: S) {
-        let basis = B::new(simd, self.job.source, self.job.octave);
-        let Line { job, strip, points, line, key } = self;
+        let basis = B::new(simd, self.job.source, self.octave);
+        let Line { job, octave, strip, points, line, key } = self;
         let points = &mut points.0;
         let key = simd.u32(key);
-        let depths = basis
-            .depths(simd, &[job.split(simd, simd.f64(job.depths[0]), 2), job.split(simd, simd.f64(job.depths[1]), 3)]);
+        let depths = basis.depths(
+            simd,
+            &[job.split(simd, octave, simd.f64(job.depths[0]), 2), job.split(simd, octave, simd.f64(job.depths[1]), 3)],
+        );
         let numbers = if SLOPES { (B::DIMS - 1) * B::NUMBERS } else { B::NUMBERS };
         let dense = strip.dense;
         if dense {
