@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """CPU seconds that a peer takes, on the heights of a .npy file: erosion.py PEER FILE CELL REPETITIONS
 
-PEER is `richdem` (depressions filled, flats resolved, D8, accumulation) or `fastscapelib` (routing and one stream power step).
+PEER is `richdem` (depressions filled, flats resolved, D8, accumulation), `fastscapelib` (routing and one stream power step) or
+`matplotlib` (hillshade).
 Prints one line of JSON: a list for each part, in seconds of this process.
 """
 import json
@@ -45,10 +46,27 @@ def fastscapelib(heights, cell, repetitions):
     return parts
 
 
+def matplotlib(heights, cell, repetitions):
+    from matplotlib.colors import LightSource
+
+    light = LightSource(azdeg=315, altdeg=45)
+    parts = {"hillshade": []}
+    for _ in range(repetitions):
+        start = time.process_time()
+        light.hillshade(heights, vert_exag=1, dx=cell, dy=cell)
+        parts["hillshade"].append(time.process_time() - start)
+    return parts
+
+
 def main():
     peer, file, cell, repetitions = sys.argv[1], sys.argv[2], float(sys.argv[3]), int(sys.argv[4])
     heights = np.load(file)
-    parts = richdem(heights, repetitions) if peer == "richdem" else fastscapelib(heights, cell, repetitions)
+    if peer == "richdem":
+        parts = richdem(heights, repetitions)
+    elif peer == "fastscapelib":
+        parts = fastscapelib(heights, cell, repetitions)
+    else:
+        parts = matplotlib(heights, cell, repetitions)
     # richdem draws bars on the same output.
     print("\n" + json.dumps(parts))
 

@@ -1,4 +1,4 @@
-//! Area `erosion`: hydrology beside richdem and fastscapelib, in memory, CPU time of one thread.
+//! Area `erosion`: hydrology and filters beside richdem, fastscapelib and matplotlib, in memory, CPU time of one thread.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -12,13 +12,16 @@ use orogen::hydrology::{drainage, fill};
 use orogen::{Grid, Recipe, Window, World};
 use serde_json::{Value, json};
 
+use crate::filters;
 use crate::measure::median;
 use crate::options::Options;
+use crate::world::figure::Figure;
 
 const CELL: f64 = 60.0;
 
 /// Where a peer's Python is, each in the variable of its name: `cargo xtask bench` installs them and sets these.
-const PEERS: [(&str, &str); 2] = [("richdem", "OROGEN_RICHDEM"), ("fastscapelib", "OROGEN_FASTSCAPELIB")];
+const PEERS: [(&str, &str); 3] =
+    [("richdem", "OROGEN_RICHDEM"), ("fastscapelib", "OROGEN_FASTSCAPELIB"), ("matplotlib", "OROGEN_MATPLOTLIB")];
 
 /// One measured case: its name, side, our seconds, the peer and its parts that do the same, and how many times faster to be.
 struct Case {
@@ -64,6 +67,7 @@ const CASES: &[Case] = &[
         parts: &["step"],
         target: Some(5.0),
     },
+    Case { name: "hillshade", side: 2048, ours: filters::shaded, peer: 2, parts: &["hillshade"], target: Some(5.0) },
 ];
 
 /// Runs the cases.
@@ -101,6 +105,7 @@ fn measured(options: &Options, folder: &Path) -> Result<Vec<Value>, String> {
             "target": case.target, "met": case.target.map(|target| ratio.is_some_and(|ratio| ratio >= target)),
         }));
     }
+    rows.extend(filters::figures(options, ground)?.iter().map(Figure::json));
     Ok(rows)
 }
 

@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 
 mod erosion;
+mod filters;
 mod generate;
 mod measure;
 mod noise;

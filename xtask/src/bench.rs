@@ -18,9 +18,9 @@ Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
 Builds the benches at full optimisation, measures one area (or each in turn) and prints a table.
 
   AREA         noise     noise kernels beside other crates, one thread, CPU time; AVX2, memory and two threads
-               erosion   depressions, drainage and a stream power step beside richdem and fastscapelib (by pip; one that does
-                         not install is left out), one thread, CPU time; OROGEN_RICHDEM and OROGEN_FASTSCAPELIB name
-                         the Python that has them
+               erosion   depressions, drainage, a stream power step and hillshade beside richdem, fastscapelib and matplotlib
+                         (by pip; one that does not install is left out), erosion by filters, one thread, CPU time, and two
+                         threads; OROGEN_RICHDEM, OROGEN_FASTSCAPELIB and OROGEN_MATPLOTLIB name the Python that has them
                generate  every preset from the command to the last file, all cores, wall clock
                world     chunks, tiles with halos, threads and whole builds of the preset `hills`; the builds (--case build) take
                          minutes and a dozen GiB of disk

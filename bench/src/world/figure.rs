@@ -11,6 +11,8 @@ pub enum Target {
     RatioAtMost(f64),
     /// The ratio of the other to the figure has to be so much: how many times faster.
     FasterBy(f64),
+    /// Nothing: it is told for its own sake.
+    None,
 }
 
 /// One figure.
@@ -33,6 +35,7 @@ impl Figure {
     pub fn json(&self) -> Value {
         let other = self.other.map(|(_, value)| value);
         let (ratio, target, met) = match self.target {
+            Target::None => (None, None, None),
             Target::AtMost(most) => (None, Some(most), Some(self.ours <= most)),
             Target::RatioAtMost(most) => {
                 let ratio = other.map(|other| self.ours / other);

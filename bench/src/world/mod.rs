@@ -2,7 +2,7 @@
 
 mod build;
 mod chunk;
-mod figure;
+pub mod figure;
 mod hills;
 mod process;
 mod threads;

@@ -3,7 +3,7 @@
 //! One `op!` block gives the struct, its defaults, reading and checking from a recipe, writing back, the JSON Schema, the
 //! command line's help and a user interface's sliders.
 
-use crate::dem::held::Imported;
+use crate::dem::held::{Imported, Picture};
 use crate::layer::Layer;
 use crate::value::{Spanned, Value};
 use serde::{Deserialize, Serialize};
@@ -180,6 +180,25 @@ impl Param for Imported {
     }
     fn file(&mut self) -> Option<&mut Imported> {
         Some(self)
+    }
+}
+
+impl Param for Picture {
+    const SHAPE: Shape = Shape::File;
+    fn read(value: &Value) -> Option<Picture> {
+        match value {
+            Value::Text(path) => Some(Picture::from(path.as_str())),
+            _ => None,
+        }
+    }
+    fn write(&self) -> Value {
+        self.0.write()
+    }
+    fn key(&self) -> Value {
+        self.0.key()
+    }
+    fn file(&mut self) -> Option<&mut Imported> {
+        Some(&mut self.0)
     }
 }
 

@@ -62,6 +62,17 @@ impl Window {
         }
     }
 
+    /// The window without `border` samples on each side; empty if that is all it has.
+    pub fn shrunk(&self, border: usize) -> Window {
+        Window {
+            x: self.x + border as i64,
+            y: self.y + border as i64,
+            width: self.width.saturating_sub(2 * border),
+            height: self.height.saturating_sub(2 * border),
+            cell: self.cell,
+        }
+    }
+
     /// The smallest window that holds both. Both must have the same cell.
     pub fn union(&self, other: &Window) -> Window {
         debug_assert_eq!(self.cell, other.cell);

@@ -33,6 +33,7 @@ pub mod build;
 pub mod chunks;
 pub mod dem;
 mod engine;
+pub mod erosion;
 pub mod error;
 pub mod field;
 pub mod file;

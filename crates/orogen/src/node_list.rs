@@ -12,6 +12,7 @@ nodes! {
         fbm::Fbm,
         hetero::Hetero,
         hybrid::Hybrid,
+        image::Image,
         jordan::Jordan,
         max::Max,
         min::Min,
@@ -24,6 +25,8 @@ nodes! {
         ramp::Ramp,
         remap::Remap,
         ridged::Ridged,
+        select_flow::SelectFlow,
+        select_height::SelectHeight,
         simplex::Simplex,
         swiss::Swiss,
         terrace::Terrace,
@@ -36,7 +39,15 @@ nodes! {
     }
     filter {
         blur::Blur,
+        distance::Distance,
+        droplets::Droplets,
+        local_stream_power::LocalStreamPower,
+        pipes::Pipes,
+        select_aspect::SelectAspect,
+        select_curvature::SelectCurvature,
+        select_slope::SelectSlope,
         slope::Slope,
+        thermal::Thermal,
     }
     solver {
         bake::Bake,

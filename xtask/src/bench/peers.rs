@@ -26,6 +26,12 @@ const PEERS: &[Peer] = &[
         packages: &["numpy", "fastscapelib==0.3.0"],
         pythons: &["python3", "python3.12", "python3.11", "python3.10"],
     },
+    Peer {
+        variable: "OROGEN_MATPLOTLIB",
+        name: "matplotlib",
+        packages: &["numpy", "matplotlib==3.10.7"],
+        pythons: &["python3", "python3.13", "python3.12", "python3.11", "python3.10"],
+    },
 ];
 
 /// The Pythons of the peers that can be had, each with its variable; one that is set already is taken as it is. What cannot be

@@ -34,25 +34,31 @@ pub fn curvature(grid: &Grid, kind: Curvature) -> Grid {
         let rows = [grid.row(j), grid.row(j + 1), grid.row(j + 2)];
         for (i, out) in out.row_mut(j).iter_mut().enumerate() {
             let z = |y: usize, x: usize| f64::from(rows[y][i + x]);
-            let r = (z(1, 0) - 2.0 * z(1, 1) + z(1, 2)) / (c * c);
-            let t = (z(0, 1) - 2.0 * z(1, 1) + z(2, 1)) / (c * c);
-            let s = (z(0, 0) - z(0, 2) - z(2, 0) + z(2, 2)) / (4.0 * c * c);
-            let (p, q) = ((z(1, 2) - z(1, 0)) / (2.0 * c), (z(2, 1) - z(0, 1)) / (2.0 * c));
-            let steep = p * p + q * q;
-            let bend = match kind {
-                Curvature::Total => -(r + t),
-                _ if steep == 0.0 => 0.0 * (r + s + t),
-                Curvature::Profile => {
-                    let one = 1.0 + steep;
-                    -(r * p * p + 2.0 * s * p * q + t * q * q) / (steep * one * one.sqrt())
-                }
-                Curvature::Plan => -(r * q * q - 2.0 * s * p * q + t * p * p) / (steep * steep.sqrt()),
-            };
-            // The corners enter only by s; a missing one must not go unnoticed.
-            *out = if s.is_finite() { bend as f32 } else { f32::NAN };
+            let z = [0, 1, 2].map(|y| [0, 1, 2].map(|x| z(y, x)));
+            *out = bend(z, c, kind);
         }
     }
     out
+}
+
+/// The curvature in the middle of nine heights `c` metres apart, rows from the north; NaN where one is not finite.
+pub fn bend(z: [[f64; 3]; 3], c: f64, kind: Curvature) -> f32 {
+    let r = (z[1][0] - 2.0 * z[1][1] + z[1][2]) / (c * c);
+    let t = (z[0][1] - 2.0 * z[1][1] + z[2][1]) / (c * c);
+    let s = (z[0][0] - z[0][2] - z[2][0] + z[2][2]) / (4.0 * c * c);
+    let (p, q) = ((z[1][2] - z[1][0]) / (2.0 * c), (z[2][1] - z[0][1]) / (2.0 * c));
+    let steep = p * p + q * q;
+    let bend = match kind {
+        Curvature::Total => -(r + t),
+        _ if steep == 0.0 => 0.0 * (r + s + t),
+        Curvature::Profile => {
+            let one = 1.0 + steep;
+            -(r * p * p + 2.0 * s * p * q + t * q * q) / (steep * one * one.sqrt())
+        }
+        Curvature::Plan => -(r * q * q - 2.0 * s * p * q + t * p * p) / (steep * steep.sqrt()),
+    };
+    // The corners enter only by s; a missing one must not go unnoticed.
+    if s.is_finite() { bend as f32 } else { f32::NAN }
 }
 
 #[cfg(test)]

@@ -10,8 +10,9 @@
 //!
 //! which needs no angle per sample. 1 is full light, level ground gets the sine of the altitude. A missing sample is dark: 0.
 
-use super::slope::{Gradient, from_gradients};
+use super::slope::{Gradient, gradients_between, inner};
 use crate::grid::Grid;
+use orogen_simd::{Body, Simd, dispatch};
 
 /// Where the light comes from, ready to be asked.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,11 +44,13 @@ impl Light {
     }
 
     /// The share of light, 0 to 1, that ground of this gradient gets; 0 if the gradient is not a number.
+    #[inline(always)]
     pub fn on(&self, gradient: Gradient) -> f32 {
         let (p, q) = (self.z_factor * gradient.east, self.z_factor * gradient.north);
         let light = self.toward(p, q) / (1.0 + p * p + q * q).sqrt();
         // Written so that NaN, which is above nothing, falls to 0 as well.
-        if light > 0.0 { light.min(1.0) } else { 0.0 }
+        let light = if light > 0.0 { light } else { 0.0 };
+        if light < 1.0 { light } else { 1.0 }
     }
 
     /// The share that level ground gets.
@@ -55,6 +58,7 @@ impl Light {
         self.up
     }
 
+    #[inline(always)]
     fn toward(&self, p: f32, q: f32) -> f32 {
         self.up - p * self.east - q * self.north
     }
@@ -62,7 +66,45 @@ impl Light {
 
 /// The hillshade of every sample of `grid` but those of its border.
 pub fn hillshade(grid: &Grid, light: &Light) -> Grid {
-    from_gradients(grid, |gradient| light.on(gradient))
+    let window = inner(grid.window());
+    let mut out = Grid::filled(window, 0.0);
+    for j in 0..window.height {
+        let (rows, out) = ([grid.row(j), grid.row(j + 1), grid.row(j + 2)], out.row_mut(j));
+        if !dispatch(Sound { rows, cell: window.cell, light, out: &mut *out }) {
+            gradients_between(rows, window.cell, |i, gradient| out[i] = light.on(gradient));
+        }
+    }
+    out
+}
+
+/// A row of samples none of which is missing; tells whether that was so.
+struct Sound<'a> {
+    rows: [&'a [f32]; 3],
+    cell: f64,
+    light: &'a Light,
+    out: &'a mut [f32],
+}
+
+impl Body for Sound<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) -> bool {
+        let n = self.out.len();
+        let [[a, b, c], [d, e, f], [g, h, k]] = self.rows.map(|row| [&row[..n], &row[1..=n], &row[2..n + 2]]);
+        let (scale, light) = ((1.0 / (8.0 * self.cell)) as f32, *self.light);
+        let mut missing = 0u32;
+        for (i, out) in self.out.iter_mut().enumerate() {
+            // The sums of `gradients_between` in their order: the same bits.
+            let east = ((c[i] - a[i]) + 2.0 * (f[i] - d[i]) + (k[i] - g[i])) * scale;
+            let north = ((a[i] - g[i]) + 2.0 * (b[i] - h[i]) + (c[i] - k[i])) * scale;
+            *out = light.on(Gradient { east, north });
+            // What is not finite is no 0 even times 0.
+            let zero = ((east + north) + e[i]) * 0.0;
+            missing |= u32::from(zero != 0.0);
+        }
+        missing == 0
+    }
 }
 
 #[cfg(test)]
@@ -113,6 +155,25 @@ mod tests {
         assert!((north_west - 1.0).abs() < 0.01 && south_east < 0.01, "{north_west} {south_east}");
         let level = hillshade(&Grid::filled(window, 7.0), &Light::default());
         assert!(level.data().iter().all(|&v| (v - 0.5f32.sqrt()).abs() < 1e-6));
+    }
+
+    #[test]
+    fn rows_with_and_without_missing_samples_are_the_same_where_they_do_not_look_at_one() {
+        let window = Window::new(40, 9, 3.0);
+        let mut sound = Grid::filled(window, 0.0);
+        for (k, height) in sound.data_mut().iter_mut().enumerate() {
+            *height = (k * k % 61) as f32 * 0.3;
+        }
+        let mut holed = sound.clone();
+        (holed.row_mut(4)[10], holed.row_mut(1)[30]) = (f32::NAN, f32::INFINITY);
+        let [sound, holed] = [sound, holed].map(|grid| hillshade(&grid, &Light::default()));
+        for (j, i) in (0..7).flat_map(|j| (0..38).map(move |i| (j, i))) {
+            let near = |y: i32, x: i32| (j + 1 - y).abs() <= 1 && (i + 1 - x).abs() <= 1;
+            if !near(4, 10) && !near(1, 30) {
+                assert_eq!(sound.get(i as usize, j as usize), holed.get(i as usize, j as usize), "({i}, {j})");
+            }
+        }
+        assert_eq!((holed.get(9, 3), holed.get(29, 0)), (0.0, 0.0));
     }
 
     #[test]

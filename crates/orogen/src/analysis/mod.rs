@@ -2,11 +2,13 @@
 
 pub mod aspect;
 pub mod curvature;
+pub mod distance;
 pub mod fourier;
 pub mod geomorphons;
 pub mod hillshade;
 pub mod hypsometry;
 pub mod roughness;
+pub mod selection;
 pub mod slope;
 pub mod spectrum;
 pub mod summary;

@@ -1,14 +1,16 @@
 //! A real place, ready to be worked with.
 
+use std::fs::File;
 use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
 use super::fill::fill;
 use super::square::{Layout, steps};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::format::dem::{Dem, Georeference, Unit, afford, refused};
 use crate::format::import;
+use crate::format::sidecar::Sidecar;
 use crate::grid::Grid;
 
 /// Most bytes of heights where nobody says.
@@ -44,7 +46,25 @@ impl Ground {
         Ground::of(dem, cell, allowed).map_err(|why| refused(&name, why))
     }
 
-    /// The same of a DEM at hand.
+    /// Reads a grey picture: 0 for black, 1 for white, pixels a metre apart, in no more than `allowed` bytes.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is no grey .png, or is too large.
+    pub fn picture(path: &Path, allowed: u64) -> Result<Ground> {
+        let name = path.display().to_string();
+        if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+            return Err(refused(&name, "pictures are read from .png; heights of other formats by the op `dem`"));
+        }
+        if path.is_dir() {
+            return Err(refused(&name, "it is a folder"));
+        }
+        let mut file = File::open(path).map_err(|cause| Error::file("read", path, &cause))?;
+        let greys = Sidecar { low: Some(0.0), high: Some(1.0), cell: Some(1.0), ..Sidecar::default() };
+        let dem = import::parse(&mut file, &name, "png", Some(greys), allowed)?;
+        Ground::of(dem, None, allowed).map_err(|why| refused(&name, why))
+    }
+
+    /// Of a DEM at hand, as [`Ground::read`] does.
     ///
     /// # Errors
     /// As [`Ground::read`], as a sentence.

@@ -11,6 +11,23 @@ pub struct Imported {
     path: String,
     folder: Option<PathBuf>,
     ground: Option<Arc<Ground>>,
+    picture: bool,
+}
+
+/// A grey picture named by a recipe: what is read of it are numbers from 0 for black to 1 for white, a metre apart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture(pub Imported);
+
+impl Default for Picture {
+    fn default() -> Picture {
+        Picture::from("")
+    }
+}
+
+impl From<&str> for Picture {
+    fn from(path: &str) -> Picture {
+        Picture(Imported { picture: true, ..Imported::from(path) })
+    }
 }
 
 /// Two are the same if they name the same file: what was read of it makes no difference.
@@ -22,7 +39,7 @@ impl PartialEq for Imported {
 
 impl From<&str> for Imported {
     fn from(path: &str) -> Imported {
-        Imported { path: path.to_string(), folder: None, ground: None }
+        Imported { path: path.to_string(), ..Imported::default() }
     }
 }
 
@@ -30,6 +47,11 @@ impl Imported {
     /// Whether no file is named.
     pub fn is_empty(&self) -> bool {
         self.path.is_empty()
+    }
+
+    /// Whether it is read as a picture, not as heights.
+    pub fn is_picture(&self) -> bool {
+        self.picture
     }
 
     /// Where the file is: a relative path counts from the folder of the recipe, or, of a recipe that is no file, from the working folder.

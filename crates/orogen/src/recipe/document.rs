@@ -124,16 +124,21 @@ impl Recipe {
     /// # Errors
     /// If one cannot be read: with the node that names it.
     pub fn load(&mut self, allowed: u64) -> Result<()> {
-        let mut known: BTreeMap<PathBuf, Arc<Ground>> = BTreeMap::new();
+        // One file may be heights to one node and a picture to another.
+        let mut known: BTreeMap<(PathBuf, bool), Arc<Ground>> = BTreeMap::new();
         self.held = 0;
         for NamedNode { name, node, .. } in &mut self.nodes {
             for file in node.files() {
-                let path = file.path();
+                let path = (file.path(), file.is_picture());
+                let left = allowed.saturating_sub(self.held);
+                let read = || match path.1 {
+                    true => Ground::picture(&path.0, left),
+                    false => Ground::read(&path.0, None, left),
+                };
                 let ground = match file.ground().or(known.get(&path)) {
                     Some(ground) => Arc::clone(ground),
                     None => Arc::new(
-                        Ground::read(&path, None, allowed.saturating_sub(self.held))
-                            .map_err(|error| Error::new(ErrorKind::File, format!("node `{name}`: {error}")))?,
+                        read().map_err(|error| Error::new(ErrorKind::File, format!("node `{name}`: {error}")))?,
                     ),
                 };
                 if known.insert(path, Arc::clone(&ground)).is_none() {

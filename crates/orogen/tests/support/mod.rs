@@ -24,6 +24,9 @@ impl Random {
 /// Heights for the node that reads them.
 const DEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/f32-tiles-deflate-p3.tif");
 
+/// A grey picture for the node that reads one.
+const PICTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/grey.png");
+
 /// The node alone: each input a noise of its own, lengths fitted so that a small world shows every effect.
 pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     let mut node = node.clone();
@@ -34,14 +37,35 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
         let fitted = match (spec.op, param.name) {
             ("blur", "radius") => Value::Number(3.7 * world.cell),
             ("bake", "cell") => Value::Number(2.5 * world.cell),
+            ("thermal", "talus_angle") => Value::Number(1.0),
+            (_, "iterations") => Value::Integer(3),
+            ("droplets", "batches") => Value::Integer(2),
+            ("droplets", "lifetime") => Value::Number(7.5 * world.cell),
+            ("droplets", "radius") => Value::Number(2.2 * world.cell),
+            ("droplets", "density") => Value::Number(1e6 / (world.cell * world.cell)),
+            ("select-height", "range") => pair(-0.1, 0.1),
+            ("select-height", "falloff") => pair(0.3, 0.2),
+            ("select-flow", "range") => pair(0.02, 0.1),
+            ("select-flow", "falloff") => pair(2.0, 1.0),
+            ("select-slope", "range") => pair(1.0, 2.0),
+            ("select-slope", "falloff") => pair(0.7, 40.0),
+            ("select-aspect", "least_slope") => Value::Number(1.0),
+            ("select-curvature", "scale") => Value::Number(2.1 * world.cell),
+            ("select-curvature", "range") => pair(0.0, 1e-4),
+            ("select-curvature", "falloff") => pair(1e-4, 1e-2),
+            ("distance", "threshold") => Value::Number(0.2),
+            ("distance", "reach") => Value::Number(8.3 * world.cell),
             ("radial", "radius") => Value::Number(40.0 * world.cell),
             ("dem", "path") => Value::Text(DEM.into()),
+            ("image", "path") => Value::Text(PICTURE.into()),
             ("dem", "at") => pair(17.3 * world.cell, -5.1 * world.cell),
             ("dem", "fade") => Value::Number(20.0 * world.cell),
             ("transform", "angle") => Value::Number(33.0),
             ("transform", "offset") => pair(17.3 * world.cell, -5.1 * world.cell),
             // A number of folds, not a length.
             ("ping-pong", "strength") => continue,
+            // An angle, not a length.
+            ("select-aspect", "width") => continue,
             (_, "wavelength" | "width" | "length" | "strength") => Value::Number(11.3 * world.cell),
             _ => continue,
         };

@@ -1,0 +1,172 @@
+//! Part of area `erosion`: filters, and hillshade beside matplotlib. CPU time of one thread; two threads by the clock on the wall.
+
+use std::time::Instant;
+
+use cpu_time::ThreadTime;
+use orogen::Grid;
+use orogen::analysis::hillshade::{Light, hillshade};
+use orogen::analysis::slope::extended;
+use orogen::erosion::droplets::Droplets;
+use orogen::erosion::local_stream_power::{self, LocalStreamPower};
+use orogen::erosion::pipes::{self, Pipes, Wet};
+use orogen::erosion::planes::Planes;
+use orogen::erosion::thermal::Thermal;
+
+use crate::measure::median;
+use crate::options::Options;
+use crate::world::figure::{Figure, Target};
+
+/// Samples a side of what comes out.
+pub const SIDE: usize = 1024;
+
+/// Iterations of thermal weathering, of pipes and of local stream power.
+const ITERATIONS: usize = 100;
+
+/// How many times faster two threads have to be.
+const FASTER: f64 = 1.8;
+
+/// One measured filter: what it is given beyond the result on each side, and at most so many seconds.
+struct Case {
+    name: &'static str,
+    halo: fn(f64) -> usize,
+    work: fn(&Grid) -> Result<(), orogen::Error>,
+    target: Option<f64>,
+}
+
+const CASES: &[Case] = &[
+    Case { name: "pipes, 100 iterations within walls", halo: |_| 0, work: boxed, target: Some(0.6) },
+    Case {
+        name: "pipes, 100 iterations, with their halo",
+        halo: |_| pipes::RADIUS * ITERATIONS,
+        work: open,
+        target: None,
+    },
+    Case {
+        name: "droplets, 500 000 and those of their halo",
+        halo: |cell| droplets(cell).halo(cell),
+        work: |ground| droplets(ground.window().cell).run(ground, &|| Ok(())).map(drop),
+        target: Some(1.0),
+    },
+    Case { name: "thermal, 100 passes", halo: |_| ITERATIONS, work: thermal, target: None },
+    Case {
+        name: "local stream power, 100 iterations",
+        halo: |_| local_stream_power::RADIUS * ITERATIONS,
+        work: local,
+        target: None,
+    },
+];
+
+/// The filters over ground that `ground` makes for a side; each on one thread, then on two beside one.
+pub fn figures(options: &Options, ground: impl Fn(usize) -> Result<Grid, String>) -> Result<Vec<Figure>, String> {
+    let mut figures = Vec::new();
+    let pools = [1, 2].map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build());
+    let [one, two] = pools.map(|pool| pool.map_err(|e| e.to_string()));
+    let (one, two) = (one?, two?);
+    for case in CASES.iter().filter(|case| case.name.contains(&options.case)) {
+        eprintln!("{} ...", case.name);
+        let cell = ground(1)?.window().cell;
+        let ground = ground(SIDE + 2 * (case.halo)(cell))?;
+        let work = || (case.work)(std::hint::black_box(&ground)).map_err(|e| e.to_string());
+        let mut times = Vec::new();
+        let mut best = [f64::INFINITY; 2];
+        for _ in 0..options.repetitions {
+            let (cpu, wall) = one.install(|| {
+                let (cpu, wall) = (ThreadTime::now(), Instant::now());
+                work().map(|()| (cpu.elapsed().as_secs_f64(), wall.elapsed().as_secs_f64()))
+            })?;
+            times.push(cpu);
+            let both = two.install(|| {
+                let wall = Instant::now();
+                work().map(|()| wall.elapsed().as_secs_f64())
+            })?;
+            best = [best[0].min(wall), best[1].min(both)];
+        }
+        let ours = median(&mut times);
+        figures.push(Figure {
+            case: format!("{}, {SIDE} x {SIDE}", case.name),
+            ours,
+            unit: "s of CPU",
+            other: None,
+            target: case.target.map_or(Target::None, Target::AtMost),
+        });
+        figures.push(Figure {
+            case: format!("{}, two threads", case.name),
+            ours: best[1],
+            unit: "s on the wall",
+            other: Some(("one thread", best[0])),
+            target: Target::FasterBy(FASTER),
+        });
+    }
+    Ok(figures)
+}
+
+/// Hillshade of all samples, the border made up.
+pub fn shaded(ground: &Grid) {
+    std::hint::black_box(hillshade(&extended(ground), &Light::default()));
+}
+
+fn law() -> Pipes {
+    Pipes {
+        rain: 2e-3,
+        evaporation: 0.01,
+        capacity: 2.0,
+        erosion: 0.3,
+        deposition: 0.3,
+        pipe: 1.0,
+        friction: 0.05,
+        gravity: 9.81,
+        time_step: 5.0,
+    }
+}
+
+fn boxed(ground: &Grid) -> Result<(), orogen::Error> {
+    law().enclosed(Wet::new(ground), ITERATIONS, &|| Ok(())).map(|wet| _ = std::hint::black_box(wet))
+}
+
+fn open(ground: &Grid) -> Result<(), orogen::Error> {
+    law().open(Wet::new(ground), ITERATIONS, &|| Ok(())).map(|wet| _ = std::hint::black_box(wet))
+}
+
+fn thermal(ground: &Grid) -> Result<(), orogen::Error> {
+    let law = Thermal { talus: 0.1, rate: 1.0 };
+    law.run(ground, ITERATIONS, &|| Ok(())).map(|heights| _ = std::hint::black_box(heights))
+}
+
+fn local(ground: &Grid) -> Result<(), orogen::Error> {
+    let cell = ground.window().cell;
+    let law = LocalStreamPower {
+        cell,
+        years: 2000.0,
+        erodibility: 2e-5,
+        area_exponent: 0.45,
+        slope_exponent: 1.0,
+        uplift: 2e-4,
+        deposition: 0.5,
+        creep: 0.01,
+        sea_level: Some(0.0),
+    };
+    let mut planes = Planes::new(ground.width(), ground.height());
+    for j in 0..ground.height() {
+        planes.set(local_stream_power::HEIGHT, j, ground.row(j));
+        planes.row_mut(j)[local_stream_power::AREA].fill((cell * cell) as f32);
+    }
+    law.run(planes, ITERATIONS, &|| Ok(())).map(|planes| _ = std::hint::black_box(planes))
+}
+
+/// Beyer's: 30 cells, a radius of 3.
+fn droplets(cell: f64) -> Droplets {
+    Droplets {
+        density: 500_000.0 / (SIDE * SIDE) as f64 / (cell * cell) * 1e6,
+        batches: 4,
+        lifetime: 30.0 * cell,
+        radius: 3.0 * cell,
+        inertia: 0.05,
+        capacity: 0.4,
+        least_slope: 0.01,
+        erosion: 0.3,
+        deposition: 0.3,
+        evaporation: 0.01 / cell,
+        gravity: 4.0,
+        seed: 1,
+    }
+}

@@ -1,0 +1,125 @@
+//! How far it is to the nearest sample that is marked.
+
+use crate::grid::Grid;
+use rayon::prelude::*;
+
+/// The exact Euclidean distance in samples, up to `reach`, of each sample without a border of `reach` to the nearest whose value is at least `threshold`;
+/// infinite where none is so near.
+///
+/// Down the columns first, then along the rows by the lower envelope of parabolas in whole numbers (A. Meijster, J. Roerdink and W. Hesselink, "A general
+/// algorithm for computing distance transforms in linear time", 2000): O(samples) whatever the reach.
+pub fn nearest(grid: &Grid, threshold: f32, reach: usize) -> Grid {
+    let window = grid.window().shrunk(reach);
+    let mut out = Grid::filled(window, f32::INFINITY);
+    if window.is_empty() {
+        return out;
+    }
+    let columns = down_columns(grid, threshold, reach, window.height);
+    let rows = out.data_mut().par_chunks_mut(window.width).zip(columns.par_chunks(grid.width()));
+    rows.for_each_init(Vec::new, |hull, (out, down)| along_row(down, reach, hull, out));
+    out
+}
+
+/// Farther than anything counts.
+const NONE: u32 = u32::MAX / 2;
+
+/// Samples to the nearest marked one in the same column, row after row of the inner ones.
+fn down_columns(grid: &Grid, threshold: f32, reach: usize, height: usize) -> Vec<u32> {
+    let width = grid.width();
+    let mut out = vec![NONE; width * height];
+    let rows: [Box<dyn Iterator<Item = usize>>; 2] = [Box::new(0..grid.height()), Box::new((0..grid.height()).rev())];
+    for rows in rows {
+        let mut steps = vec![NONE; width];
+        for j in rows {
+            for (step, value) in steps.iter_mut().zip(grid.row(j)) {
+                *step = if *value >= threshold { 0 } else { (*step + 1).min(NONE) };
+            }
+            if (reach..reach + height).contains(&j) {
+                let row = &mut out[(j - reach) * width..(j - reach + 1) * width];
+                row.iter_mut().zip(&steps).for_each(|(nearest, step)| *nearest = (*nearest).min(*step));
+            }
+        }
+    }
+    out
+}
+
+/// A column whose parabola is the lowest from `from` on.
+struct Lowest {
+    column: i64,
+    square: i64,
+    from: i64,
+}
+
+/// Distances of a row's inner samples from what is told of its columns.
+fn along_row(down: &[u32], reach: usize, hull: &mut Vec<Lowest>, out: &mut [f32]) {
+    hull.clear();
+    let columns = down.iter().enumerate().filter(|(_, steps)| (**steps as usize) <= reach);
+    for (column, steps) in columns {
+        let (column, square) = (column as i64, i64::from(*steps) * i64::from(*steps));
+        let mut from = 0;
+        while let Some(last) = hull.last() {
+            // The first column at which the new one is nearer.
+            let doubled = 2 * (column - last.column);
+            let sum = column * column - last.column * last.column + square - last.square;
+            from = (sum.div_euclid(doubled) + 1).max(0);
+            if from > last.from {
+                break;
+            }
+            hull.pop();
+            from = 0;
+        }
+        if from < down.len() as i64 {
+            hull.push(Lowest { column, square, from });
+        }
+    }
+    let farthest = (reach * reach) as i64;
+    let mut k = 0;
+    for (i, out) in out.iter_mut().enumerate() {
+        let at = (i + reach) as i64;
+        while hull.get(k + 1).is_some_and(|next| next.from <= at) {
+            k += 1;
+        }
+        if let Some(lowest) = hull.get(k) {
+            let square = (at - lowest.column) * (at - lowest.column) + lowest.square;
+            if square <= farthest {
+                *out = (square as f64).sqrt() as f32;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Window;
+
+    #[test]
+    fn it_is_what_trying_all_finds() {
+        for (width, height, reach, one_in) in
+            [(40, 30, 9, 60), (25, 33, 5, 7), (30, 30, 14, 900), (31, 17, 0, 3), (12, 12, 6, 1)]
+        {
+            let window = Window::new(width, height, 1.0);
+            let mut grid = Grid::filled(window, 0.0f32);
+            let mut state = 12345u64 + width as u64;
+            for value in grid.data_mut() {
+                state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                *value = if (state >> 33).is_multiple_of(one_in) { 1.0 } else { 0.5 };
+            }
+            let found = nearest(&grid, 1.0, reach);
+            assert_eq!(*found.window(), window.shrunk(reach));
+            for j in 0..found.height() {
+                for i in 0..found.width() {
+                    let mut best = f64::INFINITY;
+                    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+                        let (dx, dy) = (x as f64 - (i + reach) as f64, y as f64 - (j + reach) as f64);
+                        let square = dx * dx + dy * dy;
+                        if grid.get(x, y) >= 1.0 && square <= (reach * reach) as f64 {
+                            best = best.min(square);
+                        }
+                    }
+                    assert_eq!(found.get(i, j), best.sqrt() as f32, "({i}, {j}) of {width} x {height}, {reach}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! A round brush: what happens at a point is shared with the ground around it.
+
+use super::droplet_paths::UNIT;
+use orogen_simd::{Body, Simd, dispatch};
+use rayon::prelude::*;
+
+/// A bell of a given radius, in cells: a Gaussian whose deviation is half of it, cut there. Its weights sum to 1 along each axis.
+pub struct Brush {
+    radius: f64,
+    weights: Vec<f32>,
+}
+
+impl Brush {
+    /// A radius of 0 shares with nobody.
+    pub fn new(radius: f64) -> Brush {
+        let reach = radius.ceil() as i64;
+        let bell = |d: i64| if d == 0 { 1.0 } else { libm::exp(-2.0 * (d * d) as f64 / (radius * radius)) };
+        let sum: f64 = (-reach..=reach).map(bell).sum();
+        Brush { radius, weights: (-reach..=reach).map(|d| (bell(d) / sum) as f32).collect() }
+    }
+
+    /// The radius, in cells.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Cells it reaches to each side.
+    pub fn reach(&self) -> usize {
+        self.weights.len() / 2
+    }
+
+    /// Sums in units over rows of `width` as metres, brushed, without `border` cells on each side.
+    pub fn over(&self, sums: &[i64], width: usize, border: usize) -> Vec<f32> {
+        let (inner, tall) = (width - 2 * border, sums.len() / width - 2 * border);
+        let reach = self.reach();
+        let first = border - reach;
+        let mut rows = vec![0.0f32; inner * (tall + 2 * reach)];
+        rows.par_chunks_mut(inner).enumerate().for_each_init(
+            || vec![0.0f32; inner + 2 * reach],
+            |metres, (j, row)| {
+                let from = &sums[(first + j) * width + first..][..inner + 2 * reach];
+                for (metre, sum) in metres.iter_mut().zip(from) {
+                    *metre = (*sum as f64 * UNIT) as f32;
+                }
+                dispatch(Weighted { weights: &self.weights, from: metres, apart: 1, out: row });
+            },
+        );
+        let mut out = vec![0.0f32; inner * tall];
+        out.par_chunks_mut(inner).enumerate().for_each(|(j, row)| {
+            dispatch(Weighted { weights: &self.weights, from: &rows[j * inner..], apart: inner, out: row });
+        });
+        out
+    }
+}
+
+/// The weighted sum of stretches that begin `apart` from each other.
+struct Weighted<'a> {
+    weights: &'a [f32],
+    from: &'a [f32],
+    apart: usize,
+    out: &'a mut [f32],
+}
+
+impl Body for Weighted<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        for (step, weight) in self.weights.iter().enumerate() {
+            accumulate(self.out, &self.from[step * self.apart..][..self.out.len()], *weight);
+        }
+    }
+}
+
+#[inline(always)]
+fn accumulate(out: &mut [f32], row: &[f32], weight: f32) {
+    for (sum, sample) in out.iter_mut().zip(row) {
+        *sum += weight * sample;
+    }
+}

@@ -1,0 +1,283 @@
+//! Drops of rain run downhill one by one, cutting and laying down.
+
+use super::brush::Brush;
+use super::droplet_paths::{self, Step};
+use super::loose::{LOOSE, Loose};
+use super::planes::Planes;
+use crate::error::Result;
+use crate::grid::Grid;
+use rayon::prelude::*;
+
+/// Erosion by droplets after H. T. Beyer, "Implementation of a method for hydraulic erosion" (2015), in metres.
+///
+/// A droplet goes one cell at a time along its direction, inertia d - (1 - inertia) slope. With s the slope ahead of it, v its speed, w its water
+/// and a the ground it stands for (one over the density), it can carry the volume
+///
+/// ```text
+/// C = capacity max(s, least) v w a        v^2 = v^2 + g (h - h_ahead)        w = w exp(-evaporation l)
+/// ```
+///
+/// cuts `erosion` of what it could still carry, no deeper than the drop ahead of it, lays down `deposition` of what is too much, and before
+/// a rise fills the hollow it is in. (In widely copied code the sign before g is wrong.) In the end it lays down all it carries: mass is kept.
+///
+/// Droplets one after another depend on their order. Here they come in batches: all droplets of a batch see the same ground, and what they do to it is
+/// summed in fixed point, in which order does not matter. So there is an exact answer for any window.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Droplets {
+    /// Droplets a km^2, in all batches together.
+    pub density: f64,
+    /// How many batches.
+    pub batches: usize,
+    /// How far a droplet goes at most, in metres.
+    pub lifetime: f64,
+    /// How wide it cuts, in metres.
+    pub radius: f64,
+    /// The share of its direction that it keeps, 0 to 1.
+    pub inertia: f64,
+    /// Metres of ground carried, on a sheer slope, for each m/s.
+    pub capacity: f64,
+    /// The slope that capacity counts at least.
+    pub least_slope: f64,
+    /// The share of what could still be carried that is cut at each cell.
+    pub erosion: f64,
+    /// The share of what is too much that is laid down at each cell.
+    pub deposition: f64,
+    /// The share of the water lost a metre.
+    pub evaporation: f64,
+    /// m/s^2.
+    pub gravity: f64,
+    /// Which droplets.
+    pub seed: u64,
+}
+
+impl Droplets {
+    /// How many cells a droplet goes.
+    fn steps(&self, cell: f64) -> usize {
+        (self.lifetime / cell).ceil().min(FARTHEST) as usize
+    }
+
+    fn brush(&self, cell: f64) -> Brush {
+        Brush::new((self.radius / cell).min(FARTHEST))
+    }
+
+    /// How many samples around a window its batches look at.
+    pub fn halo(&self, cell: f64) -> usize {
+        self.batches * self.reach(cell)
+    }
+
+    /// What one batch looks at: the way of a droplet, the cells between which it is, and the brush.
+    fn reach(&self, cell: f64) -> usize {
+        self.steps(cell) + 2 + self.brush(cell).reach() + SETTLED
+    }
+
+    /// The heights after all batches, over a window that is smaller by [`Droplets::halo`] on each side.
+    ///
+    /// # Errors
+    /// What `check` says, which is asked now and then.
+    pub fn run(&self, heights: &Grid, check: &(dyn Fn() -> Result<()> + Sync)) -> Result<Grid> {
+        let mut heights = heights.clone();
+        let mut sums = [Vec::new(), Vec::new()];
+        for batch in 0..self.batches {
+            check()?;
+            heights = self.batch(&heights, batch as u64, &mut sums, check)?;
+        }
+        Ok(heights)
+    }
+
+    /// One batch; `sums` is memory that is kept from call to call.
+    fn batch(
+        &self,
+        heights: &Grid,
+        batch: u64,
+        sums: &mut [Vec<i64>; 2],
+        check: &(dyn Fn() -> Result<()> + Sync),
+    ) -> Result<Grid> {
+        let window = *heights.window();
+        let reach = self.reach(window.cell);
+        if window.shrunk(reach).is_empty() {
+            return Ok(Grid::filled(window.shrunk(reach), 0.0f32));
+        }
+        self.sum(heights, batch, sums, check)?;
+        let [cut, laid] = &*sums;
+        let brush = self.brush(window.cell);
+        let border = reach - SETTLED;
+        let inner = window.shrunk(border);
+        let cut = brush.over(cut, window.width, border);
+        let laid = Brush::new(0.5 * brush.radius()).over(laid, window.width, border);
+        let mut planes = Planes::new(inner.width, inner.height);
+        planes.rows_mut(0, inner.height).into_par_iter().enumerate().for_each(|(j, [firm, loose])| {
+            let before = &heights.row(j + border)[border..border + inner.width];
+            for ((firm, before), cut) in firm.iter_mut().zip(before).zip(&cut[j * inner.width..]) {
+                *firm = before - cut;
+            }
+            loose.copy_from_slice(&laid[j * inner.width..][..inner.width]);
+        });
+        let settled = Loose { stands: (LIES * window.cell) as f32 }.run(planes, SETTLED, check)?;
+        let mut out = Grid::filled(window.shrunk(reach), 0.0f32);
+        let width = out.width();
+        out.data_mut().par_chunks_mut(width).enumerate().for_each(|(j, row)| {
+            let before = &heights.row(j + reach)[reach..reach + width];
+            let cut = &cut[(j + SETTLED) * inner.width + SETTLED..][..width];
+            let loose = settled.row(j)[LOOSE];
+            // Rounded once.
+            for (((out, before), cut), loose) in row.iter_mut().zip(before).zip(cut).zip(loose) {
+                *out = before + (loose - cut);
+            }
+        });
+        Ok(out)
+    }
+
+    /// What one batch cuts and lays down at each cell, as multiples of [`droplet_paths::UNIT`]. Bands of rows go side by side, first those of even
+    /// number and then the others: no two of a kind reach the same rows.
+    fn sum(
+        &self,
+        heights: &Grid,
+        batch: u64,
+        sums: &mut [Vec<i64>; 2],
+        check: &(dyn Fn() -> Result<()> + Sync),
+    ) -> Result<()> {
+        let window = *heights.window();
+        let reach = self.steps(window.cell) + 2;
+        let step = self.step(window.cell, batch);
+        let rows = (2 * reach).max(window.height.div_ceil(16 * rayon::current_num_threads()));
+        for sums in &mut *sums {
+            sums.resize(window.len(), 0);
+            sums.par_chunks_mut(window.width.max(1)).for_each(|row| row.fill(0));
+        }
+        for parity in [0, 1] {
+            let mut bands = Vec::new();
+            let [mut cut, mut laid] = sums.each_mut().map(Vec::as_mut_slice);
+            let mut taken = 0;
+            for top in (0..window.height).step_by(rows).skip(parity).step_by(2) {
+                let bottom = window.height.min(top + rows);
+                let (first, last) = (top.saturating_sub(reach), window.height.min(bottom + reach));
+                let skip = (first - taken) * window.width;
+                let size = (last - first) * window.width;
+                bands.push((top..bottom, first, part(&mut cut, skip, size), part(&mut laid, skip, size)));
+                taken = last;
+            }
+            bands.into_par_iter().try_for_each(|(rows, first, cut, laid)| {
+                check()?;
+                droplet_paths::run(heights, &step, rows, droplet_paths::Sums { first, cut, laid });
+                Ok(())
+            })?;
+        }
+        Ok(())
+    }
+
+    fn step(&self, cell: f64, batch: u64) -> Step {
+        let ground = 1e6 / self.density.max(1e-9);
+        Step {
+            seed: self.seed ^ batch.wrapping_mul(0xA076_1D64_78BD_642F),
+            expected: self.density * cell * cell / 1e6 / self.batches as f64,
+            steps: self.steps(cell),
+            inertia: self.inertia as f32,
+            // Volumes are told as metres over one cell.
+            capacity: (self.capacity * ground / (cell * cell)) as f32,
+            per_cell: (1.0 / cell) as f32,
+            least_slope: self.least_slope as f32,
+            erosion: self.erosion as f32,
+            deposition: self.deposition as f32,
+            left: libm::exp(-self.evaporation * cell) as f32,
+            gravity: self.gravity as f32,
+        }
+    }
+}
+
+/// `size` sums after `skip`, and all that follow are left.
+fn part<'a>(all: &mut &'a mut [i64], skip: usize, size: usize) -> &'a mut [i64] {
+    let (_, rest) = std::mem::take(all).split_at_mut(skip);
+    let (part, rest) = rest.split_at_mut(size);
+    *all = rest;
+    part
+}
+
+/// Passes in which what a batch has laid down slides apart: all its droplets see the same hollow, and would fill it to a spike.
+const SETTLED: usize = 16;
+
+/// Rise over run at which it lies still.
+const LIES: f64 = 0.02;
+
+/// Most cells that a length may be: what is longer no memory holds.
+const FARTHEST: f64 = 16_384.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Window;
+
+    fn droplets() -> Droplets {
+        Droplets {
+            density: 8000.0,
+            batches: 2,
+            lifetime: 150.0,
+            radius: 25.0,
+            inertia: 0.05,
+            capacity: 0.4,
+            least_slope: 0.01,
+            erosion: 0.3,
+            deposition: 0.3,
+            evaporation: 1e-3,
+            gravity: 4.0,
+            seed: 7,
+        }
+    }
+
+    fn ground(window: Window) -> Grid {
+        let mut grid = Grid::filled(window, 0.0);
+        for j in 0..window.height {
+            for i in 0..window.width {
+                let (x, y) = (window.east(i), window.south(j));
+                let rough = (x * 1.37 + y * 0.71).rem_euclid(13.0) * (y * 0.93 - x * 0.37).rem_euclid(11.0) / 20.0;
+                grid.row_mut(j)[i] = (900.0 + 60.0 * libm::sin(x / 90.0) * libm::cos(y / 110.0) + rough) as f32;
+            }
+        }
+        grid
+    }
+
+    #[test]
+    fn a_window_is_the_middle_of_a_larger_one_on_any_number_of_threads() {
+        let droplets = droplets();
+        let window = Window::new(90, 140, 10.0).at(-31, 17);
+        let grown = |by: usize| ground(window.grown(by + droplets.halo(10.0)));
+        let ok = || Ok(());
+        let large = droplets.run(&grown(23), &ok).unwrap().crop(&window).unwrap();
+        for threads in [1, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            assert_eq!(pool.install(|| droplets.run(&grown(0), &ok)).unwrap(), large);
+        }
+        assert_ne!(ground(window), large);
+    }
+
+    #[test]
+    fn mass_is_kept() {
+        // A mountain on a plain: nothing crosses the window's edge.
+        let droplets = droplets();
+        let window = Window::new(160, 160, 10.0).at(-80, -80).grown(droplets.halo(10.0));
+        let mut ground = Grid::filled(window, 0.0f32);
+        for j in 0..window.height {
+            for i in 0..window.width {
+                let (x, y) = (window.east(i), window.south(j));
+                ground.row_mut(j)[i] = (250.0 * libm::exp(-(x * x + 2.0 * y * y) / 9e4)) as f32;
+                if ground.row(j)[i] < 2.0 {
+                    ground.row_mut(j)[i] = 2.0;
+                }
+            }
+        }
+        let done = droplets.run(&ground, &|| Ok(())).unwrap();
+        let before = ground.crop(done.window()).unwrap();
+        let [mut net, mut total] = [0.0, 0.0];
+        for (a, b) in before.data().iter().zip(done.data()) {
+            net += f64::from(*b) - f64::from(*a);
+            total += f64::from(*a);
+        }
+        // Each batch rounds each height once.
+        assert!(net.abs() < 2e-6 * total, "{net} of {total}");
+        // What one batch cuts it lays down.
+        let mut sums = [Vec::new(), Vec::new()];
+        droplets.sum(&ground, 0, &mut sums, &|| Ok(())).unwrap();
+        let [cut, laid] = sums;
+        let metres = |sums: &[i64]| sums.iter().map(|sum| *sum as f64 * droplet_paths::UNIT).sum::<f64>();
+        assert!(metres(&cut) > 1000.0 && (metres(&laid) / metres(&cut) - 1.0).abs() < 1e-8, "{}", metres(&cut));
+    }
+}

@@ -1,0 +1,105 @@
+//! Loose ground, freshly laid down, slides apart until it lies gently.
+
+use super::planes::{self, Pass, Planes};
+use crate::error::Result;
+use orogen_simd::{Body, Simd, dispatch};
+
+/// Loose ground on firm: of what a cell stands higher than a neighbour, beyond what stands, a fifth crosses their side in a pass, and never more than
+/// a quarter of the loose ground that the higher has. Mass is kept, firm ground stays.
+pub struct Loose {
+    /// Metres from one cell to the next at which loose ground lies still.
+    pub stands: f32,
+}
+
+/// The planes by their places.
+pub const FIRM: usize = 0;
+/// Loose ground upon it, in metres.
+pub const LOOSE: usize = 1;
+
+impl Loose {
+    /// The planes after `passes`, smaller by a cell a pass on each side.
+    ///
+    /// # Errors
+    /// What `check` says.
+    pub fn run(&self, planes: Planes<2>, passes: usize, check: &(dyn Fn() -> Result<()> + Sync)) -> Result<Planes<2>> {
+        planes::run(planes, passes, self, check)
+    }
+}
+
+impl Pass<2> for Loose {
+    const RADIUS: usize = 1;
+
+    fn make(&self, from: &Planes<2>, to: &mut Planes<2>, scratch: &mut Vec<f32>) {
+        scratch.resize(3 * to.width() + 1, 0.0);
+        dispatch(Rows { loose: self, from, to, scratch });
+    }
+}
+
+struct Rows<'a> {
+    loose: &'a Loose,
+    from: &'a Planes<2>,
+    to: &'a mut Planes<2>,
+    scratch: &'a mut [f32],
+}
+
+impl Body for Rows<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        let width = self.to.width();
+        let (sides, rest) = self.scratch.split_at_mut(width + 1);
+        let (mut above, mut below) = rest.split_at_mut(width);
+        self.loose.across(
+            self.from.row(0).map(|row| &row[1..=width]),
+            self.from.row(1).map(|row| &row[1..=width]),
+            above,
+        );
+        for j in 0..self.to.height() {
+            let here = self.from.row(j + 1);
+            let middle = here.map(|row| &row[1..=width]);
+            self.loose.across(here.map(|row| &row[..=width]), here.map(|row| &row[1..]), sides);
+            self.loose.across(middle, self.from.row(j + 2).map(|row| &row[1..=width]), below);
+            let [firm, loose] = self.to.row_mut(j);
+            firm.copy_from_slice(middle[FIRM]);
+            settle(middle[LOOSE], [&*sides, &*above, &*below], loose);
+            std::mem::swap(&mut above, &mut below);
+        }
+    }
+}
+
+impl Loose {
+    /// What crosses the sides from the cells of one list to those of another.
+    #[inline(always)]
+    fn across(&self, from: [&[f32]; 2], to: [&[f32]; 2], out: &mut [f32]) {
+        let n = out.len();
+        let ([f0, l0], [f1, l1]) = (from.map(|row| &row[..n]), to.map(|row| &row[..n]));
+        for i in 0..n {
+            let higher = (f0[i] - f1[i]) + (l0[i] - l1[i]);
+            let much = least(0.2 * (higher - self.stands), 0.25 * l0[i]);
+            let back = least(-0.2 * (higher + self.stands), 0.25 * l1[i]);
+            out[i] = positive(much) - positive(back);
+        }
+    }
+}
+
+#[inline(always)]
+fn positive(x: f32) -> f32 {
+    if x > 0.0 { x } else { 0.0 }
+}
+
+#[inline(always)]
+fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// Loose ground with what came in and what went out.
+#[inline(always)]
+fn settle(here: &[f32], [sides, above, below]: [&[f32]; 3], out: &mut [f32]) {
+    let n = out.len();
+    let [west, east] = [&sides[..n], &sides[1..=n]];
+    let (here, above, below) = (&here[..n], &above[..n], &below[..n]);
+    for i in 0..n {
+        out[i] = here[i] + ((west[i] - east[i]) + (above[i] - below[i]));
+    }
+}

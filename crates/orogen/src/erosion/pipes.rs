@@ -1,0 +1,356 @@
+//! Water runs through virtual pipes between cells, cuts the ground and lays it down again.
+
+use super::pipe_rows::{AHEAD, BED, Constants, DEPTH, EAST, SOUTH, Sweep};
+use super::planes::Planes;
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use orogen_simd::{Body, Simd, dispatch};
+use rayon::prelude::*;
+
+/// Hydraulic erosion with virtual pipes, after X. Mei, P. Decaudin and B. Hu, "Fast hydraulic erosion simulation and visualization on
+/// GPU" (2007) and O. Stava, B. Benes, M. Brisbin and J. Krivanek, "Interactive terrain modeling using hydraulic erosion" (2008).
+///
+/// In each iteration of dt seconds, with H the surface of the water, A the area of a pipe, l the cell and d the depth:
+///
+/// ```text
+/// f' = friction f + dt g A (H_i - H_j) / l        through the side between cells i and j, counted from i to j
+/// f  = f' min(1, d l^2 / (dt sum of what flows out of the cell it comes from))
+/// d' = d + dt (in - out) / l^2
+/// C  = capacity sin(slope) |q|                    |q| the discharge a metre of width, m^2/s
+/// ```
+///
+/// Where the sediment s is less than C the ground is cut by erosion dt (C - s), where it is more, deposition dt (s - C) is laid down. No cut goes
+/// deeper than half way to the lowest neighbour, nothing laid down higher than the neighbours' mean and a quarter of the water's depth: water
+/// digs no pits and builds no spikes. Sediment moves as a share of the water that flows over each side, not by tracing back along the velocity as in Mei: mass is
+/// kept. One signed flow a side stands for their two (J. F. O'Brien and J. K. Hodgins, 1995).
+///
+/// What is cut or laid down is shared over 3 x 3 cells, (1, 2, 1) each way: strokes wider than a cell, or grooves along the grid's axes would dig
+/// themselves in. All of an iteration looks three cells far: a side's flow at its cells' surfaces, the limit on it at that cell's other sides,
+/// and the sharing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pipes {
+    /// Rain, in metres of water a second.
+    pub rain: f64,
+    /// The share of the water that goes into the air each second.
+    pub evaporation: f64,
+    /// Sediment, in metres, that 1 m^2/s of water carries down a sheer slope.
+    pub capacity: f64,
+    /// The share of what could still be carried that is cut each second.
+    pub erosion: f64,
+    /// The share of what is too much that is laid down each second.
+    pub deposition: f64,
+    /// A pipe's area in m^2 for each metre of a cell's side.
+    pub pipe: f64,
+    /// The share of the flow that is lost each second.
+    pub friction: f64,
+    /// m/s^2.
+    pub gravity: f64,
+    /// Seconds an iteration; what would not be stable is cut.
+    pub time_step: f64,
+}
+
+/// What one iteration looks at, in cells.
+pub const RADIUS: usize = 3;
+
+/// dt^2 g A / l^3 at most: waves are stable below 1/2.
+const COURANT: f64 = 0.25;
+
+/// Ground and water: planes bed, depth, sediment (all in metres), flow east and flow south (metres of a cell's water an iteration).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wet {
+    /// The planes, with a row and a column around that stand for the walls.
+    planes: Planes<5>,
+    window: Window,
+}
+
+impl Wet {
+    /// Dry ground within walls.
+    pub fn new(bed: &Grid) -> Wet {
+        let window = *bed.window();
+        let mut wet = Wet { planes: Planes::new(window.width + 2, window.height + 2), window };
+        let rows = wet.planes.rows_mut(1, window.height).into_par_iter().enumerate();
+        rows.for_each(|(j, row)| row[BED][1..=window.width].copy_from_slice(bed.row(j)));
+        wet.wall();
+        wet
+    }
+
+    /// Where it is.
+    pub fn window(&self) -> &Window {
+        &self.window
+    }
+
+    /// One plane.
+    pub fn plane(&self, plane: usize) -> Grid {
+        let mut out = Grid::filled(self.window, 0.0f32);
+        let rows = out.data_mut().par_chunks_mut(self.window.width.max(1)).enumerate();
+        rows.for_each(|(j, row)| row.copy_from_slice(&self.planes.row(j + 1)[plane][1..=self.window.width]));
+        out
+    }
+
+    /// The walls stand as high as the ground before them, so that they give no slope, and hold nothing.
+    fn wall(&mut self) {
+        let (width, height) = (self.window.width, self.window.height);
+        for j in 0..height + 2 {
+            let [bed, rest @ ..] = self.planes.row_mut(j);
+            (bed[0], bed[width + 1]) = (bed[1], bed[width]);
+            for plane in rest {
+                if j == 0 || j == height + 1 {
+                    plane.fill(0.0);
+                }
+                (plane[0], plane[width + 1]) = (0.0, 0.0);
+            }
+        }
+        for (from, to) in [(1, 0), (height, height + 1)] {
+            let bed = self.planes.row(from)[BED].to_vec();
+            self.planes.set(BED, to, &bed);
+        }
+    }
+
+    /// The water's speed, m/s, made by `pipes`: discharge over depth, 0 where it is shallower than a tenth of a millimetre.
+    pub fn speed(&self, pipes: &Pipes) -> Grid {
+        let mut out = Grid::filled(self.window, 0.0f32);
+        let scale = (0.5 * self.window.cell / pipes.step(self.window.cell)) as f32;
+        for j in 0..self.window.height {
+            let [north, here] = [self.planes.row(j), self.planes.row(j + 1)];
+            for (i, out) in out.row_mut(j).iter_mut().enumerate() {
+                let east = here[EAST][i] + here[EAST][i + 1];
+                let south = north[SOUTH][i + 1] + here[SOUTH][i + 1];
+                let depth = here[DEPTH][i + 1];
+                if depth >= 1e-4 {
+                    *out = scale * (east * east + south * south).sqrt() / depth;
+                }
+            }
+        }
+        out
+    }
+}
+
+impl Pipes {
+    /// Seconds an iteration at this cell: the time step, or the longest stable one.
+    pub fn step(&self, cell: f64) -> f64 {
+        self.time_step.min(cell * (COURANT / (self.gravity * self.pipe)).sqrt())
+    }
+
+    /// Goes on by `iterations` within the walls.
+    ///
+    /// # Errors
+    /// What `check` says, which is asked now and then.
+    pub fn enclosed(&self, wet: Wet, iterations: usize, check: &(dyn Fn() -> Result<()> + Sync)) -> Result<Wet> {
+        self.go(wet, iterations, 0, check)
+    }
+
+    /// Goes on by `iterations` in the midst of more ground: the result is smaller by [`RADIUS`] cells an iteration on each side, which the walls
+    /// may have reached.
+    ///
+    /// # Errors
+    /// What `check` says, which is asked now and then.
+    pub fn open(&self, wet: Wet, iterations: usize, check: &(dyn Fn() -> Result<()> + Sync)) -> Result<Wet> {
+        self.go(wet, iterations, RADIUS, check)
+    }
+
+    fn go(&self, mut wet: Wet, iterations: usize, lost: usize, check: &(dyn Fn() -> Result<()> + Sync)) -> Result<Wet> {
+        let constants = self.constants(wet.window.cell);
+        let mut next = Wet { planes: Planes::new(0, 0), window: wet.window };
+        let mut spare = Vec::new();
+        let mut left = iterations;
+        while left > 0 && !wet.window.is_empty() {
+            check()?;
+            let now = left.min(AT_ONCE);
+            advance(&wet, &mut next, &mut spare, Stride { iterations: now, lost: now * lost }, &constants);
+            std::mem::swap(&mut wet, &mut next);
+            left -= now;
+        }
+        Ok(wet)
+    }
+
+    fn constants(&self, cell: f64) -> Constants {
+        let dt = self.step(cell);
+        let share = |rate: f64| (rate * dt).min(1.0);
+        Constants {
+            pull: (dt * dt * self.gravity * self.pipe / (cell * cell)) as f32,
+            kept: (1.0 - share(self.friction)) as f32,
+            rain: (dt * self.rain) as f32,
+            // Discharge a metre of width from the sum of two sides' flows, and rise over run from the difference of two beds.
+            capacity: (self.capacity * 0.5 * cell / dt) as f32,
+            level: (4.0 * cell * cell) as f32,
+            erosion: share(self.erosion) as f32,
+            deposition: share(self.deposition) as f32,
+            left: (1.0 - share(self.evaporation)) as f32,
+        }
+    }
+}
+
+/// Iterations that follow each other down the rows at once: what they touch stays in a core's own cache.
+const AT_ONCE: usize = 4;
+
+/// How far one call goes.
+struct Stride {
+    iterations: usize,
+    /// Cells that are lost on each side.
+    lost: usize,
+}
+
+/// `to` from `from`. Bands of rows, one a thread, go side by side, each with enough rows of its neighbours' to know what they do: the same bits however many there
+/// are. `spare` is memory that is kept from call to call.
+fn advance(from: &Wet, to: &mut Wet, spare: &mut Vec<Planes<5>>, stride: Stride, constants: &Constants) {
+    let (window, lost) = (from.window, stride.lost);
+    to.window = window.shrunk(lost);
+    let (width, height) = (to.window.width, to.window.height);
+    to.planes.resize(width + 2, height + 2);
+    let reach = stride.iterations * RADIUS;
+    let rows = height.div_ceil(rayon::current_num_threads()).max(4 * reach);
+    spare.resize_with(height.div_ceil(rows), || Planes::new(0, 0));
+    let bands = to.planes.bands_mut(1, height, rows).into_par_iter().zip(spare);
+    bands.enumerate().for_each(|(band, (mut out, planes))| {
+        let (top, bottom) = (lost + band * rows, lost + height.min((band + 1) * rows));
+        let (first, last) = (top.saturating_sub(reach), window.height.min(bottom + reach));
+        // Cells first up to last, and a row on each side as walls.
+        planes.copy_rows(&from.planes, first, last + 2);
+        dispatch(Down { planes, iterations: stride.iterations, constants });
+        for (j, out) in out.iter_mut().enumerate() {
+            for (out, row) in out.iter_mut().zip(planes.row(top - first + j + 1)) {
+                out[1..=width].copy_from_slice(&row[1 + lost..=width + lost]);
+            }
+        }
+    });
+    to.wall();
+}
+
+/// Iterations that follow each other down the rows, in place.
+struct Down<'a> {
+    planes: &'a mut Planes<5>,
+    iterations: usize,
+    constants: &'a Constants,
+}
+
+impl Body for Down<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let (width, rows) = (self.planes.width(), self.planes.height());
+        let mut sweeps: Vec<Sweep> = (0..self.iterations).map(|_| Sweep::new(width)).collect();
+        // An iteration at a row has made the second one above it final; the next reads that row as the one below its own.
+        for step in 0..=rows + AHEAD * self.iterations {
+            for (k, sweep) in sweeps.iter_mut().enumerate() {
+                if let Some(j) = step.checked_sub(AHEAD * k).filter(|j| *j <= rows) {
+                    simd.run(Row { sweep, planes: &mut *self.planes, j, constants: self.constants });
+                }
+            }
+        }
+    }
+}
+
+/// One iteration at one row.
+struct Row<'a> {
+    sweep: &'a mut Sweep,
+    planes: &'a mut Planes<5>,
+    j: usize,
+    constants: &'a Constants,
+}
+
+impl Body for Row<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        self.sweep.row(self.planes, self.j, self.constants);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::erosion::pipe_rows::SEDIMENT;
+
+    fn pipes() -> Pipes {
+        Pipes {
+            rain: 2e-3,
+            evaporation: 0.02,
+            capacity: 3.0,
+            erosion: 0.4,
+            deposition: 0.3,
+            pipe: 1.0,
+            friction: 0.05,
+            gravity: 9.81,
+            time_step: 1.0,
+        }
+    }
+
+    fn ground(window: Window) -> Grid {
+        let mut grid = Grid::filled(window, 0.0);
+        for j in 0..window.height {
+            for i in 0..window.width {
+                let (x, y) = (window.east(i), window.south(j));
+                let rough = (x * 1.37 + y * 0.71).rem_euclid(13.0) * (y * 0.93 - x * 0.37).rem_euclid(11.0) / 20.0;
+                grid.row_mut(j)[i] = (1500.0 + 90.0 * libm::sin(x / 130.0) * libm::cos(y / 170.0) + rough) as f32;
+            }
+        }
+        grid
+    }
+
+    fn sum(grid: &Grid) -> f64 {
+        grid.data().iter().map(|v| f64::from(*v)).sum()
+    }
+
+    #[test]
+    fn a_closed_box_keeps_its_mass_and_accounts_for_rain_and_evaporation() {
+        let bed = ground(Window::new(120, 90, 10.0));
+        let pipes = pipes();
+        let ok = || Ok(());
+        let wet = pipes.enclosed(Wet::new(&bed), 200, &ok).unwrap();
+        let cells = bed.window().len() as f64;
+        let dt = pipes.step(10.0);
+        // In each iteration evaporation takes its share of all water, then rain falls on all cells.
+        let water = (0..200).fold(0.0, |water, _| water * (1.0 - pipes.evaporation * dt) + pipes.rain * dt * cells);
+        let there = sum(&wet.plane(DEPTH));
+        assert!((there / water - 1.0).abs() < 1e-5, "{there} of {water}");
+        let (before, after, carried) = (sum(&bed), sum(&wet.plane(BED)), sum(&wet.plane(SEDIMENT)));
+        let moved: f64 = bed.data().iter().zip(wet.plane(BED).data()).map(|(a, b)| f64::from((a - b).abs())).sum();
+        assert!(moved > 0.1 * cells, "{moved} m moved");
+        assert!((before - after - carried).abs() < 1e-5 * moved, "{before} {after} {carried}, {moved} moved");
+        // The rounding of a bed 1500 m high is the sediment's to bear.
+        assert!(wet.plane(DEPTH).data().iter().chain(wet.plane(SEDIMENT).data()).all(|v| *v > -2e-4));
+    }
+
+    #[test]
+    fn an_open_window_is_the_middle_of_a_larger_one_on_any_number_of_threads() {
+        let (window, iterations) = (Window::new(70, 260, 10.0).at(-9, 4), 7);
+        let ok = || Ok(());
+        let grown = |by: usize| ground(window.grown(by + RADIUS * iterations));
+        let large = pipes().open(Wet::new(&grown(20)), iterations, &ok).unwrap();
+        for threads in [1, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let small = pool.install(|| pipes().open(Wet::new(&grown(0)), iterations, &ok)).unwrap();
+            assert_eq!(*small.window(), window);
+            for plane in [BED, DEPTH, SEDIMENT, EAST, SOUTH] {
+                assert_eq!(small.plane(plane), large.plane(plane).crop(&window).unwrap(), "{plane}");
+            }
+        }
+    }
+
+    #[test]
+    fn water_comes_to_rest_level() {
+        // A bowl with water of its own: no rain, no erosion.
+        let still = Pipes { rain: 0.0, evaporation: 0.0, capacity: 0.0, friction: 0.2, ..pipes() };
+        let window = Window::new(41, 41, 5.0).at(-20, -20);
+        let mut bed = Grid::filled(window, 0.0);
+        for j in 0..41 {
+            for i in 0..41 {
+                let (x, y) = (window.east(i), window.south(j));
+                bed.row_mut(j)[i] = ((x * x + y * y) / 500.0) as f32;
+            }
+        }
+        let mut wet = Wet::new(&bed);
+        for j in 1..=41 {
+            wet.planes.row_mut(j)[DEPTH][1..=41].fill(2.0);
+        }
+        let done = still.enclosed(wet, 3000, &|| Ok(())).unwrap();
+        let (bed, depth) = (done.plane(BED), done.plane(DEPTH));
+        let surfaces: Vec<f32> =
+            bed.data().iter().zip(depth.data()).filter(|(_, d)| **d > 0.05).map(|(b, d)| b + d).collect();
+        let (low, high) = surfaces.iter().fold((f32::MAX, f32::MIN), |(l, h), s| (l.min(*s), h.max(*s)));
+        assert!(surfaces.len() > 300 && high - low < 0.01, "{low} to {high} over {}", surfaces.len());
+        assert!(done.speed(&still).data().iter().all(|v| *v < 0.1));
+    }
+}

@@ -1,0 +1,166 @@
+//! Several values a cell, row beside row, and passes of a stencil over them that stay in cache.
+
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use rayon::prelude::*;
+
+/// N planes of one size. Rows of all planes lie next to each other: a pass that goes down the rows reads one stretch of memory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Planes<const N: usize> {
+    width: usize,
+    height: usize,
+    data: Vec<f32>,
+}
+
+impl<const N: usize> Planes<N> {
+    /// All zeros.
+    pub fn new(width: usize, height: usize) -> Planes<N> {
+        Planes { width, height, data: vec![0.0; width * height * N] }
+    }
+
+    /// Samples a row.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// Row `j` of every plane.
+    #[inline(always)]
+    pub fn row(&self, j: usize) -> [&[f32]; N] {
+        let row = &self.data[j * N * self.width..(j + 1) * N * self.width];
+        std::array::from_fn(|plane| &row[plane * self.width..(plane + 1) * self.width])
+    }
+
+    /// Row `j` of every plane, to change.
+    #[inline(always)]
+    pub fn row_mut(&mut self, j: usize) -> [&mut [f32]; N] {
+        planes_of(&mut self.data[j * N * self.width..(j + 1) * N * self.width], self.width)
+    }
+
+    /// Plane `plane` as a grid over `window`, which has as many samples.
+    pub fn grid(&self, plane: usize, window: Window) -> Grid {
+        let mut grid = Grid::filled(window, 0.0f32);
+        let rows = grid.data_mut().par_chunks_mut(window.width.max(1)).enumerate();
+        rows.for_each(|(j, row)| row.copy_from_slice(self.row(j)[plane]));
+        grid
+    }
+
+    /// Fills plane `plane` from a grid of as many samples.
+    pub fn fill(&mut self, plane: usize, grid: &Grid) {
+        let height = self.height;
+        self.rows_mut(0, height).into_par_iter().enumerate().for_each(|(j, row)| {
+            row[plane].copy_from_slice(grid.row(j));
+        });
+    }
+
+    /// Fills plane `plane` of row `j`.
+    pub fn set(&mut self, plane: usize, j: usize, values: &[f32]) {
+        self.row_mut(j)[plane].copy_from_slice(values);
+    }
+
+    /// Rows `j - 1`, `j` and `j + 1` of every plane, to change.
+    #[inline(always)]
+    pub fn three(&mut self, j: usize) -> [[&mut [f32]; N]; 3] {
+        let (width, all) = (self.width.max(1), N * self.width);
+        let mut rows = self.data[(j - 1) * all..(j + 2) * all].chunks_exact_mut(width);
+        std::array::from_fn(|_| std::array::from_fn(|_| rows.next().unwrap_or_default()))
+    }
+
+    /// Becomes a copy of rows `first` up to but not `last` of `from`.
+    pub fn copy_rows(&mut self, from: &Planes<N>, first: usize, last: usize) {
+        let all = N * from.width;
+        (self.width, self.height) = (from.width, last - first);
+        self.data.clear();
+        self.data.extend_from_slice(&from.data[first * all..last * all]);
+    }
+
+    /// `height` rows from `first` on, each to change.
+    pub fn rows_mut(&mut self, first: usize, height: usize) -> Vec<[&mut [f32]; N]> {
+        let (width, all) = (self.width, N * self.width);
+        let rows = self.data[first * all..(first + height) * all].chunks_exact_mut(all.max(1));
+        rows.map(|row| planes_of(row, width)).collect()
+    }
+
+    /// The same in bands of `rows`.
+    pub fn bands_mut(&mut self, first: usize, height: usize, rows: usize) -> Vec<Vec<[&mut [f32]; N]>> {
+        let mut left = self.rows_mut(first, height).into_iter();
+        (0..height.div_ceil(rows)).map(|_| left.by_ref().take(rows).collect()).collect()
+    }
+
+    /// Another size, the old values forgotten: memory is used again.
+    pub fn resize(&mut self, width: usize, height: usize) {
+        (self.width, self.height) = (width, height);
+        self.data.resize(width * height * N, 0.0);
+    }
+}
+
+/// A row's planes.
+#[inline(always)]
+fn planes_of<const N: usize>(row: &mut [f32], width: usize) -> [&mut [f32]; N] {
+    let mut planes = row.chunks_exact_mut(width.max(1));
+    std::array::from_fn(|_| planes.next().unwrap_or_default())
+}
+
+/// One pass of a stencil.
+pub trait Pass<const N: usize>: Sync {
+    /// How far it looks.
+    const RADIUS: usize;
+
+    /// Makes `to`, which is smaller than `from` by the radius on each side, from `from`. `scratch` is memory that is kept from call to
+    /// call.
+    fn make(&self, from: &Planes<N>, to: &mut Planes<N>, scratch: &mut Vec<f32>);
+}
+
+/// Passes that a band of rows goes through before it is put back.
+const AT_ONCE: usize = 8;
+
+/// Rows of a band: with two bands' buffers in a core's own cache.
+const BAND: usize = 64;
+
+/// The planes after `passes` passes, smaller by that many radii on each side. Bands of rows go side by side, each several passes on
+/// while it is in cache, what neighbours need of each other made twice: the same bits on any number of threads.
+///
+/// # Errors
+/// What `check` says, which is asked now and then.
+pub fn run<const N: usize, P: Pass<N>>(
+    mut planes: Planes<N>,
+    passes: usize,
+    pass: &P,
+    check: &(dyn Fn() -> Result<()> + Sync),
+) -> Result<Planes<N>> {
+    let mut next = Planes::new(0, 0);
+    let mut left = passes;
+    while left > 0 {
+        check()?;
+        let now = left.min(AT_ONCE);
+        let inset = now * P::RADIUS;
+        let (width, height) = (planes.width.saturating_sub(2 * inset), planes.height.saturating_sub(2 * inset));
+        next.resize(width, height);
+        let from = &planes;
+        let bands = next.bands_mut(0, height, BAND).into_par_iter().enumerate();
+        bands.try_for_each_init(
+            || (Planes::new(0, 0), Planes::new(0, 0), Vec::new()),
+            |(here, spare, scratch), (band, mut out)| {
+                check()?;
+                let top = band * BAND;
+                here.copy_rows(from, top, top + out.len() + 2 * inset);
+                for _ in 0..now {
+                    spare.resize(here.width - 2 * P::RADIUS, here.height - 2 * P::RADIUS);
+                    pass.make(here, spare, scratch);
+                    std::mem::swap(here, spare);
+                }
+                for (j, out) in out.iter_mut().enumerate() {
+                    out.iter_mut().zip(here.row(j)).for_each(|(out, row)| out.copy_from_slice(row));
+                }
+                Ok(())
+            },
+        )?;
+        std::mem::swap(&mut planes, &mut next);
+        left -= now;
+    }
+    Ok(planes)
+}

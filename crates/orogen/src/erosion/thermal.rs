@@ -1,0 +1,207 @@
+//! Slopes slide until they lie at the talus angle.
+
+use super::planes::{self, Pass, Planes};
+use crate::error::Result;
+use crate::grid::Grid;
+use orogen_simd::{Body, Simd, dispatch};
+
+/// Thermal weathering after F. K. Musgrave, C. E. Kolb and R. S. Mace, "The synthesis and rendering of eroded fractal terrains"
+/// (1989): what is steeper than the talus angle moves down.
+///
+/// Theirs compares each cell with its neighbours in eight directions, and leaves octagonal cones. Here the material that crosses the side between two
+/// cells is, with g the slope there (both components) and T the slope that stands,
+///
+/// ```text
+/// q = fraction (1 - T / |g|) g_across    where |g| > T, else 0
+/// ```
+///
+/// so a slope is as steep in all directions. What leaves one cell enters the next: mass is kept.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Thermal {
+    /// Rise over run that stands.
+    pub talus: f64,
+    /// The share of what is too steep that moves in a pass, 0 to 1. Stable for all of these.
+    pub rate: f64,
+}
+
+/// The share of a difference in height that crosses a side at a rate of 1. From 1/4 on a chequerboard of heights would not fade.
+const FASTEST: f64 = 0.2;
+
+impl Thermal {
+    /// The heights after `passes` passes, over a window that is smaller by one sample a pass on each side.
+    ///
+    /// # Errors
+    /// What `check` says.
+    pub fn run(&self, heights: &Grid, passes: usize, check: &(dyn Fn() -> Result<()> + Sync)) -> Result<Grid> {
+        let mut planes = Planes::new(heights.width(), heights.height());
+        planes.fill(0, heights);
+        let pass = Slide { stands: (self.talus * heights.window().cell) as f32, share: (self.rate * FASTEST) as f32 };
+        let settled = planes::run(planes, passes, &pass, check)?;
+        Ok(settled.grid(0, heights.window().shrunk(passes)))
+    }
+}
+
+/// The rule in samples: heights differ by `stands` from one to the next where the slope just stands.
+struct Slide {
+    stands: f32,
+    share: f32,
+}
+
+impl Pass<1> for Slide {
+    const RADIUS: usize = 1;
+
+    fn make(&self, from: &Planes<1>, to: &mut Planes<1>, scratch: &mut Vec<f32>) {
+        scratch.resize(2 * to.width() + 1 + to.width(), 0.0);
+        dispatch(Rows { slide: self, from, to, scratch });
+    }
+}
+
+struct Rows<'a> {
+    slide: &'a Slide,
+    from: &'a Planes<1>,
+    to: &'a mut Planes<1>,
+    scratch: &'a mut [f32],
+}
+
+impl Body for Rows<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, _: S) {
+        let width = self.to.width();
+        let (sides, rest) = self.scratch.split_at_mut(width + 1);
+        let (mut above, mut below) = rest.split_at_mut(width);
+        let [first, second] = [0, 1].map(|j| self.from.row(j)[0]);
+        self.slide.across_rows(first, second, above);
+        for j in 0..self.to.height() {
+            let [north, here, south] = [j, j + 1, j + 2].map(|j| self.from.row(j)[0]);
+            self.slide.across_columns(north, here, south, sides);
+            self.slide.across_rows(here, south, below);
+            let [out] = self.to.row_mut(j);
+            settle(&here[1..=width], [&*sides, &*above, &*below], out);
+            std::mem::swap(&mut above, &mut below);
+        }
+    }
+}
+
+impl Slide {
+    /// What moves east over the sides between the columns of row `here`.
+    #[inline(always)]
+    fn across_columns(&self, north: &[f32], here: &[f32], south: &[f32], out: &mut [f32]) {
+        let n = out.len();
+        let [nw, ne] = [&north[..n], &north[1..=n]];
+        let [w, e] = [&here[..n], &here[1..=n]];
+        let [sw, se] = [&south[..n], &south[1..=n]];
+        for i in 0..n {
+            out[i] = self.moved(w[i] - e[i], ((nw[i] - sw[i]) + (ne[i] - se[i])) * 0.25);
+        }
+    }
+
+    /// What moves south from the inner samples of `north` to those of `south`.
+    #[inline(always)]
+    fn across_rows(&self, north: &[f32], south: &[f32], out: &mut [f32]) {
+        let n = out.len();
+        let [nw, n_, ne] = [&north[..n], &north[1..=n], &north[2..n + 2]];
+        let [sw, s_, se] = [&south[..n], &south[1..=n], &south[2..n + 2]];
+        for i in 0..n {
+            out[i] = self.moved(n_[i] - s_[i], ((nw[i] - ne[i]) + (sw[i] - se[i])) * 0.25);
+        }
+    }
+
+    #[inline(always)]
+    fn moved(&self, across: f32, along: f32) -> f32 {
+        let steep = (across * across + along * along).sqrt();
+        let excess = 1.0 - self.stands / steep;
+        // Level ground divides by 0; what is not above 0 moves nothing.
+        let excess = if excess > 0.0 { excess } else { 0.0 };
+        self.share * excess * across
+    }
+}
+
+/// Heights with what came in and what went out.
+#[inline(always)]
+fn settle(here: &[f32], [sides, above, below]: [&[f32]; 3], out: &mut [f32]) {
+    let n = out.len();
+    let [west, east] = [&sides[..n], &sides[1..=n]];
+    let (here, above, below) = (&here[..n], &above[..n], &below[..n]);
+    for i in 0..n {
+        out[i] = here[i] + ((west[i] - east[i]) + (above[i] - below[i]));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::slope;
+    use crate::grid::Window;
+
+    fn made(window: Window, height: impl Fn(f64, f64) -> f64) -> Grid {
+        let mut grid = Grid::filled(window, 0.0);
+        for j in 0..window.height {
+            for i in 0..window.width {
+                grid.row_mut(j)[i] = height(window.east(i), window.south(j)) as f32;
+            }
+        }
+        grid
+    }
+
+    fn sum(grid: &Grid) -> f64 {
+        grid.data().iter().map(|v| f64::from(*v)).sum()
+    }
+
+    fn weathered(heights: &Grid, angle: f64, passes: usize) -> Grid {
+        let thermal = Thermal { talus: libm::tan(angle.to_radians()), rate: 1.0 };
+        thermal.run(heights, passes, &|| Ok(())).unwrap()
+    }
+
+    #[test]
+    fn a_steep_cone_ends_at_the_talus_angle_in_all_directions() {
+        let passes = 300;
+        for angle in [25.0, 33.0, 45.0] {
+            let window = Window::new(41, 41, 5.0).at(-20, -20).grown(passes);
+            let cone = made(window, |x, y| (75.0 - 1.5 * (x * x + y * y).sqrt()).max(0.0));
+            let done = weathered(&cone, angle, passes);
+            let degrees = slope::degrees(&done);
+            let mut seen = [0; 16];
+            for j in 0..degrees.height() {
+                for i in 0..degrees.width() {
+                    let (x, y) = (degrees.window().east(i), degrees.window().south(j));
+                    let r = (x * x + y * y).sqrt();
+                    // Neither the tip nor the foot, which are rounded.
+                    if (24.0..46.0).contains(&r) {
+                        let off = f64::from(degrees.get(i, j)) - angle;
+                        assert!(off.abs() < 0.5, "{angle}: {off} off at ({x}, {y})");
+                        seen[(libm::atan2(y, x).to_degrees() + 180.0) as usize * 16 / 361] += 1;
+                    }
+                }
+            }
+            assert!(seen.iter().all(|count| *count > 5), "{seen:?}");
+        }
+    }
+
+    #[test]
+    fn mass_is_kept() {
+        let passes = 60;
+        let window = Window::new(64, 64, 2.0).at(7, -3).grown(passes);
+        let heap = made(window, |x, y| {
+            let near = (x - 70.0).abs() < 40.0 && (y - 60.0).abs() < 40.0;
+            1000.0
+                + if near { ((x * 13.7).rem_euclid(31.0) * (y * 7.9).rem_euclid(17.0)).rem_euclid(25.0) } else { 0.0 }
+        });
+        let before = sum(&heap.crop(&window.shrunk(passes)).unwrap());
+        let after = weathered(&heap, 30.0, passes);
+        assert!((sum(&after) - before).abs() < 1e-7 * before, "{before} {}", sum(&after));
+        assert_ne!(heap.crop(after.window()).unwrap(), after);
+    }
+
+    #[test]
+    fn what_stands_stays_and_the_fastest_rate_makes_nothing_higher() {
+        let window = Window::new(40, 30, 10.0).grown(9);
+        let hills = made(window, |x, y| 3.0 * libm::sin(x / 40.0) * libm::cos(y / 55.0));
+        assert_eq!(weathered(&hills, 40.0, 9), hills.crop(&window.shrunk(9)).unwrap());
+        // A chequerboard, the worst of all: it fades.
+        let board = made(window, |x, y| if ((x + y) / 10.0).rem_euclid(2.0) < 0.5 { 50.0 } else { -50.0 });
+        let done = weathered(&board, 10.0, 9);
+        assert!(done.data().iter().all(|h| h.abs() < 8.0), "{:?}", done.get(5, 5));
+    }
+}

@@ -1,0 +1,74 @@
+//! A picture, laid over the ground.
+
+use super::positions::each;
+use crate::dem::held::Picture;
+use crate::layer::LayerKind;
+use crate::op::{Field, Setting, Slots};
+use crate::resample;
+use orogen_noise::Points;
+
+op! {
+    /// A grey picture as a field: 0 where it is black, 1 where it is white. Made to be a mask: a painted coast, a forest, a road.
+    ///
+    /// Read are .png of 8 or 16 bits of grey. Pixels are square and stand at points: the first, in the north-west corner, at `at`, the last of a row
+    /// `width` metres east of it. Between them the interpolating cubic is read (Catmull and Rom 1974), cut off at 0 and 1. What is in the
+    /// file, not its name, decides which solutions of earlier runs are still good. It is held in memory. Heights come from `dem`.
+    pub struct Image = "image", field, revision 1;
+    params {
+        /// The file; a relative path counts from the folder of the recipe.
+        path: Picture = Picture::default();
+        /// Where the picture's north-west corner stands, east and south.
+        at: [f64; 2] = [0.0, 0.0], unit "m", range -1e9 to 1e9;
+        /// How wide the picture is laid out.
+        width: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
+        /// The value beyond the picture.
+        outside: f64 = 0.0, range 0.0 to 1.0;
+    }
+    check |image| match image.path.0.is_empty() {
+        true => Err(("path", "`path` names no file: write the path of a .png of greys".to_string())),
+        false => Ok(()),
+    };
+}
+
+impl Field for Image {
+    fn eval(&self, at: &Points, _: &Slots, _: &Setting, out: &mut [f32]) {
+        // A world is not opened without its files; a plan that runs without a world has nothing to show.
+        let Some(picture) = self.path.0.ground() else { return out.fill(self.outside as f32) };
+        let columns = (picture.grid.width() as f64 - 1.0).max(1.0);
+        let last = [picture.grid.width(), picture.grid.height()].map(|pixels| pixels as f64 - 1.0);
+        let [left, top] = self.at;
+        let pixel = |metres: f64, from: f64| (metres - from) / self.width * columns;
+        let mut inside = vec![0.0f32; out.len()];
+        each(at, &mut inside, |x, y| {
+            let (x, y) = (pixel(x, left), pixel(y, top));
+            f32::from(u8::from((0.0..=last[0]).contains(&x) && (0.0..=last[1]).contains(&y)))
+        });
+        match at {
+            Points::Lattice { xs, ys } if !xs.is_empty() => {
+                let xs: Vec<f64> = xs.iter().map(|x| pixel(*x, left)).collect();
+                let ys: Vec<f64> = ys.iter().map(|y| pixel(*y, top)).collect();
+                resample::read(&picture.grid, LayerKind::Height, &Points::Lattice { xs: &xs, ys: &ys }, out);
+            }
+            _ => {
+                let places = (0..out.len()).map(|k| at.position(k).unwrap_or(resample::NOWHERE));
+                let (xs, ys): (Vec<f64>, Vec<f64>) = places.map(|(x, y)| (pixel(x, left), pixel(y, top))).unzip();
+                resample::read(&picture.grid, LayerKind::Height, &Points::Scattered { x: &xs, y: &ys }, out);
+            }
+        }
+        for (sample, inside) in out.iter_mut().zip(&inside) {
+            *sample = if *inside > 0.0 { sample.clamp(0.0, 1.0) } else { self.outside as f32 };
+        }
+    }
+
+    fn cost(&self) -> f64 {
+        30.0
+    }
+
+    fn cost_in_rows(&self) -> f64 {
+        9.0
+    }
+
+    fn memory(&self) -> u64 {
+        self.path.0.ground().map_or(0, |picture| picture.memory())
+    }
+}
