@@ -93,7 +93,7 @@ fn memory_disk_and_folder_make_the_same_bits() {
             .map(|(side, x, y)| Window::new(side, side, cell).at(window.x + x, window.y + y))
             .into();
         // In memory for a later run, found by it, on disk, found on disk.
-        let short = Some(19 << 20);
+        let short = Some(10 << 20);
         for (threads, memory, cached) in
             [(1, None, true), (2, None, true), (2, short, false), (1, short, true), (2, short, true)]
         {
@@ -101,15 +101,17 @@ fn memory_disk_and_folder_make_the_same_bits() {
             let world =
                 open(&recipe, Options { threads: Some(threads), memory, cache, scratch: Some(folder.0.clone()) });
             let name = format!("{threads} threads, {memory:?} of memory, cache {cached}, cell {cell}");
+            let mut moved = 0;
             for part in &parts {
                 let plan = world.plan(&["height", "steep", "again"], part).unwrap();
                 let on_disk = plan.solves.iter().filter(|solve| solve.on_disk).count();
-                assert_eq!(on_disk > 0, memory.is_some(), "{name}: {}", world.explain(&plan));
+                moved += on_disk;
                 assert!(memory.is_none_or(|memory| world.memory_of(&plan) <= memory), "{}", world.explain(&plan));
                 assert_eq!(world.disk_of(&plan) > 0, on_disk > 0);
                 assert_eq!(world.explain(&plan).contains("MiB while it runs"), on_disk > 0);
                 same(&name, &whole, &layers(&world, part));
             }
+            assert_eq!(moved > 0, memory.is_some(), "{name}");
             let (i, j) = (390, 355);
             let point = world.points("height", &[window.east(i)], &[window.south(j)]).unwrap()[0];
             assert_eq!(point.to_bits(), whole[0].get(i, j).to_bits(), "{name}");
@@ -130,7 +132,7 @@ fn tiles_of_any_size_solve_the_same() {
     let window = Window::new(100, 90, 10.24).at(900, 800);
     let whole = layers(&open(&recipe, Options::default()), &window);
     let mut sides = Vec::new();
-    for memory in [40 << 20, 19 << 20, 16 << 20] {
+    for memory in [40 << 20, 11 << 20, 8 << 20] {
         let world = open(&recipe, Options { threads: Some(2), memory: Some(memory), ..Options::default() });
         let plan = world.plan(&["height", "steep", "again"], &window).unwrap();
         assert!(world.memory_of(&plan) <= memory, "{memory}: {}", world.explain(&plan));
@@ -205,7 +207,7 @@ fn what_cannot_fit_is_refused_with_the_figure() {
     assert_eq!(error.kind(), orogen::ErrorKind::Memory);
     assert!(error.to_string().contains("2.0 MiB is allowed"), "{error}");
     let recipe = stacked(10.0, true);
-    let none = Options { memory: Some(19 << 20), scratch: Some("/dev/null/nowhere".into()), ..Options::default() };
+    let none = Options { memory: Some(8 << 20), scratch: Some("/dev/null/nowhere".into()), ..Options::default() };
     let error = open(&recipe, none).window("height", &Window::new(10, 10, 10.0)).unwrap_err();
     assert_eq!(error.kind(), orogen::ErrorKind::File, "{error}");
     assert!(error.to_string().contains("cannot work in /dev/null/nowhere"), "{error}");

@@ -41,7 +41,10 @@ impl Filter for Blur {
     }
 
     fn scratch(&self, window: &Window) -> u64 {
-        (window.width as u64) * (window.height as u64 + 2 * self.halo(window.cell) as u64) * 4
+        let reach = self.halo(window.cell);
+        // A tile for each band that is worked on, which may be all of them.
+        let bands = window.height.div_ceil(band(reach));
+        4 * (bands * TILE * (band(reach) + 2 * reach)) as u64
     }
 
     fn apply(
@@ -58,25 +61,26 @@ impl Filter for Blur {
             return Ok(());
         }
         let weights = self.weights(window.cell);
-        let width = window.width;
-        let tall = window.height + 2 * reach;
-        let mut rows = vec![0.0f32; width * tall];
-        rows.par_chunks_mut(width).enumerate().try_for_each(|(j, row)| {
-            context.progress.check()?;
-            let source = source.row(j);
-            for (step, weight) in weights.iter().enumerate() {
-                accumulate(row, &source[step..step + width], *weight);
-            }
-            Ok(())
-        })?;
-        out.data_mut().par_chunks_mut(width).enumerate().try_for_each(|(j, row)| {
-            context.progress.check()?;
-            for (step, weight) in weights.iter().enumerate() {
-                let at = (j + step) * width;
-                accumulate(row, &rows[at..at + width], *weight);
-            }
-            Ok(())
-        })
+        let band = band(reach);
+        out.data_mut().par_chunks_mut(band * window.width).enumerate().try_for_each_init(
+            || vec![0.0f32; TILE * (band + 2 * reach)],
+            |rows, (b, out)| {
+                context.progress.check()?;
+                let (top, height) = (b * band, out.len() / window.width);
+                for left in (0..window.width).step_by(TILE) {
+                    let width = TILE.min(window.width - left);
+                    // Along x into rows that stay in cache, then along y out of them.
+                    for (j, row) in rows.chunks_mut(TILE).take(height + 2 * reach).enumerate() {
+                        let source = &source.row(top + j)[left..];
+                        weigh(&mut row[..width], &weights, source, 1);
+                    }
+                    for (j, row) in out.chunks_mut(window.width).enumerate() {
+                        weigh(&mut row[left..left + width], &weights, &rows[j * TILE..], TILE);
+                    }
+                }
+                Ok(())
+            },
+        )
     }
 
     fn cost(&self, cell: f64) -> f64 {
@@ -84,8 +88,34 @@ impl Filter for Blur {
     }
 }
 
-fn accumulate(out: &mut [f32], row: &[f32], weight: f32) {
-    for (sum, sample) in out.iter_mut().zip(row) {
-        *sum += weight * sample;
+/// Columns of a tile.
+const TILE: usize = 256;
+
+/// Rows of a band: so many that those which two bands share weigh little.
+fn band(reach: usize) -> usize {
+    (4 * reach).max(256)
+}
+
+/// Each of `out` becomes the weighted sum of as many samples as there are weights, `step` apart, the first of them at its own place in
+/// `from`. Sums run in the order of the weights, many side by side in registers.
+fn weigh(out: &mut [f32], weights: &[f32], from: &[f32], step: usize) {
+    const ABREAST: usize = 32;
+    let (registers, rest) = out.as_chunks_mut::<ABREAST>();
+    let done = registers.len() * ABREAST;
+    for (r, out) in registers.iter_mut().enumerate() {
+        let mut sums = [0.0f32; ABREAST];
+        for (k, weight) in weights.iter().enumerate() {
+            let samples = &from[r * ABREAST + k * step..][..ABREAST];
+            for (sum, sample) in sums.iter_mut().zip(samples) {
+                *sum += weight * sample;
+            }
+        }
+        *out = sums;
+    }
+    for (i, out) in rest.iter_mut().enumerate() {
+        *out = 0.0;
+        for (k, weight) in weights.iter().enumerate() {
+            *out += weight * from[done + i + k * step];
+        }
     }
 }
