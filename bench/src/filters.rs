@@ -1,4 +1,5 @@
-//! Part of area `erosion`: filters, and hillshade beside matplotlib. CPU time of one thread; two threads by the clock on the wall.
+//! Part of area `erosion`: filters, and hillshade beside matplotlib. CPU time of one thread; two threads by the clock
+//! on the wall.
 
 use std::time::Instant;
 

@@ -3,11 +3,12 @@
 use crate::grid::Grid;
 use rayon::prelude::*;
 
-/// The exact Euclidean distance in samples, up to `reach`, of each sample without a border of `reach` to the nearest whose value is at least `threshold`;
-/// infinite where none is so near.
+/// The exact Euclidean distance in samples, up to `reach`, of each sample without a border of `reach` to the nearest
+/// whose value is at least `threshold`; infinite where none is so near.
 ///
-/// Down the columns first, then along the rows by the lower envelope of parabolas in whole numbers (A. Meijster, J. Roerdink and W. Hesselink, "A general
-/// algorithm for computing distance transforms in linear time", 2000): O(samples) whatever the reach.
+/// Down the columns first, then along the rows by the lower envelope of parabolas in whole numbers (A. Meijster, J.
+/// Roerdink and W. Hesselink, "A general algorithm for computing distance transforms in linear time", 2000): O(samples)
+/// whatever the reach.
 pub fn nearest(grid: &Grid, threshold: f32, reach: usize) -> Grid {
     let window = grid.window().shrunk(reach);
     let mut out = Grid::filled(window, f32::INFINITY);

@@ -10,7 +10,8 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// 1 from `range[0]` to `range[1]`, and 0 from `falloff[0]` below it and from `falloff[1]` above it on; a fall-off of 0 is a sharp end.
+    /// 1 from `range[0]` to `range[1]`, and 0 from `falloff[0]` below it and from `falloff[1]` above it on; a fall-off
+    /// of 0 is a sharp end.
     pub fn new(range: [f64; 2], falloff: [f64; 2]) -> Selection {
         let [low, high] = range.map(|bound| bound as f32);
         let [below, above] = falloff.map(|width| width as f32);

@@ -4,7 +4,8 @@ use super::droplet_paths::UNIT;
 use orogen_simd::{Body, Simd, dispatch};
 use rayon::prelude::*;
 
-/// A bell of a given radius, in cells: a Gaussian whose deviation is half of it, cut there. Its weights sum to 1 along each axis.
+/// A bell of a given radius, in cells: a Gaussian whose deviation is half of it, cut there. Its weights sum to 1 along
+/// each axis.
 pub struct Brush {
     radius: f64,
     weights: Vec<f32>,

@@ -41,7 +41,8 @@ pub struct Sums<'a> {
     pub laid: &'a mut [i64],
 }
 
-/// Metres in a unit of the sums: so fine that a drop's last share still counts, and 2^62 of them are higher than any ground.
+/// Metres in a unit of the sums: so fine that a drop's last share still counts, and 2^62 of them are higher than any
+/// ground.
 pub const UNIT: f64 = 1.0 / (1u64 << 36) as f64;
 
 /// Droplets go side by side over so many columns at a time: the ground they run over stays in cache.

@@ -10,18 +10,20 @@ use rayon::prelude::*;
 
 /// Erosion by droplets after H. T. Beyer, "Implementation of a method for hydraulic erosion" (2015), in metres.
 ///
-/// A droplet goes one cell at a time along its direction, inertia d - (1 - inertia) slope. With s the slope ahead of it, v its speed, w its water
-/// and a the ground it stands for (one over the density), it can carry the volume
+/// A droplet goes one cell at a time along its direction, inertia d - (1 - inertia) slope. With s the slope ahead of
+/// it, v its speed, w its water and a the ground it stands for (one over the density), it can carry the volume
 ///
 /// ```text
 /// C = capacity max(s, least) v w a        v^2 = v^2 + g (h - h_ahead)        w = w exp(-evaporation l)
 /// ```
 ///
-/// cuts `erosion` of what it could still carry, no deeper than the drop ahead of it, lays down `deposition` of what is too much, and before
-/// a rise fills the hollow it is in. (In widely copied code the sign before g is wrong.) In the end it lays down all it carries: mass is kept.
+/// cuts `erosion` of what it could still carry, no deeper than the drop ahead of it, lays down `deposition` of what is
+/// too much, and before a rise fills the hollow it is in. (In widely copied code the sign before g is wrong.) In the
+/// end it lays down all it carries: mass is kept.
 ///
-/// Droplets one after another depend on their order. Here they come in batches: all droplets of a batch see the same ground, and what they do to it is
-/// summed in fixed point, in which order does not matter. So there is an exact answer for any window.
+/// Droplets one after another depend on their order. Here they come in batches: all droplets of a batch see the same
+/// ground, and what they do to it is summed in fixed point, in which order does not matter. So there is an exact answer
+/// for any window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Droplets {
     /// Droplets a km^2, in all batches together.
@@ -127,8 +129,8 @@ impl Droplets {
         Ok(out)
     }
 
-    /// What one batch cuts and lays down at each cell, as multiples of [`droplet_paths::UNIT`]. Bands of rows go side by side, first those of even
-    /// number and then the others: no two of a kind reach the same rows.
+    /// What one batch cuts and lays down at each cell, as multiples of [`droplet_paths::UNIT`]. Bands of rows go side
+    /// by side, first those of even number and then the others: no two of a kind reach the same rows.
     fn sum(
         &self,
         heights: &Grid,
@@ -141,7 +143,10 @@ impl Droplets {
         let step = self.step(window.cell, batch);
         let rows = (2 * reach).max(window.height.div_ceil(16 * rayon::current_num_threads()));
         for sums in &mut *sums {
-            sums.resize(window.len(), 0);
+            if sums.len() < window.len() {
+                *sums = vec![0; window.len()];
+            }
+            sums.truncate(window.len());
             sums.par_chunks_mut(window.width.max(1)).for_each(|row| row.fill(0));
         }
         for parity in [0, 1] {
@@ -192,7 +197,8 @@ fn part<'a>(all: &mut &'a mut [i64], skip: usize, size: usize) -> &'a mut [i64] 
     part
 }
 
-/// Passes in which what a batch has laid down slides apart: all its droplets see the same hollow, and would fill it to a spike.
+/// Passes in which what a batch has laid down slides apart: all its droplets see the same hollow, and would fill it to
+/// a spike.
 const SETTLED: usize = 16;
 
 /// Rise over run at which it lies still.

@@ -2,12 +2,14 @@
 
 use super::planes::{self, Pass, Planes};
 use super::power::power;
+use super::rows::{least, most, positive};
 use crate::error::Result;
 use orogen_simd::{Body, Simd, dispatch};
 
-/// The stream power law with uplift and deposition, all cells at once: after H. Schott, A. Paris, L. Fournier, E. Guerin and E. Galin, "Large-scale
-/// terrain authoring through interactive erosion simulation" (2023), with the deposition of X. P. Yuan, J. Braun, L. Guerit, D. Rouby and G. Cordonnier, "A new
-/// efficient method to solve the stream power law model taking into account sediment deposition" (2019).
+/// The stream power law with uplift and deposition, all cells at once: after H. Schott, A. Paris, L. Fournier, E.
+/// Guerin and E. Galin, "Large-scale terrain authoring through interactive erosion simulation" (2023), with the
+/// deposition of X. P. Yuan, J. Braun, L. Guerit, D. Rouby and G. Cordonnier, "A new efficient method to solve the
+/// stream power law model taking into account sediment deposition" (2019).
 ///
 /// ```text
 /// A' = l^2 + sum over higher neighbours of share A        share ~ slope^4 (multiple flow directions)
@@ -16,9 +18,10 @@ use orogen_simd::{Body, Simd, dispatch};
 /// h' = h - E + D + dt (U + creep (d2h/dx2 + d2h/dy2))
 /// ```
 ///
-/// S is the upwind gradient, the same in all directions. The fraction is what makes it stable for any dt (the implicit step of Braun and Willett 2013 with
-/// the neighbour's old height). Water and sediment come one cell farther an iteration: begin with the areas of a coarser solution where it should
-/// know of rivers from far away. An iteration looks two cells far.
+/// S is the upwind gradient, the same in all directions. The fraction is what makes it stable for any dt (the implicit
+/// step of Braun and Willett 2013 with the neighbour's old height). Water and sediment come one cell farther an
+/// iteration: begin with the areas of a coarser solution where it should know of rivers from far away. An iteration
+/// looks two cells far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocalStreamPower {
     /// Metres from one sample to the next.
@@ -224,21 +227,6 @@ impl Constants {
 #[inline(always)]
 fn neighbours(row: &[f32], n: usize) -> [&[f32]; 3] {
     [&row[..n], &row[1..=n], &row[2..n + 2]]
-}
-
-#[inline(always)]
-fn positive(x: f32) -> f32 {
-    if x > 0.0 { x } else { 0.0 }
-}
-
-#[inline(always)]
-fn least(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-fn most(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 #[cfg(test)]

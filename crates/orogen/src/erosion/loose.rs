@@ -1,11 +1,12 @@
 //! Loose ground, freshly laid down, slides apart until it lies gently.
 
 use super::planes::{self, Pass, Planes};
+use super::rows::{least, positive, settle};
 use crate::error::Result;
 use orogen_simd::{Body, Simd, dispatch};
 
-/// Loose ground on firm: of what a cell stands higher than a neighbour, beyond what stands, a fifth crosses their side in a pass, and never more than
-/// a quarter of the loose ground that the higher has. Mass is kept, firm ground stays.
+/// Loose ground on firm: of what a cell stands higher than a neighbour, beyond what stands, a fifth crosses their side
+/// in a pass, and never more than a quarter of the loose ground that the higher has. Mass is kept, firm ground stays.
 pub struct Loose {
     /// Metres from one cell to the next at which loose ground lies still.
     pub stands: f32,
@@ -80,26 +81,5 @@ impl Loose {
             let back = least(-0.2 * (higher + self.stands), 0.25 * l1[i]);
             out[i] = positive(much) - positive(back);
         }
-    }
-}
-
-#[inline(always)]
-fn positive(x: f32) -> f32 {
-    if x > 0.0 { x } else { 0.0 }
-}
-
-#[inline(always)]
-fn least(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-/// Loose ground with what came in and what went out.
-#[inline(always)]
-fn settle(here: &[f32], [sides, above, below]: [&[f32]; 3], out: &mut [f32]) {
-    let n = out.len();
-    let [west, east] = [&sides[..n], &sides[1..=n]];
-    let (here, above, below) = (&here[..n], &above[..n], &below[..n]);
-    for i in 0..n {
-        out[i] = here[i] + ((west[i] - east[i]) + (above[i] - below[i]));
     }
 }

@@ -1,6 +1,7 @@
 //! One iteration of the virtual pipes, going down the rows in place.
 
 use super::planes::Planes;
+use super::rows::{least, most, positive};
 
 /// The planes by their places.
 pub const BED: usize = 0;
@@ -34,9 +35,9 @@ pub struct Constants {
     pub left: f32,
 }
 
-/// An iteration on its way down the rows. At row j the flows out of that row are made and limited; the row above, all of whose
-/// sides are then known, passes on water and sediment; the bed of the row above that, round which all changes are then known, takes its part of
-/// them and is what it is after the iteration.
+/// An iteration on its way down the rows. At row j the flows out of that row are made and limited; the row above, all
+/// of whose sides are then known, passes on water and sediment; the bed of the row above that, round which all changes
+/// are then known, takes its part of them and is what it is after the iteration.
 pub struct Sweep {
     /// Of three rows, by the remainder of their number: the share of the outflow that there is water for,
     limits: [Vec<f32>; 3],
@@ -117,7 +118,8 @@ impl Sweep {
         }
     }
 
-    /// The bed of row `j`: what the water does to a cell is shared with those around it, which fills and cuts in strokes wider than a cell.
+    /// The bed of row `j`: what the water does to a cell is shared with those around it, which fills and cuts in
+    /// strokes wider than a cell.
     #[inline(always)]
     fn lay(&mut self, planes: &mut Planes<5>, j: usize) {
         if j == 0 || j + 1 >= planes.height() {
@@ -136,22 +138,6 @@ impl Sweep {
             below[BED].copy_from_slice(bed);
         }
     }
-}
-
-/// What is above 0 of it.
-#[inline(always)]
-fn positive(x: f32) -> f32 {
-    if x > 0.0 { x } else { 0.0 }
-}
-
-#[inline(always)]
-fn least(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-fn most(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 /// Flows over the eastern and southern sides of a row, as far as the surfaces pull.
@@ -201,7 +187,8 @@ fn hold([here, below]: [&[f32]; 2], [east, south]: [&mut [f32]; 2]) {
     }
 }
 
-/// Water and sediment move over the sides; what the water cuts or lays down is told, and taken from or added to its sediment.
+/// Water and sediment move over the sides; what the water cuts or lays down is told, and taken from or added to its
+/// sediment.
 #[inline(always)]
 fn settle(
     loads: [&[f32]; 3],

@@ -7,8 +7,9 @@ use crate::grid::{Grid, Window};
 use orogen_simd::{Body, Simd, dispatch};
 use rayon::prelude::*;
 
-/// Hydraulic erosion with virtual pipes, after X. Mei, P. Decaudin and B. Hu, "Fast hydraulic erosion simulation and visualization on
-/// GPU" (2007) and O. Stava, B. Benes, M. Brisbin and J. Krivanek, "Interactive terrain modeling using hydraulic erosion" (2008).
+/// Hydraulic erosion with virtual pipes, after X. Mei, P. Decaudin and B. Hu, "Fast hydraulic erosion simulation and
+/// visualization on GPU" (2007) and O. Stava, B. Benes, M. Brisbin and J. Krivanek, "Interactive terrain modeling using
+/// hydraulic erosion" (2008).
 ///
 /// In each iteration of dt seconds, with H the surface of the water, A the area of a pipe, l the cell and d the depth:
 ///
@@ -19,14 +20,15 @@ use rayon::prelude::*;
 /// C  = capacity sin(slope) |q|                    |q| the discharge a metre of width, m^2/s
 /// ```
 ///
-/// Where the sediment s is less than C the ground is cut by erosion dt (C - s), where it is more, deposition dt (s - C) is laid down. No cut goes
-/// deeper than half way to the lowest neighbour, nothing laid down higher than the neighbours' mean and a quarter of the water's depth: water
-/// digs no pits and builds no spikes. Sediment moves as a share of the water that flows over each side, not by tracing back along the velocity as in Mei: mass is
-/// kept. One signed flow a side stands for their two (J. F. O'Brien and J. K. Hodgins, 1995).
+/// Where the sediment s is less than C the ground is cut by erosion dt (C - s), where it is more, deposition dt (s - C)
+/// is laid down. No cut goes deeper than half way to the lowest neighbour, nothing laid down higher than the
+/// neighbours' mean and a quarter of the water's depth: water digs no pits and builds no spikes. Sediment moves as a
+/// share of the water that flows over each side, not by tracing back along the velocity as in Mei: mass is kept. One
+/// signed flow a side stands for their two (J. F. O'Brien and J. K. Hodgins, 1995).
 ///
-/// What is cut or laid down is shared over 3 x 3 cells, (1, 2, 1) each way: strokes wider than a cell, or grooves along the grid's axes would dig
-/// themselves in. All of an iteration looks three cells far: a side's flow at its cells' surfaces, the limit on it at that cell's other sides,
-/// and the sharing.
+/// What is cut or laid down is shared over 3 x 3 cells, (1, 2, 1) each way: strokes wider than a cell, or grooves along
+/// the grid's axes would dig themselves in. All of an iteration looks three cells far: a side's flow at its cells'
+/// surfaces, the limit on it at that cell's other sides, and the sharing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pipes {
     /// Rain, in metres of water a second.
@@ -55,7 +57,8 @@ pub const RADIUS: usize = 3;
 /// dt^2 g A / l^3 at most: waves are stable below 1/2.
 const COURANT: f64 = 0.25;
 
-/// Ground and water: planes bed, depth, sediment (all in metres), flow east and flow south (metres of a cell's water an iteration).
+/// Ground and water: planes bed, depth, sediment (all in metres), flow east and flow south (metres of a cell's water an
+/// iteration).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wet {
     /// The planes, with a row and a column around that stand for the walls.
@@ -106,7 +109,8 @@ impl Wet {
         }
     }
 
-    /// The water's speed, m/s, made by `pipes`: discharge over depth, 0 where it is shallower than a tenth of a millimetre.
+    /// The water's speed, m/s, made by `pipes`: discharge over depth, 0 where it is shallower than a tenth of a
+    /// millimetre.
     pub fn speed(&self, pipes: &Pipes) -> Grid {
         let mut out = Grid::filled(self.window, 0.0f32);
         let scale = (0.5 * self.window.cell / pipes.step(self.window.cell)) as f32;
@@ -139,8 +143,8 @@ impl Pipes {
         self.go(wet, iterations, 0, check)
     }
 
-    /// Goes on by `iterations` in the midst of more ground: the result is smaller by [`RADIUS`] cells an iteration on each side, which the walls
-    /// may have reached.
+    /// Goes on by `iterations` in the midst of more ground: the result is smaller by [`RADIUS`] cells an iteration on
+    /// each side, which the walls may have reached.
     ///
     /// # Errors
     /// What `check` says, which is asked now and then.
@@ -170,7 +174,8 @@ impl Pipes {
             pull: (dt * dt * self.gravity * self.pipe / (cell * cell)) as f32,
             kept: (1.0 - share(self.friction)) as f32,
             rain: (dt * self.rain) as f32,
-            // Discharge a metre of width from the sum of two sides' flows, and rise over run from the difference of two beds.
+            // Discharge a metre of width from the sum of two sides' flows, and rise over run from the difference of two
+            // beds.
             capacity: (self.capacity * 0.5 * cell / dt) as f32,
             level: (4.0 * cell * cell) as f32,
             erosion: share(self.erosion) as f32,
@@ -190,8 +195,8 @@ struct Stride {
     lost: usize,
 }
 
-/// `to` from `from`. Bands of rows, one a thread, go side by side, each with enough rows of its neighbours' to know what they do: the same bits however many there
-/// are. `spare` is memory that is kept from call to call.
+/// `to` from `from`. Bands of rows, one a thread, go side by side, each with enough rows of its neighbours' to know
+/// what they do: the same bits however many there are. `spare` is memory that is kept from call to call.
 fn advance(from: &Wet, to: &mut Wet, spare: &mut Vec<Planes<5>>, stride: Stride, constants: &Constants) {
     let (window, lost) = (from.window, stride.lost);
     to.window = window.shrunk(lost);
@@ -230,7 +235,8 @@ impl Body for Down<'_> {
     fn run<S: Simd>(self, simd: S) {
         let (width, rows) = (self.planes.width(), self.planes.height());
         let mut sweeps: Vec<Sweep> = (0..self.iterations).map(|_| Sweep::new(width)).collect();
-        // An iteration at a row has made the second one above it final; the next reads that row as the one below its own.
+        // An iteration at a row has made the second one above it final; the next reads that row as the one below its
+        // own.
         for step in 0..=rows + AHEAD * self.iterations {
             for (k, sweep) in sweeps.iter_mut().enumerate() {
                 if let Some(j) = step.checked_sub(AHEAD * k).filter(|j| *j <= rows) {

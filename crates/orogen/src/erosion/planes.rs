@@ -4,7 +4,8 @@ use crate::error::Result;
 use crate::grid::{Grid, Window};
 use rayon::prelude::*;
 
-/// N planes of one size. Rows of all planes lie next to each other: a pass that goes down the rows reads one stretch of memory.
+/// N planes of one size. Rows of all planes lie next to each other: a pass that goes down the rows reads one stretch of
+/// memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Planes<const N: usize> {
     width: usize,
@@ -94,7 +95,13 @@ impl<const N: usize> Planes<N> {
     /// Another size, the old values forgotten: memory is used again.
     pub fn resize(&mut self, width: usize, height: usize) {
         (self.width, self.height) = (width, height);
-        self.data.resize(width * height * N, 0.0);
+        let size = width * height * N;
+        if size > self.data.capacity() {
+            // Fresh memory is zero already, and first touched by the thread that works in it.
+            self.data = vec![0.0; size];
+        } else {
+            self.data.resize(size, 0.0);
+        }
     }
 }
 
@@ -110,8 +117,8 @@ pub trait Pass<const N: usize>: Sync {
     /// How far it looks.
     const RADIUS: usize;
 
-    /// Makes `to`, which is smaller than `from` by the radius on each side, from `from`. `scratch` is memory that is kept from call to
-    /// call.
+    /// Makes `to`, which is smaller than `from` by the radius on each side, from `from`. `scratch` is memory that is
+    /// kept from call to call.
     fn make(&self, from: &Planes<N>, to: &mut Planes<N>, scratch: &mut Vec<f32>);
 }
 
@@ -121,8 +128,9 @@ const AT_ONCE: usize = 8;
 /// Rows of a band: with two bands' buffers in a core's own cache.
 const BAND: usize = 64;
 
-/// The planes after `passes` passes, smaller by that many radii on each side. Bands of rows go side by side, each several passes on
-/// while it is in cache, what neighbours need of each other made twice: the same bits on any number of threads.
+/// The planes after `passes` passes, smaller by that many radii on each side. Bands of rows go side by side, each
+/// several passes on while it is in cache, what neighbours need of each other made twice: the same bits on any number
+/// of threads.
 ///
 /// # Errors
 /// What `check` says, which is asked now and then.

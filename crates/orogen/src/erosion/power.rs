@@ -1,7 +1,7 @@
 //! Powers of numbers above zero, many at a time.
 
-/// x to the power y within a few parts in a million, for x from 1e-37 to 1e37: nothing but sums, products and bits, so the same on every machine
-/// and quick over rows.
+/// x to the power y within a few parts in a million, for x from 1e-37 to 1e37: nothing but sums, products and bits, so
+/// the same on every machine and quick over rows.
 #[inline(always)]
 pub fn power(x: f32, y: f32) -> f32 {
     exp2(y * log2(x))

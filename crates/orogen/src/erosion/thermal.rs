@@ -1,15 +1,16 @@
 //! Slopes slide until they lie at the talus angle.
 
 use super::planes::{self, Pass, Planes};
+use super::rows::settle;
 use crate::error::Result;
 use crate::grid::Grid;
 use orogen_simd::{Body, Simd, dispatch};
 
-/// Thermal weathering after F. K. Musgrave, C. E. Kolb and R. S. Mace, "The synthesis and rendering of eroded fractal terrains"
-/// (1989): what is steeper than the talus angle moves down.
+/// Thermal weathering after F. K. Musgrave, C. E. Kolb and R. S. Mace, "The synthesis and rendering of eroded fractal
+/// terrains" (1989): what is steeper than the talus angle moves down.
 ///
-/// Theirs compares each cell with its neighbours in eight directions, and leaves octagonal cones. Here the material that crosses the side between two
-/// cells is, with g the slope there (both components) and T the slope that stands,
+/// Theirs compares each cell with its neighbours in eight directions, and leaves octagonal cones. Here the material
+/// that crosses the side between two cells is, with g the slope there (both components) and T the slope that stands,
 ///
 /// ```text
 /// q = fraction (1 - T / |g|) g_across    where |g| > T, else 0
@@ -24,7 +25,8 @@ pub struct Thermal {
     pub rate: f64,
 }
 
-/// The share of a difference in height that crosses a side at a rate of 1. From 1/4 on a chequerboard of heights would not fade.
+/// The share of a difference in height that crosses a side at a rate of 1. From 1/4 on a chequerboard of heights would
+/// not fade.
 const FASTEST: f64 = 0.2;
 
 impl Thermal {
@@ -115,17 +117,6 @@ impl Slide {
         // Level ground divides by 0; what is not above 0 moves nothing.
         let excess = if excess > 0.0 { excess } else { 0.0 };
         self.share * excess * across
-    }
-}
-
-/// Heights with what came in and what went out.
-#[inline(always)]
-fn settle(here: &[f32], [sides, above, below]: [&[f32]; 3], out: &mut [f32]) {
-    let n = out.len();
-    let [west, east] = [&sides[..n], &sides[1..=n]];
-    let (here, above, below) = (&here[..n], &above[..n], &below[..n]);
-    for i in 0..n {
-        out[i] = here[i] + ((west[i] - east[i]) + (above[i] - below[i]));
     }
 }
 
