@@ -27,7 +27,8 @@ fn measure(name: &str, world: &World) -> Result<Vec<Value>, String> {
     let spec = world.recipe().world;
     let coarsest = RATIOS.iter().copied().max().unwrap_or(1);
     let cells = |length: f64| (length / spec.cell).floor() as usize / coarsest * coarsest;
-    let [width, height] = spec.size.map(|size| size.map(cells)).ok_or(format!("the preset {name} has no bounds"))?;
+    // Of a world without bounds, as much as is drawn of it.
+    let [width, height] = spec.size.map_or([1024; 2], |size| size.map(cells));
     let make = |ratio: usize| {
         let window = Window::new(width / ratio + 1, height / ratio + 1, spec.cell * ratio as f64);
         world.window("height", &window).map_err(|e| e.to_string())

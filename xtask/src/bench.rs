@@ -2,6 +2,7 @@
 
 mod host;
 mod peers;
+mod realism;
 mod report;
 
 use std::path::PathBuf;
@@ -14,6 +15,7 @@ pub const ABOUT: &str = "measure beside peers and physical limits; print a table
 
 pub const HELP: &str = "
 Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
+       cargo xtask bench realism --score SCRIPT --dems DIR [--first SEED] [--case TEXT]
 
 Builds the benches at full optimisation, measures one area (or each in turn) and prints a table.
 
@@ -28,11 +30,20 @@ Builds the benches at full optimisation, measures one area (or each in turn) and
   --case TEXT  only the cases with this in their name
   --quick      few repetitions: to see that it runs, not to quote
 
+Area realism, only where it is named: windows of alpine and endless of 16 seeds beside real places; fails if a target is missed.
+
+  --score SCRIPT  the script that compares rasters (Python; OROGEN_REALISM names one that has numpy, scipy, rasterio and numba)
+  --dems DIR      the real places, GeoTIFFs of 30 to 90 m
+  --first SEED    the first of the seeds; otherwise the clock's
+
 How to read the table: docs/benchmarks.md.
 ";
 
 /// Every area, as the bench program names it.
 const AREAS: &[&str] = &["noise", "erosion", "generate", "world"];
+
+/// Needs what is not part of the project, so it is measured only where it is named.
+const REALISM: &str = "realism";
 
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Options {
@@ -40,6 +51,8 @@ struct Options {
     json: Option<PathBuf>,
     /// Arguments that the bench program understands.
     passed: Vec<String>,
+    /// What only area `realism` understands.
+    realism: realism::Options,
 }
 
 /// Measures.
@@ -53,6 +66,10 @@ pub fn run(args: &[String]) -> Result {
     shell::run(&mut shell::cargo("build --quiet --release --package orogen-cli"))?;
     let program = shell::target_dir().join("release").join(format!("orogen{}", std::env::consts::EXE_SUFFIX));
     for area in areas {
+        if area == REALISM {
+            realism::run(&options.realism, &program)?;
+            continue;
+        }
         let mut command = shell::cargo("run --quiet --profile bench --package orogen-bench --features peers --");
         if area == "erosion" {
             command.envs(peers::installed());
@@ -76,12 +93,28 @@ fn parse(args: &[String]) -> Result<Options> {
         let mut value = || args.next().cloned().ok_or_else(|| Failure::usage(format!("{arg} needs a value after it")));
         match arg.as_str() {
             "--json" => options.json = Some(value()?.into()),
-            "--case" => options.passed.extend([arg.clone(), value()?]),
+            "--case" => {
+                let text = value()?;
+                options.realism.case = Some(text.clone());
+                options.passed.extend([arg.clone(), text]);
+            }
+            "--score" => options.realism.score = Some(value()?.into()),
+            "--dems" => options.realism.dems = Some(value()?.into()),
+            "--first" => {
+                let seed = value()?;
+                let seed = seed.parse().map_err(|_| Failure::usage(format!("'{seed}' is no seed: a whole number")))?;
+                options.realism.first = Some(seed);
+            }
             "--quick" => options.passed.push(arg.clone()),
-            area if AREAS.contains(&area) && options.area.is_none() => options.area = Some(area.to_owned()),
+            area if (AREAS.contains(&area) || area == REALISM) && options.area.is_none() => {
+                options.area = Some(area.to_owned())
+            }
             flag if flag.starts_with('-') => return Err(Failure::usage(format!("there is no option '{flag}'"))),
             other => {
-                return Err(Failure::usage(format!("there is no area '{other}'; there are: {}", AREAS.join(", "))));
+                return Err(Failure::usage(format!(
+                    "there is no area '{other}'; there are: {}, {REALISM}",
+                    AREAS.join(", ")
+                )));
             }
         }
     }
@@ -102,9 +135,13 @@ mod tests {
         assert_eq!(options.area.as_deref(), Some("noise"));
         assert_eq!(options.json, Some("a.json".into()));
         assert_eq!(options.passed, ["--case", "perlin", "--quick"]);
+        let options = parsed("realism --score s.py --dems d --first 7 --case far").expect("well formed");
+        assert_eq!((options.area.as_deref(), options.realism.first), (Some("realism"), Some(7)));
+        assert_eq!((options.realism.score, options.realism.case), (Some("s.py".into()), Some("far".into())));
         for (line, expect) in [
             ("nois", "there is no area 'nois'; there are: noise, erosion, generate"),
             ("--json", "--json needs a value"),
+            ("realism --first x", "'x' is no seed"),
             ("noise --fast", "no option '--fast'"),
         ] {
             let failure = parsed(line).expect_err(expect);

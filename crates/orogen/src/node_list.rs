@@ -10,6 +10,7 @@ nodes! {
         dem::Dem,
         edge::Edge,
         fbm::Fbm,
+        gullies::Gullies,
         hetero::Hetero,
         hybrid::Hybrid,
         image::Image,

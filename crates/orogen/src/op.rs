@@ -71,6 +71,11 @@ pub trait Field: Send + Sync {
         None
     }
 
+    /// Whether the field also reads a source around the position asked for, to know its slope.
+    fn slopes(&self) -> Option<Slopes> {
+        None
+    }
+
     /// Whether the field only makes sense in a world with bounds.
     fn needs_bounds(&self) -> bool {
         false
@@ -99,6 +104,28 @@ pub trait Field: Send + Sync {
 
 /// What is made of nothing but the position takes this share of its cost where rows share what they have in common.
 const IN_ROWS: f64 = 0.15;
+
+/// A source that a field also reads around its position. The field is given, behind its inputs, that source `step` metres to the
+/// east, the west, the south and the north. The engine makes the four places and evaluates the source there, so a field's slope
+/// is known at any point, and nothing is made of neighbouring samples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slopes {
+    /// Index of the input.
+    pub source: usize,
+    /// Metres from the position to each of the four.
+    pub step: f64,
+}
+
+impl Slopes {
+    /// The maps to the four places: east, west, south, north.
+    pub fn maps(&self) -> [Affine; 4] {
+        [[self.step, 0.0], [-self.step, 0.0], [0.0, self.step], [0.0, -self.step]].map(|offset| Affine {
+            turn: [1.0, 0.0],
+            scale: 1.0,
+            offset,
+        })
+    }
+}
 
 /// How a field moves the points at which its source is read.
 #[derive(Debug, Clone, Copy, PartialEq)]

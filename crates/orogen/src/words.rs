@@ -53,7 +53,7 @@ pub fn suggestion<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str> 
 
 /// Words in a sentence: "`a`, `b` and `c`"; long lists are cut with their count.
 pub fn list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
-    const SHOWN: usize = 40;
+    const SHOWN: usize = 100;
     let words: Vec<String> = words.into_iter().map(|word| format!("`{word}`")).collect();
     match words.as_slice() {
         [] => "nothing".to_string(),

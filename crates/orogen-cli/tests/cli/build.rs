@@ -17,7 +17,7 @@ const BUILDS: [(&str, &[&str]); 6] = [
     ("a.zarr", &["small.toml", "--tile", "100", "--layers", "height,noise", "--cell", "0.9"]),
     ("png", &["small.toml", "--tiles", "png", "--tile", "65", "--cell", "0.9"]),
     ("r16", &["hills", "--tiles", "r16", "--tile", "129", "--cell", "20"]),
-    ("r32", &["alpine", "--tiles", "r32", "--tile", "129", "--cell", "60"]),
+    ("r32", &["archipelago", "--tiles", "r32", "--tile", "129", "--cell", "40"]),
     ("map", &["hills", "--tiles", "terrarium"]),
 ];
 

@@ -11,6 +11,7 @@ pub mod curve;
 pub mod dem;
 pub mod edge;
 pub mod fbm;
+pub mod gullies;
 pub mod hetero;
 pub mod hybrid;
 pub mod image;

@@ -8,7 +8,7 @@ use super::program::{Instruction, Place, Program, Register};
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Window;
 use crate::layer::LayerKind;
-use crate::op::{Moves, Op};
+use crate::op::{Moves, Op, Slopes};
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, Link, Target};
 use std::collections::{HashMap, HashSet};
@@ -38,6 +38,7 @@ pub struct Draft {
 enum Work {
     Visit(Target, Place),
     Enter(Target, Place),
+    Surround(Target, Place),
     Emit(Target, Place),
 }
 
@@ -55,6 +56,8 @@ pub struct Compiler<'a> {
     /// The samples around each place, on the lattice that filters are made on.
     windows: Vec<Window>,
     entered: HashMap<(usize, Place), Place>,
+    /// The first of the four places around a place, by the bits of how far they are from it.
+    surrounded: HashMap<(u64, Place), Place>,
     demands: Vec<Demand>,
     evaluated: Vec<usize>,
 }
@@ -80,6 +83,7 @@ impl<'a> Compiler<'a> {
             constants: HashMap::new(),
             windows: vec![window],
             entered: HashMap::new(),
+            surrounded: HashMap::new(),
             demands: Vec::new(),
             evaluated: Vec::new(),
         };
@@ -101,13 +105,14 @@ impl<'a> Compiler<'a> {
             if self.instructions.len() > MOST_INSTRUCTIONS {
                 let sentence = format!(
                     "this recipe would take more than {MOST_INSTRUCTIONS} evaluations a sample: each warp makes its whole source \
-                     anew at its own place, so warps of warps multiply; bake some of them"
+                     anew at its own place, and gullies at five, so warps of warps multiply; bake some of them"
                 );
                 return Err(Error::new(ErrorKind::Recipe, sentence));
             }
             match work {
                 Work::Visit(target, place) => self.visit(target, place, &mut stack),
                 Work::Enter(target, place) => self.enter(target, place, &mut stack),
+                Work::Surround(target, place) => self.surround(target, place, &mut stack),
                 Work::Emit(target, place) => self.emit(target, place),
             }
         }
@@ -137,7 +142,12 @@ impl<'a> Compiler<'a> {
                     here.extend([links[east], links[south]]);
                 }
                 Some(Moves::Mapped { .. }) => stack.push(Work::Enter(target, place)),
-                None => here.extend(links),
+                None => {
+                    if field.slopes().is_some() {
+                        stack.push(Work::Surround(target, place));
+                    }
+                    here.extend(links);
+                }
             },
             Op::Solver(solver) if solver.reads_inputs() => here.extend(links),
             Op::Solver(_) | Op::Filter(_) => {}
@@ -192,6 +202,34 @@ impl<'a> Compiler<'a> {
         }
     }
 
+    /// Makes the four places around one that a field with slopes reads its source at.
+    fn surround(&mut self, target: Target, place: Place, stack: &mut Vec<Work>) {
+        let Some((slopes, around)) = self.slopes(target.node, place) else { return };
+        if let Link::Node(source) = self.graph.links[target.node][slopes.source] {
+            stack.extend(around.map(|to| Work::Visit(source, to)));
+        }
+    }
+
+    /// What a field with slopes reads around a place, and the four places there.
+    fn slopes(&mut self, node: usize, place: Place) -> Option<(Slopes, [Place; 4])> {
+        let Op::Field(field) = self.recipe.nodes()[node].node.op() else { return None };
+        let slopes = field.slopes()?;
+        let key = (slopes.step.to_bits(), place);
+        let first = match self.surrounded.get(&key) {
+            Some(first) => *first,
+            None => {
+                let first = self.windows.len();
+                for map in slopes.maps() {
+                    self.instructions.push(Instruction::Map { from: place, map, to: self.windows.len() });
+                    self.windows.push(mapped(&self.windows[place], &map));
+                }
+                self.surrounded.insert(key, first);
+                first
+            }
+        };
+        Some((slopes, [0, 1, 2, 3].map(|k| first + k)))
+    }
+
     fn emit(&mut self, target: Target, place: Place) {
         if self.made.contains_key(&(target, place)) {
             return;
@@ -212,7 +250,10 @@ impl<'a> Compiler<'a> {
                 }
                 None => {
                     self.note(node, place);
-                    let inputs = self.values(&links, place);
+                    let mut inputs = self.values(&links, place);
+                    if let Some((slopes, around)) = self.slopes(node, place) {
+                        inputs.extend(around.map(|to| Some(self.value(&links[slopes.source], to))));
+                    }
                     let out = self.fresh();
                     self.instructions.push(Instruction::Field { node, place, inputs, out });
                     out

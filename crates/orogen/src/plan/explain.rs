@@ -25,7 +25,10 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
             Op::Field(field) => match field.moves() {
                 Some(crate::op::Moves::Displaced { reach, .. }) => format!("within {reach} m"),
                 Some(crate::op::Moves::Mapped { .. }) => "elsewhere".to_string(),
-                None => "its place".to_string(),
+                None => match field.slopes() {
+                    Some(slopes) => format!("within {} m", slopes.step),
+                    None => "its place".to_string(),
+                },
             },
             Op::Filter(filter) => format!("halo of {} samples", filter.halo(cell)),
             Op::Solver(solver) => format!("world at {} m", solver.cell(recipe.world.cell)),

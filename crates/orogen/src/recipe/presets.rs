@@ -28,7 +28,20 @@ macro_rules! presets {
     };
 }
 
-static PRESETS: &[Preset] = presets!["alpine", "archipelago", "classic", "hills", "island", "mesa",];
+static PRESETS: &[Preset] = presets![
+    "alpine",
+    "archipelago",
+    "badlands",
+    "canyon",
+    "classic",
+    "endless",
+    "fjords",
+    "hills",
+    "himalaya",
+    "island",
+    "mesa",
+    "rolling",
+];
 
 /// The preset that is made if nobody asks for another.
 pub const DEFAULT: &str = "alpine";

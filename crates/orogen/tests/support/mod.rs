@@ -62,10 +62,11 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("dem", "fade") => Value::Number(20.0 * world.cell),
             ("transform", "angle") => Value::Number(33.0),
             ("transform", "offset") => pair(17.3 * world.cell, -5.1 * world.cell),
-            // A number of folds, not a length.
-            ("ping-pong", "strength") => continue,
+            // A number of folds or a ratio, not a length.
+            ("ping-pong" | "gullies", "strength") => continue,
             // An angle, not a length.
             ("select-aspect", "width") => continue,
+            ("gullies", "step") => Value::Number(0.7 * world.cell),
             (_, "wavelength" | "width" | "length" | "strength") => Value::Number(11.3 * world.cell),
             _ => continue,
         };

@@ -1,0 +1,254 @@
+//! Gullies down the slopes of any field.
+
+use super::basis::fill;
+use crate::op::{Field, Setting, Slopes, Slots};
+use orogen_noise::{Phacelle, Points};
+
+op! {
+    /// The source with gullies running down its slopes: the erosion filter, as a field.
+    ///
+    /// Phacelle noise draws stripes down the slope; the flank of each turns the stripes of the next octave, so that small gullies
+    /// branch off large ones. With g the slope, m the mask and t the fade, starting at (slope of the source, softened |g| `onset`,
+    /// `fade`), an octave of wavelength w and strength s adds s w mix(t, c `weight`, m), c and n being the cosine and sine of the
+    /// stripes along g; then g -= sign(n) 2 pi s `weight` side, t = what was added, m = (1 - (1 - m)^`detail`) * softened |n| `sharpness`. It
+    /// knows nothing of other places, so its gullies have hollows that no water leaves, and valleys do not gather their
+    /// rivers: some steps of `stream-power` mend both. The slope is that between positions `step` metres to each side, and the source
+    /// is made at these, too: that is five times, each as fast as it is by itself. What the source is, is all the same: a field, a
+    /// filter, a solver. R. Skovbo Johansen, "Phacelle noise" (2025).
+    pub struct Gullies = "gullies", field, revision 1;
+    inputs {
+        /// The heights, in metres.
+        source: required,
+        /// -1 where gullies end in a valley's floor, 1 where they end in a crest, 0 in between (as everywhere, if left out): what shows where
+        /// it is too flat for gullies.
+        fade: optional,
+    }
+    params {
+        /// Seed of its own, hashed with the world's: two nodes of one seed are the same noise.
+        seed: u64 = 0;
+        /// Distance between the largest gullies.
+        wavelength: f64 = 1500.0, unit "m", range 1e-3 to 1e9;
+        /// How many octaves, each finer than the one before.
+        octaves: u32 = 5, range 1.0 to 16.0;
+        /// Frequency ratio from one octave to the next.
+        lacunarity: f64 = 2.0, range 1.0 to 16.0;
+        /// Ratio of the depth from one octave to the next.
+        gain: f64 = 0.5, range 0.0 to 1.0;
+        /// Depth of the largest gullies, in their wavelengths.
+        strength: f64 = 0.22, range 0.0 to 10.0;
+        /// How much of the strength is gullies; the rest fades crests up and valleys down. More also turns finer gullies more.
+        weight: f64 = 0.5, range 0.0 to 1.0;
+        /// How far finer gullies reach onto the crests and floors of larger ones: 1 only their flanks, 3 nearly everywhere.
+        detail: f64 = 1.5, range 0.1 to 10.0;
+        /// How soon gullies begin as ground becomes steeper: they have their whole depth where the slope is 1.5 / `onset`.
+        onset: f64 = 3.0, range 0.01 to 1000.0;
+        /// How soon finer gullies begin on the flanks of larger ones: 1.25 leaves crests and floors round, more makes them sharp.
+        sharpness: f64 = 1.25, range 0.01 to 1000.0;
+        /// The slope that the finer gullies take the ground to have; 0 takes the true one. Finer gullies branch off all the more the
+        /// gentler it is.
+        assumed_slope: f64 = 0.7, range 0.0 to 100.0;
+        /// Side of the noise's cells in wavelengths: how far a gully goes before it may end.
+        cell: f64 = 0.7, range 0.1 to 10.0;
+        /// How far stripes that cancel each other are made deeper, 0 (not at all) to 1 (to full depth).
+        normalisation: f64 = 0.5, range 0.0 to 1.0;
+        /// How far to each side the source is read for its slope.
+        step: f64 = 30.0, unit "m", range 1e-3 to 1e6;
+    }
+}
+
+impl Field for Gullies {
+    fn eval(&self, at: &Points, inputs: &Slots, setting: &Setting, out: &mut [f32]) {
+        out.copy_from_slice(inputs.required(0));
+        let around = [2, 3, 4, 5].map(|i| inputs.required(i));
+        let mut start = 0;
+        let mut part = |points: &Points| {
+            let range = start..start + points.len();
+            start = range.end;
+            let [east, west, south, north] = around.map(|source| &source[range.clone()]);
+            let fade = inputs.get(1).map(|fade| &fade[range.clone()]);
+            self.cut(points, [east, west, south, north], fade, setting, &mut out[range]);
+        };
+        match *at {
+            Points::Lattice { xs, ys } => {
+                for y in ys {
+                    for xs in xs.chunks(CHUNK) {
+                        part(&Points::Lattice { xs, ys: std::slice::from_ref(y) });
+                    }
+                }
+            }
+            Points::Displaced { xs, ys, dx, dy } if !xs.is_empty() => {
+                for ((y, dx), dy) in ys.iter().zip(dx.chunks(xs.len())).zip(dy.chunks(xs.len())) {
+                    for ((xs, dx), dy) in xs.chunks(CHUNK).zip(dx.chunks(CHUNK)).zip(dy.chunks(CHUNK)) {
+                        part(&Points::Displaced { xs, ys: std::slice::from_ref(y), dx, dy });
+                    }
+                }
+            }
+            Points::Displaced { .. } => {}
+            Points::Scattered { x, y } => {
+                for (x, y) in x.chunks(CHUNK).zip(y.chunks(CHUNK)) {
+                    part(&Points::Scattered { x, y });
+                }
+            }
+        }
+    }
+
+    fn slopes(&self) -> Option<Slopes> {
+        Some(Slopes { source: 0, step: self.step })
+    }
+
+    fn cost(&self) -> f64 {
+        35.0 * f64::from(self.octaves)
+    }
+}
+
+/// Samples worked on together: few enough to stay on the stack.
+const CHUNK: usize = 256;
+
+impl Gullies {
+    /// Adds the gullies at up to [`CHUNK`] points to `heights`.
+    fn cut(
+        &self,
+        points: &Points,
+        [east, west, south, north]: [&[f32]; 4],
+        fade: Option<&[f32]>,
+        setting: &Setting,
+        heights: &mut [f32],
+    ) {
+        let count = heights.len();
+        let mut slope = [[0.0f32; CHUNK]; 2];
+        let (mut mask, mut target) = ([0.0f32; CHUNK], [0.0f32; CHUNK]);
+        let per_metre = (0.5 / self.step) as f32;
+        let (onset, assumed) = (self.onset as f32, self.assumed_slope as f32);
+        for k in 0..count {
+            let (x, y) = ((east[k] - west[k]) * per_metre, (south[k] - north[k]) * per_metre);
+            let steepness = (x * x + y * y).sqrt();
+            mask[k] = soft(steepness * onset);
+            let as_if = if assumed > 0.0 && steepness > 0.0 { assumed / steepness } else { 1.0 };
+            (slope[0][k], slope[1][k]) = (x * as_if, y * as_if);
+            target[k] = fade.map_or(0.0, |fade| fade[k].clamp(-1.0, 1.0));
+        }
+        let (weight, detail, sharpness) = (self.weight as f32, self.detail as f32, self.sharpness as f32);
+        let seed = setting.seed_of(self.seed);
+        let (mut wavelength, mut depth) = (self.wavelength, self.strength * self.wavelength);
+        let (mut cosine, mut sine) = ([0.0f32; CHUNK], [0.0f32; CHUNK]);
+        for octave in 0..self.octaves {
+            let noise = Phacelle {
+                seed: seed.wrapping_add(u64::from(octave)),
+                wavelength,
+                cell: self.cell,
+                normalisation: self.normalisation,
+                ..Default::default()
+            };
+            let [x, y] = &slope;
+            fill(&mut cosine[..count], |cosine| {
+                noise.fill_along(points, &x[..count], &y[..count], cosine, &mut sine[..count])
+            });
+            let (amplitude, turn) = (depth as f32, (std::f64::consts::TAU * depth / wavelength) as f32 * weight);
+            let last = octave + 1 == self.octaves;
+            for k in 0..count {
+                target[k] += (cosine[k] * weight - target[k]) * mask[k];
+                heights[k] += target[k] * amplitude;
+                if last {
+                    continue;
+                }
+                // The gradient of a stripe's cosine is minus its sine, across the stripe.
+                let (x, y) = (slope[0][k], slope[1][k]);
+                let length = (x * x + y * y).sqrt();
+                if length > 0.0 && sine[k] != 0.0 {
+                    let across = -turn.copysign(sine[k]) / length;
+                    (slope[0][k], slope[1][k]) = (x - y * across, y + x * across);
+                }
+                let left = (1.0 - mask[k]).max(0.0);
+                mask[k] = (1.0 - libm::powf(left, detail)) * soft(sine[k].abs() * sharpness);
+            }
+            wavelength /= self.lacunarity;
+            depth *= self.gain;
+        }
+    }
+}
+
+/// From 0 at 0, at first as a square, to 1 at 1.5 and beyond, where it comes in level.
+fn soft(t: f32) -> f32 {
+    let started = if t < 1.0 { 0.5 * t * t } else { t - 0.5 };
+    let left = (1.0 - started).max(0.0);
+    1.0 - left * left
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SETTING: Setting = Setting { seed: 1, size: None, cell: 1.0, sea_level: 0.0 };
+
+    /// Gullies in a plane that rises by `rise` a metre towards the east, at points 10 m apart, `side` a side; the plane taken away.
+    fn in_a_plane(gullies: &Gullies, rise: f32, side: usize, fade: Option<f32>) -> Vec<f32> {
+        let axis: Vec<f64> = (0..side).map(|i| i as f64 * 10.0).collect();
+        let plane = |moved: f64| -> Vec<f32> {
+            (0..side * side).map(|k| ((k % side) as f32 * 10.0 + moved as f32) * rise).collect()
+        };
+        let (here, east, west) = (plane(0.0), plane(gullies.step), plane(-gullies.step));
+        let fade = fade.map(|fade| vec![fade; side * side]);
+        let slots =
+            [Some(&here[..]), fade.as_deref(), Some(&east[..]), Some(&west[..]), Some(&here[..]), Some(&here[..])];
+        let mut out = vec![0.0; side * side];
+        gullies.eval(&Points::Lattice { xs: &axis, ys: &axis }, &Slots::new(&slots), &SETTING, &mut out);
+        out.iter().zip(&here).map(|(made, plane)| made - plane).collect()
+    }
+
+    fn roughness(made: &[f32], side: usize, stride: usize) -> f32 {
+        (0..made.len() - stride)
+            .filter(|k| k % side + 1 < side)
+            .map(|k| made[k + stride] - made[k])
+            .map(|d| d * d)
+            .sum()
+    }
+
+    #[test]
+    fn they_run_down_the_slope() {
+        let gullies = Gullies { wavelength: 120.0, octaves: 1, ..Default::default() };
+        let made = in_a_plane(&gullies, 0.6, 100, None);
+        let (along, across) = (roughness(&made, 100, 1), roughness(&made, 100, 100));
+        assert!(across > 5.0 * along, "{across} across the slope, {along} along it");
+    }
+
+    #[test]
+    fn their_depth_is_that_asked_for() {
+        let gullies = Gullies { wavelength: 120.0, octaves: 1, strength: 0.2, weight: 0.5, ..Default::default() };
+        let made = in_a_plane(&gullies, 2.0, 100, None);
+        let highest = made.iter().copied().fold(0.0f32, f32::max);
+        let lowest = made.iter().copied().fold(0.0f32, f32::min);
+        assert!((11.9..=12.01).contains(&highest) && (-12.01..=-11.9).contains(&lowest), "{lowest} to {highest}");
+        let more = in_a_plane(&Gullies { octaves: 5, ..gullies }, 2.0, 100, None);
+        assert!(more.iter().all(|height| height.abs() <= 12.0 * 1.9375 + 0.01));
+    }
+
+    #[test]
+    fn flat_ground_has_none_but_what_it_fades_to() {
+        let gullies = Gullies { wavelength: 100.0, octaves: 2, ..Default::default() };
+        assert!(in_a_plane(&gullies, 0.0, 20, None).iter().all(|height| *height == 0.0));
+        for (fade, expect) in [(-1.0, -33.0), (0.5, 16.5), (7.0, 33.0)] {
+            let made = in_a_plane(&gullies, 0.0, 20, Some(fade));
+            assert!(made.iter().all(|height| (height - expect).abs() < 1e-3), "{fade} gives {}", made[0]);
+        }
+    }
+
+    #[test]
+    fn every_way_of_asking_gives_the_same() {
+        let gullies = Gullies { wavelength: 90.0, ..Default::default() };
+        let (xs, ys) = ([0.0, 35.0, 71.5], [3.0, -900.0]);
+        let heights =
+            [[1.0, 2.0, 5.0, -3.0, 8.0, 2.5], [9.0, 3.0, 1.0, 4.0, 4.0, -8.0], [0.0, 9.0, 1.0, 5.0, 2.0, 6.0]];
+        let slots = [&heights[0], &heights[1], &heights[2], &heights[0], &heights[2]].map(|row| Some(&row[..]));
+        let slots = [slots[0], None, slots[1], slots[2], slots[3], slots[4]];
+        let made = |points: &Points| {
+            let mut out = [0.0; 6];
+            gullies.eval(points, &Slots::new(&slots), &SETTING, &mut out);
+            out
+        };
+        let lattice = made(&Points::Lattice { xs: &xs, ys: &ys });
+        let none = [0.0; 6];
+        assert_eq!(lattice, made(&Points::Displaced { xs: &xs, ys: &ys, dx: &none, dy: &none }));
+        let (x, y): (Vec<f64>, Vec<f64>) = ys.iter().flat_map(|y| xs.map(|x| (x, *y))).unzip();
+        assert_eq!(lattice, made(&Points::Scattered { x: &x, y: &y }));
+    }
+}

@@ -1,0 +1,262 @@
+//! `cargo xtask bench realism`: how close presets come to real terrain, by a script and real places that are not part of the project.
+
+use std::path::{Path, PathBuf};
+
+use super::host;
+use crate::failure::{Failure, Result, on_file};
+use crate::shell;
+use crate::table;
+
+/// What is measured: where, and what is expected of it.
+struct Case {
+    preset: &'static str,
+    /// What the table calls it.
+    name: &'static str,
+    /// The window's first sample, east and south, for worlds without bounds.
+    at: [i64; 2],
+    targets: Targets,
+}
+
+/// The most that each figure may be.
+struct Targets {
+    median: f64,
+    p90: f64,
+    energy: f64,
+    outliers: f64,
+    bias: f64,
+    worst_bias: f64,
+    /// The smallest share of windows that are judged.
+    judged: f64,
+}
+
+/// Whatever it comes to.
+const ANY: f64 = f64::INFINITY;
+
+const ENDLESS: Targets =
+    Targets { median: 1.25, p90: ANY, energy: 1.5, outliers: ANY, bias: ANY, worst_bias: ANY, judged: 0.0 };
+
+const CASES: &[Case] = &[
+    Case {
+        preset: "alpine",
+        name: "alpine",
+        at: [0, 0],
+        targets: Targets {
+            median: 1.0,
+            p90: 1.3,
+            energy: 0.5,
+            outliers: 0.0,
+            bias: 0.010,
+            worst_bias: 0.033,
+            judged: 0.9,
+        },
+    },
+    Case { preset: "endless", name: "endless", at: [0, 0], targets: ENDLESS },
+    Case { preset: "endless", name: "endless, 10 000 km out", at: [166_666_667, -166_666_667], targets: ENDLESS },
+];
+
+/// Samples a side, and metres from one to the next: what the script was made for.
+const SIDE: u32 = 1024;
+const CELL: u32 = 60;
+
+/// What area `realism` was asked.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    pub score: Option<PathBuf>,
+    pub dems: Option<PathBuf>,
+    /// The first seed of the sixteen; taken from the clock if nobody says, so that they are fresh.
+    pub first: Option<u64>,
+    /// Only cases with this in their name.
+    pub case: Option<String>,
+}
+
+const SEEDS: u64 = 16;
+
+/// What a script said.
+#[derive(Debug, PartialEq)]
+struct Score {
+    judged: f64,
+    dropped: f64,
+    median: f64,
+    p90: f64,
+    energy: f64,
+    outliers: f64,
+    bias: f64,
+    worst_bias: f64,
+}
+
+/// Measures, prints a table, and fails if a figure misses its target.
+pub fn run(options: &Options, program: &Path) -> Result {
+    let (Some(score), Some(dems)) = (&options.score, &options.dems) else {
+        return Err(Failure::usage("realism needs --score SCRIPT and --dems DIR: neither is part of the project"));
+    };
+    let score = std::path::absolute(score).map_err(|e| on_file("find", score, &e))?;
+    let python = python()?;
+    let folder = shell::target_dir().join("bench").join("realism-made");
+    shell::empty_dir(&folder)?;
+    let real = folder.join("real.json");
+    let mut measure = shell::program(&python);
+    shell::run(measure.arg(&score).arg("--features").arg(&real).args(rasters(dems)?))?;
+    let first = options.first.unwrap_or_else(clock);
+    let mut rows = Vec::new();
+    let mut missed = Vec::new();
+    for case in CASES.iter().filter(|case| options.case.as_ref().is_none_or(|text| case.name.contains(text))) {
+        let mut files = Vec::new();
+        for seed in first..first + SEEDS {
+            let file = folder.join(format!("{}-{seed}.tif", case.preset));
+            make(program, case, seed, &file)?;
+            files.push(file);
+        }
+        let said = shell::capture(shell::program(&python).arg(&score).arg("--real").arg(&real).args(&files))?;
+        let found = read(&said).ok_or_else(|| Failure::new(format!("the script's answer has no score:\n{said}")))?;
+        rows.push(cells(case.name, &found));
+        missed.extend(misses(case, &found));
+        for file in files {
+            std::fs::remove_file(&file).map_err(|e| on_file("delete", &file, &e))?;
+        }
+    }
+    println!("{}, {}", host::date(), host::processor());
+    println!("seeds {first} to {}, {SIDE} x {SIDE} samples at {CELL} m\n", first + SEEDS - 1);
+    println!("{}", table::render(&HEAD, &rows));
+    if missed.is_empty() { Ok(()) } else { Err(Failure::new(missed.join("\n"))) }
+}
+
+const HEAD: [&str; 8] = ["preset", "judged", "median", "p90", "energy", "outliers", "grid bias", "its worst"];
+
+fn cells(name: &str, score: &Score) -> Vec<String> {
+    vec![
+        name.to_owned(),
+        format!("{} of {}", score.judged, score.judged + score.dropped),
+        format!("{:.2}", score.median),
+        format!("{:.2}", score.p90),
+        format!("{:.2}", score.energy),
+        format!("{}", score.outliers),
+        format!("{:.3}", score.bias),
+        format!("{:.3}", score.worst_bias),
+    ]
+}
+
+/// A sentence for each target missed.
+fn misses(case: &Case, score: &Score) -> Vec<String> {
+    let targets = &case.targets;
+    let most = [
+        ("median score", score.median, targets.median),
+        ("p90", score.p90, targets.p90),
+        ("energy", score.energy, targets.energy),
+        ("outliers", score.outliers, targets.outliers),
+        ("grid bias", score.bias, targets.bias),
+        ("worst grid bias", score.worst_bias, targets.worst_bias),
+    ];
+    let over = most.into_iter().filter(|(_, found, most)| found.is_nan() || found > most);
+    let mut missed: Vec<String> =
+        over.map(|(what, found, most)| format!("{}: {what} {found}, more than {most}", case.name)).collect();
+    let share = score.judged / (score.judged + score.dropped).max(1.0);
+    if share < targets.judged {
+        missed.push(format!("{}: {:.0} % judged, less than {:.0} %", case.name, share * 100.0, targets.judged * 100.0));
+    }
+    missed
+}
+
+fn make(program: &Path, case: &Case, seed: u64, file: &Path) -> Result {
+    let [x, y] = case.at;
+    let mut command = shell::program(program);
+    command.args(["export", case.preset, "--quiet", "--cell", &CELL.to_string(), "--seed", &seed.to_string()]);
+    command.arg("--window").arg(format!("{x},{y},{SIDE},{SIDE}"));
+    shell::run(command.arg("-o").arg(file))
+}
+
+/// The real places, in the order of their names.
+fn rasters(dems: &Path) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(dems).map_err(|e| on_file("read", dems, &e))?;
+    let mut files = Vec::new();
+    for entry in entries {
+        let path = entry.map_err(|e| on_file("read", dems, &e))?.path();
+        if path.extension().is_some_and(|extension| extension == "tif") {
+            files.push(std::path::absolute(&path).map_err(|e| on_file("find", &path, &e))?);
+        }
+    }
+    files.sort();
+    match files.is_empty() {
+        true => Err(Failure::new(format!("there is no .tif in {}", dems.display()))),
+        false => Ok(files),
+    }
+}
+
+/// A Python that has what the script needs: `OROGEN_REALISM`, or one in the target folder.
+fn python() -> Result<PathBuf> {
+    if let Some(python) = std::env::var_os("OROGEN_REALISM") {
+        return Ok(python.into());
+    }
+    let venv = shell::target_dir().join("bench").join("realism");
+    let python = venv.join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" });
+    let imports = || shell::succeeds(shell::program(&python).args(["-c", "import scipy, rasterio, numba"]));
+    if python.is_file() && imports() {
+        return Ok(python);
+    }
+    eprintln!("installing scipy, rasterio and numba ...");
+    shell::run(shell::program("python3").args(["-m", "venv", "--clear"]).arg(&venv))?;
+    let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+    shell::run(shell::program(&python).args(install).args(["numpy", "scipy", "rasterio", "numba"]))?;
+    Ok(python)
+}
+
+fn clock() -> u64 {
+    std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(1, |time| time.as_secs())
+}
+
+/// Reads the script's lines: a name, then numbers among words.
+fn read(said: &str) -> Option<Score> {
+    let numbers = |name: &str| -> Option<Vec<f64>> {
+        let line = said.lines().find_map(|line| line.strip_prefix(name))?;
+        Some(line.split_whitespace().filter_map(|word| word.parse().ok()).collect())
+    };
+    let of = |name: &str, i: usize| numbers(name)?.get(i).copied();
+    Some(Score {
+        judged: of("windows", 0)?,
+        dropped: of("windows", 1)?,
+        median: of("score", 0)?,
+        p90: of("score", 1)?,
+        energy: of("energy", 0)?,
+        outliers: of("outliers", 0)?,
+        bias: of("grid bias", 0)?,
+        worst_bias: of("grid bias", 1)?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SAID: &str = "\
+windows    250  too flat 6
+score      median 0.97  p90 1.21   (real 1.00, 1.38)
+energy     0.41 x a real region
+outliers   1  fill_asym -2.3
+grid bias  median 0.006  max 0.035   (real 0.006, 0.014)
+";
+
+    #[test]
+    fn the_answer_is_read() {
+        let score = read(SAID).expect("well formed");
+        let expect = Score {
+            judged: 250.0,
+            dropped: 6.0,
+            median: 0.97,
+            p90: 1.21,
+            energy: 0.41,
+            outliers: 1.0,
+            bias: 0.006,
+            worst_bias: 0.035,
+        };
+        assert_eq!(score, expect);
+        assert_eq!(read("windows 3"), None);
+    }
+
+    #[test]
+    fn what_misses_is_named() {
+        let mut score = read(SAID).expect("well formed");
+        let missed = misses(&CASES[0], &score);
+        assert_eq!(missed, ["alpine: outliers 1, more than 0", "alpine: worst grid bias 0.035, more than 0.033"]);
+        (score.outliers, score.worst_bias, score.judged, score.dropped) = (0.0, 0.01, 100.0, 50.0);
+        assert_eq!(misses(&CASES[0], &score), ["alpine: 67 % judged, less than 90 %"]);
+    }
+}
