@@ -41,6 +41,7 @@ pub mod filter;
 pub mod format;
 pub mod grid;
 pub mod hydrology;
+mod large;
 pub mod layer;
 pub mod map;
 pub mod node;

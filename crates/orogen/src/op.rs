@@ -262,6 +262,9 @@ pub trait Sources {
     /// A raster of zeros over [`Sources::padded`], to solve in or to return: in memory or on disk, as the budget says.
     fn raster(&self) -> Result<Raster>;
 
+    /// Whether rasters are on disk, because memory is short.
+    fn on_disk(&self) -> bool;
+
     /// A grid over [`Sources::padded`] as a raster to return: it may leave memory for the disk.
     fn keep(&self, grid: Grid) -> Result<Raster>;
 }
@@ -296,6 +299,12 @@ pub trait Solver: Declared + Send + Sync {
     fn scratch(&self, padded: &Window) -> u64 {
         let _ = padded;
         0
+    }
+
+    /// The same when its rasters are on disk, for a solver that then works another way: tile by tile, its result the same to the
+    /// bit. It asks [`Sources::on_disk`] which way to take.
+    fn scratch_on_disk(&self, padded: &Window) -> u64 {
+        self.scratch(padded)
     }
 
     /// Whether [`Solver::read`] is given the inputs at the points it is asked for.

@@ -48,6 +48,10 @@ impl Sources for Tiles<'_> {
         }
     }
 
+    fn on_disk(&self) -> bool {
+        self.order.on_disk
+    }
+
     fn keep(&self, grid: Grid) -> Result<Raster> {
         let raster = Raster::in_memory(grid);
         if self.order.on_disk { raster.copied_to_disk(self.scratch) } else { Ok(raster) }

@@ -47,7 +47,7 @@ pub struct WayOut {
 /// Finds the basins of `receivers`, in which every cell must lead to an outlet or to a single pit (see
 /// [`flats::resolve`](super::flats::resolve)), and floods them.
 ///
-/// Among equally low passes the first found in row order is taken. Costs O(cells + basins log basins).
+/// Among equally low passes the first in row order is taken. Costs O(cells + basins log basins).
 pub fn basins(heights: &Grid, outlets: &Outlets, receivers: &Receivers) -> Basins {
     let (labels, pits) = label(outlets, receivers);
     let mut basins = Basins { labels, ways_out: Vec::with_capacity(pits.len()), order: Vec::with_capacity(pits.len()) };
@@ -125,14 +125,15 @@ fn climb(waiting: &mut Vec<u32>, donors: &[u8], children: &Children, mut visit: 
 
 /// The lowest step between two basins.
 #[derive(Debug, Clone, Copy)]
-struct Pass {
+pub(crate) struct Pass {
     /// The higher of the two cells.
-    height: f32,
+    pub height: f32,
     /// The cell of the pair from which `code` leads to the other.
-    from: u32,
-    code: u8,
+    pub from: u32,
+    /// East, south-east, south or south-west.
+    pub code: u8,
     /// The basins, `from`'s first.
-    basins: [u32; 2],
+    pub basins: [u32; 2],
 }
 
 /// Cells of a row looked at together.
@@ -156,11 +157,14 @@ impl Hasher for PairHasher {
 }
 
 /// The lowest pass between each two basins that touch. The list's order is that in which they were first met, row by row.
-fn passes(heights: &Grid, labels: &[u32]) -> Vec<Pass> {
+pub(crate) fn passes(heights: &Grid, labels: &[u32]) -> Vec<Pass> {
     let width = heights.width();
     let mut found = Found { passes: Vec::new(), known: HashMap::default(), last_key: u64::MAX, last: 0 };
-    for (j, (here, below)) in labels.chunks(width).zip(labels.chunks(width).skip(1)).enumerate() {
-        let (h, h_below) = (heights.row(j), heights.row(j + 1));
+    for (j, here) in labels.chunks(width.max(1)).enumerate() {
+        // The last row stands below itself, where it finds its own passes once more.
+        let beneath = (j + 1).min(heights.height() - 1);
+        let below = &labels[beneath * width..(beneath + 1) * width];
+        let (h, h_below) = (heights.row(j), heights.row(beneath));
         let mut i = 0;
         while i < width {
             // Most ground lies amid its own basin.
@@ -192,16 +196,18 @@ impl Found {
     /// Looks from column `i` of the upper of two rows to the east and down; `start` is the row's first cell.
     fn look(&mut self, [here, below]: [&[u32]; 2], [h, h_below]: [&[f32]; 2], i: usize, start: u32) {
         let mine = here[i];
-        // At the two ends a neighbour that is not there becomes one on the border, which is outside as the cell is.
+        // A neighbour that is not there passes for one of the same basin.
         let (west, east) = (i.max(1) - 1, (i + 1).min(here.len() - 1));
-        let around = [here[east], below[east], below[i], below[west]];
+        let or_mine = |there: bool, label: u32| if there { label } else { mine };
+        let around = [here[east], or_mine(east > i, below[east]), below[i], or_mine(west < i, below[west])];
         if around.iter().all(|theirs| *theirs == mine) {
             return;
         }
         let heights = [h[east], h_below[east], h_below[i], h_below[west]];
         for (code, (theirs, other)) in around.into_iter().zip(heights).enumerate() {
             if theirs != mine {
-                let height = if other > h[i] { other } else { h[i] };
+                // There is one zero, whichever of the two it is.
+                let height = (if other > h[i] { other } else { h[i] }) + 0.0;
                 self.add(Pass { height, from: start + i as u32, code: code as u8, basins: [mine, theirs] });
             }
         }
@@ -251,12 +257,12 @@ fn flood(passes: &[Pass], basins: &mut Basins, strides: &[isize; 8]) {
         for k in &beside[starts[newest as usize] as usize..starts[newest as usize + 1] as usize] {
             let pass = &passes[*k as usize];
             if !pass.basins.iter().all(|b| reached[*b as usize]) {
-                waiting.push(Reverse(u64::from(ordered(pass.height)) << 32 | u64::from(*k)));
+                waiting.push(Reverse((ordered(pass.height), pass.from, pass.code, *k)));
             }
         }
         let next = loop {
-            let Some(Reverse(lowest)) = waiting.pop() else { return };
-            let pass = &passes[lowest as u32 as usize];
+            let Some(Reverse((_, _, _, lowest))) = waiting.pop() else { return };
+            let pass = &passes[lowest as usize];
             if !pass.basins.iter().all(|b| reached[*b as usize]) {
                 break pass;
             }
@@ -276,7 +282,7 @@ fn flood(passes: &[Pass], basins: &mut Basins, strides: &[isize; 8]) {
 }
 
 /// Bits that are ordered as the heights are.
-fn ordered(height: f32) -> u32 {
+pub(crate) fn ordered(height: f32) -> u32 {
     let bits = height.to_bits();
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }
 }

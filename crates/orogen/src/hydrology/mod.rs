@@ -15,7 +15,7 @@ pub mod outlets;
 pub mod receivers;
 pub mod rivers;
 #[cfg(test)]
-mod samples;
+pub(crate) mod samples;
 pub mod statistics;
 pub mod steepest;
 pub mod strahler;

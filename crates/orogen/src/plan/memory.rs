@@ -74,10 +74,15 @@ pub fn rasters(solve: &Solve) -> u64 {
     one.saturating_mul(solve.rasters as u64)
 }
 
+/// Bytes of memory that solving takes beside them.
+fn scratch(solve: &Solve) -> u64 {
+    if solve.on_disk { solve.scratch_on_disk } else { solve.scratch }
+}
+
 /// Bytes a plan needs at most at any time, for `threads` threads: its text, the files that the recipe names, grids, registers, solutions, and making solvers'
 /// sources.
 pub fn needed(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
-    let solving = plan.solves.iter().map(|solve| solve.tile.saturating_add(solve.scratch)).max().unwrap_or(0);
+    let solving = plan.solves.iter().map(|solve| solve.tile.saturating_add(scratch(solve))).max().unwrap_or(0);
     let kept = plan.solves.iter().fold(0u64, |sum, solve| sum.saturating_add(rasters(solve)));
     let own = plan.steps.iter().map(own_bytes).sum::<u64>();
     own.saturating_add(recipe.held()).saturating_add(kept).saturating_add(steps(plan, recipe, threads).max(solving))
@@ -101,7 +106,8 @@ pub fn disk(plan: &Plan) -> u64 {
 /// fits.
 pub fn fit(plan: &mut Plan, recipe: &Recipe, threads: usize, allowed: u64) -> bool {
     while needed(plan, recipe, threads) > allowed {
-        let gain = |solve: &Solve| rasters(solve).saturating_sub(rasters(&Solve { on_disk: true, ..solve.clone() }));
+        let bytes = |solve: &Solve| rasters(solve).saturating_add(scratch(solve));
+        let gain = |solve: &Solve| bytes(solve).saturating_sub(bytes(&Solve { on_disk: true, ..solve.clone() }));
         let movable = plan.solves.iter_mut().filter(|solve| !solve.on_disk && gain(solve) > 0);
         match movable.max_by_key(|solve| gain(solve)) {
             Some(solve) => solve.on_disk = true,

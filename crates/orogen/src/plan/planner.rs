@@ -141,6 +141,7 @@ impl<'a> Planner<'a> {
             rasters: solver.rasters(),
             on_disk: false,
             scratch: solver.scratch(&padded),
+            scratch_on_disk: solver.scratch_on_disk(&padded),
             side: self.side,
             tile,
             reads: reads.into_iter().collect(),

@@ -40,6 +40,8 @@ pub struct Solve {
     pub on_disk: bool,
     /// Bytes of memory that solving takes beside them.
     pub scratch: u64,
+    /// The same when they are on disk.
+    pub scratch_on_disk: u64,
     /// Samples along a side of the tiles that its sources are made in.
     pub side: usize,
     /// Bytes that making a tile of its sources takes at most.

@@ -6,6 +6,9 @@ use crate::hydrology::accumulation::accumulate;
 use crate::hydrology::outlets::Outlets;
 use crate::hydrology::steepest::Descent;
 use crate::hydrology::{drainage, fill, strahler, watersheds};
+use crate::large::areas::Layers;
+use crate::large::drainage::{self as large, Water};
+use crate::large::tiling::Tiling;
 use crate::op::{Context, Solution, Solver, Sources};
 
 choice! {
@@ -24,7 +27,8 @@ op! {
     /// Drainage of the source by D8: each cell drains to its steepest lower neighbour (O'Callaghan and Mark 1984).
     ///
     /// Every cell drains to the sea or to the world's border; equal choices are hashed from the cell's place. Areas are counted
-    /// in whole cells, so they are exact. Time and memory grow with the world, 30 bytes a cell.
+    /// in whole cells, so they are exact. Time grows with the world, and so does memory, 54 bytes a cell; where there is less, water is led
+    /// tile by tile on disk (Barnes 2016).
     pub struct Drainage = "drainage", solver, revision 1;
     inputs {
         /// The heights.
@@ -53,11 +57,23 @@ op! {
 }
 
 impl Solver for Drainage {
+    fn rasters(&self) -> usize {
+        6
+    }
+
     fn scratch(&self, padded: &Window) -> u64 {
+        // In memory there is one raster less than on disk.
         padded.len() as u64 * 30
     }
 
+    fn scratch_on_disk(&self, padded: &Window) -> u64 {
+        large::memory(padded.len() as u64)
+    }
+
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
+        if sources.on_disk() {
+            return self.solve_on_disk(sources, context);
+        }
         let heights = sources.whole(0, sources.padded())?;
         context.progress.check()?;
         let outlets = Outlets::new(&heights, self.sea.then_some(context.setting.sea_level as f32));
@@ -73,7 +89,7 @@ impl Solver for Drainage {
         let accumulation = accumulate(&receivers);
         context.progress.check()?;
         let cell_area = receivers.window().cell * receivers.window().cell;
-        let threshold = (self.stream / cell_area).ceil().min(f64::from(u32::MAX)) as u32;
+        let threshold = self.threshold(receivers.window());
         let flow = as_samples(&accumulation.area, |cells| (f64::from(cells) * cell_area) as f32);
         let layers = vec![
             sources.keep(flow)?,
@@ -87,6 +103,34 @@ impl Solver for Drainage {
 
     fn cost(&self) -> f64 {
         35.0
+    }
+}
+
+impl Drainage {
+    /// The least number of cells that a stream drains.
+    fn threshold(&self, window: &Window) -> u32 {
+        (self.stream / (window.cell * window.cell)).ceil().min(f64::from(u32::MAX)) as u32
+    }
+
+    /// Tile by tile.
+    fn solve_on_disk(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
+        let mut heights = sources.raster()?;
+        sources.each_tile(0, sources.padded(), &mut |tile| heights.put(tile))?;
+        let (mut codes, mut filled) = (sources.raster()?, sources.raster()?);
+        let padded = *sources.padded();
+        let tiling = Tiling::new(padded, large::side(padded.len() as u64));
+        let sea = self.sea.then_some(context.setting.sea_level as f32);
+        let water = Water { heights: &heights, sea, tiling, progress: context.progress };
+        water.over_bed(&mut codes, &mut filled)?;
+        let water = Water { heights: &filled, ..water };
+        if self.over == Over::Surface {
+            water.over_surface(&mut codes)?;
+        }
+        let threshold = u64::from(self.threshold(sources.padded()));
+        let [mut flow, mut watershed, mut strahler] = [sources.raster()?, sources.raster()?, sources.raster()?];
+        let layers = Layers { flow: &mut flow, watershed: &mut watershed, strahler: &mut strahler, threshold };
+        water.areas(&codes, layers)?;
+        Ok(Solution { layers: vec![flow, codes, watershed, strahler, filled], scalars: Vec::new() })
     }
 }
 

@@ -3,6 +3,8 @@
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 use crate::hydrology::{fill, outlets::Outlets};
+use crate::large::drainage::{self as large, Water};
+use crate::large::tiling::Tiling;
 use crate::op::{Context, Solution, Solver, Sources};
 
 op! {
@@ -10,7 +12,8 @@ op! {
     ///
     /// The lowest surface from which water needs no way up to reach the sea or the world's border: what Priority-Flood makes
     /// (Barnes, Lehman and Mulla 2014, without an epsilon), bit for bit, found by flooding the graph of basins (Cordonnier,
-    /// Bovy and Braun 2019). Filled ground is level. Time and memory grow with the world, 20 bytes a cell.
+    /// Bovy and Braun 2019). Filled ground is level. Time grows with the world, and so does memory, 24 bytes a cell; where there is less, it is
+    /// filled tile by tile on disk (Barnes 2016).
     pub struct Fill = "fill", solver, revision 1;
     inputs {
         /// The heights.
@@ -29,11 +32,23 @@ op! {
 }
 
 impl Solver for Fill {
+    fn rasters(&self) -> usize {
+        3
+    }
+
     fn scratch(&self, padded: &Window) -> u64 {
-        padded.len() as u64 * 20
+        // In memory there is one raster less than on disk.
+        padded.len() as u64 * 16
+    }
+
+    fn scratch_on_disk(&self, padded: &Window) -> u64 {
+        large::memory(padded.len() as u64)
     }
 
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
+        if sources.on_disk() {
+            return self.solve_on_disk(sources, context);
+        }
         let heights = sources.whole(0, sources.padded())?;
         context.progress.check()?;
         let outlets = Outlets::new(&heights, self.sea.then_some(context.setting.sea_level as f32));
@@ -44,6 +59,23 @@ impl Solver for Fill {
 
     fn cost(&self) -> f64 {
         17.0
+    }
+}
+
+impl Fill {
+    /// Tile by tile.
+    fn solve_on_disk(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
+        let [mut heights, mut filled, mut codes] = [sources.raster()?, sources.raster()?, sources.raster()?];
+        sources.each_tile(0, sources.padded(), &mut |tile| heights.put(tile))?;
+        let sea = self.sea.then_some(context.setting.sea_level as f32);
+        let padded = *sources.padded();
+        let tiling = Tiling::new(padded, large::side(padded.len() as u64));
+        let water = Water { heights: &heights, sea, tiling, progress: context.progress };
+        water.over_bed(&mut codes, &mut filled)?;
+        for t in 0..tiling.count() {
+            heights.put(&difference(&filled.get(&tiling.tile(t))?, heights.get(&tiling.tile(t))?))?;
+        }
+        Ok(Solution { layers: vec![filled, heights], scalars: Vec::new() })
     }
 }
 
