@@ -27,6 +27,7 @@
 #[macro_use]
 pub mod declare;
 
+pub mod aggregate;
 pub mod analysis;
 pub mod bands;
 pub mod build;

@@ -11,6 +11,7 @@ pub mod erosion;
 pub mod fill;
 pub mod flats;
 pub mod lakes;
+pub mod least_cost;
 pub mod outlets;
 pub mod receivers;
 pub mod rivers;

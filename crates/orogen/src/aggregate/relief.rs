@@ -1,0 +1,147 @@
+//! Mountains of aggregates: coarse branches become ranges, the finer ones that grow on them their spurs.
+
+use super::random::Random;
+use super::tree::Tree;
+use rayon::prelude::*;
+
+/// What a relief is made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ridges {
+    /// Which chances.
+    pub seed: u64,
+    /// How far it grows from the middle, as a share of the way to the edges.
+    pub reach: f64,
+    /// The share of the cells that ridges cover, at every scale.
+    pub density: f64,
+    /// How high spurs half as long are, beside the ranges they grow on.
+    pub gain: f64,
+    /// How many cells from its tip a ridge has half its height.
+    pub taper: f64,
+}
+
+/// Cells along the longer side of the coarsest grid.
+const COARSEST: usize = 12;
+
+/// Heights from 0 to about 1 over a grid at least as fine as `width` x `height`, with the size of that grid, row by row.
+///
+/// On the coarsest grid an aggregate grows from the middle. Each finer grid takes it over bent a little (see [`Tree::refined`]) and lets it
+/// grow on. At every scale a ridge is high by how far it is from the tips of what grew on it, 1 - 1 / (1 + d / taper); the heights of all
+/// scales are added, those of the coarser ones smoothed each time the grid gets finer. Costs O(cells).
+pub fn heights(width: usize, height: usize, ridges: &Ridges) -> (usize, usize, Vec<f32>) {
+    let longest = width.max(height).max(1);
+    let mut scales = 0u32;
+    while COARSEST << scales < longest {
+        scales += 1;
+    }
+    let at = |scale: u32| {
+        let along = |n: usize| (n * (COARSEST << scale)).div_ceil(longest).max(3);
+        (along(width), along(height))
+    };
+    let (mut across, mut down) = at(0);
+    let mut tree = Tree::new(across, down, ridges.reach);
+    tree.put(across as i64 / 2, down as i64 / 2, None);
+    let mut map = vec![0.0f32; across * down];
+    let (mut weight, mut total) = (1.0f32, 0.0f32);
+    for scale in 0..=scales {
+        let mut random = Random::new(ridges.seed, u64::from(scale) + 1);
+        if scale > 0 {
+            let (finer_across, finer_down) = at(scale);
+            tree = tree.refined(finer_across, finer_down, &mut random);
+            map = doubled(&map, across, finer_across, finer_down);
+            for _ in 0..3 {
+                map = blurred(&map, finer_across);
+            }
+            (across, down) = (finer_across, finer_down);
+        }
+        // The coarsest, a few cells wide, has to reach all around.
+        let share = if scale == 0 { ridges.density.max(0.3) } else { ridges.density };
+        tree.grow((tree.room() as f64 * share) as usize, &mut random);
+        let taper = ridges.taper.max(1e-3);
+        for (cell, steps) in tree.cells().iter().zip(tree.to_tips()) {
+            let high = 1.0 - 1.0 / (1.0 + (f64::from(steps) + 0.5) / taper);
+            map[*cell as usize] += weight * high as f32;
+        }
+        total += weight;
+        weight *= ridges.gain as f32;
+    }
+    map = blurred(&map, across);
+    map.par_iter_mut().for_each(|h| *h /= total);
+    (across, down, map)
+}
+
+/// A grid of twice as many cells a side, bilinear between the middles of the old.
+fn doubled(map: &[f32], across: usize, finer_across: usize, finer_down: usize) -> Vec<f32> {
+    let down = map.len() / across;
+    let mut finer = vec![0.0f32; finer_across * finer_down];
+    finer.par_chunks_mut(finer_across).enumerate().for_each(|(j, row)| {
+        // A fine cell's middle lies a quarter of a coarse cell from that of the coarse one it is in.
+        let near = (j / 2).min(down - 1);
+        let far = if j % 2 == 0 { near.max(1) - 1 } else { (near + 1).min(down - 1) };
+        let (near, far) = (&map[near * across..(near + 1) * across], &map[far * across..(far + 1) * across]);
+        for (i, h) in row.iter_mut().enumerate() {
+            let here = (i / 2).min(across - 1);
+            let there = if i % 2 == 0 { here.max(1) - 1 } else { (here + 1).min(across - 1) };
+            let mixed = |row: &[f32]| 0.75 * row[here] + 0.25 * row[there];
+            *h = 0.75 * mixed(near) + 0.25 * mixed(far);
+        }
+    });
+    finer
+}
+
+/// Each cell with a quarter of each side's mixed in twice: weights 1, 2, 1 along both axes.
+fn blurred(map: &[f32], across: usize) -> Vec<f32> {
+    let down = map.len() / across;
+    let mut rows = vec![0.0f32; map.len()];
+    rows.par_chunks_mut(across).zip(map.par_chunks(across)).for_each(|(out, row)| {
+        for i in 0..across {
+            out[i] = 0.25 * row[i.max(1) - 1] + 0.5 * row[i] + 0.25 * row[(i + 1).min(across - 1)];
+        }
+    });
+    let mut out = vec![0.0f32; map.len()];
+    out.par_chunks_mut(across).enumerate().for_each(|(j, out)| {
+        let row = |j: usize| &rows[j * across..(j + 1) * across];
+        let (above, here, below) = (row(j.max(1) - 1), row(j), row((j + 1).min(down - 1)));
+        for (((h, above), here), below) in out.iter_mut().zip(above).zip(here).zip(below) {
+            *h = 0.25 * above + 0.5 * here + 0.25 * below;
+        }
+    });
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RIDGES: Ridges = Ridges { seed: 4, reach: 0.95, density: 0.12, gain: 0.6, taper: 5.0 };
+
+    #[test]
+    fn it_is_highest_within_and_low_at_the_edges() {
+        for (width, height) in [(100, 100), (150, 70), (13, 13), (5, 40), (1, 1)] {
+            let (across, down, map) = heights(width, height, &RIDGES);
+            assert!(across >= width && down >= height && map.len() == across * down);
+            assert!(map.iter().all(|h| (0.0..=1.5).contains(h)));
+            if width > 20 && height > 20 {
+                let mean = |inside: bool| {
+                    let is_inside = |k: &usize| {
+                        let (i, j) =
+                            ((k % across) as f64 / across as f64 - 0.5, (k / across) as f64 / down as f64 - 0.5);
+                        (i * i + j * j < 0.04) == inside
+                    };
+                    let (sum, count) = (0..map.len())
+                        .filter(is_inside)
+                        .fold((0.0, 0.0), |(sum, count), k| (sum + f64::from(map[k]), count + 1.0));
+                    sum / count
+                };
+                assert!(mean(true) > 1.5 * mean(false), "{} {}", mean(true), mean(false));
+            }
+        }
+    }
+
+    #[test]
+    fn other_seeds_are_other_mountains_and_threads_change_nothing() {
+        let one = heights(90, 90, &RIDGES);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+        assert_eq!(one, pool.install(|| heights(90, 90, &RIDGES)));
+        assert!(one.2 != heights(90, 90, &Ridges { seed: 5, ..RIDGES }).2);
+    }
+}

@@ -1,0 +1,228 @@
+//! A growing figure on a grid: cells, each but the first beside the one it stuck to.
+
+use super::random::Random;
+
+/// Columns east and rows south to the eight neighbours, sides first.
+const AROUND: [(i64, i64); 8] = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
+
+const FREE: u32 = u32::MAX;
+
+/// An aggregate on a grid of its own, of `width` x `height` cells.
+#[derive(Debug, Clone)]
+pub struct Tree {
+    width: usize,
+    height: usize,
+    /// The member in each cell.
+    members: Vec<u32>,
+    /// The cell of each member.
+    cells: Vec<u32>,
+    /// The member that each stuck to, which came before it; the first ones stuck to nothing.
+    parents: Vec<Option<u32>>,
+    /// Where it may grow: within an ellipse about the middle, whose axes are this share of the grid's.
+    reach: f64,
+}
+
+impl Tree {
+    /// Nothing yet; it grows no farther from the middle than `reach` times half the grid.
+    pub fn new(width: usize, height: usize, reach: f64) -> Tree {
+        Tree { width, height, members: vec![FREE; width * height], cells: Vec::new(), parents: Vec::new(), reach }
+    }
+
+    /// Columns.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// The cells of the members, in the order in which they came.
+    pub fn cells(&self) -> &[u32] {
+        &self.cells
+    }
+
+    /// How many cells it may grow over.
+    pub fn room(&self) -> usize {
+        let rows = (0..self.height).map(|j| (0..self.width).filter(|i| self.holds(*i as i64, j as i64)).count());
+        rows.sum()
+    }
+
+    /// Whether it may grow over a cell.
+    fn holds(&self, i: i64, j: i64) -> bool {
+        if i < 0 || j < 0 || i >= self.width as i64 || j >= self.height as i64 {
+            return false;
+        }
+        let across = (2.0 * i as f64 + 1.0) / self.width as f64 - 1.0;
+        let down = (2.0 * j as f64 + 1.0) / self.height as f64 - 1.0;
+        across * across + down * down <= self.reach * self.reach
+    }
+
+    fn index(&self, i: i64, j: i64) -> usize {
+        j as usize * self.width + i as usize
+    }
+
+    /// Puts a member into a cell, unless there is one; returns the one there is then.
+    pub fn put(&mut self, i: i64, j: i64, parent: Option<u32>) -> u32 {
+        let cell = self.index(i, j);
+        if self.members[cell] == FREE {
+            self.members[cell] = self.cells.len() as u32;
+            self.cells.push(cell as u32);
+            self.parents.push(parent);
+        }
+        self.members[cell]
+    }
+
+    /// A member beside a cell, by chance if there are several; those across a corner count.
+    fn beside(&self, i: i64, j: i64, random: &mut Random) -> Option<u32> {
+        let mut found = [0; 8];
+        let mut count = 0;
+        for (east, south) in AROUND {
+            let (i, j) = (i + east, j + south);
+            if i >= 0 && j >= 0 && i < self.width as i64 && j < self.height as i64 {
+                let member = self.members[self.index(i, j)];
+                if member != FREE {
+                    found[count] = member;
+                    count += 1;
+                }
+            }
+        }
+        match count {
+            0 => None,
+            1 => Some(found[0]),
+            _ => Some(found[random.below(count)]),
+        }
+    }
+
+    /// Lets walkers wander from anywhere until they touch the aggregate, and stick, up to `members` of them (Witten and Sander,
+    /// "Diffusion-limited aggregation, a kinetic critical phenomenon", 1981; there one walker starts from far away).
+    ///
+    /// Walkers that start everywhere find the gaps between branches, which get filled about evenly; each wanders about as many steps as the
+    /// square of the gap's width.
+    pub fn grow(&mut self, members: usize, random: &mut Random) {
+        let most = members.min(self.room());
+        while self.cells.len() < most {
+            let (mut i, mut j) = (random.below(self.width) as i64, random.below(self.height) as i64);
+            if !self.holds(i, j) || self.members[self.index(i, j)] != FREE {
+                continue;
+            }
+            loop {
+                if let Some(parent) = self.beside(i, j, random) {
+                    self.put(i, j, Some(parent));
+                    break;
+                }
+                let (east, south) = AROUND[random.below(8)];
+                if !self.holds(i + east, j + south) {
+                    continue;
+                }
+                (i, j) = (i + east, j + south);
+            }
+        }
+    }
+
+    /// The same aggregate on a grid of `width` x `height` cells, about twice as many each way: every cell becomes one of the four in its place by
+    /// chance, and the branches between them bend.
+    pub fn refined(&self, width: usize, height: usize, random: &mut Random) -> Tree {
+        let mut fine = Tree::new(width, height, self.reach);
+        let mut places: Vec<(i64, i64)> = Vec::with_capacity(self.cells.len());
+        let mut became: Vec<u32> = Vec::with_capacity(self.cells.len());
+        for (cell, parent) in self.cells.iter().zip(&self.parents) {
+            let (i, j) = ((*cell as usize % self.width) as i64, (*cell as usize / self.width) as i64);
+            let chance = random.draw();
+            let end = (2 * i + (chance & 1) as i64, 2 * j + (chance >> 1 & 1) as i64);
+            let end = (end.0.min(width as i64 - 1), end.1.min(height as i64 - 1));
+            let member = match parent {
+                None => fine.put(end.0, end.1, None),
+                Some(parent) => {
+                    let start = places[*parent as usize];
+                    // Half way it bends by a cell to either side.
+                    let bend = ((chance >> 2) % 3) as i64 - 1;
+                    let across = if (end.0 - start.0).abs() > (end.1 - start.1).abs() { (0, bend) } else { (bend, 0) };
+                    let middle = ((start.0 + end.0) / 2 + across.0, (start.1 + end.1) / 2 + across.1);
+                    let middle = (middle.0.clamp(0, width as i64 - 1), middle.1.clamp(0, height as i64 - 1));
+                    let half = fine.line(became[*parent as usize], middle);
+                    fine.line(half, end)
+                }
+            };
+            became.push(member);
+            let cell = fine.cells[member as usize] as usize;
+            places.push(((cell % width) as i64, (cell / width) as i64));
+        }
+        fine
+    }
+
+    /// Puts members along a line from one to a cell; where one stands in the way the line goes on from that.
+    fn line(&mut self, from: u32, (to_i, to_j): (i64, i64)) -> u32 {
+        let cell = self.cells[from as usize] as usize;
+        let (mut i, mut j) = ((cell % self.width) as i64, (cell / self.width) as i64);
+        let mut at = from;
+        while (i, j) != (to_i, to_j) {
+            (i, j) = (i + (to_i - i).signum(), j + (to_j - j).signum());
+            at = self.put(i, j, Some(at));
+        }
+        at
+    }
+
+    /// How far each member is from the farthest tip of what grew on it, in members.
+    pub fn to_tips(&self) -> Vec<u32> {
+        let mut steps = vec![0u32; self.cells.len()];
+        for (member, parent) in self.parents.iter().enumerate().rev() {
+            if let Some(parent) = parent {
+                steps[*parent as usize] = steps[*parent as usize].max(steps[member] + 1);
+            }
+        }
+        steps
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_sound(tree: &Tree) {
+        for (member, (cell, parent)) in tree.cells.iter().zip(&tree.parents).enumerate() {
+            assert_eq!(tree.members[*cell as usize], member as u32);
+            if let Some(parent) = parent {
+                assert!((*parent as usize) < member, "no circles");
+                let other = tree.cells[*parent as usize] as usize;
+                let apart = |a: usize, b: usize| a.abs_diff(b);
+                let cell = *cell as usize;
+                assert!(
+                    apart(cell % tree.width, other % tree.width) <= 1
+                        && apart(cell / tree.width, other / tree.width) <= 1
+                );
+            }
+        }
+        assert_eq!(tree.members.iter().filter(|member| **member != FREE).count(), tree.cells.len());
+    }
+
+    #[test]
+    fn it_grows_in_one_piece_and_stays_within_its_reach() {
+        let mut random = Random::new(5, 1);
+        let mut tree = Tree::new(40, 30, 0.8);
+        tree.put(20, 15, None);
+        tree.grow(200, &mut random);
+        is_sound(&tree);
+        assert_eq!(tree.cells.len(), 200);
+        assert!(tree.cells.iter().all(|cell| tree.holds(i64::from(*cell) % 40, i64::from(*cell) / 40)));
+        let room = tree.room();
+        tree.grow(1 << 20, &mut random);
+        assert_eq!(tree.cells.len(), room, "it can fill all there is");
+    }
+
+    #[test]
+    fn a_refined_tree_is_a_tree_of_the_same_shape() {
+        for seed in 0..20 {
+            let mut random = Random::new(seed, 1);
+            let mut tree = Tree::new(16, 16, 1.0);
+            tree.put(8, 8, None);
+            tree.grow(50, &mut random);
+            let fine = tree.refined(32, 31, &mut random);
+            is_sound(&fine);
+            let (was, is) = (tree.to_tips()[0], fine.to_tips()[0]);
+            assert!(fine.cells.len() >= 60 && fine.cells.len() < 200, "{}", fine.cells.len());
+            assert!(is >= was && is <= 4 * was + 4, "{was} {is}");
+        }
+    }
+}

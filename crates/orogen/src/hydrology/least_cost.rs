@@ -1,0 +1,191 @@
+//! Depressions drained by the channels that take the least digging.
+
+use super::direction::{DISTANCES, NONE, neighbour, opposite, strides};
+use super::drainage;
+use super::fill;
+use super::outlets::Outlets;
+use super::steepest::{self, Descent};
+use super::{flats, receivers::Receivers};
+use crate::grid::Grid;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// What channels are not dug beyond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// The deepest cut, in metres.
+    pub deepest: f32,
+    /// The longest channel, in cells.
+    pub longest: u32,
+}
+
+/// The heights without depressions: from the bottom of each a channel is cut to lower ground or an outlet, that with the least sum of
+/// depths times lengths among those within the limits; what has none is filled (Lindsay 2016, "Efficient hybrid breaching-filling sink
+/// removal methods for flow path enforcement in digital elevation models"; Lindsay and Dhun 2015).
+///
+/// Depressions are taken from the lowest bottom up, equal ones in row order, each on the ground as the ones before have left it; of equally
+/// dear ways the first in row order is taken. Beds are level. Unlike [`breach`](super::breach::breach) a channel may cross a rim anywhere: it
+/// goes through a thin dam rather than around it. Costs O(n log n) for the n cells that searches look at: a depression's own and those
+/// around it, up to the square of the longest channel.
+pub fn breach(heights: &Grid, outlets: &Outlets, limits: &Limits) -> Grid {
+    let mut out = heights.clone();
+    let mut receivers = steepest::receivers(heights, outlets, Descent::Steepest);
+    flats::resolve(heights, outlets, &mut receivers);
+    let mut search = Search::new(&receivers);
+    for pit in bottoms(heights, outlets, &receivers) {
+        search.drain(out.data_mut(), outlets, pit, limits);
+    }
+    let drained = drainage::over_bed(&out, outlets, Descent::Steepest);
+    fill::filled(&out, &drained.basins)
+}
+
+/// A cell at the bottom of each depression, the lowest first.
+fn bottoms(heights: &Grid, outlets: &Outlets, receivers: &Receivers) -> Vec<usize> {
+    let is_bottom = |c: &usize| receivers.code(*c) == NONE && !outlets.at(*c);
+    let mut bottoms: Vec<usize> = (0..heights.data().len()).filter(is_bottom).collect();
+    bottoms.sort_by(|a, b| heights.data()[*a].total_cmp(&heights.data()[*b]));
+    bottoms
+}
+
+/// Of each cell what the search that looked at it last has found.
+#[derive(Debug, Clone, Copy)]
+struct Found {
+    search: u32,
+    /// Cells from the bottom.
+    length: u32,
+    cost: f64,
+    /// The way back.
+    back: u8,
+    settled: bool,
+}
+
+struct Search {
+    strides: [isize; 8],
+    found: Vec<Found>,
+    searches: u32,
+}
+
+impl Search {
+    fn new(receivers: &Receivers) -> Search {
+        let nothing = Found { search: 0, length: 0, cost: f64::INFINITY, back: NONE, settled: false };
+        Search {
+            strides: strides(receivers.window().width),
+            found: vec![nothing; receivers.codes().len()],
+            searches: 0,
+        }
+    }
+
+    /// Cuts the least dear channel from `pit`, if one is within the limits (Dijkstra's algorithm).
+    fn drain(&mut self, h: &mut [f32], outlets: &Outlets, pit: usize, limits: &Limits) {
+        self.searches += 1;
+        let (search, bed) = (self.searches, h[pit]);
+        self.found[pit] = Found { search, length: 0, cost: 0.0, back: NONE, settled: false };
+        // Costs are not below zero, so their bits are ordered as they are.
+        let mut waiting = BinaryHeap::from([Reverse((0u64, pit))]);
+        while let Some(Reverse((_, cell))) = waiting.pop() {
+            let here = self.found[cell];
+            if std::mem::replace(&mut self.found[cell].settled, true) {
+                continue;
+            }
+            if h[cell] < bed || outlets.at(cell) && h[cell] <= bed {
+                self.cut(h, cell, bed);
+                return;
+            }
+            // An outlet is not cut, so nothing leads on over a higher one.
+            if outlets.at(cell) || here.length >= limits.longest {
+                continue;
+            }
+            for (k, stride) in self.strides.into_iter().enumerate() {
+                let n = neighbour(cell, stride);
+                let depth = (h[n] - bed).max(0.0);
+                if depth > limits.deepest || outlets.at(n) && h[n] > bed {
+                    continue;
+                }
+                let cost = here.cost + f64::from(depth) * DISTANCES[k];
+                let there = &mut self.found[n];
+                if there.search != search || cost < there.cost {
+                    *there = Found { search, length: here.length + 1, cost, back: opposite(k as u8), settled: false };
+                    waiting.push(Reverse((cost.to_bits(), n)));
+                }
+            }
+        }
+    }
+
+    /// Lowers the way back from `end` to the bed.
+    fn cut(&self, h: &mut [f32], end: usize, bed: f32) {
+        let mut cell = end;
+        while self.found[cell].back != NONE {
+            cell = neighbour(cell, self.strides[usize::from(self.found[cell].back)]);
+            h[cell] = h[cell].min(bed);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Window;
+    use crate::hydrology::{breach as along_valleys, samples};
+
+    #[test]
+    fn no_depression_is_left_and_the_limits_are_kept() {
+        for heights in samples::grids() {
+            for (deepest, longest) in [(0.0, 50), (20.0, 4), (150.0, 50), (1e9, 1000)] {
+                let outlets = Outlets::new(&heights, None);
+                let out = breach(&heights, &outlets, &Limits { deepest, longest });
+                let full = fill::fill(&out, &outlets);
+                for (c, (new, old)) in out.data().iter().zip(heights.data()).enumerate() {
+                    assert!(new.to_bits() == full.data()[c].to_bits() || new.is_nan(), "a depression at {c}");
+                    assert!(old.is_nan() || old - new <= deepest, "{old} to {new}");
+                    assert!(!outlets.at(c) || new.to_bits() == old.to_bits(), "outlets stay");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_thin_dam_is_cut_where_the_valley_would_go_around() {
+        // A bowl with a lip of 3 that leads off to the north by a long way, and a thin wall of 5 to the east.
+        let mut heights = Grid::filled(Window::new(12, 9, 1.0), 20.0);
+        heights.row_mut(5)[2..6].copy_from_slice(&[4.0, 2.0, 1.0, 1.5]);
+        heights.row_mut(5)[6..].copy_from_slice(&[5.0, 0.8, 0.6, 0.4, 0.2, 0.0]);
+        (1..5).for_each(|j| heights.row_mut(j)[3] = 3.0);
+        heights.row_mut(0)[3] = 0.0;
+        let outlets = Outlets::new(&heights, None);
+        let out = breach(&heights, &outlets, &Limits { deepest: 10.0, longest: 20 });
+        assert_eq!(out.row(5)[2..8], [4.0, 2.0, 1.0, 1.0, 1.0, 0.8]);
+        assert_eq!(out.get(3, 2), 3.0, "the lip stays");
+        // Not so deep: through neither, so it is filled to the lip.
+        let shallow = breach(&heights, &outlets, &Limits { deepest: 1.0, longest: 20 });
+        assert_eq!(shallow.row(5)[2..7], [4.0, 3.0, 3.0, 3.0, 5.0]);
+        let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+        let around = along_valleys::breach(&heights, &outlets, &drainage, 10.0);
+        assert_eq!((around.get(3, 2), around.get(6, 5)), (1.0, 5.0));
+    }
+
+    #[test]
+    fn less_is_moved_than_along_the_valleys() {
+        let (mut by_cost, mut by_valleys) = (0.0, 0.0);
+        for seed in 0..8 {
+            let mut heights = samples::hills(60, 50, seed);
+            // Low ground all around: neither has to end in an outlet that stands above its bed.
+            for (c, h) in heights.data_mut().iter_mut().enumerate() {
+                if !(60..49 * 60).contains(&c) || c % 60 == 0 || c % 60 == 59 {
+                    *h = -10.0;
+                }
+            }
+            let outlets = Outlets::new(&heights, None);
+            let moved = |out: &Grid| -> f64 {
+                out.data().iter().zip(heights.data()).map(|(new, old)| f64::from((new - old).abs())).sum()
+            };
+            let least = moved(&breach(&heights, &outlets, &Limits { deepest: 1e9, longest: 1000 }));
+            let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+            let valleys = moved(&along_valleys::breach(&heights, &outlets, &drainage, 1e9));
+            let full = moved(&fill::fill(&heights, &outlets));
+            assert!(least < full, "{least}, to fill {full}");
+            by_cost += least;
+            by_valleys += valleys;
+        }
+        assert!(by_cost < by_valleys, "{by_cost}, along valleys {by_valleys}");
+    }
+}
