@@ -5,7 +5,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use orogen::Level;
 
 use crate::command::{
-    analyze, build, compare, completions, explain, export, generate, new, noise, ops, presets, schema,
+    analyze, build, compare, completions, explain, export, fit, generate, new, noise, ops, presets, schema,
 };
 use crate::failure::Failure;
 
@@ -30,6 +30,8 @@ enum Command {
     Build(build::Args),
     /// Measure a terrain: a table beside what real land is like, and a page with its charts.
     Analyze(analyze::Args),
+    /// Find a recipe whose land is like a real place, without holding the place.
+    Fit(fit::Args),
     /// Write a new recipe to start from.
     New(new::Args),
     /// List the built-in presets.
@@ -58,6 +60,7 @@ impl Cli {
             Command::Export(args) => export::run(&args),
             Command::Build(args) => build::run(&args),
             Command::Analyze(args) => analyze::run(&args),
+            Command::Fit(args) => fit::run(&args),
             Command::New(args) => new::run(&args),
             Command::Presets => presets::run(),
             Command::Ops(args) => ops::run(&args),

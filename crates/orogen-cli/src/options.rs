@@ -49,13 +49,18 @@ const CACHE_VARIABLE: &str = "OROGEN_CACHE";
 impl Limits {
     /// Opens the world of a recipe within these limits.
     pub fn open(&self, recipe: Recipe) -> Result<World, Failure> {
+        Ok(World::with_options(recipe, self.options())?)
+    }
+
+    /// The limits as the library takes them.
+    pub fn options(&self) -> Options {
         let threads = self.threads.map(usize::from);
         if let Some(threads) = threads {
             // For what is made from grids; fails only if already set, when remaking: then it is the same.
             let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
         }
         let memory = self.memory.map(|bytes| bytes.0).or_else(memory::share_of_free);
-        Ok(World::with_options(recipe, Options { threads, memory, cache: self.cache(), scratch: None })?)
+        Options { threads, memory, cache: self.cache(), scratch: None }
     }
 
     /// Where solutions are kept: what was asked for, else what the environment says, else where the system wants them.

@@ -39,6 +39,7 @@ pub mod error;
 pub mod field;
 pub mod file;
 pub mod filter;
+pub mod fit;
 pub mod format;
 pub mod grid;
 pub mod hydrology;

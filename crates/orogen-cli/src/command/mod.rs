@@ -6,6 +6,7 @@ pub mod compare;
 pub mod completions;
 pub mod explain;
 pub mod export;
+pub mod fit;
 pub mod generate;
 pub mod new;
 pub mod noise;

@@ -145,3 +145,29 @@ fn analyze_measures_recipes_and_files_of_heights() {
     folder.bad(&["analyze", "hills", "--window", "0,0,20,20"], 2, "64 x 64 samples");
     assert_eq!(folder.names(""), ["hills.tif", "page.png"]);
 }
+
+#[test]
+fn fit_writes_a_recipe_that_holds_nothing_of_the_place() {
+    let folder = Folder::new();
+    folder.good(&["export", "hills", "-o", "place.tif", "--cell", "30", "--window", "100,120,96,80", "-q"]);
+    let fit = ["fit", "place.tif", "--tries", "24", "--judges", "1", "--no-cache"];
+    let told = folder.good(&[&fit[..], &["-o", "like.toml"]].concat()).text().to_string();
+    for said in
+        ["like.toml: land like place", "windows of 80 x 80 samples of 30.0 m", "distance from the place", "mean slope"]
+    {
+        assert!(told.contains(said), "{said} is not told in\n{told}");
+    }
+    let recipe = folder.text("like.toml");
+    assert!(!recipe.contains("\"dem\"") && !recipe.contains("place.tif") && recipe.len() < 6000, "{recipe}");
+    // The same search finds the same, on another number of threads too.
+    let json = folder.good(&[&fit[..], &["-o", "again.toml", "--threads", "1", "--json"]].concat()).text().to_string();
+    assert_eq!(recipe, folder.text("again.toml"));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert!(json["recipe"]["distance"].as_f64().unwrap() > 0.0 && json["place"]["figures"]["relief"].is_number());
+    // It makes land, with about the slopes that were asked for.
+    folder.good(&["export", "like.toml", "-o", "like.npy", "-q"]);
+    folder.bad(&[&fit[..], &["-o", "like.toml"]].concat(), 1, "already exists");
+    folder.bad(&[&fit[..], &["-o", "like.tif"]].concat(), 2, "let it end in .toml");
+    folder.good(&["export", "hills", "-o", "flat.tif", "--window", "0,0,40,40", "-q"]);
+    folder.bad(&["fit", "flat.tif", "-o", "x.toml"], 2, "too small or too flat");
+}

@@ -1,0 +1,190 @@
+//! `orogen fit`.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use orogen::dem::ground::{Ground, USUAL_MEMORY};
+use orogen::fit::likeness::{Likeness, of_windows};
+use orogen::fit::search::{Effort, MOST_WINDOWS, Target, search};
+use orogen::recipe::presets;
+use orogen::survey::measures::Measures;
+use orogen::survey::real::FIGURES;
+use orogen::world::HEIGHT;
+use orogen::{Error, ErrorKind, Grid, Recipe, Window, file};
+use serde_json::json;
+
+use crate::bar::Bar;
+use crate::failure::Failure;
+use crate::options::Limits;
+use crate::size::seed;
+use crate::source::preset;
+use crate::{interrupt, memory, say};
+
+/// What it takes.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A file of heights (GeoTIFF, .asc, .hgt, ...)
+    place: PathBuf,
+    /// Recipe to write, a .toml; never over another file
+    #[arg(short, long, value_name = "FILE")]
+    out: PathBuf,
+    /// Seed of the search and of the world found
+    #[arg(long, value_name = "N", value_parser = seed, default_value = "1", allow_negative_numbers = true)]
+    seed: u64,
+    /// How many settings are tried
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(12..=10_000), default_value = "120",
+          allow_negative_numbers = true)]
+    tries: u32,
+    /// How many worlds of other seeds are compared with the place in the end
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100), default_value = "2",
+          allow_negative_numbers = true)]
+    judges: u32,
+    #[command(flatten)]
+    limits: Limits,
+    /// Print the report as JSON
+    #[arg(long)]
+    json: bool,
+    /// Show neither progress nor the report
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Finds a recipe, judges it by worlds of other seeds beside the default preset, and writes it.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    if args.out.extension().is_none_or(|extension| extension != "toml") {
+        return Err(Failure::Usage(format!("{} is no name for a recipe: let it end in .toml", args.out.display())));
+    }
+    if args.out.symlink_metadata().is_ok() {
+        let sentence = format!("{} already exists and is left as it is; choose another name", args.out.display());
+        return Err(Error::new(ErrorKind::File, sentence).into());
+    }
+    let allowed = args.limits.memory.map(|bytes| bytes.0).or_else(memory::share_of_free).unwrap_or(USUAL_MEMORY);
+    let place = Ground::read(&args.place, None, allowed)?;
+    if !args.quiet {
+        place.notes.iter().for_each(|note| say::error(&format!("note: {}: {note}", args.place.display())));
+    }
+    let place = Arc::new(place);
+    let target = Target::of(&place.grid)?;
+    let random = args.tries as usize / 2;
+    let effort = Effort { random, improving: args.tries as usize - random, seed: args.seed };
+    let (bar, progress) = Bar::new(args.quiet);
+    let found = search(&target, &effort, &args.limits.options(), &progress);
+    let found = found.map_err(|error| interrupt::explain(error.into(), "no recipe was written"))?;
+    drop(bar);
+    let name = args.place.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let about = format!("Invented land like {name}: fitted by its figures, nothing of it is in here");
+    let recipe = found.recipe(&target, args.seed, &about);
+    // Judged by worlds that the search has not seen.
+    let seeds = (1..=u64::from(args.judges)).map(|k| args.seed.wrapping_add(1000 * k));
+    let (mut ours, mut defaults) = (Vec::new(), Vec::new());
+    for seed in seeds {
+        ours.push(land(args, recipe.clone(), seed, &target)?);
+        defaults.push(land(args, preset(presets::DEFAULT)?.recipe()?, seed, &target)?);
+    }
+    file::write_whole(&args.out, |out| out.write_all(recipe.to_toml().as_bytes()))?;
+    let report = Report::of(&target, &place.grid, &ours, &defaults);
+    match (args.json, args.quiet) {
+        (true, _) => say::out(&report.json(&target, found.tried)),
+        (false, true) => Ok(()),
+        (false, false) => say::out(&report.words(args, &name, &target, found.tried)),
+    }
+}
+
+/// A world of another seed at the place's cell, as much of it as the place has.
+fn land(args: &Args, mut recipe: Recipe, seed: u64, target: &Target) -> Result<Grid, Failure> {
+    recipe.world.seed = seed;
+    let world = args.limits.open(recipe)?;
+    let whole = world.whole(target.cell)?;
+    let [width, height] = target.size;
+    let window = Window { width: whole.width.min(width), height: whole.height.min(height), ..whole };
+    let (bar, progress) = Bar::new(args.quiet);
+    let grids = world.grids(&[HEIGHT], &window, &progress);
+    let mut grids = grids.map_err(|error| interrupt::explain(error.into(), "no recipe was written"))?;
+    drop(bar);
+    grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "nothing was asked for").into())
+}
+
+/// Three lands side by side: the place, the recipe's, the default preset's.
+struct Report {
+    /// Windows and the median distance of each from the place's middle.
+    distances: [(usize, f64); 3],
+    /// Each figure's median over the windows of each land.
+    figures: Vec<[Option<f64>; 3]>,
+}
+
+impl Report {
+    fn of(target: &Target, place: &Grid, ours: &[Grid], defaults: &[Grid]) -> Report {
+        let apart = |lands: &[Grid]| {
+            let windows: Vec<Likeness> =
+                lands.iter().flat_map(|land| of_windows(land, target.side, MOST_WINDOWS)).collect();
+            let distances = windows.iter().map(|window| window.distance(&target.middle)).collect();
+            (windows.len(), median(distances).unwrap_or(f64::NAN))
+        };
+        let own = (target.windows, median(target.own.clone()).unwrap_or(f64::NAN));
+        let measured = [&[place.clone()][..], ours, defaults].map(|lands| {
+            let windows = lands.iter().flat_map(|land| {
+                let windows = orogen::fit::likeness::windows(land.window(), target.side, MOST_WINDOWS);
+                windows.into_iter().filter_map(|window| Measures::of(&land.crop(&window)?, None)).collect::<Vec<_>>()
+            });
+            windows.collect::<Vec<Measures>>()
+        });
+        let figures = FIGURES
+            .iter()
+            .map(|figure| {
+                [0, 1, 2].map(|k| median(measured[k].iter().filter_map(|measures| figure.value(measures)).collect()))
+            })
+            .collect();
+        Report { distances: [own, apart(ours), apart(defaults)], figures }
+    }
+
+    fn words(&self, args: &Args, name: &str, target: &Target, tried: usize) -> String {
+        let [place, ours, defaults] = self.distances;
+        let mut out = format!("{:<24}{:>12}{:>12}{:>12}\n", "", "the place", "the recipe", presets::DEFAULT);
+        for (figure, values) in FIGURES.iter().zip(&self.figures) {
+            let texts = values.map(|value| value.map_or("-".to_string(), |value| figure.text(value)));
+            out.push_str(
+                format!("{:<24}{:>12}{:>12}{:>12} {}", figure.name, texts[0], texts[1], texts[2], figure.unit)
+                    .trim_end(),
+            );
+            out.push('\n');
+        }
+        out.push_str(&format!(
+            "{:<24}{:>12.2}{:>12.2}{:>12.2}\n",
+            "distance from the place", place.1, ours.1, defaults.1
+        ));
+        out.push_str(&format!("{:<24}{:>12}{:>12}{:>12}\n", "windows", place.0, ours.0, defaults.0));
+        format!(
+            "{}: land like {name}, found among {tried} settings; medians over windows of {side} x {side} samples of {:.1} m\n\n{out}\n\
+             make it:  orogen generate {0}\n",
+            args.out.display(),
+            target.cell,
+            side = target.side,
+        )
+    }
+
+    fn json(&self, target: &Target, tried: usize) -> String {
+        let land = |k: usize| {
+            let figures: serde_json::Map<String, serde_json::Value> = FIGURES
+                .iter()
+                .zip(&self.figures)
+                .map(|(figure, values)| (figure.key.to_string(), json!(values[k])))
+                .collect();
+            json!({ "windows": self.distances[k].0, "distance": self.distances[k].1, "figures": figures })
+        };
+        let whole = json!({
+            "cell": target.cell, "side": target.side, "tried": tried,
+            "place": land(0), "recipe": land(1), "default_preset": land(2),
+        });
+        serde_json::to_string_pretty(&whole).unwrap_or_default() + "\n"
+    }
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_unstable_by(f64::total_cmp);
+    let half = values.len() / 2;
+    match values.len() {
+        0 => None,
+        count if count.is_multiple_of(2) => Some((values[half - 1] + values[half]) / 2.0),
+        _ => Some(values[half]),
+    }
+}

@@ -1,0 +1,264 @@
+//! Finding the setting of the template whose land is most like a place.
+
+use super::likeness::{Likeness, of_windows};
+use super::template::{KNOBS, Setting, Stretch, recipe};
+use crate::analysis::slope::steepness;
+use crate::error::{Error, ErrorKind, Result};
+use crate::grid::{Grid, Window};
+use crate::op::{self, Field, Slots};
+use crate::progress::Progress;
+use crate::recipe::document::Recipe;
+use crate::survey::measures::Measures;
+use crate::world::{Options, World};
+use orogen_noise::Points;
+
+/// Side of the windows that are compared, in samples, where the place is large enough.
+pub const SIDE: usize = 256;
+
+/// Samples around a window in the worlds that are tried: the border of a world does not erode.
+const MARGIN: usize = 48;
+
+/// Most windows of a place.
+pub const MOST_WINDOWS: usize = 12;
+
+/// A place to be like.
+#[derive(Debug, Clone)]
+pub struct Target {
+    /// Metres from one sample to the next.
+    pub cell: f64,
+    /// Side of the windows compared.
+    pub side: usize,
+    /// Columns and rows of the place.
+    pub size: [usize; 2],
+    /// The middle of its windows.
+    pub middle: Likeness,
+    /// How many windows that is.
+    pub windows: usize,
+    /// Distances of its own windows from that middle.
+    pub own: Vec<f64>,
+    lowest: f64,
+    slope: f64,
+    integral: f64,
+}
+
+impl Target {
+    /// Measures a place.
+    ///
+    /// # Errors
+    /// If it has no window of 64 x 64 samples with some relief.
+    pub fn of(place: &Grid) -> Result<Target> {
+        let window = place.window();
+        let side = window.width.min(window.height).min(SIDE);
+        let likenesses = of_windows(place, side.max(1), MOST_WINDOWS);
+        let measures: Vec<Measures> = super::likeness::windows(window, side.max(1), MOST_WINDOWS)
+            .into_iter()
+            .filter_map(|window| Measures::of(&place.crop(&window)?, None))
+            .collect();
+        if measures.is_empty() {
+            let sentence = "the place is too small or too flat to be like: it takes 64 x 64 samples and some relief";
+            return Err(Error::new(ErrorKind::Request, sentence));
+        }
+        let middle = Likeness::middle(&likenesses);
+        let median = |of: fn(&Measures) -> f64| {
+            let mut values: Vec<f64> = measures.iter().map(of).collect();
+            values.sort_unstable_by(f64::total_cmp);
+            values[values.len() / 2]
+        };
+        Ok(Target {
+            cell: window.cell,
+            side,
+            size: [window.width, window.height],
+            own: likenesses.iter().map(|one| one.distance(&middle)).collect(),
+            windows: likenesses.len(),
+            middle,
+            lowest: median(|m| m.base),
+            slope: median(|m| m.slope_mean),
+            integral: median(|m| m.hypsometric_integral),
+        })
+    }
+}
+
+/// How long is searched, and from which chance.
+#[derive(Debug, Clone, Copy)]
+pub struct Effort {
+    /// Settings tried at random before the best is improved.
+    pub random: usize,
+    /// Settings tried while it is.
+    pub improving: usize,
+    /// The seed of the chances, and of the worlds tried.
+    pub seed: u64,
+}
+
+/// What was found.
+#[derive(Debug, Clone)]
+pub struct Found {
+    /// The knobs.
+    pub setting: Setting,
+    /// How its land is stretched.
+    pub stretch: Stretch,
+    /// The distance of the world that it was found by.
+    pub distance: f64,
+    /// How many settings were tried.
+    pub tried: usize,
+}
+
+impl Found {
+    /// The recipe in a world as large as the place.
+    pub fn recipe(&self, target: &Target, seed: u64, about: &str) -> Recipe {
+        let mut recipe = recipe(&self.setting, &self.stretch, target.size, target.cell, seed);
+        recipe.about = about.to_string();
+        recipe
+    }
+}
+
+/// Searches: settings at random, the best three improved by Nelder and Mead's simplex (1965). The same effort finds the same.
+///
+/// # Errors
+/// If the work is cancelled, or memory is short.
+pub fn search(target: &Target, effort: &Effort, options: &Options, progress: &Progress) -> Result<Found> {
+    let mut trial = Trial { target, effort, options, progress, tried: 0 };
+    let mut chance = Chance(effort.seed);
+    let mut tried: Vec<(f64, Setting)> = Vec::new();
+    for k in 0..effort.random.max(1) {
+        // The first is the middle of all ranges.
+        let setting = std::array::from_fn(|_| if k == 0 { 0.5 } else { chance.share() });
+        tried.push((trial.distance(&setting)?, setting));
+    }
+    tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let corners = (KNOBS.len() + 1).min(tried.len());
+    let mut simplex: Vec<(f64, Setting)> = tried[..corners].to_vec();
+    // Around the best: the others of the first simplex are drawn towards it.
+    let best = simplex[0].1;
+    for (distance, corner) in simplex.iter_mut().skip(1) {
+        *corner = along(&best, corner, 0.5);
+        *distance = trial.distance(corner)?;
+    }
+    let end = trial.tried + effort.improving;
+    while trial.tried < end && simplex.len() > 2 {
+        simplex.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let last = simplex.len() - 1;
+        let middle: Setting =
+            std::array::from_fn(|k| simplex[..last].iter().map(|(_, s)| s[k]).sum::<f64>() / last as f64);
+        let worst = simplex[last];
+        let mut attempt = |share: f64| -> Result<(f64, Setting)> {
+            let setting = along(&middle, &worst.1, share);
+            Ok((trial.distance(&setting)?, setting))
+        };
+        let reflected = attempt(-1.0)?;
+        let better = if reflected.0 < simplex[0].0 {
+            let further = attempt(-2.0)?;
+            Some(if further.0 < reflected.0 { further } else { reflected })
+        } else if reflected.0 < simplex[last - 1].0 {
+            Some(reflected)
+        } else {
+            let nearer = attempt(if reflected.0 < worst.0 { -0.5 } else { 0.5 })?;
+            (nearer.0 < worst.0.min(reflected.0)).then_some(nearer)
+        };
+        match better {
+            Some(better) => simplex[last] = better,
+            None => {
+                let best = simplex[0].1;
+                for (distance, corner) in simplex.iter_mut().skip(1) {
+                    *corner = along(&best, corner, 0.5);
+                    *distance = trial.distance(corner)?;
+                }
+            }
+        }
+    }
+    simplex.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (distance, setting) = simplex[0];
+    let (stretch, _) = trial.make(&setting, effort.seed)?;
+    Ok(Found { setting, stretch, distance, tried: trial.tried })
+}
+
+/// From one setting towards another, within their ranges.
+fn along(from: &Setting, to: &Setting, share: f64) -> Setting {
+    std::array::from_fn(|k| (from[k] + share * (to[k] - from[k])).clamp(0.0, 1.0))
+}
+
+struct Trial<'a> {
+    target: &'a Target,
+    effort: &'a Effort,
+    options: &'a Options,
+    progress: &'a Progress,
+    tried: usize,
+}
+
+impl Trial<'_> {
+    /// How far a setting's land is from the target; one that makes no land is farthest.
+    fn distance(&mut self, setting: &Setting) -> Result<f64> {
+        self.tried += 1;
+        let (_, land) = self.make(setting, self.effort.seed)?;
+        Ok(Measures::of(&land, None).map_or(100.0, |made| Likeness::of(&made).distance(&self.target.middle)))
+    }
+
+    /// A world of a setting, stretched so that its window has the target's hypsometric integral and mean slope.
+    fn make(&self, setting: &Setting, seed: u64) -> Result<(Stretch, Grid)> {
+        let Target { side, cell, lowest, .. } = *self.target;
+        let samples = side + 2 * MARGIN;
+        let plain = Stretch { from: [0.0, 1.0], to: [0.0, 1.0], bend: 0.0 };
+        let recipe = recipe(setting, &plain, [samples; 2], cell, seed);
+        let options = Options { cache: None, ..self.options.clone() };
+        let world = World::with_options(recipe, options)?;
+        let inside = Window::new(side, side, cell).at(MARGIN as i64, MARGIN as i64);
+        let mut grids = world.grids(&["soft"], &inside, self.progress)?;
+        let soft = grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "the world has no middle"))?;
+        let from = [quantile(&soft, 0.001), quantile(&soft, 0.999)];
+        if from[1] - from[0] < 1e-3 {
+            return Ok((plain, soft));
+        }
+        let made = |to: [f64; 2], bend: f64| {
+            let stretch = Stretch { from, to, bend };
+            let mut out = Grid::filled(inside, 0.0f32);
+            let nowhere = Points::Scattered { x: &[], y: &[] };
+            let setting = op::Setting { seed: 0, size: None, cell, sea_level: 0.0 };
+            stretch.curve().eval(&nowhere, &Slots::new(&[Some(soft.data())]), &setting, out.data_mut());
+            (stretch, out)
+        };
+        // The more it is bent, the lower the mean lies.
+        let bend = bisect([-5.0, 5.0], |bend| integral(&made([0.0, 1e3], bend).1) > self.target.integral);
+        let rises = steepness(&made([0.0, 1e3], bend).1);
+        let mean_slope = |relief: f64| {
+            let factor = (relief / 1e3) as f32;
+            let angles = rises.data().iter().map(|rise| f64::from(libm::atanf(*rise * factor)));
+            angles.sum::<f64>().to_degrees() / rises.data().len().max(1) as f64
+        };
+        let relief = libm::exp(bisect([0.0, 10.0], |log| mean_slope(libm::exp(log)) < self.target.slope));
+        Ok(made([lowest, lowest + relief], bend))
+    }
+}
+
+fn quantile(grid: &Grid, share: f64) -> f64 {
+    let mut sorted = grid.data().to_vec();
+    sorted.sort_unstable_by(f32::total_cmp);
+    sorted.get((share * (sorted.len().max(1) - 1) as f64) as usize).copied().map_or(0.0, f64::from)
+}
+
+/// Where the mean lies in the relief, as [`Measures`] has it.
+fn integral(grid: &Grid) -> f64 {
+    let (low, high) = (quantile(grid, 0.001), quantile(grid, 0.999));
+    let sum: f64 = grid.data().iter().map(|height| f64::from(*height).clamp(low, high) - low).sum();
+    sum / grid.data().len() as f64 / (high - low).max(1e-12)
+}
+
+/// Where, between two numbers, `above` ends to hold.
+fn bisect([mut low, mut high]: [f64; 2], above: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..18 {
+        let middle = 0.5 * (low + high);
+        if above(middle) { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// Chances that are the same everywhere (splitmix64).
+struct Chance(u64);
+
+impl Chance {
+    fn share(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+}

@@ -1,0 +1,123 @@
+//! The recipe that is fitted: noise that rivers cut, shaped and scaled.
+
+use crate::field::{curve::Curve, fbm::Fbm, remap::Remap};
+use crate::filter::blur::Blur;
+use crate::recipe::document::{Recipe, WorldSpec};
+use crate::solver::stream_power::StreamPower;
+
+/// A number that is searched for.
+#[derive(Debug, Clone, Copy)]
+pub struct Knob {
+    /// What it is.
+    pub name: &'static str,
+    /// Its ends.
+    pub range: [f64; 2],
+    /// Whether equal steps are equal ratios.
+    pub logarithmic: bool,
+}
+
+const fn knob(name: &'static str, low: f64, high: f64, logarithmic: bool) -> Knob {
+    Knob { name, range: [low, high], logarithmic }
+}
+
+/// All of them. Lengths are in cells, so that one search fits places of any cell.
+pub const KNOBS: [Knob; 9] = [
+    knob("wavelength of the first land, cells", 24.0, 600.0, true),
+    knob("its gain", 0.3, 0.65, false),
+    knob("its amplitude, m", 20.0, 3000.0, true),
+    knob("erodibility", 5e-6, 2e-4, true),
+    knob("uplift, mm/yr", 0.01, 0.3, true),
+    knob("talus angle, deg", 15.0, 60.0, false),
+    knob("how much rock differs", 0.0, 1.5, false),
+    knob("creep, m^2/yr", 1e-3, 1.0, true),
+    knob("blur, cells", 0.2, 2.0, false),
+];
+
+/// A setting of the knobs, each 0 to 1 within its range.
+pub type Setting = [f64; KNOBS.len()];
+
+/// Where a knob stands.
+pub fn value(setting: &Setting, k: usize) -> f64 {
+    let Knob { range: [low, high], logarithmic, .. } = KNOBS[k];
+    let share = setting[k].clamp(0.0, 1.0);
+    match logarithmic {
+        true => low * libm::exp(share * libm::log(high / low)),
+        false => low + share * (high - low),
+    }
+}
+
+/// How the land that comes out is stretched and bent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// The lowest and the highest of what was cut.
+    pub from: [f64; 2],
+    /// The heights in metres that they become.
+    pub to: [f64; 2],
+    /// Between them heights go as exp(bend t) with t from 0 to 1: below 0 for high plains, above for wide valleys.
+    pub bend: f64,
+}
+
+impl Stretch {
+    /// Where a height that is a share `t` of the way from the lowest to the highest comes to lie, as such a share.
+    fn bent(&self, t: f64) -> f64 {
+        match self.bend.abs() < 1e-3 {
+            true => t,
+            false => libm::expm1(self.bend * t) / libm::expm1(self.bend),
+        }
+    }
+
+    /// The node that does it. It goes on beyond both ends: a larger world may be lower and higher than the one that was fitted.
+    pub fn curve(&self) -> Curve {
+        let ([low, high], [base, top]) = (self.from, self.to);
+        let point = |k: i32| {
+            let t = f64::from(k) / 8.0;
+            [round(low + t * (high - low)), round(base + self.bent(t) * (top - base))]
+        };
+        Curve { source: "soft".into(), points: (-8..=16).map(point).collect() }
+    }
+}
+
+/// A number with so many digits as a recipe wants.
+fn round(value: f64) -> f64 {
+    let digits = libm::pow(10.0, 4.0 - libm::log10(value.abs().max(1e-12)).floor());
+    (value * digits).round() / digits
+}
+
+/// The recipe of a setting, in a world of so many cells. Its node `soft` is the land before it is stretched.
+pub fn recipe(setting: &Setting, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64) -> Recipe {
+    let value = |k: usize| round(value(setting, k));
+    let wavelength = round(value(0) * cell);
+    let size = size.map(|samples| samples as f64 * cell);
+    let mut recipe = Recipe::new(WorldSpec { seed, size: Some(size), cell, ..WorldSpec::default() });
+    let noise = |seed: u64, wavelength: f64, octaves: u32| Fbm { seed, wavelength, octaves, ..Fbm::default() };
+    recipe.add("waves", Fbm { gain: value(1), ..noise(1, wavelength, 12) });
+    let amplitude = value(2);
+    recipe.add(
+        "ground",
+        Remap { source: "waves".into(), from: [-1.0, 1.0], to: [-amplitude, amplitude], ..Remap::default() },
+    );
+    recipe.add("rock", noise(2, round(wavelength / 2.0), 5));
+    let differs = value(6);
+    let share = |x: f64| [x, round(libm::exp(2.0 * differs * x))];
+    recipe.add("softness", Curve { source: "rock".into(), points: [-1.0, -0.5, 0.0, 0.5, 1.0].map(share).to_vec() });
+    recipe.add("lift", noise(3, wavelength, 4));
+    recipe.add("rise", Remap { source: "lift".into(), from: [-1.0, 1.0], to: [0.2, 1.8], ..Remap::default() });
+    recipe.add(
+        "cut",
+        StreamPower {
+            source: "ground".into(),
+            softness: "softness".into(),
+            rise: "rise".into(),
+            erodibility: value(3),
+            uplift: value(4),
+            talus_angle: value(5),
+            creep: value(7),
+            sea: false,
+            ..StreamPower::default()
+        },
+    );
+    recipe.add("soft", Blur { source: "cut".into(), radius: round(value(8) * cell) });
+    recipe.add("land", stretch.curve());
+    recipe.output("height", "land");
+    recipe
+}

@@ -1,0 +1,59 @@
+//! Recipes fitted to places whose figures are known.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
+
+use orogen::fit::likeness::{Likeness, of_windows};
+use orogen::fit::search::{Effort, Target, search};
+use orogen::fit::template::{KNOBS, Setting, Stretch, recipe};
+use orogen::{Grid, Options, Progress, Window, World};
+
+fn options() -> Options {
+    Options { threads: Some(2), ..Options::default() }
+}
+
+fn land(setting: &Setting, stretch: &Stretch, seed: u64) -> Grid {
+    let world = World::with_options(recipe(setting, stretch, [80, 80], 60.0, seed), options()).unwrap();
+    world.window("height", &Window::new(80, 80, 60.0)).unwrap()
+}
+
+#[test]
+fn every_setting_is_a_valid_recipe() {
+    let stretch = Stretch { from: [-300.0, 700.0], to: [120.0, 900.0], bend: -1.5 };
+    for share in [0.0, 0.3, 1.0] {
+        let setting = [share; KNOBS.len()];
+        let recipe = recipe(&setting, &stretch, [96, 80], 30.0, 7);
+        let again = orogen::Recipe::parse(&recipe.to_toml(), "fitted").unwrap();
+        assert_eq!(recipe, again);
+        let land = World::with_options(again, options()).unwrap().window("height", &Window::new(96, 80, 30.0)).unwrap();
+        assert!(land.data().iter().all(|height| height.is_finite()));
+    }
+}
+
+#[test]
+fn the_search_comes_nearer_and_meets_slope_and_hypsometry() {
+    // A place that the template can make: another seed of one of its settings.
+    let hidden: Setting = [0.6, 0.55, 0.5, 0.4, 0.6, 0.6, 0.5, 0.4, 0.4];
+    let stretch = Stretch { from: [-400.0, 600.0], to: [200.0, 1400.0], bend: 0.8 };
+    let place = land(&hidden, &stretch, 99);
+    let target = Target::of(&place).unwrap();
+    let at = |random: usize, improving: usize| {
+        search(&target, &Effort { random, improving, seed: 5 }, &options(), &Progress::none()).unwrap()
+    };
+    let (first, better) = (at(1, 0), at(12, 6));
+    assert!(better.distance <= first.distance, "{} {}", better.distance, first.distance);
+    assert_eq!(at(3, 2).setting, at(3, 2).setting);
+    // Worlds of other seeds: nearer than land with the same relief and no valleys.
+    let distance = |grid: &Grid| {
+        let windows = of_windows(grid, target.side, 4);
+        windows.iter().map(|window: &Likeness| window.distance(&target.middle)).sum::<f64>() / windows.len() as f64
+    };
+    let mut found = better.recipe(&target, 7, "");
+    found.world.seed = 8;
+    let made = World::with_options(found, options()).unwrap().window("height", place.window()).unwrap();
+    let mut bowl = place.clone();
+    for (k, height) in bowl.data_mut().iter_mut().enumerate() {
+        let (x, y) = ((k % 80) as f32 / 80.0 - 0.5, (k / 80) as f32 / 80.0 - 0.5);
+        *height = 200.0 + 2400.0 * (x * x + y * y);
+    }
+    assert!(distance(&made) < distance(&bowl), "{} {}", distance(&made), distance(&bowl));
+    assert_eq!(distance(&place), 0.0);
+}
