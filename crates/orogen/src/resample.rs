@@ -31,6 +31,9 @@ pub fn split(position: f64, cell: f64) -> (i64, f32) {
     if share >= 1.0 { (index + 1, 0.0) } else { (index, share) }
 }
 
+/// Columns of a lattice that are read side by side.
+const COLUMNS: usize = 256;
+
 /// Reads `grid` at every point into `out`, between samples as the [`LayerKind`] says.
 ///
 /// Beyond its border the grid continues with its border samples. A point that is not finite reads NaN.
@@ -38,11 +41,17 @@ pub fn read(grid: &Grid, kind: LayerKind, at: &Points, out: &mut [f32]) {
     let reader = Reader::new(grid);
     match (kind, at) {
         (LayerKind::Height, Points::Lattice { xs, ys }) if !xs.is_empty() => {
-            let columns: Vec<(i64, f32)> = xs.iter().map(|x| split(*x, grid.window().cell)).collect();
-            for (row, y) in out.chunks_mut(xs.len()).zip(ys.iter()) {
-                let (j, v) = split(*y, grid.window().cell);
-                for (sample, (x, (i, u))) in row.iter_mut().zip(xs.iter().zip(&columns)) {
-                    *sample = if x.is_finite() && y.is_finite() { reader.cubic(*i, j, *u, v) } else { f32::NAN };
+            let mut columns = [(0, 0.0); COLUMNS];
+            for (c, part) in xs.chunks(COLUMNS).enumerate() {
+                for (column, x) in columns.iter_mut().zip(part) {
+                    *column = split(*x, grid.window().cell);
+                }
+                for (row, y) in out.chunks_mut(xs.len()).zip(ys.iter()) {
+                    let (j, v) = split(*y, grid.window().cell);
+                    let row = &mut row[c * COLUMNS..];
+                    for (sample, (x, (i, u))) in row.iter_mut().zip(part.iter().zip(&columns)) {
+                        *sample = if x.is_finite() && y.is_finite() { reader.cubic(*i, j, *u, v) } else { f32::NAN };
+                    }
                 }
             }
         }
