@@ -53,6 +53,7 @@ nodes! {
     solver {
         bake::Bake,
         breach::Breach,
+        dla::Dla,
         drainage::Drainage,
         fill::Fill,
         lakes::Lakes,

@@ -122,7 +122,7 @@ impl Tree {
     }
 
     /// The same aggregate on a grid of `width` x `height` cells, about twice as many each way: every cell becomes one of the four in its place by
-    /// chance, and the branches between them bend.
+    /// chance, and the branches between them bend. The first, which has to be the middle one, stays in the middle.
     pub fn refined(&self, width: usize, height: usize, random: &mut Random) -> Tree {
         let mut fine = Tree::new(width, height, self.reach);
         let mut places: Vec<(i64, i64)> = Vec::with_capacity(self.cells.len());
@@ -133,7 +133,8 @@ impl Tree {
             let end = (2 * i + (chance & 1) as i64, 2 * j + (chance >> 1 & 1) as i64);
             let end = (end.0.min(width as i64 - 1), end.1.min(height as i64 - 1));
             let member = match parent {
-                None => fine.put(end.0, end.1, None),
+                // In the middle, where it may grow however small its reach: walkers have to find it.
+                None => fine.put(width as i64 / 2, height as i64 / 2, None),
                 Some(parent) => {
                     let start = places[*parent as usize];
                     // Half way it bends by a cell to either side.
@@ -209,6 +210,23 @@ mod tests {
         let room = tree.room();
         tree.grow(1 << 20, &mut random);
         assert_eq!(tree.cells.len(), room, "it can fill all there is");
+    }
+
+    #[test]
+    fn however_small_its_reach_walkers_find_it() {
+        for (reach, down) in [(0.05, 12), (0.1, 7), (0.25, 3), (0.3, 12)] {
+            for seed in 0..20 {
+                let mut random = Random::new(seed, 1);
+                let mut tree = Tree::new(12, down, reach);
+                tree.put(6, down as i64 / 2, None);
+                for _ in 0..5 {
+                    tree = tree.refined(tree.width() * 2, tree.height() * 2, &mut random);
+                    tree.grow(tree.room() / 2, &mut random);
+                    is_sound(&tree);
+                }
+                assert!(tree.cells.len() >= tree.room() / 2);
+            }
+        }
     }
 
     #[test]

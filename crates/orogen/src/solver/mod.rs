@@ -3,6 +3,7 @@
 // The list below is written by `cargo xtask codegen`.
 pub mod bake;
 pub mod breach;
+pub mod dla;
 pub mod drainage;
 pub mod fill;
 pub mod lakes;
