@@ -8,7 +8,19 @@ fn presets_are_one_a_line() {
     let folder = Folder::new();
     let outcome = folder.good(&["presets"]);
     let names: Vec<&str> = outcome.text().lines().map(|line| line.split_whitespace().next().unwrap()).collect();
-    for name in ["alpine", "badlands", "canyon", "endless", "fjords", "hills", "himalaya", "island", "rolling"] {
+    for name in [
+        "alpine",
+        "badlands",
+        "canyon",
+        "dla-peaks",
+        "endless",
+        "fjords",
+        "hills",
+        "himalaya",
+        "island",
+        "rolling",
+        "volcano",
+    ] {
         assert!(names.contains(&name), "{name}");
     }
     assert!(outcome.text().lines().all(|line| line.split_whitespace().count() > 3), "each says what it is");

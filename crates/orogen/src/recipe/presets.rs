@@ -34,6 +34,7 @@ static PRESETS: &[Preset] = presets![
     "badlands",
     "canyon",
     "classic",
+    "dla-peaks",
     "endless",
     "fjords",
     "hills",
@@ -41,6 +42,7 @@ static PRESETS: &[Preset] = presets![
     "island",
     "mesa",
     "rolling",
+    "volcano",
 ];
 
 /// The preset that is made if nobody asks for another.
