@@ -5,7 +5,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 use orogen::Level;
 
 use crate::command::{
-    analyze, build, compare, completions, explain, export, fit, generate, new, noise, ops, presets, schema,
+    analyze, build, compare, completions, explain, export, fit, generate, grow, new, noise, ops, presets, schema,
 };
 use crate::failure::Failure;
 
@@ -32,6 +32,8 @@ enum Command {
     Analyze(analyze::Args),
     /// Find a recipe whose land is like a real place, without holding the place.
     Fit(fit::Args),
+    /// Draw a terrain growing: frames of uplift and erosion as a moving picture.
+    Grow(grow::Args),
     /// Write a new recipe to start from.
     New(new::Args),
     /// List the built-in presets.
@@ -61,6 +63,7 @@ impl Cli {
             Command::Build(args) => build::run(&args),
             Command::Analyze(args) => analyze::run(&args),
             Command::Fit(args) => fit::run(&args),
+            Command::Grow(args) => grow::run(&args),
             Command::New(args) => new::run(&args),
             Command::Presets => presets::run(),
             Command::Ops(args) => ops::run(&args),

@@ -8,6 +8,7 @@ pub mod explain;
 pub mod export;
 pub mod fit;
 pub mod generate;
+pub mod grow;
 pub mod new;
 pub mod noise;
 pub mod ops;

@@ -1,6 +1,6 @@
 //! The small commands.
 
-use crate::harness::{Folder, SMALL};
+use crate::harness::{Folder, SMALL, png};
 use std::process::Stdio;
 
 #[test]
@@ -183,3 +183,53 @@ fn fit_writes_a_recipe_that_holds_nothing_of_the_place() {
     folder.good(&["export", "hills", "-o", "flat.tif", "--window", "0,0,40,40", "-q"]);
     folder.bad(&["fit", "flat.tif", "-o", "x.toml"], 2, "too small or too flat");
 }
+
+#[test]
+fn a_growing_terrain_ends_as_the_recipe_says() {
+    let folder = Folder::new();
+    folder.write("rivers.toml", RIVERS);
+    let told = folder.good(&["grow", "rivers.toml", "--frames", "5", "-o", "grow.png"]).text().to_string();
+    assert_eq!(told, "grow.png: 5 frames of 60 x 40 pixels\n");
+    folder.good(&["grow", "rivers.toml", "--frames", "5", "-o", "again.png", "--threads", "1", "-q"]);
+    assert!(folder.read("grow.png") == folder.read("again.png"), "the same on another number of threads");
+    let bytes = folder.read("grow.png");
+    let mut reader = ::png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
+    assert_eq!(reader.info().animation_control().unwrap().num_frames, 5);
+    let mut frame = || {
+        let mut data = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut data).unwrap();
+        data
+    };
+    let frames = [frame(), frame(), frame(), frame(), frame()];
+    assert!(frames.windows(2).all(|pair| pair[0] != pair[1]), "each is another");
+    // As many steps as frames come after the first: the last is the map of the recipe itself.
+    folder.good(&["generate", "rivers.toml", "-o", "rivers", "-q"]);
+    assert!(frames[4] == png(&folder.read("rivers/map.png")).data);
+    folder.bad(&["grow", "hills", "-o", "x.png"], 2, "nothing grows in hills");
+    folder.bad(&["grow", "rivers.toml", "-o", "x.tif"], 2, "ends in .png");
+    folder.bad(&["grow", "rivers.toml", "--years", "-1"], 2, "it goes from 0 to 1e9");
+    folder.bad(&["grow", "rivers.toml", "--frames", "1"], 2, "--frames");
+}
+
+const RIVERS: &str = r#"
+orogen = 1
+[world]
+size = [6000, 4000]
+cell = 100.0
+sea_level = 0.0
+[nodes.land]
+op = "fbm"
+wavelength = 3000
+octaves = 4
+[nodes.metres]
+op = "remap"
+source = "land"
+to = [50, 400]
+[nodes.terrain]
+op = "stream-power"
+source = "metres"
+years = 400000
+steps = 4
+[outputs]
+height = "terrain"
+"#;

@@ -1,6 +1,7 @@
 //! The relief map: atlas tint times relief shading.
 
 use std::io::{self, Write};
+use std::ops::Range;
 
 use rayon::prelude::*;
 
@@ -52,19 +53,25 @@ impl Painter {
         let (width, height) = (grid.width(), grid.height());
         let picture = Picture { width, height, pixel: Pixel::Rgb8, notes };
         png::write(out, &picture, |rows, bytes| {
-            bytes.par_chunks_exact_mut(3 * width).zip(rows).for_each_init(
-                || vec![0.0; 3 * (width + 2)],
-                |wide, (bytes, j)| {
-                    let (above, rest) = wide.split_at_mut(width + 2);
-                    let (here, below) = rest.split_at_mut(width + 2);
-                    extend_row(grid.row(j), here);
-                    neighbour(grid, j, j.checked_sub(1), here, above);
-                    neighbour(grid, j, (j + 1 < height).then_some(j + 1), here, below);
-                    self.row([above, here, below], grid.window().cell, bytes);
-                },
-            );
+            self.paint(grid, rows, bytes);
             Ok(())
         })
+    }
+
+    /// Paints some rows of a whole grid as sRGB bytes, three a sample. Beyond its edges the land is taken to go on in straight lines.
+    pub fn paint(&self, grid: &Grid, rows: Range<usize>, bytes: &mut [u8]) {
+        let (width, height) = (grid.width(), grid.height());
+        bytes.par_chunks_exact_mut(3 * width).zip(rows).for_each_init(
+            || vec![0.0; 3 * (width + 2)],
+            |wide, (bytes, j)| {
+                let (above, rest) = wide.split_at_mut(width + 2);
+                let (here, below) = rest.split_at_mut(width + 2);
+                extend_row(grid.row(j), here);
+                neighbour(grid, j, j.checked_sub(1), here, above);
+                neighbour(grid, j, (j + 1 < height).then_some(j + 1), here, below);
+                self.row([above, here, below], grid.window().cell, bytes);
+            },
+        );
     }
 }
 

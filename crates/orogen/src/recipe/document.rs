@@ -114,6 +114,11 @@ impl Recipe {
         &self.nodes
     }
 
+    /// Changes nodes in their places; their names and masks stay.
+    pub fn change(&mut self, change: impl FnMut(&mut Node)) {
+        self.nodes.iter_mut().map(|named| &mut named.node).for_each(change);
+    }
+
     /// Says which folder the paths in it count from: that of its file.
     pub fn lies_in(&mut self, folder: &Path) {
         self.nodes.iter_mut().flat_map(|named| named.node.files()).for_each(|file| file.lies_in(folder));

@@ -1,0 +1,117 @@
+//! `orogen grow`.
+
+use std::io;
+use std::path::PathBuf;
+
+use orogen::format::png::{self, Animation, Picture, Pixel};
+use orogen::map::paint::Painter;
+use orogen::node::Node;
+use orogen::{Grid, Progress, Recipe, file};
+
+use crate::bar::Bar;
+use crate::failure::Failure;
+use crate::format::Format;
+use crate::options::{Limits, View};
+use crate::source::Source;
+use crate::{interrupt, memory, say, view};
+
+/// What it takes.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A recipe's file or the name of a preset, with a node `stream-power`
+    recipe: PathBuf,
+    #[command(flatten)]
+    view: View,
+    /// Picture to write, a .png that moves (APNG)
+    #[arg(short, long, value_name = "FILE", default_value = "grow.png")]
+    out: PathBuf,
+    /// How many frames: the beginning, and after each step
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=1000), default_value = "25",
+          allow_negative_numbers = true)]
+    frames: u16,
+    /// Years from the first frame to the last [default: those of the recipe's node]
+    #[arg(long, value_name = "YR", allow_negative_numbers = true)]
+    years: Option<f64>,
+    /// How long each frame is shown, in milliseconds
+    #[arg(long, value_name = "MS", default_value = "120")]
+    delay: u16,
+    #[command(flatten)]
+    limits: Limits,
+    /// Show neither progress nor the closing words
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Makes the frames.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    if Format::of(&args.out, Format::ALL).map_err(Failure::Usage)? != Format::Png {
+        return Err(Failure::Usage("frames go into a moving picture; name a file that ends in .png".into()));
+    }
+    if let Some(years) = args.years.filter(|years| !(0.0..=1e9).contains(years)) {
+        return Err(Failure::Usage(format!("--years is {years}; it goes from 0 to 1e9")));
+    }
+    let mut recipe = Source::find(&args.recipe)?.read()?;
+    recipe.world.seed = args.view.seed.unwrap_or(recipe.world.seed);
+    if !recipe.nodes().iter().any(|named| matches!(named.node, Node::StreamPower(_))) {
+        return Err(Failure::Usage(format!(
+            "nothing grows in {}: it has no node with op = \"stream-power\", which lifts land and cuts rivers into it",
+            args.recipe.display()
+        )));
+    }
+    let (bar, progress) = Bar::new(args.quiet);
+    let made = write(&recipe, args, &progress);
+    drop(bar);
+    let words = made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
+    if args.quiet { Ok(()) } else { say::out(&words) }
+}
+
+fn write(recipe: &Recipe, args: &Args, progress: &Progress) -> Result<String, Failure> {
+    // The last frame first: it tells how large the picture is, and its colours are those of all.
+    let last = frame(recipe, args, args.frames - 1, progress)?;
+    let (width, height) = (last.width(), last.height());
+    memory::afford((width * height * 15) as u64, args.limits.memory)?;
+    let painter = Painter::fit(&last, recipe.world.sea_level);
+    let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+    let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", &software)] };
+    let animation = Animation { frames: u32::from(args.frames), delay: args.delay };
+    let mut failure = None;
+    let written = file::write_whole(&args.out, |out| {
+        png::write_animation(out, &picture, animation, |k, bytes| {
+            let ground = match k + 1 < u32::from(args.frames) {
+                true => frame(recipe, args, k as u16, progress),
+                false => Ok(last.clone()),
+            };
+            match ground {
+                Ok(ground) => painter.paint(&ground, 0..height, bytes),
+                Err(cause) => {
+                    failure = Some(cause);
+                    return Err(io::Error::other("a frame could not be made"));
+                }
+            }
+            Ok(())
+        })
+    });
+    if let Some(failure) = failure {
+        return Err(failure);
+    }
+    written?;
+    Ok(format!("{}: {} frames of {width} x {height} pixels\n", args.out.display(), args.frames))
+}
+
+/// The ground after so many steps.
+fn frame(recipe: &Recipe, args: &Args, steps: u16, progress: &Progress) -> Result<Grid, Failure> {
+    let mut recipe = recipe.clone();
+    recipe.change(|node| {
+        if let Node::StreamPower(rivers) = node {
+            let years = args.years.unwrap_or(rivers.years);
+            // Each frame is a run of its own through the same steps: what comes after changes nothing about it.
+            rivers.years = years / f64::from(args.frames - 1) * f64::from(steps);
+            rivers.steps = u32::from(steps.max(1));
+        }
+    });
+    let world = args.limits.open(recipe)?;
+    let window = view::whole(&world, &args.view)?;
+    let plan = world.plan(&[orogen::world::HEIGHT], &window)?;
+    let grid = world.run(&plan, progress)?.pop();
+    Ok(grid.unwrap_or_else(|| Grid::filled(window, 0.0)))
+}
