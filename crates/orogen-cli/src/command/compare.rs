@@ -47,7 +47,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     match args.quiet {
         true => Ok(()),
         false => say::out(&format!(
-            "{}: {noises} noises of seed {}, each as heights and as hillshade; {width} x {height} pixels\n",
+            "{}: {noises} noises and aggregates of seed {}, each as heights and as hillshade; {width} x {height} pixels\n",
             args.out.display(),
             args.seed
         )),

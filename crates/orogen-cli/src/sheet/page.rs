@@ -101,7 +101,7 @@ impl Layout<'_> {
         let noises: usize = self.rows.iter().map(|row| row.noises.len()).sum();
         let title = self.style(Face::Bold, 30.0, INK);
         self.write("Noise", [left, top + self.at(22.0)], title);
-        let words = format!("{noises} noises, each as heights (above) and as hillshade (below)");
+        let words = format!("{noises} noises and aggregates, each as heights (above) and as hillshade (below)");
         let style = self.style(Face::Regular, 15.0, SOFT);
         self.write(&words, [left, top + self.at(48.0)], style);
         top + self.at(HEADER)

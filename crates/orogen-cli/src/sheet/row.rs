@@ -1,5 +1,7 @@
 //! What the page shows: its rows and the noises in them.
 
+use orogen::aggregate::relief::{self, Ridges};
+use orogen::aggregate::single;
 use orogen_noise::{Basis, Falloff, Feature, Fractal, Kind, Mismatch, Points, Worley};
 
 /// A row of noises that belong together.
@@ -40,6 +42,10 @@ pub enum Noise {
         /// How far a noise of 1 moves.
         strength: f32,
     },
+    /// No noise: a diffusion-limited aggregate, 1 where it is.
+    Aggregate(u64),
+    /// Mountains made of such aggregates.
+    Peaks(u64),
 }
 
 impl Noise {
@@ -59,7 +65,26 @@ impl Noise {
                 }
                 noise.fill(&Points::Displaced { xs, ys, dx: &dx, dy: &dy }, out)
             }
+            Noise::Aggregate(seed) => {
+                let cells = single::aggregate(SIDE as usize, usize::MAX, seed);
+                sample(&cells.iter().map(|cell| f32::from(*cell)).collect::<Vec<_>>(), SIDE as usize, xs, ys, out);
+                Ok(())
+            }
+            Noise::Peaks(seed) => {
+                let ridges = Ridges { seed, reach: 0.95, density: 0.2, gain: 0.65, taper: 8.0 };
+                let (across, _, heights) = relief::heights(SIDE as usize, SIDE as usize, &ridges);
+                sample(&heights, across, xs, ys, out);
+                Ok(())
+            }
         }
+    }
+}
+
+/// Reads a square of `across` cells a side, laid over the picture, at the cell that each position is in.
+fn sample(cells: &[f32], across: usize, xs: &[f64], ys: &[f64], out: &mut [f32]) {
+    let index = |at: f64| ((at / SIDE * across as f64) as usize).min(across - 1);
+    for (row, y) in out.chunks_mut(xs.len().max(1)).zip(ys) {
+        row.iter_mut().zip(xs).for_each(|(h, x)| *h = cells[index(*y) * across + index(*x)]);
     }
 }
 
@@ -150,6 +175,14 @@ pub fn rows(seed: u64) -> Vec<Row> {
                 plain("Heterogeneous", "rougher the higher it is", summed(Kind::Hetero { offset: 0.7 })),
                 plain("Swiss turbulence", "crests that branch", summed(Kind::Swiss { warp: 0.15 })),
                 plain("Jordan turbulence", "worn massifs", summed(Kind::Jordan { warp: 0.35, damp: 0.8 })),
+            ],
+        },
+        Row {
+            title: "Aggregates",
+            about: "no noise: walkers wander until they touch what has grown, and stick",
+            noises: vec![
+                shown("Aggregate", "grown from the middle", Noise::Aggregate(seed)),
+                shown("DLA mountains", "at six scales, by way to tips", Noise::Peaks(seed)),
             ],
         },
     ]

@@ -6,7 +6,7 @@ use crate::harness::{Folder, png};
 fn the_page_is_one_picture_that_grows_with_its_parts() {
     let folder = Folder::new();
     let outcome = folder.good(&["compare", "--size", "120"]);
-    assert!(outcome.text().starts_with("compare.png: 28 noises of seed 4"), "{}", outcome.text());
+    assert!(outcome.text().starts_with("compare.png: 30 noises and aggregates of seed 4"), "{}", outcome.text());
     folder.good(&["compare", "--size", "240", "-o", "b.png", "-q"]);
     folder.good(&["compare", "--size", "120", "-o", "c.png", "--seed", "5", "-q"]);
     folder.good(&["compare", "--size", "120", "-o", "d.png", "--seed", "4", "-q"]);
