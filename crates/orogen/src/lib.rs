@@ -32,6 +32,7 @@ pub mod analysis;
 pub mod bands;
 pub mod build;
 pub mod chunks;
+pub mod contour;
 pub mod dem;
 mod engine;
 pub mod erosion;

@@ -80,6 +80,18 @@ impl Georeference {
         Georeference { origin: self.at(-x, -y), ..self.clone() }
     }
 
+    /// The EPSG code of its coordinate system, if its keys tell one.
+    pub fn epsg(&self) -> Option<u16> {
+        let directory = &self.keys.as_ref()?.directory;
+        let key = |wanted: u16| {
+            let found = directory.chunks_exact(4).skip(1).find(|key| key[0] == wanted && key[1] == 0);
+            // 32767 is GeoTIFF's "user-defined".
+            found.map(|key| key[3]).filter(|code| !matches!(*code, 0 | 32767))
+        };
+        // Model 2 is a geographic system, 1 a projected one.
+        if key(1024) == Some(2) { key(2048) } else { key(3072) }
+    }
+
     /// How the first sample of a window lies, and the steps between its samples, in the map's unit.
     pub fn of(&self, window: &Window) -> ([f64; 2], [f64; 2]) {
         (self.at(window.east(0), window.south(0)), self.per_metre.map(|unit| unit * window.cell))

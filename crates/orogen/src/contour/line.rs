@@ -1,0 +1,68 @@
+//! A contour line.
+
+/// A line of one height.
+///
+/// Higher ground lies to its left, as one goes along it on a map with north up: rings run counter-clockwise around summits and
+/// clockwise around hollows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// Its height, in metres.
+    pub elevation: f64,
+    /// Which of the levels asked for it is, from 0.
+    pub level: usize,
+    /// Whether its end is its beginning. If so, the first point is not repeated as the last.
+    pub closed: bool,
+    /// Metres east and south of the world's origin.
+    pub points: Vec<[f64; 2]>,
+}
+
+impl Line {
+    /// Its points, of a ring with the first one once more at the end.
+    pub fn path(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        let first = self.points.first().filter(|_| self.closed);
+        self.points.iter().chain(first).copied()
+    }
+
+    /// Its length in metres.
+    pub fn length(&self) -> f64 {
+        let ends = self.path().zip(self.path().skip(1));
+        ends.map(|([ax, ay], [bx, by])| ((bx - ax) * (bx - ax) + (by - ay) * (by - ay)).sqrt()).sum()
+    }
+
+    /// The area within a ring in square metres, above 0 if it holds higher ground; 0 for an open line.
+    pub fn area(&self) -> f64 {
+        match self.closed {
+            true => twice_area(&self.points) / 2.0,
+            false => 0.0,
+        }
+    }
+}
+
+/// Twice the area within a ring of eastings and southings, above 0 if it runs counter-clockwise on a map with north up.
+pub fn twice_area(points: &[[f64; 2]]) -> f64 {
+    let Some(&[x0, y0]) = points.first() else { return 0.0 };
+    // About the first point: far from the origin, products of coordinates would swallow the area.
+    let turns = points.windows(2).map(|pair| {
+        let ([ax, ay], [bx, by]) = (pair[0], pair[1]);
+        (ay - y0) * (bx - x0) - (ax - x0) * (by - y0)
+    });
+    turns.sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ring_is_closed_and_has_an_area() {
+        let far = 1e7;
+        // West, south, east, north: counter-clockwise on a map.
+        let square = [[0.0, 0.0], [0.0, 2.0], [3.0, 2.0], [3.0, 0.0]].map(|[x, y]| [x + far, y + far]);
+        let ring = Line { elevation: 0.0, level: 0, closed: true, points: square.to_vec() };
+        assert_eq!((ring.area(), ring.length(), ring.path().count()), (6.0, 10.0, 5));
+        let open = Line { closed: false, ..ring.clone() };
+        assert_eq!((open.area(), open.length(), open.path().count()), (0.0, 7.0, 4));
+        let back = Line { points: square.iter().rev().copied().collect(), ..ring };
+        assert_eq!(back.area(), -6.0);
+    }
+}

@@ -1,0 +1,9 @@
+//! Contours: lines of one height through a grid, as geometry.
+
+pub mod band;
+pub mod chaikin;
+pub mod geojson;
+pub mod levels;
+pub mod line;
+pub mod svg;
+pub mod trace;

@@ -1,0 +1,78 @@
+//! Contours as a drawing.
+
+use std::io::{self, Write};
+
+use super::geojson::{decimals, number};
+use super::levels::is_index;
+use super::line::Line;
+use crate::grid::Window;
+
+/// Writes lines as an SVG of the window's extent, its unit the metre, north up: a group for each height, named by it, with one
+/// path. Index contours, every fifth of `interval`, are thicker.
+///
+/// # Errors
+/// What writing brings.
+pub fn write(out: &mut dyn Write, lines: &[Line], window: &Window, interval: Option<f64>) -> io::Result<()> {
+    let size = [window.width, window.height].map(|samples| samples.saturating_sub(1).max(1) as f64 * window.cell);
+    let pixels = 1000.0 / size[0].max(size[1]);
+    let decimals = decimals(window.cell);
+    let origin = [window.east(0), window.south(0)];
+    writeln!(
+        out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\">",
+        (size[0] * pixels).round().max(1.0),
+        (size[1] * pixels).round().max(1.0),
+        size[0],
+        size[1]
+    )?;
+    writeln!(
+        out,
+        "<g fill=\"none\" stroke=\"#8a5a2b\" stroke-linejoin=\"round\" vector-effect=\"non-scaling-stroke\">"
+    )?;
+    let mut text = String::new();
+    for level in lines.chunk_by(|a, b| a.level == b.level) {
+        let elevation = level[0].elevation;
+        let index = interval.is_some_and(|interval| is_index(elevation, interval));
+        text.clear();
+        for line in level {
+            for (k, [x, y]) in line.points.iter().enumerate() {
+                text.push(if k == 0 { 'M' } else { 'L' });
+                number(&mut text, x - origin[0], decimals);
+                text.push(' ');
+                number(&mut text, y - origin[1], decimals);
+            }
+            if line.closed {
+                text.push('Z');
+            }
+        }
+        let width = if index { 1.2 } else { 0.6 } / pixels;
+        writeln!(out, "<path id=\"h{elevation}\" stroke-width=\"{width:.4}\" d=\"{text}\"/>")?;
+    }
+    writeln!(out, "</g>\n</svg>")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_for_each_height() {
+        let line = |elevation: f64, level, closed, points: &[[f64; 2]]| Line {
+            elevation,
+            level,
+            closed,
+            points: points.to_vec(),
+        };
+        let lines = [
+            line(10.0, 0, false, &[[100.0, 200.0], [110.0, 205.0]]),
+            line(10.0, 0, true, &[[101.0, 201.0], [102.0, 201.0], [101.0, 202.0]]),
+            line(12.0, 1, false, &[[100.0, 210.0], [110.0, 210.0]]),
+        ];
+        let mut bytes = Vec::new();
+        write(&mut bytes, &lines, &Window::new(11, 21, 1.0).at(100, 200), Some(2.0)).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        assert!(text.contains("viewBox=\"0 0 10 20\"") && text.contains("width=\"500\" height=\"1000\""), "{text}");
+        assert!(text.contains("id=\"h10\" stroke-width=\"0.0240\" d=\"M0 0L10 5M1 1L2 1L1 2Z\"/>"), "{text}");
+        assert!(text.contains("id=\"h12\" stroke-width=\"0.0120\" d=\"M0 10L10 10\"/>"), "{text}");
+    }
+}
