@@ -1,7 +1,7 @@
 //! `cargo xtask codegen`: the lists that a new node would otherwise have to be written into by hand.
 //!
 //! A node is one file with one `op!` block. Its module line, its place in the list of nodes and its part of the JSON Schema
-//! follow from that file.
+//! follow from that file. A format of exports is one file, too, that declares a `FORMAT`.
 
 mod lists;
 mod op;
@@ -12,7 +12,7 @@ use crate::failure::{Failure, Result, on_file};
 use crate::shell;
 use op::Op;
 
-pub const ABOUT: &str = "rewrite the module and node lists, the JSON Schema and the ops' reference";
+pub const ABOUT: &str = "rewrite the lists of modules, nodes and formats, the JSON Schema and the ops' reference";
 
 pub const HELP: &str = "
 Usage: cargo xtask codegen [--check]
@@ -20,6 +20,7 @@ Usage: cargo xtask codegen [--check]
 Reads the op! block of every file in crates/orogen/src/{field,filter,solver} and rewrites
   - the module lines at the end of each folder's mod.rs
   - crates/orogen/src/node_list.rs
+  - crates/orogen/src/export/format_list.rs, of the files in export/formats that declare a FORMAT
   - recipes/orogen.schema.json, from `orogen schema`
   - docs/ops.md, from `orogen ops --markdown`
 
@@ -66,15 +67,35 @@ pub fn lists(check: bool) -> Result {
                 ops.push(Op { module: name.clone(), ..declared });
             }
         }
-        let list = folder.join("mod.rs");
-        let head = shell::read(&list)?;
-        let text = lists::module_file(&head, &names).ok_or_else(|| {
-            Failure::new(format!("{}: the line '{}' is missing", shell::relative(&list), lists::MARKER))
-        })?;
-        settle(&list, &text, check)?;
+        settle_modules(&folder, &names, check)?;
     }
     lists::distinct(&ops).map_err(Failure::new)?;
-    settle(&src.join("node_list.rs"), &lists::node_list(&LOCALITIES, &ops), check)
+    settle(&src.join("node_list.rs"), &lists::node_list(&LOCALITIES, &ops), check)?;
+    formats(&src.join("export"), check)
+}
+
+/// The module lines of the export formats, and the list of those that declare one.
+fn formats(export: &Path, check: bool) -> Result {
+    let folder = export.join("formats");
+    let names = modules(&folder)?;
+    let mut declared = Vec::new();
+    for name in &names {
+        let text = shell::read(&folder.join(format!("{name}.rs")))?;
+        if text.lines().any(|line| line.starts_with("pub static FORMAT: Format")) {
+            declared.push(name.clone());
+        }
+    }
+    settle_modules(&folder, &names, check)?;
+    settle(&export.join("format_list.rs"), &lists::format_list(&declared), check)
+}
+
+/// The module lines at the end of a folder's mod.rs.
+fn settle_modules(folder: &Path, names: &[String], check: bool) -> Result {
+    let list = folder.join("mod.rs");
+    let head = shell::read(&list)?;
+    let text = lists::module_file(&head, names)
+        .ok_or_else(|| Failure::new(format!("{}: the line '{}' is missing", shell::relative(&list), lists::MARKER)))?;
+    settle(&list, &text, check)
 }
 
 /// What the declarations say to readers: the JSON Schema of recipes and the reference of the ops.

@@ -1,38 +1,33 @@
-//! The formats of files that hold one layer, known by their extensions.
+//! The formats of what is drawn without the registry of exports, known by their extensions.
 
 use std::path::Path;
 
-use clap::ValueEnum;
 use orogen::nearest;
 
 /// What can be written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
-    /// NumPy array of f32, the layer's own unit (metres for heights)
+    /// NumPy array of f32
     Npy,
-    /// 16-bit grey picture, black the lowest and white the highest of the window
+    /// A picture
     Png,
-    /// Cloud-Optimised GeoTIFF of f32 with overviews, in local metres
-    #[value(alias = "tiff")]
-    Tif,
 }
 
 impl Format {
     /// All there are.
-    pub const ALL: &[Format] = &[Format::Npy, Format::Png, Format::Tif];
+    pub const ALL: &[Format] = &[Format::Npy, Format::Png];
 
     /// Its name, which is also its extension.
     pub fn name(self) -> &'static str {
         match self {
             Format::Npy => "npy",
             Format::Png => "png",
-            Format::Tif => "tif",
         }
     }
 
     /// Whether files of this format have such an extension.
     fn has(self, extension: &str) -> bool {
-        extension.eq_ignore_ascii_case(self.name()) || self == Format::Tif && extension.eq_ignore_ascii_case("tiff")
+        extension.eq_ignore_ascii_case(self.name())
     }
 
     /// The one of `formats` that the extension of `path` tells, or a sentence that says why it tells none.

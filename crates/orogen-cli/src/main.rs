@@ -11,6 +11,7 @@ mod draw;
 mod failure;
 mod folder;
 mod format;
+mod format_options;
 mod interrupt;
 mod memory;
 mod options;

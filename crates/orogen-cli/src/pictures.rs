@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use orogen::analysis::summary::{self, Summary};
+use orogen::export::notes;
 use orogen::file::{self, Staged};
 use orogen::format::levels::Levels;
 use orogen::format::png;
@@ -55,7 +56,7 @@ pub const FILES: [&str; 5] = ["height.png", "height8.png", "map.png", "recipe.to
 /// `seconds` tells the time it all took.
 pub fn write(folder: &Path, recipe: &Recipe, grid: &Grid, seconds: impl FnOnce() -> f64) -> Result<Report> {
     let levels = Levels::of(grid);
-    let notes = notes(grid.window().cell, &levels);
+    let notes = notes::of_heights(grid.window().cell, &levels);
     let notes: Vec<(&str, &str)> = notes.iter().map(|(keyword, text)| (*keyword, text.as_str())).collect();
     let stage = |name: &str, body: &(dyn Fn(&mut dyn Write) -> std::io::Result<()> + Sync)| {
         file::stage(&folder.join(name), |out| body(&mut Stoppable(out)))
@@ -96,15 +97,6 @@ fn again(recipe: &Recipe, grid: &Grid) -> String {
         "# Orogen {version} made the files beside this one, {width} x {height} samples: orogen generate {} {view}\n",
         FILES[3]
     )
-}
-
-/// What a grey picture tells whoever opens it without its summary.
-pub fn notes(cell: f64, levels: &Levels) -> Vec<(&'static str, String)> {
-    let heights = match levels.is_flat() {
-        true => format!("flat at {}; {cell} metres a sample", levels.low()),
-        false => format!("black is {}, white is {}; {cell} metres a sample", levels.low(), levels.high()),
-    };
-    vec![("Software", format!("Orogen {}", env!("CARGO_PKG_VERSION"))), ("Description", heights)]
 }
 
 fn report(recipe: &Recipe, grid: &Grid, summary: Summary, seconds: f64) -> Report {

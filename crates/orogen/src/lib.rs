@@ -37,6 +37,7 @@ pub mod dem;
 mod engine;
 pub mod erosion;
 pub mod error;
+pub mod export;
 pub mod field;
 pub mod file;
 pub mod filter;

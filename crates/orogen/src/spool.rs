@@ -74,6 +74,17 @@ impl Spool {
     }
 }
 
+/// What is written is put aside.
+impl Write for Spool {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.push(bytes).map(|_| bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
 /// The folder for a file that waits to be copied to `path`; none if that is no file.
 fn folder_of(path: &Path) -> Option<PathBuf> {
     match fs::canonicalize(path) {

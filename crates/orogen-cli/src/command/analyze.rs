@@ -45,7 +45,7 @@ pub struct Args {
 /// Measures and tells.
 pub fn run(args: &Args) -> Result<(), Failure> {
     if let Some(out) = &args.out
-        && Format::of(out, Format::ALL).map_err(Failure::Usage)? != Format::Png
+        && Format::of(out, Format::ALL) != Ok(Format::Png)
     {
         return Err(Failure::Usage("the page is a picture; name a file that ends in .png".into()));
     }

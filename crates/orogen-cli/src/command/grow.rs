@@ -44,7 +44,7 @@ pub struct Args {
 
 /// Makes the frames.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    if Format::of(&args.out, Format::ALL).map_err(Failure::Usage)? != Format::Png {
+    if Format::of(&args.out, Format::ALL) != Ok(Format::Png) {
         return Err(Failure::Usage("frames go into a moving picture; name a file that ends in .png".into()));
     }
     if let Some(years) = args.years.filter(|years| !(0.0..=1e9).contains(years)) {

@@ -125,7 +125,7 @@ fn what_cannot_be_asked_for_is_usage() {
     let folder = Folder::with_small();
     for (options, expect) in [
         (&["-o", "a.npz"][..], "did you mean .npy?"),
-        (&["-o", "a.asc"], "known are .npy, .png and .tif"),
+        (&["-o", "a.qqqqqq"], "known are .npy, .png and .tif"),
         (&["-o", "a.tig"], "did you mean .tif?"),
         (&["-o", "a"], "no extension"),
         (&["-o", "a.png", "--format", "npy"], "contradict"),

@@ -1,0 +1,55 @@
+//! What a format is.
+
+use std::io;
+
+use super::files::Files;
+use super::options::{OptionSpec, Options};
+use super::subject::Subject;
+use crate::grid::Window;
+
+/// A format of files, declared in a file of its own in `formats/`.
+pub struct Format {
+    /// Its name, which is also its first extension.
+    pub name: &'static str,
+    /// Other extensions that its files have.
+    pub aliases: &'static [&'static str],
+    /// One line for a list of formats.
+    pub about: &'static str,
+    /// The options it knows.
+    pub options: &'static [OptionSpec],
+    /// The most channels that it holds: 1 where it is a layer of plain numbers, more where normals or weights go in, too.
+    pub channels: usize,
+    /// Bytes that writing such a window holds beside the rows at hand. A format that asks for the [whole](Subject::whole) counts it
+    /// here.
+    pub memory: fn(&Window, &Options) -> u64,
+    /// Writes it, and says what its samples stand for, or how much there is of what it makes of them: the end of the sentence
+    /// "height, 64 x 48 samples of 10 m, ...".
+    ///
+    /// Fails as the subject and the files do.
+    pub write: fn(&mut Subject, &Options, &mut Files) -> io::Result<String>,
+}
+
+impl Format {
+    /// Its extensions, its name first.
+    pub fn extensions(&self) -> impl Iterator<Item = &'static str> + use<> {
+        std::iter::once(self.name).chain(self.aliases.iter().copied())
+    }
+
+    /// Whether it has an option of that name.
+    pub fn knows(&self, option: &str) -> bool {
+        self.options.iter().any(|spec| spec.name == option)
+    }
+}
+
+/// Bytes of all samples of a window, as a format takes that needs them all at once.
+pub fn whole(window: &Window) -> u64 {
+    (window.width as u64).saturating_mul(window.height as u64).saturating_mul(4)
+}
+
+/// What a spool keeps in memory before it goes to the disk.
+const SPOOL_MEMORY: u64 = 64 << 20;
+
+/// Bytes of memory that putting `bytes` aside takes.
+pub fn aside(bytes: u64) -> u64 {
+    bytes.min(SPOOL_MEMORY)
+}

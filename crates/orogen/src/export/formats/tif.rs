@@ -1,0 +1,38 @@
+//! GeoTIFF for the cloud.
+
+use std::io;
+
+use crate::export::files::Files;
+use crate::export::format::{Format, aside, whole};
+use crate::export::options::Options;
+use crate::export::subject::Subject;
+use crate::format::geotiff::options::Options as Layout;
+use crate::format::geotiff::writer::Writer;
+use crate::grid::Window;
+
+/// The format.
+pub static FORMAT: Format = Format {
+    name: "tif",
+    aliases: &["tiff"],
+    about: "Cloud-Optimised GeoTIFF of f32 with overviews, in local metres or on the map of a real place",
+    options: &[],
+    channels: 1,
+    memory,
+    write,
+};
+
+/// A row of tiles of each level while the next one comes in, as much again while it is packed, and packed tiles that wait.
+fn memory(window: &Window, _: &Options) -> u64 {
+    aside(whole(window)).saturating_add((window.width as u64).saturating_mul(4 * 4 * 512))
+}
+
+fn write(subject: &mut Subject, _: &Options, files: &mut Files) -> io::Result<String> {
+    let layout = Layout { map: subject.map(), ..Layout::default() };
+    let mut writer = Writer::new(subject.window(), &layout, files.spool())?;
+    files.write(|out| {
+        subject.rows(|band| writer.rows(band[0].data()))?;
+        writer.finish(out)
+    })?;
+    let levels = subject.levels();
+    Ok(format!("{} to {}", levels.low(), levels.high()))
+}

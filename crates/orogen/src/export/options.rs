@@ -1,0 +1,192 @@
+//! What a format may be asked beyond its name: declared once beside it, checked here, read by it.
+
+use std::collections::BTreeMap;
+
+use crate::error::{Error, ErrorKind, Result};
+
+/// One option of a format. The declaration is all there is: front ends make their flags, checks and help of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OptionSpec {
+    /// Its name, in lower case with hyphens: `bits` for `--bits`.
+    pub name: &'static str,
+    /// What a help calls its value: `N`; empty where it takes none.
+    pub value: &'static str,
+    /// One line for the help, with unit and default.
+    pub about: &'static str,
+    /// What values there are.
+    pub takes: Takes,
+}
+
+/// What values an option has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Takes {
+    /// None: it is there or not.
+    Nothing,
+    /// A whole number within these ends.
+    Whole(u64, u64),
+    /// A number within these ends.
+    Number(f64, f64),
+    /// Two numbers with a comma between them, the lower first.
+    Range,
+    /// One of these words.
+    Word(&'static [&'static str]),
+    /// Any text.
+    Text,
+}
+
+/// A value that was given.
+#[derive(Debug, Clone, PartialEq)]
+enum Value {
+    Given,
+    Whole(u64),
+    Number(f64),
+    Range([f64; 2]),
+    Word(&'static str),
+    Text(String),
+}
+
+impl OptionSpec {
+    fn parse(&self, text: &str) -> std::result::Result<Value, String> {
+        let text = text.trim();
+        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+        match self.takes {
+            Takes::Nothing => Ok(Value::Given),
+            Takes::Whole(from, to) => match text.parse::<u64>() {
+                Ok(n) if (from..=to).contains(&n) => Ok(Value::Whole(n)),
+                _ => Err(format!("it is a whole number from {from} to {to}")),
+            },
+            Takes::Number(from, to) => match number(text) {
+                Some(n) if (from..=to).contains(&n) => Ok(Value::Number(n)),
+                _ => Err(format!("it is a number from {from} to {to}")),
+            },
+            Takes::Range => match text.split_once(',').map(|(low, high)| (number(low), number(high))) {
+                Some((Some(low), Some(high))) if low < high => Ok(Value::Range([low, high])),
+                _ => Err("it is two numbers, the lower first, such as -500,4500".into()),
+            },
+            Takes::Word(words) => match words.iter().find(|word| word.eq_ignore_ascii_case(text)) {
+                Some(word) => Ok(Value::Word(word)),
+                None => Err(format!("it is {}", one_of(words))),
+            },
+            Takes::Text => Ok(Value::Text(text.to_string())),
+        }
+    }
+}
+
+/// "a, b or c".
+fn one_of(words: &[&str]) -> String {
+    match words {
+        [init @ .., last] if !init.is_empty() => format!("{} or {last}", init.join(", ")),
+        words => words.concat(),
+    }
+}
+
+/// The options that were given, by name.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Options {
+    given: BTreeMap<&'static str, Value>,
+}
+
+impl Options {
+    /// Takes an option's value as text; what an option without a value is given is not looked at.
+    ///
+    /// # Errors
+    /// If it is no value that the option has.
+    pub fn give(&mut self, spec: &OptionSpec, text: &str) -> Result<()> {
+        let value = spec.parse(text).map_err(|why| {
+            let sentence = format!("`{}` is no value of --{}: {why}", text.escape_debug(), spec.name);
+            Error::new(ErrorKind::Request, sentence)
+        })?;
+        self.given.insert(spec.name, value);
+        Ok(())
+    }
+
+    /// The names of those that were given.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.given.keys().copied()
+    }
+
+    /// Whether it was given.
+    pub fn has(&self, name: &str) -> bool {
+        self.given.contains_key(name)
+    }
+
+    /// A whole number.
+    pub fn whole(&self, name: &str) -> Option<u64> {
+        match self.given.get(name)? {
+            Value::Whole(n) => Some(*n),
+            _ => None,
+        }
+    }
+
+    /// A number.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        match self.given.get(name)? {
+            Value::Number(n) => Some(*n),
+            _ => None,
+        }
+    }
+
+    /// The ends of a range.
+    pub fn range(&self, name: &str) -> Option<[f64; 2]> {
+        match self.given.get(name)? {
+            Value::Range(ends) => Some(*ends),
+            _ => None,
+        }
+    }
+
+    /// One of an option's words, as it declares it.
+    pub fn word(&self, name: &str) -> Option<&'static str> {
+        match self.given.get(name)? {
+            Value::Word(word) => Some(word),
+            _ => None,
+        }
+    }
+
+    /// A text.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        match self.given.get(name)? {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spec(takes: Takes) -> OptionSpec {
+        OptionSpec { name: "x", value: "X", about: "a test", takes }
+    }
+
+    fn given(takes: Takes, text: &str) -> std::result::Result<Options, String> {
+        let mut options = Options::default();
+        options.give(&spec(takes), text).map_err(|error| error.to_string())?;
+        Ok(options)
+    }
+
+    #[test]
+    fn values_are_what_is_declared() {
+        assert_eq!(given(Takes::Whole(1, 9), "9").unwrap().whole("x"), Some(9));
+        assert_eq!(given(Takes::Number(0.0, 1.0), " .5").unwrap().number("x"), Some(0.5));
+        assert_eq!(given(Takes::Range, "-5, 7").unwrap().range("x"), Some([-5.0, 7.0]));
+        assert_eq!(given(Takes::Word(&["half", "float"]), "HALF").unwrap().word("x"), Some("half"));
+        assert_eq!(given(Takes::Text, "any").unwrap().text("x"), Some("any"));
+        let flag = given(Takes::Nothing, "").unwrap();
+        assert!(flag.has("x") && !flag.has("y") && flag.whole("x").is_none());
+    }
+
+    #[test]
+    fn what_is_no_value_is_a_sentence() {
+        for (takes, text, expect) in [
+            (Takes::Whole(1, 9), "10", "`10` is no value of --x: it is a whole number from 1 to 9"),
+            (Takes::Number(0.0, 1.0), "nan", "a number from 0 to 1"),
+            (Takes::Range, "7,-5", "the lower first"),
+            (Takes::Range, "7", "two numbers"),
+            (Takes::Word(&["a", "b", "c"]), "d", "it is a, b or c"),
+        ] {
+            let why = given(takes, text).unwrap_err();
+            assert!(why.contains(expect), "{why}");
+        }
+    }
+}

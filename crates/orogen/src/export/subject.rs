@@ -1,0 +1,123 @@
+//! What is exported: a layer over a window, row after row or whole.
+
+use std::io;
+
+use crate::error::Result;
+use crate::format::dem::Georeference;
+use crate::format::levels::{Levels, NO_SAMPLES, extremes};
+use crate::grid::{Grid, Window};
+use crate::progress::Progress;
+use crate::world::World;
+
+/// Bands of rows from the north, each a grid a channel.
+type Source<'w> = Box<dyn Iterator<Item = Result<Vec<Grid>>> + 'w>;
+
+/// A layer of a world over a window.
+pub struct Subject<'w> {
+    world: &'w World,
+    layer: String,
+    window: Window,
+    progress: &'w Progress,
+    /// Bytes held beside the rows at hand.
+    beside: u64,
+    /// Rows that are about to be made.
+    ready: Option<Source<'w>>,
+    /// The lowest and highest sample so far.
+    range: [f32; 2],
+}
+
+impl<'w> Subject<'w> {
+    /// A layer over a window. `progress` hears of the samples, and may stop the work.
+    ///
+    /// # Errors
+    /// If there is no such layer, or the window is not one of this world.
+    pub fn new(world: &'w World, layer: &str, window: Window, progress: &'w Progress) -> Result<Subject<'w>> {
+        world.unit(layer)?;
+        world.check(&window)?;
+        Ok(Subject { world, layer: layer.to_string(), window, progress, beside: 0, ready: None, range: NO_SAMPLES })
+    }
+
+    /// Plans the rows: what does not fit in memory beside `beside` bytes is refused before a file is begun.
+    ///
+    /// # Errors
+    /// As [`World::bands`].
+    pub(super) fn prepare(&mut self, beside: u64) -> Result<()> {
+        self.beside = beside;
+        self.ready = Some(self.source()?);
+        Ok(())
+    }
+
+    fn source(&self) -> Result<Source<'w>> {
+        let bands = self.world.bands(&self.layer, &self.window, self.beside, self.progress)?;
+        Ok(Box::new(bands.map(|band| band.map(|grid| vec![grid]))))
+    }
+
+    /// The world.
+    pub fn world(&self) -> &'w World {
+        self.world
+    }
+
+    /// The layer's name.
+    pub fn layer(&self) -> &str {
+        &self.layer
+    }
+
+    /// What a sample is measured in: "m" of heights, else what the layer says of itself, which may be nothing.
+    pub fn unit(&self) -> &'static str {
+        self.world.unit(&self.layer).unwrap_or_default()
+    }
+
+    /// The samples: all of the window's.
+    pub fn window(&self) -> &Window {
+        &self.window
+    }
+
+    /// The progress that hears of the samples.
+    pub fn progress(&self) -> &'w Progress {
+        self.progress
+    }
+
+    /// How many grids a band has: 1 for plain numbers.
+    pub fn channels(&self) -> usize {
+        1
+    }
+
+    /// How metres lie on a map, where the recipe holds a real place.
+    pub fn map(&self) -> Option<Georeference> {
+        self.world.recipe().georeference()
+    }
+
+    /// Gives `visit` all rows, some at a time from the north: a grid a channel. Every call makes them anew.
+    ///
+    /// Fails as `visit` does and as the world does.
+    pub fn rows(&mut self, mut visit: impl FnMut(&[Grid]) -> io::Result<()>) -> io::Result<()> {
+        let source = match self.ready.take() {
+            Some(source) => source,
+            None => self.source()?,
+        };
+        self.range = NO_SAMPLES;
+        for band in source {
+            let band = band?;
+            self.range = band.iter().fold(self.range, |range, grid| extremes(range, grid.data()));
+            visit(&band)?;
+        }
+        Ok(())
+    }
+
+    /// All rows at once: a grid a channel. A format that calls this counts them in [`Format::memory`](super::format::Format::memory).
+    ///
+    /// Fails as the world does.
+    pub fn whole(&mut self) -> io::Result<Vec<Grid>> {
+        let mut all = vec![Grid::filled(self.window, 0.0); self.channels()];
+        self.rows(|band| {
+            all.iter_mut().zip(band).for_each(|(all, band)| all.paste(band));
+            Ok(())
+        })?;
+        Ok(all)
+    }
+
+    /// The range of the samples that were last made; flat if there were none.
+    pub fn levels(&self) -> Levels {
+        Levels::new(self.range[0], self.range[1])
+    }
+}
