@@ -5,6 +5,7 @@ use crate::engine::alone::Ready;
 use crate::engine::run::Engine;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
+use crate::layer::LayerKind;
 use crate::op::Setting;
 use crate::plan::explain::explain;
 use crate::plan::key::{Key, keys, link_key};
@@ -213,6 +214,17 @@ impl World {
             _ if layer == HEIGHT => "m",
             Link::Node(target) => self.recipe.nodes()[target.node].node.layers()[target.layer].unit,
             _ => "",
+        })
+    }
+
+    /// How a layer's samples may be read: as heights, as names in numbers, or as amounts.
+    ///
+    /// # Errors
+    /// If there is no such layer.
+    pub fn kind(&self, layer: &str) -> Result<LayerKind> {
+        Ok(match self.target(layer)? {
+            Link::Node(target) => self.graph.layer_kind(&self.recipe, target),
+            _ => LayerKind::Height,
         })
     }
 

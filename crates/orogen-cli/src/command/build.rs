@@ -6,7 +6,8 @@ use std::time::Instant;
 use clap::ValueEnum;
 use orogen::build::builder::{Build, Report, Start};
 use orogen::build::order::{Form, Order, Samples};
-use orogen::build::terrarium;
+use orogen::build::xyz;
+use orogen::format::encoding::Encoding;
 use orogen::words::bytes;
 use orogen::{Window, World};
 
@@ -34,10 +35,10 @@ pub struct Args {
     /// Samples to build, at the cell asked for [default: the whole world]
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
     window: Option<Rectangle>,
-    /// Metres from one sample to the next [default: the world's cell; for terrarium the map's nearest]
+    /// Metres from one sample to the next [default: the world's cell; for an XYZ tree the map's nearest]
     #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
     cell: Option<f64>,
-    /// Samples along a tile's side [default: 512; 513 for tiles that share their edges; 256 for terrarium]
+    /// Samples along a tile's side [default: 512; 513 for tiles that share their edges; 256 for an XYZ tree]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536), allow_negative_numbers = true)]
     tile: Option<u32>,
     /// Seed of the world, instead of the recipe's
@@ -67,6 +68,8 @@ enum Tiles {
     R32,
     /// An XYZ tree of Terrarium pictures with TileJSON, for web maps
     Terrarium,
+    /// An XYZ tree of Terrain-RGB pictures with TileJSON, for web maps
+    TerrainRgb,
 }
 
 /// Builds it.
@@ -99,7 +102,8 @@ fn form(args: &Args) -> Result<Form, Failure> {
         Tiles::Png => Form::Tiles(Samples::Png),
         Tiles::R16 => Form::Tiles(Samples::R16),
         Tiles::R32 => Form::Tiles(Samples::R32),
-        Tiles::Terrarium => Form::Terrarium,
+        Tiles::Terrarium => Form::Xyz(Encoding::Terrarium),
+        Tiles::TerrainRgb => Form::Xyz(Encoding::TerrainRgb),
     });
     let out = args.out.display();
     match (Form::of(&args.out), tiles) {
@@ -109,7 +113,7 @@ fn form(args: &Args) -> Result<Form, Failure> {
             "--tiles makes a folder, and {out} has the extension of a file: leave out one of them"
         ))),
         (None, None) => Err(Failure::Usage(format!(
-            "{out} does not tell what to build: name a .tif or a .zarr, or say --tiles png, r16, r32 or terrarium"
+            "{out} does not tell what to build: name a .tif or a .zarr, or say --tiles png, r16, r32, terrarium or terrain-rgb"
         ))),
     }
 }
@@ -117,9 +121,9 @@ fn form(args: &Args) -> Result<Form, Failure> {
 /// The samples that are asked for.
 fn window(args: &Args, world: &World, form: Form) -> Result<Window, Failure> {
     let cell = args.cell.unwrap_or(match form {
-        Form::Terrarium => {
+        Form::Xyz(_) => {
             let tile = args.tile.map(|tile| tile as usize).or(form.usual_tile()).unwrap_or(1);
-            terrarium::cell_near(world.recipe().world.cell, tile)
+            xyz::cell_near(world.recipe().world.cell, tile)
         }
         _ => world.recipe().world.cell,
     });

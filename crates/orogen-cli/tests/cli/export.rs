@@ -79,12 +79,145 @@ fn a_geotiff_is_the_same_on_any_number_of_threads() {
     assert_eq!(folder.names(""), ["a.tif", "b.TIFF", "small.toml"]);
 }
 
+/// The greatest difference of two exported arrays.
+fn off(folder: &Folder, a: &str, b: &str) -> f32 {
+    let (a, b) = (npy(&folder.read(a)), npy(&folder.read(b)));
+    assert_eq!((a.width(), a.height()), (b.width(), b.height()));
+    a.data().iter().zip(b.data()).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+#[test]
+fn formats_with_a_sidecar_come_back_as_heights() {
+    let folder = Folder::with_small();
+    folder.good(&["export", "small.toml", "-o", "all.npy", "-q"]);
+    // 250 m over 65535 or 255 levels; half a level at most, and what f32 rounds.
+    for (file, options, most) in [
+        ("a.asc", &[][..], 0.0),
+        ("b.r32", &[], 0.0),
+        ("c.r32", &["--first-row", "south"], 0.0),
+        ("d.r16", &[], 0.002),
+        ("e.r16", &["--first-row", "south", "--range", "-100,300"], 0.0031),
+        ("f.png", &[], 0.002),
+        ("g.png", &["--first-row", "south"], 0.002),
+        ("h.png", &["--bits", "8"], 0.491),
+        ("i.raw", &["--format", "r16", "--no-sidecar"], 0.002),
+    ] {
+        let told = folder.good(&[&["export", "small.toml", "-o", file][..], options].concat());
+        if file == "i.raw" {
+            assert!(folder.read(file) == folder.read("d.r16") && !folder.path("i.json").exists());
+            continue;
+        }
+        assert!(told.text().contains("64 x 48 samples of 10 m"), "{}", told.text());
+        folder.good(&["export", file, "-o", "back.npy", "-q"]);
+        assert!(off(&folder, "all.npy", "back.npy") <= most, "{file}: {}", off(&folder, "all.npy", "back.npy"));
+    }
+    let told = folder.json("e.json");
+    assert_eq!((told["low"].as_f64(), told["high"].as_f64()), (Some(-100.0), Some(300.0)));
+    let all = npy(&folder.read("all.npy"));
+    let number = |key: &str| told[key].as_f64().unwrap() as f32;
+    assert!(
+        all.data().iter().all(|h| (number("min")..=number("max")).contains(h)) && all.data().contains(&number("max"))
+    );
+    for (key, expect) in
+        [("seed", "3"), ("cell", "10.0"), ("first_row", "\"south\""), ("layer", "\"height\""), ("sea_level", "0.0")]
+    {
+        assert_eq!(told[key].to_string(), expect, "{key}");
+    }
+    assert_eq!(told["layer_sha256"].as_str().unwrap().len(), 64);
+    // The rows of one are those of the other, turned.
+    let (north, south) = (folder.read("b.r32"), folder.read("c.r32"));
+    assert!(north.chunks(256).eq(south.chunks(256).rev()));
+}
+
+#[test]
+fn a_sidecar_takes_nobodys_place() {
+    let folder = Folder::with_small();
+    let recipe = folder.good(&["export", "small.toml", "-o", "b.r16"]);
+    assert!(recipe.text().contains("; b.json tells how to read it"), "{}", recipe.text());
+    let told = folder.good(&["export", "small.toml", "-o", "b.png", "--bits", "8", "--range", "-500,500"]);
+    assert!(told.text().contains("; b.png.json tells how to read it"), "{}", told.text());
+    folder.good(&["export", "b.png", "-o", "back.npy", "-q"]);
+    folder.good(&["export", "small.toml", "-o", "all.npy", "-q"]);
+    assert!(off(&folder, "all.npy", "back.npy") <= 1.97, "each file is read by its own sidecar");
+    // A recipe of that name stays what it is.
+    folder.write("c.json", "{\"orogen\": 1}");
+    folder.good(&["export", "small.toml", "-o", "c.r16", "-q"]);
+    assert_eq!(folder.text("c.json"), "{\"orogen\": 1}");
+    assert!(folder.path("c.r16.json").exists());
+}
+
+#[test]
+fn labels_and_masks_keep_their_numbers() {
+    let folder = Folder::new();
+    let text = crate::harness::SMALL.replace("[outputs]", "[nodes.rain]\nop = \"drainage\"\nsource = \"land\"\n[nodes.steep]\n\
+        op = \"select-slope\"\nsource = \"land\"\nrange = [10, 90]\n[outputs]\nsteep = \"steep\"\nwatershed = \"rain.watershed\"");
+    folder.write("rivers.toml", text);
+    for layer in ["steep", "watershed"] {
+        folder.good(&["export", "rivers.toml", "-o", "a.npy", "--layer", layer, "-q"]);
+        folder.good(&["export", "rivers.toml", "-o", "a.png", "--layer", layer, "-q"]);
+        let (samples, levels) = (npy(&folder.read("a.npy")), png(&folder.read("a.png")).grey16());
+        let scale = if layer == "steep" { 65535.0 } else { 1.0 };
+        let same =
+            samples.data().iter().zip(&levels).all(|(s, l)| (f64::from(*s) * scale - f64::from(*l)).abs() <= 0.5);
+        assert!(same && samples.data().iter().any(|s| *s > 0.0), "{layer}");
+    }
+    folder.bad(
+        &[
+            "export",
+            "rivers.toml",
+            "-o",
+            "b.png",
+            "--layer",
+            "watershed",
+            "--bits",
+            "8",
+            "--window",
+            "0,0,1,1",
+            "--range",
+            "3,2",
+        ],
+        2,
+        "the lower first",
+    );
+}
+
+#[test]
+fn heights_in_colours_come_back() {
+    let folder = Folder::with_small();
+    folder.good(&["export", "small.toml", "-o", "all.npy", "-q"]);
+    let samples = npy(&folder.read("all.npy"));
+    for (encoding, base, step) in [("terrarium", -32768.0, 1.0 / 256.0), ("terrain-rgb", -10000.0, 0.1)] {
+        folder.good(&["export", "small.toml", "-o", "a.png", "--encoding", encoding, "-q"]);
+        let picture = png(&folder.read("a.png"));
+        assert_eq!((picture.bits, picture.channels), (8, 3));
+        for (rgb, sample) in picture.data.chunks_exact(3).zip(samples.data()) {
+            let steps = f64::from(u32::from_be_bytes([0, rgb[0], rgb[1], rgb[2]]));
+            assert!((steps * step + base - f64::from(*sample)).abs() <= 0.5001 * step);
+        }
+    }
+}
+
+#[test]
+fn one_range_makes_windows_that_fit() {
+    let folder = Folder::with_small();
+    let window = |file: &str, window: &str| {
+        folder.good(&["export", "small.toml", "-o", file, "--range", "-60,210", "--window", window, "-q"]);
+        png(&folder.read(file)).grey16()
+    };
+    let (all, part) = (window("a.png", "0,0,64,48"), window("b.png", "10,20,30,15"));
+    assert!((0..15).all(|j| (0..30).all(|i| part[30 * j + i] == all[64 * (j + 20) + i + 10])));
+}
+
 #[test]
 fn standard_output_gets_the_very_file_and_nothing_else() {
     let folder = Folder::with_small();
-    for (options, file) in
-        [(&[][..], "a.npy"), (&["--format", "png"][..], "a.png"), (&["--format", "tif"][..], "a.tiff")]
-    {
+    for (options, file) in [
+        (&[][..], "a.npy"),
+        (&["--format", "png"][..], "a.png"),
+        (&["--format", "tif"][..], "a.tiff"),
+        (&["--format", "exr"][..], "a.exr"),
+        (&["--format", "r16"][..], "a.r16"),
+    ] {
         folder.good(&["export", "small.toml", "-o", file]);
         let outcome = folder.good(&[&["export", "small.toml", "-o", "-"][..], options].concat());
         assert!(outcome.out == folder.read(file) && outcome.err.is_empty());
@@ -125,11 +258,16 @@ fn what_cannot_be_asked_for_is_usage() {
     let folder = Folder::with_small();
     for (options, expect) in [
         (&["-o", "a.npz"][..], "did you mean .npy?"),
-        (&["-o", "a.qqqqqq"], "known are .npy, .png and .tif"),
+        (&["-o", "a.qqqqqq"], "known are .asc, .exr, .hgt, .npy, .pgm, .png, .r16, .r32 and .tif"),
         (&["-o", "a.tig"], "did you mean .tif?"),
         (&["-o", "a"], "no extension"),
         (&["-o", "a.png", "--format", "npy"], "contradict"),
         (&["-o", "a.npy", "--format", "bmp"], "invalid value"),
+        (&["-o", "a.npy", "--bits", "8"], "--bits is no option of the format npy; those that know it: .pgm and .png"),
+        (&["-o", "a.png", "--bits", "12"], "`12` is no value of --bits: it is 8 or 16"),
+        (&["-o", "a.png", "--range", "9,3"], "the lower first"),
+        (&["-o", "a.png", "--encoding", "terrarium", "--range", "1,2"], "leave out --range"),
+        (&["-o", "a.hgt"], "these are 64 x 48: the nearest is --window 0,0,1201,1201"),
         (&["-o", "a.npy", "--layer", "hieght"], "did you mean `height`?"),
         (&["-o", "a.npy", "--layer", "rivers"], "`height` and `noise`"),
         (&["-o", "a.npy", "--window", "60,0,10,10"], "not inside the world"),

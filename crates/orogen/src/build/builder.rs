@@ -16,7 +16,7 @@ use super::piece::Piece;
 use super::shelf::{Put, Shelf, put};
 use super::site::Site;
 use super::target::{Disk, Target};
-use super::terrarium::Terrarium;
+use super::xyz::Tree;
 use super::zarr::Zarr;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Grid;
@@ -95,7 +95,7 @@ impl<'a> Build<'a> {
             Form::Cog => Box::new(Cog::new(&identity)?),
             Form::Zarr => Box::new(Zarr::new(&identity, about)?),
             Form::Tiles(samples) => Box::new(Folder::new(&identity, samples, about, world.recipe().world.sea_level)?),
-            Form::Terrarium => Box::new(Terrarium::new(&identity, about)?),
+            Form::Xyz(encoding) => Box::new(Tree::new(&identity, about, encoding)?),
         };
         let stages = target.stages();
         let block = Block::fitting(world, target.as_ref(), stages[0], &layers)?;

@@ -26,7 +26,7 @@ mod samples;
 mod shelf;
 mod site;
 mod target;
-pub mod terrarium;
+pub mod xyz;
 mod zarr;
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::format::encoding::Encoding;
 use crate::grid::Window;
 
 /// What a build makes of its samples.
@@ -14,8 +15,8 @@ pub enum Form {
     Zarr,
     /// A folder of tiles that share their edges.
     Tiles(Samples),
-    /// An XYZ tree of PNG tiles in the Terrarium encoding, with TileJSON.
-    Terrarium,
+    /// An XYZ tree of PNG tiles whose colours are heights, with TileJSON.
+    Xyz(Encoding),
 }
 
 /// How the tiles of a folder hold their samples.
@@ -38,7 +39,7 @@ impl Form {
             Form::Tiles(Samples::Png) => "png",
             Form::Tiles(Samples::R16) => "r16",
             Form::Tiles(Samples::R32) => "r32",
-            Form::Terrarium => "terrarium",
+            Form::Xyz(encoding) => encoding.name(),
         }
     }
 
@@ -59,7 +60,7 @@ impl Form {
             Form::Cog => None,
             Form::Zarr => Some(512),
             Form::Tiles(_) => Some(513),
-            Form::Terrarium => Some(256),
+            Form::Xyz(_) => Some(256),
         }
     }
 
@@ -105,7 +106,7 @@ impl Order {
                 "{} holds one layer and {} are asked for: name one, or build a .zarr or a folder of tiles",
                 match self.form {
                     Form::Cog => "a GeoTIFF",
-                    _ => "a Terrarium tree",
+                    _ => "an XYZ tree",
                 },
                 self.layers.len()
             ));

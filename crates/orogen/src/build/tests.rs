@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::builder::{Build, Report, Start};
 use super::order::{Form, Order, Samples};
 use crate::error::ErrorKind;
+use crate::format::encoding::Encoding;
 use crate::format::geotiff::{options, writer};
 use crate::spool::Spool;
 use crate::{Options, Progress, Recipe, Window, World};
@@ -38,13 +39,14 @@ height = "land"
 rough = "noise"
 "#;
 
-const FORMS: [Form; 6] = [
+const FORMS: [Form; 7] = [
     Form::Cog,
     Form::Zarr,
     Form::Tiles(Samples::Png),
     Form::Tiles(Samples::R16),
     Form::Tiles(Samples::R32),
-    Form::Terrarium,
+    Form::Xyz(Encoding::Terrarium),
+    Form::Xyz(Encoding::TerrainRgb),
 ];
 
 fn world(memory: Option<u64>, threads: usize) -> World {
@@ -56,12 +58,12 @@ fn world(memory: Option<u64>, threads: usize) -> World {
 fn order(form: Form) -> Order {
     let tile = match form {
         Form::Cog => 32,
-        Form::Terrarium => 256,
+        Form::Xyz(_) => 256,
         _ => 40,
     };
     let window = match form {
         // A cell with which the window lies on several tiles of the map.
-        Form::Terrarium => Window::new(300, 257, 3.0).at(3, 10),
+        Form::Xyz(_) => Window::new(300, 257, 3.0).at(3, 10),
         _ => Window::new(101, 77, 5.0).at(7, 11),
     };
     let layers = if form.holds_many() { vec!["height".into(), "rough".into()] } else { vec!["height".into()] };
@@ -347,7 +349,7 @@ fn a_begun_build_is_not_begun_again() {
 #[test]
 fn only_one_builds_at_a_time() {
     let folder = Folder::new();
-    let (world, order) = (world(None, 1), order(Form::Terrarium));
+    let (world, order) = (world(None, 1), order(Form::Xyz(Encoding::Terrarium)));
     let build = Build::new(&world, &order, &folder.out()).unwrap();
     let site = super::site::Site::new(&folder.out(), false).unwrap();
     let held = site.hold().unwrap();
@@ -373,9 +375,9 @@ fn impossible_orders_are_sentences() {
     check(Form::Zarr, window, None, &["height", "height"], "asked for twice");
     check(Form::Zarr, window, None, &["hieght"], "did you mean `height`?");
     check(Form::Cog, window, None, &["height", "rough"], "a GeoTIFF holds one layer and 2 are asked for");
-    check(Form::Terrarium, window, None, &["height", "rough"], "a Terrarium tree holds one layer");
+    check(Form::Xyz(Encoding::Terrarium), window, None, &["height", "rough"], "an XYZ tree holds one layer");
     check(Form::Cog, window, Some(100), &["height"], "a multiple of 16, not 100");
-    check(Form::Terrarium, window, Some(100), &["height"], "256 or 512 samples a side, not 100");
+    check(Form::Xyz(Encoding::Terrarium), window, Some(100), &["height"], "256 or 512 samples a side, not 100");
     check(Form::Tiles(Samples::R32), window, Some(1), &["height"], "2 to 16384 samples a side, not 1");
     check(Form::Zarr, window, Some(10_000), &["height"], "1 to 8192 samples a side");
     check(Form::Zarr, Window::new(500, 5, 5.0), None, &["height"], "is not inside the world");

@@ -5,6 +5,7 @@ use std::io;
 use super::files::Files;
 use super::options::{OptionSpec, Options};
 use super::subject::Subject;
+use crate::error::{Error, ErrorKind};
 use crate::grid::Window;
 
 /// A format of files, declared in a file of its own in `formats/`.
@@ -39,6 +40,11 @@ impl Format {
     pub fn knows(&self, option: &str) -> bool {
         self.options.iter().any(|spec| spec.name == option)
     }
+}
+
+/// A request that a format cannot meet, in a sentence.
+pub fn refuse<T>(sentence: String) -> io::Result<T> {
+    Err(Error::new(ErrorKind::Request, sentence).into())
 }
 
 /// Bytes of all samples of a window, as a format takes that needs them all at once.

@@ -25,4 +25,6 @@ pub mod notes;
 pub mod options;
 pub mod registry;
 pub mod run;
+pub mod sidecar;
+pub mod spread;
 pub mod subject;

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::format::dem::Georeference;
 use crate::format::levels::{Levels, NO_SAMPLES, extremes};
 use crate::grid::{Grid, Window};
+use crate::layer::LayerKind;
 use crate::progress::Progress;
 use crate::world::World;
 
@@ -67,6 +68,16 @@ impl<'w> Subject<'w> {
         self.world.unit(&self.layer).unwrap_or_default()
     }
 
+    /// How the samples may be read: as heights, as names in numbers, or as amounts.
+    pub fn kind(&self) -> LayerKind {
+        self.world.kind(&self.layer).unwrap_or(LayerKind::Height)
+    }
+
+    /// A hash of all that the layer depends on.
+    pub fn key(&self) -> [u8; 32] {
+        self.world.key(&self.layer).unwrap_or_default()
+    }
+
     /// The samples: all of the window's.
     pub fn window(&self) -> &Window {
         &self.window
@@ -80,6 +91,11 @@ impl<'w> Subject<'w> {
     /// How many grids a band has: 1 for plain numbers.
     pub fn channels(&self) -> usize {
         1
+    }
+
+    /// The channels' names, for formats that have some.
+    pub fn channel_names(&self) -> Vec<String> {
+        vec![self.layer.clone()]
     }
 
     /// How metres lie on a map, where the recipe holds a real place.

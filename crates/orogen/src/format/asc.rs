@@ -6,9 +6,9 @@
 
 use std::io::{self, BufRead, Write};
 
-use super::dem::{Dem, Input, Place, Unit, afford, refused};
+use super::dem::{Dem, Georeference, Input, Place, Unit, afford, refused};
 use crate::error::Result;
-use crate::grid::Grid;
+use crate::grid::{Grid, Window};
 
 /// What stands for no height in a file written.
 const NODATA: f32 = -9999.0;
@@ -18,15 +18,38 @@ const LONGEST_WORD: usize = 64;
 
 /// Writes a grid. Its samples are pixels' middles, as the format has it.
 pub fn write(out: &mut dyn Write, grid: &Grid) -> io::Result<()> {
-    let window = grid.window();
-    // Added to 0, a south of 0 is no -0.
-    let (west, south) = (window.east(0), 0.0 - window.south(window.height.max(1) - 1));
+    write_head(out, grid.window(), None)?;
+    write_rows(out, grid.width(), grid.data())
+}
+
+/// Writes what comes before the samples of a window: local metres, or where `map` says. All of them must follow by [`write_rows`].
+pub fn write_head(out: &mut dyn Write, window: &Window, map: Option<&Georeference>) -> io::Result<()> {
+    let local = Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None };
+    let map = map.unwrap_or(&local);
+    let [west, south] = map.at(window.east(0), window.south(window.height.max(1) - 1));
+    let (_, [across, down]) = map.of(window);
     writeln!(out, "ncols {}\nnrows {}\nxllcenter {west}\nyllcenter {south}", window.width, window.height)?;
-    writeln!(out, "cellsize {}\nNODATA_value {NODATA}", window.cell)?;
-    for j in 0..window.height {
-        let words =
-            grid.row(j).iter().map(|height| if height.is_finite() { height.to_string() } else { NODATA.to_string() });
-        writeln!(out, "{}", words.collect::<Vec<_>>().join(" "))?;
+    // Oblong cells are GDAL's way of writing this format.
+    match across == down {
+        true => writeln!(out, "cellsize {across}")?,
+        false => writeln!(out, "dx {across}\ndy {down}")?,
+    }
+    writeln!(out, "NODATA_value {NODATA}")
+}
+
+/// Writes the next rows, `width` samples each; what is not finite is no height.
+pub fn write_rows(out: &mut dyn Write, width: usize, samples: &[f32]) -> io::Result<()> {
+    let mut text = String::new();
+    for row in samples.chunks(width.max(1)) {
+        text.clear();
+        for (i, height) in row.iter().enumerate() {
+            let gap = if i > 0 { " " } else { "" };
+            let height = if height.is_finite() { *height } else { NODATA };
+            // Writing to a string does not fail.
+            let _ = std::fmt::Write::write_fmt(&mut text, format_args!("{gap}{height}"));
+        }
+        text.push('\n');
+        out.write_all(text.as_bytes())?;
     }
     Ok(())
 }

@@ -12,9 +12,10 @@ use crate::error::Result;
 const VOID: i16 = -32768;
 
 /// Sizes there are: columns and rows.
-const SIZES: [[usize; 2]; 4] = [[1201, 1201], [3601, 3601], [1801, 3601], [601, 1201]];
+pub const SIZES: [[usize; 2]; 4] = [[1201, 1201], [3601, 3601], [1801, 3601], [601, 1201]];
 
-/// Writes heights that have one of the sizes, rounded to whole metres; NaN is no height.
+/// Writes heights, all those of one of the sizes, some rows at a time: rounded to the nearest whole metre, halves away from zero; NaN is no
+/// height.
 pub fn write(out: &mut dyn Write, heights: &[f32]) -> std::io::Result<()> {
     let mut bytes = Vec::with_capacity(1 << 16);
     for piece in heights.chunks(1 << 15) {
@@ -64,7 +65,7 @@ fn open(input: &mut dyn Input, name: &str, allowed: u64) -> std::result::Result<
 }
 
 /// Latitude and longitude of the south-west corner, from a name such as N46E007.hgt or s09w077.SRTMGL1.hgt.
-fn corner(name: &str) -> Option<[f64; 2]> {
+pub fn corner(name: &str) -> Option<[f64; 2]> {
     let file = name.rsplit(['/', '\\']).next()?;
     let sign = |at: usize, plus: char, minus: char| match file.chars().nth(at)?.to_ascii_uppercase() {
         c if c == plus => Some(1.0),

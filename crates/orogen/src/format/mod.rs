@@ -3,12 +3,16 @@
 
 pub mod asc;
 pub mod dem;
+pub mod encoding;
+pub mod exr;
 pub mod geotiff;
 pub mod grey;
+pub mod half;
 pub mod hgt;
 pub mod import;
 pub mod levels;
 pub mod npy;
+pub mod pgm;
 pub mod png;
 pub mod raw;
 pub mod sidecar;

@@ -27,6 +27,8 @@ pub enum Pixel {
     Data8,
     /// Three numbers of two bytes, the higher first, that are no colour.
     Data16,
+    /// Four bytes of data that are neither colour nor opacity, such as weights.
+    Weights8,
 }
 
 impl Pixel {
@@ -37,6 +39,7 @@ impl Pixel {
             Pixel::Grey16 => 2,
             Pixel::Rgb8 | Pixel::Data8 => 3,
             Pixel::Data16 => 6,
+            Pixel::Weights8 => 4,
         }
     }
 }
@@ -71,17 +74,31 @@ pub fn write(
     picture: &Picture,
     mut fill: impl FnMut(Range<usize>, &mut [u8]) -> io::Result<()>,
 ) -> io::Result<()> {
+    write_through(out, picture, |rows| {
+        let row_bytes = picture.width * picture.pixel.bytes();
+        let rows_a_band = (BAND / row_bytes).clamp(1, picture.height);
+        let mut band = vec![0; rows_a_band * row_bytes];
+        for first in (0..picture.height).step_by(rows_a_band) {
+            let last = (first + rows_a_band).min(picture.height);
+            let bytes = &mut band[..(last - first) * row_bytes];
+            fill(first..last, bytes)?;
+            rows.write_all(bytes)?;
+        }
+        Ok(())
+    })
+}
+
+/// Writes a picture whose bytes `body` writes as they come, row after row from the top: exactly as many as the picture has.
+///
+/// Fails as [`write()`] does.
+pub fn write_through(
+    out: &mut dyn Write,
+    picture: &Picture,
+    body: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
     let mut writer = encoder(out, picture)?.write_header().map_err(plain)?;
     let mut rows = writer.stream_writer_with_size(BAND).map_err(plain)?;
-    let row_bytes = picture.width * picture.pixel.bytes();
-    let rows_a_band = (BAND / row_bytes).clamp(1, picture.height);
-    let mut band = vec![0; rows_a_band * row_bytes];
-    for first in (0..picture.height).step_by(rows_a_band) {
-        let last = (first + rows_a_band).min(picture.height);
-        let bytes = &mut band[..(last - first) * row_bytes];
-        fill(first..last, bytes)?;
-        rows.write_all(bytes)?;
-    }
+    body(&mut rows)?;
     rows.finish().map_err(plain)?;
     // Finished here and not when dropped: the last chunk's failure must not be lost.
     writer.finish().map_err(plain)
@@ -116,6 +133,7 @@ fn encoder<'a>(out: &'a mut dyn Write, picture: &Picture) -> io::Result<Encoder<
         Pixel::Grey16 => (ColorType::Grayscale, BitDepth::Sixteen),
         Pixel::Rgb8 | Pixel::Data8 => (ColorType::Rgb, BitDepth::Eight),
         Pixel::Data16 => (ColorType::Rgb, BitDepth::Sixteen),
+        Pixel::Weights8 => (ColorType::Rgba, BitDepth::Eight),
     };
     encoder.set_color(color);
     encoder.set_depth(depth);

@@ -19,15 +19,25 @@ pub enum Sample {
 
 /// Writes a grid as u16, little-endian, over the range of `levels`.
 pub fn write_r16(out: &mut dyn Write, grid: &Grid, levels: &Levels) -> io::Result<()> {
-    grid.data().chunks(1 << 15).try_for_each(|piece| {
+    write_u16(out, grid.data(), levels)
+}
+
+/// Writes a grid as f32, little-endian.
+pub fn write_r32(out: &mut dyn Write, grid: &Grid) -> io::Result<()> {
+    write_f32(out, grid.data())
+}
+
+/// Writes samples as u16, little-endian, over the range of `levels`.
+pub fn write_u16(out: &mut dyn Write, samples: &[f32], levels: &Levels) -> io::Result<()> {
+    samples.chunks(1 << 15).try_for_each(|piece| {
         let bytes: Vec<u8> = piece.iter().flat_map(|height| levels.to_u16(*height).to_le_bytes()).collect();
         out.write_all(&bytes)
     })
 }
 
-/// Writes a grid as f32, little-endian.
-pub fn write_r32(out: &mut dyn Write, grid: &Grid) -> io::Result<()> {
-    grid.data().chunks(1 << 14).try_for_each(|piece| {
+/// Writes samples as f32, little-endian.
+pub fn write_f32(out: &mut dyn Write, samples: &[f32]) -> io::Result<()> {
+    samples.chunks(1 << 14).try_for_each(|piece| {
         let bytes: Vec<u8> = piece.iter().flat_map(|height| height.to_le_bytes()).collect();
         out.write_all(&bytes)
     })
@@ -77,6 +87,7 @@ fn open(input: &mut dyn Input, sample: Sample, sidecar: &Sidecar, allowed: u64) 
             bytes.chunks_exact(4).map(height).collect()
         }
     };
+    let heights = sidecar.from_north(heights, width as usize)?;
     Dem::new([width as usize, height as usize], heights, sidecar.place(height))
 }
 

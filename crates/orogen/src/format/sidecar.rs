@@ -1,7 +1,7 @@
-//! What stands beside a file of heights that does not tell everything itself: NAME.json or NAME.toml.
+//! What stands beside a file of heights that does not tell everything itself: NAME.json or NAME.toml, for NAME.r16 also NAME.r16.json.
 //!
 //! Keys: `width`, `height` (samples); `cell` (metres from one to the next); `low`, `high` (metres of 0 and 65535, or of 0 and 255);
-//! `byte_order` ("little", unless "big"); `nodata` (a sample that is no height). Others are left alone, so that the `summary.json`
+//! `byte_order` ("little", unless "big"); `first_row` ("north", unless "south"); `nodata` (a sample that is no height). Others are left alone, so that the `summary.json`
 //! which `orogen generate` writes beside `height.png` is one too.
 
 use std::fs::File;
@@ -34,6 +34,8 @@ pub struct Sidecar {
     pub high: Option<f64>,
     /// "little" or "big".
     pub byte_order: Option<String>,
+    /// "north" or "south".
+    pub first_row: Option<String>,
     /// The sample that is no height.
     pub nodata: Option<f64>,
 }
@@ -44,7 +46,7 @@ impl Sidecar {
     /// # Errors
     /// If there is one that cannot be read.
     pub fn beside(path: &Path) -> Result<Option<Sidecar>> {
-        let mut places: Vec<PathBuf> = vec![path.with_extension("json"), path.with_extension("toml")];
+        let mut places: Vec<PathBuf> = vec![own(path), path.with_extension("json"), path.with_extension("toml")];
         if path.file_name().is_some_and(|name| name == "height.png" || name == "height8.png") {
             places.push(path.with_file_name("summary.json"));
         }
@@ -96,6 +98,27 @@ impl Sidecar {
         }
     }
 
+    /// Samples as they should be, row after row from the north.
+    ///
+    /// # Errors
+    /// If it does not tell which row is first.
+    pub fn from_north(&self, mut samples: Vec<f32>, width: usize) -> std::result::Result<Vec<f32>, String> {
+        match self.first_row.as_deref() {
+            None | Some("north") => Ok(samples),
+            Some("south") => {
+                let rows = samples.len() / width.max(1);
+                for j in 0..rows / 2 {
+                    let (upper, lower) = samples.split_at_mut((rows - 1 - j) * width);
+                    upper[j * width..(j + 1) * width].swap_with_slice(&mut lower[..width]);
+                }
+                Ok(samples)
+            }
+            Some(other) => {
+                Err(format!("the `first_row` beside it is \"{}\", not \"north\" or \"south\"", other.escape_debug()))
+            }
+        }
+    }
+
     /// The heights of the least and the greatest sample.
     ///
     /// # Errors
@@ -112,6 +135,13 @@ impl Sidecar {
         let cell = self.cell?;
         Some(Place { origin: [0.0, rows as f64 * cell - cell], step: [cell; 2], unit: Unit::Metres(1.0), keys: None })
     }
+}
+
+/// The sidecar of this file alone, whatever else is called NAME: NAME.r16.json.
+pub fn own(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_os_string();
+    name.push(".json");
+    path.with_file_name(name)
 }
 
 /// The sentence for a file that does not tell enough.
@@ -135,6 +165,19 @@ mod tests {
     }
 
     #[test]
+    fn rows_from_the_south_are_turned() {
+        let south = Sidecar { first_row: Some("south".into()), ..Sidecar::default() };
+        for (samples, expect) in [
+            (vec![1.0, 2.0, 3.0, 4.0], vec![3.0, 4.0, 1.0, 2.0]),
+            (vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0], vec![5.0, 6.0, 3.0, 4.0, 1.0, 2.0]),
+            (vec![1.0, 2.0], vec![1.0, 2.0]),
+        ] {
+            assert_eq!(south.from_north(samples, 2).unwrap(), expect);
+        }
+        assert_eq!(own(Path::new("a/b.r16")), Path::new("a/b.r16.json"));
+    }
+
+    #[test]
     fn wrong_ones_are_sentences() {
         for (text, expect) in [
             ("width = 'a'", "no sidecar of heights"),
@@ -145,6 +188,8 @@ mod tests {
             let why = Sidecar::parse(text, true).unwrap_err();
             assert!(why.contains(expect), "{text}: {why}");
         }
+        let across = Sidecar { first_row: Some("east".into()), ..Sidecar::default() };
+        assert!(across.from_north(vec![1.0], 1).unwrap_err().contains("\"east\""));
         let middle = Sidecar { byte_order: Some("middle".into()), ..Sidecar::default() };
         assert!(middle.big_endian().unwrap_err().contains("\"middle\""));
         assert!(middle.range().unwrap_err().contains("low and high"));

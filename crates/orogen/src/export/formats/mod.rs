@@ -1,6 +1,12 @@
 //! The formats, one a file. A file that declares `pub static FORMAT: Format` is one, and joins the registry by existing.
 
 // The list below is written by `cargo xtask codegen`.
+pub mod asc;
+pub mod exr;
+pub mod hgt;
 pub mod npy;
+pub mod pgm;
 pub mod png;
+pub mod r16;
+pub mod r32;
 pub mod tif;

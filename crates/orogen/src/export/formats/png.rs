@@ -1,50 +1,88 @@
-//! Grey pictures.
+//! Grey pictures, and pictures whose colours are heights.
 
 use std::io;
 
 use crate::export::files::Files;
-use crate::export::format::{Format, aside, whole};
+use crate::export::format::{Format, aside, refuse, whole};
 use crate::export::notes;
-use crate::export::options::Options;
+use crate::export::options::{OptionSpec, Options, Takes};
+use crate::export::sidecar::{self, Held, NO_SIDECAR};
+use crate::export::spread::{self, BITS, FIRST_ROW, RANGE, Spread};
 use crate::export::subject::Subject;
-use crate::format::npy;
+use crate::format::encoding::Encoding;
 use crate::format::png::{self, Picture, Pixel};
 
 /// The format.
 pub static FORMAT: Format = Format {
     name: "png",
     aliases: &[],
-    about: "16-bit grey picture, black the lowest and white the highest of the window",
-    options: &[],
+    about: "Grey picture of 16 or 8 bits, black the lowest and white the highest; or heights in its colours (--encoding)",
+    options: &[BITS, RANGE, FIRST_ROW, ENCODING, NO_SIDECAR],
     channels: 1,
     memory: |window, _| aside(whole(window)),
     write,
 };
 
-fn write(subject: &mut Subject, _: &Options, files: &mut Files) -> io::Result<String> {
-    let window = *subject.window();
-    let mut spool = files.spool();
+/// The option of colours that are heights.
+const ENCODING: OptionSpec = OptionSpec {
+    name: "encoding",
+    value: "NAME",
+    about: "Heights in red, green and blue instead of grey: terrarium, in steps of 1/256 m, or terrain-rgb, of 1/10 m",
+    takes: Takes::Word(&["terrarium", "terrain-rgb"]),
+};
+
+fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
+    match Encoding::ALL.into_iter().find(|encoding| options.word("encoding") == Some(encoding.name())) {
+        Some(encoding) => write_encoded(subject, options, files, encoding),
+        None => write_grey(subject, options, files),
+    }
+}
+
+fn write_grey(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
+    let (window, most) = (*subject.window(), spread::most(options));
+    let mut spread = Spread::new(subject, options, most, files)?;
+    let levels = spread.levels();
+    let pixel = if most == 255 { Pixel::Grey8 } else { Pixel::Grey16 };
+    let notes = notes::of_heights(window.cell, &levels);
+    let notes: Vec<(&str, &str)> = notes.iter().map(|(keyword, text)| (*keyword, text.as_str())).collect();
+    let picture = Picture { width: window.width, height: window.height, pixel, notes: &notes };
     files.write(|out| {
-        // Which height is white is known at the end: the heights wait for it.
-        subject.rows(|band| npy::write_rows(&mut spool, band[0].data()))?;
-        let levels = subject.levels();
-        let notes = notes::of_heights(window.cell, &levels);
-        let notes: Vec<(&str, &str)> = notes.iter().map(|(keyword, text)| (*keyword, text.as_str())).collect();
-        let picture = Picture { width: window.width, height: window.height, pixel: Pixel::Grey16, notes: &notes };
-        let mut heights = Vec::new();
-        png::write(out, &picture, |rows, pixels| {
-            heights.resize(2 * pixels.len(), 0);
-            spool.read(4 * (rows.start * window.width) as u64, &mut heights)?;
-            for (pixel, height) in pixels.chunks_exact_mut(2).zip(heights.chunks_exact(4)) {
-                let height = f32::from_le_bytes([height[0], height[1], height[2], height[3]]);
-                pixel.copy_from_slice(&levels.to_u16(height).to_be_bytes());
-            }
-            Ok(())
+        png::write_through(out, &picture, |out| {
+            spread.rows(|samples| spread::write_levels(out, samples, &levels, most))
         })
     })?;
+    let (sample, byte_order) = if most == 255 { ("u8", None) } else { ("u16", Some("big")) };
+    let held = Held { sample, byte_order, levels: Some(levels), from_south: spread::from_south(options) };
+    let told = sidecar::write(files, subject, options, &held)?;
+    Ok(spread::words(&levels, most) + &told)
+}
+
+fn write_encoded(
+    subject: &mut Subject,
+    options: &Options,
+    files: &mut Files,
+    encoding: Encoding,
+) -> io::Result<String> {
+    if let Some(other) = ["bits", "range"].into_iter().find(|name| options.has(name)) {
+        return refuse(format!("--encoding {} has bits and a range of its own: leave out --{other}", encoding.name()));
+    }
+    let window = *subject.window();
+    let about = format!("heights in metres as {} colours; {} metres a sample", encoding.name(), window.cell);
+    let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+    let notes = [("Software", made_by.as_str()), ("Description", about.as_str())];
+    let picture = Picture { width: window.width, height: window.height, pixel: Pixel::Data8, notes: &notes };
+    let mut spread = Spread::plain(subject, options, files)?;
+    files.write(|out| {
+        png::write_through(out, &picture, |out| {
+            spread.rows(|samples| {
+                let bytes: Vec<u8> = samples.iter().flat_map(|height| encoding.bytes(*height)).collect();
+                out.write_all(&bytes)
+            })
+        })
+    })?;
+    let held =
+        Held { sample: encoding.name(), byte_order: None, levels: None, from_south: spread::from_south(options) };
+    let told = sidecar::write(files, subject, options, &held)?;
     let levels = subject.levels();
-    Ok(match levels.is_flat() {
-        true => format!("flat at {} and so all black", levels.low()),
-        false => format!("0 is {} and 65535 is {}", levels.low(), levels.high()),
-    })
+    Ok(format!("{} to {} as {} colours{told}", levels.low(), levels.high(), encoding.name()))
 }

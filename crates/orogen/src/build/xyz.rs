@@ -1,7 +1,4 @@
-//! An XYZ tree of PNG tiles in the Terrarium encoding, with TileJSON.
-//!
-//! **Encoding.** height = 256 R + G + B / 256 - 32768, in metres: steps of 1/256 m. Beyond -32768 and 32768 m heights are clamped; a
-//! sample that is no number becomes 0, 0, 0.
+//! An XYZ tree of PNG tiles in an encoding of heights ([`Encoding`]), with TileJSON.
 //!
 //! **Place.** Web Mercator, the world's origin at 0 degrees east and north. A pixel is an area there, and a sample stands in the middle
 //! of its own. Near the equator Mercator is true to scale: one metre of the world is one metre of the map if a sample's cell is a pixel of some
@@ -21,6 +18,7 @@ use super::samples;
 use super::shelf::Shelf;
 use super::target::{Disk, Target};
 use crate::error::{Error, ErrorKind, Result};
+use crate::format::encoding::Encoding;
 use crate::format::png::{self, Picture, Pixel};
 use crate::grid::{Grid, Window};
 
@@ -45,7 +43,8 @@ pub fn cell_near(cell: f64, tile: usize) -> f64 {
 }
 
 /// The tree. Each zoom is a stage, from the deepest up.
-pub struct Terrarium {
+pub struct Tree {
+    encoding: Encoding,
     identity: Identity,
     about: String,
     /// The deepest zoom.
@@ -55,12 +54,12 @@ pub struct Terrarium {
     stages: Vec<Stage>,
 }
 
-impl Terrarium {
+impl Tree {
     /// Of a build.
     ///
     /// # Errors
     /// If tiles are not of 256 or 512 pixels, or the window does not lie on the map.
-    pub fn new(identity: &Identity, about: &str) -> Result<Terrarium> {
+    pub fn new(identity: &Identity, about: &str, encoding: Encoding) -> Result<Tree> {
         let refuse = |sentence: String| Err(Error::new(ErrorKind::Request, sentence));
         let (window, tile) = (identity.window, identity.tile);
         if !matches!(tile, 256 | 512) {
@@ -79,7 +78,8 @@ impl Terrarium {
                  smaller window, or a larger cell"
             ));
         };
-        let mut tree = Terrarium {
+        let mut tree = Tree {
+            encoding,
             identity: identity.clone(),
             about: about.to_string(),
             zoom,
@@ -185,7 +185,7 @@ impl Terrarium {
         png::write(&mut bytes, &picture, |rows, out| {
             let samples = &samples[rows.start * side..rows.end * side];
             for (pixel, sample) in out.chunks_exact_mut(3).zip(samples) {
-                pixel.copy_from_slice(&number(*sample));
+                pixel.copy_from_slice(&self.encoding.bytes(*sample));
             }
             Ok(())
         })
@@ -205,16 +205,6 @@ impl Terrarium {
     }
 }
 
-/// A height as red, green and blue.
-fn number(height: f32) -> [u8; 3] {
-    const MOST: f64 = ((1 << 24) - 1) as f64;
-    if height.is_nan() {
-        return [0; 3];
-    }
-    let steps = ((f64::from(height) + 32768.0) * 256.0).round().clamp(0.0, MOST) as u32;
-    [(steps >> 16) as u8, (steps >> 8) as u8, steps as u8]
-}
-
 /// Half the samples a side, each the mean of four.
 fn halved(samples: &[f32], side: usize) -> Vec<f32> {
     let half = side / 2;
@@ -226,7 +216,7 @@ fn halved(samples: &[f32], side: usize) -> Vec<f32> {
     (0..half).flat_map(|j| (0..half).map(move |i| (i, j))).map(mean).collect()
 }
 
-impl Target for Terrarium {
+impl Target for Tree {
     fn stages(&self) -> Vec<Stage> {
         self.stages.clone()
     }
@@ -276,7 +266,7 @@ impl Target for Terrarium {
             "maxzoom": self.zoom,
             "bounds": [west, south, east, north],
             "center": [(west + east) / 2.0, (south + north) / 2.0, lowest],
-            "encoding": "terrarium",
+            "encoding": self.encoding.tilejson(),
             "tileSize": self.tile(),
             "made_by": format!("Orogen {}", self.identity.version),
             "recipe_sha256": self.identity.recipe,
@@ -307,17 +297,6 @@ impl Target for Terrarium {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn heights_come_back_to_a_step() {
-        for height in [0.0, -0.001, 1234.567, -32768.0, 8848.86, 32767.99] {
-            let [r, g, b] = number(height).map(f64::from);
-            let back = 256.0 * r + g + b / 256.0 - 32768.0;
-            assert!((back - f64::from(height)).abs() <= 0.5 / 256.0, "{height}: {back}");
-        }
-        assert_eq!(number(f32::NAN), [0; 3]);
-        assert_eq!((number(-1e9), number(f32::INFINITY)), ([0; 3], [255; 3]));
-    }
 
     #[test]
     fn pixels_are_true_to_scale_at_the_equator() {

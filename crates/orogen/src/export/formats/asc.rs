@@ -1,0 +1,30 @@
+//! ESRI's ASCII grid.
+
+use std::io;
+
+use crate::export::files::Files;
+use crate::export::format::Format;
+use crate::export::options::Options;
+use crate::export::subject::Subject;
+use crate::format::asc;
+
+/// The format.
+pub static FORMAT: Format = Format {
+    name: "asc",
+    aliases: &[],
+    about: "ESRI ASCII grid: numbers as text, in local metres or on the map of a real place",
+    options: &[],
+    channels: 1,
+    memory: |_, _| 0,
+    write,
+};
+
+fn write(subject: &mut Subject, _: &Options, files: &mut Files) -> io::Result<String> {
+    let (window, map) = (*subject.window(), subject.map());
+    files.write(|out| {
+        asc::write_head(out, &window, map.as_ref())?;
+        subject.rows(|band| asc::write_rows(out, window.width, band[0].data()))
+    })?;
+    let levels = subject.levels();
+    Ok(format!("{} to {}", levels.low(), levels.high()))
+}

@@ -1,0 +1,81 @@
+//! OpenEXR.
+
+use std::io;
+
+use crate::export::files::Files;
+use crate::export::format::{Format, aside, whole};
+use crate::export::options::{OptionSpec, Options, Takes};
+use crate::export::subject::Subject;
+use crate::format::exr::{Picture, Sample, Writer};
+use crate::grid::Window;
+
+/// The format.
+pub static FORMAT: Format = Format {
+    name: "exr",
+    aliases: &[],
+    about: "OpenEXR of f32 in the layer's own unit (metres for heights), one channel Y, ZIP",
+    options: &[HALF, RGB],
+    channels: 8,
+    memory,
+    write,
+};
+
+/// The option of 16 bits.
+const HALF: OptionSpec = OptionSpec {
+    name: "half",
+    value: "",
+    about: "Floats of 16 bits instead of 32: steps of 2 m from 2048 m up",
+    takes: Takes::Nothing,
+};
+
+/// The option of three channels.
+const RGB: OptionSpec = OptionSpec {
+    name: "rgb",
+    value: "",
+    about: "The samples in each of the channels R, G and B instead of in Y",
+    takes: Takes::Nothing,
+};
+
+/// Packed rows that wait, and rows on their way into blocks.
+fn memory(window: &Window, _: &Options) -> u64 {
+    aside(3 * whole(window)).saturating_add((window.width as u64).saturating_mul(4 * 3 * 600))
+}
+
+fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
+    let window = *subject.window();
+    let rgb = options.has("rgb") && subject.channels() == 1;
+    let channels = match rgb {
+        true => ["R", "G", "B"].map(String::from).to_vec(),
+        false if subject.channels() == 1 => vec!["Y".to_string()],
+        false => subject.channel_names(),
+    };
+    let sample = if options.has("half") { Sample::Half } else { Sample::Float };
+    let unit = if subject.unit().is_empty() { "plain numbers" } else { subject.unit() };
+    let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+    let comments = format!("{made_by}: {} in {unit}; {} metres a sample", subject.layer(), window.cell);
+    let picture = Picture { width: window.width, height: window.height, channels, sample, comments };
+    let mut writer = Writer::new(picture, files.spool())?;
+    files.write(|out| {
+        subject.rows(|band| {
+            let samples: Vec<&[f32]> = match rgb {
+                true => vec![band[0].data(); 3],
+                false => band.iter().map(|grid| grid.data()).collect(),
+            };
+            writer.rows(&samples)
+        })?;
+        writer.finish(out)
+    })?;
+    let levels = subject.levels();
+    let rounded = match sample {
+        Sample::Half => format!(", the highest to steps of {}", half_step(levels.low().abs().max(levels.high().abs()))),
+        Sample::Float => String::new(),
+    };
+    Ok(format!("{} to {}{rounded}", levels.low(), levels.high()))
+}
+
+/// From a half of this size to the next.
+fn half_step(value: f32) -> f32 {
+    use crate::format::half::{from_f32, to_f32};
+    let half = from_f32(value.min(65000.0));
+    to_f32(half + 1) - to_f32(half)
+}

@@ -1,0 +1,38 @@
+//! Netpbm's grey pictures.
+
+use std::io;
+
+use crate::export::files::Files;
+use crate::export::format::{Format, aside, whole};
+use crate::export::notes;
+use crate::export::options::Options;
+use crate::export::sidecar::{self, Held, NO_SIDECAR};
+use crate::export::spread::{self, BITS, FIRST_ROW, RANGE, Spread};
+use crate::export::subject::Subject;
+use crate::format::pgm;
+
+/// The format.
+pub static FORMAT: Format = Format {
+    name: "pgm",
+    aliases: &[],
+    about: "Netpbm's grey picture of 16 or 8 bits, over the range of the window",
+    options: &[BITS, RANGE, FIRST_ROW, NO_SIDECAR],
+    channels: 1,
+    memory: |window, _| aside(whole(window)),
+    write,
+};
+
+fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
+    let (window, most) = (*subject.window(), spread::most(options));
+    let mut spread = Spread::new(subject, options, most, files)?;
+    let levels = spread.levels();
+    let notes: Vec<String> = notes::of_heights(window.cell, &levels).into_iter().map(|(_, text)| text).collect();
+    files.write(|out| {
+        pgm::write_head(out, [window.width, window.height], most, &notes)?;
+        spread.rows(|samples| spread::write_levels(out, samples, &levels, most))
+    })?;
+    let (sample, byte_order) = if most == 255 { ("u8", None) } else { ("u16", Some("big")) };
+    let held = Held { sample, byte_order, levels: Some(levels), from_south: spread::from_south(options) };
+    let told = sidecar::write(files, subject, options, &held)?;
+    Ok(spread::words(&levels, most) + &told)
+}

@@ -1,0 +1,125 @@
+//! What stands beside a file that does not tell everything itself: NAME.json, read again by [`format::sidecar`](crate::format::sidecar).
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::files::Files;
+use super::options::{OptionSpec, Options, Takes};
+use super::subject::Subject;
+use crate::format::levels::Levels;
+use crate::format::sidecar::own;
+
+/// The option that leaves it out.
+pub const NO_SIDECAR: OptionSpec = OptionSpec {
+    name: "no-sidecar",
+    value: "",
+    about: "Write no NAME.json, which tells size, cell, range, seed and the like, beside the file",
+    takes: Takes::Nothing,
+};
+
+/// How a file holds its samples.
+#[derive(Debug, Clone, Copy)]
+pub struct Held {
+    /// The word for a sample: "u8", "u16", "f32".
+    pub sample: &'static str,
+    /// "little" or "big", where a sample has several bytes.
+    pub byte_order: Option<&'static str>,
+    /// What the least and the greatest level stand for, where samples are levels.
+    pub levels: Option<Levels>,
+    /// Whether the rows begin in the south.
+    pub from_south: bool,
+}
+
+/// The text. The order of the keys is the file's; names that readers of ours know are theirs.
+#[derive(Debug, Serialize)]
+struct Text<'a> {
+    made_by: String,
+    file: String,
+    layer: &'a str,
+    #[serde(skip_serializing_if = "str::is_empty")]
+    unit: &'a str,
+    width: usize,
+    height: usize,
+    cell: f64,
+    sample: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    byte_order: Option<&'a str>,
+    first_row: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    low: Option<f32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    high: Option<f32>,
+    min: f32,
+    max: f32,
+    sea_level: f64,
+    seed: u64,
+    east: f64,
+    south: f64,
+    layer_sha256: String,
+    #[serde(skip_serializing_if = "str::is_empty")]
+    about: &'a str,
+}
+
+/// Writes it, unless it is not wanted; returns the words that tell of it.
+///
+/// It is NAME.json, or NAME.EXT.json where that is the sidecar of another file, or no sidecar of ours at all: a recipe, for one.
+///
+/// Fails as the files do, and if something else has both names.
+pub fn write(files: &mut Files, subject: &Subject, options: &Options, held: &Held) -> io::Result<String> {
+    let Some(path) = files.path().map(Path::to_path_buf) else { return Ok(String::new()) };
+    if options.has(NO_SIDECAR.name) || path.exists() && !path.is_file() {
+        return Ok(String::new());
+    }
+    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let place = place(&path, &name(&path));
+    let (window, world) = (subject.window(), subject.world().recipe());
+    let range = subject.levels();
+    let text = Text {
+        made_by: format!("Orogen {}", env!("CARGO_PKG_VERSION")),
+        file: name(&path),
+        layer: subject.layer(),
+        unit: subject.unit(),
+        width: window.width,
+        height: window.height,
+        cell: window.cell,
+        sample: held.sample,
+        byte_order: held.byte_order,
+        first_row: if held.from_south { "south" } else { "north" },
+        low: held.levels.map(|levels| levels.low()),
+        high: held.levels.map(|levels| levels.high()),
+        min: range.low(),
+        max: range.high(),
+        sea_level: world.world.sea_level,
+        seed: world.world.seed,
+        east: window.east(0),
+        south: window.south(0),
+        layer_sha256: subject.key().iter().map(|byte| format!("{byte:02x}")).collect(),
+        about: &world.about,
+    };
+    let json = serde_json::to_string_pretty(&text).map_err(io::Error::other)?;
+    files.write_beside(|_| place.clone(), |out| writeln!(out, "{json}"))?;
+    Ok(format!("; {} tells how to read it", name(&place)))
+}
+
+/// Where it goes: NAME.json if that is free or this file's.
+fn place(path: &Path, name: &str) -> PathBuf {
+    let short = path.with_extension("json");
+    match belongs_to(&short).as_deref() {
+        None if !short.exists() => short,
+        Some(file) if file == name || !path.with_file_name(file).exists() => short,
+        _ => own(path),
+    }
+}
+
+/// The file that a sidecar of ours tells of.
+fn belongs_to(sidecar: &Path) -> Option<String> {
+    let mut text = String::new();
+    File::open(sidecar).ok()?.take(1 << 16).read_to_string(&mut text).ok()?;
+    let value: serde_json::Value = serde_json::from_str(&text).ok()?;
+    let ours = value.get("made_by")?.as_str()?.starts_with("Orogen ");
+    let file = value.get("file")?.as_str()?;
+    ours.then(|| file.to_string())
+}

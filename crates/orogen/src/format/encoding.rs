@@ -1,0 +1,85 @@
+//! Heights in the red, green and blue of a picture, as web maps read them.
+
+/// How a height becomes three bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Encoding {
+    /// height = 256 R + G + B / 256 - 32768: steps of 1/256 m (Mapzen).
+    Terrarium,
+    /// height = (65536 R + 256 G + B) / 10 - 10000: steps of a decimetre (Mapbox).
+    TerrainRgb,
+}
+
+impl Encoding {
+    /// All there are.
+    pub const ALL: [Encoding; 2] = [Encoding::Terrarium, Encoding::TerrainRgb];
+
+    /// What users call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Encoding::Terrarium => "terrarium",
+            Encoding::TerrainRgb => "terrain-rgb",
+        }
+    }
+
+    /// What TileJSON and MapLibre call it.
+    pub fn tilejson(self) -> &'static str {
+        match self {
+            Encoding::Terrarium => "terrarium",
+            Encoding::TerrainRgb => "mapbox",
+        }
+    }
+
+    /// The height of 0, 0, 0, and the steps in a metre.
+    fn scale(self) -> (f64, f64) {
+        match self {
+            Encoding::Terrarium => (-32768.0, 256.0),
+            Encoding::TerrainRgb => (-10000.0, 10.0),
+        }
+    }
+
+    /// A height as red, green and blue, to the nearest step. Heights beyond the ends of the encoding are clamped; what is no number becomes
+    /// 0, 0, 0.
+    pub fn bytes(self, height: f32) -> [u8; 3] {
+        const MOST: f64 = ((1 << 24) - 1) as f64;
+        if height.is_nan() {
+            return [0; 3];
+        }
+        let (base, steps) = self.scale();
+        let steps = ((f64::from(height) - base) * steps).round().clamp(0.0, MOST) as u32;
+        [(steps >> 16) as u8, (steps >> 8) as u8, steps as u8]
+    }
+
+    /// The height that three bytes stand for.
+    pub fn height(self, bytes: [u8; 3]) -> f64 {
+        let (base, steps) = self.scale();
+        f64::from(u32::from_be_bytes([0, bytes[0], bytes[1], bytes[2]])) / steps + base
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heights_come_back_to_half_a_step() {
+        for encoding in Encoding::ALL {
+            let (base, steps) = encoding.scale();
+            for height in [0.0f32, -0.001, 1234.567, -9999.0, 8848.86, 32767.99] {
+                let back = encoding.height(encoding.bytes(height));
+                assert!((back - f64::from(height)).abs() <= 0.5001 / steps, "{height}: {back}");
+            }
+            assert_eq!(encoding.bytes(f32::NAN), [0; 3]);
+            assert_eq!((encoding.bytes(-1e9), encoding.bytes(f32::INFINITY)), ([0; 3], [255; 3]));
+            assert_eq!(encoding.height([0; 3]), base);
+        }
+    }
+
+    #[test]
+    fn the_published_examples_hold() {
+        // Mapbox's documentation: 65536 R + 256 G + B tenths above -10000.
+        assert_eq!(Encoding::TerrainRgb.height([1, 134, 160]), 0.0);
+        assert_eq!(Encoding::TerrainRgb.bytes(0.0), [1, 134, 160]);
+        // Mapzen's: sea level is 128, 0, 0.
+        assert_eq!(Encoding::Terrarium.bytes(0.0), [128, 0, 0]);
+    }
+}

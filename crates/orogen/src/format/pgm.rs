@@ -1,0 +1,28 @@
+//! PGM (Netpbm, `P5`): the simplest picture there is, grey of 8 or 16 bits.
+//!
+//! A head as text (size and the largest level), then the levels, row after row; those of two bytes begin with the higher.
+
+use std::io::{self, Write};
+
+/// Writes the head of a picture whose largest level is 255 or 65535. `notes` become comments, a line each. All levels must follow, of one
+/// byte or of two, the higher first.
+pub fn write_head(out: &mut dyn Write, size: [usize; 2], most: u16, notes: &[String]) -> io::Result<()> {
+    writeln!(out, "P5")?;
+    for note in notes {
+        // A line's end would end the comment.
+        writeln!(out, "# {}", note.replace(['\n', '\r'], " "))?;
+    }
+    writeln!(out, "{} {}\n{most}", size[0], size[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_head_is_text() {
+        let mut bytes = Vec::new();
+        write_head(&mut bytes, [3, 2], 65535, &["a\nb".into()]).unwrap();
+        assert_eq!(String::from_utf8(bytes).unwrap(), "P5\n# a b\n3 2\n65535\n");
+    }
+}
