@@ -9,6 +9,7 @@ mod generate;
 mod measure;
 mod noise;
 mod options;
+mod outputs;
 mod resolution;
 mod rows;
 mod world;
@@ -25,6 +26,7 @@ const AREAS: &[Area] = &[
     ("erosion", erosion::run),
     ("generate", generate::run),
     ("world", world::run),
+    ("outputs", outputs::run),
     ("resolution", resolution::run),
 ];
 

@@ -24,6 +24,7 @@ Builds the benches at full optimisation, measures one area (or each in turn) and
                          (by pip; one that does not install is left out), erosion by filters, one thread, CPU time, and two
                          threads; OROGEN_RICHDEM, OROGEN_FASTSCAPELIB and OROGEN_MATPLOTLIB name the Python that has them
                generate  every preset from the command to the last file, all cores, wall clock
+               outputs   contours beside contourpy (by pip; OROGEN_CONTOURPY names a Python that has it)
                world     chunks, tiles with halos, threads and whole builds of the preset `hills`; the builds (--case build) take
                          minutes and a dozen GiB of disk
   --json FILE  write the rows as JSON too; needs an AREA once there are several
@@ -40,7 +41,7 @@ How to read the table: docs/benchmarks.md.
 ";
 
 /// Every area, as the bench program names it.
-const AREAS: &[&str] = &["noise", "erosion", "generate", "world"];
+const AREAS: &[&str] = &["noise", "erosion", "generate", "world", "outputs"];
 
 /// Needs what is not part of the project, so it is measured only where it is named.
 const REALISM: &str = "realism";
@@ -71,9 +72,7 @@ pub fn run(args: &[String]) -> Result {
             continue;
         }
         let mut command = shell::cargo("run --quiet --profile bench --package orogen-bench --features peers --");
-        if area == "erosion" {
-            command.envs(peers::installed());
-        }
+        command.envs(peers::installed(area));
         let measured = shell::capture(command.arg(area).args(&options.passed).env("OROGEN_BIN", &program))?;
         let report = report::Report::read(&measured)?;
         println!("{}", report.heading());

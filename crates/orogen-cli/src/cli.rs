@@ -5,7 +5,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 use orogen::Level;
 
 use crate::command::{
-    analyze, build, compare, completions, explain, export, fit, generate, grow, new, noise, ops, presets, schema,
+    analyze, build, compare, completions, explain, export, fit, generate, grow, new, noise, ops, palettes, presets,
+    schema,
 };
 use crate::failure::Failure;
 
@@ -44,6 +45,8 @@ enum Command {
     Noise(noise::Args),
     /// Draw the noises side by side on one page, as heights and as hillshade.
     Compare(compare::Args),
+    /// List the palettes for maps, or draw them all on one page.
+    Palettes(palettes::Args),
     /// Print the JSON Schema of recipes, for editors.
     Schema,
     /// Show how a recipe would be made: its nodes in order, and the memory it takes.
@@ -69,6 +72,7 @@ impl Cli {
             Command::Ops(args) => ops::run(&args),
             Command::Noise(args) => noise::run(&args),
             Command::Compare(args) => compare::run(&args),
+            Command::Palettes(args) => palettes::run(&args),
             Command::Schema => schema::run(),
             Command::Explain(args) => explain::run(&args),
             Command::Completions(args) => completions::run(&args, Cli::command()),

@@ -1,11 +1,12 @@
-//! The peers of area `erosion`: Python packages, each in a virtual environment of its own.
+//! The peers that are no crates: Python packages, each in a virtual environment of its own.
 
 use std::path::PathBuf;
 
 use crate::shell;
 
-/// A peer: the variable in which the bench program looks for its Python, what to install, and the Pythons it installs on.
+/// A peer: the area that it is measured in, the variable in which the bench program looks for its Python, what to install, and the Pythons it installs on.
 struct Peer {
+    area: &'static str,
     variable: &'static str,
     name: &'static str,
     packages: &'static [&'static str],
@@ -15,29 +16,40 @@ struct Peer {
 const PEERS: &[Peer] = &[
     // Its last release on PyPI is source that compiles with no newer Python.
     Peer {
+        area: "erosion",
         variable: "OROGEN_RICHDEM",
         name: "richdem",
         packages: &["numpy<2", "richdem==0.3.4"],
         pythons: &["python3.10", "python3.9", "python3.8"],
     },
     Peer {
+        area: "erosion",
         variable: "OROGEN_FASTSCAPELIB",
         name: "fastscapelib",
         packages: &["numpy", "fastscapelib==0.3.0"],
         pythons: &["python3", "python3.12", "python3.11", "python3.10"],
     },
     Peer {
+        area: "erosion",
         variable: "OROGEN_MATPLOTLIB",
         name: "matplotlib",
         packages: &["numpy", "matplotlib==3.10.7"],
         pythons: &["python3", "python3.13", "python3.12", "python3.11", "python3.10"],
     },
+    Peer {
+        area: "outputs",
+        variable: "OROGEN_CONTOURPY",
+        name: "contourpy",
+        packages: &["numpy", "contourpy==1.3.3"],
+        pythons: &["python3", "python3.13", "python3.12", "python3.11"],
+    },
 ];
 
-/// The Pythons of the peers that can be had, each with its variable; one that is set already is taken as it is. What cannot be
+/// The Pythons of an area's peers that can be had, each with its variable; one that is set already is taken as it is. What cannot be
 /// had is named on the error output.
-pub fn installed() -> Vec<(&'static str, PathBuf)> {
-    PEERS.iter().filter_map(|peer| Some((peer.variable, install(peer)?))).collect()
+pub fn installed(area: &str) -> Vec<(&'static str, PathBuf)> {
+    let peers = PEERS.iter().filter(|peer| peer.area == area);
+    peers.filter_map(|peer| Some((peer.variable, install(peer)?))).collect()
 }
 
 fn install(peer: &Peer) -> Option<PathBuf> {

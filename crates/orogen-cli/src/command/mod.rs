@@ -12,5 +12,6 @@ pub mod grow;
 pub mod new;
 pub mod noise;
 pub mod ops;
+pub mod palettes;
 pub mod presets;
 pub mod schema;

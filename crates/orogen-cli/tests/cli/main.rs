@@ -12,4 +12,5 @@ mod generate;
 mod harness;
 mod noise;
 mod others;
+mod palettes;
 mod watch;

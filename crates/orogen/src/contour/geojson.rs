@@ -11,8 +11,8 @@ use crate::format::dem::Georeference;
 ///
 /// RFC 7946 wants longitude and latitude (WGS 84). A `map` in those is written so. One in another system is written in its own
 /// coordinates, with the `crs` member of the older GeoJSON 2008, which GDAL and QGIS read. Without a map, coordinates are metres
-/// east and north of the world's origin (north is up: y is the southing with its sign turned), and `crs` is null: nowhere on
-/// Earth. `cell` is the distance between samples in metres; coordinates are rounded to a thousandth of it or finer.
+/// east and north of the world's origin (north is up: y is the southing with its sign turned), and `crs` names local metres as
+/// WKT, which GDAL reads, too: nowhere on Earth. `cell` is the distance between samples in metres; coordinates are rounded to a thousandth of it or finer.
 ///
 /// # Errors
 /// What writing brings.
@@ -25,7 +25,7 @@ pub fn write(
 ) -> io::Result<()> {
     write!(out, "{{\"type\":\"FeatureCollection\",\"name\":\"contours\",")?;
     match map.map(Georeference::epsg) {
-        None => write!(out, "\"crs\":null,")?,
+        None => write!(out, "{LOCAL}")?,
         // WGS 84, which is what RFC 7946 takes for granted; or a place whose system the file does not tell.
         Some(None | Some(4326)) => {}
         Some(Some(code)) => {
@@ -58,6 +58,12 @@ pub fn write(
     }
     writeln!(out, "\n]}}")
 }
+
+/// Metres that lie nowhere on Earth.
+const LOCAL: &str = concat!(
+    r#""crs":{"type":"name","properties":{"name":"ENGCRS[\"local metres\",EDATUM[\"origin of the world\"],CS[Cartesian,2],"#,
+    r#"AXIS[\"easting\",east],AXIS[\"northing\",north],LENGTHUNIT[\"metre\",1]]"}},"#
+);
 
 /// Decimals that tell a thousandth of a step.
 pub fn decimals(step: f64) -> usize {
@@ -113,7 +119,8 @@ mod tests {
     #[test]
     fn local_metres_have_north_up_and_no_place_on_earth() {
         let json = written(None);
-        assert_eq!((&json["crs"], json["type"].as_str()), (&Value::Null, Some("FeatureCollection")));
+        assert_eq!(json["type"], "FeatureCollection");
+        assert!(json["crs"]["properties"]["name"].as_str().unwrap().starts_with("ENGCRS[\"local metres\""));
         let first = &json["features"][0];
         assert_eq!(first["geometry"]["type"], "LineString");
         assert_eq!(first["geometry"]["coordinates"], serde_json::json!([[0, 0], [10.25, -30]]));

@@ -2,11 +2,13 @@
 &[
     &formats::asc::FORMAT,
     &formats::exr::FORMAT,
+    &formats::geojson::FORMAT,
     &formats::hgt::FORMAT,
     &formats::npy::FORMAT,
     &formats::pgm::FORMAT,
     &formats::png::FORMAT,
     &formats::r16::FORMAT,
     &formats::r32::FORMAT,
+    &formats::svg::FORMAT,
     &formats::tif::FORMAT,
 ]

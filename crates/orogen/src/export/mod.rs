@@ -18,6 +18,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod contours;
 pub mod files;
 pub mod format;
 pub mod formats;

@@ -22,6 +22,17 @@ impl Canvas {
         Canvas { width, height, pixels: vec![paper; width * height] }
     }
 
+    /// A page of these pixels, row after row; what is missing at the end is white.
+    pub fn of(width: usize, height: usize, mut pixels: Vec<Ink>) -> Canvas {
+        pixels.resize(width * height, [255; 3]);
+        Canvas { width, height, pixels }
+    }
+
+    /// All pixels, row after row.
+    pub fn pixels(&self) -> &[Ink] {
+        &self.pixels
+    }
+
     /// Pixels a row.
     pub fn width(&self) -> usize {
         self.width

@@ -3,4 +3,5 @@
 pub mod canvas;
 pub mod paint;
 pub mod shade;
+pub mod swatches;
 pub mod text;

@@ -9,7 +9,8 @@ use super::shade::Shade;
 use crate::analysis::slope::{beyond, extend_row, gradients_between};
 use crate::format::png::{self, Picture, Pixel};
 use crate::grid::Grid;
-use crate::palette::{Encoder, Tint};
+use crate::palette::color::Encoder;
+use crate::palette::tint::Tint;
 
 /// How much of the land's shading the sea floor gets: water lies over it.
 const UNDER_WATER: f32 = 0.35;

@@ -3,10 +3,12 @@
 // The list below is written by `cargo xtask codegen`.
 pub mod asc;
 pub mod exr;
+pub mod geojson;
 pub mod hgt;
 pub mod npy;
 pub mod pgm;
 pub mod png;
 pub mod r16;
 pub mod r32;
+pub mod svg;
 pub mod tif;

@@ -1,0 +1,26 @@
+//! Area `outputs`: what the files that people take away cost, beside the programs that make such files otherwise.
+
+mod contours;
+mod ground;
+
+use serde_json::{Value, json};
+
+use crate::options::Options;
+use crate::world::figure::Figure;
+
+/// A case: what is measured, and how.
+type Case = (&'static str, fn(&Options) -> Result<Vec<Figure>, String>);
+
+/// Every case.
+const CASES: &[Case] = &[("contours", contours::measure)];
+
+/// Measures every case, or those named.
+pub fn run(options: &Options) -> Result<Value, String> {
+    let mut rows: Vec<Value> = Vec::new();
+    for (name, measure) in CASES.iter().filter(|(name, _)| name.contains(&options.case)) {
+        eprintln!("{name} ...");
+        rows.extend(measure(options)?.iter().map(Figure::json));
+    }
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    Ok(json!({ "area": "outputs", "simd": orogen_simd::Level::current().name(), "threads": threads, "rows": rows }))
+}

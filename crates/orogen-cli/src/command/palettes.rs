@@ -1,0 +1,56 @@
+//! `orogen palettes`.
+
+use std::path::PathBuf;
+
+use orogen::file;
+use orogen::map::swatches::{self, Swatch};
+use orogen::palette::{named, read};
+
+use crate::failure::Failure;
+use crate::say;
+
+/// What it takes.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Palettes from files to show as well: .cpt, .gpl, .toml, or colour files of gdaldem
+    files: Vec<PathBuf>,
+    /// Picture of all palettes to write, a .png
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Leave out the list
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Lists the palettes, and draws them.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    if let Some(out) = &args.out
+        && !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
+    {
+        return Err(Failure::Usage("the page is a picture; name a file that ends in .png".into()));
+    }
+    let mut shown: Vec<Swatch> = named::all()
+        .iter()
+        .map(|named| Swatch { palette: named.palette(), about: named.about.into(), safe: named.safe })
+        .collect();
+    for path in &args.files {
+        let palette = read::read(path)?;
+        shown.push(Swatch { about: path.display().to_string(), palette, safe: false });
+    }
+    if let Some(out) = &args.out {
+        let page = swatches::draw(&shown)?;
+        let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+        file::write_whole(out, |out| page.write_png(out, &[("Software", &software)]))?;
+    }
+    if args.quiet {
+        return Ok(());
+    }
+    let longest = shown.iter().map(|swatch| swatch.palette.name.chars().count()).max().unwrap_or(0);
+    let mut text = String::new();
+    for Swatch { palette, about, safe } in &shown {
+        let mark = if *safe { "*" } else { " " };
+        text.push_str(&format!("{:longest$} {mark} {about}\n", palette.name));
+    }
+    text.push_str("\n* colour-blind people can tell its heights apart\n");
+    say::out(&text)
+}

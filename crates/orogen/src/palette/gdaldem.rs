@@ -1,0 +1,102 @@
+//! Colour files of `gdaldem color-relief`.
+//!
+//! A line is a height and three numbers from 0 to 255, or a colour's name, apart by blanks, tabs, commas or colons; a fourth
+//! number, the opacity, is passed over. The height may be a percentage of the range, or `nv` for places without height.
+
+use super::color::Rgb;
+use super::names::named;
+use super::palette::{Mix, Palette, Position, Stop};
+
+/// Reads such a file.
+///
+/// # Errors
+/// With the line that cannot be read, as a sentence.
+pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
+    let mut palette = Palette { name: name.to_string(), mix: Mix::Rgb, ..Palette::default() };
+    for (number, line) in text.lines().enumerate().map(|(k, line)| (k + 1, line)) {
+        let line = line.split('#').next().unwrap_or_default();
+        let words: Vec<&str> = line.split([' ', '\t', ',', ':', '\r']).filter(|word| !word.is_empty()).collect();
+        let [at, rest @ ..] = &words[..] else { continue };
+        let color = color(rest).map_err(|why| format!("line {number}: {why}"))?;
+        if at.eq_ignore_ascii_case("nv") {
+            palette.missing = Some(color);
+            continue;
+        }
+        // What `gdaldem` has for values that no line names; nearest stops do better here.
+        if at.eq_ignore_ascii_case("default") {
+            continue;
+        }
+        let number_of = |text: &str| text.parse::<f64>().ok().filter(|value| value.abs() <= 1e9);
+        let at = match at.strip_suffix('%') {
+            Some(percent) => number_of(percent).map(|percent| Position::Share(percent / 100.0)),
+            None => number_of(at).map(Position::Value),
+        };
+        let at = at.ok_or_else(|| format!("line {number}: `{}` is no height, no percentage and not nv", words[0]))?;
+        palette.stops.push(Stop { at, color });
+    }
+    match palette.stops.is_empty() {
+        true => Err("it has no line of a height and a colour, such as `1200 230 220 190`".into()),
+        false => Ok(ordered(palette)),
+    }
+}
+
+fn color(words: &[&str]) -> Result<Rgb, String> {
+    match words {
+        [name] => named(name).ok_or_else(|| format!("`{name}` is no colour: it takes a name or three numbers")),
+        [red, green, blue] | [red, green, blue, _] => {
+            let mut color = [0; 3];
+            for (part, text) in color.iter_mut().zip([red, green, blue]) {
+                let value = text.parse::<f64>().ok().filter(|value| (0.0..=255.0).contains(value));
+                *part = value.ok_or_else(|| format!("`{text}` is no part of a colour: a number from 0 to 255"))? as u8;
+            }
+            Ok(color)
+        }
+        _ => Err("after the height come a colour's name or its red, green and blue".into()),
+    }
+}
+
+/// The stops in ascending order, those of one height as they were.
+fn ordered(mut palette: Palette) -> Palette {
+    let place = |stop: &Stop| match stop.at {
+        Position::Value(at) | Position::Share(at) | Position::Sea(at) => at,
+    };
+    palette.stops.sort_by(|a, b| place(a).total_cmp(&place(b)));
+    palette
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heights_percentages_names_and_missing() {
+        let text =
+            "# a comment\n100%  white\n0% 0 100 0 255\n\n1500:10,20,30 # and another\nnv\tgrey50\ndefault 1 2 3\n";
+        let palette = parse("t", text).unwrap();
+        let stop = |at, color| Stop { at, color };
+        assert_eq!(
+            palette.stops,
+            [
+                stop(Position::Share(0.0), [0, 100, 0]),
+                stop(Position::Share(1.0), [255; 3]),
+                stop(Position::Value(1500.0), [10, 20, 30])
+            ]
+        );
+        assert_eq!((palette.missing, palette.mix), (Some([128; 3]), Mix::Rgb));
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_line() {
+        for (text, expect) in [
+            ("10 1 2 3\nhigh 1 2 3", "line 2: `high` is no height"),
+            ("10 1 2", "line 1: after the height"),
+            ("10 1 2 256", "line 1: `256` is no part"),
+            ("10 blurple", "line 1: `blurple` is no colour"),
+            ("1e300 1 2 3", "line 1: `1e300`"),
+            ("# nothing\n", "no line of a height"),
+        ] {
+            let why = parse("t", text).unwrap_err();
+            assert!(why.contains(expect), "{why}");
+        }
+    }
+}
