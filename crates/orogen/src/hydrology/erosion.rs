@@ -4,6 +4,7 @@ use super::accumulation::{Accumulation, accumulate};
 use super::creep::creep_again;
 use super::drainage;
 use super::outlets::Outlets;
+use super::points::Points;
 use super::steepest::Descent;
 use super::stream_power::{Ground, StreamPower};
 use crate::error::Result;
@@ -22,6 +23,8 @@ pub struct Erosion {
     pub steps: u32,
     /// Hashed into the scattered ways of the water in each step; none for the steepest way always.
     pub scattered: Option<u32>,
+    /// By how much of half a cell points stand off the lattice, 0 to 1. Between points off the lattice no way is scattered.
+    pub irregular: f64,
 }
 
 impl Erosion {
@@ -43,15 +46,28 @@ impl Erosion {
         let outlets = Outlets::new(heights, sea_level);
         let years = self.years / f64::from(self.steps.max(1));
         let mut buffers = Vec::new();
+        let salt = self.scattered.unwrap_or_default();
+        let points = (self.irregular > 0.0).then(|| Points::new(*heights.window(), self.irregular, salt));
+        let between = Ground { points: points.as_ref(), ..*ground };
         for step in 0..self.steps {
             go_on()?;
             // Other ways in each step: over the steps a slope's water spreads as wide as it would in nature.
-            let descent = self.scattered.map_or(Descent::Steepest, |seed| Descent::Scattered(seed.wrapping_add(step)));
-            self.cut(heights, &outlets, ground, descent, years);
+            let descent = match (&points, self.scattered) {
+                (Some(points), _) => Descent::Between(points),
+                (None, Some(seed)) => Descent::Scattered(seed.wrapping_add(step)),
+                (None, None) => Descent::Steepest,
+            };
+            self.cut(heights, &outlets, &between, descent, years);
             creep_again(heights, &outlets, years * self.creep, &mut buffers);
         }
         go_on()?;
-        self.cut(heights, &outlets, ground, Descent::Steepest, 0.0);
+        let mut last = *self;
+        if let Some(points) = &points {
+            points.onto_lattice(heights, &outlets);
+            // What was too steep has slid between the points; along the lattice it would fall into facets after all.
+            last.law.steepest = f64::INFINITY;
+        }
+        last.cut(heights, &outlets, ground, Descent::Steepest, 0.0);
         Ok(accumulate(&drainage::over_surface(heights, &outlets, Descent::Steepest)))
     }
 
@@ -68,7 +84,7 @@ mod tests {
     use crate::hydrology::samples;
 
     fn erosion() -> Erosion {
-        Erosion { law: StreamPower::default(), creep: 1e-6, years: 1e5, steps: 4, scattered: Some(1) }
+        Erosion { law: StreamPower::default(), creep: 1e-6, years: 1e5, steps: 4, scattered: Some(1), irregular: 0.0 }
     }
 
     fn eroded(heights: &Grid, erosion: &Erosion, sea: Option<f32>) -> Grid {
@@ -80,9 +96,9 @@ mod tests {
     #[test]
     fn every_cell_drains_downhill_and_the_sea_stays() {
         for heights in samples::grids() {
-            for sea in [None, Some(250.0)] {
+            for (sea, irregular) in [(None, 0.0), (Some(250.0), 0.0), (None, 1.0), (Some(250.0), 0.6)] {
                 let outlets = Outlets::new(&heights, sea);
-                let out = eroded(&heights, &erosion(), sea);
+                let out = eroded(&heights, &Erosion { irregular, ..erosion() }, sea);
                 let receivers = super::super::steepest::receivers(&out, &outlets, Descent::Steepest);
                 for c in 0..out.data().len() {
                     match outlets.at(c) {
@@ -99,10 +115,36 @@ mod tests {
         let heights = samples::hills(150, 130, 3);
         let run = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| eroded(&heights, &erosion(), Some(100.0)))
+            pool.install(|| {
+                [0.0, 1.0].map(|irregular| eroded(&heights, &Erosion { irregular, ..erosion() }, Some(100.0)))
+            })
         };
         let one = run(1);
-        assert!(one != heights && [2, 3, 8].map(run).iter().all(|other| *other == one));
+        assert!(one[0] != heights && one[0] != one[1] && [2, 3, 8].map(run).iter().all(|other| *other == one));
+    }
+
+    #[test]
+    fn slopes_between_irregular_points_do_not_face_the_grids_directions() {
+        // Ground that rises until it stands at the talus angle all over.
+        let heights = samples::hills(160, 160, 3);
+        let aligned = |irregular: f64| {
+            let law = StreamPower { uplift: 1.0, erodibility: 1e-6, steepest: 0.8, ..StreamPower::default() };
+            let run = Erosion { law, irregular, years: 1e6, steps: 60, creep: 1e-6, scattered: Some(1) };
+            let out = eroded(&heights, &run, None);
+            let mut bins = [0u32; 9];
+            for j in 10..150 {
+                for i in 10..150 {
+                    let east = out.get(i + 1, j) - out.get(i - 1, j);
+                    let south = out.get(i, j + 1) - out.get(i, j - 1);
+                    let off = libm::atan2(f64::from(south), f64::from(east)).to_degrees().rem_euclid(45.0);
+                    bins[((off / 5.0) as usize).min(8)] += 1;
+                }
+            }
+            f64::from(bins[4]) / f64::from(bins.iter().sum::<u32>())
+        };
+        // On the lattice nearly all face what lies between two of its directions; otherwise each ninth has its ninth.
+        let (regular, irregular) = (aligned(0.0), aligned(1.0));
+        assert!(regular > 0.9 && (0.08..0.14).contains(&irregular), "{regular} {irregular}");
     }
 
     #[test]

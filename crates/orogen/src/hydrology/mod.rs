@@ -13,6 +13,7 @@ pub mod flats;
 pub mod lakes;
 pub mod least_cost;
 pub mod outlets;
+pub mod points;
 pub mod receivers;
 pub mod rivers;
 #[cfg(test)]

@@ -2,19 +2,22 @@
 
 use super::direction::{NONE, STEPS, hashed, one_of};
 use super::outlets::Outlets;
+use super::points::Points;
 use super::receivers::Receivers;
 use crate::grid::Grid;
 use rayon::prelude::*;
 
 /// Which lower neighbour a cell drains to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Descent {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Descent<'a> {
     /// The one to which it falls most steeply (O'Callaghan and Mark 1984): the drop, over square root of 2 on a diagonal.
     Steepest,
     /// The same with the diagonal's drop over a random length from 1 to 2, hashed from the cell's place and this number (Rho8,
     /// Fairfield and Leymarie 1991): water on a slope that lies between two directions takes now the one, now the other, and
     /// on the average goes where the slope does. D8 takes the same one all the way and draws straight parallel lines.
     Scattered(u32),
+    /// The one to which it falls most steeply between points off the lattice.
+    Between(&'a Points),
 }
 
 /// The neighbour to which each cell drains. Outlets, and cells without a lower neighbour, have none. Between equals a hash of
@@ -37,7 +40,11 @@ pub fn receivers(heights: &Grid, outlets: &Outlets, descent: Descent) -> Receive
                     *diagonal = scattered(window.x + i as i64 + 1, y, salt);
                 }
             }
-            steepest_sets([heights.row(j - 1), heights.row(j), heights.row(j + 1)], diagonals, codes);
+            let rows = [heights.row(j - 1), heights.row(j), heights.row(j + 1)];
+            match descent {
+                Descent::Between(points) => steepest_between(rows, points.around(j), codes),
+                _ => steepest_sets(rows, diagonals, codes),
+            }
             for (i, (code, outlet)) in codes.iter_mut().zip(outlets.mask().row(j)).enumerate() {
                 *code = if *outlet { NONE } else { chosen(*code, window.x + i as i64, y) };
             }
@@ -63,12 +70,7 @@ fn chosen(set: u8, x: i64, y: i64) -> u8 {
 fn steepest_sets(rows: [&[f32]; 3], diagonals: &[f32], sets: &mut [u8]) {
     let count = sets.len() - 2;
     let middle = &rows[1][1..=count];
-    // Eight rows of neighbours, each as long as the row of middles: loops over equal slices become SIMD.
-    let around = STEPS.map(|(east, south)| {
-        let start = (1 + east) as usize;
-        &rows[(1 + south) as usize][start..start + count]
-    });
-    let [e, se, s, sw, w, nw, n, ne] = around.map(|row| &row[..count]);
+    let [e, se, s, sw, w, nw, n, ne] = around(rows, count);
     let diagonals = &diagonals[..count];
     for (i, set) in sets[1..=count].iter_mut().enumerate() {
         let (h, diagonal) = (middle[i], diagonals[i]);
@@ -82,13 +84,39 @@ fn steepest_sets(rows: [&[f32]; 3], diagonals: &[f32], sets: &mut [u8]) {
             h - n[i],
             (h - ne[i]) * diagonal,
         ];
-        let most = drops.iter().fold(f32::MIN_POSITIVE, |most, drop| if *drop > most { *drop } else { most });
-        let mut found = 0u32;
-        for (k, drop) in drops.iter().enumerate() {
-            found |= u32::from(*drop == most) << k;
-        }
-        *set = found as u8;
+        *set = largest(&drops);
     }
+}
+
+/// The same where each neighbour's drop counts as much as the row of its direction in `nearness` says.
+fn steepest_between(rows: [&[f32]; 3], nearness: [&[f32]; 8], sets: &mut [u8]) {
+    let count = sets.len() - 2;
+    let middle = &rows[1][1..=count];
+    let around = around(rows, count);
+    let nearness = nearness.map(|row| &row[..count]);
+    for (i, set) in sets[1..=count].iter_mut().enumerate() {
+        *set = largest(&std::array::from_fn(|k| (middle[i] - around[k][i]) * nearness[k][i]));
+    }
+}
+
+/// The eight rows of neighbours of the inner cells, each as long as the row of these: loops over equal slices become SIMD.
+#[inline(always)]
+fn around<'a>(rows: [&'a [f32]; 3], count: usize) -> [&'a [f32]; 8] {
+    STEPS.map(|(east, south)| {
+        let start = (1 + east) as usize;
+        &rows[(1 + south) as usize][start..start + count]
+    })
+}
+
+/// The set of the largest drops, if they are any.
+#[inline(always)]
+fn largest(drops: &[f32; 8]) -> u8 {
+    let most = drops.iter().fold(f32::MIN_POSITIVE, |most, drop| if *drop > most { *drop } else { most });
+    let mut found = 0u32;
+    for (k, drop) in drops.iter().enumerate() {
+        found |= u32::from(*drop == most) << k;
+    }
+    found as u8
 }
 
 #[cfg(test)]

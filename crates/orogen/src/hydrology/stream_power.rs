@@ -18,7 +18,8 @@
 //! the ground is raised with sediment until water runs.
 
 use super::accumulation::Accumulation;
-use super::direction::DISTANCES;
+use super::direction::{DISTANCES, strides};
+use super::points::Points;
 use super::receivers::Receivers;
 use crate::grid::Grid;
 use rayon::prelude::*;
@@ -61,6 +62,8 @@ pub struct Ground<'a> {
     pub softness: Option<&'a Grid>,
     /// Of the uplift; 1 everywhere if there is none.
     pub rise: Option<&'a Grid>,
+    /// Where each cell's height stands, which says how far it is from its receiver; on the lattice if there are none.
+    pub points: Option<&'a Points>,
 }
 
 impl StreamPower {
@@ -116,8 +119,11 @@ struct Step<'a> {
     rise: Option<&'a [f32]>,
     powers: Powers,
     slope_exponent: f64,
-    /// Years, erodibility and the way to the power n, by direction; the least and the most that a cell stands above its receiver.
+    /// By direction, years, erodibility and the way to the power -n, and the least and the most that a cell stands above its
+    /// receiver.
     factors: [[f64; 3]; 8],
+    /// What the ways differ by from those of the lattice, and how far apart samples of a column are.
+    points: Option<(&'a Points, [isize; 8])>,
     /// Metres of uplift.
     risen: f64,
 }
@@ -131,10 +137,15 @@ impl<'a> Step<'a> {
         years: f64,
     ) -> Step<'a> {
         let cell = receivers.window().cell;
-        let factors = DISTANCES.map(|distance| distance * cell).map(|d| {
+        let factors = |d: f64| {
             let factor = years * law.erodibility * libm::pow(d, -law.slope_exponent);
             [factor, d * law.gentlest, d * law.steepest]
-        });
+        };
+        // Between points, the factors of one cell: the way is found when it is known to which neighbour.
+        let factors = match ground.points {
+            None => DISTANCES.map(|distance| factors(distance * cell)),
+            Some(_) => [factors(cell); 8],
+        };
         Step {
             codes: receivers.codes(),
             area: drained.area.data(),
@@ -143,6 +154,7 @@ impl<'a> Step<'a> {
             powers: Powers::new(law.area_exponent, cell * cell),
             slope_exponent: law.slope_exponent,
             factors,
+            points: ground.points.map(|points| (points, strides(receivers.window().width))),
             risen: years * law.uplift,
         }
     }
@@ -150,7 +162,14 @@ impl<'a> Step<'a> {
     /// The height of cell `c` after the step, from that before and the receiver's after it.
     #[inline(always)]
     fn height(&self, c: usize, before: f32, receiver: f32) -> f32 {
-        let [factor, least, most] = self.factors[usize::from(self.codes[c] & 7)];
+        let code = self.codes[c] & 7;
+        let [mut factor, mut least, mut most] = self.factors[usize::from(code)];
+        if let Some((points, strides)) = &self.points {
+            let nearness = f64::from(points.nearness(c, code, strides));
+            let away = 1.0 / nearness;
+            factor *= if self.slope_exponent == 1.0 { nearness } else { libm::pow(nearness, self.slope_exponent) };
+            (least, most) = (least * away, most * away);
+        }
         let softness = self.softness.map_or(1.0, |factors| f64::from(factors[c]).max(0.0));
         let rise = self.rise.map_or(1.0, |factors| f64::from(factors[c]));
         let below = f64::from(receiver);
@@ -270,7 +289,13 @@ mod tests {
         let drained = accumulate(&receivers);
         let (softness, rise) = (Grid::filled(*heights.window(), 0.5), Grid::filled(*heights.window(), 3.0));
         let law = StreamPower { erodibility: 1e-3, area_exponent: 0.5, uplift: 1e-3, ..Default::default() };
-        law.step(&mut heights, &receivers, &drained, &Ground { softness: Some(&softness), rise: Some(&rise) }, 100.0);
+        law.step(
+            &mut heights,
+            &receivers,
+            &drained,
+            &Ground { softness: Some(&softness), rise: Some(&rise), points: None },
+            100.0,
+        );
         // F = 0.5 * 1e-3 * 100 * (cells * 100 m^2)^0.5 / 10 m = 0.05 sqrt(cells); 0.3 m of uplift.
         let mut below = 5.0;
         for (c, (h, cells)) in [(3, (12.0, 3.0f64)), (2, (20.0, 2.0)), (1, (30.0, 1.0))] {
@@ -313,7 +338,13 @@ mod tests {
         let mean = |softness: f32| {
             let (mut eroded, softness) = (heights.clone(), Grid::filled(*heights.window(), softness));
             let law = StreamPower { steepest: 1e9, ..Default::default() };
-            law.step(&mut eroded, &receivers, &drained, &Ground { softness: Some(&softness), rise: None }, 3e4);
+            law.step(
+                &mut eroded,
+                &receivers,
+                &drained,
+                &Ground { softness: Some(&softness), ..Ground::default() },
+                3e4,
+            );
             eroded.data().iter().map(|h| f64::from(*h)).sum::<f64>()
         };
         assert!(mean(0.1) > mean(1.0) && mean(1.0) > mean(10.0) && mean(-5.0) == mean(0.0));

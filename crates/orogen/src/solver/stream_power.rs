@@ -15,8 +15,9 @@ op! {
     /// diffusion (Culling 1960). The sea and the world's border stay as they are. In the end every cell is higher than the
     /// one it drains to: no depressions, no flats. Ten steps turn any relief into valleys; some hundred bring it to where uplift and
     /// erosion balance. Rock and uplift that differ from place to place (`softness`, `rise`) make it look real. What comes out
-    /// depends on the cell it is solved at. Time grows with the world and the steps; memory is 45 bytes a cell.
-    pub struct StreamPower = "stream-power", solver, revision 1;
+    /// depends on the cell it is solved at. Time grows with the world and the steps; memory is 45 bytes
+    /// a cell, and 16 more if `irregular`.
+    pub struct StreamPower = "stream-power", solver, revision 2;
     inputs {
         /// The heights to begin with.
         source: required,
@@ -43,8 +44,12 @@ op! {
         /// How fast soil creeps: the diffusivity. Rounds crests, and widens hills to sqrt(creep * time).
         creep: f64 = 0.01, unit "m^2/yr", range 0.0 to 100.0;
         /// Whether water that runs between two of a grid's eight directions takes one of them by chance (Rho8, Fairfield and
-        /// Leymarie 1991), another in each step. Without it, slopes show straight parallel grooves.
+        /// Leymarie 1991), another in each step, where `irregular` is 0. Without both, slopes show straight parallel grooves.
         scatter: bool = true;
+        /// How far the points at which heights are solved stand off the grid's own: by up to half of this share of a cell to each
+        /// side. The valleys and the slopes at the talus angle then do not line up with the grid. In the end the heights are carried
+        /// over to it.
+        irregular: f64 = 1.0, range 0.0 to 1.0;
         /// Which chances.
         seed: u64 = 0;
         /// Whether the ground at or below sea level stays as it is, and water ends there.
@@ -69,7 +74,7 @@ impl Solver for StreamPower {
     }
 
     fn scratch(&self, padded: &Window) -> u64 {
-        padded.len() as u64 * 45
+        padded.len() as u64 * if self.irregular > 0.0 { 61 } else { 45 }
     }
 
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
@@ -89,9 +94,10 @@ impl Solver for StreamPower {
             creep: self.creep,
             years: self.years,
             steps: self.steps,
+            irregular: self.irregular,
             scattered: self.scatter.then_some(context.setting.seed_of(self.seed) as u32),
         };
-        let ground = Ground { softness: softness.as_ref(), rise: rise.as_ref() };
+        let ground = Ground { softness: softness.as_ref(), rise: rise.as_ref(), points: None };
         let mut heights = change.clone();
         let sea_level = self.sea.then_some(context.setting.sea_level as f32);
         let drained = erosion.run(&mut heights, &ground, sea_level, &|| context.progress.check())?;

@@ -1,0 +1,187 @@
+//! Points off the lattice: a mesh without directions of its own.
+//!
+//! On a square lattice water knows eight directions, and what slopes as steeply as it can stands in facets that face them: ridges
+//! and valleys line up with the grid. A mesh of irregular points has no such directions (as in the triangulated models of Tucker et
+//! al., "An object-oriented framework for distributed hydrologic and geomorphic modeling using triangulated irregular networks",
+//! 2001). Here each cell keeps its eight neighbours, and its point is moved within it: distances differ from pair to pair, and a
+//! slope's water and its facets go now this way, now that.
+
+use super::direction::{STEPS, hashed, neighbour, opposite, strides};
+use super::outlets::Outlets;
+use crate::grid::{Grid, Window};
+use rayon::prelude::*;
+
+/// A point for each cell of a map, and how far apart neighbours are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Points {
+    window: Window,
+    /// How far each is moved at most, in cells.
+    reach: f32,
+    salt: u32,
+    /// One over the distance, in cells, to the neighbours in the east, south-east, south and south-west.
+    nearness: [Vec<f32>; 4],
+}
+
+/// Half a cell: points that are moved further could pass each other.
+const FURTHEST: f64 = 0.5;
+
+impl Points {
+    /// Points moved by up to half of `share` (0 to 1) of a cell to each side, by a hash of their place and `salt`. Holds 16 bytes a
+    /// cell.
+    pub fn new(window: Window, share: f64, salt: u32) -> Points {
+        let reach = (share.clamp(0.0, 1.0) * FURTHEST) as f32;
+        let (width, cells) = (window.width, window.len());
+        let mut points = Points { window, reach, salt, nearness: std::array::from_fn(|_| vec![1.0; cells]) };
+        let mut planes = std::mem::take(&mut points.nearness);
+        let [east, south_east, south, south_west] = &mut planes;
+        let rows = |plane| <[f32]>::par_chunks_mut(plane, width.max(1));
+        let planes_of_rows = rows(east).zip(rows(south_east)).zip(rows(south).zip(rows(south_west)));
+        planes_of_rows.enumerate().for_each(|(j, ((east, south_east), (south, south_west)))| {
+            // From the column before the first to the one after the last.
+            let offsets = |j: usize| -> Vec<[f32; 2]> { (-1..=width as i64).map(|i| points.at(i, j as i64)).collect() };
+            let (here, below) = (offsets(j), offsets(j + 1));
+            for (code, plane) in [east, south_east, south, south_west].into_iter().enumerate() {
+                let (x, y) = STEPS[code];
+                let there = if y == 0 { &here } else { &below };
+                let pairs = here[1..].iter().zip(&there[1usize.wrapping_add_signed(x)..]);
+                for (near, (here, there)) in plane.iter_mut().zip(pairs) {
+                    let (x, y) = (x as f32 + there[0] - here[0], y as f32 + there[1] - here[1]);
+                    *near = 1.0 / (x * x + y * y).sqrt();
+                }
+            }
+        });
+        points.nearness = planes;
+        points
+    }
+
+    /// How far east and south of its lattice point the point of column `i` and row `j` is, in cells.
+    #[inline]
+    fn at(&self, i: i64, j: i64) -> [f32; 2] {
+        let hash = hashed(self.window.x + i, (self.window.y + j) ^ (i64::from(self.salt) << 32));
+        [hash & 0xFFFF, hash >> 16].map(|bits| (bits as f32 * (2.0 / 65535.0) - 1.0) * self.reach)
+    }
+
+    /// One over the distances, in cells, from the inner cells of row `j` to their neighbours, in the order of [`STEPS`].
+    pub(super) fn around(&self, j: usize) -> [&[f32]; 8] {
+        let width = self.window.width;
+        std::array::from_fn(|code| {
+            // The way back is as far.
+            let (plane, (east, south)) = if code < 4 { (code, (0, 0)) } else { (code - 4, STEPS[code]) };
+            let start = (j.wrapping_add_signed(south) * width + 1).wrapping_add_signed(east);
+            &self.nearness[plane][start..start + width - 2]
+        })
+    }
+
+    /// One over the distance, in cells, from cell `c` to the neighbour in the direction `code`.
+    #[inline(always)]
+    pub(super) fn nearness(&self, c: usize, code: u8, strides: &[isize; 8]) -> f32 {
+        match code {
+            0..4 => self.nearness[usize::from(code)][c],
+            _ => self.nearness[usize::from(opposite(code))][neighbour(c, strides[usize::from(code)])],
+        }
+    }
+
+    /// What stands at the points, carried over to the lattice along the slope of the ground around each. Outlets stay.
+    pub fn onto_lattice(&self, heights: &mut Grid, outlets: &Outlets) {
+        let (width, height) = (self.window.width, self.window.height);
+        if self.reach == 0.0 || width < 3 || height < 3 {
+            return;
+        }
+        let before = heights.clone();
+        let h = before.data();
+        let strides = strides(width);
+        heights.data_mut().par_chunks_mut(width).enumerate().filter(|(j, _)| *j > 0 && j + 1 < height).for_each(
+            |(j, row)| {
+                for i in 1..width - 1 {
+                    let c = j * width + i;
+                    if outlets.at(c) {
+                        continue;
+                    }
+                    let here = self.at(i as i64, j as i64);
+                    // The plane through the point that fits its neighbours best: two equations.
+                    let [mut xx, mut xy, mut yy, mut xh, mut yh] = [0.0f32; 5];
+                    for ((east, south), stride) in STEPS.iter().zip(strides) {
+                        let there = self.at((i as i64) + *east as i64, (j as i64) + *south as i64);
+                        let (x, y) = (*east as f32 + there[0] - here[0], *south as f32 + there[1] - here[1]);
+                        let rise = h[neighbour(c, stride)] - h[c];
+                        xx += x * x;
+                        xy += x * y;
+                        yy += y * y;
+                        xh += x * rise;
+                        yh += y * rise;
+                    }
+                    let scale = 1.0 / (xx * yy - xy * xy);
+                    let slope = [(xh * yy - yh * xy) * scale, (yh * xx - xh * xy) * scale];
+                    row[i] = h[c] - slope[0] * here[0] - slope[1] * here[1];
+                }
+            },
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hydrology::samples;
+
+    #[test]
+    fn both_ways_are_as_far_and_shifted_windows_agree() {
+        let window = Window::new(40, 30, 1.0).at(-7, 3);
+        let points = Points::new(window, 1.0, 5);
+        let strides = strides(40);
+        let part = Points::new(Window::new(20, 15, 1.0).at(2, 8), 1.0, 5);
+        let (mut least, mut most) = (f32::INFINITY, 0.0f32);
+        for j in 1..29 {
+            let around = points.around(j);
+            for i in 1..39 {
+                let c = j * 40 + i;
+                for code in 0..8u8 {
+                    let near = points.nearness(c, code, &strides);
+                    let there = neighbour(c, strides[usize::from(code)]);
+                    assert_eq!(near, points.nearness(there, opposite(code), &strides));
+                    assert_eq!(near, around[usize::from(code)][i - 1]);
+                    if (10..28).contains(&i) && (6..19).contains(&j) {
+                        let c = (j - 5) * 20 + i - 9;
+                        assert_eq!(near, part.nearness(c, code, &super::strides(20)));
+                    }
+                    (least, most) = (least.min(near), most.max(near));
+                }
+            }
+        }
+        assert!(least > 0.35 && most.is_finite() && most > 2.0, "{least} {most}");
+    }
+
+    #[test]
+    fn no_share_is_the_lattice() {
+        let points = Points::new(Window::new(5, 5, 3.0), 0.0, 5);
+        for (code, distance) in crate::hydrology::direction::DISTANCES.iter().enumerate() {
+            assert_eq!(f64::from(points.nearness(12, code as u8, &strides(5))), f64::from((1.0 / distance) as f32));
+        }
+    }
+
+    #[test]
+    fn a_plane_is_carried_over_as_it_is() {
+        let window = Window::new(50, 40, 10.0);
+        let points = Points::new(window, 1.0, 9);
+        let outlets = Outlets::new(&Grid::filled(window, 0.0), None);
+        let plane = |x: f32, y: f32| 100.0 + 3.0 * x - 2.0 * y;
+        let mut heights = Grid::filled(window, 0.0);
+        for j in 0..40i64 {
+            for i in 0..50i64 {
+                let [x, y] = if outlets.at((j * 50 + i) as usize) { [0.0; 2] } else { points.at(i, j) };
+                heights.row_mut(j as usize)[i as usize] = plane(i as f32 + x, j as f32 + y);
+            }
+        }
+        points.onto_lattice(&mut heights, &outlets);
+        for j in 2..38 {
+            for i in 2..48 {
+                let (got, expect) = (heights.get(i, j), plane(i as f32, j as f32));
+                assert!((got - expect).abs() < 1e-3, "{got}, not {expect}");
+            }
+        }
+        let before = samples::hills(20, 20, 3);
+        let mut same = before.clone();
+        Points::new(*before.window(), 0.0, 9).onto_lattice(&mut same, &Outlets::new(&before, None));
+        assert_eq!(same, before);
+    }
+}
