@@ -12,10 +12,10 @@ use orogen::hydrology::{drainage, fill};
 use orogen::{Grid, Recipe, Window, World};
 use serde_json::{Value, json};
 
-use crate::filters;
 use crate::measure::median;
 use crate::options::Options;
 use crate::world::figure::Figure;
+use crate::{filters, sizes};
 
 const CELL: f64 = 60.0;
 
@@ -106,6 +106,7 @@ fn measured(options: &Options, folder: &Path) -> Result<Vec<Value>, String> {
         }));
     }
     rows.extend(filters::figures(options, ground)?.iter().map(Figure::json));
+    rows.extend(sizes::figures(options)?.iter().map(Figure::json));
     Ok(rows)
 }
 

@@ -12,6 +12,7 @@ mod options;
 mod outputs;
 mod resolution;
 mod rows;
+mod sizes;
 mod world;
 
 use std::process::ExitCode;

@@ -92,7 +92,7 @@ impl Points {
         let strides = strides(width);
         heights.data_mut().par_chunks_mut(width).enumerate().filter(|(j, _)| *j > 0 && j + 1 < height).for_each(
             |(j, row)| {
-                for i in 1..width - 1 {
+                for (i, height) in row.iter_mut().enumerate().take(width - 1).skip(1) {
                     let c = j * width + i;
                     if outlets.at(c) {
                         continue;
@@ -112,7 +112,7 @@ impl Points {
                     }
                     let scale = 1.0 / (xx * yy - xy * xy);
                     let slope = [(xh * yy - yh * xy) * scale, (yh * xx - xh * xy) * scale];
-                    row[i] = h[c] - slope[0] * here[0] - slope[1] * here[1];
+                    *height = h[c] - slope[0] * here[0] - slope[1] * here[1];
                 }
             },
         );

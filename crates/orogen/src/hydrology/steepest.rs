@@ -101,7 +101,7 @@ fn steepest_between(rows: [&[f32]; 3], nearness: [&[f32]; 8], sets: &mut [u8]) {
 
 /// The eight rows of neighbours of the inner cells, each as long as the row of these: loops over equal slices become SIMD.
 #[inline(always)]
-fn around<'a>(rows: [&'a [f32]; 3], count: usize) -> [&'a [f32]; 8] {
+fn around(rows: [&[f32]; 3], count: usize) -> [&[f32]; 8] {
     STEPS.map(|(east, south)| {
         let start = (1 + east) as usize;
         &rows[(1 + south) as usize][start..start + count]

@@ -1,0 +1,62 @@
+//! Part of area `erosion`: the preset `alpine` as worlds of many sizes, from the recipe to its heights. CPU time of one thread.
+
+use cpu_time::ProcessTime;
+use orogen::{Options as Limits, Progress, World, presets};
+
+use crate::measure::median;
+use crate::options::Options;
+use crate::world::figure::{Figure, Target};
+
+/// Cells a side.
+const SIDES: [usize; 4] = [512, 1024, 2048, 4096];
+
+/// How much dearer a cell may be in the dearest world than in the cheapest.
+const SPREAD: f64 = 1.2;
+
+const NAME: &str = "alpine by world size";
+
+/// What a cell costs in each world, and in the dearest beside the cheapest.
+pub fn figures(options: &Options) -> Result<Vec<Figure>, String> {
+    if !NAME.contains(&options.case) {
+        return Ok(Vec::new());
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|e| e.to_string())?;
+    let costs = SIDES.map(|side| {
+        eprintln!("{NAME}: {side} x {side} ...");
+        // Large worlds are steadier, and take long.
+        let repetitions = (options.repetitions * SIDES[0] / side).max(1);
+        let costs: Result<Vec<f64>, String> = (0..repetitions).map(|_| pool.install(|| cost(side))).collect();
+        costs.map(|mut costs| median(&mut costs))
+    });
+    let mut figures = Vec::new();
+    let mut range = [f64::INFINITY, 0.0f64];
+    for (side, cost) in SIDES.iter().zip(costs) {
+        let cost = cost?;
+        range = [range[0].min(cost), range[1].max(cost)];
+        let case = format!("{NAME}: {side} x {side} cells");
+        figures.push(Figure { case, ours: cost, unit: "ns of CPU a cell", other: None, target: Target::None });
+    }
+    figures.push(Figure {
+        case: format!("{NAME}: the dearest cell"),
+        ours: range[1],
+        unit: "ns of CPU a cell",
+        other: Some(("the cheapest", range[0])),
+        target: Target::RatioAtMost(SPREAD),
+    });
+    Ok(figures)
+}
+
+/// Nanoseconds a cell of a world of so many cells a side.
+fn cost(side: usize) -> Result<f64, String> {
+    let recipe = presets::find("alpine").ok_or("there is no preset `alpine`")?.recipe();
+    let mut recipe = recipe.map_err(|e| e.to_string())?;
+    let length = side as f64 * recipe.world.cell;
+    recipe.world.size = Some([length; 2]);
+    let start = ProcessTime::now();
+    let world = World::with_options(recipe, Limits::default()).map_err(|e| e.to_string())?;
+    let window = world.whole(world.recipe().world.cell).map_err(|e| e.to_string())?;
+    let heights = world.grids(&["height"], &window, &Progress::none()).map_err(|e| e.to_string())?;
+    let seconds = start.elapsed().as_secs_f64();
+    std::hint::black_box(heights);
+    Ok(seconds * 1e9 / window.len() as f64)
+}
