@@ -48,6 +48,7 @@ pub mod hydrology;
 mod large;
 pub mod layer;
 pub mod map;
+pub mod mesh;
 pub mod node;
 pub mod op;
 mod pages;

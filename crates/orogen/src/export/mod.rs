@@ -22,6 +22,7 @@ pub mod contours;
 pub mod files;
 pub mod format;
 pub mod formats;
+pub mod mesh;
 pub mod notes;
 pub mod options;
 pub mod registry;

@@ -4,11 +4,15 @@
 pub mod asc;
 pub mod exr;
 pub mod geojson;
+pub mod glb;
 pub mod hgt;
 pub mod npy;
+pub mod obj;
 pub mod pgm;
+pub mod ply;
 pub mod png;
 pub mod r16;
 pub mod r32;
+pub mod stl;
 pub mod svg;
 pub mod tif;

@@ -1,0 +1,53 @@
+//! glTF 2.0 in one file.
+
+use std::io;
+
+use serde_json::{Map, json};
+
+use crate::export::files::Files;
+use crate::export::format::{Format, whole};
+use crate::export::mesh::{COLOR, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, color, memory};
+use crate::export::options::{OptionSpec, Options, Takes};
+use crate::export::subject::Subject;
+use crate::mesh::glb::{Model, write as write_model};
+use crate::mesh::surface::Surface;
+
+const LODS: OptionSpec = OptionSpec {
+    name: "lods",
+    value: "N",
+    about: "Levels of detail: every second, fourth, ... sample, or twice, four times ... the error of --max-error [default: 1]",
+    takes: Takes::Whole(1, 12),
+};
+
+/// The format.
+pub static FORMAT: Format = Format {
+    name: "glb",
+    aliases: &[],
+    about: "glTF 2.0 mesh in one file: metres, Y up, normals, texture",
+    options: &[MAX_ERROR, LODS, COLOR, EXAGGERATION, HEIGHT_CURVE],
+    channels: 1,
+    // And the picture, which has to be packed before its size can be told.
+    memory: |window, options| memory(window, options).saturating_add(whole(window)),
+    write,
+};
+
+fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
+    let mesh = Prepared::new(subject, options, options.whole(LODS.name).unwrap_or(1) as usize)?;
+    let color = color(options, "texture", files, false);
+    let levels: Vec<Surface> = (0..mesh.shapes.len()).map(|level| mesh.surface(level, color == "vertex")).collect();
+    let mut texture = Vec::new();
+    if color == "texture" {
+        mesh.picture(&mut texture)?;
+    }
+    let window = mesh.grid.window();
+    let extras: Map<String, serde_json::Value> = [
+        ("cell".to_string(), json!(window.cell)),
+        ("columns".to_string(), json!(window.width)),
+        ("rows".to_string(), json!(window.height)),
+    ]
+    .into_iter()
+    .collect();
+    let texture = (!texture.is_empty()).then_some(texture.as_slice());
+    files.write(|out| write_model(out, &Model { levels: &levels, texture, extras }))?;
+    Ok(mesh.words())
+}

@@ -1,0 +1,50 @@
+//! Wavefront OBJ, its material and its picture.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::export::files::Files;
+use crate::export::format::Format;
+use crate::export::mesh::{COLOR, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, color, memory};
+use crate::export::options::Options;
+use crate::export::subject::Subject;
+use crate::mesh::obj;
+
+/// The format.
+pub static FORMAT: Format = Format {
+    name: "obj",
+    aliases: &[],
+    about: "Wavefront mesh, text: metres, y up, normals; NAME.mtl and NAME-texture.png beside it",
+    options: &[MAX_ERROR, COLOR, EXAGGERATION, HEIGHT_CURVE],
+    channels: 1,
+    memory,
+    write,
+};
+
+fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
+    let mesh = Prepared::new(subject, options, 1)?;
+    let color = color(options, "texture", files, true);
+    let comments = mesh.comments("x east, y up, z south");
+    let path = files.path().map(Path::to_path_buf).filter(|_| color == "texture");
+    let library = path.as_deref().map(|path| file_name(&material(path)));
+    files.write(|out| obj::write(out, &mesh.surface(0, color == "vertex"), &comments, library.as_deref()))?;
+    if let Some(path) = path {
+        files.write_beside(picture, |out| mesh.picture(out))?;
+        files.write_beside(material, |out| obj::write_material(out, &file_name(&picture(&path))))?;
+    }
+    Ok(mesh.words())
+}
+
+fn material(path: &Path) -> PathBuf {
+    path.with_extension("mtl")
+}
+
+/// Not the plain name with another ending: a picture of the heights may have that.
+fn picture(path: &Path) -> PathBuf {
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    path.with_file_name(format!("{stem}-texture.png"))
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}

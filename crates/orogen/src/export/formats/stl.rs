@@ -1,0 +1,47 @@
+//! Stereolithography: a solid to print.
+
+use std::io;
+
+use crate::export::files::Files;
+use crate::export::format::Format;
+use crate::export::mesh::{EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, memory};
+use crate::export::options::{OptionSpec, Options, Takes};
+use crate::export::subject::Subject;
+use crate::mesh::stl::{Print, write as write_solid};
+
+const PRINT_SIZE: OptionSpec = OptionSpec {
+    name: "print-size",
+    value: "MM",
+    about: "Millimetres of the longer side [default: 150]",
+    takes: Takes::Number(1.0, 1e5),
+};
+
+const BASE: OptionSpec = OptionSpec {
+    name: "base",
+    value: "MM",
+    about: "Millimetres of material below the lowest sample [default: 3]",
+    takes: Takes::Number(0.1, 1e4),
+};
+
+/// The format.
+pub static FORMAT: Format = Format {
+    name: "stl",
+    aliases: &[],
+    about: "Solid to print, with walls and a base, binary: millimetres, z up",
+    options: &[MAX_ERROR, EXAGGERATION, HEIGHT_CURVE, PRINT_SIZE, BASE],
+    channels: 1,
+    memory,
+    write,
+};
+
+fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
+    let mesh = Prepared::new(subject, options, 1)?;
+    let size = options.number(PRINT_SIZE.name).unwrap_or(150.0);
+    let print = Print { size, base: options.number(BASE.name).unwrap_or(3.0) };
+    let mut height = 0.0;
+    files.write(|out| {
+        height = write_solid(out, &mesh.surface(0, false), &print)?;
+        Ok(())
+    })?;
+    Ok(format!("{} and a base, {size} mm along and {height:.1} mm high", mesh.words()))
+}

@@ -1,0 +1,142 @@
+//! What the formats of meshes share: their options, and the surface that these ask for.
+
+use std::io;
+
+use super::files::Files;
+use super::format::whole;
+use super::options::{OptionSpec, Options, Takes};
+use super::subject::Subject;
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use crate::map::paint::Painter;
+use crate::map::shade::Shade;
+use crate::mesh::adaptive::adaptive;
+use crate::mesh::relief::HeightCurve;
+use crate::mesh::shape::Shape;
+use crate::mesh::surface::Surface;
+use crate::palette::Tint;
+
+/// `--max-error`.
+pub const MAX_ERROR: OptionSpec = OptionSpec {
+    name: "max-error",
+    value: "M",
+    about: "Few triangles: no sample further than so many metres above or below them [default: two for each cell of the grid]",
+    takes: Takes::Number(0.0, 1e9),
+};
+
+/// `--exaggeration`.
+pub const EXAGGERATION: OptionSpec = OptionSpec {
+    name: "exaggeration",
+    value: "F",
+    about: "What heights are multiplied by [default: 1]",
+    takes: Takes::Number(0.001, 1000.0),
+};
+
+/// `--height-curve`.
+pub const HEIGHT_CURVE: OptionSpec = OptionSpec {
+    name: "height-curve",
+    value: "A:B,...",
+    about: "Bend the heights: a curve from 0:0, the lowest of the window, to 1:1, the highest, such as 0:0,0.5:0.2,1:1",
+    takes: Takes::Text,
+};
+
+/// `--color`.
+pub const COLOR: OptionSpec = OptionSpec {
+    name: "color",
+    value: "HOW",
+    about: "The map's colours, without its shading: texture (a picture), vertex or none [default: texture; ply: vertex]",
+    takes: Takes::Word(&["texture", "vertex", "none"]),
+};
+
+/// Bytes that a mesh of a window takes beside what its file is written from: the heights, and for few triangles the triangulation
+/// while it grows, if one sample in five becomes a corner.
+pub fn memory(window: &Window, options: &Options) -> u64 {
+    let samples = whole(window);
+    samples.saturating_mul(if options.has(MAX_ERROR.name) { 8 } else { 2 })
+}
+
+/// A grid and what is made of it.
+pub struct Prepared {
+    /// The heights, bent where that is asked for.
+    pub grid: Grid,
+    /// Levels of detail, the finest first.
+    pub shapes: Vec<Shape>,
+    /// What its corners or its picture are coloured with.
+    pub painter: Painter,
+    exaggeration: f32,
+    max_error: Option<f64>,
+}
+
+impl Prepared {
+    /// The subject's samples, and so many shapes over them: of every second, fourth ... sample, or of twice, four times ... the error.
+    ///
+    /// Fails as the subject does, and on windows that are no mesh.
+    pub fn new(subject: &mut Subject, options: &Options, levels: usize) -> io::Result<Prepared> {
+        let curve = options.text(HEIGHT_CURVE.name).map(HeightCurve::parse).transpose()?;
+        let window = *subject.window();
+        let mut grid = subject.whole()?.into_iter().next().unwrap_or_else(|| Grid::filled(window, 0.0));
+        let sea_level = subject.world().recipe().world.sea_level as f32;
+        // A mesh is lit by whoever shows it, so the map's own light stays out.
+        let painter = Painter::new(Tint::fit(&grid, sea_level), Shade::new(0.0));
+        if let Some(curve) = curve {
+            curve.bend(&mut grid);
+        }
+        let max_error = options.number(MAX_ERROR.name);
+        let shape = |level: usize| match max_error {
+            Some(max_error) => adaptive(&grid, max_error * (1u64 << level) as f64),
+            None => Shape::lattice(&grid, 1 << level),
+        };
+        let shapes = (0..levels).map(shape).collect::<Result<Vec<Shape>>>()?;
+        let exaggeration = options.number(EXAGGERATION.name).unwrap_or(1.0) as f32;
+        Ok(Prepared { grid, shapes, painter, exaggeration, max_error })
+    }
+
+    /// A level of detail, its corners with colours if they are wanted.
+    pub fn surface(&self, level: usize, colors: bool) -> Surface<'_> {
+        Surface {
+            grid: &self.grid,
+            shape: &self.shapes[level],
+            exaggeration: self.exaggeration,
+            painter: colors.then_some(&self.painter),
+        }
+    }
+
+    /// The picture that it wears, as PNG: a pixel for each sample.
+    ///
+    /// Fails as `out` does.
+    pub fn picture(&self, out: &mut dyn io::Write) -> io::Result<()> {
+        self.painter.write_png(out, &self.grid, &[])
+    }
+
+    /// Where it lies and how its axes are, for the comments of a file.
+    pub fn comments(&self, axes: &str) -> Vec<String> {
+        let window = self.grid.window();
+        let place = format!(
+            "the first sample, at the origin, stands {} m east and {} m south",
+            window.east(0),
+            window.south(0)
+        );
+        vec![concat!("Orogen ", env!("CARGO_PKG_VERSION")).into(), format!("metres; {axes}; {place}")]
+    }
+
+    /// How much there is, in words.
+    pub fn words(&self) -> String {
+        let counts: Vec<String> = self.shapes.iter().map(|shape| shape.triangles().to_string()).collect();
+        let counts = match counts.as_slice() {
+            [only] => format!("{only} triangles"),
+            many => format!("levels of {} triangles", many.join(", ")),
+        };
+        match self.max_error {
+            Some(error) => format!("{counts}, no sample more than {error} m above or below them"),
+            None => counts,
+        }
+    }
+}
+
+/// How a mesh is coloured: what is asked for, else `otherwise`. A stream has no picture beside it.
+pub fn color(options: &Options, otherwise: &'static str, files: &Files, beside: bool) -> &'static str {
+    match options.word(COLOR.name).unwrap_or(otherwise) {
+        "texture" if beside && files.path().is_none() => "none",
+        color => color,
+    }
+}

@@ -1,0 +1,211 @@
+//! glTF 2.0 in one binary file (.glb).
+//!
+//! The Khronos Group's specification, 2.0.1. Metres; X east, Y up, Z south, the first sample of the grid at the node's origin;
+//! the node stands where the grid begins in its world. Corners come interleaved: place, normal, texture coordinate and, where
+//! wanted, colour (linear, four u16). Indices take two bytes as long as they fit. Levels of detail follow MSFT_lod: a reader that
+//! does not know it shows the first level.
+
+use std::io::{self, Write};
+
+use serde_json::{Map, Value, json};
+
+use super::surface::{Corner, Surface, Wanted, push};
+use crate::error::{Error, ErrorKind};
+
+/// A surface in one or several levels of detail, the finest first, over the same grid.
+pub struct Model<'a> {
+    /// The levels; at least one.
+    pub levels: &'a [Surface<'a>],
+    /// A PNG picture of the grid with a pixel for each sample.
+    pub texture: Option<&'a [u8]>,
+    /// What is told of it beside its corners, for readers that look: keys and values.
+    pub extras: Map<String, Value>,
+}
+
+/// "glTF", "JSON" and "BIN\0" as little-endian numbers.
+const MAGIC: u32 = 0x4654_6C67;
+const JSON: u32 = 0x4E4F_534A;
+const BIN: u32 = 0x004E_4942;
+
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+const U16: u32 = 5123;
+const U32: u32 = 5125;
+const F32: u32 = 5126;
+
+/// The share of the screen down to which each level of detail is meant to be shown: half for the first, a quarter for the next.
+const COVERAGE: f64 = 0.5;
+
+/// Writes a model.
+///
+/// Fails as `out` does, and on a model that is more than the 4 GiB that such a file can hold.
+pub fn write(out: &mut dyn Write, model: &Model) -> io::Result<()> {
+    let colors = model.levels.iter().any(|level| level.painter.is_some());
+    let document = Document::new(model, colors);
+    let json = padded(document.json.to_string().into_bytes(), b' ');
+    let length = 12 + 8 + json.len() as u64 + 8 + document.length;
+    if length > u64::from(u32::MAX) {
+        let sentence = format!(
+            "a .glb file holds at most 4 GiB, and this mesh would take {}: make it adaptive (--max-error), or ask for a smaller \
+             window or a larger cell",
+            crate::words::bytes(length)
+        );
+        return Err(Error::new(ErrorKind::Request, sentence).into());
+    }
+    let words =
+        |out: &mut dyn Write, words: &[u32]| words.iter().try_for_each(|word| out.write_all(&word.to_le_bytes()));
+    words(out, &[MAGIC, 2, length as u32, json.len() as u32, JSON])?;
+    out.write_all(&json)?;
+    words(out, &[document.length as u32, BIN])?;
+    let light: Vec<u16> = (0..=255).map(linear).collect();
+    for level in model.levels {
+        level.corners(out, Wanted { normals: true, colors }, |corner, bytes| {
+            vertex(corner, bytes);
+            if colors {
+                let [r, g, b] = corner.color.map(|part| light[usize::from(part)]);
+                [r, g, b, u16::MAX].iter().for_each(|part| bytes.extend_from_slice(&part.to_le_bytes()));
+            }
+        })?;
+        match narrow(level) {
+            true => level.triangles(out, |triangle, bytes| {
+                triangle.iter().for_each(|&corner| bytes.extend_from_slice(&(corner as u16).to_le_bytes()));
+            })?,
+            false => level.triangles(out, |triangle, bytes| {
+                triangle.iter().for_each(|corner| bytes.extend_from_slice(&corner.to_le_bytes()));
+            })?,
+        }
+        pad(out, indices(level))?;
+    }
+    if let Some(texture) = model.texture {
+        out.write_all(texture)?;
+        pad(out, texture.len() as u64)?;
+    }
+    Ok(())
+}
+
+fn vertex(corner: &Corner, bytes: &mut Vec<u8>) {
+    push(&[corner.east, corner.height, corner.south], bytes);
+    push(&corner.normal, bytes);
+    push(&corner.texture, bytes);
+}
+
+/// Whether the indices of a level take two bytes each; 65535 is no index.
+fn narrow(level: &Surface) -> bool {
+    level.shape.corners() <= usize::from(u16::MAX)
+}
+
+/// Bytes of the indices of a level.
+fn indices(level: &Surface) -> u64 {
+    level.shape.triangles() as u64 * if narrow(level) { 6 } else { 12 }
+}
+
+/// Light of an sRGB byte, in 65535ths.
+fn linear(byte: u32) -> u16 {
+    let share = f64::from(byte) / 255.0;
+    let light = if share <= 0.04045 { share / 12.92 } else { libm::pow((share + 0.055) / 1.055, 2.4) };
+    (light * 65535.0).round() as u16
+}
+
+fn padded(mut bytes: Vec<u8>, with: u8) -> Vec<u8> {
+    bytes.resize(bytes.len().next_multiple_of(4), with);
+    bytes
+}
+
+fn pad(out: &mut dyn Write, written: u64) -> io::Result<()> {
+    out.write_all(&[0; 3][..(written.next_multiple_of(4) - written) as usize])
+}
+
+/// The JSON part, and how long the binary part will be.
+struct Document {
+    json: Value,
+    length: u64,
+}
+
+impl Document {
+    fn new(model: &Model, colors: bool) -> Document {
+        let (mut views, mut accessors, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
+        let mut length: u64 = 0;
+        let mut view = |bytes: u64, mut view: Value| {
+            view["buffer"] = json!(0);
+            view["byteOffset"] = json!(length);
+            view["byteLength"] = json!(bytes);
+            length += bytes.next_multiple_of(4);
+            views.push(view);
+            views.len() - 1
+        };
+        for level in model.levels {
+            let corners = level.shape.corners();
+            let stride = if colors { 40 } else { 32 };
+            let corner_view = view(corners as u64 * stride, json!({"byteStride": stride, "target": ARRAY_BUFFER}));
+            let index_view = view(indices(level), json!({"target": ELEMENT_ARRAY_BUFFER}));
+            // As f64: the shortest digits of an f32 are not its value.
+            let [least, greatest] = level.bounds().map(|corner| corner.map(f64::from));
+            let first = accessors.len();
+            let attribute = |offset: u32, kind: &str| json!({"bufferView": corner_view, "byteOffset": offset, "componentType": F32, "count": corners, "type": kind});
+            let mut place = attribute(0, "VEC3");
+            place["min"] = json!(least);
+            place["max"] = json!(greatest);
+            accessors.extend([place, attribute(12, "VEC3"), attribute(24, "VEC2")]);
+            let mut attributes = json!({"POSITION": first, "NORMAL": first + 1, "TEXCOORD_0": first + 2});
+            if colors {
+                let mut color = attribute(32, "VEC4");
+                color["componentType"] = json!(U16);
+                color["normalized"] = json!(true);
+                attributes["COLOR_0"] = json!(accessors.len());
+                accessors.push(color);
+            }
+            let kind = if narrow(level) { U16 } else { U32 };
+            let count = 3 * level.shape.triangles();
+            let primitive = json!({"attributes": attributes, "indices": accessors.len(), "material": 0});
+            accessors.push(json!({"bufferView": index_view, "componentType": kind, "count": count, "type": "SCALAR"}));
+            meshes.push(json!({"primitives": [primitive]}));
+        }
+        let mut material =
+            json!({"name": "terrain", "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 1.0}});
+        let mut json = json!({"asset": {"version": "2.0", "generator": concat!("Orogen ", env!("CARGO_PKG_VERSION"))}});
+        if let Some(texture) = model.texture {
+            let picture = view(texture.len() as u64, json!({}));
+            material["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 0});
+            json["images"] = json!([{"bufferView": picture, "mimeType": "image/png"}]);
+            // Linear within and between the sizes of the picture; not repeated beyond its edges.
+            json["samplers"] = json!([{"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}]);
+            json["textures"] = json!([{"source": 0, "sampler": 0}]);
+        }
+        let levels = model.levels.len();
+        let nodes: Vec<Value> = (0..levels).map(|level| node(model, level)).collect();
+        if levels > 1 {
+            json["extensionsUsed"] = json!(["MSFT_lod"]);
+        }
+        json["scene"] = json!(0);
+        json["scenes"] = json!([{"nodes": [0]}]);
+        json["nodes"] = json!(nodes);
+        json["meshes"] = json!(meshes);
+        json["materials"] = json!([material]);
+        json["accessors"] = json!(accessors);
+        json["bufferViews"] = json!(views);
+        json["buffers"] = json!([{"byteLength": length}]);
+        Document { json, length }
+    }
+}
+
+/// A level's node. The first one names the others.
+fn node(model: &Model, level: usize) -> Value {
+    let levels = model.levels.len();
+    let name = if levels == 1 { "terrain".to_string() } else { format!("LOD{level}") };
+    let mut node = json!({"name": name, "mesh": level});
+    let window = model.levels[level].grid.window();
+    let [east, south] = [window.east(0), window.south(0)];
+    if east != 0.0 || south != 0.0 {
+        node["translation"] = json!([east, 0.0, south]);
+    }
+    if level == 0 {
+        node["extras"] = Value::Object(model.extras.clone());
+        if levels > 1 {
+            let others: Vec<usize> = (1..levels).collect();
+            node["extensions"] = json!({"MSFT_lod": {"ids": others}});
+            let coverage: Vec<f64> = (1..=levels as i32).map(|level| libm::pow(COVERAGE, f64::from(level))).collect();
+            node["extras"]["MSFT_screencoverage"] = json!(coverage);
+        }
+    }
+    node
+}

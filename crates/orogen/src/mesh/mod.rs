@@ -1,0 +1,29 @@
+//! Surfaces of triangles over grids.
+//!
+//! A [`shape::Shape`] says which samples of a grid are corners of triangles: all of them, every few, or the few that keep a
+//! surface within a stated distance of all others ([`adaptive`]). Formats write a [`surface::Surface`]: a grid, a shape, and how
+//! it is to look.
+//!
+//! ```
+//! use orogen::mesh::adaptive::adaptive;
+//! use orogen::{Window, World};
+//!
+//! let world = World::open(orogen::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
+//! let grid = world.window("height", &Window::new(257, 257, 15.0))?;
+//! let shape = adaptive(&grid, 2.0)?;
+//! assert!(shape.triangles() < 256 * 256 * 2 / 10);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod adaptive;
+mod border;
+pub mod glb;
+pub mod obj;
+pub mod ply;
+pub mod relief;
+mod scan;
+pub mod shape;
+pub mod stl;
+pub mod surface;
+mod tile;
+mod tin;

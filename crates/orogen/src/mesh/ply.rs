@@ -1,0 +1,46 @@
+//! The Stanford polygon format (.ply), binary, little-endian.
+//!
+//! G. Turk, "The PLY polygon file format", 1994. Metres; x east, y north, z up, the first sample of the grid at the origin: y is
+//! zero along the first row and negative south of it. Each vertex has its normal, its texture coordinates (s to the right, t up)
+//! and, where wanted, its sRGB colour.
+
+use std::io::{self, Write};
+
+use super::surface::{Surface, Wanted, push};
+use crate::error::{Error, ErrorKind};
+
+/// Writes a surface. `comments` are lines of the header.
+///
+/// Fails as `out` does, and on a surface of more corners than the signed indices that readers expect can number.
+pub fn write(out: &mut dyn Write, surface: &Surface, comments: &[String]) -> io::Result<()> {
+    let [corners, triangles] = [surface.shape.corners(), surface.shape.triangles()];
+    if corners > i32::MAX as usize || triangles > i32::MAX as usize {
+        let sentence = format!(
+            "a .ply file numbers at most 2147483647 corners and triangles, and this mesh has {triangles} triangles: make it \
+             adaptive (--max-error), or ask for a smaller window or a larger cell"
+        );
+        return Err(Error::new(ErrorKind::Request, sentence).into());
+    }
+    let colors = surface.painter.is_some();
+    writeln!(out, "ply\nformat binary_little_endian 1.0")?;
+    comments.iter().try_for_each(|comment| writeln!(out, "comment {comment}"))?;
+    writeln!(out, "element vertex {corners}")?;
+    ["x", "y", "z", "nx", "ny", "nz", "s", "t"].iter().try_for_each(|name| writeln!(out, "property float {name}"))?;
+    if colors {
+        ["red", "green", "blue"].iter().try_for_each(|name| writeln!(out, "property uchar {name}"))?;
+    }
+    writeln!(out, "element face {triangles}\nproperty list uchar int vertex_indices\nend_header")?;
+    surface.corners(out, Wanted { normals: true, colors }, |corner, bytes| {
+        let [east, up, south] = corner.normal;
+        push(&[corner.east, 0.0 - corner.south, corner.height], bytes);
+        push(&[east, 0.0 - south, up], bytes);
+        push(&[corner.texture[0], 1.0 - corner.texture[1]], bytes);
+        if colors {
+            bytes.extend_from_slice(&corner.color);
+        }
+    })?;
+    surface.triangles(out, |triangle, bytes| {
+        bytes.push(3);
+        triangle.iter().for_each(|corner| bytes.extend_from_slice(&corner.to_le_bytes()));
+    })
+}

@@ -1,0 +1,111 @@
+//! Heights bent by a curve before a mesh is made of them.
+
+use crate::declare::Input;
+use crate::error::{Error, ErrorKind, Result};
+use crate::field::curve::Curve;
+use crate::format::levels::{NO_SAMPLES, extremes};
+use crate::grid::Grid;
+use crate::op::{Field, Setting, Slots};
+use crate::recipe::document::WorldSpec;
+use orogen_noise::Points;
+
+/// A curve over the relief of a grid, from 0 at its lowest to 1 at its highest sample: control points (from, to), the first of
+/// each greater than the one before. Between them the monotone cubic of the op `curve`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeightCurve {
+    points: Vec<[f64; 2]>,
+}
+
+impl HeightCurve {
+    /// Reads `0:0,0.5:0.2,1:1`.
+    ///
+    /// # Errors
+    /// If it is not two or more pairs of numbers with ascending first ones.
+    pub fn parse(text: &str) -> Result<HeightCurve> {
+        let refuse = |why: String| {
+            let sentence = format!(
+                "`{}` is no curve of heights: {why}; it is two or more points such as 0:0,0.5:0.2,1:1, from the lowest (0) to the \
+                 highest (1)",
+                text.escape_debug()
+            );
+            Err(Error::new(ErrorKind::Request, sentence))
+        };
+        let mut points: Vec<[f64; 2]> = Vec::new();
+        for pair in text.split(',') {
+            let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.abs() <= 1e6);
+            match pair.split_once(':').map(|(from, to)| (number(from), number(to))) {
+                Some((Some(from), Some(to))) => points.push([from, to]),
+                _ => {
+                    return refuse(format!(
+                        "`{}` is not two numbers with a colon between them",
+                        pair.trim().escape_debug()
+                    ));
+                }
+            }
+        }
+        if points.len() < 2 {
+            return refuse("one point is no curve".into());
+        }
+        match points.windows(2).find(|pair| pair[0][0] >= pair[1][0]) {
+            Some(pair) => refuse(format!("{} comes after {}, which is not less", pair[1][0], pair[0][0])),
+            None => Ok(HeightCurve { points }),
+        }
+    }
+
+    /// Bends the heights of a grid. Level ground and holes stay as they are.
+    pub fn bend(&self, grid: &mut Grid) {
+        let [low, high] = extremes(NO_SAMPLES, grid.data()).map(f64::from);
+        let relief = high - low;
+        if !(relief > 0.0 && relief.is_finite()) {
+            return;
+        }
+        let curve = Curve { source: Input::None, points: self.points.clone() };
+        let setting: Setting = WorldSpec::default().setting();
+        let height = grid.height();
+        let mut shares = vec![0.0; grid.width()];
+        for j in 0..height {
+            let row = grid.row_mut(j);
+            for (share, height) in shares.iter_mut().zip(&*row) {
+                *share = ((f64::from(*height) - low) / relief) as f32;
+            }
+            let places = [];
+            curve.eval(&Points::Scattered { x: &places, y: &places }, &Slots::new(&[Some(&shares)]), &setting, row);
+            for share in row {
+                *share = (low + f64::from(*share) * relief) as f32;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Window;
+
+    #[test]
+    fn heights_are_bent_over_the_relief() {
+        let data = vec![100.0, 150.0, 200.0, 250.0, 300.0, f32::NAN];
+        let mut grid = Grid::from_data(Window::new(3, 2, 1.0), data).unwrap();
+        HeightCurve::parse("0:0, 0.5:0.25 ,1:2").unwrap().bend(&mut grid);
+        let row = grid.data();
+        assert_eq!([row[0], row[2], row[4]], [100.0, 150.0, 500.0]);
+        assert!(row[5].is_nan() && row[1] > 100.0 && row[1] < 150.0);
+        let mut flat = Grid::filled(Window::new(2, 2, 1.0), 7.0);
+        HeightCurve::parse("0:1,1:0").unwrap().bend(&mut flat);
+        assert_eq!(flat.data(), [7.0; 4]);
+    }
+
+    #[test]
+    fn what_is_no_curve_is_a_sentence() {
+        for (text, expect) in [
+            ("", "`` is not two numbers"),
+            ("0:0", "one point is no curve"),
+            ("0:0,1", "`1` is not two numbers"),
+            ("0:0,nan:1", "`nan:1` is not"),
+            ("0:0,0.5:1,0.5:2", "0.5 comes after 0.5"),
+        ] {
+            let error = HeightCurve::parse(text).unwrap_err().to_string();
+            assert!(error.contains(expect), "{error}");
+        }
+    }
+}
