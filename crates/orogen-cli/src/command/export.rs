@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValue;
 use orogen::Window;
+use orogen::export::derived::list;
 use orogen::export::format::Format;
 use orogen::export::subject::Subject;
 use orogen::export::{registry, run as exporting};
@@ -28,7 +29,7 @@ pub struct Args {
     /// Format, if the file's extension does not say [default: npy]
     #[arg(long, value_parser = Named)]
     format: Option<&'static str>,
-    /// Layer to write
+    /// Layer to write: an output, `node.layer`, or what follows from the heights: slope, aspect, curvature, normal, occlusion, splat
     #[arg(long, value_name = "L", default_value = orogen::world::HEIGHT)]
     layer: String,
     /// Samples to write, at the cell asked for [default: the whole world]
@@ -91,6 +92,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let mut recipe = Source::find(&args.recipe)?.read()?;
     recipe.world.seed = args.seed.unwrap_or(recipe.world.seed);
+    list::prepare(&mut recipe, &args.layer);
     let world = args.limits.open(recipe)?;
     let view = View { seed: None, size: None, cell: args.cell };
     let window = match args.window {

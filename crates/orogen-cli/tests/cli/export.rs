@@ -198,6 +198,56 @@ fn heights_in_colours_come_back() {
 }
 
 #[test]
+fn layers_that_follow_from_the_heights() {
+    let folder = Folder::with_small();
+    for (layer, low, high) in [
+        ("slope", 0.0, 90.0),
+        ("aspect", 0.0, 360.0),
+        ("curvature", -1.0, 1.0),
+        ("occlusion", 0.0, 1.0),
+        ("normal", -1.0, 1.0),
+    ] {
+        folder.good(&["export", "small.toml", "-o", "a.png", "--layer", layer, "-q"]);
+        folder.good(&["export", "small.toml", "-o", "a.exr", "--layer", layer, "-q"]);
+        let picture = png(&folder.read("a.png"));
+        assert_eq!(picture.channels, if layer == "normal" { 3 } else { 1 }, "{layer}");
+        if layer != "normal" {
+            folder.good(&["export", "small.toml", "-o", "a.npy", "--layer", layer, "-q"]);
+            assert!(npy(&folder.read("a.npy")).data().iter().all(|sample| (low..=high).contains(sample)), "{layer}");
+        }
+    }
+    // Green is turned for DirectX, and nothing else.
+    folder.good(&["export", "small.toml", "-o", "b.png", "--layer", "normal", "--normal", "directx", "-q"]);
+    folder.good(&["export", "small.toml", "-o", "a.png", "--layer", "normal", "-q"]);
+    let (up, down) = (png(&folder.read("a.png")).data, png(&folder.read("b.png")).data);
+    for (up, down) in up.chunks_exact(3).zip(down.chunks_exact(3)) {
+        assert!(up[0] == down[0] && up[2] == down[2] && (i32::from(up[1]) + i32::from(down[1]) - 255).abs() <= 1);
+    }
+    folder.bad(&["export", "small.toml", "-o", "c.png", "--layer", "slop"], 2, "did you mean `slope`");
+    folder.bad(&["export", "small.toml", "-o", "c.tif", "--layer", "normal"], 2, "those that hold it: exr, npy, png");
+    folder.bad(&["export", "small.toml", "-o", "c.png", "--normal", "opengl"], 2, "--normal is for the layer `normal`");
+    folder.bad(&["export", "small.toml", "-o", "-", "--format", "png", "--layer", "splat"], 2, "name a file with -o");
+}
+
+#[test]
+fn weights_add_up_to_255_over_all_pictures() {
+    let folder = Folder::with_small();
+    folder.good(&["export", "small.toml", "-o", "a.png", "--layer", "splat", "-q"]);
+    folder.good(&["export", "small.toml", "-o", "b.png", "--layer", "splat", "--weights", "layers", "-q"]);
+    let names = ["grass", "scree", "rock", "snow", "sand", "bed"];
+    let (first, second) = (png(&folder.read("a.png")).data, png(&folder.read("a_2.png")).data);
+    let layers: Vec<Vec<u8>> = names.iter().map(|name| png(&folder.read(&format!("b_{name}.png"))).data).collect();
+    for (k, (first, second)) in first.chunks_exact(4).zip(second.chunks_exact(4)).enumerate() {
+        let weights: Vec<u8> = layers.iter().map(|layer| layer[k]).collect();
+        assert_eq!(weights.iter().map(|weight| u32::from(*weight)).sum::<u32>(), 255);
+        assert_eq!([first, second].concat(), [&weights[..], &[0, 0]].concat());
+    }
+    let most = |name: &str| layers[names.iter().position(|other| *other == name).unwrap()].iter().max();
+    assert!(["grass", "rock", "sand"].iter().all(|name| most(name) > Some(&200)), "steep ground by the sea");
+    assert!(!folder.path("b.png").exists() && folder.json("b.json")["files"][5]["channels"][0] == "bed");
+}
+
+#[test]
 fn one_range_makes_windows_that_fit() {
     let folder = Folder::with_small();
     let window = |file: &str, window: &str| {

@@ -30,6 +30,12 @@ impl Gradient {
     pub fn steepness(&self) -> f32 {
         (self.east * self.east + self.north * self.north).sqrt()
     }
+
+    /// The upward normal of length 1: its parts east, north and up.
+    pub fn normal(&self) -> [f32; 3] {
+        let length = (1.0 + self.east * self.east + self.north * self.north).sqrt();
+        [-self.east / length, -self.north / length, 1.0 / length]
+    }
 }
 
 /// Gradients at the inner samples of three neighbouring rows, from the north: at columns 1 to width - 2, handed to `each` with

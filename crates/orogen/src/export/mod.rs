@@ -18,7 +18,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod channels;
 pub mod contours;
+pub mod derived;
 pub mod files;
 pub mod format;
 pub mod formats;

@@ -21,7 +21,7 @@ pub const NO_SIDECAR: OptionSpec = OptionSpec {
 };
 
 /// How a file holds its samples.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Default)]
 pub struct Held {
     /// The word for a sample: "u8", "u16", "f32".
     pub sample: &'static str,
@@ -31,6 +31,15 @@ pub struct Held {
     pub levels: Option<Levels>,
     /// Whether the rows begin in the south.
     pub from_south: bool,
+    /// The files, each with the names of its channels, where those need telling.
+    pub channels: Vec<(PathBuf, Vec<String>)>,
+}
+
+/// A file and its channels.
+#[derive(Debug, Serialize)]
+struct Channels<'a> {
+    file: String,
+    channels: &'a [String],
 }
 
 /// The text. The order of the keys is the file's; names that readers of ours know are theirs.
@@ -52,6 +61,8 @@ struct Text<'a> {
     low: Option<f32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     high: Option<f32>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    files: Vec<Channels<'a>>,
     min: f32,
     max: f32,
     sea_level: f64,
@@ -90,6 +101,7 @@ pub fn write(files: &mut Files, subject: &Subject, options: &Options, held: &Hel
         first_row: if held.from_south { "south" } else { "north" },
         low: held.levels.map(|levels| levels.low()),
         high: held.levels.map(|levels| levels.high()),
+        files: (held.channels.iter()).map(|(path, channels)| Channels { file: name(path), channels }).collect(),
         min: range.low(),
         max: range.high(),
         sea_level: world.world.sea_level,

@@ -31,7 +31,7 @@ pub const FIRST_ROW: OptionSpec = OptionSpec {
 pub const BITS: OptionSpec = OptionSpec {
     name: "bits",
     value: "N",
-    about: "Bits of a sample, 8 or 16 [default: 16]",
+    about: "Bits of a sample, 8 or 16 [default: 16, of normals 8]",
     takes: Takes::Word(&["8", "16"]),
 };
 

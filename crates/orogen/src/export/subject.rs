@@ -2,13 +2,17 @@
 
 use std::io;
 
-use crate::error::Result;
+use super::derived::layer::{Derived, Nature};
+use super::derived::list;
+use super::derived::rows::Rows;
+use crate::error::{Error, ErrorKind, Result};
 use crate::format::dem::Georeference;
 use crate::format::levels::{Levels, NO_SAMPLES, extremes};
 use crate::grid::{Grid, Window};
 use crate::layer::LayerKind;
 use crate::progress::Progress;
-use crate::world::World;
+use crate::words::nearest;
+use crate::world::{HEIGHT, World};
 
 /// Bands of rows from the north, each a grid a channel.
 type Source<'w> = Box<dyn Iterator<Item = Result<Vec<Grid>>> + 'w>;
@@ -17,6 +21,8 @@ type Source<'w> = Box<dyn Iterator<Item = Result<Vec<Grid>>> + 'w>;
 pub struct Subject<'w> {
     world: &'w World,
     layer: String,
+    /// What the layer is if the recipe has none of that name.
+    derived: Option<&'static Derived>,
     window: Window,
     progress: &'w Progress,
     /// Bytes held beside the rows at hand.
@@ -28,14 +34,32 @@ pub struct Subject<'w> {
 }
 
 impl<'w> Subject<'w> {
-    /// A layer over a window. `progress` hears of the samples, and may stop the work.
+    /// A layer over a window: one of the recipe's, or one that is [derived](super::derived) from its heights (of which some want the recipe
+    /// [prepared](super::derived::list::prepare)). `progress` hears of the samples, and may stop the work.
     ///
     /// # Errors
     /// If there is no such layer, or the window is not one of this world.
     pub fn new(world: &'w World, layer: &str, window: Window, progress: &'w Progress) -> Result<Subject<'w>> {
-        world.unit(layer)?;
         world.check(&window)?;
-        Ok(Subject { world, layer: layer.to_string(), window, progress, beside: 0, ready: None, range: NO_SAMPLES })
+        let derived = match world.unit(layer) {
+            Ok(_) => None,
+            Err(error) => match list::named(layer) {
+                Some(derived) => Some(derived),
+                None => {
+                    let names: Vec<&str> = list::all().iter().map(|derived| derived.name).collect();
+                    let hint = match nearest(layer, names.iter().copied()) {
+                        Some(near) => format!("did you mean `{near}`, which follows from the heights?"),
+                        None => format!("the heights also give {}", names.join(", ")),
+                    };
+                    return Err(Error::new(ErrorKind::Request, format!("{error}; {hint}")));
+                }
+            },
+        };
+        if derived.is_some() {
+            world.unit(HEIGHT)?;
+        }
+        let layer = layer.to_string();
+        Ok(Subject { world, layer, derived, window, progress, beside: 0, ready: None, range: NO_SAMPLES })
     }
 
     /// Plans the rows: what does not fit in memory beside `beside` bytes is refused before a file is begun.
@@ -49,6 +73,9 @@ impl<'w> Subject<'w> {
     }
 
     fn source(&self) -> Result<Source<'w>> {
+        if let Some(derived) = self.derived {
+            return Ok(Box::new(Rows::new(derived, self.world, &self.window, self.beside, self.progress)?));
+        }
         let bands = self.world.bands(&self.layer, &self.window, self.beside, self.progress)?;
         Ok(Box::new(bands.map(|band| band.map(|grid| vec![grid]))))
     }
@@ -65,7 +92,10 @@ impl<'w> Subject<'w> {
 
     /// What a sample is measured in: "m" of heights, else what the layer says of itself, which may be nothing.
     pub fn unit(&self) -> &'static str {
-        self.world.unit(&self.layer).unwrap_or_default()
+        match self.derived {
+            Some(derived) => derived.unit,
+            None => self.world.unit(&self.layer).unwrap_or_default(),
+        }
     }
 
     /// How the samples may be read: as heights, as names in numbers, or as amounts.
@@ -73,9 +103,15 @@ impl<'w> Subject<'w> {
         self.world.kind(&self.layer).unwrap_or(LayerKind::Height)
     }
 
-    /// A hash of all that the layer depends on.
+    /// A hash of all that the layer depends on; of a derived one, that its heights depend on.
     pub fn key(&self) -> [u8; 32] {
-        self.world.key(&self.layer).unwrap_or_default()
+        let layer = if self.derived.is_some() { HEIGHT } else { &self.layer };
+        self.world.key(layer).unwrap_or_default()
+    }
+
+    /// What its channels are.
+    pub fn nature(&self) -> Nature {
+        self.derived.map_or(Nature::Numbers, |derived| derived.nature)
     }
 
     /// The samples: all of the window's.
@@ -90,12 +126,15 @@ impl<'w> Subject<'w> {
 
     /// How many grids a band has: 1 for plain numbers.
     pub fn channels(&self) -> usize {
-        1
+        self.derived.map_or(1, |derived| derived.channels.len())
     }
 
     /// The channels' names, for formats that have some.
     pub fn channel_names(&self) -> Vec<String> {
-        vec![self.layer.clone()]
+        match self.derived {
+            Some(derived) => derived.channels.iter().map(ToString::to_string).collect(),
+            None => vec![self.layer.clone()],
+        }
     }
 
     /// How metres lie on a map, where the recipe holds a real place.

@@ -12,9 +12,9 @@ use crate::format::npy;
 pub static FORMAT: Format = Format {
     name: "npy",
     aliases: &[],
-    about: "NumPy array of f32, the layer's own unit (metres for heights)",
+    about: "NumPy array of f32, the layer's own unit (metres for heights); several channels as the last axis",
     options: &[],
-    channels: 1,
+    channels: 8,
     memory: |_, _| 0,
     write,
 };
@@ -22,8 +22,18 @@ pub static FORMAT: Format = Format {
 fn write(subject: &mut Subject, _: &Options, files: &mut Files) -> io::Result<String> {
     let window = *subject.window();
     files.write(|out| {
-        npy::write_header(out, window.width, window.height)?;
-        subject.rows(|band| npy::write_rows(out, band[0].data()))
+        if subject.channels() == 1 {
+            npy::write_header(out, window.width, window.height)?;
+            return subject.rows(|band| npy::write_rows(out, band[0].data()));
+        }
+        npy::write_shape(out, &[window.height, window.width, subject.channels()])?;
+        subject.rows(|band| {
+            (0..band[0].height()).try_for_each(|j| {
+                let row: Vec<f32> =
+                    (0..window.width).flat_map(|i| band.iter().map(move |grid| grid.get(i, j))).collect();
+                npy::write_rows(out, &row)
+            })
+        })
     })?;
     let levels = subject.levels();
     Ok(format!("{} to {}", levels.low(), levels.high()))

@@ -32,7 +32,8 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
         spread.rows(|samples| spread::write_levels(out, samples, &levels, most))
     })?;
     let (sample, byte_order) = if most == 255 { ("u8", None) } else { ("u16", Some("big")) };
-    let held = Held { sample, byte_order, levels: Some(levels), from_south: spread::from_south(options) };
+    let held =
+        Held { sample, byte_order, levels: Some(levels), from_south: spread::from_south(options), ..Held::default() };
     let told = sidecar::write(files, subject, options, &held)?;
     Ok(spread::words(&levels, most) + &told)
 }

@@ -1,7 +1,9 @@
-//! Grey pictures, and pictures whose colours are heights.
+//! Grey pictures, pictures whose colours are heights, normal maps and splat maps.
 
 use std::io;
 
+use crate::export::channels::{self, NORMAL, WEIGHTS};
+use crate::export::derived::layer::Nature;
 use crate::export::files::Files;
 use crate::export::format::{Format, aside, refuse, whole};
 use crate::export::notes;
@@ -16,10 +18,10 @@ use crate::format::png::{self, Picture, Pixel};
 pub static FORMAT: Format = Format {
     name: "png",
     aliases: &[],
-    about: "Grey picture of 16 or 8 bits, black the lowest and white the highest; or heights in its colours (--encoding)",
-    options: &[BITS, RANGE, FIRST_ROW, ENCODING, NO_SIDECAR],
-    channels: 1,
-    memory: |window, _| aside(whole(window)),
+    about: "Grey picture of 16 or 8 bits, black the lowest and white the highest; or heights in its colours (--encoding); normals; weights",
+    options: &[BITS, RANGE, FIRST_ROW, ENCODING, NORMAL, WEIGHTS, NO_SIDECAR],
+    channels: 8,
+    memory: |window, _| aside(2 * whole(window)),
     write,
 };
 
@@ -32,6 +34,24 @@ const ENCODING: OptionSpec = OptionSpec {
 };
 
 fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
+    let fits = |nature: Nature| subject.nature() == nature;
+    for (option, holds, what) in [
+        (NORMAL.name, fits(Nature::Normal), "the layer `normal`"),
+        (WEIGHTS.name, fits(Nature::Weights), "the layer `splat`"),
+        (RANGE.name, fits(Nature::Numbers), "plain numbers"),
+        (ENCODING.name, fits(Nature::Numbers), "plain numbers"),
+        (FIRST_ROW.name, !fits(Nature::Normal), "plain numbers and weights"),
+        (BITS.name, !fits(Nature::Weights), "plain numbers and normals"),
+    ] {
+        if options.has(option) && !holds {
+            return refuse(format!("--{option} is for {what}: leave it out for `{}`", subject.layer()));
+        }
+    }
+    match subject.nature() {
+        Nature::Normal => return channels::write_normals(subject, options, files),
+        Nature::Weights => return channels::write_weights(subject, options, files),
+        Nature::Numbers => {}
+    }
     match Encoding::ALL.into_iter().find(|encoding| options.word("encoding") == Some(encoding.name())) {
         Some(encoding) => write_encoded(subject, options, files, encoding),
         None => write_grey(subject, options, files),
@@ -52,7 +72,8 @@ fn write_grey(subject: &mut Subject, options: &Options, files: &mut Files) -> io
         })
     })?;
     let (sample, byte_order) = if most == 255 { ("u8", None) } else { ("u16", Some("big")) };
-    let held = Held { sample, byte_order, levels: Some(levels), from_south: spread::from_south(options) };
+    let held =
+        Held { sample, byte_order, levels: Some(levels), from_south: spread::from_south(options), ..Held::default() };
     let told = sidecar::write(files, subject, options, &held)?;
     Ok(spread::words(&levels, most) + &told)
 }
@@ -80,8 +101,13 @@ fn write_encoded(
             })
         })
     })?;
-    let held =
-        Held { sample: encoding.name(), byte_order: None, levels: None, from_south: spread::from_south(options) };
+    let held = Held {
+        sample: encoding.name(),
+        byte_order: None,
+        levels: None,
+        from_south: spread::from_south(options),
+        ..Held::default()
+    };
     let told = sidecar::write(files, subject, options, &held)?;
     let levels = subject.levels();
     Ok(format!("{} to {} as {} colours{told}", levels.low(), levels.high(), encoding.name()))

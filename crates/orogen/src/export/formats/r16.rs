@@ -26,7 +26,7 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
     let levels = spread.levels();
     files.write(|out| spread.rows(|samples| raw::write_u16(out, samples, &levels)))?;
     let from_south = spread::from_south(options);
-    let held = Held { sample: "u16", byte_order: Some("little"), levels: Some(levels), from_south };
+    let held = Held { sample: "u16", byte_order: Some("little"), levels: Some(levels), from_south, ..Held::default() };
     let told = sidecar::write(files, subject, options, &held)?;
     Ok(spread::words(&levels, u16::MAX) + &told)
 }

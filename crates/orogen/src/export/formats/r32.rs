@@ -25,7 +25,7 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
     let mut spread = Spread::plain(subject, options, files)?;
     files.write(|out| spread.rows(|samples| raw::write_f32(out, samples)))?;
     let from_south = spread::from_south(options);
-    let held = Held { sample: "f32", byte_order: Some("little"), levels: None, from_south };
+    let held = Held { sample: "f32", byte_order: Some("little"), levels: None, from_south, ..Held::default() };
     let told = sidecar::write(files, subject, options, &held)?;
     let levels = subject.levels();
     Ok(format!("{} to {}{told}", levels.low(), levels.high()))

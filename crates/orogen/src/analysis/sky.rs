@@ -1,0 +1,143 @@
+//! How much of the sky the ground sees: the ambient occlusion of terrain.
+//!
+//! The sky-view factor (Zakšek, Oštir and Kokalj, "Sky-view factor as a relief visualization technique", Remote Sensing 3, 2011): the share of the
+//! hemisphere above that no ground hides, 1 - mean(sin g) over the directions round about, g the height of the horizon there, none below 0. Level
+//! ground sees all of it: 1.
+//!
+//! Horizons are looked for in 16 directions along the lattice (the axes, the diagonals and the knight's moves between them, each standing for the angle
+//! halfway to its neighbours), at 1, 2, 3, 4, 6, 8, 12, 16, 24 ... steps: a far ridge narrower than the gap between two steps may be missed.
+
+use crate::grid::{Grid, Window};
+
+/// The directions of one quarter and the degrees that each stands for; turned three times, they are all.
+const QUARTER: [([i64; 2], f64); 4] =
+    [([1, 0], 26.565_051_177_077_99), ([2, 1], 22.5), ([1, 1], 18.434_948_822_922_01), ([1, 2], 22.5)];
+
+/// One look: how far it is away on the lattice, how much farther in metres, and which direction it belongs to.
+struct Look {
+    offset: [i64; 2],
+    per_metre: f32,
+    direction: usize,
+}
+
+/// The looks of all directions up to `reach` samples away.
+fn looks(reach: usize, cell: f64) -> (Vec<Look>, Vec<f64>) {
+    let (mut looks, mut shares) = (Vec::new(), Vec::new());
+    for (forward, degrees) in QUARTER {
+        for turn in 0..4 {
+            let [x, y] = (0..turn).fold(forward, |[x, y], _| [-y, x]);
+            let direction = shares.len();
+            shares.push(degrees);
+            let length = libm::sqrt((x * x + y * y) as f64);
+            for steps in steps().take_while(|steps| *steps as f64 * length <= reach as f64) {
+                let per_metre = (1.0 / (steps as f64 * length * cell)) as f32;
+                looks.push(Look { offset: [x * steps, y * steps], per_metre, direction });
+            }
+        }
+    }
+    let total: f64 = shares.iter().sum();
+    shares.iter_mut().for_each(|share| *share /= total);
+    (looks, shares)
+}
+
+/// 1, 2, 3, 4, 6, 8, 12, 16, ...
+fn steps() -> impl Iterator<Item = i64> {
+    [1, 2, 3].into_iter().chain((1..40).flat_map(|power| [4 << (power - 1), 6 << (power - 1)]))
+}
+
+/// The sky-view factor, 0 to 1, at the samples of `window`, looking up to `reach` samples far. `heights` holds the window and what there is around it;
+/// beyond it the sky is open. NaN where there is no height; samples without one hide nothing.
+pub fn view(heights: &Grid, window: &Window, reach: usize) -> Grid {
+    let (looks, shares) = looks(reach, window.cell);
+    let all = heights.window();
+    let mut out = Grid::filled(*window, f32::NAN);
+    let mut steepest = vec![0.0f32; shares.len()];
+    for j in 0..window.height {
+        for i in 0..window.width {
+            let (x, y) = (window.x + i as i64 - all.x, window.y + j as i64 - all.y);
+            let here = heights.get(x as usize, y as usize);
+            if !here.is_finite() {
+                continue;
+            }
+            steepest.fill(0.0);
+            for look in &looks {
+                let (x, y) = (x + look.offset[0], y + look.offset[1]);
+                if (0..all.width as i64).contains(&x) && (0..all.height as i64).contains(&y) {
+                    let rise = (heights.get(x as usize, y as usize) - here) * look.per_metre;
+                    // False for NaN, too.
+                    if rise > steepest[look.direction] {
+                        steepest[look.direction] = rise;
+                    }
+                }
+            }
+            let hidden: f64 = (steepest.iter().zip(&shares))
+                .map(|(rise, share)| {
+                    let rise = f64::from(*rise);
+                    share * (if rise.is_finite() { rise / (1.0 + rise * rise).sqrt() } else { 1.0 })
+                })
+                .sum();
+            out.row_mut(j)[i] = (1.0 - hidden) as f32;
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn made(side: usize, f: impl Fn(f64, f64) -> f64) -> Grid {
+        let window = Window::new(side, side, 2.0).at(-(side as i64) / 2, -(side as i64) / 2);
+        let mut grid = Grid::filled(window, 0.0);
+        for j in 0..side {
+            for i in 0..side {
+                grid.row_mut(j)[i] = f(window.east(i), window.south(j)) as f32;
+            }
+        }
+        grid
+    }
+
+    fn middle(grid: &Grid, reach: usize) -> f32 {
+        view(grid, &Window::new(1, 1, 2.0), reach).get(0, 0)
+    }
+
+    #[test]
+    fn open_ground_sees_all_and_a_cone_what_is_left() {
+        assert_eq!(middle(&made(65, |_, _| 7.0), 32), 1.0);
+        assert_eq!(middle(&made(65, |x, y| -x.abs() - y.abs()), 32), 1.0, "a top");
+        // A pit whose sides rise by 1 in 1 hides sin 45 degrees in all directions.
+        let pit = middle(&made(65, libm::hypot), 32);
+        assert!((f64::from(pit) - (1.0 - libm::sqrt(0.5))).abs() < 1e-6, "{pit}");
+        // A wall without end to the east hides what the directions towards it see of it.
+        let wall = middle(&made(65, |x, _| if x > 0.0 { 1e9 } else { 0.0 }), 32);
+        assert!((wall - 0.5).abs() < 0.08, "{wall}");
+    }
+
+    #[test]
+    fn shares_are_the_angles_halfway_to_the_neighbours() {
+        let (looks, shares) = looks(32, 2.0);
+        assert_eq!(shares.len(), 16);
+        assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        assert!((shares[0] * 360.0 - 26.565_051_177).abs() < 1e-6 && (shares[4] * 360.0 - 22.5).abs() < 1e-6);
+        assert!(looks.iter().all(|look| look.offset.iter().all(|side| side.abs() <= 32)));
+        assert_eq!(steps().take(9).collect::<Vec<_>>(), [1, 2, 3, 4, 6, 8, 12, 16, 24]);
+    }
+
+    #[test]
+    fn a_window_is_the_crop_of_the_whole() {
+        let ground = made(81, |x, y| libm::sin(x * 0.3) * 8.0 + libm::cos(y * 0.2 + x * 0.05) * 6.0);
+        let inner = ground.window().shrunk(12);
+        let whole = view(&ground, &inner, 12);
+        let part = Window { x: 3, y: -7, width: 9, height: 14, ..inner };
+        let cut = ground.crop(&part.grown(12)).unwrap();
+        assert_eq!(Some(view(&cut, &part, 12)), whole.crop(&part));
+    }
+
+    #[test]
+    fn what_is_missing_hides_nothing() {
+        let mut ground = made(33, libm::hypot);
+        ground.row_mut(16)[20] = f32::NAN;
+        assert!(middle(&ground, 16) > 0.28);
+        assert!(view(&ground, &Window::new(1, 1, 2.0).at(4, 0), 16).get(0, 0).is_nan());
+    }
+}

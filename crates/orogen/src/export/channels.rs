@@ -1,0 +1,149 @@
+//! Pictures of several channels: normal maps, and splat maps of as many pictures as they take.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use super::files::Files;
+use super::format::refuse;
+use super::options::{OptionSpec, Options, Takes};
+use super::sidecar::{self, Held};
+use super::spread;
+use super::subject::Subject;
+use crate::analysis::ground_cover::to_bytes;
+use crate::format::levels::Levels;
+use crate::format::png::{self, Picture, Pixel};
+use crate::grid::Grid;
+use crate::spool::Spool;
+
+/// The option that turns green.
+pub const NORMAL: OptionSpec = OptionSpec {
+    name: "normal",
+    value: "WAY",
+    about: "Where green points in a normal map: opengl, up the picture, or directx, down [default: opengl]",
+    takes: Takes::Word(&["opengl", "directx"]),
+};
+
+/// The option that says how weights are kept.
+pub const WEIGHTS: OptionSpec = OptionSpec {
+    name: "weights",
+    value: "HOW",
+    about: "Weights of a splat map: rgba, four in a picture (NAME.png, NAME_2.png, ...), or layers, a grey picture each (NAME_grass.png, ...) \
+            [default: rgba]",
+    takes: Takes::Word(&["rgba", "layers"]),
+};
+
+/// Writes normals as red (east), green (north, or south for DirectX) and blue (up), -1 to 1 as 0 to 255 or 65535.
+///
+/// Fails as the subject and the files do.
+pub fn write_normals(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
+    let (window, most) = (*subject.window(), if options.word("bits") == Some("16") { 65535 } else { 255 });
+    let directx = options.word(NORMAL.name) == Some("directx");
+    let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+    let green = if directx { "south (DirectX)" } else { "north (OpenGL)" };
+    let about = format!("normals: red east, green {green}, blue up; {} metres a sample", window.cell);
+    let notes = [("Software", made_by.as_str()), ("Description", about.as_str())];
+    let pixel = if most == 255 { Pixel::Data8 } else { Pixel::Data16 };
+    let picture = Picture { width: window.width, height: window.height, pixel, notes: &notes };
+    let levels = Levels::new(-1.0, 1.0);
+    files.write(|out| {
+        png::write_through(out, &picture, |out| {
+            subject.rows(|band| {
+                (0..band[0].height()).try_for_each(|j| {
+                    let row: Vec<f32> = (0..window.width)
+                        .flat_map(|i| {
+                            let [east, north, up] = [0, 1, 2].map(|part| band[part].get(i, j));
+                            [east, if directx { -north } else { north }, up]
+                        })
+                        .collect();
+                    spread::write_levels(out, &row, &levels, most)
+                })
+            })
+        })
+    })?;
+    Ok(format!("red east, green {green}, blue up"))
+}
+
+/// Writes weights that add up to 255 wherever there is ground.
+///
+/// Fails as the subject and the files do, and on a stream, which takes one file alone.
+pub fn write_weights(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
+    let Some(path) = files.path().map(Path::to_path_buf) else {
+        return refuse("weights take several files, and standard output is one: name a file with -o".into());
+    };
+    let (window, names) = (*subject.window(), subject.channel_names());
+    let mut spool = files.spool();
+    subject.rows(|band| put_aside(&mut spool, band))?;
+    let layers = options.word(WEIGHTS.name) == Some("layers");
+    let groups: Vec<Vec<usize>> = match layers {
+        true => (0..names.len()).map(|k| vec![k]).collect(),
+        false => (0..names.len()).collect::<Vec<usize>>().chunks(4).map(<[usize]>::to_vec).collect(),
+    };
+    let mut held = Held { sample: "u8", from_south: spread::from_south(options), ..Held::default() };
+    for (n, group) in groups.iter().enumerate() {
+        let suffix = match (layers, n) {
+            (true, _) => format!("_{}", names[group[0]]),
+            (false, 0) => String::new(),
+            (false, _) => format!("_{}", n + 1),
+        };
+        let to = suffixed(&path, &suffix);
+        let pixel = if layers { Pixel::Grey8 } else { Pixel::Weights8 };
+        let channels: Vec<String> = group.iter().map(|k| names[*k].clone()).collect();
+        let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+        let about = format!("weights of {}; {} metres a sample", channels.join(", "), window.cell);
+        let notes = [("Software", made_by.as_str()), ("Description", about.as_str())];
+        let picture = Picture { width: window.width, height: window.height, pixel, notes: &notes };
+        let from_south = held.from_south;
+        let body = |out: &mut dyn Write| {
+            png::write_through(out, &picture, |out| {
+                let mut bytes = vec![0; names.len() * window.width];
+                let mut pixels = vec![0; pixel.bytes() * window.width];
+                (0..window.height).try_for_each(|j| {
+                    let row = if from_south { window.height - 1 - j } else { j };
+                    spool.read((row * bytes.len()) as u64, &mut bytes)?;
+                    for (pixel, weights) in pixels.chunks_exact_mut(pixel.bytes()).zip(bytes.chunks_exact(names.len()))
+                    {
+                        pixel.iter_mut().zip(group).for_each(|(byte, k)| *byte = weights[*k]);
+                    }
+                    out.write_all(&pixels)
+                })
+            })
+        };
+        match suffix.is_empty() {
+            true => files.write(body)?,
+            false => files.write_beside(|_| to.clone(), body)?,
+        }
+        held.channels.push((to, channels));
+    }
+    let told = sidecar::write(files, subject, options, &held)?;
+    let list: Vec<String> = (held.channels.iter())
+        .map(|(path, channels)| {
+            let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            format!("{file}: {}", channels.join(", "))
+        })
+        .collect();
+    Ok(format!("weights that add up to 255\n  {}{told}", list.join("\n  ")))
+}
+
+fn put_aside(spool: &mut Spool, band: &[Grid]) -> io::Result<()> {
+    let mut weights = vec![0.0; band.len()];
+    for j in 0..band[0].height() {
+        let mut bytes = vec![0; band.len() * band[0].width()];
+        for (i, bytes) in bytes.chunks_exact_mut(band.len()).enumerate() {
+            weights.iter_mut().zip(band).for_each(|(weight, grid)| *weight = grid.get(i, j));
+            to_bytes(&weights, bytes);
+        }
+        spool.write_all(&bytes)?;
+    }
+    Ok(())
+}
+
+/// The path with something more before its extension.
+fn suffixed(path: &Path, suffix: &str) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_os_string();
+    name.push(suffix);
+    if let Some(extension) = path.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    path.with_file_name(name)
+}

@@ -1,0 +1,16 @@
+//! How the ground bends.
+
+use super::layer::{Derived, Nature};
+use crate::analysis::curvature::{Curvature, curvature};
+
+/// The layer.
+pub static LAYER: Derived = Derived {
+    name: "curvature",
+    about: "total curvature in 1/m, above 0 on tops and below 0 in hollows (Zevenbergen and Thorne)",
+    unit: "1/m",
+    nature: Nature::Numbers,
+    channels: &["curvature"],
+    flow: false,
+    reach: |_| 1,
+    make: |around, window| vec![curvature(&around.bordered(window), Curvature::Total)],
+};

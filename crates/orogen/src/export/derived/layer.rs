@@ -1,0 +1,106 @@
+//! What a derived layer is.
+
+use crate::analysis::slope::beyond;
+use crate::grid::{Grid, Window};
+
+/// What the channels of a layer are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Nature {
+    /// Plain numbers.
+    Numbers,
+    /// A direction of length 1: its parts east, north and up, each -1 to 1.
+    Normal,
+    /// Shares of a whole: each 0 to 1, together 1.
+    Weights,
+}
+
+/// A layer that follows from the heights.
+pub struct Derived {
+    /// What `--layer` calls it.
+    pub name: &'static str,
+    /// One line for a list.
+    pub about: &'static str,
+    /// What a sample is measured in, or empty.
+    pub unit: &'static str,
+    /// What its channels are.
+    pub nature: Nature,
+    /// Their names.
+    pub channels: &'static [&'static str],
+    /// Whether it also looks at how much ground drains through a sample.
+    pub flow: bool,
+    /// How many samples around one it looks at, at such a cell.
+    pub reach: fn(f64) -> usize,
+    /// Makes the samples of a window: a grid a channel.
+    pub make: fn(&Around, &Window) -> Vec<Grid>,
+}
+
+/// The ground around the samples that are made.
+pub struct Around<'a> {
+    /// Heights in metres: of the window and of what the layer reaches around it, as far as the world goes.
+    pub heights: &'a Grid,
+    /// Drainage areas in m^2 over the same window, where they are known.
+    pub flow: Option<&'a Grid>,
+    /// The sea's level in metres.
+    pub sea_level: f64,
+}
+
+impl Around<'_> {
+    /// The heights of a window with one more sample on each side: those of the ground, and past the ends of the world where its last two run on in a straight
+    /// line.
+    pub fn bordered(&self, window: &Window) -> Grid {
+        let wide = window.grown(1);
+        let there = self.heights.window();
+        let left = wide.x.max(there.x);
+        let (columns, rows) =
+            (left..wide.right().min(there.right()), wide.y.max(there.y)..wide.bottom().min(there.bottom()));
+        let mut out = Grid::filled(wide, f32::NAN);
+        let across = (columns.end - columns.start) as usize;
+        let (inside, from) = ((left - wide.x) as usize, (left - there.x) as usize);
+        for y in rows.clone() {
+            let source = self.heights.row((y - there.y) as usize);
+            let row = out.row_mut((y - wide.y) as usize);
+            row[inside..inside + across].copy_from_slice(&source[from..from + across]);
+            // One sample at most is missing at each end.
+            if inside > 0 {
+                row[0] = beyond(row[1], row[2.min(across)]);
+            }
+            let last = inside + across;
+            if last < row.len() {
+                row[last] = beyond(row[last - 1], row[last.saturating_sub(2).max(inside)]);
+            }
+        }
+        let (top, bottom) = ((rows.start - wide.y) as usize, (rows.end - 1 - wide.y) as usize);
+        for (to, last, before) in
+            [(0, top, (top + 1).min(bottom)), (wide.height - 1, bottom, bottom.saturating_sub(1).max(top))]
+        {
+            if to == last {
+                continue;
+            }
+            for i in 0..wide.width {
+                out.row_mut(to)[i] = beyond(out.get(i, last), out.get(i, before));
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::slope::extended;
+
+    #[test]
+    fn at_the_ends_of_a_world_it_is_the_extended_grid() {
+        for (width, height) in [(7, 5), (1, 1), (2, 1), (1, 3), (2, 2)] {
+            let window = Window::new(width, height, 5.0);
+            let data = (0..width * height).map(|k| (k * k % 23) as f32).collect();
+            let ground = Grid::from_data(window, data).unwrap();
+            let around = Around { heights: &ground, flow: None, sea_level: 0.0 };
+            let whole = around.bordered(&window);
+            assert_eq!(whole, extended(&ground), "{width} x {height}");
+            for part in window.tiles(2) {
+                assert_eq!(Some(around.bordered(&part)), whole.crop(&part.grown(1)), "{part:?}");
+            }
+        }
+    }
+}

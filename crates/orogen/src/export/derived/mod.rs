@@ -1,0 +1,11 @@
+//! Layers that a recipe need not have: what follows from its heights. One file each, and [`list`](list) names them.
+
+pub mod aspect;
+pub mod curvature;
+pub mod layer;
+pub mod list;
+pub mod normal;
+pub mod occlusion;
+pub mod rows;
+pub mod slope;
+pub mod splat;

@@ -1,0 +1,29 @@
+//! Where the ground points up.
+
+use super::layer::{Derived, Nature};
+use crate::analysis::slope::gradients_between;
+use crate::grid::Grid;
+
+/// The layer.
+pub static LAYER: Derived = Derived {
+    name: "normal",
+    about: "upward normal, its parts east, north and up: a normal map",
+    unit: "",
+    nature: Nature::Normal,
+    channels: &["X", "Y", "Z"],
+    flow: false,
+    reach: |_| 1,
+    make: |around, window| {
+        let heights = around.bordered(window);
+        let mut parts = vec![Grid::filled(*window, 0.0); 3];
+        for j in 0..window.height {
+            let rows = [heights.row(j), heights.row(j + 1), heights.row(j + 2)];
+            gradients_between(rows, window.cell, |i, gradient| {
+                for (part, value) in parts.iter_mut().zip(gradient.normal()) {
+                    part.row_mut(j)[i] = value;
+                }
+            });
+        }
+        parts
+    },
+};

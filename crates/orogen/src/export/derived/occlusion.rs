@@ -1,0 +1,24 @@
+//! How much sky the ground sees.
+
+use super::layer::{Derived, Nature};
+use crate::analysis::sky;
+
+/// How far horizons are looked for, in metres, and at most in samples.
+const METRES: f64 = 1000.0;
+const MOST: f64 = 128.0;
+
+fn reach(cell: f64) -> usize {
+    (METRES / cell).ceil().clamp(1.0, MOST) as usize
+}
+
+/// The layer.
+pub static LAYER: Derived = Derived {
+    name: "occlusion",
+    about: "ambient occlusion: the share of the sky that is seen, up to 1000 m or 128 samples around, 1 on open ground",
+    unit: "",
+    nature: Nature::Numbers,
+    channels: &["occlusion"],
+    flow: false,
+    reach,
+    make: |around, window| vec![sky::view(around.heights, window, reach(window.cell))],
+};

@@ -1,0 +1,16 @@
+//! How steep the ground is.
+
+use super::layer::{Derived, Nature};
+use crate::analysis::slope::degrees;
+
+/// The layer.
+pub static LAYER: Derived = Derived {
+    name: "slope",
+    about: "steepness in degrees, by Horn's 3 x 3 method",
+    unit: "deg",
+    nature: Nature::Numbers,
+    channels: &["slope"],
+    flow: false,
+    reach: |_| 1,
+    make: |around, window| vec![degrees(&around.bordered(window))],
+};
