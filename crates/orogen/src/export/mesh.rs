@@ -14,7 +14,7 @@ use crate::mesh::adaptive::adaptive;
 use crate::mesh::relief::HeightCurve;
 use crate::mesh::shape::Shape;
 use crate::mesh::surface::Surface;
-use crate::palette::Tint;
+use crate::palette::tint::Tint;
 
 /// `--max-error`.
 pub const MAX_ERROR: OptionSpec = OptionSpec {
