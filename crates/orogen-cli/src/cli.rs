@@ -6,7 +6,7 @@ use orogen::Level;
 
 use crate::command::{
     analyze, build, compare, completions, explain, export, fit, generate, grow, new, noise, ops, palettes, presets,
-    schema,
+    render, schema,
 };
 use crate::failure::Failure;
 
@@ -35,6 +35,8 @@ enum Command {
     Fit(fit::Args),
     /// Draw a terrain growing: frames of uplift and erosion as a moving picture.
     Grow(grow::Args),
+    /// Draw a terrain as it would be seen: a perspective picture with sun, shadows, sky and water.
+    Render(render::Args),
     /// Write a new recipe to start from.
     New(new::Args),
     /// List the built-in presets.
@@ -67,6 +69,7 @@ impl Cli {
             Command::Analyze(args) => analyze::run(&args),
             Command::Fit(args) => fit::run(&args),
             Command::Grow(args) => grow::run(&args),
+            Command::Render(args) => render::run(&args),
             Command::New(args) => new::run(&args),
             Command::Presets => presets::run(),
             Command::Ops(args) => ops::run(&args),

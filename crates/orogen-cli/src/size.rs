@@ -73,6 +73,29 @@ pub fn not_negative(text: &str) -> Result<f64, String> {
     finite(text).ok().filter(|&number| number >= 0.0).ok_or_else(|| "it is 0 or a number above, such as 1.5".into())
 }
 
+/// A few numbers with commas between them: a place, or a direction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Numbers(pub Vec<f64>);
+
+impl FromStr for Numbers {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Numbers, String> {
+        text.split(',')
+            .map(finite)
+            .collect::<Result<Vec<f64>, String>>()
+            .map(Numbers)
+            .map_err(|_| format!("`{text}` is not numbers with commas between them, such as 200,24"))
+    }
+}
+
+/// A time of the day, as hours after midnight.
+pub fn clock(text: &str) -> Result<f64, String> {
+    let number = |text: &str, end: u32| text.trim().parse::<u32>().ok().filter(|n| *n < end).map(f64::from);
+    let time = text.split_once(':').and_then(|(hour, minute)| Some(number(hour, 24)? + number(minute, 60)? / 60.0));
+    time.ok_or_else(|| "a time goes from 00:00 to 23:59, such as 17:30".into())
+}
+
 /// `--window`: a rectangle of samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rectangle {
@@ -197,6 +220,24 @@ mod tests {
         ] {
             let got = [wavelength(text), finite(text), positive(text), not_negative(text)].map(|parsed| parsed.is_ok());
             assert_eq!(got, [wave, any, above, from], "{text}");
+        }
+    }
+
+    #[test]
+    fn lists_and_times() {
+        assert_eq!("200, -24.5".parse(), Ok(Numbers(vec![200.0, -24.5])));
+        for text in ["", "a", "1,", "1,nan", "1;2"] {
+            assert!(text.parse::<Numbers>().is_err(), "{text}");
+        }
+        for (text, expect) in [
+            ("17:30", Some(17.5)),
+            ("0:00", Some(0.0)),
+            ("24:00", None),
+            ("12:60", None),
+            ("12", None),
+            ("-1:00", None),
+        ] {
+            assert_eq!(clock(text).ok(), expect, "{text}");
         }
     }
 

@@ -57,6 +57,7 @@ pub mod plan;
 pub mod progress;
 pub mod raster;
 pub mod recipe;
+pub mod render;
 pub mod resample;
 pub mod sampler;
 pub mod solver;

@@ -14,4 +14,5 @@ pub mod noise;
 pub mod ops;
 pub mod palettes;
 pub mod presets;
+pub mod render;
 pub mod schema;

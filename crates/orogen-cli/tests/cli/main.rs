@@ -13,4 +13,5 @@ mod harness;
 mod noise;
 mod others;
 mod palettes;
+mod render;
 mod watch;

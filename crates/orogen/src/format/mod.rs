@@ -6,6 +6,7 @@ pub mod dem;
 pub mod encoding;
 pub mod exr;
 pub mod geotiff;
+pub mod gif;
 pub mod grey;
 pub mod half;
 pub mod hgt;

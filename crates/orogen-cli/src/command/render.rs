@@ -1,0 +1,319 @@
+//! `orogen render`.
+
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+use orogen::format::png::{self, Picture, Pixel};
+use orogen::render::camera::{Camera, View as Shot};
+use orogen::render::relief::Land;
+use orogen::render::scene::{Colors, Edge, Scene, Style};
+use orogen::render::sun::Moment;
+use orogen::world::HEIGHT;
+use orogen::{Grid, Progress, Window, World, file};
+
+use crate::bar::Bar;
+use crate::failure::Failure;
+use crate::options::{Limits, View};
+use crate::size::{Numbers, Rectangle, Size, cell, clock, not_negative, positive, seed};
+use crate::source::Source;
+use crate::{interrupt, memory, say, view};
+
+/// What it takes.
+#[derive(Debug, clap::Args)]
+#[command(
+    after_help = "Nothing but the processor draws, and the picture has the same bytes on every machine. Grain finer than the \
+                        world's samples is made up by the picture; heights, shadows and outlines are the world's own."
+)]
+pub struct Args {
+    /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
+    recipe: PathBuf,
+    /// Picture to write, a .png
+    #[arg(short, long, value_name = "FILE", default_value = "view.png")]
+    out: PathBuf,
+    /// Pixels of the picture
+    #[arg(long, value_name = "WxH", default_value = "1920x1080", allow_negative_numbers = true)]
+    size: Size,
+    /// Where the camera stands: AZIMUTH,ELEVATION[,DISTANCE] around the middle of the land (degrees clockwise from north, degrees
+    /// above the horizon, metres), or with --look X,Y,HEIGHT in the world's metres [default: 200,24 and as far as shows all]
+    #[arg(long, value_name = "A,E[,D]|X,Y,H", allow_hyphen_values = true)]
+    camera: Option<Numbers>,
+    /// The place that is in the middle of the picture, metres east and south; then --camera is a place, too
+    #[arg(long, value_name = "X,Y", requires = "camera", allow_hyphen_values = true)]
+    look: Option<Numbers>,
+    /// Angle of view along the picture's longer side, in degrees
+    #[arg(long, value_name = "DEG", value_parser = positive, default_value = "40", allow_negative_numbers = true)]
+    fov: f64,
+    /// The sun: AZIMUTH,ELEVATION, degrees clockwise from north and above the horizon [default: 290,30]
+    #[arg(long, value_name = "A,E", conflicts_with = "time", allow_hyphen_values = true)]
+    sun: Option<Numbers>,
+    /// The sun as it stands at this time of the day, by the sun (it is highest at 12:00)
+    #[arg(long, value_name = "HH:MM", value_parser = clock)]
+    time: Option<f64>,
+    /// Latitude for --time, in degrees, south negative [default: 45]
+    #[arg(long, value_name = "DEG", requires = "time", allow_negative_numbers = true)]
+    latitude: Option<f64>,
+    /// Day of the year for --time [default: 172, the longest in the north]
+    #[arg(long, value_name = "N", requires = "time", value_parser = clap::value_parser!(u16).range(1..=366),
+          allow_negative_numbers = true)]
+    day: Option<u16>,
+    /// How thick the haze is: 0 is none, 1 a clear day, more is more
+    #[arg(long, value_name = "N", value_parser = not_negative, default_value = "1", allow_negative_numbers = true)]
+    haze: f64,
+    /// How many times heights count
+    #[arg(long, value_name = "N", value_parser = positive, default_value = "1", allow_negative_numbers = true)]
+    exaggeration: f64,
+    /// What is shown where the land ends [default: haze where most of the edge lies in the sea, else cut]
+    #[arg(long)]
+    edge: Option<Ends>,
+    /// How the ground is coloured
+    #[arg(long, value_enum, default_value_t = Dress::Natural)]
+    colors: Dress,
+    /// Height from which snow lies, in metres [default: three fifths up the relief, none on low land]
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    snow_line: Option<f64>,
+    /// In how many places of each pixel light is gathered
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), default_value = "5",
+          allow_negative_numbers = true)]
+    samples: u32,
+    /// Samples of the world to show, at the cell asked for [default: the whole world]
+    #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
+    window: Option<Rectangle>,
+    /// Metres from one sample of the world to the next [default: the world's cell]
+    #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
+    cell: Option<f64>,
+    /// Seed of the world, instead of the recipe's
+    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
+    seed: Option<u64>,
+    #[command(flatten)]
+    limits: Limits,
+    /// Show neither progress nor the closing words
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// `--edge`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Ends {
+    /// A block cut out of the land, on a table
+    Cut,
+    /// The open sea, or the land mirrored on and on until haze hides it
+    Haze,
+}
+
+/// `--colors`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Dress {
+    /// Forest, meadow, scree, rock and snow
+    Natural,
+    /// Red and yellow beds of rock, sand
+    Desert,
+    /// The tints of the relief map
+    Map,
+    /// A model of clay
+    Clay,
+}
+
+/// Where the camera stands if nobody says: a little west of south, looking down a little.
+const CAMERA: [f64; 2] = [200.0, 24.0];
+
+/// Draws the picture.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    if !args.out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+        return Err(Failure::Usage(format!(
+            "a view is a picture; name a file that ends in .png, not {}",
+            args.out.display()
+        )));
+    }
+    let [width, height] = size(args)?;
+    let (style, shot) = (style(args)?, shot(args)?);
+    let mut recipe = Source::find(&args.recipe)?.read()?;
+    recipe.world.seed = args.seed.unwrap_or(recipe.world.seed);
+    let world = args.limits.open(recipe)?;
+    let window = window(args, &world)?;
+    // Of each sample of the land: what is asked for, the pyramid, slopes, and light twice while it is made.
+    memory::afford(
+        (window.len() as u64).saturating_mul(96).saturating_add((width * height) as u64 * 3),
+        args.limits.memory,
+    )?;
+    let folder = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    file::check_folder(folder)?;
+    let (bar, progress) = Bar::new(args.quiet);
+    let made = draw(args, &world, &window, (&style, &shot), &progress);
+    drop(bar);
+    let words = made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
+    if args.quiet { Ok(()) } else { say::out(&words) }
+}
+
+/// The picture's size.
+fn size(args: &Args) -> Result<[usize; 2], Failure> {
+    let [width, height] = match args.size {
+        Size::Longer(n) => [n, (n * 9).div_ceil(16)],
+        Size::Both(width, height) => [width, height],
+    };
+    match width.max(height) <= 32_768 {
+        true => Ok([width, height]),
+        false => Err(Failure::Usage(format!(
+            "a picture of {width} x {height} pixels is too large; a side has 32768 at most"
+        ))),
+    }
+}
+
+/// How it is to look.
+fn style(args: &Args) -> Result<Style, Failure> {
+    let usage = |sentence: String| Err(Failure::Usage(sentence));
+    if !(1.0..=150.0).contains(&args.fov) {
+        return usage(format!("--fov is {}; an angle of view goes from 1 to 150 degrees", args.fov));
+    }
+    if !(0.01..=100.0).contains(&args.exaggeration) {
+        return usage(format!("--exaggeration is {}; it goes from 0.01 to 100", args.exaggeration));
+    }
+    if args.haze > 100.0 {
+        return usage(format!("--haze is {}; it goes from 0 to 100", args.haze));
+    }
+    if args.snow_line.is_some_and(|line| !line.is_finite()) {
+        return usage("--snow-line is a height in metres, such as 2400".into());
+    }
+    Ok(Style {
+        exaggeration: args.exaggeration,
+        sun: sun(args)?,
+        haze: args.haze,
+        edge: args.edge.map(|edge| match edge {
+            Ends::Cut => Edge::Cut,
+            Ends::Haze => Edge::Haze,
+        }),
+        colors: match args.colors {
+            Dress::Natural => Colors::Natural,
+            Dress::Desert => Colors::Desert,
+            Dress::Map => Colors::Map,
+            Dress::Clay => Colors::Clay,
+        },
+        snow_line: args.snow_line,
+        samples: args.samples,
+    })
+}
+
+/// Where the sun stands.
+fn sun(args: &Args) -> Result<[f64; 2], Failure> {
+    let usage = |sentence: String| Err(Failure::Usage(sentence));
+    if let Some(hour) = args.time {
+        let latitude = args.latitude.unwrap_or(45.0);
+        if !(-90.0..=90.0).contains(&latitude) {
+            return usage(format!("--latitude is {latitude}; it goes from -90 to 90 degrees"));
+        }
+        let moment = Moment { latitude, day: args.day.unwrap_or(172), hour };
+        let sun = moment.sun();
+        return match (sun[1] >= LOWEST_SUN, moment.daylight()) {
+            (true, _) => Ok(sun),
+            (false, Some([rise, set])) => usage(format!(
+                "at {} on day {} at latitude {latitude} the sun is {:.0} degrees below the horizon; it is up from {} to {}",
+                hours(hour),
+                moment.day,
+                -sun[1],
+                hours(rise),
+                hours(set)
+            )),
+            (false, None) => usage(format!("on day {} at latitude {latitude} the sun never rises", moment.day)),
+        };
+    }
+    match args.sun.as_ref().map(|sun| sun.0.as_slice()) {
+        None => Ok(Style::default().sun),
+        Some([azimuth, elevation]) if (LOWEST_SUN..=90.0).contains(elevation) => Ok([*azimuth, *elevation]),
+        Some([_, elevation]) => usage(format!(
+            "--sun says that it stands at an elevation of {elevation} degrees; it goes from {LOWEST_SUN}, when the last light \
+             fades, to 90"
+        )),
+        Some(_) => usage("--sun is AZIMUTH,ELEVATION in degrees, such as 290,30".into()),
+    }
+}
+
+/// Below this nothing is to be seen.
+const LOWEST_SUN: f64 = -6.0;
+
+fn hours(hour: f64) -> String {
+    let minutes = (hour * 60.0).round() as u32;
+    format!("{:02}:{:02}", minutes / 60, minutes % 60)
+}
+
+/// From where it is taken.
+fn shot(args: &Args) -> Result<Shot, Failure> {
+    let usage = |sentence: String| Err(Failure::Usage(sentence));
+    let camera = args.camera.as_ref().map(|camera| camera.0.as_slice());
+    if let Some(Numbers(look)) = &args.look {
+        return match (camera, look.as_slice()) {
+            (Some(&[x, y, height]), &[to_x, to_y]) if x == to_x && y == to_y => usage(format!(
+                "the camera stands at {x},{y} and looks there too, from a height of {height}: move one of them"
+            )),
+            (Some(&[x, y, height]), &[to_x, to_y]) => Ok(Shot::At { eye: [x, y, height], look: [to_x, to_y] }),
+            (_, &[_, _]) => usage("with --look, --camera is X,Y,HEIGHT in metres, such as 2000,9000,1500".into()),
+            _ => usage("--look is X,Y in metres, such as 5000,5000".into()),
+        };
+    }
+    let (azimuth, elevation, distance) = match camera {
+        None => (CAMERA[0], CAMERA[1], None),
+        Some(&[azimuth, elevation]) => (azimuth, elevation, None),
+        Some(&[azimuth, elevation, distance]) => (azimuth, elevation, Some(distance)),
+        Some(_) => return usage("--camera is AZIMUTH,ELEVATION[,DISTANCE], such as 200,24".into()),
+    };
+    if !(-90.0..=90.0).contains(&elevation) {
+        return usage(format!(
+            "--camera says that it stands at an elevation of {elevation} degrees; that goes from -90 to 90 (with --look, \
+             --camera is a place)"
+        ));
+    }
+    if elevation < 0.0 {
+        return usage(format!(
+            "--camera says that it stands {} degrees below the horizon, under the ground",
+            -elevation
+        ));
+    }
+    match distance.filter(|distance| *distance <= 0.0) {
+        Some(distance) => usage(format!("--camera says that it stands {distance} m away; that is a number above 0")),
+        None => Ok(Shot::Around { azimuth, elevation, distance }),
+    }
+}
+
+/// The samples of the world that are shown.
+fn window(args: &Args, world: &World) -> Result<Window, Failure> {
+    let cell = args.cell.unwrap_or(world.recipe().world.cell);
+    match args.window {
+        Some(Rectangle { x, y, width, height }) => Ok(Window { x, y, width, height, cell }),
+        None => view::whole(world, &View { seed: None, size: None, cell: args.cell }),
+    }
+}
+
+/// Layers that a picture makes use of where a recipe has them.
+const LAYERS: [&str; 3] = [HEIGHT, "surface", "flow"];
+
+fn draw(
+    args: &Args,
+    world: &World,
+    window: &Window,
+    (style, shot): (&Style, &Shot),
+    progress: &Progress,
+) -> Result<String, Failure> {
+    let has = |layer: &&str| world.recipe().outputs().any(|name| name == *layer);
+    let layers: Vec<&str> = LAYERS.into_iter().filter(|layer| *layer == HEIGHT || has(layer)).collect();
+    let grids = world.grids(&layers, window, progress)?;
+    let layer = |name: &str| layers.iter().position(|layer| *layer == name).and_then(|at| grids.get(at));
+    let nothing = Grid::filled(*window, 0.0);
+    let land = Land {
+        heights: layer(HEIGHT).unwrap_or(&nothing),
+        surface: layer("surface"),
+        flow: layer("flow"),
+        sea_level: Some(world.recipe().world.sea_level),
+    };
+    let scene = Scene::new(&land, style, progress)?;
+    let [width, height] = size(args)?;
+    let origin = [window.east(0), window.south(0)];
+    let camera = Camera::new(shot, scene.relief(), origin, [width, height], args.fov, &scene.frame());
+    if let (Some(metres), false) = (camera.lifted(), args.quiet) {
+        say::error(&format!("note: the camera stood underground; it is lifted by {metres:.0} m, to just above it"));
+    }
+    let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+    let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", &software)] };
+    file::write_whole(&args.out, |out| {
+        png::write(out, &picture, |rows, bytes| Ok(scene.paint(&camera, [width, height], rows, bytes, progress)?))
+    })?;
+    let samples = format!("{} x {} samples of {} m", window.width, window.height, window.cell);
+    Ok(format!("{}: {width} x {height} pixels, of {samples}\n", args.out.display()))
+}

@@ -1,0 +1,95 @@
+//! `orogen render`.
+
+use crate::harness::{Folder, png};
+
+const QUICK: [&str; 6] = ["render", "small.toml", "--size", "96x54", "--samples", "1"];
+
+fn with<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    [&QUICK[..], more].concat()
+}
+
+#[test]
+fn a_view_is_a_picture_and_the_same_on_any_number_of_threads() {
+    let folder = Folder::with_small();
+    let outcome = folder.good(&with(&[]));
+    assert!(outcome.text().starts_with("view.png: 96 x 54 pixels"), "{}", outcome.text());
+    let picture = png(&folder.read("view.png"));
+    assert_eq!((picture.width, picture.height, picture.channels), (96, 54, 3));
+    assert!(picture.data.iter().any(|byte| *byte > 150) && picture.data.iter().any(|byte| *byte < 90));
+    folder.good(&with(&["--threads", "1", "-q", "-o", "one.png"]));
+    assert!(folder.read("one.png") == folder.read("view.png"));
+}
+
+#[test]
+fn every_choice_makes_another_picture() {
+    let folder = Folder::with_small();
+    let mut seen: Vec<Vec<u8>> = Vec::new();
+    for choice in [
+        &["--colors", "natural"][..],
+        &["--colors", "desert"],
+        &["--colors", "map"],
+        &["--colors", "clay"],
+        &["--edge", "haze"],
+        &["--sun", "100,20"],
+        &["--time", "17:00", "--latitude", "-20", "--day", "10"],
+        &["--haze", "4"],
+        &["--exaggeration", "2"],
+        &["--snow-line", "20"],
+        &["--camera", "20,60"],
+        &["--camera", "20,60,2000"],
+        &["--camera", "20,400,300", "--look", "400,200"],
+        &["--fov", "20", "--camera", "200,24,900"],
+        &["--seed", "9"],
+        &["--window", "0,0,20,20"],
+        &["--cell", "30"],
+    ] {
+        folder.good(&with(&[choice, &["-o", "a.png"]].concat()));
+        let data = png(&folder.read("a.png")).data;
+        assert!(!seen.contains(&data), "{choice:?}");
+        seen.push(data);
+    }
+}
+
+#[test]
+fn an_underground_camera_is_lifted_with_a_note() {
+    let folder = Folder::with_small();
+    let outcome = folder.good(&with(&["--camera", "300,300,-900", "--look", "500,200"]));
+    assert!(outcome.err.contains("note: the camera stood underground; it is lifted by"), "{}", outcome.err);
+}
+
+#[test]
+fn what_cannot_be_is_a_sentence_and_leaves_nothing() {
+    let folder = Folder::with_small();
+    for (wrong, sentence) in [
+        (&["-o", "a.jpg"][..], "ends in .png"),
+        (&["--camera", "1"], "AZIMUTH,ELEVATION[,DISTANCE]"),
+        (&["--camera", "1,2,3,4"], "AZIMUTH,ELEVATION[,DISTANCE]"),
+        (&["--camera", "1,100"], "that goes from -90 to 90"),
+        (&["--camera", "1,-5"], "under the ground"),
+        (&["--camera", "1,5,0"], "above 0"),
+        (&["--camera", "a,b"], "not numbers"),
+        (&["--camera", "1,2", "--look", "3,4"], "X,Y,HEIGHT"),
+        (&["--camera", "1,2,3", "--look", "1,2"], "looks there too"),
+        (&["--sun", "290"], "AZIMUTH,ELEVATION"),
+        (&["--sun", "290,91"], "to 90"),
+        (&["--time", "25:00"], "23:59"),
+        (&["--time", "02:00"], "it is up from"),
+        (&["--time", "12:00", "--latitude", "80", "--day", "355"], "never rises"),
+        (&["--time", "12:00", "--latitude", "95"], "from -90 to 90"),
+        (&["--fov", "170"], "1 to 150"),
+        (&["--exaggeration", "1000"], "0.01 to 100"),
+        (&["--haze", "1000"], "0 to 100"),
+        (&["--size", "99999x5"], "32768"),
+        (&["--window", "0,0,1,9"], "1 x 9 samples"),
+        (&["--memory", "1kB"], "memory"),
+    ] {
+        let arguments: Vec<&str> = match wrong.contains(&"--size") {
+            true => [&["render", "small.toml"], wrong].concat(),
+            false => with(wrong),
+        };
+        let outcome = folder.run(&arguments);
+        assert!(outcome.code != 0 && outcome.err.contains(sentence), "{wrong:?}: {}", outcome.err);
+    }
+    folder.bad(&with(&["-o", "none/a.png"]), 1, "cannot write into none");
+    assert_eq!(folder.names(""), ["small.toml"]);
+}
