@@ -1,7 +1,7 @@
-"""Pillow reads the pictures: grey values stand for the heights the summary says, sea is where the heights are below it."""
+"""Pillow reads the pictures: grey values stand for the heights the summary says, sea is where the heights are below it; animations move."""
 
 import numpy
-from orogen import ROOT, Checks, export, generate
+from orogen import ROOT, WORK, Checks, export, generate, orogen
 from PIL import Image
 
 checks = Checks()
@@ -60,5 +60,49 @@ for name, mode in (("height.png", "I;16"), ("height8.png", "L")):
     checks.equal(f"plane {name}: corners", corners, [65535, 0] if mode == "I;16" else [255, 0])
     checks.that(f"plane {name}: rises east", bool((numpy.diff(grey.astype("i4"), axis=1) > 0).all()))
     checks.that(f"plane {name}: falls south", bool((numpy.diff(grey.astype("i4"), axis=0) < 0).all()))
+
+def frames(path):
+    """Every frame as an array, and how long each is shown."""
+    with Image.open(path) as image:
+        pictures, delays = [], []
+        for frame in range(image.n_frames):
+            image.seek(frame)
+            pictures.append(numpy.asarray(image.convert("RGB")).astype("i4"))
+            delays.append(image.info.get("duration"))
+        return pictures, delays
+
+
+def refused(path):
+    """Whether Pillow complains of the file, or finds other frames in it than there were."""
+    try:
+        return len(frames(path)[0]) != FRAMES
+    except (OSError, SyntaxError, EOFError, ValueError, IndexError):
+        return True
+
+
+# Moving pictures: an APNG holds the very bytes of each frame; a GIF shows them in 255 colours.
+FRAMES, DELAY, WIDE, HIGH = 6, 80, 160, 90
+turn = ("render", "island", "--cell", 160, "--size", f"{WIDE}x{HIGH}", "--turntable", FRAMES, "--delay", DELAY, "--quiet", "-o")
+orogen(*turn, WORK / "turn-%02d.png")
+orogen(*turn, WORK / "turn.png")
+orogen(*turn, WORK / "turn.gif")
+single = [pixels(WORK / f"turn-{frame:02d}.png", "RGB", (HIGH, WIDE)).astype("i4") for frame in range(FRAMES)]
+for name in ("turn.png", "turn.gif"):
+    pictures, delays = frames(WORK / name)
+    checks.equal(f"{name}: frames", len(pictures), FRAMES)
+    checks.equal(f"{name}: delays", {float(delay) for delay in delays}, {float(DELAY)})
+    checks.equal(f"{name}: size", pictures[0].shape, (HIGH, WIDE, 3))
+    off = max(float(numpy.abs(a - b).mean()) for a, b in zip(pictures, single))
+    checks.that(f"{name}: frames as they are by themselves", off <= (0 if name.endswith("png") else 6), f"(off by {off})")
+    checks.that(f"{name}: frames differ", all((a != b).any() for a, b in zip(pictures, pictures[1:])))
+    # What is damaged has to be noticed.
+    whole = (WORK / name).read_bytes()
+    for what, damaged in (("cut short", whole[: len(whole) // 2]), ("of another kind", b"X" + whole[1:])):
+        (WORK / f"damaged-{name}").write_bytes(damaged)
+        checks.that(f"{name}: {what}, it is refused", refused(WORK / f"damaged-{name}"))
+orogen("grow", "dla-peaks", "--size", 96, "--frames", 4, "--quiet", "-o", WORK / "grow.gif")
+checks.equal("grow.gif: frames", len(frames(WORK / "grow.gif")[0]), 4)
+orogen("noise", "perlin", "--size", 64, "--frames", 9, "--quiet", "-o", WORK / "noise.gif")
+checks.equal("noise.gif: frames", len(frames(WORK / "noise.gif")[0]), 9)
 
 checks.end()

@@ -30,7 +30,7 @@ Builds `orogen` for release, installs what is missing and runs every client, or 
   presets   every preset against golden/presets.txt, on one thread and two, at every SIMD level of this machine
   asan      the tests of the SIMD levels under AddressSanitizer: no kernel reads or writes beside its slices
   numpy     NumPy reads .npy: the numbers of summary.json, and which way is east
-  pillow    Pillow reads the pictures: what a grey value stands for, and what is sea
+  pillow    Pillow reads the pictures: what a grey value stands for, what is sea; animations
   rasterio  rasterio reads GeoTIFFs: the samples and where they lie; rio-cogeo validates their layout
   xarray    xarray and zarr-python read Zarr groups: the samples and where they lie
   tiles     NumPy and Pillow read tiles: shared edges, one scale for all; Terrarium heights where a map has them

@@ -3,14 +3,14 @@
 use std::io;
 use std::path::PathBuf;
 
-use orogen::format::png::{self, Animation, Picture, Pixel};
+use orogen::format::png::{Animation, Picture, Pixel};
 use orogen::map::paint::Painter;
 use orogen::node::Node;
-use orogen::{Grid, Progress, Recipe, file};
+use orogen::{Grid, Progress, Recipe};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
-use crate::format::Format;
+use crate::moving::{Moving, Target};
 use crate::options::{Limits, View};
 use crate::source::Source;
 use crate::{interrupt, memory, say, view};
@@ -22,7 +22,7 @@ pub struct Args {
     recipe: PathBuf,
     #[command(flatten)]
     view: View,
-    /// Picture to write, a .png that moves (APNG)
+    /// Picture to write: a .png that moves (APNG), a .gif, or a file for each frame such as grow-%03d.png
     #[arg(short, long, value_name = "FILE", default_value = "grow.png")]
     out: PathBuf,
     /// How many frames: the beginning, and after each step
@@ -44,9 +44,7 @@ pub struct Args {
 
 /// Makes the frames.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    if Format::of(&args.out, Format::ALL) != Ok(Format::Png) {
-        return Err(Failure::Usage("frames go into a moving picture; name a file that ends in .png".into()));
-    }
+    let target = Target::of(&args.out).map_err(Failure::Usage)?;
     if let Some(years) = args.years.filter(|years| !(0.0..=1e9).contains(years)) {
         return Err(Failure::Usage(format!("--years is {years}; it goes from 0 to 1e9")));
     }
@@ -59,43 +57,49 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         )));
     }
     let (bar, progress) = Bar::new(args.quiet);
-    let made = write(&recipe, args, &progress);
+    let made = write(&recipe, args, &target, &progress);
     drop(bar);
     let words = made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
     if args.quiet { Ok(()) } else { say::out(&words) }
 }
 
-fn write(recipe: &Recipe, args: &Args, progress: &Progress) -> Result<String, Failure> {
+fn write(recipe: &Recipe, args: &Args, target: &Target, progress: &Progress) -> Result<String, Failure> {
     // The last frame first: it tells how large the picture is, and its colours are those of all.
     let last = frame(recipe, args, args.frames - 1, progress)?;
     let (width, height) = (last.width(), last.height());
-    memory::afford((width * height * 15) as u64, args.limits.memory)?;
+    let pixels = (width * height) as u64;
+    memory::afford(pixels.saturating_mul(9).saturating_add(target.beside(pixels)), args.limits.memory)?;
     let painter = Painter::fit(&last, recipe.world.sea_level);
     let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
     let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", &software)] };
     let animation = Animation { frames: u32::from(args.frames), delay: args.delay };
-    let mut failure = None;
-    let written = file::write_whole(&args.out, |out| {
-        png::write_animation(out, &picture, animation, |k, bytes| {
-            let ground = match k + 1 < u32::from(args.frames) {
-                true => frame(recipe, args, k as u16, progress),
-                false => Ok(last.clone()),
-            };
-            match ground {
-                Ok(ground) => painter.paint(&ground, 0..height, bytes),
-                Err(cause) => {
-                    failure = Some(cause);
-                    return Err(io::Error::other("a frame could not be made"));
-                }
-            }
-            Ok(())
-        })
-    });
-    if let Some(failure) = failure {
-        return Err(failure);
-    }
-    written?;
+    let painted = |ground: &Grid, bytes: &mut [u8]| painter.paint(ground, 0..height, bytes);
+    // The beginning is smooth and the end is rough: colours and shades of both.
+    let sample = || {
+        let first = frame(recipe, args, 0, progress).map_err(carried)?;
+        let mut bytes = vec![0; width * height * 6];
+        let (one, other) = bytes.split_at_mut(width * height * 3);
+        painted(&first, one);
+        painted(&last, other);
+        Ok(bytes)
+    };
+    let moving = Moving { out: &args.out, target, picture, animation, sample: &sample };
+    moving.write(|k, bytes| {
+        match k + 1 < u32::from(args.frames) {
+            true => painted(&frame(recipe, args, k as u16, progress).map_err(carried)?, bytes),
+            false => painted(&last, bytes),
+        }
+        Ok(())
+    })?;
     Ok(format!("{}: {} frames of {width} x {height} pixels\n", args.out.display(), args.frames))
+}
+
+/// A failure on its way through code that writes.
+fn carried(failure: Failure) -> io::Error {
+    match failure {
+        Failure::Engine(error) => error.into(),
+        other => io::Error::other(format!("a frame could not be made: {other:?}")),
+    }
 }
 
 /// The ground after so many steps.

@@ -16,6 +16,7 @@ use crate::draw::sum;
 use crate::draw::texture::Texture;
 use crate::failure::Failure;
 use crate::format::Format;
+use crate::moving::{Moving, Target};
 use crate::size::{Bytes, MOST, Size, finite, positive, seed, wavelength};
 use crate::{memory, say};
 
@@ -77,7 +78,7 @@ pub struct Args {
     /// Bits of each grey, or of each part of a normal
     #[arg(long, value_name = "8|16", value_parser = ["8", "16"], default_value = "8")]
     bits: String,
-    /// Write an animation (APNG) of so many frames: each a slice of the noise in space, forth from --z and back, slowing
+    /// Write an animation of so many frames (.png that moves, .gif, or files such as noise-%03d.png): each a slice of the noise in space, forth from --z and back, slowing
     /// where it turns, so that it repeats without a jump; with --tileable onwards all the way
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true,
           conflicts_with = "volume")]
@@ -119,7 +120,15 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let default = if args.volume.is_some() { "noise.npy" } else { "noise.png" };
     let out = args.out.as_deref().unwrap_or(Path::new(default));
     // Noise lies nowhere: a map's formats are not for it.
-    let format = Format::of(out, &[Format::Npy, Format::Png]).map_err(Failure::Usage)?;
+    // Frames may also go into what no single picture does.
+    let target = match args.frames.filter(|_| out.extension().is_none_or(|extension| extension != "npy")) {
+        Some(_) => Some(Target::of(out).map_err(Failure::Usage)?),
+        None => None,
+    };
+    let format = match target {
+        Some(_) => Format::Png,
+        None => Format::of(out, &[Format::Npy, Format::Png]).map_err(Failure::Usage)?,
+    };
     let (width, height) = match args.size {
         Size::Longer(n) => (n, n),
         Size::Both(width, height) => (width, height),
@@ -135,10 +144,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if let (false, Some(note)) = (args.quiet, task.note()) {
         say::error(&note);
     }
-    file::write_whole(out, |out| match format {
-        Format::Npy => task.write_array(out),
-        _ => task.write_picture(out),
-    })?;
+    match (&target, args.frames) {
+        (Some(target), Some(frames)) => task.write_frames(target, frames)?,
+        _ => file::write_whole(out, |out| match format {
+            Format::Npy => task.write_array(out),
+            _ => task.write_picture(out),
+        })?,
+    }
     if args.quiet { Ok(()) } else { say::out(&task.words()) }
 }
 
@@ -197,7 +209,7 @@ impl Task<'_> {
         let band = wide(self.rows_a_band() * self.width, 32).saturating_add(wide(self.width, 48));
         let frame = match self.args.frames {
             // The frame as it is, as it is filtered and as it is packed; and the samples behind it.
-            Some(_) => wide(self.width, 3 * self.drawing().pixel().bytes() + 32).saturating_mul(self.height as u64),
+            Some(_) => wide(self.width, 4 * self.drawing().pixel().bytes() + 32).saturating_mul(self.height as u64),
             None => 0,
         };
         let needed = band.saturating_add(frame);
@@ -237,14 +249,33 @@ impl Task<'_> {
         let (software, description) = (format!("Orogen {}", env!("CARGO_PKG_VERSION")), self.description());
         let notes = [("Software", software.as_str()), ("Description", description.as_str())];
         let picture = Picture { width: self.width, height: self.height, pixel: drawing.pixel(), notes: &notes };
-        let Some(frames) = self.args.frames else {
-            return png::write(out, &picture, |rows, bytes| {
-                drawing.paint(self.args.z, rows, bytes);
-                Ok(())
-            });
+        png::write(out, &picture, |rows, bytes| {
+            drawing.paint(self.args.z, rows, bytes);
+            Ok(())
+        })
+    }
+
+    fn write_frames(&self, target: &Target, frames: u32) -> Result<(), Failure> {
+        let drawing = self.drawing();
+        if *target == Target::Gif && self.deep() {
+            return Err(Failure::Usage("a GIF holds 8 bits; leave --bits 16 out, or name a .png".into()));
+        }
+        let (software, description) = (format!("Orogen {}", env!("CARGO_PKG_VERSION")), self.description());
+        let notes = [("Software", software.as_str()), ("Description", description.as_str())];
+        let picture = Picture { width: self.width, height: self.height, pixel: drawing.pixel(), notes: &notes };
+        let frame = |k: u32, bytes: &mut [u8]| drawing.paint(Some(self.depth(k, frames)), 0..self.height, bytes);
+        let bytes = self.width * self.height * drawing.pixel().bytes();
+        let sample = || {
+            let mut sample = vec![0; 2 * bytes];
+            let (one, other) = sample.split_at_mut(bytes);
+            frame(0, one);
+            frame(frames / 3, other);
+            Ok(sample)
         };
-        png::write_animation(out, &picture, Animation { frames, delay: DELAY }, |frame, bytes| {
-            drawing.paint(Some(self.depth(frame, frames)), 0..self.height, bytes);
+        let animation = Animation { frames, delay: DELAY };
+        let moving = Moving { out: self.out, target, picture, animation, sample: &sample };
+        moving.write(|k, bytes| {
+            frame(k, bytes);
             Ok(())
         })
     }

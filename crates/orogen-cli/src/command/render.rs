@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use orogen::format::png::{self, Picture, Pixel};
+use orogen::format::png::{self, Animation, Picture, Pixel};
+use orogen::palette::palette::Palette;
 use orogen::render::camera::{Camera, View as Shot};
 use orogen::render::relief::Land;
 use orogen::render::scene::{Colors, Edge, Scene, Style};
@@ -13,10 +14,11 @@ use orogen::{Grid, Progress, Window, World, file};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
+use crate::moving::{Moving, Target};
 use crate::options::{Limits, View};
 use crate::size::{Numbers, Rectangle, Size, cell, clock, not_negative, positive, seed};
 use crate::source::Source;
-use crate::{interrupt, memory, say, view};
+use crate::{interrupt, memory, palette, say, view};
 
 /// What it takes.
 #[derive(Debug, clap::Args)]
@@ -27,7 +29,7 @@ use crate::{interrupt, memory, say, view};
 pub struct Args {
     /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
-    /// Picture to write, a .png
+    /// Picture to write, a .png; with --turntable also a .gif, or a file for each frame such as view-%03d.png
     #[arg(short, long, value_name = "FILE", default_value = "view.png")]
     out: PathBuf,
     /// Pixels of the picture
@@ -43,7 +45,7 @@ pub struct Args {
     /// Angle of view along the picture's longer side, in degrees
     #[arg(long, value_name = "DEG", value_parser = positive, default_value = "40", allow_negative_numbers = true)]
     fov: f64,
-    /// The sun: AZIMUTH,ELEVATION, degrees clockwise from north and above the horizon [default: 290,30]
+    /// The sun: AZIMUTH,ELEVATION, degrees clockwise from north and above the horizon [default: 265,27]
     #[arg(long, value_name = "A,E", conflicts_with = "time", allow_hyphen_values = true)]
     sun: Option<Numbers>,
     /// The sun as it stands at this time of the day, by the sun (it is highest at 12:00)
@@ -75,6 +77,16 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), default_value = "5",
           allow_negative_numbers = true)]
     samples: u32,
+    /// Go around the land in so many frames: a .png that moves (APNG), a .gif, or files of their own
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=3600), conflicts_with = "look",
+          allow_negative_numbers = true)]
+    turntable: Option<u32>,
+    /// How long each frame is shown, in milliseconds
+    #[arg(long, value_name = "MS", default_value = "60", requires = "turntable")]
+    delay: u16,
+    /// Palette of --colors map, by name or a file (.cpt, .gpl, .toml, gdaldem's .txt) [default: the relief map's]
+    #[arg(long, value_name = "NAME|FILE")]
+    palette: Option<PathBuf>,
     /// Samples of the world to show, at the cell asked for [default: the whole world]
     #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
     window: Option<Rectangle>,
@@ -118,27 +130,33 @@ const CAMERA: [f64; 2] = [200.0, 24.0];
 
 /// Draws the picture.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    if !args.out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-        return Err(Failure::Usage(format!(
-            "a view is a picture; name a file that ends in .png, not {}",
-            args.out.display()
-        )));
-    }
+    let target = match args.turntable {
+        Some(_) => Target::of(&args.out).map_err(Failure::Usage)?,
+        None if args.out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) => Target::Apng,
+        None => {
+            let sentence = format!("a view is one picture; name a file that ends in .png, not {}", args.out.display());
+            return Err(Failure::Usage(sentence + ", or ask for frames by --turntable"));
+        }
+    };
     let [width, height] = size(args)?;
-    let (style, shot) = (style(args)?, shot(args)?);
+    let palette = args.palette.as_deref().map(palette::find).transpose()?;
+    if palette.is_some() && !matches!(args.colors, Dress::Map) {
+        return Err(Failure::Usage("--palette is for --colors map".into()));
+    }
+    let (style, shot) = (style(args, palette.as_ref())?, shot(args)?);
     let mut recipe = Source::find(&args.recipe)?.read()?;
     recipe.world.seed = args.seed.unwrap_or(recipe.world.seed);
     let world = args.limits.open(recipe)?;
     let window = window(args, &world)?;
+    let pixels = (width * height) as u64;
     // Of each sample of the land: what is asked for, the pyramid, slopes, and light twice while it is made.
-    memory::afford(
-        (window.len() as u64).saturating_mul(96).saturating_add((width * height) as u64 * 3),
-        args.limits.memory,
-    )?;
+    let land = (window.len() as u64).saturating_mul(96);
+    let needed = land.saturating_add(3 * pixels).saturating_add(target.beside(pixels));
+    memory::afford(needed, args.limits.memory)?;
     let folder = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     file::check_folder(folder)?;
     let (bar, progress) = Bar::new(args.quiet);
-    let made = draw(args, &world, &window, (&style, &shot), &progress);
+    let made = draw(args, &world, &window, &Shooting { target, style, shot }, &progress);
     drop(bar);
     let words = made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
     if args.quiet { Ok(()) } else { say::out(&words) }
@@ -159,7 +177,7 @@ fn size(args: &Args) -> Result<[usize; 2], Failure> {
 }
 
 /// How it is to look.
-fn style(args: &Args) -> Result<Style, Failure> {
+fn style<'a>(args: &Args, palette: Option<&'a Palette>) -> Result<Style<'a>, Failure> {
     let usage = |sentence: String| Err(Failure::Usage(sentence));
     if !(1.0..=150.0).contains(&args.fov) {
         return usage(format!("--fov is {}; an angle of view goes from 1 to 150 degrees", args.fov));
@@ -187,6 +205,7 @@ fn style(args: &Args) -> Result<Style, Failure> {
             Dress::Map => Colors::Map,
             Dress::Clay => Colors::Clay,
         },
+        palette,
         snow_line: args.snow_line,
         samples: args.samples,
     })
@@ -284,13 +303,21 @@ fn window(args: &Args, world: &World) -> Result<Window, Failure> {
 /// Layers that a picture makes use of where a recipe has them.
 const LAYERS: [&str; 3] = [HEIGHT, "surface", "flow"];
 
+/// What is to be drawn, all of it settled.
+struct Shooting<'a> {
+    target: Target,
+    style: Style<'a>,
+    shot: Shot,
+}
+
 fn draw(
     args: &Args,
     world: &World,
     window: &Window,
-    (style, shot): (&Style, &Shot),
+    shooting: &Shooting,
     progress: &Progress,
 ) -> Result<String, Failure> {
+    let Shooting { target, style, shot } = shooting;
     let has = |layer: &&str| world.recipe().outputs().any(|name| name == *layer);
     let layers: Vec<&str> = LAYERS.into_iter().filter(|layer| *layer == HEIGHT || has(layer)).collect();
     let grids = world.grids(&layers, window, progress)?;
@@ -303,17 +330,43 @@ fn draw(
         sea_level: Some(world.recipe().world.sea_level),
     };
     let scene = Scene::new(&land, style, progress)?;
-    let [width, height] = size(args)?;
+    let size = size(args)?;
+    let [width, height] = size;
     let origin = [window.east(0), window.south(0)];
-    let camera = Camera::new(shot, scene.relief(), origin, [width, height], args.fov, &scene.frame());
+    let camera = |shot: &Shot| Camera::new(shot, scene.relief(), origin, size, args.fov, &scene.frame());
+    let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+    let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", &software)] };
+    let file = args.out.display();
+    let samples = format!("{} x {} samples of {} m", window.width, window.height, window.cell);
+    if let (Some(frames), Shot::Around { azimuth, elevation, distance }) = (args.turntable, *shot) {
+        let turn = |frame: u32| azimuth + 360.0 * f64::from(frame) / f64::from(frames);
+        let sides = (0..frames).map(|frame| [turn(frame), elevation]);
+        // As near as every frame allows: the land must not breathe as it turns.
+        let distance =
+            distance.unwrap_or_else(|| Camera::distance(sides, scene.relief(), size, args.fov, &scene.frame()));
+        let side = |frame: u32| camera(&Shot::Around { azimuth: turn(frame), elevation, distance: Some(distance) });
+        // Four sides, small: enough to know the colours by.
+        let sample = || {
+            let small = size.map(|side| side.div_ceil(4));
+            let mut sample = Vec::new();
+            for quarter in 0..4 {
+                let mut bytes = vec![0; 3 * small[0] * small[1]];
+                scene.paint(&side(quarter * frames / 4), small, 0..small[1], &mut bytes, progress)?;
+                sample.append(&mut bytes);
+            }
+            Ok(sample)
+        };
+        let animation = Animation { frames, delay: args.delay };
+        let moving = Moving { out: &args.out, target, picture, animation, sample: &sample };
+        moving.write(|frame, bytes| Ok(scene.paint(&side(frame), size, 0..height, bytes, progress)?))?;
+        return Ok(format!("{file}: {frames} frames of {width} x {height} pixels, of {samples}\n"));
+    }
+    let camera = camera(shot);
     if let (Some(metres), false) = (camera.lifted(), args.quiet) {
         say::error(&format!("note: the camera stood underground; it is lifted by {metres:.0} m, to just above it"));
     }
-    let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", &software)] };
     file::write_whole(&args.out, |out| {
-        png::write(out, &picture, |rows, bytes| Ok(scene.paint(&camera, [width, height], rows, bytes, progress)?))
+        png::write(out, &picture, |rows, bytes| Ok(scene.paint(&camera, size, rows, bytes, progress)?))
     })?;
-    let samples = format!("{} x {} samples of {} m", window.width, window.height, window.cell);
-    Ok(format!("{}: {width} x {height} pixels, of {samples}\n", args.out.display()))
+    Ok(format!("{file}: {width} x {height} pixels, of {samples}\n"))
 }

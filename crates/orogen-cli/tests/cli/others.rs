@@ -206,7 +206,7 @@ fn a_growing_terrain_ends_as_the_recipe_says() {
     folder.good(&["generate", "rivers.toml", "-o", "rivers", "-q"]);
     assert!(frames[4] == png(&folder.read("rivers/map.png")).data);
     folder.bad(&["grow", "hills", "-o", "x.png"], 2, "nothing grows in hills");
-    folder.bad(&["grow", "rivers.toml", "-o", "x.tif"], 2, "ends in .png");
+    folder.bad(&["grow", "rivers.toml", "-o", "x.tif"], 2, "cannot be written as .tif");
     folder.bad(&["grow", "rivers.toml", "--years", "-1"], 2, "it goes from 0 to 1e9");
     folder.bad(&["grow", "rivers.toml", "--frames", "1"], 2, "--frames");
 }

@@ -93,3 +93,35 @@ fn what_cannot_be_is_a_sentence_and_leaves_nothing() {
     folder.bad(&with(&["-o", "none/a.png"]), 1, "cannot write into none");
     assert_eq!(folder.names(""), ["small.toml"]);
 }
+
+#[test]
+fn a_turntable_goes_into_one_file_or_many() {
+    let folder = Folder::with_small();
+    let turn = ["--turntable", "4", "--delay", "70", "-o"];
+    let outcome = folder.good(&with(&[&turn[..], &["turn.png"]].concat()));
+    assert!(outcome.text().starts_with("turn.png: 4 frames of 96 x 54 pixels"), "{}", outcome.text());
+    folder.good(&with(&[&turn[..], &["turn.gif"]].concat()));
+    folder.good(&with(&[&turn[..], &["turn-%02d.png"]].concat()));
+    let names = ["small.toml", "turn-00.png", "turn-01.png", "turn-02.png", "turn-03.png", "turn.gif", "turn.png"];
+    assert_eq!(folder.names(""), names);
+    // Four sides of the land, all as far away, the first of them the first frame of the animation.
+    let frames: Vec<Vec<u8>> = (0..4).map(|k| png(&folder.read(&format!("turn-0{k}.png"))).data).collect();
+    assert!((1..4).all(|k| frames[k] != frames[0]) && png(&folder.read("turn.png")).data == frames[0]);
+    assert!(folder.read("turn.gif").starts_with(b"GIF89a"));
+    folder.bad(&with(&["-o", "turn.gif"]), 2, "or ask for frames by --turntable");
+    folder.bad(&with(&["--turntable", "4", "-o", "turn.mp4"]), 2, "cannot be written as .mp4");
+    folder.bad(&with(&["--turntable", "4", "-o", "none/a-%d.png"]), 1, "cannot write into none");
+    folder.bad(&with(&["--colors", "natural", "--palette", "viridis"]), 2, "--palette is for --colors map");
+    folder.bad(&with(&["--colors", "map", "--palette", "viridos"]), 2, "did you mean `viridis`?");
+    folder.good(&with(&["--colors", "map", "--palette", "viridis", "-o", "palette.png"]));
+}
+
+#[test]
+fn noises_move_in_a_gif_too() {
+    let folder = Folder::new();
+    folder.good(&["noise", "perlin", "--size", "16", "--frames", "3", "-o", "a.gif"]);
+    folder.good(&["noise", "perlin", "--size", "16", "--frames", "3", "--texture", "marble", "-o", "b-%d.png"]);
+    assert_eq!(folder.names(""), ["a.gif", "b-0.png", "b-1.png", "b-2.png"]);
+    folder.bad(&["noise", "perlin", "--frames", "3", "--bits", "16", "-o", "c.gif"], 2, "a GIF holds 8 bits");
+    folder.bad(&["noise", "perlin", "-o", "c.gif"], 2, ".gif");
+}

@@ -32,6 +32,8 @@ pub struct Frame {
     pub low: Vector,
     /// Its corner in the south-east, at the top.
     pub high: Vector,
+    /// Whether the land goes on beyond its edges, mirrored.
+    pub mirrored: bool,
 }
 
 impl Frame {
@@ -40,7 +42,7 @@ impl Frame {
     }
 
     fn corners(&self) -> impl Iterator<Item = Vector> {
-        let Frame { low, high } = *self;
+        let Frame { low, high, .. } = *self;
         (0..8).map(move |k| {
             let pick = |bit: usize, low: f64, high: f64| if k & bit == 0 { low } else { high };
             Vector::new(pick(1, low.x, high.x), pick(2, low.y, high.y), pick(4, low.z, high.z))
@@ -98,8 +100,26 @@ impl Camera {
                 Camera::towards(eye, (aim - eye).unit(), azimuth, wide)
             }
         };
-        camera.lift(relief);
+        camera.lift(relief, frame);
         camera
+    }
+
+    /// How many metres away a camera has to stand to see all of `frame` from every one of these sides: for pictures that turn around
+    /// the land without coming nearer.
+    pub fn distance(
+        sides: impl Iterator<Item = [f64; 2]>,
+        relief: &Relief,
+        size: [usize; 2],
+        fov: f64,
+        frame: &Frame,
+    ) -> f64 {
+        let middle = frame.middle();
+        let away = sides.map(|[azimuth, elevation]| {
+            let view = View::Around { azimuth, elevation, distance: None };
+            let camera = Camera::new(&view, relief, [0.0; 2], size, fov, frame);
+            (middle - camera.eye).dot(camera.ahead)
+        });
+        away.fold(0.0, f64::max) * relief.cell()
     }
 
     /// A camera that stands at a place and looks along a direction; `azimuth` is where it comes from, for when that is straight down.
@@ -161,14 +181,15 @@ impl Camera {
         }
     }
 
-    /// Out of the ground, if it is in it.
-    fn lift(&mut self, relief: &Relief) {
+    /// Out of the ground, if it is in it; where there is none, above what the land stands on.
+    fn lift(&mut self, relief: &Relief, frame: &Frame) {
         let [east, south] = relief.reach();
         let inside = (0.0..=east).contains(&self.eye.x) && (0.0..=south).contains(&self.eye.y);
-        let least = match inside {
-            true => relief.top(self.eye.x, self.eye.y) + LEAST,
-            false => return,
+        let below = match inside || frame.mirrored {
+            true => relief.top(folded(self.eye.x, east).0, folded(self.eye.y, south).0),
+            false => frame.low.z,
         };
+        let least = below + LEAST;
         if self.eye.z < least {
             self.lifted = Some(relief.height_of(least) - relief.height_of(self.eye.z));
             self.eye.z = least;
@@ -197,6 +218,12 @@ impl Camera {
     }
 }
 
+/// A coordinate brought into 0 to `reach` by mirrors at both ends, and whether it then runs forwards or backwards.
+pub(super) fn folded(x: f64, reach: f64) -> (f64, f64) {
+    let turn = x.rem_euclid(2.0 * reach);
+    if turn <= reach { (turn, 1.0) } else { (2.0 * reach - turn, -1.0) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -211,7 +238,7 @@ mod tests {
 
     fn frame(relief: &Relief) -> Frame {
         let [east, south] = relief.reach();
-        Frame { low: Vector::new(0.0, 0.0, -1.0), high: Vector::new(east, south, relief.highest()) }
+        Frame { low: Vector::new(0.0, 0.0, -1.0), high: Vector::new(east, south, relief.highest()), mirrored: false }
     }
 
     #[test]
@@ -269,6 +296,16 @@ mod tests {
         let view = View::At { eye: [55.0, 50.0, -80.0], look: [120.0, 40.0] };
         let camera = Camera::new(&view, &relief, [0.0; 2], [300, 200], 50.0, &frame(&relief));
         assert!(camera.lifted().unwrap() > 80.0 && camera.eye().z > relief.ground(5.5, 5.0));
+        // Beside the land it may stand as low as what the land stands on, but in a land that goes on.
+        let view = View::At { eye: [-45.0, 50.0, -5.0], look: [120.0, 40.0] };
+        assert_eq!(Camera::new(&view, &relief, [0.0; 2], [300, 200], 50.0, &frame(&relief)).lifted(), None);
+        let mirrored = Frame { mirrored: true, ..frame(&relief) };
+        let camera = Camera::new(&view, &relief, [0.0; 2], [300, 200], 50.0, &mirrored);
+        assert!(camera.lifted().is_some() && camera.eye().z > relief.ground(4.5, 5.0));
+        assert_eq!(
+            [-3.0, 5.0, 12.0, 25.0].map(|x| folded(x, 10.0)),
+            [(3.0, -1.0), (5.0, 1.0), (8.0, -1.0), (5.0, 1.0)]
+        );
         let view = View::At { eye: [55.0, 50.0, 200.0], look: [120.0, 40.0] };
         assert_eq!(Camera::new(&view, &relief, [0.0; 2], [300, 200], 50.0, &frame(&relief)).lifted(), None);
     }

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::grain::Grain;
 use super::relief::{Land, Relief};
 use crate::palette::color::Light;
+use crate::palette::palette::Palette;
 use crate::palette::tint::Tint;
 
 /// How the ground is coloured.
@@ -19,6 +20,14 @@ pub enum Colors {
     Map,
     /// One colour, like a model of clay.
     Clay,
+}
+
+/// How a ground is dressed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Dress<'a> {
+    pub colors: Colors,
+    pub palette: Option<&'a Palette>,
+    pub snow_line: Option<f64>,
 }
 
 /// What is known of the ground at a place.
@@ -66,8 +75,9 @@ const SNOW_SHARE: f64 = 0.60;
 const TREE_SHARE: f64 = 0.40;
 
 impl Ground {
-    /// The ground of a land. `snow_line` is where snow begins, in metres; by itself it suits the relief.
-    pub fn new(land: &Land, relief: &Relief, colors: Colors, snow_line: Option<f64>) -> Ground {
+    /// The ground of a land. The map's tint goes by `palette`; snow begins at `snow_line`, in metres, or where it suits the relief.
+    pub fn new(land: &Land, relief: &Relief, dress: &Dress) -> Ground {
+        let Dress { colors, palette, snow_line } = *dress;
         let [columns, rows] = relief.samples();
         let (base, top) = (relief.height_of(0.0), relief.height_of(relief.highest()));
         let base = land.sea_level.map_or(base, |sea| base.max(sea));
@@ -77,7 +87,10 @@ impl Ground {
         let sea = land.sea_level.unwrap_or(f64::MIN) as f32;
         Ground {
             colors,
-            tint: Tint::fit(land.heights, sea),
+            tint: match palette {
+                Some(palette) => Tint::of(palette, land.heights, sea),
+                None => Tint::fit(land.heights, sea),
+            },
             shape: shape(land, relief),
             columns,
             rows,
@@ -143,8 +156,10 @@ impl Ground {
             }
             let scale = f64::from(self.cell / wavelength);
             let bump = self.grain.at(site.x * scale, site.y * scale, 8 + u32::from(octave));
+            // Folded at 0: creases and edges, where a plain noise is all round.
+            let fold = if bump.value < 0.0 { -seen } else { seen };
             for (slope, bump) in slope.iter_mut().zip(bump.slope) {
-                *slope += bump * rough * seen;
+                *slope += bump * rough * fold;
             }
             wavelength *= 0.5;
         }
@@ -161,9 +176,9 @@ impl Ground {
 
         // Rock, greyer and browner in places, with a hint of its beds.
         let bed = self.strata(site.height + 25.0 * wide + 6.0 * middle, 70.0);
-        let tone = 0.5 + 0.30 * wide + 0.25 * middle + 0.18 * small + 0.22 * bed;
-        let rock = mix([0.105, 0.098, 0.092], [0.265, 0.243, 0.215], tone.clamp(0.0, 1.0));
-        let scree = mix([0.20, 0.185, 0.165], [0.31, 0.29, 0.26], 0.5 + 0.4 * small + 0.4 * fine);
+        let tone = 0.5 + 0.30 * wide + 0.25 * middle + 0.25 * small + 0.30 * fine + 0.22 * bed;
+        let rock = mix([0.070, 0.065, 0.061], [0.215, 0.195, 0.170], tone.clamp(0.0, 1.0));
+        let scree = mix([0.155, 0.142, 0.125], [0.245, 0.227, 0.200], 0.5 + 0.4 * small + 0.4 * fine);
 
         // What grows: forest below its line, meadow above it, thinner towards the snow.
         let over_trees = site.height - self.tree_line + 130.0 * wide + 90.0 * middle + 60.0 * north;
@@ -185,8 +200,8 @@ impl Ground {
         // Where it is too steep for soil, or too high.
         let high =
             step(0.0, 700.0, site.height - 0.5 * (self.snow_line.min(1e6) + self.tree_line.min(1e6)) + 200.0 * middle);
-        let bare = step(0.50, 0.78, steep + 0.16 * rough_edge - 0.10 * hollow + 0.30 * high);
-        let loose = step(0.34, 0.52, steep + 0.10 * rough_edge + 0.35 * high) * (1.0 - 0.8 * wooded);
+        let bare = step(0.62, 0.92, steep + 0.20 * rough_edge - 0.10 * hollow + 0.34 * high);
+        let loose = step(0.46, 0.66, steep + 0.14 * rough_edge + 0.35 * high) * (1.0 - 0.85 * wooded);
         color = mix(color, scree, loose * 0.8);
         color = mix(color, rock, bare);
         rough += 0.10 * loose + 0.22 * bare;
@@ -217,12 +232,12 @@ impl Ground {
     /// Land where hardly anything grows.
     fn desert(&self, site: &Site, [east, south, hollow, flow]: [f32; 4]) -> (Light, f32) {
         const BEDS: [Light; 6] = [
-            [0.36, 0.155, 0.085],
-            [0.43, 0.235, 0.135],
-            [0.30, 0.110, 0.062],
-            [0.47, 0.315, 0.195],
-            [0.38, 0.190, 0.105],
-            [0.50, 0.385, 0.270],
+            [0.27, 0.105, 0.055],
+            [0.33, 0.165, 0.088],
+            [0.21, 0.072, 0.040],
+            [0.37, 0.225, 0.130],
+            [0.29, 0.130, 0.068],
+            [0.42, 0.305, 0.200],
         ];
         let steep = (east * east + south * south).sqrt();
         let (wide, middle) = (self.noise(site, 1500.0, 0), self.noise(site, 300.0, 1));
@@ -235,7 +250,7 @@ impl Ground {
         let index = place as usize;
         let rock = mix(BEDS[index], BEDS[index + 1], place - index as f32);
         let rock = rock.map(|c| c * (1.0 + 0.12 * small + 0.14 * fine + 0.10 * middle));
-        let sand = mix([0.46, 0.285, 0.165], [0.52, 0.375, 0.235], 0.5 + 0.5 * middle + 0.3 * fine);
+        let sand = mix([0.31, 0.175, 0.092], [0.37, 0.240, 0.140], 0.5 + 0.5 * middle + 0.3 * fine);
         let scrub = [0.125, 0.125, 0.062];
         let bare = step(0.16, 0.42, steep + 0.06 * (middle + small + fine) - 0.05 * hollow);
         let mut color = mix(sand, rock, 0.25 + 0.75 * bare);
@@ -323,7 +338,7 @@ mod tests {
         let data = (0..window.len()).map(|at| 4000.0 - 10.0 * (at / 5) as f32).collect();
         let heights = Grid::from_data(window, data).unwrap();
         let land = Land { heights: &heights, surface: None, flow: None, sea_level: None };
-        Ground::new(&land, &Relief::new(&land, 1.0).unwrap(), colors, snow_line)
+        Ground::new(&land, &Relief::new(&land, 1.0).unwrap(), &Dress { colors, palette: None, snow_line })
     }
 
     fn site(height: f32) -> Site {

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::camera::{Camera, Frame};
+use super::camera::{Camera, Frame, folded};
 pub use super::ground::Colors;
-use super::ground::Ground;
+use super::ground::{Dress, Ground};
 use super::march::{Hit, Ray, Surface};
 use super::relief::{Land, Relief};
 use super::sky::{Haze, SUN_RADIUS, Sky};
@@ -14,6 +14,7 @@ use super::vector::Vector;
 use super::water::Water;
 use crate::error::Result;
 use crate::palette::color::{Encoder, Light};
+use crate::palette::palette::Palette;
 use crate::progress::Progress;
 
 /// What is shown where the land ends.
@@ -26,8 +27,8 @@ pub enum Edge {
 }
 
 /// How a scene looks.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Style {
+#[derive(Debug, Clone, Copy)]
+pub struct Style<'a> {
     /// How many times heights count.
     pub exaggeration: f64,
     /// The sun: degrees clockwise from north, and degrees above the horizon.
@@ -38,20 +39,23 @@ pub struct Style {
     pub edge: Option<Edge>,
     /// How the ground is coloured.
     pub colors: Colors,
+    /// The palette of [`Colors::Map`]; by itself the relief map's.
+    pub palette: Option<&'a Palette>,
     /// Where snow begins, in metres; by itself it suits the relief.
     pub snow_line: Option<f64>,
     /// Light is gathered in so many places of each pixel.
     pub samples: u32,
 }
 
-impl Default for Style {
-    fn default() -> Style {
+impl Default for Style<'_> {
+    fn default() -> Self {
         Style {
             exaggeration: 1.0,
-            sun: [290.0, 30.0],
+            sun: [265.0, 27.0],
             haze: 1.0,
             edge: None,
             colors: Colors::Natural,
+            palette: None,
             snow_line: None,
             samples: 5,
         }
@@ -73,8 +77,8 @@ enum Around {
 const MIRRORS: usize = 12;
 
 /// The haze of 1 takes so much of the optical depth of green light over the land's diagonal: of a block, and of land that goes on.
-const CLEAR: f64 = 0.42;
-const CLEAR_AROUND: f64 = 1.3;
+const CLEAR: f64 = 0.30;
+const CLEAR_AROUND: f64 = 1.0;
 
 /// The land with its light.
 #[derive(Debug, Clone)]
@@ -133,7 +137,8 @@ impl Scene {
         progress.check()?;
         let skylight = Skylight::new(&relief, &sky);
         progress.check()?;
-        let ground = Ground::new(land, &relief, style.colors, style.snow_line);
+        let dress = Dress { colors: style.colors, palette: style.palette, snow_line: style.snow_line };
+        let ground = Ground::new(land, &relief, &dress);
         let [east, south] = relief.reach();
         let across = (east * east + south * south).sqrt();
         let wet = wet_edge(&relief);
@@ -181,11 +186,13 @@ impl Scene {
     /// What a picture of all of it has to show: the block, or the land that is not under the sea.
     pub fn frame(&self) -> Frame {
         let ([east, south], highest) = (self.relief.reach(), self.relief.highest());
-        let whole = Frame { low: Vector::new(0.0, 0.0, self.floor), high: Vector::new(east, south, highest) };
+        let floor = if let Around::Sea(sea) = self.around { sea } else { self.floor };
+        let mirrored = self.around == Around::Mirrors;
+        let whole = Frame { low: Vector::new(0.0, 0.0, floor), high: Vector::new(east, south, highest), mirrored };
         let Around::Sea(sea) = self.around else {
             return whole;
         };
-        let mut frame = Frame { low: whole.high, high: whole.low };
+        let mut frame = Frame { low: whole.high, high: whole.low, mirrored };
         let columns = self.relief.samples()[0];
         for (at, _) in self.relief.bed().iter().enumerate().filter(|(_, z)| f64::from(**z) > sea) {
             let (x, y) = ((at % columns) as f64, (at / columns) as f64);
@@ -209,6 +216,7 @@ impl Scene {
     ) -> Result<()> {
         let [width, height] = size;
         let pixel = camera.pixel(width);
+        progress.expect((rows.len() * width) as i64);
         bytes.par_chunks_exact_mut(3 * width).zip(rows).try_for_each(|(bytes, j)| {
             progress.check()?;
             for (i, bytes) in bytes.chunks_exact_mut(3).enumerate() {
@@ -222,6 +230,7 @@ impl Scene {
                 }
                 bytes.copy_from_slice(&self.encoder.bytes(sum.map(|c| c / self.samples as f32)));
             }
+            progress.advance(width as u64);
             Ok(())
         })
     }
@@ -335,12 +344,6 @@ fn wet_edge(relief: &Relief) -> f64 {
     let across: usize = (0..columns).map(|i| wet(i, 0) + wet(i, rows - 1)).sum();
     let down: usize = (0..rows).map(|j| wet(0, j) + wet(columns - 1, j)).sum();
     (across + down) as f64 / (2 * (columns + rows)) as f64
-}
-
-/// A coordinate brought into 0 to `reach` by mirrors at both ends, and whether it then runs forwards or backwards.
-fn folded(x: f64, reach: f64) -> (f64, f64) {
-    let turn = x.rem_euclid(2.0 * reach);
-    if turn <= reach { (turn, 1.0) } else { (2.0 * reach - turn, -1.0) }
 }
 
 /// What light is multiplied with before it falls on film: as a photographer would expose for sunlit ground that is not quite level, the colour of the light

@@ -1,0 +1,55 @@
+//! A picture of 1920 x 1080 pixels of `alpine`, the world made beforehand: time on the wall with as many threads as there are.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use orogen::render::camera::{Camera, View};
+use orogen::render::relief::Land;
+use orogen::render::scene::{Scene, Style};
+use orogen::{Progress, World, presets};
+
+use crate::measure::median;
+use crate::options::Options;
+use crate::world::figure::{Figure, Target};
+
+const SIZE: [usize; 2] = [1920, 1080];
+
+/// Layers that a picture of the preset shows.
+const LAYERS: [&str; 3] = ["height", "surface", "flow"];
+
+/// Measures the scene's preparation and its painting together.
+pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
+    let told = |error: orogen::Error| error.to_string();
+    let preset = presets::find("alpine").ok_or("there is no preset alpine")?;
+    let recipe = preset.recipe().map_err(told)?;
+    let sea_level = Some(recipe.world.sea_level);
+    let world = World::open(recipe).map_err(told)?;
+    let progress = Progress::none();
+    let window = world.across(1024).map_err(told)?;
+    let grids = world.grids(&LAYERS, &window, &progress).map_err(told)?;
+    let [heights, surface, flow] = grids.as_slice() else {
+        return Err("alpine has not the layers of a picture".into());
+    };
+    let land = Land { heights, surface: Some(surface), flow: Some(flow), sea_level };
+    let view = View::Around { azimuth: 200.0, elevation: 24.0, distance: None };
+    let mut times = Vec::new();
+    for _ in 0..options.repetitions {
+        let start = Instant::now();
+        let scene = Scene::new(&land, &Style::default(), &progress).map_err(told)?;
+        let camera = Camera::new(&view, scene.relief(), [0.0; 2], SIZE, 40.0, &scene.frame());
+        let mut bytes = vec![0; SIZE[0] * SIZE[1] * 3];
+        scene.paint(&camera, SIZE, 0..SIZE[1], &mut bytes, &progress).map_err(told)?;
+        black_box(bytes);
+        times.push(start.elapsed().as_secs_f64());
+    }
+    Ok(vec![Figure {
+        case: format!(
+            "render of {} x {} pixels, soft shadows, alpine {} x {}",
+            SIZE[0], SIZE[1], window.width, window.height
+        ),
+        ours: median(&mut times),
+        unit: "s on the wall",
+        other: None,
+        target: Target::AtMost(5.0),
+    }])
+}

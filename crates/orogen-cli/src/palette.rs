@@ -1,0 +1,25 @@
+//! NAME|FILE of a palette on the command line.
+
+use std::path::Path;
+
+use orogen::nearest;
+use orogen::palette::palette::Palette;
+use orogen::palette::{named, read};
+
+use crate::failure::Failure;
+
+/// The palette of that name, or else the one in that file.
+pub fn find(argument: &Path) -> Result<Palette, Failure> {
+    let name = argument.to_string_lossy();
+    if let Some(named) = named::find(&name) {
+        return Ok(named.palette());
+    }
+    if argument.extension().is_some() || argument.exists() {
+        return Ok(read::read(argument)?);
+    }
+    let hint = match nearest(&name, named::all().iter().map(|named| named.name)) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => "`orogen palettes` lists them".into(),
+    };
+    Err(Failure::Usage(format!("there is no palette and no file `{name}`; {hint}")))
+}
