@@ -35,6 +35,7 @@ Builds `orogen` for release, installs what is missing and runs every client, or 
   xarray    xarray and zarr-python read Zarr groups: the samples and where they lie
   tiles     NumPy and Pillow read tiles: shared edges, one scale for all; Terrarium heights where a map has them
   dems      files of heights that rasterio writes in every kind there is: orogen reads the very samples, and keeps where they lie
+  meshes    the glTF validator, trimesh, meshio and admesh read GLB, OBJ, PLY and STL: the samples, the right way round, closed
   taplo     taplo checks every recipe against the JSON Schema, and refuses broken ones
 
 `build` and `install` go first whatever is named. Elsewhere than on Debian, or not as root, it says what to install.
@@ -64,6 +65,12 @@ const CLIENTS: &[Client] = &[
     Client { name: "xarray", apt: &[], pip: &[NUMPY, "xarray==2026.9.0", "zarr==3.1.6"], npm: &[] },
     Client { name: "tiles", apt: &[], pip: &[NUMPY, PILLOW], npm: &[] },
     Client { name: "dems", apt: &[], pip: &[NUMPY, RASTERIO], npm: &[] },
+    Client {
+        name: "meshes",
+        apt: &[("node", "nodejs"), ("npm", "npm"), ("admesh", "admesh")],
+        pip: &[NUMPY, PILLOW, "trimesh==5.2.0", "meshio==5.3.5"],
+        npm: &["gltf-validator@2.0.0-dev.3.10"],
+    },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
 
@@ -93,6 +100,11 @@ const STEPS: &[&Step] = &[
     &Step { name: "xarray", about: "xarray and zarr-python read Zarr groups", run: || script("xarray") },
     &Step { name: "tiles", about: "NumPy and Pillow read tiles", run: || script("tiles") },
     &Step { name: "dems", about: "orogen reads what rasterio writes", run: || script("dems") },
+    &Step {
+        name: "meshes",
+        about: "the glTF validator, trimesh, meshio and admesh read meshes",
+        run: || script("meshes"),
+    },
     &Step { name: "taplo", about: "taplo checks the recipes against the schema", run: || script("taplo") },
 ];
 

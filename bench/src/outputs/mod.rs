@@ -2,6 +2,7 @@
 
 mod contours;
 mod ground;
+mod meshes;
 mod render;
 
 use serde_json::{Value, json};
@@ -13,7 +14,7 @@ use crate::world::figure::Figure;
 type Case = (&'static str, fn(&Options) -> Result<Vec<Figure>, String>);
 
 /// Every case.
-const CASES: &[Case] = &[("contours", contours::measure), ("render", render::measure)];
+const CASES: &[Case] = &[("contours", contours::measure), ("meshes", meshes::measure), ("render", render::measure)];
 
 /// Measures every case, or those named.
 pub fn run(options: &Options) -> Result<Value, String> {

@@ -113,16 +113,18 @@ fn read_ply(bytes: &[u8]) -> (Mesh, Vec<[u8; 3]>) {
         line.rsplit(' ').next().unwrap().parse().unwrap()
     };
     let colored = header.contains("uchar red");
-    let stride = 32 + if colored { 3 } else { 0 };
+    let stride = if colored { 27 } else { 32 };
     let (vertices, faces) = bytes[end..].split_at(count("vertex") * stride);
     assert_eq!(faces.len(), count("face") * 13);
     let (mut mesh, mut colors) = (Mesh::default(), Vec::new());
     for vertex in vertices.chunks_exact(stride) {
-        let v = f32s(&vertex[..32]);
+        let v = f32s(vertex);
         mesh.places.push([v[0], v[2], 0.0 - v[1]]);
         mesh.normals.push([v[3], v[5], 0.0 - v[4]]);
-        mesh.textures.push([v[6], 1.0 - v[7]]);
-        colors.extend(colored.then(|| [vertex[32], vertex[33], vertex[34]]));
+        match colored {
+            true => colors.push([vertex[24], vertex[25], vertex[26]]),
+            false => mesh.textures.push([v[6], 1.0 - v[7]]),
+        }
     }
     for face in faces.chunks_exact(13) {
         assert_eq!(face[0], 3);
@@ -188,8 +190,11 @@ fn check(mesh: &Mesh, grid: &Grid, shape: &Shape) {
             assert!((0..3).all(|i| (normal[i] - expect[i] / length).abs() < 1e-4), "{normal:?} {expect:?}");
         }
         let middle = [(column as f64 + 0.5) / width as f64, (row as f64 + 0.5) / height as f64];
-        assert!((0..2).all(|i| (f64::from(mesh.textures[corner][i]) - middle[i]).abs() < 1e-6));
+        if let Some(texture) = mesh.textures.get(corner) {
+            assert!((0..2).all(|i| (f64::from(texture[i]) - middle[i]).abs() < 1e-6));
+        }
     }
+    assert!(mesh.textures.is_empty() || mesh.textures.len() == mesh.places.len());
     let mut area = 0.0;
     for triangle in &mesh.triangles {
         let [a, b, c] = triangle.map(|corner| wide(mesh.places[corner]));
@@ -474,6 +479,7 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
     for (name, given, window, expect) in [
         ("x.glb", &[][..], Window::new(1, 9, 20.0), "at least 2 x 2 samples, and there are 1 x 9"),
         ("x.obj", &[("height-curve", "0:0,0:1")], window, "0 comes after 0"),
+        ("x.ply", &[("color", "texture")], window, "holds no picture: say --color vertex"),
     ] {
         let why = export(&world, window, &folder.join(name), given).unwrap_err();
         assert!(why.contains(expect), "{why}");

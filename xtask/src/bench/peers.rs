@@ -43,6 +43,13 @@ const PEERS: &[Peer] = &[
         packages: &["numpy", "contourpy==1.3.3"],
         pythons: &["python3", "python3.13", "python3.12", "python3.11"],
     },
+    Peer {
+        area: "outputs",
+        variable: "OROGEN_PYDELATIN",
+        name: "pydelatin",
+        packages: &["numpy", "pydelatin==0.4.0"],
+        pythons: &["python3", "python3.13", "python3.12", "python3.11"],
+    },
 ];
 
 /// The Pythons of an area's peers that can be had, each with its variable; one that is set already is taken as it is. What cannot be

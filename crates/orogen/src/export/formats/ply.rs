@@ -2,6 +2,7 @@
 
 use std::io;
 
+use crate::error::{Error, ErrorKind};
 use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::mesh::{COLOR, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, color, memory};
@@ -13,7 +14,7 @@ use crate::mesh::ply;
 pub static FORMAT: Format = Format {
     name: "ply",
     aliases: &[],
-    about: "Stanford polygon mesh, binary: metres, z up, normals, colours",
+    about: "Stanford polygon mesh, binary: metres, z up, normals, colours or texture coordinates",
     options: &[MAX_ERROR, COLOR, EXAGGERATION, HEIGHT_CURVE],
     channels: 1,
     memory,
@@ -21,8 +22,13 @@ pub static FORMAT: Format = Format {
 };
 
 fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
+    let color = color(options, "vertex", files, false);
+    if color == "texture" {
+        let sentence = "a .ply file holds no picture: say --color vertex, or none, or write .glb or .obj";
+        return Err(Error::new(ErrorKind::Request, sentence).into());
+    }
+    let colors = color == "vertex";
     let mesh = Prepared::new(subject, options, 1)?;
-    let colors = color(options, "vertex", files, false) == "vertex";
     let comments = mesh.comments("x east, y north, z up");
     files.write(|out| ply::write(out, &mesh.surface(0, colors), &comments))?;
     Ok(mesh.words())

@@ -1,0 +1,141 @@
+//! Meshes: few triangles beside pydelatin's, CPU time of one thread; and how long the full grid takes into a file.
+
+use std::hint::black_box;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use cpu_time::ThreadTime;
+use orogen::format::npy;
+use orogen::map::paint::Painter;
+use orogen::mesh::adaptive::adaptive;
+use orogen::mesh::glb::{Model, write as write_glb};
+use orogen::mesh::shape::Shape;
+use orogen::mesh::surface::Surface;
+use orogen::{Grid, World};
+use serde_json::Value;
+
+use super::ground::ground;
+use crate::measure::median;
+use crate::options::Options;
+use crate::world::figure::{Figure, Target};
+
+const SIDE: usize = 1024;
+/// The greatest error, as a share of the relief.
+const SHARE: f64 = 0.01;
+
+/// Where pydelatin's Python is: `cargo xtask bench` installs it and sets this.
+const PYTHON: &str = "OROGEN_PYDELATIN";
+
+/// Measures on ground that is rough everywhere and on the preset `alpine`.
+pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
+    let preset = orogen::presets::find("alpine").ok_or("there is no preset alpine")?;
+    let world = preset.recipe().and_then(World::open).map_err(|e| e.to_string())?;
+    let alpine = world.across(SIDE).and_then(|window| world.window("height", &window)).map_err(|e| e.to_string())?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|e| e.to_string())?;
+    let mut figures = Vec::new();
+    for (name, grid) in [("alpine", &alpine), ("fbm", &ground(SIDE)?)] {
+        figures.push(pool.install(|| few_triangles(name, grid, options))?);
+    }
+    figures.push(pool.install(|| full_grid(&alpine, options))?);
+    Ok(figures)
+}
+
+/// CPU seconds of this thread for each of some repetitions.
+fn times<T>(repetitions: usize, mut work: impl FnMut() -> Result<T, String>) -> Result<Vec<f64>, String> {
+    (0..repetitions)
+        .map(|_| {
+            let start = ThreadTime::now();
+            black_box(work()?);
+            Ok(start.elapsed().as_secs_f64())
+        })
+        .collect()
+}
+
+fn few_triangles(name: &str, grid: &Grid, options: &Options) -> Result<Figure, String> {
+    let [low, high] = grid.data().iter().fold([f32::MAX, f32::MIN], |[l, h], v| [l.min(*v), h.max(*v)]).map(f64::from);
+    let max_error = SHARE * (high - low);
+    let theirs = match std::env::var_os(PYTHON) {
+        Some(python) => Some(pydelatin(Path::new(&python), grid, max_error, options.repetitions)?),
+        None => None,
+    };
+    // No further off than what the peer reached.
+    let max_error = theirs.as_ref().map_or(max_error, |theirs| theirs.error);
+    let shape = adaptive(grid, max_error).map_err(|e| e.to_string())?;
+    let error = shape.deviation(grid);
+    if error > max_error {
+        return Err(format!("the mesh of {name} is {error} m off, and {max_error} m were allowed"));
+    }
+    let mut ours = times(options.repetitions, || adaptive(black_box(grid), max_error).map_err(|e| e.to_string()))?;
+    let mut case = format!("{name} {SIDE} x {SIDE} within {max_error:.2} m: {} triangles", shape.triangles());
+    if let Some(theirs) = &theirs {
+        case.push_str(&format!(", pydelatin {}", theirs.triangles));
+        if shape.triangles() > theirs.triangles {
+            return Err(format!("{case}: ours are more"));
+        }
+    }
+    let other = theirs.map(|theirs| ("pydelatin", theirs.seconds));
+    let target = if other.is_some() { Target::FasterBy(2.0) } else { Target::None };
+    Ok(Figure { case, ours: median(&mut ours), unit: "s of CPU", other, target })
+}
+
+/// Counts bytes and forgets them.
+struct Counted(u64);
+
+impl Write for Counted {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0 += black_box(bytes).len() as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+fn full_grid(grid: &Grid, options: &Options) -> Result<Figure, String> {
+    let painter = Painter::fit(grid, 0.0);
+    let mut bytes = Counted(0);
+    let mut ours = times(options.repetitions, || {
+        bytes.0 = 0;
+        let shape = Shape::lattice(black_box(grid), 1).map_err(|e| e.to_string())?;
+        let mut texture = Vec::new();
+        let drawn = painter.write_png(&mut texture, grid, &[]);
+        let levels = [Surface { grid, shape: &shape, exaggeration: 1.0, painter: None }];
+        let model = Model { levels: &levels, texture: Some(&texture), extras: serde_json::Map::new() };
+        drawn.and_then(|()| write_glb(&mut bytes, &model)).map_err(|e| e.to_string())
+    })?;
+    let mib = bytes.0 as f64 / f64::from(1 << 20);
+    let case = format!(
+        "GLB of {SIDE} x {SIDE}: all {} triangles, normals, texture, {mib:.0} MiB",
+        2 * (SIDE - 1) * (SIDE - 1)
+    );
+    Ok(Figure { case, ours: median(&mut ours), unit: "s of CPU", other: None, target: Target::AtMost(0.3) })
+}
+
+struct Theirs {
+    seconds: f64,
+    triangles: usize,
+    error: f64,
+}
+
+fn pydelatin(python: &Path, grid: &Grid, max_error: f64, repetitions: usize) -> Result<Theirs, String> {
+    let file = std::env::temp_dir().join(format!("orogen-bench-mesh-{}.npy", std::process::id()));
+    let written = std::fs::File::create(&file).and_then(|mut out| npy::write(&mut out, grid));
+    written.map_err(|e| format!("{}: {e}", file.display()))?;
+    let script = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("peers/meshes.py");
+    let mut command = Command::new(python);
+    let output = command.arg(script).arg(&file).arg(max_error.to_string()).arg(repetitions.to_string()).output();
+    // Only what was made here is removed.
+    let _ = std::fs::remove_file(&file);
+    let output = output.map_err(|e| format!("{}: {e}", python.display()))?;
+    let told: Value = serde_json::from_slice(&output.stdout)
+        .map_err(|_| format!("pydelatin measured nothing: {}", String::from_utf8_lossy(&output.stderr)))?;
+    let mut seconds: Vec<f64> = told["seconds"].as_array().into_iter().flatten().filter_map(Value::as_f64).collect();
+    match (seconds.is_empty(), told["triangles"].as_u64(), told["error"].as_f64()) {
+        (false, Some(triangles), Some(error)) => {
+            Ok(Theirs { seconds: median(&mut seconds), triangles: triangles as usize, error })
+        }
+        _ => Err("pydelatin did not tell what it made".into()),
+    }
+}

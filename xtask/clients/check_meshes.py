@@ -1,0 +1,210 @@
+"""The Khronos validator, trimesh, meshio and admesh read meshes: the samples of the .npy, the right way round, solids closed."""
+
+import json
+import re
+import subprocess
+import sys
+
+import meshio
+import numpy
+import trimesh
+from orogen import NODE_BIN, ROOT, WORK, Checks, export
+
+checks = Checks()
+BUMP = ROOT / "xtask/clients/bump.toml"
+CELL = 10.0
+ALPINE = ("--window", "200,300,180,140")
+ADAPTIVE = ("--max-error", "4")
+
+
+def validate(*paths):
+    """The validator's report of each .glb file."""
+    line = ["node", ROOT / "xtask/clients/validate_glb.js", NODE_BIN.parent, *paths]
+    done = subprocess.run(line, capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    if done.returncode != 0:
+        sys.exit(f"the validator ended with {done.returncode}:\n{done.stderr}")
+    return json.loads(done.stdout)
+
+
+def admesh(path):
+    """What admesh would have to mend: the counts of its closing table."""
+    done = subprocess.run(["admesh", path], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    if done.returncode != 0:
+        return {"refused": done.returncode}
+    counts = {}
+    for name in ("Degenerate facets", "Edges fixed", "Facets removed", "Facets added", "Facets reversed",
+                 "Backwards edges", "Normals fixed"):
+        found = re.search(rf"{name}\s*:\s*(\d+)", done.stdout)
+        counts[name] = int(found[1]) if found else None
+    parts = re.search(r"Number of parts\s*:\s*(\d+)", done.stdout)
+    counts["parts"] = int(parts[1]) if parts else None
+    disconnected = re.search(r"Total disconnected facets\s*:\s*(\d+)\s+(\d+)", done.stdout)
+    counts["disconnected"] = int(disconnected[1]) if disconnected else None
+    return counts
+
+
+def load(path):
+    """The one mesh of a file and where it is moved to, as trimesh reads it, nothing merged."""
+    scene = trimesh.load_scene(path, process=False)
+    checks.equal(f"{path.name}: one mesh is shown", len(scene.graph.nodes_geometry), 1)
+    transform, name = scene.graph[scene.graph.nodes_geometry[0]]
+    return scene.geometry[name], transform
+
+
+def ground(places, kind):
+    """East, up, south of places in the axes of a format."""
+    x, y, z = places.T
+    return numpy.stack([x, z, -y] if kind == "z up" else [x, y, z], axis=1)
+
+
+def check_places(name, places, heights, cell=CELL):
+    """Every place is a sample of the grid, its height equal to the last bit; returns which samples are there."""
+    column = numpy.rint(places[:, 0] / cell).astype(int)
+    row = numpy.rint(places[:, 2] / cell).astype(int)
+    off = max(numpy.abs(places[:, 0] - column * cell).max(), numpy.abs(places[:, 2] - row * cell).max())
+    checks.that(f"{name}: places are on the lattice", off < 1e-4 * cell, f"(off by {off})")
+    inside = (column >= 0) & (row >= 0) & (column < heights.shape[1]) & (row < heights.shape[0])
+    checks.that(f"{name}: all of them within it", bool(inside.all()))
+    if inside.all():
+        same = places[:, 1].astype("f4").view("u4") == heights[row, column].view("u4")
+        checks.that(f"{name}: heights are equal to the last bit", bool(same.all()), f"({(~same).sum()} are not)")
+    return column, row
+
+
+def check_faces(name, places, faces, heights, cell=CELL):
+    """Counter-clockwise from above, and over the whole ground once."""
+    a, b, c = (places[faces[:, k]].astype("f8") for k in range(3))
+    normal = numpy.cross(b - a, c - a)
+    checks.that(f"{name}: all triangles face up", bool((normal[:, 1] > 0).all()))
+    area = (heights.shape[0] - 1) * (heights.shape[1] - 1) * cell * cell
+    checks.near(f"{name}: the ground they cover", float(normal[:, 1].sum()) / 2, area, 1e-5 * area)
+
+
+def check_normals(name, normals, places, heights, cell):
+    """Normals lean as the samples do: within a few degrees of the central differences."""
+    south, east = numpy.gradient(heights.astype("f8"), cell)
+    column, row = numpy.rint(places[:, 0] / cell).astype(int), numpy.rint(places[:, 2] / cell).astype(int)
+    inner = (column > 0) & (row > 0) & (column < heights.shape[1] - 1) & (row < heights.shape[0] - 1)
+    expected = numpy.stack([-east[row, column], numpy.ones(len(row)), -south[row, column]], axis=1)
+    expected /= numpy.linalg.norm(expected, axis=1)[:, None]
+    degrees = numpy.degrees(numpy.arccos(numpy.clip((expected * normals).sum(axis=1), -1, 1)))[inner]
+    checks.that(f"{name}: normals lean as the land does", bool(numpy.median(degrees) < 3), f"({numpy.median(degrees)})")
+
+
+heights = numpy.load(export(BUMP, "bump.npy"))
+high = numpy.unravel_index(heights.argmax(), heights.shape)
+checks.that("the bump is in the north-east", high[0] < 24 and high[1] > 32, f"(row and column {high})")
+full = 2 * (heights.shape[0] - 1) * (heights.shape[1] - 1)
+
+# The same land in the formats that hold places as they are.
+for kind, options in (("full", ()), ("adaptive", ADAPTIVE)):
+    for extension, axes in (("glb", "y up"), ("obj", "y up"), ("ply", "z up")):
+        path = export(BUMP, f"bump-{kind}.{extension}", *options)
+        mesh, transform = load(path)
+        checks.that(f"{path.name}: stands at the origin", bool((transform == numpy.eye(4)).all()))
+        places = ground(mesh.vertices, axes)
+        column, row = check_places(path.name, places, heights)
+        check_faces(path.name, places, mesh.faces, heights)
+        check_normals(path.name, ground(mesh.vertex_normals, axes), places, heights, CELL)
+        count = len(mesh.faces)
+        checks.that(f"{path.name}: triangles", count == full if kind == "full" else 2 < count < full / 3, f"({count})")
+        top = places[places[:, 1].argmax()]
+        checks.that(f"{path.name}: the bump is in the north-east", bool(top[0] > 320 and top[2] < 240), f"({top})")
+        if extension != "glb":
+            other = meshio.read(path)
+            same = numpy.array_equal(other.points.astype("f4"), mesh.vertices.astype("f4"))
+            checks.that(f"{path.name}: meshio reads the places that trimesh reads", same)
+            checks.that(f"{path.name}: and the triangles", numpy.array_equal(other.cells_dict["triangle"], mesh.faces))
+        if kind == "adaptive":
+            # The surface at every sample, by the triangle over it.
+            flat = numpy.stack([places[:, 0], places[:, 2]], axis=1)
+            worst = 0.0
+            for corners in mesh.faces:
+                (x0, y0), (x1, y1), (x2, y2) = (flat[corners] / CELL).round().astype(int)
+                xs = numpy.arange(min(x0, x1, x2), max(x0, x1, x2) + 1)[None, :]
+                ys = numpy.arange(min(y0, y1, y2), max(y0, y1, y2) + 1)[:, None]
+                area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
+                v = ((xs - x0) * (y2 - y0) - (ys - y0) * (x2 - x0)) / area
+                w = ((x1 - x0) * (ys - y0) - (y1 - y0) * (xs - x0)) / area
+                up = places[corners, 1].astype("f8")
+                surface = up[0] + v * (up[1] - up[0]) + w * (up[2] - up[0])
+                within = (v >= 0) & (w >= 0) & (v + w <= 1)
+                off = numpy.abs(surface - heights[ys, xs])[within]
+                worst = max(worst, float(off.max()))
+            checks.that(f"{path.name}: no sample is further than 4 m", worst <= 4 + 1e-6, f"({worst})")
+
+# A picture lies on it: the colour at a corner is that of its pixel.
+picture = trimesh.load_scene(WORK / "bump-full.glb", process=False).geometry.values()
+material = next(iter(picture)).visual.material
+checks.equal("bump-full.glb: its picture has a pixel for each sample",
+             material.baseColorTexture.size, (heights.shape[1], heights.shape[0]))
+pixels = numpy.asarray(material.baseColorTexture)
+mesh, _ = load(WORK / "bump-adaptive.ply")
+column, row = (numpy.rint(numpy.abs(mesh.vertices[:, k]) / CELL).astype(int) for k in (0, 1))
+same = (mesh.visual.vertex_colors[:, :3] == pixels[row, column, :3]).all(axis=1)
+checks.that("bump-adaptive.ply: corners have the colours of that picture's pixels", bool(same.all()), f"({(~same).sum()} have not)")
+mesh, _ = load(WORK / "bump-adaptive.obj")
+place = numpy.stack([mesh.visual.uv[:, 0] * pixels.shape[1], (1 - mesh.visual.uv[:, 1]) * pixels.shape[0]], axis=1) - 0.5
+off = float(numpy.abs(place - mesh.vertices[:, [0, 2]] / CELL).max())
+checks.that("bump-adaptive.obj: texture coordinates are the middles of pixels", off < 1e-3, f"(off by {off})")
+
+# Every kind of .glb passes the validator without an error or a warning.
+kinds = {
+    "texture": (), "vertex": ("--color", "vertex"), "none": ("--color", "none"), "lods": ("--lods", "4"),
+    "adaptive-lods": ("--lods", "3", *ADAPTIVE), "exaggerated": ("--exaggeration", "2.5", "--height-curve", "0:0,0.5:0.2,1:1"),
+}
+paths = [export("alpine", f"alpine-{kind}.glb", *ALPINE, *options) for kind, options in kinds.items()]
+paths += [WORK / "bump-full.glb", WORK / "bump-adaptive.glb", export("alpine", "alpine-large.glb", "--window", "0,0,300,300")]
+for report in validate(*paths):
+    name = report["file"].rsplit("/")[-1]
+    checks.equal(f"{name}: errors and warnings", (report["numErrors"], report["numWarnings"]), (0, 0))
+    if report["numErrors"] or report["numWarnings"]:
+        print(json.dumps(report["messages"], indent=1))
+place = load(WORK / "alpine-vertex.glb")[1][:3, 3]
+checks.equal("alpine: the node stands where the window begins", [float(x) for x in place], [200 * 60.0, 0.0, 300 * 60.0])
+
+# The validator is shown to fail: an index beyond the corners, and a file cut short.
+whole = (WORK / "bump-full.glb").read_bytes()
+json_length = int.from_bytes(whole[12:16], "little")
+document = json.loads(whole[20:20 + json_length])
+view = document["bufferViews"][1]
+at = 28 + json_length + view["byteOffset"]
+(WORK / "broken-index.glb").write_bytes(whole[:at] + b"\xfe\xff" + whole[at + 2:])
+(WORK / "broken-short.glb").write_bytes(whole[:-100])
+for report in validate(WORK / "broken-index.glb", WORK / "broken-short.glb"):
+    checks.that(f"{report['file']}: the validator finds the damage", report["numErrors"] > 0)
+bent = heights.copy()
+bent[3, 5] += 1
+mesh, _ = load(WORK / "bump-full.glb")
+column, row = (numpy.rint(mesh.vertices[:, k] / CELL).astype(int) for k in (0, 2))
+different = mesh.vertices[:, 1].astype("f4").view("u4") != bent[row, column].view("u4")
+checks.equal("a height that differs is noticed", int(different.sum()), 1)
+
+# Solids are closed, face outwards, and need no mending.
+nothing = {"Degenerate facets": 0, "Edges fixed": 0, "Facets removed": 0, "Facets added": 0, "Facets reversed": 0,
+           "Backwards edges": 0, "Normals fixed": 0, "parts": 1, "disconnected": 0}
+for kind, options in (("full", ()), ("adaptive", ADAPTIVE)):
+    path = export(BUMP, f"bump-{kind}.stl", "--print-size", "120", "--base", "2", *options)
+    solid = trimesh.load_mesh(path)
+    checks.that(f"{path.name}: watertight", bool(solid.is_watertight))
+    checks.that(f"{path.name}: wound the same way", bool(solid.is_winding_consistent))
+    scale = 120 / (CELL * (heights.shape[1] - 1))
+    sides = [120.0, CELL * (heights.shape[0] - 1) * scale, 2 + float(numpy.ptp(heights)) * scale]
+    # The highest and the lowest sample may both be off by the error of an adaptive mesh.
+    off = numpy.abs(solid.bounds - [[0, 0, 0], sides])
+    most = [1e-3, 1e-3, 1e-3 if kind == "full" else 8 * scale]
+    checks.that(f"{path.name}: its size", bool((off <= most).all()), f"({solid.bounds})")
+    mean = float(heights.astype("f8").mean() - heights.min())
+    checks.near(f"{path.name}: its volume", float(solid.volume), sides[0] * sides[1] * (2 + mean * scale), 0.03 * solid.volume)
+    top = solid.vertices[solid.vertices[:, 2].argmax()]
+    checks.that(f"{path.name}: the bump is in the north-east", bool(top[0] > 60 and top[1] > sides[1] / 2), f"({top})")
+    checks.equal(f"{path.name}: what admesh would mend", admesh(path), nothing)
+    checks.equal(f"{path.name}: meshio reads as many triangles", len(meshio.read(path).cells_dict["triangle"]), len(solid.faces))
+data = bytearray(path.read_bytes())
+data[80:84] = (int.from_bytes(data[80:84], "little") - 1).to_bytes(4, "little")
+broken = WORK / "broken.stl"
+broken.write_bytes(data[:-50])
+checks.that("a solid without one triangle: trimesh sees it", not trimesh.load_mesh(broken).is_watertight)
+checks.that("a solid without one triangle: admesh sees it", admesh(broken) != nothing)
+
+checks.end()
