@@ -36,6 +36,8 @@ Builds `orogen` for release, installs what is missing and runs every client, or 
   tiles     NumPy and Pillow read tiles: shared edges, one scale for all; Terrarium heights where a map has them
   dems      files of heights that rasterio writes in every kind there is: orogen reads the very samples, and keeps where they lie
   meshes    the glTF validator, trimesh, meshio and admesh read GLB, OBJ, PLY and STL: the samples, the right way round, closed
+  contours  GDAL draws contours of the same heights: the same lines at the same places, and reads ours
+  maps      Poppler and librsvg draw map sheets: the picture of the .png
   taplo     taplo checks every recipe against the JSON Schema, and refuses broken ones
 
 `build` and `install` go first whatever is named. Elsewhere than on Debian, or not as root, it says what to install.
@@ -70,6 +72,12 @@ const CLIENTS: &[Client] = &[
         apt: &[("node", "nodejs"), ("npm", "npm"), ("admesh", "admesh")],
         pip: &[NUMPY, PILLOW, "trimesh==5.2.0", "meshio==5.3.5"],
         npm: &["gltf-validator@2.0.0-dev.3.10"],
+    Client { name: "contours", apt: &[("gdal_contour", "gdal-bin")], pip: &[NUMPY], npm: &[] },
+    Client {
+        name: "maps",
+        apt: &[("pdftoppm", "poppler-utils"), ("rsvg-convert", "librsvg2-bin")],
+        pip: &[NUMPY, PILLOW],
+        npm: &[],
     },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
@@ -105,6 +113,8 @@ const STEPS: &[&Step] = &[
         about: "the glTF validator, trimesh, meshio and admesh read meshes",
         run: || script("meshes"),
     },
+    &Step { name: "contours", about: "gdal_contour draws the same contours", run: || script("contours") },
+    &Step { name: "maps", about: "Poppler and librsvg draw map sheets", run: || script("maps") },
     &Step { name: "taplo", about: "taplo checks the recipes against the schema", run: || script("taplo") },
 ];
 

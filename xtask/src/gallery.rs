@@ -10,8 +10,8 @@ pub const ABOUT: &str = "make the pictures in docs/images and in the noises' doc
 pub const HELP: &str = "
 Usage: cargo xtask gallery
 
-Makes docs/images/ anew: one relief map of each preset, a large one of the default preset as the README's first picture, the
-page that shows the noises side by side, and the chunks around a viewer. Then crates/orogen-noise/docs/gallery.md: the pictures that the
+Makes docs/images/ anew: one relief map of each preset, a large one of the default preset as the README's first picture, a
+map sheet, all palettes, the page that shows the noises side by side, and the chunks around a viewer. Then crates/orogen-noise/docs/gallery.md: the pictures that the
 documentation of orogen-noise opens with, which are in that file themselves, so that they show wherever it is read.
 ";
 
@@ -34,6 +34,12 @@ pub fn run(args: &[String]) -> Result {
         shell::run(orogen.args([preset, "--size", size, "-o"]).arg(&work))?;
         let to = images.join(format!("{picture}.png"));
         std::fs::copy(work.join("map.png"), &to).map_err(|e| on_file("write", &to, &e))?;
+        println!("{}", shell::relative(&to));
+    }
+    for (arguments, name) in [(&["map", "alpine", "--size", "1400"][..], "map.png"), (&["palettes"], "palettes.png")] {
+        let to = images.join(name);
+        let mut orogen = shell::cargo("run --quiet --release --package orogen-cli --");
+        shell::run(orogen.args(arguments).args(["--quiet", "-o"]).arg(&to))?;
         println!("{}", shell::relative(&to));
     }
     let page = images.join("compare.png");

@@ -2,6 +2,7 @@
 
 mod contours;
 mod ground;
+mod maps;
 mod meshes;
 mod render;
 
@@ -14,7 +15,12 @@ use crate::world::figure::Figure;
 type Case = (&'static str, fn(&Options) -> Result<Vec<Figure>, String>);
 
 /// Every case.
-const CASES: &[Case] = &[("contours", contours::measure), ("meshes", meshes::measure), ("render", render::measure)];
+const CASES: &[Case] = &[
+    ("contours", contours::measure),
+    ("maps", maps::measure),
+    ("meshes", meshes::measure),
+    ("render", render::measure),
+];
 
 /// Measures every case, or those named.
 pub fn run(options: &Options) -> Result<Value, String> {

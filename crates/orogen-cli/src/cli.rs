@@ -5,8 +5,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 use orogen::Level;
 
 use crate::command::{
-    analyze, build, compare, completions, explain, export, fit, generate, grow, new, noise, ops, palettes, presets,
-    render, schema,
+    analyze, build, compare, completions, explain, export, fit, generate, grow, map, new, noise, ops, palettes,
+    presets, render, schema,
 };
 use crate::failure::Failure;
 
@@ -37,6 +37,8 @@ enum Command {
     Grow(grow::Args),
     /// Draw a terrain as it would be seen: a perspective picture with sun, shadows, sky and water.
     Render(render::Args),
+    /// Draw a map sheet: relief, contours, rivers, lakes, scale and legend, as a picture, SVG or PDF.
+    Map(map::Args),
     /// Write a new recipe to start from.
     New(new::Args),
     /// List the built-in presets.
@@ -70,6 +72,7 @@ impl Cli {
             Command::Fit(args) => fit::run(&args),
             Command::Grow(args) => grow::run(&args),
             Command::Render(args) => render::run(&args),
+            Command::Map(args) => map::run(&args),
             Command::New(args) => new::run(&args),
             Command::Presets => presets::run(),
             Command::Ops(args) => ops::run(&args),

@@ -17,6 +17,7 @@ mod memory;
 mod moving;
 mod options;
 mod palette;
+mod paper;
 mod pictures;
 mod report;
 mod say;

@@ -60,6 +60,7 @@ pub mod recipe;
 pub mod render;
 pub mod resample;
 pub mod sampler;
+pub mod sheet;
 pub mod solver;
 pub mod spool;
 mod store;

@@ -9,6 +9,7 @@ pub mod export;
 pub mod fit;
 pub mod generate;
 pub mod grow;
+pub mod map;
 pub mod new;
 pub mod noise;
 pub mod ops;

@@ -10,6 +10,7 @@ mod compare;
 mod export;
 mod generate;
 mod harness;
+mod map;
 mod noise;
 mod others;
 mod palettes;

@@ -92,6 +92,12 @@ impl Georeference {
         if key(1024) == Some(2) { key(2048) } else { key(3072) }
     }
 
+    /// Whether its coordinates are degrees of longitude and latitude.
+    pub fn is_degrees(&self) -> bool {
+        let model = |keys: &GeoKeys| keys.directory.chunks_exact(4).skip(1).any(|key| key[0] == 1024 && key[3] == 2);
+        self.keys.as_ref().is_some_and(model)
+    }
+
     /// How the first sample of a window lies, and the steps between its samples, in the map's unit.
     pub fn of(&self, window: &Window) -> ([f64; 2], [f64; 2]) {
         (self.at(window.east(0), window.south(0)), self.per_metre.map(|unit| unit * window.cell))

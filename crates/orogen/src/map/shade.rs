@@ -9,6 +9,15 @@ use crate::grid::Grid;
 /// image", USGS 1992).
 const LIGHTS: [(f64, f64, f32); 3] = [(315.0, 42.0, 0.6), (265.0, 38.0, 0.2), (5.0, 38.0, 0.2)];
 
+/// Which lights shade the relief.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lights {
+    /// One from the north-west.
+    One,
+    /// Three, the main one from the north-west: the usual.
+    Three,
+}
+
 /// The steepness, as rise per metre, that is shaded as it is. Land steep as real mountains seen at 30 m cells.
 const NATURAL: f32 = 0.65;
 
@@ -33,7 +42,13 @@ pub struct Shade {
 impl Shade {
     /// The shading with heights counting `z_factor` times.
     pub fn new(z_factor: f32) -> Shade {
-        let lights: Vec<(Light, f32)> = LIGHTS
+        Shade::lit(Lights::Three, z_factor)
+    }
+
+    /// The same by these lights.
+    pub fn lit(lights: Lights, z_factor: f32) -> Shade {
+        let count = if lights == Lights::One { 1 } else { LIGHTS.len() };
+        let lights: Vec<(Light, f32)> = LIGHTS[..count]
             .iter()
             .map(|&(azimuth, altitude, weight)| (Light::new(azimuth, altitude, f64::from(z_factor)), weight))
             .collect();
@@ -44,12 +59,18 @@ impl Shade {
     /// The shading whose z factor suits the land (or, without land, the sea floor) of `grid`. Steepness depends on the cell, so
     /// this is what lets 15 m and 60 m cells of one world look alike.
     pub fn fit(grid: &Grid, sea_level: f32) -> Shade {
+        Shade::fit_lit(Lights::Three, grid, sea_level)
+    }
+
+    /// The same by these lights.
+    pub fn fit_lit(lights: Lights, grid: &Grid, sea_level: f32) -> Shade {
         let typical = typical_steepness(grid, |height| height > sea_level)
             .or_else(|| typical_steepness(grid, |height| height <= sea_level));
-        Shade::new(match typical {
+        let z_factor = match typical {
             Some(steepness) if steepness > 0.0 => libm::powf(NATURAL / steepness, FIT),
             _ => 1.0,
-        })
+        };
+        Shade::lit(lights, z_factor)
     }
 
     /// What to multiply a colour's red, green and blue light with.

@@ -1,0 +1,83 @@
+//! Hillshaded maps of 4096 x 4096 heights that are at hand, in memory, to the last byte of the picture: all cores, wall clock.
+
+use std::io::{self, Write};
+use std::time::Instant;
+
+use orogen::Grid;
+use orogen::map::paint::Painter;
+use orogen::palette::named;
+use orogen::sheet::draw::draw;
+use orogen::sheet::options::{Options as Sheet, Page, Parts, Resolution};
+use orogen::sheet::raster;
+use orogen::sheet::relief::Shading;
+
+use super::ground::ground;
+use crate::measure::median;
+use crate::options::Options;
+use crate::world::figure::{Figure, Target};
+
+const SIDE: usize = 4096;
+
+/// Most seconds that a map may take.
+const MOST: f64 = 1.5;
+
+/// Measures the plain map, a pixel a sample, and the sheet of the size it has if nobody says.
+pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
+    let ground = ground(SIDE)?;
+    let figure = |case: String, work: &dyn Fn(&Grid) -> Result<(), String>| {
+        let mut times = Vec::new();
+        for _ in 0..options.repetitions {
+            let start = Instant::now();
+            work(&ground)?;
+            times.push(start.elapsed().as_secs_f64());
+        }
+        Ok::<Figure, String>(Figure {
+            case,
+            ours: median(&mut times),
+            unit: "s",
+            other: None,
+            target: Target::AtMost(MOST),
+        })
+    };
+    Ok(vec![
+        figure(format!("hillshaded map of {SIDE} x {SIDE}, tint and shading, a pixel a sample, as PNG"), &|ground| {
+            Painter::fit(ground, 0.0).write_png(&mut Counted(0), ground, &[]).map_err(|e| e.to_string())
+        })?,
+        figure(
+            format!("map sheet of {SIDE} x {SIDE} heights, contours, labels, rivers, at 150 dpi, as PNG"),
+            &|ground| {
+                let drawn = draw(ground, &sheet()).map_err(|e| e.to_string())?;
+                raster::draw(&drawn.scene, drawn.dpi).write_png(&mut Counted(0), &[]).map_err(|e| e.to_string())
+            },
+        )?,
+    ])
+}
+
+fn sheet() -> Sheet {
+    Sheet {
+        title: "Ground".into(),
+        about: String::new(),
+        palette: named::all()[0].palette(),
+        shading: Shading::Multi,
+        interval: None,
+        parts: Parts::default(),
+        page: Page::Fitted(240.0),
+        resolution: Resolution::Inch(150.0),
+        sea_level: Some(0.0),
+        map: None,
+    }
+}
+
+/// Takes bytes and counts them.
+struct Counted(u64);
+
+impl Write for Counted {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0 += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

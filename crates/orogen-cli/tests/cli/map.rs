@@ -1,0 +1,71 @@
+//! `orogen map`.
+
+use crate::harness::{Folder, png};
+
+#[test]
+fn one_sheet_as_picture_svg_and_pdf() {
+    let folder = Folder::with_small();
+    let told = folder.good(&["map", "small.toml", "-o", "a.png", "--size", "600"]).text().to_string();
+    assert!(told.starts_with("a.png: ") && told.contains("64 x 48 samples of 10 m, contours "), "{told}");
+    let picture = png(&folder.read("a.png"));
+    assert_eq!((picture.width.max(picture.height), picture.channels), (600, 3));
+    folder.good(&["map", "small.toml", "-o", "a.svg", "--paper", "a5", "--title", "H\u{f6}hen & Tiefen", "-q"]);
+    let text = folder.text("a.svg");
+    assert!(
+        text.contains("width=\"148.000mm\" height=\"210.000mm\"") && text.contains("<title>H\u{f6}hen &amp; Tiefen")
+    );
+    folder.good(&["map", "small.toml", "-o", "a.pdf", "--paper", "letter", "--landscape", "--contours", "20", "-q"]);
+    let page = folder.read("a.pdf");
+    assert!(page.starts_with(b"%PDF-1.4") && page.ends_with(b"%%EOF\n"));
+    // The same again has the same bytes; without a part it has others.
+    folder.good(&["map", "small.toml", "-o", "b.png", "--size", "600", "-q", "--threads", "1"]);
+    folder.good(&["map", "small.toml", "-o", "c.png", "--size", "600", "-q", "--no-contours"]);
+    assert!(folder.read("a.png") == folder.read("b.png") && folder.read("a.png") != folder.read("c.png"));
+    // A title in letters that the built-in font lacks is drawn or told of, and never stops the map.
+    folder.good(&["map", "small.toml", "-o", "d.png", "--size", "300", "--title", "\u{5c71}\u{6cb3}", "-q"]);
+}
+
+#[test]
+fn colours_by_name_and_from_files() {
+    let folder = Folder::with_small();
+    folder.write("own.toml", "unit = \"range\"\nstops = [[0, \"#000\"], [1, \"white\"]]\n");
+    for palette in ["viridis", "own.toml"] {
+        let plain =
+            ["--no-contours", "--no-rivers", "--no-lakes", "--no-summits", "--shade", "none", "--size", "300", "-q"];
+        folder.good(&[&["map", "small.toml", "-o", "a.png", "--palette", palette][..], &plain].concat());
+        let picture = png(&folder.read("a.png"));
+        // Greys have no colour anywhere but in the small print.
+        let colored =
+            picture.data.chunks(3).filter(|pixel| pixel.iter().max().unwrap() - pixel.iter().min().unwrap() > 20);
+        assert_eq!(colored.count() > 1000, palette == "viridis", "{palette}");
+    }
+    for (palette, expect) in [
+        ("viridiss", "did you mean `viridis`?"),
+        ("nothing", "`orogen palettes` lists them"),
+        ("gone.cpt", "cannot read gone.cpt: no such file"),
+    ] {
+        let code = if palette == "gone.cpt" { 1 } else { 2 };
+        folder.bad(&["map", "small.toml", "-o", "b.png", "--palette", palette], code, expect);
+    }
+}
+
+#[test]
+fn what_cannot_be_drawn_is_a_sentence_and_leaves_nothing() {
+    let folder = Folder::with_small();
+    for (arguments, code, expect) in [
+        (&["-o", "a.jpg"][..], 2, "a map is a .png, .svg or .pdf"),
+        (&["-o", "a"], 2, "a map is a .png, .svg or .pdf"),
+        (&["-o", "a.png", "--paper", "a9"], 2, "paper is a0 to a5"),
+        (&["-o", "a.png", "--landscape"], 2, "--paper"),
+        (&["-o", "a.png", "--contours", "0"], 2, "a number above 0"),
+        (&["-o", "a.png", "--contours", "0.0001"], 2, "take a larger one"),
+        (&["-o", "a.svg", "--size", "500"], 2, "only a .png is made of them"),
+        (&["-o", "a.png", "--size", "500", "--memory", "1MB"], 1, "of memory"),
+        (&["-o", "a.png", "--paper", "2000x2000mm", "--dpi", "1200"], 2, "fewer --dpi"),
+        (&["-o", "a.png", "--window", "0,0,1,1"], 2, "there is nothing to map"),
+        (&["-o", "none/a.png", "--size", "200"], 1, "the folder does not exist"),
+    ] {
+        folder.bad(&[&["map", "small.toml"][..], arguments].concat(), code, expect);
+        assert_eq!(folder.names(""), ["small.toml"], "{arguments:?}");
+    }
+}

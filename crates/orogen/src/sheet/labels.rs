@@ -1,0 +1,297 @@
+//! Heights written along contour lines, each in a gap of its line.
+
+use super::scene::Place;
+
+/// What is already on the sheet: where no word may stand.
+#[derive(Debug, Clone)]
+pub struct Taken {
+    columns: usize,
+    rows: usize,
+    /// Whether something stands in a square of [`SQUARE`] millimetres.
+    squares: Vec<bool>,
+    origin: Place,
+}
+
+/// Side of a square in millimetres.
+const SQUARE: f32 = 0.4;
+
+impl Taken {
+    /// Nothing yet, over a rectangle: left, top, width, height. What lies outside is taken.
+    pub fn none([left, top, width, height]: [f32; 4]) -> Taken {
+        let [columns, rows] = [width, height].map(|side| (side / SQUARE).floor().max(0.0) as usize);
+        Taken { columns, rows, squares: vec![false; columns * rows], origin: [left, top] }
+    }
+
+    fn square(&self, place: Place) -> Option<usize> {
+        let [i, j] = [0, 1].map(|c| ((place[c] - self.origin[c]) / SQUARE).floor());
+        let inside = (0.0..self.columns as f32).contains(&i) && (0.0..self.rows as f32).contains(&j);
+        inside.then(|| j as usize * self.columns + i as usize)
+    }
+
+    fn squares_around(&self, place: Place, reach: f32) -> impl Iterator<Item = Option<usize>> + '_ {
+        let steps = (reach / SQUARE).ceil() as i32;
+        (-steps..=steps)
+            .flat_map(move |v| (-steps..=steps).map(move |u| [u as f32 * SQUARE, v as f32 * SQUARE]))
+            .filter(move |[u, v]| u * u + v * v <= reach * reach)
+            .map(move |[u, v]| self.square([place[0] + u, place[1] + v]))
+    }
+
+    /// Takes what lies within `reach` of a place.
+    pub fn take(&mut self, place: Place, reach: f32) {
+        let found: Vec<usize> = self.squares_around(place, reach).flatten().collect();
+        found.into_iter().for_each(|square| self.squares[square] = true);
+    }
+
+    /// Takes a line.
+    pub fn take_line(&mut self, line: &[Place], reach: f32) {
+        for pair in line.windows(2) {
+            let [dx, dy] = [0, 1].map(|c| pair[1][c] - pair[0][c]);
+            let steps = ((dx * dx + dy * dy).sqrt() / SQUARE).ceil().clamp(1.0, 1e4) as usize;
+            for k in 0..=steps {
+                let share = k as f32 / steps as f32;
+                self.take([pair[0][0] + dx * share, pair[0][1] + dy * share], reach);
+            }
+        }
+    }
+
+    /// Whether all within `reach` of a place is free.
+    pub fn is_free(&self, place: Place, reach: f32) -> bool {
+        self.squares_around(place, reach).all(|square| square.is_some_and(|square| !self.squares[square]))
+    }
+}
+
+/// A label along a line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Label {
+    /// What it says.
+    pub text: String,
+    /// Places along its middle, a letter's width or less apart, in the order it is read.
+    pub path: Vec<Place>,
+}
+
+impl Label {
+    /// Where it is read at a distance along it, and how it is turned there: radians counter-clockwise.
+    pub fn at(&self, along: f32) -> (Place, f32) {
+        let mut left = along;
+        let last = self.path.len().saturating_sub(2);
+        for (k, pair) in self.path.windows(2).enumerate() {
+            let [dx, dy] = [0, 1].map(|c| pair[1][c] - pair[0][c]);
+            let length = (dx * dx + dy * dy).sqrt();
+            if left <= length || k == last {
+                let share = if length > 0.0 { left / length } else { 0.0 };
+                return ([pair[0][0] + dx * share, pair[0][1] + dy * share], libm::atan2f(-dy, dx));
+            }
+            left -= length;
+        }
+        (self.path.first().copied().unwrap_or([0.0; 2]), 0.0)
+    }
+}
+
+/// How labels are set.
+#[derive(Debug, Clone, Copy)]
+pub struct Setting {
+    /// Height of the letters in millimetres.
+    pub size: f32,
+    /// Millimetres between two labels, at least.
+    pub apart: f32,
+    /// Millimetres between two labels of one line.
+    pub every: f32,
+}
+
+/// Finds places for a line's labels. `line` has higher ground to its left: a text along it has its head uphill. Where it would
+/// stand on its head it is set the other way around, if no better place is found.
+///
+/// What labels cover is taken.
+pub fn place(line: &[Place], text: &str, width: f32, setting: Setting, taken: &mut Taken) -> Vec<Label> {
+    let along = Along::new(line);
+    let (need, step) = (width + setting.size, setting.size * 0.6);
+    let count = ((along.length() - need) / step).floor();
+    if count.is_nan() || count < 1.0 {
+        return Vec::new();
+    }
+    let mut candidates: Vec<(f32, usize)> =
+        (0..=count as usize).filter_map(|k| Some((along.score(k as f32 * step, need)?, k))).collect();
+    candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let wanted = ((along.length() / setting.every).ceil() as usize).max(1);
+    let mut labels: Vec<Label> = Vec::new();
+    let mut middles: Vec<f32> = Vec::new();
+    for (_, k) in candidates {
+        if labels.len() == wanted {
+            break;
+        }
+        let start = k as f32 * step;
+        let middle = start + need / 2.0;
+        if middles.iter().any(|other| (other - middle).abs() < setting.every * 0.6) {
+            continue;
+        }
+        let mut path = along.part(start, start + need, setting.size * 0.25);
+        let reach = setting.size * 0.62;
+        if !path.iter().all(|place| taken.is_free(*place, reach)) {
+            continue;
+        }
+        if path.last().zip(path.first()).is_some_and(|(last, first)| last[0] < first[0]) {
+            path.reverse();
+        }
+        path.iter().for_each(|place| taken.take(*place, reach + setting.apart / 2.0));
+        middles.push(middle);
+        labels.push(Label { text: text.to_string(), path });
+    }
+    labels
+}
+
+/// A line by the distance along it.
+struct Along<'a> {
+    line: &'a [Place],
+    /// The distance of each place from the first.
+    distances: Vec<f32>,
+}
+
+impl<'a> Along<'a> {
+    fn new(line: &'a [Place]) -> Along<'a> {
+        let mut sum = 0.0;
+        let mut distances = vec![0.0];
+        for pair in line.windows(2) {
+            let [dx, dy] = [0, 1].map(|c| pair[1][c] - pair[0][c]);
+            sum += (dx * dx + dy * dy).sqrt();
+            distances.push(sum);
+        }
+        Along { line, distances }
+    }
+
+    fn length(&self) -> f32 {
+        self.distances.last().copied().unwrap_or(0.0)
+    }
+
+    fn at(&self, distance: f32) -> Place {
+        let after = self.distances.partition_point(|d| *d < distance).clamp(1, self.line.len() - 1);
+        let (from, to) = (self.distances[after - 1], self.distances[after]);
+        let share = if to > from { ((distance - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
+        let (a, b) = (self.line[after - 1], self.line[after]);
+        [0, 1].map(|c| a[c] + (b[c] - a[c]) * share)
+    }
+
+    fn part(&self, from: f32, to: f32, step: f32) -> Vec<Place> {
+        let count = ((to - from) / step).ceil().max(1.0) as usize;
+        // Wiggles shorter than a letter would turn letters against each other.
+        let places: Vec<Place> = (0..=count).map(|k| self.at(from + (to - from) * k as f32 / count as f32)).collect();
+        let reach = (count / 6).max(1);
+        (0..=count)
+            .map(|k| {
+                let near = &places[k.saturating_sub(reach)..(k + reach + 1).min(count + 1)];
+                [0, 1].map(|c| near.iter().map(|place| place[c]).sum::<f32>() / near.len() as f32)
+            })
+            .collect()
+    }
+
+    /// How bad a place is for a text, from 0: bends, and standing on its head; none if it bends too much to be read.
+    fn score(&self, start: f32, need: f32) -> Option<f32> {
+        let places = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| self.at(start + need * share));
+        let [dx, dy] = [0, 1].map(|c| places[4][c] - places[0][c]);
+        let straight = (dx * dx + dy * dy).sqrt() / need;
+        let turns = places.windows(3).map(|three| {
+            let [a, b] = [0, 1].map(|k| libm::atan2f(three[k + 1][1] - three[k][1], three[k + 1][0] - three[k][0]));
+            let turn = (b - a).abs();
+            turn.min(2.0 * std::f32::consts::PI - turn)
+        });
+        let turn = turns.fold(0.0f32, f32::max);
+        if straight < 0.9 || turn > 0.5 {
+            return None;
+        }
+        let tilt = (dy / need).abs();
+        let overhead = if dx < 0.0 { 0.5 } else { 0.0 };
+        Some((1.0 - straight) * 4.0 + turn + tilt * 0.35 + overhead)
+    }
+}
+
+/// What is left of lines where labels stand: gaps as wide as the words and `margin` more.
+pub fn gaps(lines: &[Vec<Place>], labels: &[Label], reach: f32, margin: f32) -> Vec<Vec<Place>> {
+    if labels.is_empty() {
+        return lines.to_vec();
+    }
+    // Labels by squares, so that each place looks at few.
+    let near = 12.0f32;
+    let key = |place: Place| ((place[0] / near).floor() as i32, (place[1] / near).floor() as i32);
+    let mut known: std::collections::BTreeMap<(i32, i32), Vec<Place>> = std::collections::BTreeMap::new();
+    for place in labels.iter().flat_map(|label| &label.path) {
+        known.entry(key(*place)).or_default().push(*place);
+    }
+    let hidden = |place: Place| {
+        let (i, j) = key(place);
+        (j - 1..=j + 1).flat_map(|j| (i - 1..=i + 1).map(move |i| (i, j))).any(|square| {
+            known.get(&square).is_some_and(|places| {
+                places.iter().any(|p| {
+                    let [dx, dy] = [0, 1].map(|c| p[c] - place[c]);
+                    dx * dx + dy * dy < (reach + margin) * (reach + margin)
+                })
+            })
+        })
+    };
+    let mut left = Vec::new();
+    for line in lines {
+        let mut part: Vec<Place> = Vec::new();
+        for place in line {
+            if hidden(*place) {
+                left.push(std::mem::take(&mut part));
+            } else {
+                part.push(*place);
+            }
+        }
+        left.push(part);
+    }
+    left.retain(|part| part.len() > 1);
+    left
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SETTING: Setting = Setting { size: 2.0, apart: 8.0, every: 60.0 };
+
+    fn wave() -> Vec<Place> {
+        (0..=400).map(|k| k as f32 * 0.25).map(|x| [x, 50.0 + 10.0 * libm::sinf(x / 12.0)]).collect()
+    }
+
+    #[test]
+    fn labels_lie_on_their_line_upright_and_apart() {
+        for backwards in [false, true] {
+            let mut line = wave();
+            if backwards {
+                line.reverse();
+            }
+            let mut taken = Taken::none([0.0, 0.0, 100.0, 100.0]);
+            let labels = place(&line, "1200", 5.0, SETTING, &mut taken);
+            assert_eq!(labels.len(), 2);
+            for label in &labels {
+                let (start, angle) = label.at(0.5);
+                assert!(angle.abs() < 1.5, "{angle}");
+                assert!((start[1] - 50.0 - 10.0 * libm::sinf(start[0] / 12.0)).abs() < 0.5, "{start:?}");
+                assert!(label.path.last().unwrap()[0] > label.path[0][0]);
+            }
+            // Nothing else may stand there now, nor beyond the edge.
+            assert!(!taken.is_free(labels[0].at(2.0).0, 0.5) && !taken.is_free([99.9, 5.0], 0.5));
+            assert!(taken.is_free([50.0, 5.0], 0.5));
+            let left = gaps(&[line.clone()], &labels, 1.2, 0.3);
+            assert_eq!(left.len(), 3);
+            let length = |lines: &[Vec<Place>]| lines.iter().map(|line| Along::new(line).length()).sum::<f32>();
+            let gone = length(&[line]) - length(&left);
+            assert!((gone - 2.0 * (5.0 + 2.0 + 2.0 * 1.5)).abs() < 2.5, "{gone}");
+        }
+    }
+
+    #[test]
+    fn no_label_where_there_is_no_room() {
+        let mut taken = Taken::none([0.0, 0.0, 100.0, 100.0]);
+        taken.take_line(&[[0.0, 50.0], [100.0, 50.0]], 12.0);
+        assert!(place(&wave(), "1200", 5.0, SETTING, &mut taken).is_empty());
+        let mut taken = Taken::none([0.0, 0.0, 100.0, 100.0]);
+        assert!(place(&[[5.0, 5.0], [7.0, 5.0]], "1200", 5.0, SETTING, &mut taken).is_empty());
+        // A tight coil has no straight part.
+        let coil: Vec<Place> = (0..400)
+            .map(|k| k as f32 * 0.1)
+            .map(|a| [50.0 + 1.5 * libm::cosf(a), 50.0 + 1.5 * libm::sinf(a)])
+            .collect();
+        assert!(place(&coil, "1200", 5.0, SETTING, &mut taken).is_empty());
+        assert!(place(&[], "1", 1.0, SETTING, &mut taken).is_empty());
+    }
+}

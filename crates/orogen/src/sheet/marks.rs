@@ -1,0 +1,69 @@
+//! Marks on the map itself.
+
+use super::furniture::INK;
+use super::labels::Taken;
+use super::letters::Letters;
+use super::scene::{Place, Scene, Step, polygon};
+use crate::map::text::Face;
+
+/// Size of a summit's height, an em in millimetres.
+const SIZE: f32 = 2.5;
+
+/// A small triangle around a place.
+pub fn triangle([x, y]: Place) -> Vec<Step> {
+    polygon(&[[x, y - 0.95], [x + 0.85, y + 0.6], [x - 0.85, y + 0.6]])
+}
+
+/// Marks a summit and writes its height beside it, where there is room: to the right, else to the left. Takes that room.
+pub fn summit(scene: &mut Scene, letters: &Letters, taken: &mut Taken, at: Place, text: &str) {
+    let width = letters.width(text, Face::Bold, SIZE);
+    let starts = [at[0] + 1.5, at[0] - 1.5 - width];
+    let middle = |start: f32, share: f32| [start + width * share, at[1]];
+    let shares = || (0..=6).map(|k| k as f32 / 6.0);
+    let free = |start: &f32| shares().all(|share| taken.is_free(middle(*start, share), SIZE * 0.5));
+    let Some(start) = starts.iter().copied().find(free).filter(|_| taken.is_free(at, 0.8)) else { return };
+    let outline = letters.write(text, Face::Bold, SIZE, [start, at[1] + SIZE * 0.35], 0.0);
+    let mark = triangle(at);
+    // A bright edge, so that dark ground does not swallow it.
+    let edge: Vec<Vec<Place>> = rings(&outline).into_iter().chain(rings(&mark)).collect();
+    scene.lines(edge, 0.75, [255; 3], 0.55);
+    scene.area(mark, INK, 1.0);
+    scene.area(outline, INK, 1.0);
+    taken.take(at, 1.3);
+    shares().for_each(|share| taken.take(middle(start, share), SIZE * 0.75));
+}
+
+/// The parts of an outline as closed lines; curves as their ends, which at this size is near enough.
+fn rings(outline: &[Step]) -> Vec<Vec<Place>> {
+    let mut rings: Vec<Vec<Place>> = Vec::new();
+    for step in outline {
+        match (*step, rings.last_mut()) {
+            (Step::Move(place), _) | (Step::Line(place) | Step::Curve(_, _, place), None) => rings.push(vec![place]),
+            (Step::Line(place) | Step::Curve(_, _, place), Some(ring)) => ring.push(place),
+        }
+    }
+    for ring in &mut rings {
+        ring.extend(ring.first().copied());
+    }
+    rings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn summits_find_room_or_are_left_out() {
+        let letters = Letters::for_texts([]).unwrap();
+        let mut scene = Scene { size: [50.0; 2], title: String::new(), items: Vec::new() };
+        let mut taken = Taken::none([0.0, 0.0, 50.0, 50.0]);
+        summit(&mut scene, &letters, &mut taken, [25.0, 25.0], "2345");
+        assert_eq!(scene.items.len(), 3);
+        // Another just beside it has no room; one at the right edge is written to its left.
+        summit(&mut scene, &letters, &mut taken, [26.0, 25.5], "2344");
+        assert_eq!(scene.items.len(), 3);
+        summit(&mut scene, &letters, &mut taken, [47.0, 10.0], "1999");
+        assert_eq!(scene.items.len(), 6);
+        assert!(!taken.is_free([43.0, 10.0], 0.3));
+    }
+}

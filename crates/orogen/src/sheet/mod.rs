@@ -1,0 +1,19 @@
+//! Map sheets: heights with contours, rivers, lakes and all that belongs to a printed map, as one list of things to draw
+//! ([`scene`]), and that list as pixels ([`raster`]), SVG ([`vector`]) and PDF ([`pdf`]).
+
+pub mod draw;
+pub mod furniture;
+pub mod ground;
+pub mod labels;
+pub mod layout;
+pub mod letters;
+pub mod lines;
+pub mod marks;
+pub mod options;
+pub mod pdf;
+pub mod raster;
+pub mod relief;
+pub mod scene;
+pub mod ticks;
+pub mod vector;
+pub mod water;

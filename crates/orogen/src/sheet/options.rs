@@ -1,0 +1,94 @@
+//! What a sheet is to show.
+
+use super::relief::Shading;
+use crate::format::dem::Georeference;
+use crate::palette::palette::Palette;
+
+/// How large a page is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Page {
+    /// As large as a map with a longer side of so many millimetres needs.
+    Fitted(f64),
+    /// Width and height in millimetres.
+    Paper([f64; 2]),
+}
+
+/// How many pixels a page has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Resolution {
+    /// So many an inch.
+    Inch(f64),
+    /// So many along the page's longer side.
+    Longer(u32),
+}
+
+/// The parts of a sheet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Parts {
+    /// The heading, and what is said of the map beneath it.
+    pub title: bool,
+    /// Numbers along the sides.
+    pub axes: bool,
+    /// Lines of one height.
+    pub contours: bool,
+    /// Heights along index contours.
+    pub labels: bool,
+    /// The highest summits, with their heights.
+    pub summits: bool,
+    /// Rivers.
+    pub rivers: bool,
+    /// Lakes.
+    pub lakes: bool,
+    /// What the lines mean.
+    pub legend: bool,
+    /// What the colours mean.
+    pub colors: bool,
+    /// How long a kilometre is.
+    pub scale: bool,
+    /// Where north is.
+    pub north: bool,
+}
+
+impl Default for Parts {
+    /// All of them.
+    fn default() -> Parts {
+        Parts {
+            title: true,
+            axes: true,
+            contours: true,
+            labels: true,
+            summits: true,
+            rivers: true,
+            lakes: true,
+            legend: true,
+            colors: true,
+            scale: true,
+            north: true,
+        }
+    }
+}
+
+/// What a sheet is to show, and how.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// The heading.
+    pub title: String,
+    /// What is said of the map beneath it, before what the sheet says itself.
+    pub about: String,
+    /// Its colours.
+    pub palette: Palette,
+    /// How relief is shaded.
+    pub shading: Shading,
+    /// Metres from one contour to the next; without, what suits the ground and the scale.
+    pub interval: Option<f64>,
+    /// What of it is drawn.
+    pub parts: Parts,
+    /// The page.
+    pub page: Page,
+    /// How fine the picture is that the lines lie on, and the page where it is made of pixels.
+    pub resolution: Resolution,
+    /// The sea's surface in metres; without, all is land.
+    pub sea_level: Option<f64>,
+    /// How the ground lies on a map of the Earth, if it does.
+    pub map: Option<Georeference>,
+}

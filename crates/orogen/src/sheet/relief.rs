@@ -1,0 +1,143 @@
+//! The picture that a sheet lies on: tint and shading.
+
+use rayon::prelude::*;
+
+use super::ground::{at_pixels, laid};
+use crate::analysis::slope::{Gradient, extended, gradients_between};
+use crate::grid::Grid;
+use crate::map::shade::{Lights, Shade};
+use crate::palette::color::{Encoder, Light};
+use crate::palette::tint::Tint;
+
+/// How relief is shaded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Shading {
+    /// Not at all.
+    None,
+    /// By one light from the north-west.
+    Single,
+    /// By three lights, which show ridges that run along the first.
+    #[default]
+    Multi,
+    /// As on Swiss maps: three lights, lowlands soft and in haze, summits crisp and warm in the light (after E. Imhof,
+    /// "Kartographische Geländedarstellung", 1965).
+    Swiss,
+}
+
+/// How much of the land's shading the sea floor gets: water lies over it.
+const UNDER_WATER: f32 = 0.35;
+
+/// Swiss shading: contrast in the lowlands and on the summits, how much haze lies over the lowlands and its colour, and how many
+/// pixels their relief is smoothed over.
+const CONTRAST: [f32; 2] = [0.62, 1.22];
+const HAZE: f32 = 0.16;
+const AIR: Light = [0.62, 0.72, 0.84];
+const SOFT: usize = 7;
+
+/// The relief of heights in pixels, as sRGB bytes.
+pub fn paint(heights: &Grid, pixels: [usize; 2], tint: &Tint, shading: Shading, sea_level: f32) -> Vec<u8> {
+    let grid = at_pixels(heights, pixels);
+    let [width, height] = pixels;
+    let encoder = Encoder::new();
+    let lights = if shading == Shading::Single { Lights::One } else { Lights::Three };
+    let shade = Shade::fit_lit(lights, &grid, sea_level);
+    let soft = (shading == Shading::Swiss).then(|| {
+        let few = pixels.map(|side| (side / SOFT).max(2).min(side));
+        extended(&laid(&laid(&grid, few), pixels))
+    });
+    let (low, high) = ends(&grid, sea_level);
+    let wide = extended(&grid);
+    let cell = grid.window().cell;
+    let mut bytes = vec![0u8; 3 * width * height];
+    bytes.par_chunks_exact_mut(3 * width).enumerate().for_each(|(j, out)| {
+        let rows = |grid: &'_ Grid| -> [Vec<f32>; 3] { [0, 1, 2].map(|k| grid.row(j + k).to_vec()) };
+        let mut softly: Vec<Gradient> = Vec::new();
+        if let Some(soft) = &soft {
+            let rows = rows(soft);
+            gradients_between([&rows[0], &rows[1], &rows[2]], cell, |_, gradient| softly.push(gradient));
+        }
+        let here = wide.row(j + 1);
+        gradients_between([wide.row(j), here, wide.row(j + 2)], cell, |i, gradient| {
+            let height = here[i + 1];
+            let mut color = tint.at(height);
+            let strength = if tint.is_sea(height) { UNDER_WATER } else { 1.0 };
+            let up = ((height - low) / (high - low)).clamp(0.0, 1.0);
+            let factor = match (shading, softly.get(i)) {
+                _ if height.is_nan() => [1.0; 3],
+                (Shading::None, _) => [1.0; 3],
+                (Shading::Swiss, Some(soft)) => {
+                    let air = HAZE * (1.0 - up) * (1.0 - up) * strength;
+                    color = std::array::from_fn(|c| color[c] + (AIR[c] - color[c]) * air);
+                    let crisp = (0.35 + 0.9 * up).min(1.0);
+                    let mixed = Gradient {
+                        east: soft.east + (gradient.east - soft.east) * crisp,
+                        north: soft.north + (gradient.north - soft.north) * crisp,
+                    };
+                    let contrast = CONTRAST[0] + (CONTRAST[1] - CONTRAST[0]) * up;
+                    let lit = shade.on(mixed);
+                    // The sun's side is warm.
+                    let warm = if lit[1] > 1.0 { [0.02, 0.0, -0.05] } else { [0.0; 3] };
+                    std::array::from_fn(|c| 1.0 + (lit[c] - 1.0) * contrast + warm[c])
+                }
+                _ => shade.on(gradient),
+            };
+            let lit = std::array::from_fn(|c| color[c] * (1.0 + (factor[c] - 1.0) * strength));
+            out[3 * i..3 * i + 3].copy_from_slice(&encoder.bytes(lit));
+        });
+    });
+    bytes
+}
+
+/// The lowest land and the highest; two different numbers.
+fn ends(grid: &Grid, sea_level: f32) -> (f32, f32) {
+    let land = grid.data().iter().copied().filter(|height| height.is_finite() && *height > sea_level);
+    let (low, high) = land.fold((f32::MAX, f32::MIN), |(low, high), height| (low.min(height), high.max(height)));
+    if low < high { (low, high) } else { (0.0, 1.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Window;
+
+    /// A ridge that runs from north-west to south-east, and another across it.
+    fn ridges() -> Grid {
+        let mut grid = Grid::filled(Window::new(120, 120, 30.0), 0.0);
+        for j in 0..120 {
+            for i in 0..120 {
+                let (x, y) = (i as f64 - 60.0, j as f64 - 60.0);
+                let ridge = |d: f64| 700.0 * libm::exp(-d * d / 200.0);
+                grid.row_mut(j)[i] = (ridge(x - y) + ridge(x + y)) as f32;
+            }
+        }
+        grid
+    }
+
+    #[test]
+    fn each_shading_shows_the_relief_in_its_way() {
+        let grid = ridges();
+        let tint = Tint::hypsometric(0.0, 1400.0, -1.0);
+        let paint = |shading| paint(&grid, [120, 120], &tint, shading, -1.0);
+        let green = |bytes: &[u8], i: usize, j: usize| i32::from(bytes[3 * (j * 120 + i) + 1]);
+        let [none, single, multi, swiss] = [Shading::None, Shading::Single, Shading::Multi, Shading::Swiss].map(paint);
+        // The flanks of the ridge that runs along the light are lit alike, those of the other are not.
+        let along = |bytes: &[u8]| (green(bytes, 28, 20) - green(bytes, 20, 28)).abs();
+        let across = |bytes: &[u8]| green(bytes, 28, 84) - green(bytes, 36, 92);
+        assert!(along(&none) <= 2 && across(&none).abs() <= 2, "{} {}", along(&none), across(&none));
+        assert!(along(&single) <= 4, "{}", along(&single));
+        assert!([&single, &multi, &swiss].iter().all(|bytes| across(bytes) > 40));
+        assert!(single != multi);
+        // At the foot, haze and softness take contrast away.
+        let foot = |bytes: &[u8]| green(bytes, 24, 78) - green(bytes, 42, 96);
+        assert!(foot(&swiss) < foot(&multi), "{} {}", foot(&swiss), foot(&multi));
+    }
+
+    #[test]
+    fn holes_and_flats_are_painted() {
+        let mut grid = Grid::filled(Window::new(30, 20, 30.0), 5.0);
+        grid.row_mut(10)[10..20].fill(f32::NAN);
+        for shading in [Shading::None, Shading::Single, Shading::Multi, Shading::Swiss] {
+            assert_eq!(paint(&grid, [60, 40], &Tint::fit(&grid, 0.0), shading, 0.0).len(), 3 * 60 * 40);
+        }
+    }
+}

@@ -1,0 +1,61 @@
+"""Poppler and librsvg draw map sheets: the same picture as the .png of the same sheet."""
+
+import subprocess
+
+import numpy
+from orogen import ROOT, WORK, Checks, orogen
+from PIL import Image
+
+checks = Checks()
+DPI = 110
+
+
+def pixels(path):
+    """A picture as numbers from 0 to 255."""
+    return numpy.asarray(Image.open(path).convert("RGB"), dtype=float)
+
+
+def difference(a, b):
+    """The mean difference of two pictures of one size, and of the worst of all squares of 16 pixels."""
+    height, width = (min(a.shape[k], b.shape[k]) for k in (0, 1))
+    apart = numpy.abs(a[:height, :width] - b[:height, :width]).mean(axis=2)
+    squares = apart[: height // 16 * 16, : width // 16 * 16].reshape(height // 16, 16, width // 16, 16).mean(axis=(1, 3))
+    return apart.mean(), squares.max()
+
+
+for name, recipe, options in [
+    ("alpine", "alpine", ("--cell", 120)),
+    ("archipelago", "archipelago", ("--cell", 160, "--shade", "swiss", "--palette", "oleron")),
+    ("bands", "island", ("--cell", 80, "--palette", "bands", "--landscape")),
+]:
+    paths = {kind: WORK / f"{name}.{kind}" for kind in ("png", "svg", "pdf")}
+    for path in paths.values():
+        orogen("map", recipe, "-o", path, "--paper", "a4", "--dpi", DPI, "--title", f"{name} & Höhen", "--quiet", *options)
+    drawn = {"svg": WORK / f"{name}_svg.png", "pdf": WORK / f"{name}_pdf.png"}
+    subprocess.run(["rsvg-convert", "-d", str(DPI), "-p", str(DPI), paths["svg"], "-o", drawn["svg"]], check=True)
+    subprocess.run(["pdftoppm", "-r", str(DPI), "-png", "-singlefile", paths["pdf"], drawn["pdf"].with_suffix("")], check=True)
+    ours = pixels(paths["png"])
+    for kind, path in drawn.items():
+        theirs = pixels(path)
+        sizes = max(abs(a - b) for a, b in zip(ours.shape[:2], theirs.shape[:2]))
+        checks.that(f"{name}: the .{kind} is as large as the .png", sizes <= 2, f"({ours.shape} and {theirs.shape})")
+        mean, worst = difference(ours, theirs)
+        print(f"{name}: the .{kind} differs from the .png by {mean:.2f} of 255 on average, {worst:.1f} in the worst square")
+        checks.that(f"{name}: the .{kind} looks like the .png", mean < 2.5 and worst < 30.0)
+        # Mirrored, the comparison must fail.
+        checks.that(f"{name}: the mirrored .{kind} is another", difference(ours, theirs[:, ::-1])[0] > 8.0)
+    info = subprocess.run(["pdfinfo", paths["pdf"]], capture_output=True, text=True)
+    checks.that(f"{name}: pdfinfo finds nothing wrong", info.returncode == 0 and not info.stderr, info.stderr)
+    checks.that(f"{name}: with its title", f"{name} & Höhen" in info.stdout)
+    checks.that(f"{name}: on A4", "(A4)" in info.stdout)
+
+damaged = WORK / "damaged.pdf"
+damaged.write_bytes((WORK / "alpine.pdf").read_bytes()[:2000])
+done = subprocess.run(["pdfinfo", damaged], capture_output=True, text=True)
+checks.that("a PDF cut short is refused", done.returncode != 0)
+damaged = WORK / "damaged.svg"
+damaged.write_bytes((WORK / "alpine.svg").read_bytes()[:20000])
+done = subprocess.run(["rsvg-convert", damaged, "-o", WORK / "damaged.png"], capture_output=True, text=True)
+checks.that("an SVG cut short is refused", done.returncode != 0)
+
+checks.end()
