@@ -72,6 +72,7 @@ const CLIENTS: &[Client] = &[
         apt: &[("node", "nodejs"), ("npm", "npm"), ("admesh", "admesh")],
         pip: &[NUMPY, PILLOW, "trimesh==5.2.0", "meshio==5.3.5"],
         npm: &["gltf-validator@2.0.0-dev.3.10"],
+    },
     Client { name: "contours", apt: &[("gdal_contour", "gdal-bin")], pip: &[NUMPY], npm: &[] },
     Client {
         name: "maps",
