@@ -4,19 +4,20 @@ use crate::failure::{Failure, Result, on_file};
 use crate::shell;
 
 mod noises;
+mod views;
 
 pub const ABOUT: &str = "make the pictures in docs/images and in the noises' docs anew";
 
 pub const HELP: &str = "
 Usage: cargo xtask gallery
 
-Makes docs/images/ anew: one relief map of each preset, a large one of the default preset as the README's first picture, a
+Makes docs/images/ anew: one relief map of each preset, the views of docs/render.md and the README's first picture, a
 map sheet, all palettes, the page that shows the noises side by side, and the chunks around a viewer. Then crates/orogen-noise/docs/gallery.md: the pictures that the
 documentation of orogen-noise opens with, which are in that file themselves, so that they show wherever it is read.
 ";
 
-/// Samples along a side of a preset's picture, and of the first picture.
-const SIZES: [&str; 2] = ["400", "1024"];
+/// Samples along a side of a preset's picture.
+const SIZE: &str = "400";
 
 /// Makes the pictures.
 pub fn run(args: &[String]) -> Result {
@@ -28,11 +29,10 @@ pub fn run(args: &[String]) -> Result {
     let work = shell::target_dir().join("gallery");
     let listed = shell::capture(&mut shell::cargo("run --quiet --release --package orogen-cli -- presets"))?;
     let names = listed.lines().filter_map(|line| line.split_whitespace().next());
-    let pictures = names.map(|name| (name, name, SIZES[0])).chain([("alpine", "range", SIZES[1])]);
-    for (preset, picture, size) in pictures {
+    for preset in names {
         let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- generate --quiet");
-        shell::run(orogen.args([preset, "--size", size, "-o"]).arg(&work))?;
-        let to = images.join(format!("{picture}.png"));
+        shell::run(orogen.args([preset, "--size", SIZE, "-o"]).arg(&work))?;
+        let to = images.join(format!("{preset}.png"));
         std::fs::copy(work.join("map.png"), &to).map_err(|e| on_file("write", &to, &e))?;
         println!("{}", shell::relative(&to));
     }
@@ -42,6 +42,7 @@ pub fn run(args: &[String]) -> Result {
         shell::run(orogen.args(arguments).args(["--quiet", "-o"]).arg(&to))?;
         println!("{}", shell::relative(&to));
     }
+    views::write(&images)?;
     let page = images.join("compare.png");
     let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- compare --quiet -o");
     shell::run(orogen.arg(&page))?;

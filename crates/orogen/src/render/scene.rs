@@ -353,7 +353,7 @@ fn exposure(sky: &Sky, level_sky: Light) -> Light {
     let light: Light = std::array::from_fn(|c| sky.sunlight()[c] * facing + level_sky[c]);
     let bright = 0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2];
     // At night nobody waits until it looks like day.
-    let scale = BRIGHT * std::f32::consts::PI / bright.max(0.02);
+    let scale = BRIGHT * std::f32::consts::PI / bright.max(0.004);
     light.map(|c| scale * libm::powf(bright.max(1e-6) / c.max(1e-6), BALANCE).clamp(0.5, 2.0))
 }
 

@@ -1,0 +1,29 @@
+//! The pictures of the land as it would be seen.
+
+use std::path::Path;
+
+use crate::failure::Result;
+use crate::shell;
+
+/// A picture's name, and what `orogen render` is asked for.
+const VIEWS: [(&str, &str); 5] = [
+    (
+        "hero",
+        "fjords --edge haze --size 1280x640 --samples 9 --camera 24500,29500,3000 --look 33000,13500 --fov 48 --sun 280,16",
+    ),
+    ("view-alpine", "alpine --size 1120x630 --samples 9"),
+    ("view-island", "island --size 1120x630 --samples 9 --camera 215,16"),
+    ("view-canyon", "canyon --size 1120x630 --samples 9 --colors desert --camera 225,22 --sun 275,24"),
+    ("view-volcano", "volcano --size 1120x630 --samples 9 --camera 170,20"),
+];
+
+/// Makes them in a folder.
+pub fn write(images: &Path) -> Result {
+    for (name, arguments) in VIEWS {
+        let to = images.join(format!("{name}.png"));
+        let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- render --quiet");
+        shell::run(orogen.args(arguments.split_whitespace()).arg("-o").arg(&to))?;
+        println!("{}", shell::relative(&to));
+    }
+    Ok(())
+}
