@@ -38,6 +38,7 @@ Builds `orogen` for release, installs what is missing and runs every client, or 
   meshes    the glTF validator, trimesh, meshio and admesh read GLB, OBJ, PLY and STL: the samples, the right way round, closed
   contours  GDAL draws contours of the same heights: the same lines at the same places, and reads ours
   maps      Poppler and librsvg draw map sheets: the picture of the .png
+  formats   OpenEXR, GDAL, rasterio, Pillow and Godot read exported heights of every format, none mirrored, turned or moved
   taplo     taplo checks every recipe against the JSON Schema, and refuses broken ones
 
 `build` and `install` go first whatever is named. Elsewhere than on Debian, or not as root, it says what to install.
@@ -80,6 +81,12 @@ const CLIENTS: &[Client] = &[
         pip: &[NUMPY, PILLOW],
         npm: &[],
     },
+    Client {
+        name: "formats",
+        apt: &[("gdalinfo", "gdal-bin"), ("godot3-server", "godot3-server")],
+        pip: &[NUMPY, PILLOW, RASTERIO, "OpenEXR==3.5.3"],
+        npm: &[],
+    },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
 
@@ -116,6 +123,11 @@ const STEPS: &[&Step] = &[
     },
     &Step { name: "contours", about: "gdal_contour draws the same contours", run: || script("contours") },
     &Step { name: "maps", about: "Poppler and librsvg draw map sheets", run: || script("maps") },
+    &Step {
+        name: "formats",
+        about: "OpenEXR, GDAL, rasterio, Pillow and Godot read exports",
+        run: || script("formats"),
+    },
     &Step { name: "taplo", about: "taplo checks the recipes against the schema", run: || script("taplo") },
 ];
 

@@ -1,5 +1,6 @@
 //! Area `outputs`: what the files that people take away cost, beside the programs that make such files otherwise.
 
+mod cog;
 mod contours;
 mod ground;
 mod maps;
@@ -16,6 +17,7 @@ type Case = (&'static str, fn(&Options) -> Result<Vec<Figure>, String>);
 
 /// Every case.
 const CASES: &[Case] = &[
+    ("cog", cog::measure),
     ("contours", contours::measure),
     ("maps", maps::measure),
     ("meshes", meshes::measure),

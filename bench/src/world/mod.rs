@@ -4,7 +4,7 @@ mod build;
 mod chunk;
 pub mod figure;
 mod hills;
-mod process;
+pub mod process;
 mod threads;
 mod tiles;
 

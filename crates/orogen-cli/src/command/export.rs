@@ -4,17 +4,19 @@ use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValue;
-use orogen::Window;
 use orogen::export::derived::list;
 use orogen::export::format::Format;
 use orogen::export::subject::Subject;
-use orogen::export::{registry, run as exporting};
+use orogen::export::targets::frame::{Asked, Frame};
+use orogen::export::targets::target::Target;
+use orogen::export::{registry, run as exporting, targets};
+use orogen::{Window, World};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::format_options::FormatOptions;
 use crate::options::{Limits, View};
-use crate::size::{Rectangle, cell, seed};
+use crate::size::{Rectangle, Size, cell, seed};
 use crate::source::Source;
 use crate::{interrupt, say, view};
 
@@ -41,6 +43,15 @@ pub struct Args {
     /// Seed of the world, instead of the recipe's
     #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
     seed: Option<u64>,
+    /// Engine to write for: sets size, format, scale, rows and tiles, and says what to type into its import dialogue
+    #[arg(long, value_name = "ENGINE", value_parser = Engines, conflicts_with = "format")]
+    target: Option<&'static str>,
+    /// Samples along a side that the engine gets, of each tile if there are several [default: the most that the world has]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), requires = "target", allow_negative_numbers = true)]
+    size: Option<u32>,
+    /// Tiles for the engine, east and south, that share their edges
+    #[arg(long, value_name = "NxM", requires = "target")]
+    tiles: Option<Size>,
     #[command(flatten)]
     limits: Limits,
     /// Show neither progress nor the closing words
@@ -48,6 +59,33 @@ pub struct Args {
     quiet: bool,
     #[command(flatten)]
     options: FormatOptions,
+}
+
+/// The names of engines.
+#[derive(Clone)]
+struct Engines;
+
+impl clap::builder::TypedValueParser for Engines {
+    type Value = &'static str;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        arg: Option<&clap::Arg>,
+        value: &std::ffi::OsStr,
+    ) -> Result<&'static str, clap::Error> {
+        let known = clap::builder::PossibleValuesParser::new(engines());
+        let name = known.parse_ref(command, arg, value)?;
+        Ok(targets::list::named(&name).map_or("unreal", |target| target.name))
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(engines().into_iter()))
+    }
+}
+
+fn engines() -> Vec<PossibleValue> {
+    targets::list::all().iter().map(|target| PossibleValue::new(target.name).help(target.about)).collect()
 }
 
 /// The names of formats.
@@ -94,6 +132,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     recipe.world.seed = args.seed.unwrap_or(recipe.world.seed);
     list::prepare(&mut recipe, &args.layer);
     let world = args.limits.open(recipe)?;
+    if let Some(target) = args.target.and_then(targets::list::named) {
+        return for_engine(args, target, format, &world);
+    }
     let view = View { seed: None, size: None, cell: args.cell };
     let window = match args.window {
         Some(Rectangle { x, y, width, height }) => {
@@ -126,6 +167,48 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             }
         }
     }
+}
+
+/// Writes the layer for an engine.
+fn for_engine(args: &Args, target: &Target, format: &Format, world: &World) -> Result<(), Failure> {
+    if args.out == Path::new("-") {
+        return Err(Failure::Usage("an engine's files have names: give one with -o".into()));
+    }
+    if let Some(option) = args.options.read()?.names().next() {
+        return Err(Failure::Usage(format!("--target {} sets --{option} itself: leave it out", target.name)));
+    }
+    let cell = args.cell.unwrap_or(world.recipe().world.cell);
+    let tiles = args.tiles.map(|tiles| match tiles {
+        Size::Longer(count) => [count, count],
+        Size::Both(across, down) => [across, down],
+    });
+    let asked = Asked {
+        side: args.size.map(|side| side as usize),
+        cell: args.cell,
+        window: args.window.map(|Rectangle { x, y, width, height }| Window { x, y, width, height, cell }),
+        tiles,
+    };
+    let frame = Frame::new(target, world, &asked)?;
+    let (bar, progress) = Bar::new(args.quiet);
+    let made = targets::run::export(target, format, &frame, world, &args.layer, &progress, &args.out)
+        .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?;
+    drop(bar);
+    if args.quiet {
+        return Ok(());
+    }
+    let ([width, height], cell) = (made.samples, frame.window.cell);
+    let files = match made.files.as_slice() {
+        [one] => one.display().to_string(),
+        [first, .., last] => format!("{} to {}, {} tiles", first.display(), last.display(), made.files.len()),
+        [] => String::new(),
+    };
+    let mut text = format!("{files}: {}, {width} x {height} samples of {cell} m, {}\n", args.layer, made.words);
+    let notes = frame.note.iter().map(|note| format!("note: {note}"));
+    for line in notes.chain(made.import.into_iter().map(|line| format!("  {line}"))) {
+        text.push_str(&line);
+        text.push('\n');
+    }
+    say::out(&text)
 }
 
 /// The format that is asked for: by name, else by extension, else an array.

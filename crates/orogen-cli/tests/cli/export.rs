@@ -248,6 +248,101 @@ fn weights_add_up_to_255_over_all_pictures() {
 }
 
 #[test]
+fn engines_get_what_they_ask_for() {
+    let folder = Folder::with_small();
+    let told = folder.good(&["export", "small.toml", "-o", "a.png", "--target", "unreal", "--size", "253"]);
+    assert!(
+        told.text().contains("a.png: height, 253 x 253 samples of 1.9") && told.text().contains("Scale X 190."),
+        "{}",
+        told.text()
+    );
+    assert!(told.text().contains("the first 480 x 480 m"), "{}", told.text());
+    let told = folder.json("a.json");
+    assert_eq!(
+        (
+            told["width"].as_u64(),
+            told["low"].as_f64().map(|low| low / -256.0 == (low / -256.0 * 100.0).round() / 100.0)
+        ),
+        (Some(253), Some(true))
+    );
+
+    // Tiles of one scale that share their edges; rows from the south, counted from the south.
+    folder.good(&[
+        "export",
+        "small.toml",
+        "-o",
+        "u.r16",
+        "--target",
+        "unity",
+        "--size",
+        "33",
+        "--tiles",
+        "2x1",
+        "--cell",
+        "5",
+        "-q",
+    ]);
+    let levels = |name: &str| -> Vec<u16> {
+        folder.read(name).chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]])).collect()
+    };
+    let (west, east) = (levels("u_0_0.r16"), levels("u_1_0.r16"));
+    assert!(west.len() == 33 * 33 && (0..33).all(|j| west[33 * j + 32] == east[33 * j]));
+    assert!(west.iter().chain(&east).min() == Some(&0) && west.iter().chain(&east).max() == Some(&65535));
+    folder.good(&["export", "u_1_0.r16", "-o", "back.npy", "-q"]);
+    folder.good(&["export", "small.toml", "-o", "part.npy", "--window", "32,0,33,33", "--cell", "5", "-q"]);
+    assert!(off(&folder, "back.npy", "part.npy") < 0.003, "{}", off(&folder, "back.npy", "part.npy"));
+
+    folder.good(&["export", "small.toml", "-o", "t.exr", "--target", "terrain3d", "--size", "256", "-q"]);
+    folder.good(&["export", "small.toml", "-o", "h.exr", "--target", "hterrain", "--size", "65", "-q"]);
+    folder.good(&[
+        "export",
+        "small.toml",
+        "-o",
+        "w.png",
+        "--target",
+        "hterrain",
+        "--size",
+        "65",
+        "--layer",
+        "splat",
+        "-q",
+    ]);
+    assert_eq!(png(&folder.read("w_2.png")).width, 64);
+    folder.good(&[
+        "export",
+        "small.toml",
+        "-o",
+        "l.png",
+        "--target",
+        "unreal",
+        "--size",
+        "127",
+        "--tiles",
+        "2x1",
+        "--cell",
+        "2",
+        "--layer",
+        "splat",
+        "-q",
+    ]);
+    assert!(folder.path("l_x1_y0_rock.png").exists());
+
+    for (options, code, expect) in [
+        (&["-o", "x.png", "--target", "unreal", "--size", "1024"][..], 2, "the nearest is 1009"),
+        (&["-o", "x.tif", "--target", "unreal"], 2, "unreal takes `height` as .png or .r16, not as .tif"),
+        (&["-o", "x.r16", "--target", "unity", "--first-row", "north"], 2, "sets --first-row itself"),
+        (&["-o", "x.exr", "--target", "terrain3d", "--tiles", "2x2"], 2, "leave out --tiles"),
+        (&["-o", "x.r16", "--target", "unity", "--size", "4097", "--cell", "10"], 2, "not inside the world"),
+        (&["-o", "x.png", "--size", "64"], 2, "--target <ENGINE>"),
+        (&["-o", "x.png", "--target", "cryengine"], 2, "invalid value"),
+        (&["-o", "no/x.png", "--target", "unreal"], 1, "cannot write into no: the folder does not exist"),
+    ] {
+        folder.bad(&[&["export", "small.toml"][..], options].concat(), code, expect);
+        assert!(!folder.path("x.png").exists() && !folder.path("x.r16").exists());
+    }
+}
+
+#[test]
 fn one_range_makes_windows_that_fit() {
     let folder = Folder::with_small();
     let window = |file: &str, window: &str| {

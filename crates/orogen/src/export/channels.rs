@@ -138,7 +138,7 @@ fn put_aside(spool: &mut Spool, band: &[Grid]) -> io::Result<()> {
 }
 
 /// The path with something more before its extension.
-fn suffixed(path: &Path, suffix: &str) -> PathBuf {
+pub(super) fn suffixed(path: &Path, suffix: &str) -> PathBuf {
     let mut name = path.file_stem().unwrap_or_default().to_os_string();
     name.push(suffix);
     if let Some(extension) = path.extension() {

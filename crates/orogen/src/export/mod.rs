@@ -32,3 +32,4 @@ pub mod run;
 pub mod sidecar;
 pub mod spread;
 pub mod subject;
+pub mod targets;

@@ -21,7 +21,7 @@ pub static FORMAT: Format = Format {
 };
 
 /// The option of 16 bits.
-const HALF: OptionSpec = OptionSpec {
+pub const HALF: OptionSpec = OptionSpec {
     name: "half",
     value: "",
     about: "Floats of 16 bits instead of 32: steps of 2 m from 2048 m up",
@@ -29,7 +29,7 @@ const HALF: OptionSpec = OptionSpec {
 };
 
 /// The option of three channels.
-const RGB: OptionSpec = OptionSpec {
+pub const RGB: OptionSpec = OptionSpec {
     name: "rgb",
     value: "",
     about: "The samples in each of the channels R, G and B instead of in Y",

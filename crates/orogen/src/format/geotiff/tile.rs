@@ -1,13 +1,9 @@
 //! One tile: cut out, filtered, packed.
 
-use miniz_oxide::deflate::compress_to_vec_zlib;
-
-/// How hard to pack. Half of a height's bits are noise to deflate: its higher levels take up to eight times as long to save a
-/// hundredth.
-const LEVEL: u8 = 3;
+use super::deflate;
 
 /// Packs the tile in `column` of a row of tiles, of which `rows` are the samples, `width` a row. What of the tile lies beyond the
-/// raster repeats the edge: readers do not show it, and nothing is packed better.
+/// raster repeats the edge: readers do not show it, and little is packed better.
 pub fn pack(rows: &[f32], width: usize, column: usize, side: usize) -> Vec<u8> {
     let first = column * side;
     let mut samples = vec![0.0; side];
@@ -25,7 +21,7 @@ pub fn pack(rows: &[f32], width: usize, column: usize, side: usize) -> Vec<u8> {
     while filtered.len() < 4 * side * side {
         filtered.extend_from_within(filtered.len() - 4 * side..);
     }
-    compress_to_vec_zlib(&filtered, LEVEL)
+    deflate::pack(&filtered, side)
 }
 
 /// All highest bytes, then all second highest, and so on: what is alike comes together.

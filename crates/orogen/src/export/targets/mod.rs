@@ -1,0 +1,10 @@
+//! Engines that worlds are exported for: one file each, and [`list`](list) names them.
+
+pub mod frame;
+pub mod hterrain;
+pub mod list;
+pub mod run;
+pub mod target;
+pub mod terrain3d;
+pub mod unity;
+pub mod unreal;
