@@ -150,7 +150,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let window = window(args, &world)?;
     let pixels = (width * height) as u64;
     // Of each sample of the land: what is asked for, the pyramid, slopes, and light twice while it is made.
-    let land = (window.len() as u64).saturating_mul(96);
+    let land = (window.len() as u64).saturating_mul(128);
     let needed = land.saturating_add(3 * pixels).saturating_add(target.beside(pixels));
     memory::afford(needed, args.limits.memory)?;
     let folder = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

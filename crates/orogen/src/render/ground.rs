@@ -136,8 +136,9 @@ impl Ground {
         let (albedo, rough) = match self.colors {
             Colors::Natural => self.natural(site, shape),
             Colors::Desert => self.desert(site, shape),
-            Colors::Map => (self.tint.at(site.height), 0.0),
-            Colors::Clay => ([0.52, 0.47, 0.42], 0.0),
+            // Paper is brighter than any ground: in the sun it would be all white.
+            Colors::Map => (self.tint.at(site.height).map(|c| c * 0.55), 0.0),
+            Colors::Clay => ([0.30, 0.265, 0.235], 0.0),
         };
         let mut slope = [shape[0], shape[1]];
         if rough > 0.0 {
@@ -273,7 +274,7 @@ impl Ground {
         let bed = self.grain.at(at * 3.0, 0.41, 4).value + 0.5 * self.grain.at(at * 9.0, 3.3, 5).value;
         let (dark, light): (Light, Light) = match self.colors {
             Colors::Desert => ([0.24, 0.10, 0.06], [0.42, 0.25, 0.15]),
-            Colors::Clay => ([0.40, 0.36, 0.32], [0.46, 0.41, 0.37]),
+            Colors::Clay => ([0.26, 0.23, 0.205], [0.29, 0.255, 0.225]),
             _ => ([0.135, 0.115, 0.098], [0.27, 0.235, 0.20]),
         };
         let rock = mix(dark, light, (0.5 + 0.55 * bed).clamp(0.0, 1.0));

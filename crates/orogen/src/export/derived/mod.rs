@@ -1,4 +1,4 @@
-//! Layers that a recipe need not have: what follows from its heights. One file each, and [`list`](list) names them.
+//! Layers that a recipe need not have: what follows from its heights. One file each, and [`list`] names them.
 
 pub mod aspect;
 pub mod curvature;
