@@ -1,4 +1,4 @@
-//! Engines that worlds are exported for: one file each, and [`list`](list) names them.
+//! Engines that worlds are exported for: one file each, and [`list`] names them.
 
 pub mod frame;
 pub mod hterrain;
