@@ -14,10 +14,10 @@ const TILE: usize = 1024;
 
 /// A surface through some of the samples from which none is further than `max_error` metres, measured vertically.
 ///
-/// Greedy insertion with flips (see [`super::tin`](self)): with `max_error` at 1 % of the relief, about a thirtieth of the full
-/// grid's triangles. Grids of more than 1024 cells a side are cut into tiles that are worked on side by side; which samples
-/// along an edge are corners follows from those samples alone, so tiles of a grid fit without cracks, and so do meshes made of
-/// windows that share an edge row. The result is the same on any number of threads.
+/// Greedy insertion (Garland and Heckbert, 1995) with flips where they save a corner: with `max_error` at 1 % of the relief,
+/// about a thirtieth of the full grid's triangles. Grids of more than 1024 cells a side are cut into tiles that are worked on
+/// side by side; which samples along an edge are corners follows from those samples alone, so tiles of a grid fit without
+/// cracks, and so do meshes made of windows that share an edge row. The result is the same on any number of threads.
 ///
 /// # Errors
 /// The grid has fewer than two columns or rows, or samples that are not finite; `max_error` is negative or not finite.
