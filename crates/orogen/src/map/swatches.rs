@@ -7,6 +7,7 @@ use crate::analysis::slope::gradients_between;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 use crate::palette::color::Encoder;
+use crate::palette::fitted::Fitted;
 use crate::palette::palette::{Palette, Position};
 use crate::palette::tint::Tint;
 
@@ -98,7 +99,7 @@ impl Page {
         let [low, high] = if values.0 < values.1 { [values.0, values.1] } else { [-1000.0, 1000.0] };
         let (width, height) = (BAR[0] as i64, BAR[1] as i64);
         let sea = if palette.has_sea() { 0.0 } else { low };
-        let fitted = palette.fit(low as f32, high as f32, sea as f32);
+        let fitted = Fitted::new(palette, low as f32, high as f32, sea as f32);
         for i in 0..width {
             let at = low + (high - low) * (i as f64 + 0.5) / width as f64;
             let ink = self.encoder.bytes(fitted.at(at as f32));

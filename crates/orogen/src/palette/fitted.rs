@@ -37,8 +37,9 @@ impl Piece {
 }
 
 impl Fitted {
-    /// Lays a palette over the range from `low` to `high`, the sea at `sea`.
-    pub(super) fn new(palette: &Palette, [low, high, sea]: [f64; 3]) -> Fitted {
+    /// A palette laid over heights from `low` to `high` with the sea at `sea_level`.
+    pub fn new(palette: &Palette, low: f32, high: f32, sea_level: f32) -> Fitted {
+        let [low, high, sea] = [low, high, sea_level].map(f64::from);
         let low = if low.is_finite() { low } else { 0.0 };
         let high = if high > low { high } else { low + 1.0 };
         // Land that does not touch the sea begins at its own foot; a sea that nothing rises from ends at its surface.
@@ -191,7 +192,7 @@ mod tests {
     use super::*;
 
     fn bytes(palette: &Palette, range: [f32; 3], heights: &[f32]) -> Vec<Rgb> {
-        let fitted = palette.fit(range[0], range[1], range[2]);
+        let fitted = Fitted::new(palette, range[0], range[1], range[2]);
         let encoder = Encoder::new();
         heights.iter().map(|height| encoder.bytes(fitted.at(*height))).collect()
     }
@@ -271,9 +272,9 @@ mod tests {
     #[test]
     fn senseless_ranges_and_empty_palettes_still_have_colours() {
         let some = palette(&[(Position::Sea(-1.0), BLUE), (Position::Share(0.5), RED), (Position::Value(9.0), LIME)]);
-        for palette in [some, Palette::default()] {
+        for palette in &[some, Palette::default()] {
             for range in [[5.0, 5.0, 0.0], [f32::NAN; 3], [1.0, -1.0, 0.0], [f32::MIN, f32::MAX, f32::INFINITY]] {
-                let fitted = palette.fit(range[0], range[1], range[2]);
+                let fitted = Fitted::new(palette, range[0], range[1], range[2]);
                 for height in [f32::MIN, -1.0, 0.0, 1.0, f32::MAX, f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
                     assert!(fitted.at(height).iter().all(|c| c.is_finite()), "{range:?} {height}");
                 }

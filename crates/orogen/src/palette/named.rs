@@ -489,6 +489,7 @@ impl Named {
 #[cfg(test)]
 mod tests {
     use super::super::color::{Light, oklab};
+    use super::super::fitted::Fitted;
     use super::*;
 
     #[test]
@@ -526,7 +527,8 @@ mod tests {
     ];
 
     fn least_difference(named: &Named) -> f32 {
-        let fitted = named.palette().fit(-1000.0, 1000.0, if named.span == Span::Sea { 0.0 } else { -1000.0 });
+        let fitted =
+            Fitted::new(&named.palette(), -1000.0, 1000.0, if named.span == Span::Sea { 0.0 } else { -1000.0 });
         let heights: Vec<f32> = match named.span {
             Span::Sea => {
                 (0..6).map(|k| -1000.0 + 200.0 * k as f32).chain((0..9).map(|k| 0.001 + 124.9 * k as f32)).collect()

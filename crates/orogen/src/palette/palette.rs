@@ -1,7 +1,6 @@
 //! Palettes: colours at positions, before they are laid over heights.
 
 use super::color::Rgb;
-use super::fitted::Fitted;
 
 /// Where a colour stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,10 +62,5 @@ impl Palette {
     /// Whether it tells sea from land, or may: its stops are not mere shares of the range.
     pub fn has_sea(&self) -> bool {
         self.follows_relief || self.stops.iter().any(|stop| matches!(stop.at, Position::Sea(_)))
-    }
-
-    /// The palette laid over heights from `low` to `high` with the sea at `sea_level`.
-    pub fn fit(&self, low: f32, high: f32, sea_level: f32) -> Fitted {
-        Fitted::new(self, [low, high, sea_level].map(f64::from))
     }
 }

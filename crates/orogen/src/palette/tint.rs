@@ -40,7 +40,7 @@ impl Tint {
             return Tint::fit(grid, sea_level);
         }
         let levels = Levels::of(grid);
-        let fitted = palette.fit(levels.low(), levels.high(), sea_level);
+        let fitted = Fitted::new(palette, levels.low(), levels.high(), sea_level);
         Tint { colors: Colors::Fitted(fitted), sea_level, sea: palette.has_sea() }
     }
 

@@ -1,6 +1,6 @@
 //! A map sheet: heights, and all that belongs to a map of them, on a page.
 
-use super::furniture::{Desk, Entry, INK, Sign, colors_block, legend_block, north_block, scale_block};
+use super::furniture::{Desk, Entry, Sign, colors_block, legend_block, north_block, scale_block};
 use super::ground::laid;
 use super::labels::{Label, Setting, Taken, gaps, place};
 use super::layout::{Block, Layout};
@@ -9,7 +9,7 @@ use super::lines::{interval, is_thick, lines, summits, thick_interval};
 use super::marks;
 use super::options::{Options, Page};
 use super::relief::paint;
-use super::scene::{Item, Place, Scene, Step};
+use super::scene::{INK, Item, Place, Scene, Step};
 use super::ticks::{Count, grouped};
 use super::water::{Least, Water, find};
 use crate::contour::chaikin::smooth;

@@ -2,14 +2,12 @@
 
 use super::layout::{BLOCK_GAP, Block, MARGIN};
 use super::letters::Letters;
-use super::scene::{Item, Place, Scene, polygon};
+use super::scene::{INK, Item, Place, Scene, polygon};
 use super::ticks::{Count, grouped, step, ticks};
 use crate::map::text::Face;
 use crate::palette::color::{Encoder, Rgb};
 use crate::palette::tint::Tint;
 
-/// Words and frames.
-pub const INK: Rgb = [38, 36, 34];
 /// Small print.
 pub const SOFT: Rgb = [92, 90, 88];
 /// Size of small print, an em in millimetres.

@@ -1,9 +1,8 @@
 //! Marks on the map itself.
 
-use super::furniture::INK;
 use super::labels::Taken;
 use super::letters::Letters;
-use super::scene::{Place, Scene, Step, polygon};
+use super::scene::{INK, Place, Scene, Step, polygon};
 use crate::map::text::Face;
 
 /// Size of a summit's height, an em in millimetres.

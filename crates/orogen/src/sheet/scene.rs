@@ -2,6 +2,9 @@
 
 use crate::palette::color::Rgb;
 
+/// Words and frames.
+pub const INK: Rgb = [38, 36, 34];
+
 /// A position on the page in millimetres: from the left, from the top.
 pub type Place = [f32; 2];
 
