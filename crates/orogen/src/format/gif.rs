@@ -402,6 +402,42 @@ mod tests {
         assert_eq!(second, [1, 255, 255, 255, 255, 255]);
     }
 
+    /// Takes `left` bytes, then fails.
+    struct Full {
+        left: usize,
+    }
+
+    impl Write for Full {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            if self.left == 0 && !bytes.is_empty() {
+                return Err(io::ErrorKind::StorageFull.into());
+            }
+            let take = bytes.len().min(self.left);
+            self.left -= take;
+            Ok(take)
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_writer_that_fails_at_any_byte_is_an_error() {
+        let palette = Palette::of(&[0, 0, 0, 255, 255, 255]);
+        let write = |out: &mut dyn Write| {
+            write_animation(out, [9, 9], &palette, Animation { frames: 2, delay: 40 }, |frame, bytes| {
+                bytes.iter_mut().enumerate().for_each(|(at, byte)| *byte = (at as u32 * 37 * (frame + 1)) as u8);
+                Ok(())
+            })
+        };
+        let mut bytes = Vec::new();
+        write(&mut bytes).unwrap();
+        for left in 0..bytes.len() {
+            assert!(write(&mut Full { left }).is_err(), "after {left} of {} bytes", bytes.len());
+        }
+    }
+
     #[test]
     fn what_gif_cannot_hold_is_an_error() {
         let palette = Palette::of(&[0, 0, 0]);
