@@ -3,7 +3,6 @@
 //! Its height map is an EXR of one channel in half floats, 2^n + 1 samples a side, metres as they are; its splat maps have the size without the last row and
 //! column.
 
-use super::frame::Frame;
 use super::target::Target;
 use crate::export::formats::exr;
 use crate::format::levels::Levels;
@@ -22,12 +21,11 @@ pub static TARGET: Target = Target {
     import,
 };
 
-fn import(frame: &Frame, levels: &Levels) -> Vec<String> {
-    let cell = frame.window.cell;
+fn import(side: usize, cell: f64, levels: &Levels) -> Vec<String> {
     vec![
         format!(
             "Terrain > Import Maps > Heightmap: {0} x {0}, metres {1} to {2} as they are",
-            frame.side,
+            side,
             levels.low(),
             levels.high()
         ),

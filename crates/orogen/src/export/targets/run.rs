@@ -62,7 +62,7 @@ pub fn export(
             all.rows(|_| Ok(())).map_err(|cause| file::explain("make", path, &cause))?;
             let levels = all.levels();
             (target.heights)(&levels, &mut options)?;
-            import = (target.import)(frame, &levels);
+            import = (target.import)(frame.side, frame.window.cell, &levels);
         }
         Nature::Numbers => options.give(&BITS, "8")?,
         Nature::Normal => options.give(&NORMAL, target.normal)?,

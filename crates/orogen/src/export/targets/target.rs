@@ -3,7 +3,6 @@
 use crate::export::options::Options;
 use crate::format::levels::Levels;
 
-use super::frame::Frame;
 use crate::error::Result;
 
 /// An engine's import of heights.
@@ -26,6 +25,6 @@ pub struct Target {
     pub normal: &'static str,
     /// Sets the formats' options for heights of this range; every tile is written by them.
     pub heights: fn(&Levels, &mut Options) -> Result<()>,
-    /// What to type into its import dialogue, a line each.
-    pub import: fn(&Frame, &Levels) -> Vec<String>,
+    /// What to type into its import dialogue, a line each, for so many samples along a side (of a tile), so many metres apart, of these heights.
+    pub import: fn(usize, f64, &Levels) -> Vec<String>,
 }

@@ -3,7 +3,6 @@
 //! "Importing & Exporting Data" (terrain3d.readthedocs.io): EXR or r16 for heights, metres as they are; it cuts the map into regions of 1024
 //! samples by itself. Three channels of 32 bits without opacity, which Godot reads as floats; half floats would be steps of 2 m at 3000 m.
 
-use super::frame::Frame;
 use super::target::Target;
 use crate::export::formats::exr;
 use crate::format::levels::Levels;
@@ -22,18 +21,15 @@ pub static TARGET: Target = Target {
     import,
 };
 
-fn import(frame: &Frame, levels: &Levels) -> Vec<String> {
-    let middle = frame.side as f64 / 2.0;
+fn import(side: usize, cell: f64, levels: &Levels) -> Vec<String> {
+    let middle = side as f64 / 2.0;
     vec![
         format!(
             "importer.tscn > Height File Name; Import Scale 1, Height Offset 0 (metres {} to {})",
             levels.low(),
             levels.high()
         ),
-        format!(
-            "Import Position {middle}, 0, {middle} puts the first sample at the origin; Vertex Spacing {}",
-            frame.window.cell
-        ),
+        format!("Import Position {middle}, 0, {middle} puts the first sample at the origin; Vertex Spacing {}", cell),
         "rows grow south, which is +Z: nothing is flipped".to_string(),
     ]
 }

@@ -3,7 +3,6 @@
 //! "Working with Heightmaps" and "Terrain Settings" (docs.unity3d.com): 2^n + 1 samples, 33 to 4097; RAW of 16 bits; a terrain's first row is its
 //! southern one (z grows north), so the rows are written from the south and nothing is flipped.
 
-use super::frame::Frame;
 use super::target::Target;
 use crate::export::formats::r16;
 use crate::export::spread::{FIRST_ROW, RANGE};
@@ -37,15 +36,15 @@ fn ends(levels: &Levels) -> (f32, f32) {
     }
 }
 
-fn import(frame: &Frame, levels: &Levels) -> Vec<String> {
+fn import(side: usize, cell: f64, levels: &Levels) -> Vec<String> {
     let (low, high) = ends(levels);
-    let side = (frame.side - 1) as f64 * frame.window.cell;
+    let metres = (side - 1) as f64 * cell;
     vec![
         format!(
             "Terrain Settings > Heightmap Resolution {0} x {0}, then Import Raw: Depth Bit 16, Byte Order Windows, Flip Vertically off",
-            frame.side
+            side
         ),
-        format!("Terrain Size: X {side}, Y {}, Z {side}; the terrain's position Y {low}", high - low),
-        format!("weight maps (--layer splat) have {0} x {0} pixels: Control Texture Resolution {0}", frame.side - 1),
+        format!("Terrain Size: X {metres}, Y {}, Z {metres}; the terrain's position Y {low}", high - low),
+        format!("weight maps (--layer splat) have {0} x {0} pixels: Control Texture Resolution {0}", side - 1),
     ]
 }

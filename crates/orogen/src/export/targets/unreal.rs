@@ -3,7 +3,6 @@
 //! "Landscape Technical Guide" (dev.epicgames.com): sizes that use whole components; 16 bits, of which 32768 is height 0 of the actor;
 //! height = (value - 32768) / 128 x the actor's Z scale / 100, in metres.
 
-use super::frame::Frame;
 use super::target::Target;
 use crate::export::formats::{png, r16};
 use crate::export::spread::RANGE;
@@ -34,8 +33,8 @@ fn z_scale(levels: &Levels) -> f32 {
     (most / 2.5599).ceil().max(1.0)
 }
 
-fn import(frame: &Frame, levels: &Levels) -> Vec<String> {
-    let sections = match frame.side {
+fn import(side: usize, cell: f64, levels: &Levels) -> Vec<String> {
+    let sections = match side {
         127 => "section size 63 x 63 quads, 1 x 1 sections, 2 x 2 components",
         253 => "section size 63 x 63 quads, 2 x 2 sections, 2 x 2 components",
         505 => "section size 63 x 63 quads, 2 x 2 sections, 4 x 4 components",
@@ -44,11 +43,11 @@ fn import(frame: &Frame, levels: &Levels) -> Vec<String> {
         4033 => "section size 63 x 63 quads, 2 x 2 sections, 32 x 32 components",
         _ => "section size 127 x 127 quads, 2 x 2 sections, 32 x 32 components",
     };
-    let cell = frame.window.cell * 100.0;
+    let scale = cell * 100.0;
     vec![
-        format!("Landscape > Import from File: {0} x {0}, {sections}", frame.side),
+        format!("Landscape > Import from File: {0} x {0}, {sections}", side),
         format!(
-            "Scale X {cell}, Y {cell}, Z {} (centimetres; Location Z 0: the height 0 m lies at Z 0)",
+            "Scale X {scale}, Y {scale}, Z {} (centimetres; Location Z 0: the height 0 m lies at Z 0)",
             z_scale(levels)
         ),
         "Y grows south: the first row is the northern one, do not flip it".to_string(),
