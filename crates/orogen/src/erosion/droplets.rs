@@ -141,7 +141,11 @@ impl Droplets {
         let window = *heights.window();
         let reach = self.steps(window.cell) + 2;
         let step = self.step(window.cell, batch);
-        let rows = (2 * reach).max(window.height.div_ceil(16 * rayon::current_num_threads()));
+        // As many of a kind as all threads together take in equal shares.
+        let all = 2 * rayon::current_num_threads();
+        let most = (window.height / (2 * reach)).clamp(1, 8 * all);
+        let bands = if most > all { most - most % all } else { most };
+        let rows = window.height.div_ceil(bands).max(2 * reach);
         for sums in &mut *sums {
             if sums.len() < window.len() {
                 *sums = vec![0; window.len()];
@@ -161,7 +165,7 @@ impl Droplets {
                 bands.push((top..bottom, first, part(&mut cut, skip, size), part(&mut laid, skip, size)));
                 taken = last;
             }
-            bands.into_par_iter().try_for_each(|(rows, first, cut, laid)| {
+            bands.into_par_iter().with_max_len(1).try_for_each(|(rows, first, cut, laid)| {
                 check()?;
                 droplet_paths::run(heights, &step, rows, droplet_paths::Sums { first, cut, laid });
                 Ok(())
