@@ -96,7 +96,7 @@ pub struct Found {
     pub setting: Setting,
     /// How its land is stretched.
     pub stretch: Stretch,
-    /// The distance of the world that it was found by.
+    /// The mean distance of the worlds that it was chosen by.
     pub distance: f64,
     /// How many settings were tried.
     pub tried: usize,
@@ -111,12 +111,23 @@ impl Found {
     }
 }
 
-/// Searches: settings at random, the best three improved by Nelder and Mead's simplex (1965). The same effort finds the same.
+/// How many settings are looked at again in the end, in worlds of how many other seeds.
+const FINALISTS: usize = 6;
+const OTHER_WORLDS: u64 = 2;
+
+/// Windows along a side of these worlds, where the place has as many.
+const WIDEST: usize = 2;
+
+/// The distance of what is no land at all.
+const FARTHEST: f64 = 100.0;
+
+/// Searches: settings at random, the best improved by Nelder and Mead's simplex (1965); then those that came nearest are tried in worlds
+/// of other seeds, since one world may be near by luck. The same effort finds the same.
 ///
 /// # Errors
 /// If the work is cancelled, or memory is short.
 pub fn search(target: &Target, effort: &Effort, options: &Options, progress: &Progress) -> Result<Found> {
-    let mut trial = Trial { target, effort, options, progress, tried: 0 };
+    let mut trial = Trial { target, effort, options, progress, tried: 0, nearest: Vec::new() };
     let mut chance = Chance(effort.seed);
     let mut tried: Vec<(f64, Setting)> = Vec::new();
     for k in 0..effort.random.max(1) {
@@ -165,10 +176,7 @@ pub fn search(target: &Target, effort: &Effort, options: &Options, progress: &Pr
             }
         }
     }
-    simplex.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (distance, setting) = simplex[0];
-    let (stretch, _) = trial.make(&setting, effort.seed)?;
-    Ok(Found { setting, stretch, distance, tried: trial.tried })
+    trial.choose()
 }
 
 /// From one setting towards another, within their ranges.
@@ -182,56 +190,115 @@ struct Trial<'a> {
     options: &'a Options,
     progress: &'a Progress,
     tried: usize,
+    /// The [`FINALISTS`] nearest settings so far, the nearest first.
+    nearest: Vec<(f64, Setting)>,
 }
 
 impl Trial<'_> {
-    /// How far a setting's land is from the target; one that makes no land is farthest.
+    /// How far a setting's land is from the target.
     fn distance(&mut self, setting: &Setting) -> Result<f64> {
         self.tried += 1;
-        let (_, land) = self.make(setting, self.effort.seed)?;
-        Ok(Measures::of(&land, None).map_or(100.0, |made| Likeness::of(&made).distance(&self.target.middle)))
+        let (_, distance) = self.look(setting, self.effort.seed, 1)?;
+        let at = self.nearest.partition_point(|(nearer, _)| *nearer <= distance);
+        self.nearest.insert(at, (distance, *setting));
+        self.nearest.truncate(FINALISTS);
+        Ok(distance)
     }
 
-    /// A world of a setting, stretched so that its window has the target's hypsometric integral and mean slope.
-    fn make(&self, setting: &Setting, seed: u64) -> Result<(Stretch, Grid)> {
+    /// How the land of one world, `across` windows wide, is stretched, and how far its windows are in the mean; what makes no land is
+    /// farthest.
+    fn look(&self, setting: &Setting, seed: u64, across: usize) -> Result<(Stretch, f64)> {
+        let (stretch, windows) = self.make(setting, seed, across)?;
+        let far = |land: &Grid| {
+            Measures::of(land, None).map_or(FARTHEST, |made| Likeness::of(&made).distance(&self.target.middle))
+        };
+        Ok((stretch, windows.iter().map(far).sum::<f64>() / windows.len().max(1) as f64))
+    }
+
+    /// Of the nearest settings the one whose worlds are nearest in the mean, stretched as they are in the mean.
+    fn choose(mut self) -> Result<Found> {
+        // Land is another in the midst of a larger world: more of it lies far from where rivers end.
+        let across = (self.target.size[0].min(self.target.size[1]) / self.target.side).clamp(1, WIDEST);
+        let mut best: Option<Found> = None;
+        for (_, setting) in std::mem::take(&mut self.nearest) {
+            let seeds = self.effort.seed..=self.effort.seed.saturating_add(OTHER_WORLDS);
+            let worlds: Result<Vec<(Stretch, f64)>> = seeds.map(|seed| self.look(&setting, seed, across)).collect();
+            let worlds = worlds?;
+            self.tried += worlds.len() - 1;
+            let mean = |of: fn(&(Stretch, f64)) -> f64| worlds.iter().map(of).sum::<f64>() / worlds.len() as f64;
+            let stretch = Stretch {
+                from: [mean(|world| world.0.from[0]), mean(|world| world.0.from[1])],
+                to: [mean(|world| world.0.to[0]), mean(|world| world.0.to[1])],
+                bend: mean(|world| world.0.bend),
+            };
+            let distance = mean(|world| world.1);
+            if best.as_ref().is_none_or(|best| distance < best.distance) {
+                best = Some(Found { setting, stretch, distance, tried: 0 });
+            }
+        }
+        let best = best.ok_or_else(|| Error::new(ErrorKind::Request, "no setting was tried"))?;
+        Ok(Found { tried: self.tried, ..best })
+    }
+
+    /// The windows of a world of a setting, stretched so that the middle ones of their hypsometric integrals and mean slopes are the
+    /// target's.
+    fn make(&self, setting: &Setting, seed: u64, across: usize) -> Result<(Stretch, Vec<Grid>)> {
         let Target { side, cell, lowest, .. } = *self.target;
-        let samples = side + 2 * MARGIN;
+        let inner = side * across;
         let plain = Stretch { from: [0.0, 1.0], to: [0.0, 1.0], bend: 0.0 };
-        let recipe = recipe(setting, &plain, [samples; 2], cell, seed);
+        let recipe = recipe(setting, &plain, [inner + 2 * MARGIN; 2], cell, seed);
         let options = Options { cache: None, ..self.options.clone() };
         let world = World::with_options(recipe, options)?;
-        let inside = Window::new(side, side, cell).at(MARGIN as i64, MARGIN as i64);
+        let inside = Window::new(inner, inner, cell).at(MARGIN as i64, MARGIN as i64);
         let mut grids = world.grids(&["soft"], &inside, self.progress)?;
         let soft = grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "the world has no middle"))?;
         let from = [quantile(&soft, 0.001), quantile(&soft, 0.999)];
+        let windows: Vec<Grid> = inside.tiles(side).filter_map(|window| soft.crop(&window)).collect();
         if from[1] - from[0] < 1e-3 {
-            return Ok((plain, soft));
+            return Ok((plain, windows));
         }
         let made = |to: [f64; 2], bend: f64| {
             let stretch = Stretch { from, to, bend };
-            let mut out = Grid::filled(inside, 0.0f32);
             let nowhere = Points::Scattered { x: &[], y: &[] };
             let setting = op::Setting { seed: 0, size: None, cell, sea_level: 0.0 };
-            stretch.curve().eval(&nowhere, &Slots::new(&[Some(soft.data())]), &setting, out.data_mut());
-            (stretch, out)
+            let bent = |soft: &Grid| {
+                let mut out = Grid::filled(*soft.window(), 0.0f32);
+                stretch.curve().eval(&nowhere, &Slots::new(&[Some(soft.data())]), &setting, out.data_mut());
+                out
+            };
+            (stretch, windows.iter().map(bent).collect::<Vec<Grid>>())
         };
         // The more it is bent, the lower the mean lies.
-        let bend = bisect([-5.0, 5.0], |bend| integral(&made([0.0, 1e3], bend).1) > self.target.integral);
-        let rises = steepness(&made([0.0, 1e3], bend).1);
-        let mean_slope = |relief: f64| {
+        let bend =
+            bisect([-5.0, 5.0], |bend| middle(made([0.0, 1e3], bend).1.iter().map(integral)) > self.target.integral);
+        let rises: Vec<Grid> = made([0.0, 1e3], bend).1.iter().map(steepness).collect();
+        let mean_slope = |rises: &Grid, relief: f64| {
             let factor = (relief / 1e3) as f32;
             let angles = rises.data().iter().map(|rise| f64::from(libm::atanf(*rise * factor)));
             angles.sum::<f64>().to_degrees() / rises.data().len().max(1) as f64
         };
-        let relief = libm::exp(bisect([0.0, 10.0], |log| mean_slope(libm::exp(log)) < self.target.slope));
+        let relief = libm::exp(bisect([0.0, 10.0], |log| {
+            middle(rises.iter().map(|rises| mean_slope(rises, libm::exp(log)))) < self.target.slope
+        }));
         Ok(made([lowest, lowest + relief], bend))
     }
 }
 
+/// The middle one, or the mean of the two in the middle.
+fn middle(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_unstable_by(f64::total_cmp);
+    let (low, high) = (values.len().saturating_sub(1) / 2, values.len() / 2);
+    match (values.get(low), values.get(high)) {
+        (Some(low), Some(high)) => 0.5 * (low + high),
+        _ => 0.0,
+    }
+}
+
 fn quantile(grid: &Grid, share: f64) -> f64 {
-    let mut sorted = grid.data().to_vec();
-    sorted.sort_unstable_by(f32::total_cmp);
-    sorted.get((share * (sorted.len().max(1) - 1) as f64) as usize).copied().map_or(0.0, f64::from)
+    let mut heights = grid.data().to_vec();
+    let at = (share * (heights.len().max(1) - 1) as f64) as usize;
+    if heights.is_empty() { 0.0 } else { f64::from(*heights.select_nth_unstable_by(at, f32::total_cmp).1) }
 }
 
 /// Where the mean lies in the relief, as [`Measures`] has it.
