@@ -3,6 +3,7 @@
 use crate::failure::{Failure, Result, on_file};
 use crate::shell;
 
+mod hillshades;
 mod noises;
 mod views;
 
@@ -12,7 +13,9 @@ pub const HELP: &str = "
 Usage: cargo xtask gallery
 
 Makes docs/images/ anew: one relief map of each preset, the views of docs/render.md and the README's first picture, a
-map sheet, all palettes, the page that shows the noises side by side, and the chunks around a viewer. Then crates/orogen-noise/docs/gallery.md: the pictures that the
+map sheet, all palettes, the page that shows the noises side by side, and the chunks around a viewer. Then docs/gallery.md: every preset as a
+map of the whole and as the bare shaded relief of a part, sample for pixel, in which the eye finds what colours hide. Then
+crates/orogen-noise/docs/gallery.md: the pictures that the
 documentation of orogen-noise opens with, which are in that file themselves, so that they show wherever it is read.
 ";
 
@@ -28,8 +31,8 @@ pub fn run(args: &[String]) -> Result {
     shell::empty_dir(&images)?;
     let work = shell::target_dir().join("gallery");
     let listed = shell::capture(&mut shell::cargo("run --quiet --release --package orogen-cli -- presets"))?;
-    let names = listed.lines().filter_map(|line| line.split_whitespace().next());
-    for preset in names {
+    let presets: Vec<(&str, &str)> = listed.lines().filter_map(|line| line.split_once(char::is_whitespace)).collect();
+    for (preset, _) in &presets {
         let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- generate --quiet");
         shell::run(orogen.args([preset, "--size", SIZE, "-o"]).arg(&work))?;
         let to = images.join(format!("{preset}.png"));
@@ -43,6 +46,7 @@ pub fn run(args: &[String]) -> Result {
         println!("{}", shell::relative(&to));
     }
     views::write(&images)?;
+    hillshades::write(&presets, &images)?;
     let page = images.join("compare.png");
     let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- compare --quiet -o");
     shell::run(orogen.arg(&page))?;

@@ -1,0 +1,33 @@
+//! The shaded relief of every preset, as pictures and as a page of the docs.
+
+use std::path::Path;
+
+use crate::failure::{Result, on_file};
+use crate::shell;
+
+/// The part of a preset that is shaded, at the world's cell.
+const PART: &str = "100,100,400,400";
+
+/// The shaded relief of every preset, and the page with all of them.
+pub fn write(presets: &[(&str, &str)], images: &Path) -> Result {
+    let mut page = String::from(
+        "# Gallery\n\nEvery preset as it comes: the whole world as a map, and the bare shaded relief of a part of it (light from the north-west, 45 degrees\n\
+         high; a sample of the world's own cell for each pixel), in which the eye finds what colours hide.\n\nMade by `cargo xtask gallery`.\n\n\
+         | preset | map | shaded relief |\n|---|---|---|\n",
+    );
+    for (name, about) in presets {
+        let to = images.join(format!("{name}-hillshade.png"));
+        let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- export --quiet --layer hillshade");
+        shell::run(orogen.args([name, "--bits", "8", "--range", "0,1", "--window", PART, "-o"]).arg(&to))?;
+        // What is known of the samples belongs beside a file that is read again, not beside a picture.
+        let sidecar = to.with_extension("json");
+        std::fs::remove_file(&sidecar).map_err(|e| on_file("delete", &sidecar, &e))?;
+        println!("{}", shell::relative(&to));
+        let about = about.trim();
+        page += &format!(
+            "| `{name}`: {about} | ![map of {name}](images/{name}.png) | ![shaded relief of {name}](images/{name}-hillshade.png) |\n"
+        );
+    }
+    let to = shell::root().join("docs/gallery.md");
+    std::fs::write(&to, page).map_err(|e| on_file("write", &to, &e))
+}
