@@ -39,6 +39,8 @@ Builds `orogen` for release, installs what is missing and runs every client, or 
   contours  GDAL draws contours of the same heights: the same lines at the same places, and reads ours
   maps      Poppler and librsvg draw map sheets: the picture of the .png
   formats   OpenEXR, GDAL, rasterio, Pillow and Godot read exported heights of every format, none mirrored, turned or moved
+  relief    gdaldem shades and measures the ground: hillshade, slope and aspect
+  fuzz      libFuzzer feeds the readers of foreign files, half a minute each
   taplo     taplo checks every recipe against the JSON Schema, and refuses broken ones
 
 `build` and `install` go first whatever is named. Elsewhere than on Debian, or not as root, it says what to install.
@@ -87,6 +89,8 @@ const CLIENTS: &[Client] = &[
         pip: &[NUMPY, PILLOW, RASTERIO, "OpenEXR==3.5.3"],
         npm: &[],
     },
+    Client { name: "relief", apt: &[("gdaldem", "gdal-bin")], pip: &[NUMPY, RASTERIO], npm: &[] },
+    Client { name: "fuzz", apt: &[("g++", "g++")], pip: &[], npm: &[] },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
 
@@ -128,8 +132,15 @@ const STEPS: &[&Step] = &[
         about: "OpenEXR, GDAL, rasterio, Pillow and Godot read exports",
         run: || script("formats"),
     },
+    &Step { name: "relief", about: "gdaldem shades the ground as orogen does", run: || script("relief") },
+    &Step { name: "fuzz", about: "libFuzzer on the readers of foreign files", run: fuzz },
     &Step { name: "taplo", about: "taplo checks the recipes against the schema", run: || script("taplo") },
 ];
+
+/// Long enough to see that nothing near the committed files breaks a reader; `cargo xtask fuzz` runs for longer.
+fn fuzz() -> Result {
+    crate::fuzz::run(&["--seconds", "30"].map(str::to_owned))
+}
 
 /// Runs the clients.
 pub fn run(args: &[String]) -> Result {

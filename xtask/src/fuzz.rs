@@ -53,7 +53,7 @@ pub fn run(args: &[String]) -> Result {
             .args([&found, &shell::root().join("fuzz/corpus").join(target)])
             .arg(format!("-max_total_time={seconds}"))
             .arg(format!("-artifact_prefix={}/", artifacts.join(target).display()))
-            .args(["-rss_limit_mb=1024", "-malloc_limit_mb=256", "-timeout=10", "-print_final_stats=1"])
+            .args(["-rss_limit_mb=1024", "-malloc_limit_mb=256", "-timeout=10", "-print_final_stats=1", "-verbosity=0"])
             // Sanitizers are not stable yet; the compiler is the one that all else is built with.
             .env("RUSTC_BOOTSTRAP", "1")
             .env("RUSTFLAGS", FLAGS)

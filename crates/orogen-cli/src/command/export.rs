@@ -31,7 +31,7 @@ pub struct Args {
     /// Format, if the file's extension does not say [default: npy]
     #[arg(long, value_parser = Named)]
     format: Option<&'static str>,
-    /// Layer to write: an output, `node.layer`, or what follows from the heights: slope, aspect, curvature, normal, occlusion, splat
+    /// Layer to write: an output, `node.layer`, or what follows from the heights: slope, aspect, curvature, hillshade, normal, occlusion, splat
     #[arg(long, value_name = "L", default_value = orogen::world::HEIGHT)]
     layer: String,
     /// Samples to write, at the cell asked for [default: the whole world]

@@ -1,13 +1,20 @@
 //! The derived layers there are.
 
 use super::layer::Derived;
-use super::{aspect, curvature, normal, occlusion, slope, splat};
+use super::{aspect, curvature, hillshade, normal, occlusion, slope, splat};
 use crate::recipe::document::Recipe;
 use crate::solver::drainage::Drainage;
 use crate::world::HEIGHT;
 
-static ALL: [&Derived; 6] =
-    [&slope::LAYER, &aspect::LAYER, &curvature::LAYER, &normal::LAYER, &occlusion::LAYER, &splat::LAYER];
+static ALL: [&Derived; 7] = [
+    &slope::LAYER,
+    &aspect::LAYER,
+    &curvature::LAYER,
+    &hillshade::LAYER,
+    &normal::LAYER,
+    &occlusion::LAYER,
+    &splat::LAYER,
+];
 
 /// The node that tells drainage areas to those that look at them.
 pub const FLOW: &str = "drainage-below-height";

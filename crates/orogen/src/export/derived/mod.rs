@@ -2,6 +2,7 @@
 
 pub mod aspect;
 pub mod curvature;
+pub mod hillshade;
 pub mod layer;
 pub mod list;
 pub mod normal;

@@ -1,0 +1,16 @@
+//! How much light the ground catches.
+
+use super::layer::{Derived, Nature};
+use crate::analysis::hillshade::{Light, hillshade};
+
+/// The layer.
+pub static LAYER: Derived = Derived {
+    name: "hillshade",
+    about: "shaded relief: light from the north-west, 45 degrees high, on ground of Horn's slope; 1 is full light, 0 none",
+    unit: "",
+    nature: Nature::Numbers,
+    channels: &["hillshade"],
+    flow: false,
+    reach: |_| 1,
+    make: |around, window| vec![hillshade(&around.bordered(window), &Light::default())],
+};
