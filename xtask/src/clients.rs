@@ -10,8 +10,6 @@ mod presets;
 
 use std::path::PathBuf;
 
-pub use asan::host;
-
 use crate::failure::{Failure, Result};
 use crate::shell::{cargo, program, root, run as sh, target_dir};
 use crate::steps::{self, Step};

@@ -45,7 +45,7 @@ pub fn run(args: &[String]) -> Result {
         for folder in [&found, &artifacts.join(target)] {
             std::fs::create_dir_all(folder).map_err(|cause| crate::failure::on_file("make", folder, &cause))?;
         }
-        let host = crate::clients::host()?;
+        let host = shell::host()?;
         let mut command = shell::cargo("run --quiet --release --manifest-path fuzz/Cargo.toml --bin");
         command
             .arg(target)

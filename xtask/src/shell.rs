@@ -33,6 +33,13 @@ pub fn cargo(args: &str) -> Command {
     command
 }
 
+/// The target that the compiler builds for by itself.
+pub fn host() -> Result<String> {
+    let version = capture(program("rustc").arg("-vV"))?;
+    let host = version.lines().find_map(|line| line.strip_prefix("host: "));
+    host.map(str::to_owned).ok_or_else(|| Failure::new("`rustc -vV` names no host"))
+}
+
 /// Runs it with our own output and no input.
 pub fn run(command: &mut Command) -> Result {
     let status = command.stdin(Stdio::null()).status().map_err(|e| cannot_start(command, &e))?;

@@ -1,6 +1,6 @@
 //! The crate with unsafe code and the kernels on it, under LLVM's AddressSanitizer: a read or write beside a slice ends the test.
 
-use crate::failure::{Failure, Result};
+use crate::failure::Result;
 use crate::shell;
 
 /// Every level, every way of asking, odd positions and parameters, empty and single samples.
@@ -11,7 +11,7 @@ const TESTS: [&str; 2] = [
 
 /// Builds the tests with the sanitizer, in a target folder of their own, and runs them.
 pub fn check() -> Result {
-    let host = host()?;
+    let host = shell::host()?;
     for test in TESTS {
         let mut command = shell::cargo(test);
         command
@@ -27,11 +27,4 @@ pub fn check() -> Result {
         shell::run(&mut command)?;
     }
     Ok(())
-}
-
-/// The target this compiler builds for by itself.
-pub fn host() -> Result<String> {
-    let version = shell::capture(shell::program("rustc").arg("-vV"))?;
-    let host = version.lines().find_map(|line| line.strip_prefix("host: "));
-    host.map(str::to_owned).ok_or_else(|| Failure::new("`rustc -vV` names no host"))
 }
