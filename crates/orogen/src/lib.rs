@@ -43,6 +43,8 @@ pub mod file;
 pub mod filter;
 pub mod fit;
 pub mod format;
+#[cfg(test)]
+mod full_disk;
 pub mod grid;
 pub mod hydrology;
 mod large;

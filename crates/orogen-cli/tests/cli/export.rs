@@ -412,7 +412,7 @@ fn what_cannot_be_asked_for_is_usage() {
         (&["-o", "a.png", "--bits", "12"], "`12` is no value of --bits: it is 8 or 16"),
         (&["-o", "a.png", "--range", "9,3"], "the lower first"),
         (&["-o", "a.png", "--encoding", "terrarium", "--range", "1,2"], "leave out --range"),
-        (&["-o", "a.hgt"], "these are 64 x 48: the nearest is --window 0,0,1201,1201"),
+        (&["-o", "a.hgt"], "these are 64 x 48: the nearest is --cell 0.4 --window 0,0,1201,1201"),
         (&["-o", "a.npy", "--layer", "hieght"], "did you mean `height`?"),
         (&["-o", "a.npy", "--layer", "rivers"], "`height` and `noise`"),
         (&["-o", "a.npy", "--window", "60,0,10,10"], "not inside the world"),
@@ -429,6 +429,8 @@ fn what_cannot_be_asked_for_is_usage() {
     }
     folder.bad(&["export", "small.toml", "-o", "none/a.npy"], 1, "cannot write into none: the folder does not exist");
     folder.bad(&["export", "small.toml", "-o", "a.npy", "--memory", "1kB"], 1, "of memory");
+    // What is offered instead is there.
+    folder.good(&["export", "small.toml", "-o", "a.hgt", "--cell", "0.4", "--window", "0,0,1201,1201"]);
 }
 
 #[test]

@@ -75,30 +75,11 @@ fn prepare(format: &Format, subject: &mut Subject, options: &Options) -> Result<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::full_disk::Full;
     use crate::grid::Window;
     use crate::progress::Progress;
     use crate::recipe::document::Recipe;
     use crate::world::World;
-
-    /// Takes `left` bytes, then fails as a full disk does.
-    struct Full {
-        left: usize,
-    }
-
-    impl Write for Full {
-        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            if self.left == 0 && !bytes.is_empty() {
-                return Err(io::ErrorKind::StorageFull.into());
-            }
-            let take = bytes.len().min(self.left);
-            self.left -= take;
-            Ok(take)
-        }
-
-        fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
-    }
 
     #[test]
     fn every_format_is_written_whole_or_fails_with_its_writer() {

@@ -297,6 +297,7 @@ impl Blocks<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::full_disk::Full;
 
     /// What a reader makes of packed indices, and how many bytes they were.
     fn unpack(bytes: &[u8]) -> (Vec<u8>, usize) {
@@ -400,26 +401,6 @@ mod tests {
         assert_eq!(first, [0; 6]);
         let (second, _) = unpack(&bytes[frames + 18 + used + 18..]);
         assert_eq!(second, [1, 255, 255, 255, 255, 255]);
-    }
-
-    /// Takes `left` bytes, then fails.
-    struct Full {
-        left: usize,
-    }
-
-    impl Write for Full {
-        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            if self.left == 0 && !bytes.is_empty() {
-                return Err(io::ErrorKind::StorageFull.into());
-            }
-            let take = bytes.len().min(self.left);
-            self.left -= take;
-            Ok(take)
-        }
-
-        fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
     }
 
     #[test]

@@ -192,6 +192,7 @@ fn plain(error: EncodingError) -> io::Error {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::full_disk::Full;
     use crate::grid::Window;
 
     /// Reads a picture back: size, colour, depth and bytes.
@@ -256,26 +257,6 @@ mod tests {
         let (_, _, _, _, data) = read(&bytes);
         assert!(data.chunks_exact(3000).enumerate().all(|(j, row)| row.iter().all(|&b| b == j as u8)));
         assert_eq!(chunks(&bytes), ["IHDR", "sRGB", "IDAT", "IEND"]);
-    }
-
-    /// Takes `left` bytes, then fails.
-    struct Full {
-        left: usize,
-    }
-
-    impl Write for Full {
-        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            if self.left == 0 && !bytes.is_empty() {
-                return Err(io::ErrorKind::StorageFull.into());
-            }
-            let take = bytes.len().min(self.left);
-            self.left -= take;
-            Ok(take)
-        }
-
-        fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
     }
 
     #[test]

@@ -7,6 +7,7 @@ use crate::export::format::{Format, refuse};
 use crate::export::options::Options;
 use crate::export::subject::Subject;
 use crate::format::hgt::{self, SIZES};
+use crate::grid::Window;
 
 /// The format.
 pub static FORMAT: Format = Format {
@@ -22,10 +23,18 @@ pub static FORMAT: Format = Format {
 fn write(subject: &mut Subject, _: &Options, files: &mut Files) -> io::Result<String> {
     let window = *subject.window();
     if !SIZES.contains(&[window.width, window.height]) {
-        let square = if window.width.max(window.height) < 2401 { 1201 } else { 3601 };
+        let Window { width, height, .. } = window;
+        let square = if width.max(height) < 2401 { 1201 } else { 3601 };
+        // More samples than there are of the same ground are closer together.
+        let cell = match square > width.min(height) {
+            true => window.cell * width.min(height) as f64 / (square - 1) as f64,
+            false => window.cell,
+        };
+        let finer = if cell == window.cell { String::new() } else { format!("--cell {cell} ") };
+        let [x, y] = [window.x, window.y].map(|at| (at as f64 * window.cell / cell).round());
         return refuse(format!(
-            "an .hgt has 1201 x 1201 or 3601 x 3601 samples, and these are {} x {}: the nearest is --window {},{},{square},{square}",
-            window.width, window.height, window.x, window.y
+            "an .hgt has 1201 x 1201 or 3601 x 3601 samples, and these are {width} x {height}: the nearest is \
+             {finer}--window {x},{y},{square},{square}"
         ));
     }
     let name = files.path().map(|path| path.to_string_lossy().into_owned()).unwrap_or_default();
