@@ -53,7 +53,8 @@ fn cost(side: usize) -> Result<f64, String> {
     let length = side as f64 * recipe.world.cell;
     recipe.world.size = Some([length; 2]);
     let start = ProcessTime::now();
-    let world = World::with_options(recipe, Limits { threads: Some(1), ..Limits::default() }).map_err(|e| e.to_string())?;
+    let world =
+        World::with_options(recipe, Limits { threads: Some(1), ..Limits::default() }).map_err(|e| e.to_string())?;
     let window = world.whole(world.recipe().world.cell).map_err(|e| e.to_string())?;
     let heights = world.grids(&["height"], &window, &Progress::none()).map_err(|e| e.to_string())?;
     let seconds = start.elapsed().as_secs_f64();

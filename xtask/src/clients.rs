@@ -4,11 +4,12 @@
 //! check that did not run has shown nothing.
 
 mod asan;
+mod blender;
 mod install;
 mod neon;
 mod presets;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::failure::{Failure, Result};
 use crate::shell::{cargo, program, root, run as sh, target_dir};
@@ -40,6 +41,10 @@ Builds `orogen` for release, installs what is missing and runs every client, or 
   relief    gdaldem shades and measures the ground: hillshade, slope and aspect
   fuzz      libFuzzer feeds the readers of foreign files, half a minute each
   taplo     taplo checks every recipe against the JSON Schema, and refuses broken ones
+
+Only where it is named, for it is large and needs Python 3.11:
+
+  blender   Blender imports meshes: as large as the ground, summit and light where they belong
 
 `build` and `install` go first whatever is named. Elsewhere than on Debian, or not as root, it says what to install.
 ";
@@ -135,6 +140,9 @@ const STEPS: &[&Step] = &[
     &Step { name: "taplo", about: "taplo checks the recipes against the schema", run: || script("taplo") },
 ];
 
+/// What is done only where it is named.
+const ASKED: &[&Step] = &[&Step { name: "blender", about: "Blender imports meshes", run: blender::check }];
+
 /// Long enough to see that nothing near the committed files breaks a reader; `cargo xtask fuzz` runs for longer.
 fn fuzz() -> Result {
     crate::fuzz::run(&["--seconds", "30"].map(str::to_owned))
@@ -143,10 +151,12 @@ fn fuzz() -> Result {
 /// Runs the clients.
 pub fn run(args: &[String]) -> Result {
     let mut named = args.to_vec();
+    let mut steps = STEPS.to_vec();
     if !named.is_empty() {
+        steps.extend(ASKED);
         named.extend([BUILD.name.to_owned(), INSTALL.name.to_owned()]);
     }
-    steps::run("cargo xtask clients", STEPS, &named)
+    steps::run("cargo xtask clients", &steps, &named)
 }
 
 /// Where everything of the clients lies: the venv, the node packages, the files they open.
@@ -164,9 +174,14 @@ fn script(name: &str) -> Result {
     if !CLIENTS.iter().any(|c| c.name == name) {
         return Err(Failure::new(format!("{name} is not in the table of clients: nothing installs it")));
     }
+    script_by(&install::python(), name)
+}
+
+/// The same by another Python.
+fn script_by(python: &Path, name: &str) -> Result {
     let work = folder().join("work").join(name);
     crate::shell::empty_dir(&work)?;
-    let mut command = program(install::python());
+    let mut command = program(python);
     command
         .arg(format!("xtask/clients/check_{name}.py"))
         .env("OROGEN", orogen())
