@@ -22,7 +22,7 @@ pub fn afford(path: &Path, needed: u64, free: Option<u64>) -> Result<(), Error> 
         Some(free) if needed > free => Err(Error::new(
             ErrorKind::File,
             format!(
-                "this needs up to {} of disk where {} is, and {} are free: make room, or name another place",
+                "this needs up to {} of disk where {} is, and there is room for {}: make room, or name another place",
                 words::bytes(needed),
                 path.display(),
                 words::bytes(free)
@@ -42,7 +42,7 @@ mod tests {
         let free = free_at(&folder.join("not/yet/there"));
         assert!(free.is_some_and(|free| free > 0), "{free:?}");
         assert_eq!(free.is_some(), free_at(Path::new("x")).is_some());
-        assert!(afford(&folder, 2, Some(1)).unwrap_err().to_string().contains("1 bytes are free"));
+        assert!(afford(&folder, 2, Some(1)).unwrap_err().to_string().contains("there is room for 1 byte"));
         assert!(afford(&folder, 1, Some(1)).is_ok() && afford(&folder, u64::MAX, None).is_ok());
     }
 }

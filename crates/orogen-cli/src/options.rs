@@ -7,21 +7,7 @@ use orogen::{Cache, Options, Recipe, World};
 
 use crate::failure::Failure;
 use crate::memory;
-use crate::size::{Bytes, Size, cell, seed};
-
-/// Which samples of which world.
-#[derive(Debug, Clone, Args)]
-pub struct View {
-    /// Seed of the world, instead of the recipe's
-    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
-    pub seed: Option<u64>,
-    /// Samples of the world's longer side, or of both (of the world's own aspect)
-    #[arg(long, value_name = "N|WxH", conflicts_with = "cell", allow_negative_numbers = true)]
-    pub size: Option<Size>,
-    /// Metres from one sample to the next [default: the world's cell]
-    #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
-    pub cell: Option<f64>,
-}
+use crate::size::Bytes;
 
 /// What the work may use.
 #[derive(Debug, Clone, Args)]

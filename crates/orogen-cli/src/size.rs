@@ -1,4 +1,4 @@
-//! Sizes on the command line: how many samples, how many bytes, which window.
+//! Sizes on the command line: how many samples, how many bytes, and other numbers.
 
 use std::str::FromStr;
 
@@ -25,7 +25,8 @@ impl FromStr for Size {
     }
 }
 
-fn samples(text: &str) -> Result<usize, String> {
+/// How many samples a side has.
+pub fn samples(text: &str) -> Result<usize, String> {
     match text.trim().parse::<u64>() {
         Ok(n) if (1..=MOST).contains(&n) => Ok(n as usize),
         Ok(n) => Err(format!("a side has 1 to {MOST} samples, not {n}")),
@@ -94,37 +95,6 @@ pub fn clock(text: &str) -> Result<f64, String> {
     let number = |text: &str, end: u32| text.trim().parse::<u32>().ok().filter(|n| *n < end).map(f64::from);
     let time = text.split_once(':').and_then(|(hour, minute)| Some(number(hour, 24)? + number(minute, 60)? / 60.0));
     time.ok_or_else(|| "a time goes from 00:00 to 23:59, such as 17:30".into())
-}
-
-/// `--window`: a rectangle of samples.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Rectangle {
-    /// Column of the first sample.
-    pub x: i64,
-    /// Row of the first sample.
-    pub y: i64,
-    /// Samples a row.
-    pub width: usize,
-    /// Rows.
-    pub height: usize,
-}
-
-impl FromStr for Rectangle {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Rectangle, String> {
-        let parts: Vec<&str> = text.split(',').map(str::trim).collect();
-        let [x, y, width, height] = parts[..] else {
-            return Err("a window is X,Y,W,H in samples, such as 0,0,512,512".into());
-        };
-        let corner = |text: &str| {
-            // Beyond this, positions in metres would lose the cell.
-            text.parse::<i64>().ok().filter(|n| n.abs() <= 1 << 52).ok_or_else(|| {
-                format!("`{text}` is not the column or row of a sample; a window is X,Y,W,H, such as 0,0,512,512")
-            })
-        };
-        Ok(Rectangle { x: corner(x)?, y: corner(y)?, width: samples(width)?, height: samples(height)? })
-    }
 }
 
 /// `--memory`: bytes, with or without a unit.
@@ -238,22 +208,6 @@ mod tests {
             ("-1:00", None),
         ] {
             assert_eq!(clock(text).ok(), expect, "{text}");
-        }
-    }
-
-    #[test]
-    fn windows() {
-        let window = |x, y, width, height| Some(Rectangle { x, y, width, height });
-        for (text, expect) in [
-            ("0,0,512,512", window(0, 0, 512, 512)),
-            (" -5, 7 ,1,2", window(-5, 7, 1, 2)),
-            ("0,0,0,5", None),
-            ("0,0,5", None),
-            ("0,0,5,5,5", None),
-            ("9223372036854775807,0,5,5", None),
-            ("a,0,5,5", None),
-        ] {
-            assert_eq!(text.parse::<Rectangle>().ok(), expect, "{text}");
         }
     }
 

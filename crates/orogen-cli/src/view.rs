@@ -1,77 +1,253 @@
-//! From `--size` and `--cell` to the window that is looked at. Neither changes the world, only the samples taken of it.
+//! Which samples of which world: the options for seed, size, cell, part and place on a map that all commands share, and the window
+//! that they ask for. None of it but the seed changes the world, only the samples taken of it.
 
-use orogen::{Window, World};
+use clap::Args;
+use orogen::format::crs::Crs;
+use orogen::format::dem::Georeference;
+use orogen::words::number;
+use orogen::{Recipe, Window, World};
 
 use crate::failure::Failure;
-use crate::options::View;
-use crate::size::Size;
+use crate::region::{Bounds, Rectangle, place};
+use crate::seeds::Seeds;
+use crate::size::{Size, cell};
+
+/// Which samples of which world.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Which samples of which world")]
+pub struct View {
+    /// Seed of the world, instead of the recipe's; several, such as 1,2,3 or 1..9, make an output each, named by its seed
+    /// (NAME-7.png, or wherever the name has {seed})
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub seed: Option<Seeds>,
+    /// Metres from one sample to the next [default: the world's cell]
+    #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
+    pub cell: Option<f64>,
+    /// Part of the world: first column and row and how many, at the cell asked for; or in metres, as 0m,500m,2km,2km
+    #[arg(long, value_name = "X,Y,W,H", conflicts_with_all = ["bounds", "projwin"], allow_hyphen_values = true)]
+    pub window: Option<Rectangle>,
+    /// Part of the world in the coordinates of its map, or of a world without one in metres east and north of its north-west corner
+    /// (what lies south of it is negative)
+    #[arg(long, value_name = "W,S,E,N", conflicts_with = "projwin", allow_hyphen_values = true)]
+    pub bounds: Option<Bounds>,
+    /// The same by its corners, as gdal_translate takes it
+    #[arg(long, value_names = ["ULX", "ULY", "LRX", "LRY"], num_args = 4, allow_negative_numbers = true)]
+    pub projwin: Option<Vec<f64>>,
+    /// Coordinate reference system that the world lies in, such as EPSG:32632, for GeoTIFFs and other files with coordinates
+    #[arg(long, value_name = "EPSG:N")]
+    pub crs: Option<Crs>,
+    /// Place of the world's north-west corner in that system: east and north, or longitude and latitude
+    #[arg(long, value_name = "E,N", value_parser = place, allow_hyphen_values = true)]
+    pub origin: Option<[f64; 2]>,
+}
+
+/// The same where samples may also be counted.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Which samples of which world")]
+pub struct SizedView {
+    /// What it is a size of.
+    #[command(flatten)]
+    pub view: View,
+    /// Samples of the longer side, or of both (of the same aspect): of the world, or of the part asked for
+    #[arg(long, value_name = "N|WxH", allow_negative_numbers = true)]
+    pub size: Option<Size>,
+}
 
 /// Samples along each side of what is looked at in a world without bounds, if nobody says.
 const UNBOUNDED: usize = 1024;
 
-/// The window of the whole world that `view` asks for: a world of length L has round(L / cell) samples. Of a world without
-/// bounds, so many samples at the recipe's cell from the origin.
-pub fn whole(world: &World, view: &View) -> Result<Window, Failure> {
-    let spec = &world.recipe().world;
-    let Some(size) = spec.size else {
-        let cell = view.cell.unwrap_or(spec.cell);
-        return Ok(match view.size {
-            None => Window::new(UNBOUNDED, UNBOUNDED, cell),
-            Some(Size::Longer(n)) => Window::new(n, n, cell),
-            Some(Size::Both(width, height)) => Window::new(width, height, cell),
-        });
-    };
-    match view.size {
-        None => Ok(world.whole(view.cell.unwrap_or(spec.cell))?),
-        Some(Size::Longer(n)) => Ok(world.across(n)?),
-        Some(Size::Both(width, height)) => {
-            let [fitting_width, fitting_height] = [width as f64 * size[1] / size[0], height as f64 * size[0] / size[1]];
-            let cell = if size[0] >= size[1] { size[0] / width as f64 } else { size[1] / height as f64 };
-            let fits = match size[0] >= size[1] {
-                true => (fitting_width.round() as usize).max(1) == height,
-                false => (fitting_height.round() as usize).max(1) == width,
-            };
-            match fits {
-                true => Ok(Window::new(width, height, cell)),
-                false => Err(Failure::Usage(format!(
-                    "--size {width}x{height} has another aspect than the world of {} x {} m; the nearest that fit are \
-                     {width}x{} and {}x{height}",
-                    size[0],
-                    size[1],
-                    (fitting_width.round() as usize).max(1),
-                    (fitting_height.round() as usize).max(1)
-                ))),
+/// How much of a cell a coordinate may be off that was meant to be a sample's.
+const NEAR: f64 = 1e-6;
+
+impl SizedView {
+    /// The window asked for: see [`View::window`].
+    pub fn window(&self, world: &World) -> Result<Window, Failure> {
+        self.view.sized(world, self.size)
+    }
+}
+
+impl View {
+    /// Changes what a recipe says of its world to what was asked for.
+    pub fn apply(&self, recipe: &mut Recipe) {
+        let world = &mut recipe.world;
+        world.seed = self.seed.as_ref().map_or(world.seed, Seeds::first);
+        world.crs = self.crs.or(world.crs);
+        world.origin = self.origin.or(world.origin);
+    }
+
+    /// The window asked for: a part, or the whole world. A world of length L has round(L / cell) samples. Of a world without bounds
+    /// it is so many samples from the origin.
+    pub fn window(&self, world: &World) -> Result<Window, Failure> {
+        self.sized(world, None)
+    }
+
+    fn sized(&self, world: &World, size: Option<Size>) -> Result<Window, Failure> {
+        let spec = &world.recipe().world;
+        let cell = self.cell.unwrap_or(spec.cell);
+        if let Some(part) = self.part(world, size, cell)? {
+            return Ok(part);
+        }
+        match (spec.size, size) {
+            (Some(_), None) => Ok(world.whole(cell)?),
+            (Some(extent), Some(size)) => {
+                let [width, height] = extent.map(number);
+                let (width, height, cell) = fit(extent, size, &format!("the world of {width} x {height} m"))?;
+                Ok(Window::new(width, height, cell))
+            }
+            (None, None) => Ok(Window::new(UNBOUNDED, UNBOUNDED, cell)),
+            (None, Some(Size::Longer(n))) => Ok(Window::new(n, n, cell)),
+            (None, Some(Size::Both(width, height))) => Ok(Window::new(width, height, cell)),
+        }
+    }
+
+    /// The part of the world that was asked for, if one was: in samples of `cell` metres, or so many as `size` says.
+    ///
+    /// Bounds hold the samples from their west and north on, up to but without their east and south: parts that touch share none, and bounds along
+    /// the edges of a GeoTIFF's pixels hold the same pixels as gdal_translate takes.
+    pub fn part(&self, world: &World, size: Option<Size>, cell: f64) -> Result<Option<Window>, Failure> {
+        if size.is_some() && self.cell.is_some() {
+            let sentence = "--size and --cell both say how far apart samples are; leave out one of them";
+            return Err(Failure::Usage(sentence.into()));
+        }
+        let bounds = match (&self.projwin, self.bounds) {
+            (Some(corners), _) => Some(Bounds::of_corners(corners).map_err(Failure::Usage)?),
+            (None, bounds) => bounds,
+        };
+        let map = world.recipe().georeference();
+        let local = || Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None };
+        // West, north, east and south in metres from the north-west corner.
+        let ends = match (self.window, bounds) {
+            (Some(Rectangle::Samples(x, y, width, height)), _) => {
+                return match size {
+                    None => Ok(Some(Window { x, y, width, height, cell })),
+                    Some(_) => Err(Failure::Usage(
+                        "--window counts samples already; leave out --size, or give the window in metres, such as \
+                         0m,500m,2km,2km"
+                            .into(),
+                    )),
+                };
+            }
+            (Some(Rectangle::Metres([x, y, width, height])), _) => [x, y, x + width, y + height],
+            (None, Some(Bounds { west, south, east, north })) => {
+                let Georeference { origin, per_metre, .. } = map.clone().unwrap_or_else(local);
+                let [x, y] = [0, 1].map(|axis| move |at: f64| (at - origin[axis]) / per_metre[axis]);
+                [x(west), -y(north), x(east), -y(south)]
+            }
+            (None, None) => return Ok(None),
+        };
+        if let Some([width, height]) = world.recipe().world.size {
+            // A pixel of a GeoTIFF reaches half a cell beyond its sample.
+            let spare = (0.5 + NEAR) * cell;
+            let inside =
+                ends[0] >= -spare && ends[1] >= -spare && ends[2] <= width + spare && ends[3] <= height + spare;
+            if !inside {
+                let asked = match bounds {
+                    Some(Bounds { west, south, east, north }) => {
+                        format!("the bounds {west},{south},{east},{north} are")
+                    }
+                    None => "the window is".into(),
+                };
+                return Err(Failure::Usage(format!(
+                    "{asked} not inside the world, which {}",
+                    reach(map, [width, height])
+                )));
             }
         }
+        let extent = [ends[2] - ends[0], ends[3] - ends[1]];
+        let (counts, cell) = match size {
+            Some(size) => {
+                let [width, height] = extent.map(number);
+                let (width, height, cell) = fit(extent, size, &format!("the part of {width} x {height} m"))?;
+                (Some([width, height]), cell)
+            }
+            None => (None, cell),
+        };
+        let first = |at: f64| (at / cell - NEAR).ceil();
+        let [x, y, right, bottom] = ends.map(first);
+        let [width, height] = counts.unwrap_or([right - x, bottom - y].map(|count| count.max(0.0) as usize));
+        if width == 0 || height == 0 {
+            return Err(Failure::Usage(format!(
+                "there is no sample in the part of {} x {} m at a cell of {} m; ask for more of the world, or a smaller --cell",
+                number(extent[0]),
+                number(extent[1]),
+                number(cell)
+            )));
+        }
+        Ok(Some(Window { x: x as i64, y: y as i64, width, height, cell }))
+    }
+}
+
+/// Where a world lies, in words.
+fn reach(map: Option<Georeference>, [width, height]: [f64; 2]) -> String {
+    let Some(map) = map else {
+        let [width, height] = [width, height].map(number);
+        return format!(
+            "reaches from (0, 0) to {width} m east and {height} m south of it: as --bounds 0,-{height},{width},0"
+        );
+    };
+    let ([west, north], [east, south]) = (map.at(0.0, 0.0), map.at(width, height));
+    let [west, south, east, north] = [west, south, east, north].map(coordinate(&map));
+    let name = map.epsg().map_or(String::new(), |code| format!(" in EPSG:{code}"));
+    format!("reaches over {west},{south},{east},{north}{name}")
+}
+
+/// A coordinate, to about a centimetre.
+fn coordinate(map: &Georeference) -> impl Fn(f64) -> String + use<> {
+    let scale = if map.counts_degrees() { 1e7 } else { 1e2 };
+    move |at| ((at * scale).round() / scale).to_string()
+}
+
+/// Samples and cell of what is so many metres wide and high.
+fn fit(extent: [f64; 2], size: Size, what: &str) -> Result<(usize, usize, f64), Failure> {
+    let longer = extent[0].max(extent[1]);
+    let (width, height) = match size {
+        Size::Longer(n) => {
+            let cell = longer / n as f64;
+            let [width, height] = extent.map(|length| ((length / cell).round() as usize).max(1));
+            return Ok((width, height, cell));
+        }
+        Size::Both(width, height) => (width, height),
+    };
+    let across = |of: usize, length: f64, from: f64| ((of as f64 * length / from).round() as usize).max(1);
+    let fitting = [across(height, extent[0], extent[1]), across(width, extent[1], extent[0])];
+    let is_wide = extent[0] >= extent[1];
+    match if is_wide { fitting[1] == height } else { fitting[0] == width } {
+        true => Ok((width, height, longer / if is_wide { width } else { height } as f64)),
+        false => Err(Failure::Usage(format!(
+            "--size {width}x{height} has another aspect than {what}; the nearest that fit are {width}x{} and {}x{height}",
+            fitting[1], fitting[0]
+        ))),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use orogen::Recipe;
 
-    fn look(size: &str, view: View) -> Result<(usize, usize, f64), String> {
+    fn world(size: &str) -> World {
         let text = format!(
             "orogen = 1\n[world]\n{size}\ncell = 10\n[nodes.a]\nop = \"constant\"\n[outputs]\nheight = \"a\"\n"
         );
-        let world = World::open(Recipe::parse(&text, "test").unwrap()).unwrap();
-        match whole(&world, &view) {
-            Ok(window) => Ok((window.width, window.height, window.cell)),
+        World::open(Recipe::parse(&text, "test").unwrap()).unwrap()
+    }
+
+    fn look(size: &str, view: &SizedView) -> Result<Window, String> {
+        match view.window(&world(size)) {
+            Ok(window) => Ok(window),
             Err(Failure::Usage(sentence)) => Err(sentence),
             Err(Failure::Engine(error)) => Err(error.to_string()),
             Err(other) => panic!("{other:?}"),
         }
     }
 
-    fn view(size: Option<&str>, cell: Option<f64>) -> View {
-        View { seed: None, size: size.map(|text| text.parse().unwrap()), cell }
+    fn view(size: Option<&str>, cell: Option<f64>) -> SizedView {
+        SizedView { size: size.map(|text| text.parse().unwrap()), view: View { cell, ..View::default() } }
     }
 
     #[test]
     fn windows_of_a_bounded_world() {
         let world = "size = [8000, 4000]";
-        for (size, cell, expect) in [
+        for (size, cell, (width, height, expect)) in [
             (None, None, (800, 400, 10.0)),
             (None, Some(20.0), (400, 200, 20.0)),
             (None, Some(7.0), (1143, 571, 7.0)),
@@ -80,18 +256,18 @@ mod tests {
             (Some("3"), None, (3, 2, 8000.0 / 3.0)),
             (Some("1"), None, (1, 1, 8000.0)),
         ] {
-            assert_eq!(look(world, view(size, cell)), Ok(expect), "{size:?} {cell:?}");
+            assert_eq!(look(world, &view(size, cell)), Ok(Window::new(width, height, expect)), "{size:?} {cell:?}");
         }
-        assert_eq!(look("size = [4000, 8000]", view(Some("500x1000"), None)), Ok((500, 1000, 8.0)));
+        assert_eq!(look("size = [4000, 8000]", &view(Some("500x1000"), None)), Ok(Window::new(500, 1000, 8.0)));
     }
 
     #[test]
     fn what_does_not_fit_is_a_sentence() {
         let world = "size = [8000, 4000]";
-        let error = look(world, view(Some("1000x1000"), None)).unwrap_err();
+        let error = look(world, &view(Some("1000x1000"), None)).unwrap_err();
         assert!(error.contains("1000x500 and 2000x1000"), "{error}");
-        assert!(look(world, view(None, Some(9000.0))).unwrap_err().contains("smaller cell"));
-        assert!(look(world, view(None, Some(1e-9))).unwrap_err().contains("larger cell"));
+        assert!(look(world, &view(None, Some(9000.0))).unwrap_err().contains("smaller cell"));
+        assert!(look(world, &view(None, Some(1e-9))).unwrap_err().contains("larger cell"));
     }
 
     #[test]
@@ -102,7 +278,66 @@ mod tests {
             (Some("50"), None, (50, 50, 10.0)),
             (Some("50x70"), None, (50, 70, 10.0)),
         ] {
-            assert_eq!(look("", view(size, cell)), Ok(expect), "{size:?} {cell:?}");
+            let (width, height, cell_expected) = expect;
+            let window = Window::new(width, height, cell_expected);
+            assert_eq!(look("", &view(size, cell)), Ok(window), "{size:?} {cell:?}");
         }
+    }
+
+    #[test]
+    fn parts_in_samples_metres_and_coordinates_are_the_same() {
+        let local = "size = [8000, 4000]";
+        let mapped = "size = [8000, 4000]\ncrs = \"EPSG:32632\"\norigin = [600000, 5200000]";
+        let part = |window: &str, bounds: &str, projwin: &[f64]| SizedView {
+            view: View {
+                window: (!window.is_empty()).then(|| window.parse().unwrap()),
+                bounds: (!bounds.is_empty()).then(|| bounds.parse().unwrap()),
+                projwin: (!projwin.is_empty()).then(|| projwin.to_vec()),
+                ..View::default()
+            },
+            size: None,
+        };
+        let expect = Window::new(30, 20, 10.0).at(100, 50);
+        for (world, asked) in [
+            (local, part("100,50,30,20", "", &[])),
+            (local, part("1km,500m,300m,200m", "", &[])),
+            (local, part("", "1000,-700,1300,-500", &[])),
+            // Along the edges of pixels, and anywhere between samples.
+            (local, part("", "995,-695,1295,-495", &[])),
+            (local, part("", "991,-691,1291,-491", &[])),
+            (mapped, part("100,50,30,20", "", &[])),
+            (mapped, part("", "601000,5199300,601300,5199500", &[])),
+            (mapped, part("", "", &[601000.0, 5199500.0, 601300.0, 5199300.0])),
+        ] {
+            assert_eq!(look(world, &asked), Ok(expect), "{asked:?}");
+        }
+        let sized = SizedView { size: Some(Size::Longer(60)), ..part("", "1000,-700,1300,-500", &[]) };
+        assert_eq!(look(local, &sized), Ok(Window::new(60, 40, 5.0).at(200, 100)));
+        // Parts that touch share no sample, and together are the whole.
+        let halves = ["0,-4000,3333,0", "3333,-4000,8000,0"].map(|bounds| look(local, &part("", bounds, &[])).unwrap());
+        assert_eq!((halves[0].x, halves[0].width as i64, halves[1].x), (0, halves[1].x, 334));
+        assert_eq!(halves[0].width + halves[1].width, 800);
+        for (world, asked, expect) in [
+            (local, part("", "0,0,100,100", &[]), "--bounds 0,-4000,8000,0"),
+            (mapped, part("", "11,46,12,47", &[]), "reaches over 600000,5196000,608000,5200000 in EPSG:32632"),
+            (local, part("0m,0m,9km,1km", "", &[]), "the window is not inside the world"),
+            (local, part("", "1001,-700,1009,-500", &[]), "there is no sample in the part of 8 x 200 m"),
+            (local, part("", "", &[1.0, 2.0, 0.0, 1.0]), "--projwin: the west, 1, must be less"),
+            (local, SizedView { size: Some(Size::Longer(9)), ..part("0,0,5,5", "", &[]) }, "leave out --size"),
+        ] {
+            let error = look(world, &asked).unwrap_err();
+            assert!(error.contains(expect), "{asked:?}: {error}");
+        }
+    }
+
+    #[test]
+    fn degrees_are_metres_at_the_middle_latitude() {
+        let world = world("size = [8000, 4000]\ncrs = \"EPSG:4326\"\norigin = [11.0, 47.0]");
+        let map = world.recipe().georeference().unwrap();
+        let ([west, north], [east, south]) = (map.at(0.0, 0.0), map.at(8000.0, 4000.0));
+        assert!((east - west - 0.1052).abs() < 1e-3 && (north - south - 0.03598).abs() < 1e-4, "{east} {south}");
+        let bounds = Bounds { west, south, east, north };
+        let asked = View { bounds: Some(bounds), ..View::default() };
+        assert_eq!(asked.window(&world).unwrap(), Window::new(800, 400, 10.0));
     }
 }

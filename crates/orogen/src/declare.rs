@@ -94,6 +94,8 @@ pub enum Shape {
     Curve,
     /// The path of a file.
     File,
+    /// A coordinate reference system, by its EPSG code.
+    Crs,
 }
 
 /// A bound as people write it: 1e9 rather than 1000000000.
@@ -322,6 +324,7 @@ impl ParamSpec {
                 "a list of at least two points [[x, y], ...] of finite numbers{range}, each x greater than the one before"
             ),
             Shape::File => "the path of a file, in quotes".to_string(),
+            Shape::Crs => "an EPSG code in quotes, such as \"EPSG:32632\"".to_string(),
         }
     }
 }

@@ -63,6 +63,27 @@ pub fn list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
+/// So many things: "1 tile", "3 tiles".
+pub fn count(n: usize, thing: &str) -> String {
+    match n {
+        1 => format!("1 {thing}"),
+        n => format!("{n} {thing}s"),
+    }
+}
+
+/// A number as people read it, to six digits or to the unit: "2666.67", "0.3125", "1e308".
+pub fn number(value: f64) -> String {
+    // Formatting rounds to the nearest and reads back exactly.
+    let rounded = match value.abs() {
+        large if large >= 1e5 => value.round(),
+        _ => format!("{value:.5e}").parse().unwrap_or(value),
+    };
+    match rounded.abs() {
+        plain if plain == 0.0 || (1e-6..1e15).contains(&plain) => rounded.to_string(),
+        _ => format!("{rounded:e}"),
+    }
+}
+
 /// A number of bytes as people read it: "1.5 GiB".
 pub fn bytes(n: u64) -> String {
     const UNITS: [&str; 6] = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB"];
@@ -72,7 +93,7 @@ pub fn bytes(n: u64) -> String {
         unit += 1;
     }
     match unit {
-        0 => format!("{n} bytes"),
+        0 => count(n as usize, "byte"),
         _ if value < 10.0 => format!("{value:.1} {}", UNITS[unit]),
         _ => format!("{value:.0} {}", UNITS[unit]),
     }
@@ -104,5 +125,24 @@ mod tests {
         assert_eq!(bytes(1536), "1.5 KiB");
         assert_eq!(bytes(3 << 30), "3.0 GiB");
         assert_eq!(bytes(200 << 20), "200 MiB");
+        assert_eq!(bytes(1), "1 byte");
+    }
+
+    #[test]
+    fn counts_and_numbers() {
+        assert_eq!([0, 1, 2].map(|n| count(n, "tile")), ["0 tiles", "1 tile", "2 tiles"]);
+        for (value, expect) in [
+            (8000.0 / 3.0, "2666.67"),
+            (0.1 + 0.2, "0.3"),
+            (10.0, "10"),
+            (-0.000_123_456_7, "-0.000123457"),
+            (1_234_567.89, "1234568"),
+            (0.0, "0"),
+            (1e308, "1e308"),
+            (1e-9, "1e-9"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(number(value), expect);
+        }
     }
 }

@@ -187,7 +187,7 @@ fn every_chunk_is_the_window_and_shares_its_borders() {
         if matches!(node.op(), Op::Solver(_)) || matches!(node.op(), Op::Field(field) if field.needs_bounds()) {
             continue;
         }
-        let spec = WorldSpec { seed: 3, size: None, cell: 1.0 / 3.0, sea_level: 0.0 };
+        let spec = WorldSpec { seed: 3, size: None, cell: 1.0 / 3.0, ..WorldSpec::default() };
         let (world, op) = (open(&recipe_of(&node, spec, false), 2), node.spec().op);
         let sampler = Sampler::new(open(&recipe_of(&node, spec, false), 1), "height").unwrap();
         let rings = Rings { cells: 8, cell: 1.0 / 3.0, levels: 3, range: 20.0, ..Rings::default() };

@@ -134,7 +134,7 @@ fn unbounded_worlds_agree_far_out_and_below_zero() {
         if matches!(node.op(), Op::Solver(_)) || matches!(node.op(), Op::Field(field) if field.needs_bounds()) {
             continue;
         }
-        let world = WorldSpec { seed: 3, size: None, cell: 10.24, sea_level: 0.0 };
+        let world = WorldSpec { seed: 3, size: None, cell: 10.24, ..WorldSpec::default() };
         let recipe = recipe_of(&node, world, false);
         for (x, y) in [(-40, -17), (1_000_003, -999_999_937), (97_656_250, 5)] {
             let window = Window::new(40, 30, 10.24).at(x, y);

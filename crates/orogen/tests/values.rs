@@ -12,7 +12,7 @@ use support::open;
 const SIZE: f64 = 1000.0;
 
 fn world() -> WorldSpec {
-    WorldSpec { seed: 5, size: Some([SIZE, SIZE]), cell: 10.0, sea_level: 0.0 }
+    WorldSpec { seed: 5, size: Some([SIZE, SIZE]), cell: 10.0, ..WorldSpec::default() }
 }
 
 /// A world of the nodes, asked for its last one.

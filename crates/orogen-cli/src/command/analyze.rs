@@ -5,27 +5,26 @@ use std::path::PathBuf;
 use orogen::survey::measures::Measures;
 use orogen::survey::page::{self, Title};
 use orogen::survey::real::{FIGURES, SOURCE, table};
+use orogen::words::number;
 use orogen::{Error, ErrorKind, Window, file};
 use serde_json::{Map, Value, json};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::format::Format;
-use crate::options::{Limits, View};
-use crate::size::Rectangle;
+use crate::options::Limits;
+use crate::seeds::Seeds;
 use crate::source::Source;
-use crate::{interrupt, say, view};
+use crate::view::{SizedView, View};
+use crate::{interrupt, say};
 
 /// What it takes.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct Args {
     /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
     #[command(flatten)]
-    view: View,
-    /// Samples to measure, at the cell asked for [default: the whole world]
-    #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
-    window: Option<Rectangle>,
+    samples: SizedView,
     /// Layer to measure
     #[arg(long, value_name = "L", default_value = orogen::world::HEIGHT)]
     layer: String,
@@ -44,6 +43,13 @@ pub struct Args {
 
 /// Measures and tells.
 pub fn run(args: &Args) -> Result<(), Failure> {
+    Seeds::each(args.samples.view.seed.as_ref(), args.out.as_deref(), |seed, out| {
+        let view = View { seed, ..args.samples.view.clone() };
+        measure(&Args { samples: SizedView { view, ..args.samples }, out, ..args.clone() })
+    })
+}
+
+fn measure(args: &Args) -> Result<(), Failure> {
     if let Some(out) = &args.out
         && Format::of(out, Format::ALL) != Ok(Format::Png)
     {
@@ -51,14 +57,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let source = Source::find(&args.recipe)?;
     let mut recipe = source.read()?;
-    recipe.world.seed = args.view.seed.unwrap_or(recipe.world.seed);
+    args.samples.view.apply(&mut recipe);
     let world = args.limits.open(recipe)?;
-    let window = match args.window {
-        Some(Rectangle { x, y, width, height }) => {
-            Window { x, y, width, height, cell: args.view.cell.unwrap_or(world.recipe().world.cell) }
-        }
-        None => view::whole(&world, &args.view)?,
-    };
+    let window = args.samples.window(&world)?;
     // A file of heights tells nothing of a sea: all of it is land.
     let sea_level = match source {
         Source::Dem(_) => None,
@@ -111,7 +112,7 @@ fn words(args: &Args, window: &Window, measures: &Measures) -> String {
         args.recipe.display(),
         window.width,
         window.height,
-        (window.cell * 1000.0).round() / 1000.0,
+        number(window.cell),
         table(measures),
     )
 }

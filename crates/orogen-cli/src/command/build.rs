@@ -8,18 +8,19 @@ use orogen::build::builder::{Build, Report, Start};
 use orogen::build::order::{Form, Order, Samples};
 use orogen::build::xyz;
 use orogen::format::encoding::Encoding;
-use orogen::words::bytes;
+use orogen::words::{bytes, count, number};
 use orogen::{Window, World};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::options::Limits;
-use crate::size::{Rectangle, cell, seed};
+use crate::seeds::Seeds;
 use crate::source::Source;
+use crate::view::{SizedView, View};
 use crate::{disk, interrupt, say};
 
 /// What it takes.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct Args {
     /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
@@ -32,18 +33,11 @@ pub struct Args {
     /// Layers to build, with commas between them
     #[arg(long, value_name = "A,B", value_delimiter = ',', default_value = orogen::world::HEIGHT)]
     layers: Vec<String>,
-    /// Samples to build, at the cell asked for [default: the whole world]
-    #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
-    window: Option<Rectangle>,
-    /// Metres from one sample to the next [default: the world's cell; for an XYZ tree the map's nearest]
-    #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
-    cell: Option<f64>,
+    #[command(flatten)]
+    samples: SizedView,
     /// Samples along a tile's side [default: 512; 513 for tiles that share their edges; 256 for an XYZ tree]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536), allow_negative_numbers = true)]
     tile: Option<u32>,
-    /// Seed of the world, instead of the recipe's
-    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
-    seed: Option<u64>,
     /// Go on with a build that was interrupted, and make again what of it is damaged
     #[arg(long, conflicts_with = "force")]
     resume: bool,
@@ -74,10 +68,18 @@ enum Tiles {
 
 /// Builds it.
 pub fn run(args: &Args) -> Result<(), Failure> {
+    Seeds::each(args.samples.view.seed.as_ref(), Some(&args.out), |seed, out| {
+        let view = View { seed, ..args.samples.view.clone() };
+        let out = out.unwrap_or_default();
+        build(&Args { samples: SizedView { view, ..args.samples }, out, ..args.clone() })
+    })
+}
+
+fn build(args: &Args) -> Result<(), Failure> {
     let begun = Instant::now();
     let form = form(args)?;
     let mut recipe = Source::find(&args.recipe)?.read()?;
-    recipe.world.seed = args.seed.unwrap_or(recipe.world.seed);
+    args.samples.view.apply(&mut recipe);
     let world = args.limits.open(recipe)?;
     let tile = args.tile.map(|tile| tile as usize);
     let order = Order { form, window: window(args, &world, form)?, tile, layers: args.layers.clone() };
@@ -120,21 +122,28 @@ fn form(args: &Args) -> Result<Form, Failure> {
 
 /// The samples that are asked for.
 fn window(args: &Args, world: &World, form: Form) -> Result<Window, Failure> {
-    let cell = args.cell.unwrap_or(match form {
+    let SizedView { view, size } = &args.samples;
+    let cell = view.cell.unwrap_or(match form {
         Form::Xyz(_) => {
             let tile = args.tile.map(|tile| tile as usize).or(form.usual_tile()).unwrap_or(1);
             xyz::cell_near(world.recipe().world.cell, tile)
         }
         _ => world.recipe().world.cell,
     });
-    Ok(match (args.window, form) {
-        (Some(Rectangle { x, y, width, height }), _) => Window { x, y, width, height, cell },
+    if let (Form::Xyz(_), Some(_)) = (form, size) {
+        return Err(Failure::Usage("an XYZ tree has cells of its own; leave out --size, or say --cell".into()));
+    }
+    if let Some(part) = view.part(world, *size, cell)? {
+        return Ok(part);
+    }
+    let whole = match size {
+        Some(_) => args.samples.window(world)?,
+        None => world.whole(cell)?,
+    };
+    Ok(match form {
         // Up to the far edge, which tiles share with the neighbours they do not have.
-        (None, Form::Tiles(_)) => {
-            let whole = world.whole(cell)?;
-            Window { width: whole.width + 1, height: whole.height + 1, ..whole }
-        }
-        (None, _) => world.whole(cell)?,
+        Form::Tiles(_) => Window { width: whole.width + 1, height: whole.height + 1, ..whole },
+        _ => whole,
     })
 }
 
@@ -151,7 +160,8 @@ fn needs(args: &Args, build: &Build, start: Start) -> Result<(), Failure> {
         };
         let free = free.map_or(String::new(), |free| format!("; {} are free", bytes(free)));
         say::error(&format!(
-            "{tiles} tiles of {:.1} million samples; up to {} of memory; up to {} of disk{way}{free}",
+            "{} of {:.1} million samples; up to {} of memory; up to {} of disk{way}{free}",
+            count(tiles, "tile"),
             samples as f64 / 1e6,
             bytes(build.memory()),
             bytes(disk.result)
@@ -166,13 +176,14 @@ fn words(args: &Args, order: &Order, report: &Report, seconds: f64) -> String {
     let Window { width, height, cell, .. } = order.window;
     let made = match report {
         Report { made: 0, .. } => "everything was there and sound".to_string(),
-        Report { made, kept: 0, .. } => format!("{made} tiles made"),
-        Report { made, kept, .. } => format!("{made} tiles made, {kept} kept"),
+        Report { made, kept: 0, .. } => format!("{} made", count(*made, "tile")),
+        Report { made, kept, .. } => format!("{} made, {kept} kept", count(*made, "tile")),
     };
     format!(
-        "{}: {}, {width} x {height} samples of {cell} m, {}\n{made} in {seconds:.1} s\n",
+        "{}: {}, {width} x {height} samples of {} m, {}\n{made} in {seconds:.1} s\n",
         Path::new(&args.out).display(),
         order.layers.join(", "),
+        number(cell),
         bytes(report.bytes),
     )
 }

@@ -3,18 +3,20 @@
 use std::path::PathBuf;
 
 use crate::failure::Failure;
-use crate::options::{Limits, View};
+use crate::options::Limits;
+use crate::say;
+use crate::seeds::Seeds;
 use crate::source::Source;
-use crate::{say, view};
+use crate::view::{SizedView, View};
 
 /// What it takes.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct Args {
     /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     #[arg(default_value = orogen::recipe::presets::DEFAULT)]
     recipe: PathBuf,
     #[command(flatten)]
-    view: View,
+    samples: SizedView,
     /// The layer to explain [default: all]
     #[arg(long, value_name = "L")]
     layer: Option<String>,
@@ -24,14 +26,21 @@ pub struct Args {
 
 /// Prints the plan.
 pub fn run(args: &Args) -> Result<(), Failure> {
+    Seeds::each(args.samples.view.seed.as_ref(), None, |seed, _| {
+        let view = View { seed, ..args.samples.view.clone() };
+        tell(&Args { samples: SizedView { view, ..args.samples }, ..args.clone() })
+    })
+}
+
+fn tell(args: &Args) -> Result<(), Failure> {
     let mut recipe = Source::find(&args.recipe)?.read()?;
-    recipe.world.seed = args.view.seed.unwrap_or(recipe.world.seed);
+    args.samples.view.apply(&mut recipe);
     let layers: Vec<String> = match &args.layer {
         Some(layer) => vec![layer.clone()],
         None => recipe.outputs().map(String::from).collect(),
     };
     let layers: Vec<&str> = layers.iter().map(String::as_str).collect();
     let world = args.limits.open(recipe)?;
-    let plan = world.plan(&layers, &view::whole(&world, &args.view)?)?;
+    let plan = world.plan(&layers, &args.samples.window(&world)?)?;
     say::out(&world.explain(&plan))
 }

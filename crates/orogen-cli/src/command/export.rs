@@ -4,24 +4,27 @@ use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValue;
+use orogen::World;
 use orogen::export::derived::list;
 use orogen::export::format::Format;
 use orogen::export::subject::Subject;
 use orogen::export::targets::frame::{Asked, Frame};
 use orogen::export::targets::target::Target;
 use orogen::export::{registry, run as exporting, targets};
-use orogen::{Window, World};
+use orogen::words::{count, number};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::format_options::FormatOptions;
-use crate::options::{Limits, View};
-use crate::size::{Rectangle, Size, cell, seed};
+use crate::options::Limits;
+use crate::seeds::Seeds;
+use crate::size::Size;
 use crate::source::Source;
-use crate::{interrupt, say, view};
+use crate::view::{SizedView, View};
+use crate::{interrupt, say};
 
 /// What it takes.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct Args {
     /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
@@ -34,21 +37,12 @@ pub struct Args {
     /// Layer to write: an output, `node.layer`, or what follows from the heights: slope, aspect, curvature, hillshade, normal, occlusion, splat
     #[arg(long, value_name = "L", default_value = orogen::world::HEIGHT)]
     layer: String,
-    /// Samples to write, at the cell asked for [default: the whole world]
-    #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
-    window: Option<Rectangle>,
-    /// Metres from one sample to the next [default: the world's cell]
-    #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
-    cell: Option<f64>,
-    /// Seed of the world, instead of the recipe's
-    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
-    seed: Option<u64>,
-    /// Engine to write for: sets size, format, scale, rows and tiles, and says what to type into its import dialogue
+    #[command(flatten)]
+    samples: SizedView,
+    /// Engine to write for, of which --size counts the samples of a side, of each tile if there are several [default: the most that the
+    /// world has]; sets size, format, scale, rows and tiles, and says what to type into its import dialogue
     #[arg(long, value_name = "ENGINE", value_parser = Engines, conflicts_with = "format")]
     target: Option<&'static str>,
-    /// Samples along a side that the engine gets, of each tile if there are several [default: the most that the world has]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), requires = "target", allow_negative_numbers = true)]
-    size: Option<u32>,
     /// Tiles for the engine, east and south, that share their edges
     #[arg(long, value_name = "NxM", requires = "target")]
     tiles: Option<Size>,
@@ -119,6 +113,14 @@ fn possible() -> Vec<PossibleValue> {
 
 /// Writes the layer.
 pub fn run(args: &Args) -> Result<(), Failure> {
+    Seeds::each(args.samples.view.seed.as_ref(), Some(&args.out), |seed, out| {
+        let view = View { seed, ..args.samples.view.clone() };
+        let out = out.unwrap_or_default();
+        export(&Args { samples: SizedView { view, ..args.samples }, out, ..args.clone() })
+    })
+}
+
+fn export(args: &Args) -> Result<(), Failure> {
     let format = format(args)?;
     let options = args.options.read()?;
     registry::check(format, &options)?;
@@ -129,20 +131,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         ));
     }
     let mut recipe = Source::find(&args.recipe)?.read()?;
-    recipe.world.seed = args.seed.unwrap_or(recipe.world.seed);
+    args.samples.view.apply(&mut recipe);
     list::prepare(&mut recipe, &args.layer);
     let world = args.limits.open(recipe)?;
     if let Some(target) = args.target.and_then(targets::list::named) {
         return for_engine(args, target, format, &world);
     }
-    let view = View { seed: None, size: None, cell: args.cell };
-    let window = match args.window {
-        Some(Rectangle { x, y, width, height }) => {
-            let cell = args.cell.unwrap_or(world.recipe().world.cell);
-            Window { x, y, width, height, cell }
-        }
-        None => view::whole(&world, &view)?,
-    };
+    let window = args.samples.window(&world)?;
     let (bar, progress) = Bar::new(args.quiet);
     let subject = Subject::new(&world, &args.layer, window, &progress)?;
     match to_stdout {
@@ -160,7 +155,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             let words = exporting::to_file(format, subject, &options, &args.out)
                 .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?;
             drop(bar);
-            let size = format!("{} x {} samples of {} m", window.width, window.height, window.cell);
+            let size = format!("{} x {} samples of {} m", window.width, window.height, number(window.cell));
             match args.quiet {
                 true => Ok(()),
                 false => say::out(&format!("{}: {}, {size}, {words}\n", args.out.display(), args.layer)),
@@ -177,17 +172,21 @@ fn for_engine(args: &Args, target: &Target, format: &Format, world: &World) -> R
     if let Some(option) = args.options.read()?.names().next() {
         return Err(Failure::Usage(format!("--target {} sets --{option} itself: leave it out", target.name)));
     }
-    let cell = args.cell.unwrap_or(world.recipe().world.cell);
+    let SizedView { view, size } = &args.samples;
+    let side = match size {
+        None => None,
+        Some(Size::Longer(side)) => Some(*side),
+        Some(Size::Both(width, height)) if width == height => Some(*width),
+        Some(Size::Both(width, height)) => {
+            return Err(Failure::Usage(format!("{} takes squares, not {width} x {height} samples", target.name)));
+        }
+    };
+    let cell = view.cell.unwrap_or(world.recipe().world.cell);
     let tiles = args.tiles.map(|tiles| match tiles {
         Size::Longer(count) => [count, count],
         Size::Both(across, down) => [across, down],
     });
-    let asked = Asked {
-        side: args.size.map(|side| side as usize),
-        cell: args.cell,
-        window: args.window.map(|Rectangle { x, y, width, height }| Window { x, y, width, height, cell }),
-        tiles,
-    };
+    let asked = Asked { side, cell: view.cell, window: view.part(world, None, cell)?, tiles };
     let frame = Frame::new(target, world, &asked)?;
     let (bar, progress) = Bar::new(args.quiet);
     let made = targets::run::export(target, format, &frame, world, &args.layer, &progress, &args.out)
@@ -199,10 +198,11 @@ fn for_engine(args: &Args, target: &Target, format: &Format, world: &World) -> R
     let ([width, height], cell) = (made.samples, frame.window.cell);
     let files = match made.files.as_slice() {
         [one] => one.display().to_string(),
-        [first, .., last] => format!("{} to {}, {} tiles", first.display(), last.display(), made.files.len()),
+        [first, .., last] => format!("{} to {}, {}", first.display(), last.display(), count(made.files.len(), "tile")),
         [] => String::new(),
     };
-    let mut text = format!("{files}: {}, {width} x {height} samples of {cell} m, {}\n", args.layer, made.words);
+    let mut text =
+        format!("{files}: {}, {width} x {height} samples of {} m, {}\n", args.layer, number(cell), made.words);
     let notes = frame.note.iter().map(|note| format!("note: {note}"));
     for line in notes.chain(made.import.into_iter().map(|line| format!("  {line}"))) {
         text.push_str(&line);

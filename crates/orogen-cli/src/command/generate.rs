@@ -4,14 +4,17 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use orogen::Progress;
+use orogen::words::number;
 
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::folder::Folder;
-use crate::options::{Limits, View};
+use crate::options::Limits;
 use crate::pictures::{self, FILES, Report};
+use crate::seeds::Seeds;
 use crate::source::Source;
-use crate::{interrupt, say, view, watch};
+use crate::view::{SizedView, View};
+use crate::{interrupt, say, watch};
 
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
@@ -20,7 +23,7 @@ pub struct Args {
     #[arg(default_value = orogen::recipe::presets::DEFAULT)]
     recipe: PathBuf,
     #[command(flatten)]
-    view: View,
+    samples: SizedView,
     /// Folder to write into; made if it is not there
     #[arg(short, long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
@@ -39,6 +42,14 @@ pub struct Args {
 
 /// Makes the terrain.
 pub fn run(args: &Args) -> Result<(), Failure> {
+    Seeds::each(args.samples.view.seed.as_ref(), Some(&args.out), |seed, out| {
+        let view = View { seed, ..args.samples.view.clone() };
+        let out = out.unwrap_or_default();
+        generate(&Args { samples: SizedView { view, ..args.samples }, out, ..args.clone() })
+    })
+}
+
+fn generate(args: &Args) -> Result<(), Failure> {
     let source = Source::find(&args.recipe)?;
     let again = |progress: &Progress| make(&source, args, progress);
     match (&source, args.watch) {
@@ -64,9 +75,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Failure> {
     let begun = Instant::now();
     let mut recipe = source.read()?;
-    recipe.world.seed = args.view.seed.unwrap_or(recipe.world.seed);
+    args.samples.view.apply(&mut recipe);
     let world = args.limits.open(recipe)?;
-    let window = view::whole(&world, &args.view)?;
+    let window = args.samples.window(&world)?;
     let plan = world.plan(&[orogen::world::HEIGHT], &window)?;
     let folder = Folder::ready(&args.out)?;
     let mut grids = world.run(&plan, progress)?;
@@ -96,7 +107,7 @@ fn words(report: &Report, folder: &Path) -> String {
          {height_max:.1} m, {height_mean:.1} m on average{sea}{flat}\nmade in {seconds:.1} s\n",
         folder.display(),
         FILES.join("  "),
-        (cell * 1000.0).round() / 1000.0,
+        number(*cell),
         across(width),
         across(height),
     )

@@ -11,17 +11,19 @@ use orogen::{Grid, Progress, Recipe};
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::moving::{Moving, Target};
-use crate::options::{Limits, View};
+use crate::options::Limits;
+use crate::seeds::Seeds;
 use crate::source::Source;
-use crate::{interrupt, memory, say, view};
+use crate::view::{SizedView, View};
+use crate::{interrupt, memory, say};
 
 /// What it takes.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct Args {
     /// A recipe's file or the name of a preset, with a node `stream-power`
     recipe: PathBuf,
     #[command(flatten)]
-    view: View,
+    samples: SizedView,
     /// Picture to write: a .png that moves (APNG), a .gif, or a file for each frame such as grow-%03d.png
     #[arg(short, long, value_name = "FILE", default_value = "grow.png")]
     out: PathBuf,
@@ -44,12 +46,20 @@ pub struct Args {
 
 /// Makes the frames.
 pub fn run(args: &Args) -> Result<(), Failure> {
+    Seeds::each(args.samples.view.seed.as_ref(), Some(&args.out), |seed, out| {
+        let view = View { seed, ..args.samples.view.clone() };
+        let out = out.unwrap_or_default();
+        grow(&Args { samples: SizedView { view, ..args.samples }, out, ..args.clone() })
+    })
+}
+
+fn grow(args: &Args) -> Result<(), Failure> {
     let target = Target::of(&args.out).map_err(Failure::Usage)?;
     if let Some(years) = args.years.filter(|years| !(0.0..=1e9).contains(years)) {
         return Err(Failure::Usage(format!("--years is {years}; it goes from 0 to 1e9")));
     }
     let mut recipe = Source::find(&args.recipe)?.read()?;
-    recipe.world.seed = args.view.seed.unwrap_or(recipe.world.seed);
+    args.samples.view.apply(&mut recipe);
     if !recipe.nodes().iter().any(|named| matches!(named.node, Node::StreamPower(_))) {
         return Err(Failure::Usage(format!(
             "nothing grows in {}: it has no node with op = \"stream-power\", which lifts land and cuts rivers into it",
@@ -114,7 +124,7 @@ fn frame(recipe: &Recipe, args: &Args, steps: u16, progress: &Progress) -> Resul
         }
     });
     let world = args.limits.open(recipe)?;
-    let window = view::whole(&world, &args.view)?;
+    let window = args.samples.window(&world)?;
     let plan = world.plan(&[orogen::world::HEIGHT], &window)?;
     let grid = world.run(&plan, progress)?.pop();
     Ok(grid.unwrap_or_else(|| Grid::filled(window, 0.0)))

@@ -9,33 +9,27 @@ use orogen::sheet::draw::draw;
 use orogen::sheet::options::{Options, Page, Parts, Resolution};
 use orogen::sheet::relief::Shading;
 use orogen::sheet::{pdf, raster, vector};
+use orogen::words::number;
 use orogen::{Window, file};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
-use crate::options::{Limits, View};
+use crate::options::Limits;
 use crate::paper::Paper;
-use crate::size::{Rectangle, positive, seed};
+use crate::seeds::Seeds;
+use crate::size::positive;
 use crate::source::Source;
-use crate::{interrupt, memory, palette, say, view};
+use crate::view::View;
+use crate::{interrupt, memory, palette, say};
 
 /// What it takes.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct Args {
     /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
     /// File to write: .png, .svg or .pdf
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
-    /// Samples of the world to map, at the cell asked for [default: the whole world]
-    #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
-    window: Option<Rectangle>,
-    /// Metres from one sample to the next [default: the world's cell]
-    #[arg(long, value_name = "M", value_parser = crate::size::cell, allow_negative_numbers = true)]
-    cell: Option<f64>,
-    /// Seed of the world, instead of the recipe's
-    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
-    seed: Option<u64>,
     /// Colours: the name of a palette (`orogen palettes` lists them) or a file (.cpt, .gpl, .toml, or gdaldem's)
     #[arg(long, value_name = "NAME|FILE", default_value = named::DEFAULT)]
     palette: PathBuf,
@@ -61,6 +55,8 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..=30000), conflicts_with = "dpi",
           allow_negative_numbers = true)]
     size: Option<u32>,
+    #[command(flatten)]
+    view: View,
     #[command(flatten)]
     without: Without,
     #[command(flatten)]
@@ -145,6 +141,13 @@ const MOST: f64 = 4e8;
 
 /// Draws the sheet.
 pub fn run(args: &Args) -> Result<(), Failure> {
+    Seeds::each(args.view.seed.as_ref(), Some(&args.out), |seed, out| {
+        let view = View { seed, ..args.view.clone() };
+        map(&Args { view, out: out.unwrap_or_default(), ..args.clone() })
+    })
+}
+
+fn map(args: &Args) -> Result<(), Failure> {
     let kind = kind(&args.out)?;
     if args.size.is_some() && kind != Kind::Png {
         return Err(Failure::Usage(
@@ -154,14 +157,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let palette = palette::find(&args.palette)?;
     let source = Source::find(&args.recipe)?;
     let mut recipe = source.read()?;
-    recipe.world.seed = args.seed.unwrap_or(recipe.world.seed);
+    args.view.apply(&mut recipe);
     let world = args.limits.open(recipe)?;
-    let window = match args.window {
-        Some(Rectangle { x, y, width, height }) => {
-            Window { x, y, width, height, cell: args.cell.unwrap_or(world.recipe().world.cell) }
-        }
-        None => view::whole(&world, &View { seed: None, size: None, cell: args.cell })?,
-    };
+    let window = args.view.window(&world)?;
     let is_place = matches!(source, Source::Dem(_));
     let options = options(args, kind, palette, &world, is_place);
     afford(&options, &window, args)?;
@@ -202,13 +200,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
         _ => format!("{width:.0} x {height:.0} mm"),
     };
-    let contours = sheet.interval.map_or(String::new(), |interval| format!(", contours {interval} m apart"));
+    let contours = sheet.interval.map_or(String::new(), |interval| format!(", contours {} m apart", number(interval)));
     say::out(&format!(
         "{}: {size}, {} x {} samples of {} m{contours}\n",
         args.out.display(),
         window.width,
         window.height,
-        window.cell
+        number(window.cell)
     ))
 }
 

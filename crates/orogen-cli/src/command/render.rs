@@ -9,19 +9,22 @@ use orogen::render::camera::{Camera, View as Shot};
 use orogen::render::relief::Land;
 use orogen::render::scene::{Colors, Edge, Scene, Style};
 use orogen::render::sun::Moment;
+use orogen::words::{count, number};
 use orogen::world::HEIGHT;
 use orogen::{Grid, Progress, Window, World, file};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::moving::{Moving, Target};
-use crate::options::{Limits, View};
-use crate::size::{Numbers, Rectangle, Size, cell, clock, not_negative, positive, seed};
+use crate::options::Limits;
+use crate::seeds::Seeds;
+use crate::size::{Numbers, Size, clock, not_negative, positive};
 use crate::source::Source;
-use crate::{interrupt, memory, palette, say, view};
+use crate::view::View;
+use crate::{interrupt, memory, palette, say};
 
 /// What it takes.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 #[command(
     after_help = "Nothing but the processor draws, and the picture has the same bytes on every machine. Grain finer than the \
                         world's samples is made up by the picture; heights, shadows and outlines are the world's own."
@@ -87,15 +90,8 @@ pub struct Args {
     /// Palette of --colors map, by name or a file (.cpt, .gpl, .toml, gdaldem's .txt) [default: the relief map's]
     #[arg(long, value_name = "NAME|FILE")]
     palette: Option<PathBuf>,
-    /// Samples of the world to show, at the cell asked for [default: the whole world]
-    #[arg(long, value_name = "X,Y,W,H", allow_hyphen_values = true)]
-    window: Option<Rectangle>,
-    /// Metres from one sample of the world to the next [default: the world's cell]
-    #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
-    cell: Option<f64>,
-    /// Seed of the world, instead of the recipe's
-    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
-    seed: Option<u64>,
+    #[command(flatten)]
+    view: View,
     #[command(flatten)]
     limits: Limits,
     /// Show neither progress nor the closing words
@@ -130,6 +126,13 @@ const CAMERA: [f64; 2] = [200.0, 24.0];
 
 /// Draws the picture.
 pub fn run(args: &Args) -> Result<(), Failure> {
+    Seeds::each(args.view.seed.as_ref(), Some(&args.out), |seed, out| {
+        let view = View { seed, ..args.view.clone() };
+        render(&Args { view, out: out.unwrap_or_default(), ..args.clone() })
+    })
+}
+
+fn render(args: &Args) -> Result<(), Failure> {
     let target = match args.turntable {
         Some(_) => Target::of(&args.out).map_err(Failure::Usage)?,
         None if args.out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) => Target::Apng,
@@ -145,9 +148,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let (style, shot) = (style(args, palette.as_ref())?, shot(args)?);
     let mut recipe = Source::find(&args.recipe)?.read()?;
-    recipe.world.seed = args.seed.unwrap_or(recipe.world.seed);
+    args.view.apply(&mut recipe);
     let world = args.limits.open(recipe)?;
-    let window = window(args, &world)?;
+    let window = args.view.window(&world)?;
     let pixels = (width * height) as u64;
     // Of each sample of the land: what is asked for, the pyramid, slopes, and light twice while it is made.
     let land = (window.len() as u64).saturating_mul(128);
@@ -291,15 +294,6 @@ fn shot(args: &Args) -> Result<Shot, Failure> {
     }
 }
 
-/// The samples of the world that are shown.
-fn window(args: &Args, world: &World) -> Result<Window, Failure> {
-    let cell = args.cell.unwrap_or(world.recipe().world.cell);
-    match args.window {
-        Some(Rectangle { x, y, width, height }) => Ok(Window { x, y, width, height, cell }),
-        None => view::whole(world, &View { seed: None, size: None, cell: args.cell }),
-    }
-}
-
 /// Layers that a picture makes use of where a recipe has them.
 const LAYERS: [&str; 3] = [HEIGHT, "surface", "flow"];
 
@@ -337,7 +331,7 @@ fn draw(
     let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
     let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", &software)] };
     let file = args.out.display();
-    let samples = format!("{} x {} samples of {} m", window.width, window.height, window.cell);
+    let samples = format!("{} x {} samples of {} m", window.width, window.height, number(window.cell));
     if let (Some(frames), Shot::Around { azimuth, elevation, distance }) = (args.turntable, *shot) {
         let turn = |frame: u32| azimuth + 360.0 * f64::from(frame) / f64::from(frames);
         let sides = (0..frames).map(|frame| [turn(frame), elevation]);
@@ -359,7 +353,7 @@ fn draw(
         let animation = Animation { frames, delay: args.delay };
         let moving = Moving { out: &args.out, target, picture, animation, sample: &sample };
         moving.write(|frame, bytes| Ok(scene.paint(&side(frame), size, 0..height, bytes, progress)?))?;
-        return Ok(format!("{file}: {frames} frames of {width} x {height} pixels, of {samples}\n"));
+        return Ok(format!("{file}: {} of {width} x {height} pixels, of {samples}\n", count(frames as usize, "frame")));
     }
     let camera = camera(shot);
     if let (Some(metres), false) = (camera.lifted(), args.quiet) {

@@ -333,7 +333,6 @@ fn engines_get_what_they_ask_for() {
         (&["-o", "x.r16", "--target", "unity", "--first-row", "north"], 2, "sets --first-row itself"),
         (&["-o", "x.exr", "--target", "terrain3d", "--tiles", "2x2"], 2, "leave out --tiles"),
         (&["-o", "x.r16", "--target", "unity", "--size", "4097", "--cell", "10"], 2, "not inside the world"),
-        (&["-o", "x.png", "--size", "64"], 2, "--target <ENGINE>"),
         (&["-o", "x.png", "--target", "cryengine"], 2, "invalid value"),
         (&["-o", "no/x.png", "--target", "unreal"], 1, "cannot write into no: the folder does not exist"),
     ] {

@@ -119,7 +119,7 @@ fn what_cannot_be_asked_for_is_usage() {
     let folder = Folder::with_small();
     for (options, expect) in [
         (&["--size", "32x32"][..], "another aspect"),
-        (&["--size", "32", "--cell", "5"], "cannot be used with"),
+        (&["--size", "32", "--cell", "5"], "leave out one of them"),
         (&["--size", "0"], "1 to 1000000000 samples"),
         (&["--size", "-5"], "a size is a number of samples"),
         (&["--size", "99999999999"], "1 to 1000000000 samples"),

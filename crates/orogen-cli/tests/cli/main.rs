@@ -15,4 +15,5 @@ mod noise;
 mod others;
 mod palettes;
 mod render;
+mod view;
 mod watch;

@@ -2,6 +2,7 @@
 
 use std::io::{Read, Seek};
 
+use super::crs::Crs;
 use crate::error::{Error, ErrorKind};
 use crate::grid::Window;
 use crate::words::bytes;
@@ -90,6 +91,27 @@ impl Georeference {
         };
         // Model 2 is a geographic system, 1 a projected one.
         if key(1024) == Some(2) { key(2048) } else { key(3072) }
+    }
+
+    /// Whether its keys tell a coordinate system of the Earth: not none, and not local ones.
+    pub fn is_on_map(&self) -> bool {
+        let model = |keys: &GeoKeys| {
+            keys.directory.chunks_exact(4).skip(1).any(|key| key[0] == 1024 && matches!(key[3], 1 | 2))
+        };
+        self.keys.as_ref().is_some_and(model)
+    }
+
+    /// Whether its units are so long that they can only be degrees, whatever its keys tell.
+    pub fn counts_degrees(&self) -> bool {
+        self.per_metre[0] < 1e-3
+    }
+
+    /// Whether its units can be those of a coordinate system.
+    pub fn fits(&self, crs: &Crs) -> bool {
+        match crs.unit() {
+            Unit::Degrees => self.counts_degrees(),
+            Unit::Metres(unit) => unit == 1.0 && !self.counts_degrees(),
+        }
     }
 
     /// Whether its coordinates are degrees of longitude and latitude.

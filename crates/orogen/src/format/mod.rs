@@ -2,6 +2,7 @@
 //! ([`import`]) never believe a file further than its bytes go.
 
 pub mod asc;
+pub mod crs;
 pub mod dem;
 pub mod encoding;
 pub mod exr;

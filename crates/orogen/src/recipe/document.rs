@@ -3,9 +3,11 @@
 use crate::declare::Input;
 use crate::dem::ground::Ground;
 use crate::dem::held::Imported;
+use crate::dem::square::metres_of_degrees;
 use crate::error::{Error, ErrorKind, Result};
 use crate::field::dem::Dem;
-use crate::format::dem::Georeference;
+use crate::format::crs::Crs;
+use crate::format::dem::{Georeference, Unit};
 use crate::node::Node;
 use crate::op::{Op, Setting};
 use crate::value::{toml_key, toml_string};
@@ -35,11 +37,15 @@ pub struct WorldSpec {
     pub cell: f64,
     /// Height of the sea's surface.
     pub sea_level: f64,
+    /// The map that the world lies on; `None` for a world in metres of its own, or on the map of a real place in it.
+    pub crs: Option<Crs>,
+    /// East and north of the world's first sample, its north-west corner, in the units of `crs`.
+    pub origin: Option<[f64; 2]>,
 }
 
 impl Default for WorldSpec {
     fn default() -> WorldSpec {
-        WorldSpec { seed: 0, size: None, cell: 10.0, sea_level: 0.0 }
+        WorldSpec { seed: 0, size: None, cell: 10.0, sea_level: 0.0, crs: None, origin: None }
     }
 }
 
@@ -47,6 +53,21 @@ impl WorldSpec {
     /// What every op is told.
     pub fn setting(&self) -> Setting {
         Setting { seed: self.seed, size: self.size, cell: self.cell, sea_level: self.sea_level }
+    }
+
+    /// How the world lies on the map of its `crs`, if it has both that and an `origin`. In degrees, metres are counted by the length of a
+    /// degree at the world's middle latitude.
+    fn georeference(&self) -> Option<Georeference> {
+        let (crs, origin) = (self.crs?, self.origin?);
+        let per_metre = match crs.unit() {
+            Unit::Metres(unit) => [1.0 / unit; 2],
+            Unit::Degrees => {
+                let half = self.size.map_or(0.0, |size| size[1] / 2.0);
+                let middle = origin[1] - half / metres_of_degrees(origin[1])[1];
+                metres_of_degrees(middle).map(|metres| 1.0 / metres)
+            }
+        };
+        Some(Georeference { origin, per_metre, keys: Some(crs.keys()) })
     }
 }
 
@@ -152,15 +173,61 @@ impl Recipe {
                 file.hold(ground);
             }
         }
-        Ok(())
+        self.check_map()
     }
 
-    /// How its metres lie on a map: as the first real place in it says. Known once its files are read.
+    /// How its metres lie on a map: as the first real place in it says, else as its world's `crs` and `origin` say. A place that names no
+    /// coordinate system is taken to be in that of the world. Known once its files are read.
     pub fn georeference(&self) -> Option<Georeference> {
+        match (self.place(), self.world.georeference()) {
+            (Some(place), _) if place.is_on_map() => Some(place),
+            (_, Some(own)) => Some(own),
+            (Some(place), None) => Some(match self.world.crs {
+                Some(crs) => Georeference { keys: Some(crs.keys()), ..place },
+                None => place,
+            }),
+            (None, None) => None,
+        }
+    }
+
+    /// How its metres lie on the map of the first real place in it.
+    fn place(&self) -> Option<Georeference> {
         self.nodes.iter().find_map(|named| match named.node.op() {
             Op::Field(field) => field.georeference(),
             _ => None,
         })
+    }
+
+    /// Refuses a `crs` or an `origin` that contradicts the place in the recipe's files, or lacks the other.
+    fn check_map(&self) -> Result<()> {
+        let place = self.place();
+        let sentence = match (&place, self.world.crs, self.world.origin) {
+            (Some(place), _, Some(_)) if place.is_on_map() => {
+                "the file of heights already says where it lies: leave out `origin`".to_string()
+            }
+            (Some(place), Some(crs), None) if place.is_on_map() && place.epsg() != Some(crs.code()) => format!(
+                "the file of heights is in {}, and `crs` is EPSG:{}; heights are not reprojected: leave out `crs`, or reproject the \
+                 file first, such as by gdalwarp",
+                place.epsg().map_or("a CRS without an EPSG code".into(), |code| format!("EPSG:{code}")),
+                crs.code()
+            ),
+            (Some(place), Some(crs), None) if !place.is_on_map() && !place.fits(&crs) => format!(
+                "the coordinates of the file of heights were read as {}, and EPSG:{} ({}) counts otherwise",
+                if place.counts_degrees() { "degrees" } else { "metres" },
+                crs.code(),
+                crs.name()
+            ),
+            (None, Some(crs), None) => format!(
+                "`crs` is EPSG:{}, but nothing says where in it the world lies: give `origin`, east and north of its north-west corner",
+                crs.code()
+            ),
+            (_, None, Some(_)) => {
+                "`origin` is a place on a map, but nothing says on which: give `crs`, such as \"EPSG:32632\""
+                    .to_string()
+            }
+            _ => return Ok(()),
+        };
+        Err(Error::new(ErrorKind::Recipe, sentence))
     }
 
     /// A recipe of nothing but a real place at hand, which makes its very samples.
@@ -204,6 +271,12 @@ impl Recipe {
             let _ = writeln!(text, "size = [{width:?}, {height:?}]");
         }
         let _ = writeln!(text, "cell = {:?}\nsea_level = {:?}", self.world.cell, self.world.sea_level);
+        if let Some(crs) = self.world.crs {
+            let _ = writeln!(text, "crs = \"EPSG:{}\"", crs.code());
+        }
+        if let Some([east, north]) = self.world.origin {
+            let _ = writeln!(text, "origin = [{east:?}, {north:?}]");
+        }
         for NamedNode { name, node, mask } in &self.nodes {
             let spec = node.spec();
             let _ = writeln!(text, "\n[nodes.{}]\nop = {:?}", toml_key(name), spec.op);

@@ -39,6 +39,21 @@ pub static WORLD: &[ParamSpec] = &[
         shape: Shape::Number,
         range: [-1e6, 1e6],
     },
+    ParamSpec {
+        name: "crs",
+        doc: "The coordinate reference system that the world lies in, by its EPSG code, with `origin`: GeoTIFF, GeoJSON and other files with \
+              coordinates carry it. Left out: metres of the world's own, or the system of the heights that a node `dem` reads.",
+        unit: "",
+        shape: Shape::Crs,
+        range: [f64::NEG_INFINITY, f64::INFINITY],
+    },
+    ParamSpec {
+        name: "origin",
+        doc: "East and north of the world's north-west corner in the units of `crs`; longitude and latitude where these are degrees.",
+        unit: "",
+        shape: Shape::Pair,
+        range: [-1e9, 1e9],
+    },
 ];
 
 /// The world's parameter of that name.
@@ -57,6 +72,11 @@ pub fn read_world(spec: &ParamSpec, value: &Value, world: &mut WorldSpec) -> Res
             });
         }
         "cell" => world.cell = read_param(spec, value)?,
+        "crs" => match value {
+            Value::Text(text) => world.crs = Some(text.parse().map_err(|why| format!("`crs`: {why}"))?),
+            other => return Err(format!("`crs` must be {}, not {}", spec.expected(), other.describe())),
+        },
+        "origin" => world.origin = Some(read_param(spec, value)?),
         _ => world.sea_level = read_param(spec, value)?,
     }
     Ok(())
@@ -67,6 +87,7 @@ pub fn world_values(world: &WorldSpec) -> Vec<(&'static str, Value)> {
     let mut values =
         vec![("seed", world.seed.write()), ("cell", world.cell.write()), ("sea_level", world.sea_level.write())];
     values.extend(world.size.map(|size| ("size", size.write())));
+    values.extend(world.origin.map(|origin| ("origin", origin.write())));
     values
 }
 
@@ -213,6 +234,7 @@ fn param_schema(spec: &ParamSpec, default: Option<&Value>) -> Json {
             "oneOf": choices().iter().map(|(name, doc)| json!({ "const": name, "description": short(doc) })).collect::<Vec<_>>(),
         }),
         Shape::File => json!({ "type": "string" }),
+        Shape::Crs => json!({ "type": "string", "pattern": "^EPSG:[0-9]+$" }),
         Shape::Pair => json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": number }),
         Shape::Curve => json!({
             "type": "array",

@@ -98,7 +98,7 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
 }
 
 pub fn world_of(cell: f64) -> WorldSpec {
-    WorldSpec { seed: 42, size: Some([96.0 * cell, 80.0 * cell]), cell, sea_level: 0.0 }
+    WorldSpec { seed: 42, size: Some([96.0 * cell, 80.0 * cell]), cell, ..WorldSpec::default() }
 }
 
 pub fn open(recipe: &Recipe, threads: usize) -> World {
