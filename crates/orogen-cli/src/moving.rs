@@ -1,9 +1,9 @@
 //! Moving pictures: animations in one file, or frames in files of their own.
 
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use orogen::file::{self, Staged};
+use orogen::file::{self, Output, OutputPolicy, Staged};
 use orogen::format::gif::{self, Palette};
 use orogen::format::png::{self, Animation, Picture, Pixel};
 
@@ -45,6 +45,16 @@ impl Target {
         }
     }
 
+    /// The files that so many frames go into, if what is there may be replaced.
+    pub fn outputs(&self, out: &Path, frames: u32, policy: &OutputPolicy) -> orogen::Result<Vec<Output>> {
+        match self {
+            Target::Apng | Target::Gif => Ok(vec![policy.output(out)?]),
+            Target::Frames(before, digits, after) => (0..frames)
+                .map(|frame| policy.output(out.with_file_name(format!("{before}{frame:0digits$}{after}"))))
+                .collect(),
+        }
+    }
+
     /// Bytes that writing frames of so many pixels takes, their own three a pixel not counted.
     pub fn beside(&self, pixels: u64) -> u64 {
         match self {
@@ -58,8 +68,8 @@ impl Target {
 
 /// A moving picture about to be written.
 pub struct Moving<'a> {
-    /// Where to.
-    pub out: &'a Path,
+    /// Where to: what [`Target::outputs`] made.
+    pub outputs: &'a [Output],
     /// As what.
     pub target: &'a Target,
     /// What each frame is.
@@ -76,9 +86,11 @@ impl Moving<'_> {
         let Picture { width, height, pixel, .. } = self.picture;
         match self.target {
             Target::Apng => {
-                file::write_whole(self.out, |out| png::write_animation(out, &self.picture, self.animation, fill))?;
+                file::write_whole(&self.outputs[0], |out| {
+                    png::write_animation(out, &self.picture, self.animation, fill)
+                })?;
             }
-            Target::Gif => file::write_whole(self.out, |out| {
+            Target::Gif => file::write_whole(&self.outputs[0], |out| {
                 let palette = Palette::of(&colors((self.sample)()?, pixel));
                 let mut own = vec![0; if pixel == Pixel::Grey8 { width * height } else { 0 }];
                 gif::write_animation(out, [width, height], &palette, self.animation, |frame, bytes| {
@@ -90,12 +102,11 @@ impl Moving<'_> {
                     Ok(())
                 })
             })?,
-            Target::Frames(before, digits, after) => {
+            Target::Frames(..) => {
                 let mut bytes = vec![0; width * height * pixel.bytes()];
                 let mut staged: Vec<Staged> = Vec::new();
-                for frame in 0..self.animation.frames {
-                    let path: PathBuf = self.out.with_file_name(format!("{before}{frame:0digits$}{after}"));
-                    staged.push(file::stage(&path, |out| {
+                for (frame, output) in (0..).zip(self.outputs) {
+                    staged.push(file::stage(output, |out| {
                         fill(frame, &mut bytes)?;
                         png::write(out, &self.picture, |rows, part| {
                             let row = width * pixel.bytes();
@@ -104,7 +115,7 @@ impl Moving<'_> {
                         })
                     })?);
                 }
-                staged.into_iter().try_for_each(Staged::commit)?;
+                file::commit(staged)?;
             }
         }
         Ok(())

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use orogen::analysis::summary::{self, Summary};
 use orogen::export::notes;
-use orogen::file::{self, Staged};
+use orogen::file::{self, Output, OutputPolicy, Staged, mark};
 use orogen::format::levels::Levels;
 use orogen::format::png;
 use orogen::map::paint::Painter;
@@ -17,6 +17,8 @@ use crate::interrupt::Stoppable;
 /// `summary.json`. The order of its keys is the file's.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
+    /// The program and its version.
+    pub made_by: String,
     /// The world's seed.
     pub seed: u64,
     /// Samples a row.
@@ -52,22 +54,27 @@ impl Report {
 /// The names of the files, in the order they are put in place: the summary last, so that its appearance says that all is there.
 pub const FILES: [&str; 5] = ["height.png", "height8.png", "map.png", "recipe.toml", "summary.json"];
 
-/// Writes all files into `folder`, or none: they are staged first, and only put in place once every byte is on the disk.
+/// The places of the files in `folder`, if what is there may be replaced.
+pub fn outputs(folder: &Path, policy: &OutputPolicy) -> Result<Vec<Output>> {
+    FILES.iter().map(|name| policy.output(folder.join(name))).collect()
+}
+
+/// Writes all files to their `outputs`, or none: they are staged first, and only put in place once every byte is on the disk.
 /// `seconds` tells the time it all took.
-pub fn write(folder: &Path, recipe: &Recipe, grid: &Grid, seconds: impl FnOnce() -> f64) -> Result<Report> {
+pub fn write(outputs: &[Output], recipe: &Recipe, grid: &Grid, seconds: impl FnOnce() -> f64) -> Result<Report> {
     let levels = Levels::of(grid);
     let notes = notes::of_heights(grid.window().cell, &levels);
     let notes: Vec<(&str, &str)> = notes.iter().map(|(keyword, text)| (*keyword, text.as_str())).collect();
-    let stage = |name: &str, body: &(dyn Fn(&mut dyn Write) -> std::io::Result<()> + Sync)| {
-        file::stage(&folder.join(name), |out| body(&mut Stoppable(out)))
+    let stage = |nth: usize, body: &(dyn Fn(&mut dyn Write) -> std::io::Result<()> + Sync)| {
+        file::stage(&outputs[nth], |out| body(&mut Stoppable(out)))
     };
     let (pictures, summary) = rayon::join(
         || {
             rayon::join(
-                || stage(FILES[2], &|out| Painter::fit(grid, recipe.world.sea_level).write_png(out, grid, &notes[..1])),
+                || stage(2, &|out| Painter::fit(grid, recipe.world.sea_level).write_png(out, grid, &notes[..1])),
                 || {
-                    let grey16 = stage(FILES[0], &|out| png::write_grey16(out, grid, &levels, &notes))?;
-                    let grey8 = stage(FILES[1], &|out| png::write_grey8(out, grid, &levels, &notes))?;
+                    let grey16 = stage(0, &|out| png::write_grey16(out, grid, &levels, &notes))?;
+                    let grey8 = stage(1, &|out| png::write_grey8(out, grid, &levels, &notes))?;
                     Ok::<[Staged; 2], orogen::Error>([grey16, grey8])
                 },
             )
@@ -75,12 +82,10 @@ pub fn write(folder: &Path, recipe: &Recipe, grid: &Grid, seconds: impl FnOnce()
         || summary::summary(grid.data(), recipe.world.sea_level),
     );
     let (map, greys) = (pictures.0?, pictures.1?);
-    let text = stage(FILES[3], &|out| out.write_all((again(recipe, grid) + &recipe.to_toml()).as_bytes()))?;
+    let text = stage(3, &|out| out.write_all(mark::marked(&(again(recipe, grid) + &recipe.to_toml())).as_bytes()))?;
     let report = report(recipe, grid, summary, seconds());
-    let json = stage(FILES[4], &|out| out.write_all(report.json().as_bytes()))?;
-    for staged in greys.into_iter().chain([map, text, json]) {
-        staged.commit()?;
-    }
+    let json = stage(4, &|out| out.write_all(report.json().as_bytes()))?;
+    file::commit(greys.into_iter().chain([map, text, json]).collect())?;
     Ok(report)
 }
 
@@ -101,6 +106,7 @@ fn again(recipe: &Recipe, grid: &Grid) -> String {
 
 fn report(recipe: &Recipe, grid: &Grid, summary: Summary, seconds: f64) -> Report {
     Report {
+        made_by: format!("Orogen {}", env!("CARGO_PKG_VERSION")),
         seed: recipe.world.seed,
         width: grid.width(),
         height: grid.height(),

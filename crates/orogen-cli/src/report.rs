@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::io::{self, IsTerminal};
 
 use orogen::error::{Complaint, Location};
+use orogen::words;
 
 use crate::failure::Failure;
 use crate::say;
@@ -91,6 +92,7 @@ const SENTENCE: usize = 2000;
 
 /// A sentence that quotes a file or an argument, without what could command the terminal, and cut in its middle if it is endless.
 fn printable(text: &str) -> String {
+    let text = &words::readable(text.to_string());
     let count = text.chars().count();
     if count > SENTENCE {
         let part = SENTENCE / 2 - 10;

@@ -42,6 +42,15 @@ impl Source {
         }
     }
 
+    /// Every file that is read for a recipe that came from here.
+    pub fn inputs(&self, recipe: &Recipe) -> Vec<PathBuf> {
+        let mut files = recipe.files();
+        if let Source::File(path) | Source::Dem(path) = self {
+            files.push(path.clone());
+        }
+        files
+    }
+
     /// Reads the recipe.
     pub fn read(&self) -> Result<Recipe, Failure> {
         Ok(match self {

@@ -2,9 +2,10 @@
 //!
 //! `cargo run --release --example infinite_terrain` prints each kilometre and draws the last view into `infinite_terrain.png`.
 
+use orogen::file::{OutputPolicy, write_whole};
 use orogen::map::canvas::Canvas;
 use orogen::map::paint::Painter;
-use orogen::{ChunkId, ChunkStep, Grid, Recipe, Rings, Sampler, Window, World, file};
+use orogen::{ChunkId, ChunkStep, Grid, Recipe, Rings, Sampler, Window, World};
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -97,7 +98,9 @@ fn draw(scene: &HashMap<ChunkId, Grid>, rings: &Rings, path: &Path) -> Result<()
         let pixel = |at: f64, first: i64| (at / cell) as i64 - first;
         page.set(pixel(x, window.x), pixel(y, window.y), [200, 0, 0]);
     }
-    file::write_whole(path, |out| page.write_png(out, &[("Title", "Chunks around a viewer")]))?;
+    write_whole(&OutputPolicy::default().output(path)?, |out| {
+        page.write_png(out, &[("Title", "Chunks around a viewer")])
+    })?;
     println!("{} shows {:.0} km of ground, the walk in red", path.display(), 2.0 * rings.range / 1000.0);
     Ok(())
 }

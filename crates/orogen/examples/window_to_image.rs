@@ -2,8 +2,9 @@
 //!
 //! `cargo run --release --example window_to_image`
 
+use orogen::file::{OutputPolicy, write_whole};
 use orogen::map::paint::Painter;
-use orogen::{Window, World, file, presets};
+use orogen::{Window, World, presets};
 use std::path::Path;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -17,7 +18,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let path = Path::new("window.png");
     let painter = Painter::fit(&grid, sea_level);
-    file::write_whole(path, |out| painter.write_png(out, &grid, &[("Title", "A window of alpine")]))?;
+    write_whole(&OutputPolicy::default().output(path)?, |out| {
+        painter.write_png(out, &grid, &[("Title", "A window of alpine")])
+    })?;
     println!("{} holds {} x {} samples", path.display(), grid.width(), grid.height());
     Ok(())
 }

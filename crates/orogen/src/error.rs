@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::words::readable;
+
 /// What every fallible call of the crate returns.
 pub type Result<T> = std::result::Result<T, Error>;
 
@@ -58,11 +60,15 @@ pub struct Location {
 impl Error {
     /// An error of one sentence without a place.
     pub fn new(kind: ErrorKind, sentence: impl Into<String>) -> Error {
-        Error { kind, complaints: vec![Complaint { sentence: sentence.into(), place: None }] }
+        Error::from_complaints(kind, vec![Complaint { sentence: sentence.into(), place: None }])
     }
 
-    /// An error of several complaints, in the order of the text they come from.
-    pub fn from_complaints(kind: ErrorKind, complaints: Vec<Complaint>) -> Error {
+    /// An error of several complaints, in the order of the text they come from. Names and numbers in them that nobody could read are
+    /// [shortened](crate::words::readable).
+    pub fn from_complaints(kind: ErrorKind, mut complaints: Vec<Complaint>) -> Error {
+        for complaint in &mut complaints {
+            complaint.sentence = readable(std::mem::take(&mut complaint.sentence));
+        }
         Error { kind, complaints }
     }
 

@@ -84,6 +84,63 @@ pub fn number(value: f64) -> String {
     }
 }
 
+/// The longest name that a sentence quotes whole, in characters.
+const LONGEST_NAME: usize = 80;
+
+/// The longest run of digits that a sentence shows: more than any number that is meant has.
+const LONGEST_NUMBER: usize = 24;
+
+/// A sentence without what nobody reads: names between backticks are cut in their middle if they are longer than 80 characters, and numbers of
+/// more than 24 digits are written with an exponent.
+pub fn readable(sentence: String) -> String {
+    if sentence.len() <= LONGEST_NUMBER {
+        return sentence;
+    }
+    let mut out = String::with_capacity(sentence.len().min(4096));
+    let mut parts = sentence.split('`').peekable();
+    let mut quoted = false;
+    while let Some(part) = parts.next() {
+        // A backtick without its partner quotes nothing.
+        match quoted && parts.peek().is_some() && part.chars().nth(LONGEST_NAME).is_some() {
+            true => {
+                let half = LONGEST_NAME / 2 - 2;
+                out.extend(part.chars().take(half));
+                out.push_str("...");
+                let end: Vec<char> = part.chars().rev().take(half).collect();
+                out.extend(end.into_iter().rev());
+            }
+            false => short_numbers(part, &mut out),
+        }
+        if parts.peek().is_some() {
+            out.push('`');
+        }
+        quoted = !quoted;
+    }
+    out
+}
+
+/// Appends a text with its long numbers written with an exponent.
+fn short_numbers(text: &str, out: &mut String) {
+    let mut rest = text;
+    while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
+        let digits = |c: char| c.is_ascii_digit() || c == '.';
+        let end = rest[start..].find(|c| !digits(c)).map_or(rest.len(), |length| start + length);
+        out.push_str(&rest[..start]);
+        let run = &rest[start..end];
+        // Not a part of a word, such as a checksum.
+        let alone = !rest[..start].ends_with(char::is_alphanumeric) && !rest[end..].starts_with(char::is_alphanumeric);
+        match run.trim_end_matches('.').parse::<f64>() {
+            Ok(number) if run.len() > LONGEST_NUMBER && alone => {
+                out.push_str(&format!("{number:e}"));
+                out.push_str(&run[run.trim_end_matches('.').len()..]);
+            }
+            _ => out.push_str(run),
+        }
+        rest = &rest[end..];
+    }
+    out.push_str(rest);
+}
+
 /// A number of bytes as people read it: "1.5 GiB".
 pub fn bytes(n: u64) -> String {
     const UNITS: [&str; 6] = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB"];
@@ -116,6 +173,30 @@ mod tests {
             ("x", None),
         ] {
             assert_eq!(nearest(word, names), expect, "{word}");
+        }
+    }
+
+    #[test]
+    fn sentences_stay_readable() {
+        for (sentence, expect) in [
+            ("short".to_string(), "short".to_string()),
+            (format!("not {}, but 2.5", 1e308), "not 1e308, but 2.5".to_string()),
+            (format!("not {}.", 1e-308), "not 1e-308.".to_string()),
+            (format!("from {} to -{}", 1.5e40, 1e30), "from 1.5e40 to -1e30".to_string()),
+            ("a checksum ab11111111111111111111111111111111111111 stays".into(), String::new()),
+            ("0.1234567890123456789 m and 9007199254740993 m stay".into(), String::new()),
+            (
+                format!("no node `{}`, but `b`", "x".repeat(500)),
+                format!("no node `{0}...{0}`, but `b`", "x".repeat(38)),
+            ),
+            (
+                format!("`{}` and `{}`", "é".repeat(80), "é".repeat(81)),
+                format!("`{}` and `{1}...{1}`", "é".repeat(80), "é".repeat(38)),
+            ),
+            (format!("one ` and {}", "y ".repeat(100)), String::new()),
+        ] {
+            let expect = if expect.is_empty() { sentence.clone() } else { expect };
+            assert_eq!(readable(sentence), expect);
         }
     }
 

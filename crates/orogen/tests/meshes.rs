@@ -8,6 +8,7 @@ use std::io::{self, Write};
 use orogen::export::options::Options;
 use orogen::export::subject::Subject;
 use orogen::export::{registry, run};
+use orogen::file::OutputPolicy;
 use orogen::map::paint::Painter;
 use orogen::mesh::adaptive::adaptive;
 use orogen::mesh::glb::{self, Model};
@@ -427,7 +428,8 @@ fn export(world: &World, window: Window, path: &std::path::Path, given: &[(&str,
     }
     let progress = Progress::none();
     let subject = Subject::new(world, "height", window, &progress).map_err(|error| error.to_string())?;
-    run::to_file(format, subject, &options, path).map_err(|error| error.to_string())
+    let output = OutputPolicy::default().output(path).map_err(|error| error.to_string())?;
+    run::to_file(format, subject, &options, &output).map(|written| written.words).map_err(|error| error.to_string())
 }
 
 #[test]

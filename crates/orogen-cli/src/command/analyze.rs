@@ -13,10 +13,11 @@ use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::format::Format;
 use crate::options::Limits;
+use crate::replace::Replace;
 use crate::seeds::Seeds;
 use crate::source::Source;
 use crate::view::{SizedView, View};
-use crate::{interrupt, say};
+use crate::{finite, interrupt, say};
 
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
@@ -31,6 +32,8 @@ pub struct Args {
     /// Picture of one page to write, a .png
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    replace: Replace,
     #[command(flatten)]
     limits: Limits,
     /// Print all numbers as JSON instead of a table
@@ -58,6 +61,8 @@ fn measure(args: &Args) -> Result<(), Failure> {
     let source = Source::find(&args.recipe)?;
     let mut recipe = source.read()?;
     args.samples.view.apply(&mut recipe);
+    let policy = args.replace.policy(source.inputs(&recipe));
+    let output = args.out.as_ref().map(|out| policy.output(out)).transpose()?;
     let world = args.limits.open(recipe)?;
     let window = args.samples.window(&world)?;
     // A file of heights tells nothing of a sea: all of it is land.
@@ -70,15 +75,16 @@ fn measure(args: &Args) -> Result<(), Failure> {
     let mut grids = grids.map_err(|error| interrupt::explain(error.into(), "nothing was measured"))?;
     drop(bar);
     let Some(heights) = grids.pop() else { return Ok(()) };
+    finite::check(&args.layer, &heights)?;
     let measures = Measures::of(&heights, sea_level).ok_or_else(|| {
         let sentence = "there is too little land to measure: it takes 64 x 64 samples, a hundredth of them above the sea, and some relief";
         Error::new(ErrorKind::Request, sentence)
     })?;
-    if let Some(out) = &args.out {
+    if let Some(output) = &output {
         let title = Title { name: name(&args.recipe), about: about(args, &world) };
         let page = page::draw(&title, &heights, sea_level, &measures)?;
         let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-        file::write_whole(out, |out| page.write_png(out, &[("Software", &software)]))?;
+        file::write_whole(output, |out| page.write_png(out, &[("Software", &software)]))?;
     }
     match (args.json, args.quiet) {
         (true, _) => say::out(&json(args, &window, &measures)),

@@ -8,16 +8,17 @@ use orogen::build::builder::{Build, Report, Start};
 use orogen::build::order::{Form, Order, Samples};
 use orogen::build::xyz;
 use orogen::format::encoding::Encoding;
-use orogen::words::{bytes, count, number};
+use orogen::words::{self, bytes, count, number};
 use orogen::{Window, World};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::options::Limits;
+use crate::replace::Replace;
 use crate::seeds::Seeds;
 use crate::source::Source;
 use crate::view::{SizedView, View};
-use crate::{disk, interrupt, say};
+use crate::{disk, finite, interrupt, say};
 
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
@@ -39,11 +40,10 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536), allow_negative_numbers = true)]
     tile: Option<u32>,
     /// Go on with a build that was interrupted, and make again what of it is damaged
-    #[arg(long, conflicts_with = "force")]
+    #[arg(long, conflicts_with_all = ["force", "no_clobber"])]
     resume: bool,
-    /// Build anew over what a build has left there
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    replace: Replace,
     #[command(flatten)]
     limits: Limits,
     /// Show neither needs, nor progress, nor the closing words
@@ -78,13 +78,15 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 fn build(args: &Args) -> Result<(), Failure> {
     let begun = Instant::now();
     let form = form(args)?;
-    let mut recipe = Source::find(&args.recipe)?.read()?;
+    let source = Source::find(&args.recipe)?;
+    let mut recipe = source.read()?;
     args.samples.view.apply(&mut recipe);
+    let output = args.replace.policy(source.inputs(&recipe)).output(&args.out)?;
     let world = args.limits.open(recipe)?;
     let tile = args.tile.map(|tile| tile as usize);
     let order = Order { form, window: window(args, &world, form)?, tile, layers: args.layers.clone() };
-    let build = Build::new(&world, &order, &args.out)?;
-    let start = match (args.resume, args.force) {
+    let build = Build::new(&world, &order, &output)?;
+    let start = match (args.resume, args.replace.force) {
         (true, _) => Start::Resume,
         (_, true) => Start::Force,
         _ => Start::Fresh,
@@ -95,7 +97,13 @@ fn build(args: &Args) -> Result<(), Failure> {
     drop(bar);
     let report =
         report.map_err(|error| interrupt::explain(error.into(), "the same command with --resume goes on from here"))?;
-    if args.quiet { Ok(()) } else { say::out(&words(args, &order, &report, begun.elapsed().as_secs_f64())) }
+    finite::tell(&args.layers.join("`, `"), report.samples)?;
+    if !report.foreign.is_empty() {
+        let names: Vec<String> = report.foreign.iter().map(|path| path.display().to_string()).collect();
+        let list = words::list(names.iter().map(String::as_str));
+        say::error(&format!("note: {} also holds {list}, which no build has made; left as it was", args.out.display()));
+    }
+    if args.quiet { Ok(()) } else { say::out(&closing(args, &order, &report, begun.elapsed().as_secs_f64())) }
 }
 
 /// What OUT and --tiles say together.
@@ -172,12 +180,15 @@ fn needs(args: &Args, build: &Build, start: Start) -> Result<(), Failure> {
 }
 
 /// The closing words.
-fn words(args: &Args, order: &Order, report: &Report, seconds: f64) -> String {
+fn closing(args: &Args, order: &Order, report: &Report, seconds: f64) -> String {
     let Window { width, height, cell, .. } = order.window;
     let made = match report {
         Report { made: 0, .. } => "everything was there and sound".to_string(),
         Report { made, kept: 0, .. } => format!("{} made", count(*made, "tile")),
-        Report { made, kept, .. } => format!("{} made, {kept} kept", count(*made, "tile")),
+        Report { made, kept, again: 0, .. } => format!("{} made, {kept} kept", count(*made, "tile")),
+        Report { made, kept, again, .. } => {
+            format!("{} made, {kept} kept, {again} of them computed again to make it of", count(*made, "tile"))
+        }
     };
     format!(
         "{}: {}, {width} x {height} samples of {} m, {}\n{made} in {seconds:.1} s\n",

@@ -6,6 +6,7 @@ use orogen::file;
 
 use crate::failure::Failure;
 use crate::format::Format;
+use crate::replace::Replace;
 use crate::sheet::{page, row};
 use crate::size::{Bytes, seed};
 use crate::{memory, say};
@@ -26,6 +27,8 @@ pub struct Args {
     /// Most memory to use, such as 512MiB or 2GiB [default: half of what is free]
     #[arg(long, value_name = "BYTES")]
     memory: Option<Bytes>,
+    #[command(flatten)]
+    replace: Replace,
     /// Leave out the closing words
     #[arg(short, long)]
     quiet: bool,
@@ -36,6 +39,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if Format::of(&args.out, Format::ALL).map_err(Failure::Usage)? != Format::Png {
         return Err(Failure::Usage("the page is a picture; name a file that ends in .png".into()));
     }
+    let output = args.replace.anywhere().output(&args.out)?;
     let (rows, side) = (row::rows(args.seed), usize::from(args.size));
     let [width, height] = page::size(rows.len(), side);
     // The page, and of each noise its pictures, its heights twice and what they are made of.
@@ -43,7 +47,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     memory::afford((3 * width * height + noises * side * side * 24) as u64, args.memory)?;
     let page = page::draw(&rows, side, args.seed)?;
     let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    file::write_whole(&args.out, |out| page.write_png(out, &[("Software", &software)]))?;
+    file::write_whole(&output, |out| page.write_png(out, &[("Software", &software)]))?;
     match args.quiet {
         true => Ok(()),
         false => say::out(&format!(

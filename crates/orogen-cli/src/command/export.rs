@@ -7,21 +7,24 @@ use clap::builder::PossibleValue;
 use orogen::World;
 use orogen::export::derived::list;
 use orogen::export::format::Format;
+use orogen::export::run::Written;
 use orogen::export::subject::Subject;
 use orogen::export::targets::frame::{Asked, Frame};
 use orogen::export::targets::target::Target;
 use orogen::export::{registry, run as exporting, targets};
+use orogen::file::OutputPolicy;
 use orogen::words::{count, number};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::format_options::FormatOptions;
 use crate::options::Limits;
+use crate::replace::Replace;
 use crate::seeds::Seeds;
 use crate::size::Size;
 use crate::source::Source;
 use crate::view::{SizedView, View};
-use crate::{interrupt, say};
+use crate::{finite, interrupt, say};
 
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
@@ -46,6 +49,8 @@ pub struct Args {
     /// Tiles for the engine, east and south, that share their edges
     #[arg(long, value_name = "NxM", requires = "target")]
     tiles: Option<Size>,
+    #[command(flatten)]
+    replace: Replace,
     #[command(flatten)]
     limits: Limits,
     /// Show neither progress nor the closing words
@@ -130,12 +135,14 @@ fn export(args: &Args) -> Result<(), Failure> {
             "standard output is a terminal, which cannot show binary data; name a file with -o, or pipe it on".into(),
         ));
     }
-    let mut recipe = Source::find(&args.recipe)?.read()?;
+    let source = Source::find(&args.recipe)?;
+    let mut recipe = source.read()?;
     args.samples.view.apply(&mut recipe);
+    let policy = args.replace.policy(source.inputs(&recipe));
     list::prepare(&mut recipe, &args.layer);
     let world = args.limits.open(recipe)?;
     if let Some(target) = args.target.and_then(targets::list::named) {
-        return for_engine(args, target, format, &world);
+        return for_engine(args, target, format, &world, &policy);
     }
     let window = args.samples.window(&world)?;
     let (bar, progress) = Bar::new(args.quiet);
@@ -143,18 +150,21 @@ fn export(args: &Args) -> Result<(), Failure> {
     match to_stdout {
         true => {
             let mut out = BufWriter::new(io::stdout().lock());
-            let written = exporting::to_stream(format, subject, &options, &mut out).and_then(|_| out.flush());
+            let written = exporting::to_stream(format, subject, &options, &mut out);
+            let written = written.and_then(|written| out.flush().map(|()| written));
             // What is left in the buffer after a failure must not be tried again on the way out.
             drop(out.into_parts());
-            written.map_err(|cause| match interrupt::asked() {
+            let written = written.map_err(|cause| match interrupt::asked() {
                 true => Failure::Interrupted("stopped: what was written is cut short".to_string()),
                 false => Failure::stdout(&cause),
-            })
+            })?;
+            Ok(finite::tell(&args.layer, written.count)?)
         }
         false => {
-            let words = exporting::to_file(format, subject, &options, &args.out)
+            let Written { words, count } = exporting::to_file(format, subject, &options, &policy.output(&args.out)?)
                 .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?;
             drop(bar);
+            finite::tell(&args.layer, count)?;
             let size = format!("{} x {} samples of {} m", window.width, window.height, number(window.cell));
             match args.quiet {
                 true => Ok(()),
@@ -165,7 +175,13 @@ fn export(args: &Args) -> Result<(), Failure> {
 }
 
 /// Writes the layer for an engine.
-fn for_engine(args: &Args, target: &Target, format: &Format, world: &World) -> Result<(), Failure> {
+fn for_engine(
+    args: &Args,
+    target: &Target,
+    format: &Format,
+    world: &World,
+    policy: &OutputPolicy,
+) -> Result<(), Failure> {
     if args.out == Path::new("-") {
         return Err(Failure::Usage("an engine's files have names: give one with -o".into()));
     }
@@ -189,9 +205,10 @@ fn for_engine(args: &Args, target: &Target, format: &Format, world: &World) -> R
     let asked = Asked { side, cell: view.cell, window: view.part(world, None, cell)?, tiles };
     let frame = Frame::new(target, world, &asked)?;
     let (bar, progress) = Bar::new(args.quiet);
-    let made = targets::run::export(target, format, &frame, world, &args.layer, &progress, &args.out)
+    let made = targets::run::export(target, format, &frame, world, &args.layer, &progress, &policy.output(&args.out)?)
         .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?;
     drop(bar);
+    finite::tell(&args.layer, made.count)?;
     if args.quiet {
         return Ok(());
     }

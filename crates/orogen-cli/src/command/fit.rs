@@ -4,28 +4,30 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use orogen::dem::ground::{Ground, USUAL_MEMORY};
+use orogen::file::{self, mark};
 use orogen::fit::likeness::{Likeness, of_windows};
 use orogen::fit::search::{Effort, MOST_WINDOWS, Target, search};
 use orogen::recipe::presets;
 use orogen::survey::measures::Measures;
 use orogen::survey::real::FIGURES;
 use orogen::world::HEIGHT;
-use orogen::{Error, ErrorKind, Grid, Recipe, Window, file};
+use orogen::{Error, ErrorKind, Grid, Recipe, Window};
 use serde_json::json;
 
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::options::Limits;
+use crate::replace::Replace;
 use crate::size::seed;
 use crate::source::preset;
-use crate::{interrupt, memory, say};
+use crate::{finite, interrupt, memory, say};
 
 /// What it takes.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// A file of heights (GeoTIFF, .asc, .hgt, ...)
     place: PathBuf,
-    /// Recipe to write, a .toml; never over another file
+    /// Recipe to write, a .toml; never over one that was written or changed by hand
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
     /// Seed of the search and of the world found
@@ -39,6 +41,8 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100), default_value = "2",
           allow_negative_numbers = true)]
     judges: u32,
+    #[command(flatten)]
+    replace: Replace,
     #[command(flatten)]
     limits: Limits,
     /// Print the report as JSON
@@ -54,16 +58,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if args.out.extension().is_none_or(|extension| extension != "toml") {
         return Err(Failure::Usage(format!("{} is no name for a recipe: let it end in .toml", args.out.display())));
     }
-    if args.out.symlink_metadata().is_ok() {
-        let sentence = format!("{} already exists and is left as it is; choose another name", args.out.display());
-        return Err(Error::new(ErrorKind::File, sentence).into());
-    }
+    let output = args.replace.policy([&args.place]).output(&args.out)?;
     let allowed = args.limits.memory.map(|bytes| bytes.0).or_else(memory::share_of_free).unwrap_or(USUAL_MEMORY);
     let place = Ground::read(&args.place, None, allowed)?;
     if !args.quiet {
         place.notes.iter().for_each(|note| say::error(&format!("note: {}: {note}", args.place.display())));
     }
     let place = Arc::new(place);
+    finite::check("place", &place.grid)?;
     let target = Target::of(&place.grid)?;
     let random = args.tries as usize / 2;
     let effort = Effort { random, improving: args.tries as usize - random, seed: args.seed };
@@ -81,7 +83,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         ours.push(land(args, recipe.clone(), seed, &target)?);
         defaults.push(land(args, preset(presets::DEFAULT)?.recipe()?, seed, &target)?);
     }
-    file::write_whole(&args.out, |out| out.write_all(recipe.to_toml().as_bytes()))?;
+    file::write_whole(&output, |out| out.write_all(mark::marked(&recipe.to_toml()).as_bytes()))?;
     let report = Report::of(&target, &place.grid, &ours, &defaults);
     match (args.json, args.quiet) {
         (true, _) => say::out(&report.json(&target, found.tried)),

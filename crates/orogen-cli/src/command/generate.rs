@@ -11,10 +11,11 @@ use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::options::Limits;
 use crate::pictures::{self, FILES, Report};
+use crate::replace::Replace;
 use crate::seeds::Seeds;
 use crate::source::Source;
 use crate::view::{SizedView, View};
-use crate::{interrupt, say, watch};
+use crate::{finite, interrupt, say, watch};
 
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
@@ -27,6 +28,8 @@ pub struct Args {
     /// Folder to write into; made if it is not there
     #[arg(short, long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
+    #[command(flatten)]
+    replace: Replace,
     #[command(flatten)]
     limits: Limits,
     /// Show neither progress nor the closing words
@@ -76,15 +79,18 @@ fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Fai
     let begun = Instant::now();
     let mut recipe = source.read()?;
     args.samples.view.apply(&mut recipe);
+    let policy = args.replace.policy(source.inputs(&recipe));
     let world = args.limits.open(recipe)?;
     let window = args.samples.window(&world)?;
+    let outputs = pictures::outputs(&args.out, &policy)?;
     let plan = world.plan(&[orogen::world::HEIGHT], &window)?;
     let folder = Folder::ready(&args.out)?;
     let mut grids = world.run(&plan, progress)?;
     let Some(grid) = grids.pop() else {
         return Ok(String::new());
     };
-    let report = pictures::write(&args.out, world.recipe(), &grid, || begun.elapsed().as_secs_f64())?;
+    finite::check(orogen::world::HEIGHT, &grid)?;
+    let report = pictures::write(&outputs, world.recipe(), &grid, || begun.elapsed().as_secs_f64())?;
     folder.keep();
     Ok(match (args.json, args.quiet) {
         (true, _) => report.json(),

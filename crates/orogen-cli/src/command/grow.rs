@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use orogen::file::Output;
 use orogen::format::png::{Animation, Picture, Pixel};
 use orogen::map::paint::Painter;
 use orogen::node::Node;
@@ -12,10 +13,11 @@ use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::moving::{Moving, Target};
 use crate::options::Limits;
+use crate::replace::Replace;
 use crate::seeds::Seeds;
 use crate::source::Source;
 use crate::view::{SizedView, View};
-use crate::{interrupt, memory, say};
+use crate::{finite, interrupt, memory, say};
 
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
@@ -38,6 +40,8 @@ pub struct Args {
     #[arg(long, value_name = "MS", default_value = "120")]
     delay: u16,
     #[command(flatten)]
+    replace: Replace,
+    #[command(flatten)]
     limits: Limits,
     /// Show neither progress nor the closing words
     #[arg(short, long)]
@@ -58,7 +62,8 @@ fn grow(args: &Args) -> Result<(), Failure> {
     if let Some(years) = args.years.filter(|years| !(0.0..=1e9).contains(years)) {
         return Err(Failure::Usage(format!("--years is {years}; it goes from 0 to 1e9")));
     }
-    let mut recipe = Source::find(&args.recipe)?.read()?;
+    let source = Source::find(&args.recipe)?;
+    let mut recipe = source.read()?;
     args.samples.view.apply(&mut recipe);
     if !recipe.nodes().iter().any(|named| matches!(named.node, Node::StreamPower(_))) {
         return Err(Failure::Usage(format!(
@@ -66,16 +71,25 @@ fn grow(args: &Args) -> Result<(), Failure> {
             args.recipe.display()
         )));
     }
+    let policy = args.replace.policy(source.inputs(&recipe));
+    let outputs = target.outputs(&args.out, u32::from(args.frames), &policy)?;
     let (bar, progress) = Bar::new(args.quiet);
-    let made = write(&recipe, args, &target, &progress);
+    let made = write(&recipe, args, &target, &outputs, &progress);
     drop(bar);
     let words = made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
     if args.quiet { Ok(()) } else { say::out(&words) }
 }
 
-fn write(recipe: &Recipe, args: &Args, target: &Target, progress: &Progress) -> Result<String, Failure> {
+fn write(
+    recipe: &Recipe,
+    args: &Args,
+    target: &Target,
+    outputs: &[Output],
+    progress: &Progress,
+) -> Result<String, Failure> {
     // The last frame first: it tells how large the picture is, and its colours are those of all.
     let last = frame(recipe, args, args.frames - 1, progress)?;
+    finite::check(orogen::world::HEIGHT, &last)?;
     let (width, height) = (last.width(), last.height());
     let pixels = (width * height) as u64;
     memory::afford(pixels.saturating_mul(9).saturating_add(target.beside(pixels)), args.limits.memory)?;
@@ -93,7 +107,7 @@ fn write(recipe: &Recipe, args: &Args, target: &Target, progress: &Progress) -> 
         painted(&last, other);
         Ok(bytes)
     };
-    let moving = Moving { out: &args.out, target, picture, animation, sample: &sample };
+    let moving = Moving { outputs, target, picture, animation, sample: &sample };
     moving.write(|k, bytes| {
         match k + 1 < u32::from(args.frames) {
             true => painted(&frame(recipe, args, k as u16, progress).map_err(carried)?, bytes),

@@ -16,11 +16,12 @@ use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::options::Limits;
 use crate::paper::Paper;
+use crate::replace::Replace;
 use crate::seeds::Seeds;
 use crate::size::positive;
 use crate::source::Source;
 use crate::view::View;
-use crate::{interrupt, memory, palette, say};
+use crate::{finite, interrupt, memory, palette, say};
 
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
@@ -59,6 +60,8 @@ pub struct Args {
     view: View,
     #[command(flatten)]
     without: Without,
+    #[command(flatten)]
+    replace: Replace,
     #[command(flatten)]
     limits: Limits,
     /// Show neither progress nor the closing words
@@ -158,6 +161,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     let source = Source::find(&args.recipe)?;
     let mut recipe = source.read()?;
     args.view.apply(&mut recipe);
+    let output = args.replace.policy(source.inputs(&recipe)).protecting([&args.palette]).output(&args.out)?;
     let world = args.limits.open(recipe)?;
     let window = args.view.window(&world)?;
     let is_place = matches!(source, Source::Dem(_));
@@ -168,6 +172,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     let mut grids = made.map_err(|error| interrupt::explain(error.into(), "nothing was written"))?;
     drop(bar);
     let Some(heights) = grids.pop() else { return Ok(()) };
+    finite::check(orogen::world::HEIGHT, &heights)?;
     let sheet = draw(&heights, &options)?;
     if !sheet.lacking.is_empty() {
         let letters: String = sheet.lacking.iter().collect();
@@ -184,10 +189,10 @@ fn map(args: &Args) -> Result<(), Failure> {
             if options.title.chars().all(|letter| letter <= '\u{ff}' && !letter.is_control()) {
                 notes.push(("Title", &options.title));
             }
-            file::write_whole(&args.out, |out| page.write_png(out, &notes))?;
+            file::write_whole(&output, |out| page.write_png(out, &notes))?;
         }
-        Kind::Svg => file::write_whole(&args.out, |out| vector::write(out, &sheet.scene))?,
-        Kind::Pdf => file::write_whole(&args.out, |out| pdf::write(out, &sheet.scene))?,
+        Kind::Svg => file::write_whole(&output, |out| vector::write(out, &sheet.scene))?,
+        Kind::Pdf => file::write_whole(&output, |out| pdf::write(out, &sheet.scene))?,
     }
     if args.quiet {
         return Ok(());

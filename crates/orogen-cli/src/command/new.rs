@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use orogen::file::{self, Existing, OutputPolicy};
 use orogen::recipe::presets;
-use orogen::{Error, ErrorKind, file};
+use orogen::{Error, ErrorKind};
 
 use crate::failure::Failure;
 use crate::{say, source};
@@ -26,7 +27,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let sentence = format!("{} already exists and is left as it is; choose another name", path.display());
         return Err(Error::new(ErrorKind::File, sentence).into());
     }
-    file::write_whole(&path, |out| out.write_all(preset.text.as_bytes()))?;
+    let output = OutputPolicy::new(Existing::Keep).output(&path)?;
+    file::write_whole(&output, |out| out.write_all(preset.text.as_bytes()))?;
     let path = path.display();
     say::out(&format!(
         "wrote {path}, a copy of the preset {}\nmake it:             orogen generate {path}\n\

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use orogen::file;
+use orogen::file::{self, Output};
 use orogen::format::png::{Animation, Picture};
 use orogen::format::{npy, png};
 use orogen_noise::{Basis, Fractal, MAX_OCTAVES, Untileable};
@@ -17,6 +17,7 @@ use crate::draw::texture::Texture;
 use crate::failure::Failure;
 use crate::format::Format;
 use crate::moving::{Moving, Target};
+use crate::replace::Replace;
 use crate::size::{Bytes, MOST, Size, finite, positive, seed, wavelength};
 use crate::{memory, say};
 
@@ -89,6 +90,8 @@ pub struct Args {
     /// Most memory to use, such as 512MiB or 2GiB [default: half of what is free]
     #[arg(long, value_name = "BYTES")]
     memory: Option<Bytes>,
+    #[command(flatten)]
+    replace: Replace,
     /// Leave out the closing words
     #[arg(short, long)]
     quiet: bool,
@@ -140,13 +143,17 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     };
     let task = Task { args, out, format, noise: noise(args)?, look, width, height };
     task.check()?;
+    let outputs = match (&target, args.frames) {
+        (Some(target), Some(frames)) => target.outputs(out, frames, &args.replace.anywhere())?,
+        _ => vec![args.replace.anywhere().output(out)?],
+    };
     task.afford()?;
     if let (false, Some(note)) = (args.quiet, task.note()) {
         say::error(&note);
     }
     match (&target, args.frames) {
-        (Some(target), Some(frames)) => task.write_frames(target, frames)?,
-        _ => file::write_whole(out, |out| match format {
+        (Some(target), Some(frames)) => task.write_frames(target, &outputs, frames)?,
+        _ => file::write_whole(&outputs[0], |out| match format {
             Format::Npy => task.write_array(out),
             _ => task.write_picture(out),
         })?,
@@ -255,7 +262,7 @@ impl Task<'_> {
         })
     }
 
-    fn write_frames(&self, target: &Target, frames: u32) -> Result<(), Failure> {
+    fn write_frames(&self, target: &Target, outputs: &[Output], frames: u32) -> Result<(), Failure> {
         let drawing = self.drawing();
         if *target == Target::Gif && self.deep() {
             return Err(Failure::Usage("a GIF holds 8 bits; leave --bits 16 out, or name a .png".into()));
@@ -273,7 +280,7 @@ impl Task<'_> {
             Ok(sample)
         };
         let animation = Animation { frames, delay: DELAY };
-        let moving = Moving { out: self.out, target, picture, animation, sample: &sample };
+        let moving = Moving { outputs, target, picture, animation, sample: &sample };
         moving.write(|k, bytes| {
             frame(k, bytes);
             Ok(())

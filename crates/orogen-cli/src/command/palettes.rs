@@ -7,6 +7,7 @@ use orogen::map::swatches::{self, Swatch};
 use orogen::palette::{named, read};
 
 use crate::failure::Failure;
+use crate::replace::Replace;
 use crate::say;
 
 /// What it takes.
@@ -17,6 +18,8 @@ pub struct Args {
     /// Picture of all palettes to write, a .png
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    replace: Replace,
     /// Leave out the list
     #[arg(short, long)]
     quiet: bool,
@@ -29,6 +32,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     {
         return Err(Failure::Usage("the page is a picture; name a file that ends in .png".into()));
     }
+    let policy = args.replace.policy(&args.files);
+    let output = args.out.as_ref().map(|out| policy.output(out)).transpose()?;
     let mut shown: Vec<Swatch> = named::all()
         .iter()
         .map(|named| Swatch { palette: named.palette(), about: named.about.into(), safe: named.safe })
@@ -37,10 +42,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let palette = read::read(path)?;
         shown.push(Swatch { about: path.display().to_string(), palette, safe: false });
     }
-    if let Some(out) = &args.out {
+    if let Some(output) = &output {
         let page = swatches::draw(&shown)?;
         let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-        file::write_whole(out, |out| page.write_png(out, &[("Software", &software)]))?;
+        file::write_whole(output, |out| page.write_png(out, &[("Software", &software)]))?;
     }
     if args.quiet {
         return Ok(());

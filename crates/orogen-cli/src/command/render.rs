@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use orogen::file::{self, Output};
 use orogen::format::png::{self, Animation, Picture, Pixel};
 use orogen::palette::palette::Palette;
 use orogen::render::camera::{Camera, View as Shot};
@@ -11,17 +12,18 @@ use orogen::render::scene::{Colors, Edge, Scene, Style};
 use orogen::render::sun::Moment;
 use orogen::words::{count, number};
 use orogen::world::HEIGHT;
-use orogen::{Grid, Progress, Window, World, file};
+use orogen::{Grid, Progress, Window, World};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::moving::{Moving, Target};
 use crate::options::Limits;
+use crate::replace::Replace;
 use crate::seeds::Seeds;
 use crate::size::{Numbers, Size, clock, not_negative, positive};
 use crate::source::Source;
 use crate::view::View;
-use crate::{interrupt, memory, palette, say};
+use crate::{finite, interrupt, memory, palette, say};
 
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
@@ -93,6 +95,8 @@ pub struct Args {
     #[command(flatten)]
     view: View,
     #[command(flatten)]
+    replace: Replace,
+    #[command(flatten)]
     limits: Limits,
     /// Show neither progress nor the closing words
     #[arg(short, long)]
@@ -147,8 +151,11 @@ fn render(args: &Args) -> Result<(), Failure> {
         return Err(Failure::Usage("--palette is for --colors map".into()));
     }
     let (style, shot) = (style(args, palette.as_ref())?, shot(args)?);
-    let mut recipe = Source::find(&args.recipe)?.read()?;
+    let source = Source::find(&args.recipe)?;
+    let mut recipe = source.read()?;
     args.view.apply(&mut recipe);
+    let policy = args.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
+    let outputs = target.outputs(&args.out, args.turntable.unwrap_or(1), &policy)?;
     let world = args.limits.open(recipe)?;
     let window = args.view.window(&world)?;
     let pixels = (width * height) as u64;
@@ -159,7 +166,7 @@ fn render(args: &Args) -> Result<(), Failure> {
     let folder = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     file::check_folder(folder)?;
     let (bar, progress) = Bar::new(args.quiet);
-    let made = draw(args, &world, &window, &Shooting { target, style, shot }, &progress);
+    let made = draw(args, &world, &window, &Shooting { target, outputs, style, shot }, &progress);
     drop(bar);
     let words = made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
     if args.quiet { Ok(()) } else { say::out(&words) }
@@ -300,6 +307,7 @@ const LAYERS: [&str; 3] = [HEIGHT, "surface", "flow"];
 /// What is to be drawn, all of it settled.
 struct Shooting<'a> {
     target: Target,
+    outputs: Vec<Output>,
     style: Style<'a>,
     shot: Shot,
 }
@@ -311,10 +319,11 @@ fn draw(
     shooting: &Shooting,
     progress: &Progress,
 ) -> Result<String, Failure> {
-    let Shooting { target, style, shot } = shooting;
+    let Shooting { target, outputs, style, shot } = shooting;
     let has = |layer: &&str| world.recipe().outputs().any(|name| name == *layer);
     let layers: Vec<&str> = LAYERS.into_iter().filter(|layer| *layer == HEIGHT || has(layer)).collect();
     let grids = world.grids(&layers, window, progress)?;
+    layers.iter().zip(&grids).try_for_each(|(layer, grid)| finite::check(layer, grid))?;
     let layer = |name: &str| layers.iter().position(|layer| *layer == name).and_then(|at| grids.get(at));
     let nothing = Grid::filled(*window, 0.0);
     let land = Land {
@@ -351,7 +360,7 @@ fn draw(
             Ok(sample)
         };
         let animation = Animation { frames, delay: args.delay };
-        let moving = Moving { out: &args.out, target, picture, animation, sample: &sample };
+        let moving = Moving { outputs, target, picture, animation, sample: &sample };
         moving.write(|frame, bytes| Ok(scene.paint(&side(frame), size, 0..height, bytes, progress)?))?;
         return Ok(format!("{file}: {} of {width} x {height} pixels, of {samples}\n", count(frames as usize, "frame")));
     }
@@ -359,7 +368,7 @@ fn draw(
     if let (Some(metres), false) = (camera.lifted(), args.quiet) {
         say::error(&format!("note: the camera stood underground; it is lifted by {metres:.0} m, to just above it"));
     }
-    file::write_whole(&args.out, |out| {
+    file::write_whole(&outputs[0], |out| {
         png::write(out, &picture, |rows, bytes| Ok(scene.paint(&camera, size, rows, bytes, progress)?))
     })?;
     Ok(format!("{file}: {width} x {height} pixels, of {samples}\n"))

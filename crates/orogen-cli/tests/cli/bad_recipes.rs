@@ -136,3 +136,63 @@ fn lines_that_are_long_and_strange() {
     let outcome = folder.bad(&["generate", "a.toml"], 1, "a.toml:2:");
     assert!(!outcome.err.contains(['\x1b', '\x07']), "{:?}", outcome.err);
 }
+
+#[test]
+fn a_file_that_is_not_there_is_told_at_its_line() {
+    let folder = Folder::new();
+    let text = "orogen = 1\n[world]\nsize = [640, 480]\n[nodes.place]\nop = \"dem\"\npath = \"none.tif\"\n[outputs]\nheight = \"place\"\n";
+    folder.write("a.toml", text);
+    folder.write(
+        "a.json",
+        r#"{"orogen": 1, "nodes": {"p": {"op": "image", "path": "none.png"}}, "outputs": {"height": "p"}}"#,
+    );
+    let told = folder.bad(&["generate", "a.toml"], 1, "error: a.toml:6:8: node `place`: cannot read none.tif: ");
+    assert!(told.err.contains(" 6 | path = \"none.tif\"\n   |        ^^^^^^^^^^\n"), "{}", told.err);
+    folder.bad(&["explain", "a.json"], 1, "error: a.json:1:");
+    // A file that is no such file, as well.
+    folder.write("none.tif", "text");
+    let told = folder.bad(&["generate", "a.toml"], 1, "error: a.toml:6:8: node `place`: ");
+    assert!(told.err.contains("^^^^^^^^^^"), "{}", told.err);
+}
+
+#[test]
+fn nothing_is_echoed_that_nobody_reads() {
+    let folder = Folder::new();
+    let name = "n".repeat(1_000_000);
+    let text = |node: &str, value: &str, source: &str| {
+        format!(
+            "orogen = 1\n[nodes.{node}]\nop = \"fbm\"\nwavelength = {value}\n[nodes.b]\nop = \"normalise\"\nsource = \"{source}\"\n\
+             [outputs]\nheight = \"b\"\n"
+        )
+    };
+    for (text, expect) in [
+        (text(&name, "20", &name), "nnn...nnn"),
+        (text("a", "20", &name), "nnn...nnn"),
+        (text(&name, "20", "a"), "nnn...nnn"),
+        (text("a", "1e308", "a"), "1e308"),
+        (text("a", "1e-308", "a"), "1e-308"),
+        (text("a", &"9".repeat(300), "a"), "1:"),
+    ] {
+        folder.write("a.toml", &text);
+        for command in ["explain", "generate"] {
+            let outcome = folder.run(&[command, "a.toml"]);
+            assert_eq!(outcome.code, 1, "{}", outcome.err);
+            let longest = outcome.err.lines().map(str::len).max().unwrap_or(0);
+            assert!(longest < 420 && outcome.err.len() < 2000, "{} bytes in a line: {}", longest, &outcome.err[..400]);
+            assert!(expect == "1:" || outcome.err.contains(expect), "{}", outcome.err);
+        }
+    }
+    for arguments in [
+        &["generate", "hills", "--cell", "1e308"][..],
+        &["render", "hills", "--fov", "1e308"],
+        &["render", "hills", "--exaggeration", "1e308"],
+        &["grow", "alpine", "--years", "1e308"],
+        &["export", "hills", "-o", "a.png", "--range", "1e308,2e308"],
+        &["noise", "perlin", "--wavelength", "1e308"],
+        &["map", "hills", "-o", "a.png", "--contours", "1e308"],
+    ] {
+        let outcome = folder.run(arguments);
+        let longest = (outcome.err.lines().chain(outcome.text().lines())).map(str::len).max().unwrap_or(0);
+        assert!(longest < 300, "{arguments:?}: {}", outcome.err);
+    }
+}

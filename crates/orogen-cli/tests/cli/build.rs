@@ -85,7 +85,7 @@ fn what_cannot_be_built_is_usage() {
         (&["-o", "a.tif", "--resume", "--force"], 2, "cannot be used with"),
         (&["-o", "none/a.tif"], 1, "cannot write into none: the folder does not exist"),
         (&["-o", "a.zarr", "--memory", "1kB"], 1, "of memory"),
-        (&["-o", "small.toml", "--tiles", "png"], 1, "it is a file, and a folder has to be there"),
+        (&["-o", "small.toml", "--tiles", "png"], 1, "this command reads that file"),
     ] {
         folder.bad(&[&["build", "small.toml", "-q"][..], options].concat(), code, expect);
         assert_eq!(folder.names(""), ["small.toml"], "{options:?}");
@@ -228,4 +228,77 @@ fn two_builds_do_not_work_on_one_place() {
     child.wait().unwrap();
     // The lock went with the process that held it.
     folder.bad(&arguments("a.zarr", &asked, &["-q"]), 1, "was begun and not finished: --resume goes on with it");
+}
+
+#[test]
+fn force_removes_a_builds_own_files_and_no_others() {
+    let folder = Folder::with_small();
+    for (n, (name, asked)) in BUILDS.iter().filter(|(name, _)| *name != "a.tif").enumerate() {
+        folder.good(&arguments(name, asked, &["-q"]));
+        let expect = files(&folder.path(name));
+        let mut own = vec!["notes.txt".to_string(), "mine/photo.png".to_string(), "0/0/mine.png".to_string()];
+        if n % 2 == 0 {
+            own.push("height_x99_y99.png".to_string());
+        }
+        for file in &own {
+            fs::create_dir_all(folder.path(&format!("{name}/{file}")).parent().unwrap()).unwrap();
+            folder.write(&format!("{name}/{file}"), "mine");
+        }
+        let outcome = folder.good(&arguments(name, asked, &["--force"]));
+        assert!(
+            outcome.err.contains("notes.txt") && outcome.err.contains("which no build has made"),
+            "{}",
+            outcome.err
+        );
+        for file in &own {
+            assert_eq!(folder.text(&format!("{name}/{file}")), "mine", "{name}");
+            fs::remove_file(folder.path(&format!("{name}/{file}"))).unwrap();
+        }
+        assert!(files(&folder.path(name)) == expect, "{name}");
+        // What is in the way of the new files stops it before anything is removed.
+        let other = ["small.toml", "--tiles", "r16", "--tile", "33"];
+        if *name == "png" {
+            folder.write("png/height_x0_y0.r16", "mine");
+            folder.bad(
+                &arguments(name, &other, &["--force", "-q"]),
+                1,
+                "was not made by a build and is in the way of this one",
+            );
+            assert_eq!(files(&folder.path(name)).len(), expect.len() + 1, "nothing was removed");
+            fs::remove_file(folder.path("png/height_x0_y0.r16")).unwrap();
+            folder.good(&arguments(name, &other, &["--force", "-q"]));
+            assert!(
+                folder.names("png").iter().all(|file| !file.ends_with(".png")),
+                "nothing is left of the other form"
+            );
+        }
+    }
+    // The recipe in the folder of its own result, and a user's folder where the build would work.
+    folder.write("map/small.toml", crate::harness::SMALL);
+    folder.good(&["build", "map/small.toml", "--tiles", "r32", "--tile", "33", "-o", "map", "--force", "-q"]);
+    assert_eq!(folder.text("map/small.toml"), crate::harness::SMALL);
+    fs::create_dir(folder.path("b.zarr.build")).unwrap();
+    folder.write("b.zarr.build/thesis.txt", "mine");
+    folder.bad(
+        &["build", "small.toml", "-o", "b.zarr", "--force"],
+        1,
+        "b.zarr.build holds thesis.txt, which no build has made",
+    );
+    assert_eq!(folder.names("b.zarr.build"), ["thesis.txt"]);
+}
+
+#[test]
+fn resuming_after_damage_says_what_was_made() {
+    let folder = Folder::with_small();
+    let (name, asked) = ("map", &["hills", "--tiles", "terrarium"][..]);
+    folder.good(&arguments(name, asked, &["-q"]));
+    let expect = files(&folder.path(name));
+    let tiles = expect.keys().filter(|path| path.extension().is_some_and(|extension| extension == "png")).count();
+    // The widest view is made of all others.
+    let zoom = |path: &&PathBuf| path.iter().next().unwrap().to_string_lossy().parse::<u32>().unwrap_or(u32::MAX);
+    let top = expect.keys().min_by_key(zoom).unwrap();
+    fs::write(folder.path(name).join(top), "tampered").unwrap();
+    let told = folder.good(&arguments(name, asked, &["--resume"])).text().to_string();
+    assert!(told.contains(&format!("1 tile made, {0} kept, {0} of them computed again", tiles - 1)), "{told}");
+    assert!(files(&folder.path(name)) == expect);
 }

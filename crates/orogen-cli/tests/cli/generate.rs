@@ -157,7 +157,7 @@ fn running_again_replaces_the_files_and_nothing_else() {
     folder.good(&["generate", "small.toml"]);
     let first = folder.json("out/summary.json")["sha256"].clone();
     folder.write("out/mine.txt", "keep");
-    folder.write("out/map.png", vec![7; 1 << 20]);
+    folder.write("out/map.png", [&folder.read("out/map.png")[..], &vec![7; 1 << 20]].concat());
     folder.good(&["generate", "small.toml", "--size", "16"]);
     assert_eq!(folder.names("out").len(), 6);
     assert_eq!((folder.text("out/mine.txt").as_str(), png(&folder.read("out/map.png")).width), ("keep", 16));

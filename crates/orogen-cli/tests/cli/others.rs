@@ -178,7 +178,8 @@ fn fit_writes_a_recipe_that_holds_nothing_of_the_place() {
     assert!(json["recipe"]["distance"].as_f64().unwrap() > 0.0 && json["place"]["figures"]["relief"].is_number());
     // It makes land, with about the slopes that were asked for.
     folder.good(&["export", "like.toml", "-o", "like.npy", "-q"]);
-    folder.bad(&[&fit[..], &["-o", "like.toml"]].concat(), 1, "already exists");
+    folder.write("like.toml", recipe + "# mine\n");
+    folder.bad(&[&fit[..], &["-o", "like.toml"]].concat(), 1, "written or changed by hand");
     folder.bad(&[&fit[..], &["-o", "like.tif"]].concat(), 2, "let it end in .toml");
     folder.good(&["export", "hills", "-o", "flat.tif", "--window", "0,0,40,40", "-q"]);
     folder.bad(&["fit", "flat.tif", "-o", "x.toml"], 2, "too small or too flat");

@@ -3,6 +3,7 @@
 pub mod aspect;
 pub mod curvature;
 pub mod distance;
+pub mod finite;
 pub mod fourier;
 pub mod geomorphons;
 pub mod ground_cover;

@@ -13,12 +13,15 @@ use super::job::{Job, Place, Record, Stage};
 use super::journal::{Journal, Story};
 use super::order::{Form, Order};
 use super::piece::Piece;
+use super::samples::range;
 use super::shelf::{Put, Shelf, put};
 use super::site::Site;
-use super::target::{Disk, Target};
+use super::target::{Disk, Target, paths};
 use super::xyz::Tree;
 use super::zarr::Zarr;
+use crate::analysis::finite::FiniteCount;
 use crate::error::{Error, ErrorKind, Result};
+use crate::file::Output;
 use crate::grid::Grid;
 use crate::progress::Progress;
 use crate::world::World;
@@ -35,12 +38,18 @@ pub enum Start {
 }
 
 /// What has been done.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Report {
     /// Tiles that were made now, those of overviews and lower zooms among them.
     pub made: usize,
     /// Tiles that were there and sound.
     pub kept: usize,
+    /// How many of those that were there had to be computed again, because others are made of them.
+    pub again: usize,
+    /// The samples computed now, of all layers.
+    pub samples: FiniteCount,
+    /// Files in the result's folder that no build has made, by their paths within it: they were left as they are.
+    pub foreign: Vec<PathBuf>,
     /// Bytes of the result's tiles, or of the one file that it is.
     pub bytes: u64,
 }
@@ -50,13 +59,14 @@ pub struct Report {
 /// ```
 /// use orogen::build::builder::{Build, Start};
 /// use orogen::build::order::{Form, Order};
+/// use orogen::file::OutputPolicy;
 /// use orogen::{Progress, Window, World};
 ///
 /// let world = World::open(orogen::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
 /// let out = std::env::temp_dir().join(format!("orogen-doc-{}.zarr", std::process::id()));
 /// let order =
 ///     Order { form: Form::Zarr, window: Window::new(300, 200, 30.0), tile: Some(128), layers: vec!["height".into()] };
-/// let build = Build::new(&world, &order, &out)?;
+/// let build = Build::new(&world, &order, &OutputPolicy::default().output(&out)?)?;
 /// let report = build.run(Start::Fresh, &Progress::none())?;
 /// assert_eq!((report.made, report.kept), (6, 0));
 /// assert_eq!(build.run(Start::Resume, &Progress::none())?.made, 0);
@@ -80,7 +90,7 @@ impl<'a> Build<'a> {
     ///
     /// # Errors
     /// If the order or its place is impossible, the world does not have these samples, or one tile needs more memory than allowed.
-    pub fn new(world: &'a World, order: &Order, out: &Path) -> Result<Build<'a>> {
+    pub fn new(world: &'a World, order: &Order, output: &Output) -> Result<Build<'a>> {
         order.check()?;
         let tile = match order.tile.or(order.form.usual_tile()) {
             Some(tile) => tile,
@@ -90,16 +100,10 @@ impl<'a> Build<'a> {
         let layers: Vec<&str> = order.layers.iter().map(String::as_str).collect();
         // Refuses a window that is none, before it is cut.
         world.plan(&layers, &order.window)?;
-        let about = &world.recipe().about;
-        let target: Box<dyn Target> = match order.form {
-            Form::Cog => Box::new(Cog::new(&identity)?),
-            Form::Zarr => Box::new(Zarr::new(&identity, about)?),
-            Form::Tiles(samples) => Box::new(Folder::new(&identity, samples, about, world.recipe().world.sea_level)?),
-            Form::Xyz(encoding) => Box::new(Tree::new(&identity, about, encoding)?),
-        };
+        let target = target(world, &identity, order.form)?;
         let stages = target.stages();
         let block = Block::fitting(world, target.as_ref(), stages[0], &layers)?;
-        let site = Site::new(out, order.form.is_file())?;
+        let site = Site::new(output, order.form.is_file())?;
         Ok(Build { world, identity, target, stages, block, site, put: Box::new(put) })
     }
 
@@ -135,33 +139,41 @@ impl<'a> Build<'a> {
     /// is cancelled. After any of these, and after a kill, [`Start::Resume`] goes on.
     pub fn run(&self, start: Start, progress: &Progress) -> Result<Report> {
         let mut held = self.site.hold()?;
-        let (story, sound) = self.begin(start, progress)?;
+        let (story, sound, foreign) = self.begin(start, progress)?;
         held.keep();
         if let Some(report) = self.is_finished(&story, &sound) {
             self.site.sweep()?;
             return Ok(report);
         }
         let wanted = self.wanted(&sound);
-        let kept = sound.len();
+        let (kept, again) = (sound.len(), wanted.intersection(&sound).count());
         let records: BTreeMap<Job, Record> = story.records;
         let journal = Story { identity: self.identity.clone(), records: records.clone(), finished: None };
         self.site.tidy()?;
         self.site.furnish()?;
         let journal = Journal::write(&self.site.journal(), &self.site.temporary(0), &journal)?;
         let shelf = Shelf::new(&self.site, journal, records, self.put.as_ref());
-        let made = wanted.len();
-        self.world.install(|| self.make(&wanted, &shelf, progress))?;
+        let made = wanted.len() - again;
+        let samples = self.world.install(|| self.make(&wanted, &shelf, progress))?;
         progress.check()?;
+        for (n, layer) in self.identity.layers.iter().enumerate() {
+            if shelf.range(n).is_none() {
+                // Also if all of it was there already: then nothing was counted now.
+                FiniteCount { samples: samples.samples.max(1), finite: 0 }.check(&format!("the layer `{layer}`"))?;
+            }
+        }
         let extra = self.target.finish(&shelf)?;
         let bytes = self.close(shelf, extra)?;
-        Ok(Report { made, kept, bytes })
+        Ok(Report { made, kept, again, samples, foreign, bytes })
     }
 
     /// What is known of the build, and which of its jobs' files are as they should be.
-    fn begin(&self, start: Start, progress: &Progress) -> Result<(Story, BTreeSet<Job>)> {
+    fn begin(&self, start: Start, progress: &Progress) -> Result<(Story, BTreeSet<Job>, Vec<PathBuf>)> {
+        let mut foreign = Vec::new();
         let story = match (start, Story::read(&self.site.journal())) {
             (Start::Force, read) => {
-                self.site.clear(!matches!(read, Ok(None)))?;
+                let known = !matches!(read, Ok(None));
+                foreign = self.clear(read.ok().flatten().map(|story| story.identity).as_ref(), known)?;
                 None
             }
             (_, read) => read?,
@@ -188,11 +200,20 @@ impl<'a> Build<'a> {
                 )),
                 None => {
                     let sound = self.world.install(|| self.sound(&story, progress))?;
-                    Ok((story, sound))
+                    Ok((story, sound, foreign))
                 }
             },
-            (_, None) => Ok((Story::begun(self.identity.clone()), BTreeSet::new())),
+            (_, None) => Ok((Story::begun(self.identity.clone()), BTreeSet::new(), foreign)),
         }
+    }
+
+    /// Removes the files of the build before, whose journal says what it was. Returns those that are no build's, which stay.
+    fn clear(&self, before: Option<&Identity>, known: bool) -> Result<Vec<PathBuf>> {
+        let new = paths(self.target.as_ref());
+        // Without a journal that tells, only what would be written anew is a build's own.
+        let old = before.and_then(|before| target(self.world, before, Form::named(&before.form)?).ok());
+        let old = old.map_or_else(|| new.clone(), |target| paths(target.as_ref()));
+        self.site.clear(known, &old, &new)
     }
 
     /// The jobs whose files are all there and what they were.
@@ -221,6 +242,9 @@ impl<'a> Build<'a> {
         (whole && sound.len() >= tiles).then(|| Report {
             made: 0,
             kept: self.tiles().0,
+            again: 0,
+            samples: FiniteCount::default(),
+            foreign: Vec::new(),
             bytes: self.bytes(&story.records, finished.iter().map(|(_, piece)| piece.length).sum()),
         })
     }
@@ -254,14 +278,15 @@ impl<'a> Build<'a> {
         wanted
     }
 
-    /// Does the jobs, stage after stage.
-    fn make(&self, wanted: &BTreeSet<Job>, shelf: &Shelf, progress: &Progress) -> Result<()> {
+    /// Does the jobs, stage after stage. Returns how many of the samples are finite.
+    fn make(&self, wanted: &BTreeSet<Job>, shelf: &Shelf, progress: &Progress) -> Result<FiniteCount> {
+        let mut count = FiniteCount::default();
         progress.expect(wanted.iter().map(|job| self.stages[job.stage].samples as i64).sum());
         for (n, stage) in self.stages.iter().enumerate() {
             let tiles = wanted.iter().filter(|job| job.stage == n).map(|job| (job.row, job.column));
             if n == 0 {
                 for group in self.block.groups(&tiles.collect(), *stage) {
-                    self.make_group(&group, shelf, progress)?;
+                    count = count.and(self.make_group(&group, shelf, progress)?);
                 }
             } else {
                 let tiles: Vec<(usize, usize)> = tiles.collect();
@@ -270,12 +295,14 @@ impl<'a> Build<'a> {
                     .try_for_each(|(row, column)| self.make_one(Job { stage: n, row, column }, &[], shelf, progress))?;
             }
         }
-        Ok(())
+        Ok(count)
     }
 
     /// Makes the samples of tiles that lie together, then each tile of them.
-    fn make_group(&self, group: &[(usize, usize)], shelf: &Shelf, progress: &Progress) -> Result<()> {
-        let Some(window) = union(self.target.as_ref(), group.iter().copied()) else { return Ok(()) };
+    fn make_group(&self, group: &[(usize, usize)], shelf: &Shelf, progress: &Progress) -> Result<FiniteCount> {
+        let Some(window) = union(self.target.as_ref(), group.iter().copied()) else {
+            return Ok(FiniteCount::default());
+        };
         let layers: Vec<&str> = self.identity.layers.iter().map(String::as_str).collect();
         let grids = self.world.grids(&layers, &window, &progress.part())?;
         group.par_iter().try_for_each(|&(row, column)| {
@@ -283,12 +310,17 @@ impl<'a> Build<'a> {
             let tiles: Option<Vec<Grid>> = grids.iter().map(|grid| grid.crop(&window)).collect();
             let tiles = tiles.ok_or_else(|| Error::new(ErrorKind::Request, "a tile lies outside of its block"))?;
             self.make_one(Job { stage: 0, row, column }, &tiles, shelf, progress)
-        })
+        })?;
+        Ok(grids.iter().fold(FiniteCount::default(), |count, grid| count.and(FiniteCount::of(grid.data()))))
     }
 
     fn make_one(&self, job: Job, grids: &[Grid], shelf: &Shelf, progress: &Progress) -> Result<()> {
         progress.check()?;
-        let made = self.target.make(job, grids, shelf)?;
+        let mut made = self.target.make(job, grids, shelf)?;
+        if made.ranges.is_empty() {
+            // Whether there is any finite sample is asked of every result.
+            made.ranges = grids.iter().map(range).collect();
+        }
         shelf.keep(job, &self.target.places(job), &made)?;
         progress.advance(self.stages[job.stage].samples as u64);
         Ok(())
@@ -325,4 +357,15 @@ impl<'a> Build<'a> {
         };
         records.iter().map(of).sum::<u64>() + extra
     }
+}
+
+/// What an identity's result consists of.
+fn target(world: &World, identity: &Identity, form: Form) -> Result<Box<dyn Target>> {
+    let (about, sea_level) = (&world.recipe().about, world.recipe().world.sea_level);
+    Ok(match form {
+        Form::Cog => Box::new(Cog::new(identity)?),
+        Form::Zarr => Box::new(Zarr::new(identity, about)?),
+        Form::Tiles(samples) => Box::new(Folder::new(identity, samples, about, sea_level)?),
+        Form::Xyz(encoding) => Box::new(Tree::new(identity, about, encoding)?),
+    })
 }

@@ -18,6 +18,9 @@ use crate::format::png::{self, Picture, Pixel};
 use crate::grid::{Grid, Window};
 use crate::tiles::Tiling;
 
+/// What says how to place and scale the tiles.
+const MANIFEST: &str = "manifest.json";
+
 /// The largest side of a tile.
 const LARGEST: usize = 16_384;
 
@@ -201,9 +204,13 @@ impl Target for Folder {
             "layers": layers,
             "tiles": tiles,
         });
-        let path = PathBuf::from("manifest.json");
+        let path = PathBuf::from(MANIFEST);
         let piece = shelf.file(&Place::Result(path.clone()), format!("{manifest:#}\n").as_bytes())?;
         Ok(vec![(path, piece)])
+    }
+
+    fn extras(&self) -> Vec<PathBuf> {
+        vec![MANIFEST.into()]
     }
 
     fn scratch_memory(&self) -> u64 {

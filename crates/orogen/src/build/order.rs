@@ -43,6 +43,22 @@ impl Form {
         }
     }
 
+    /// All there are.
+    pub const ALL: [Form; 7] = [
+        Form::Cog,
+        Form::Zarr,
+        Form::Tiles(Samples::Png),
+        Form::Tiles(Samples::R16),
+        Form::Tiles(Samples::R32),
+        Form::Xyz(Encoding::Terrarium),
+        Form::Xyz(Encoding::TerrainRgb),
+    ];
+
+    /// The form of that name.
+    pub fn named(name: &str) -> Option<Form> {
+        Form::ALL.into_iter().find(|form| form.name() == name)
+    }
+
     /// The form that a name tells by its extension: `.tif`, `.tiff` or `.zarr`.
     pub fn of(out: &Path) -> Option<Form> {
         let extension = out.extension()?.to_string_lossy().to_lowercase();

@@ -80,6 +80,7 @@ impl<'a> Shelf<'a> {
                 let _ = file.set_permissions(there.permissions());
             }
             file.sync_all()?;
+            self.site.output().check(Some(&temporary))?;
             settle(&temporary, path)?;
             Ok(piece)
         };

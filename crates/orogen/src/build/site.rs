@@ -1,6 +1,7 @@
 //! Where a build lies on disk, and who may work there.
 
 use std::collections::BTreeSet;
+use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -8,7 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::job::Place;
 use crate::error::{Error, ErrorKind, Result};
-use crate::file;
+use crate::file::{self, Output};
 
 /// Names within the folder beside the result.
 const LOCK: &str = "lock";
@@ -25,6 +26,8 @@ const SYNCS: usize = 16;
 /// The result and the folder beside it.
 #[derive(Debug, Clone)]
 pub struct Site {
+    /// What may be replaced there.
+    output: Output,
     out: PathBuf,
     beside: PathBuf,
     /// Whether the result is one file.
@@ -64,7 +67,8 @@ impl Site {
     ///
     /// # Errors
     /// If `out` does not name something that can be a result.
-    pub fn new(out: &Path, is_file: bool) -> Result<Site> {
+    pub fn new(output: &Output, is_file: bool) -> Result<Site> {
+        let out = output.path();
         let refuse = |why: &str| Err(Error::new(ErrorKind::File, format!("cannot build {}: {why}", out.display())));
         // Through links, so that what they name is replaced and they stay.
         let real = match fs::canonicalize(out) {
@@ -86,12 +90,17 @@ impl Site {
         }
         let mut beside = name.to_os_string();
         beside.push(".build");
-        Ok(Site { beside: real.with_file_name(beside), out: real, file: is_file })
+        Ok(Site { output: output.clone(), beside: real.with_file_name(beside), out: real, file: is_file })
     }
 
     /// The result.
     pub fn out(&self) -> &Path {
         &self.out
+    }
+
+    /// What may be replaced at its place.
+    pub fn output(&self) -> &Output {
+        &self.output
     }
 
     /// The folder beside the result.
@@ -133,6 +142,15 @@ impl Site {
             Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => false,
             Err(cause) => return Err(Error::file("make the folder", &self.beside, &cause)),
         };
+        if let Some(foreign) = self.foreign_beside() {
+            let sentence = format!(
+                "{} holds {}, which no build has made, and a build of {} works in that folder: move it away, or name another place",
+                self.beside.display(),
+                foreign.to_string_lossy(),
+                self.out.display()
+            );
+            return Err(Error::new(ErrorKind::File, sentence));
+        }
         let path = self.beside.join(LOCK);
         let failed = |cause: io::Error| Error::file("lock", &path, &cause);
         let lock = OpenOptions::new().create(true).truncate(false).write(true).open(&path).map_err(failed)?;
@@ -157,27 +175,74 @@ impl Site {
         }
     }
 
-    /// Makes room for a build that begins. `known` is whether there is a journal, and so the result is a build's own.
+    /// What lies in the folder beside the result that no build puts there.
+    fn foreign_beside(&self) -> Option<OsString> {
+        let names = fs::read_dir(&self.beside).ok()?.flatten().map(|entry| entry.file_name());
+        names.filter(|name| ![LOCK, JOURNAL, SCRATCH, TEMPORARY].iter().any(|own| name == own)).min()
+    }
+
+    /// Makes room for a build that begins: removes the files of the one before, `old` within the result, and no others. Returns those, which
+    /// stay. `known` is whether there is a journal, and so the result is a build's own; `new` are the files that will be written.
     ///
-    /// A file is left to be replaced when the new one is there.
+    /// A result that is one file is left to be replaced when the new one is there.
     ///
     /// # Errors
-    /// If the result's folder holds what no build has made, or cannot be removed.
-    pub fn clear(&self, known: bool) -> Result<()> {
+    /// If no build has made what is there, if a file that stays is in the way of a new one, or if something cannot be removed. Nothing is removed
+    /// then.
+    pub fn clear(&self, known: bool, old: &BTreeSet<PathBuf>, new: &BTreeSet<PathBuf>) -> Result<Vec<PathBuf>> {
+        let mut foreign = Vec::new();
         if !self.file && self.is_taken() {
+            let refuse = |sentence: String| Err(Error::new(ErrorKind::File, sentence));
             if !known && !MARKS.iter().any(|mark| self.out.join(mark).is_file()) {
-                let sentence = format!(
+                return refuse(format!(
                     "{} holds files that no build has made, and --force does not remove those: empty it, or name another place",
                     self.out.display()
-                );
-                return Err(Error::new(ErrorKind::File, sentence));
+                ));
+            }
+            let (files, folders) = self.contents()?;
+            let policy = self.output.policy();
+            let (own, others): (Vec<PathBuf>, Vec<PathBuf>) =
+                files.into_iter().partition(|path| old.contains(path) && !policy.is_input(&self.out.join(path)));
+            if let Some(path) = others.iter().find(|path| new.contains(*path)) {
+                return refuse(format!(
+                    "{} was not made by a build and is in the way of this one: move it away, or name another place",
+                    self.out.join(path).display()
+                ));
             }
             // The journal first: a half removed result must not look like one to go on with.
             remove(&self.journal(), |path| fs::remove_file(path))?;
-            remove(&self.out, |path| fs::remove_dir_all(path))?;
+            own.iter().try_for_each(|path| remove(&self.out.join(path), |path| fs::remove_file(path)))?;
+            // The innermost first. Those that hold something stay, and so do those of others that were empty.
+            let held: BTreeSet<&Path> = own.iter().flat_map(|path| path.ancestors().skip(1)).collect();
+            let emptied = folders.iter().rev().filter(|folder| held.contains(folder.as_path()));
+            emptied.for_each(|folder| drop(fs::remove_dir(self.out.join(folder))));
+            foreign = others;
         }
         remove(&self.journal(), |path| fs::remove_file(path))?;
-        self.sweep()
+        self.sweep()?;
+        Ok(foreign)
+    }
+
+    /// The files and the folders of a result that is a folder, by their paths within it. Links are files, wherever they lead.
+    fn contents(&self) -> Result<(Vec<PathBuf>, BTreeSet<PathBuf>)> {
+        let (mut files, mut folders, mut left) = (Vec::new(), BTreeSet::new(), vec![PathBuf::new()]);
+        while let Some(within) = left.pop() {
+            let folder = self.out.join(&within);
+            let failed = |cause: io::Error| Error::file("read", &folder, &cause);
+            for entry in fs::read_dir(&folder).map_err(failed)? {
+                let entry = entry.map_err(failed)?;
+                let path = within.join(entry.file_name());
+                match entry.file_type().map_err(failed)?.is_dir() {
+                    true => {
+                        folders.insert(path.clone());
+                        left.push(path);
+                    }
+                    false => files.push(path),
+                }
+            }
+        }
+        files.sort();
+        Ok((files, folders))
     }
 
     /// Removes what was needed only on the way.

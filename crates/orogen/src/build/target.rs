@@ -1,5 +1,6 @@
 //! What each kind of result has to know.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use super::job::{Job, Made, Place, Stage};
@@ -33,11 +34,31 @@ pub trait Target: Sync {
     /// Writes what belongs to no tile, once all tiles are there; returns the files, by their paths within the result.
     fn finish(&self, shelf: &Shelf) -> Result<Vec<(PathBuf, Piece)>>;
 
+    /// The files that [`Target::finish`] writes, by their paths within the result; none if the result is one file.
+    fn extras(&self) -> Vec<PathBuf> {
+        Vec::new()
+    }
+
     /// Bytes that a job needs beside its samples.
     fn scratch_memory(&self) -> u64;
 
     /// The most bytes on disk: those of the result, and those needed on the way.
     fn disk(&self) -> Disk;
+}
+
+/// All files of a result that is a folder, by their paths within it.
+pub fn paths(target: &dyn Target) -> BTreeSet<PathBuf> {
+    let mut paths: BTreeSet<PathBuf> = target.extras().into_iter().collect();
+    for (stage, Stage { rows, columns, .. }) in target.stages().into_iter().enumerate() {
+        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+            let places = target.places(Job { stage, row, column }).into_iter();
+            paths.extend(places.filter_map(|place| match place {
+                Place::Result(path) => Some(path),
+                Place::Scratch(_) => None,
+            }));
+        }
+    }
+    paths
 }
 
 /// Bytes on disk, at most.

@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::builder::{Build, Report, Start};
 use super::order::{Form, Order, Samples};
 use crate::error::ErrorKind;
+use crate::file::{Existing, Output, OutputPolicy};
 use crate::format::encoding::Encoding;
 use crate::format::geotiff::{options, writer};
 use crate::spool::Spool;
@@ -39,15 +40,7 @@ height = "land"
 rough = "noise"
 "#;
 
-const FORMS: [Form; 7] = [
-    Form::Cog,
-    Form::Zarr,
-    Form::Tiles(Samples::Png),
-    Form::Tiles(Samples::R16),
-    Form::Tiles(Samples::R32),
-    Form::Xyz(Encoding::Terrarium),
-    Form::Xyz(Encoding::TerrainRgb),
-];
+const FORMS: [Form; 7] = Form::ALL;
 
 fn world(memory: Option<u64>, threads: usize) -> World {
     let recipe = Recipe::parse(BOUNDED, "test").unwrap();
@@ -114,8 +107,12 @@ fn result(out: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     files(out).into_iter().map(|(path, bytes)| (path.strip_prefix(out).unwrap().to_path_buf(), bytes)).collect()
 }
 
+fn output(out: &Path) -> Output {
+    OutputPolicy::new(Existing::Replace).output(out).unwrap()
+}
+
 fn run(world: &World, order: &Order, out: &Path, start: Start) -> Report {
-    Build::new(world, order, out).unwrap().run(start, &Progress::none()).unwrap()
+    Build::new(world, order, &output(out)).unwrap().run(start, &Progress::none()).unwrap()
 }
 
 /// An undisturbed build.
@@ -137,7 +134,7 @@ fn the_bytes_depend_neither_on_memory_nor_on_threads() {
         let order = order(form);
         // So little that each tile is made alone.
         let folder = Folder::new();
-        let fits = |memory: &u64| Build::new(&world(Some(*memory), 1), &order, &folder.out()).is_ok();
+        let fits = |memory: &u64| Build::new(&world(Some(*memory), 1), &order, &output(&folder.out())).is_ok();
         let smaller = |memory: &u64| Some(memory / 4 * 3);
         let least = std::iter::successors(Some(1 << 30), smaller).take_while(fits).last();
         assert!(least.is_some());
@@ -153,7 +150,7 @@ fn the_bytes_depend_neither_on_memory_nor_on_threads() {
 fn too_little_memory_is_refused_before_anything_is_written() {
     let folder = Folder::new();
     let world = world(Some(10_000), 1);
-    let error = Build::new(&world, &order(Form::Zarr), &folder.out()).err().unwrap();
+    let error = Build::new(&world, &order(Form::Zarr), &output(&folder.out())).err().unwrap();
     assert_eq!(error.kind(), ErrorKind::Memory);
     assert!(error.to_string().contains("and 9.8 KiB is allowed: ask for smaller tiles, or allow more"), "{error}");
     assert_eq!(files(&folder.0), BTreeMap::new());
@@ -198,7 +195,7 @@ fn interrupted_anywhere_it_ends_with_the_same_bytes() {
         // Full again and again, a little later each time.
         let mut kept = 0;
         for files in (0..).step_by(3) {
-            let mut build = Build::new(&world, &order, &folder.out()).unwrap();
+            let mut build = Build::new(&world, &order, &output(&folder.out())).unwrap();
             fill_after(&mut build, files);
             match build.run(Start::Resume, &Progress::none()) {
                 Ok(report) => {
@@ -227,7 +224,7 @@ fn cancelled_it_goes_on() {
         let (expect, whole) = undisturbed(form);
         let (world, order) = (world(None, 1), order(form));
         let folder = Folder::new();
-        let build = Build::new(&world, &order, &folder.out()).unwrap();
+        let build = Build::new(&world, &order, &output(&folder.out())).unwrap();
         let flag = Arc::new(AtomicBool::new(false));
         let stop = Arc::clone(&flag);
         let progress =
@@ -275,7 +272,7 @@ fn what_is_damaged_on_the_way_is_made_again() {
         let (expect, whole) = undisturbed(form);
         let (world, order) = (world(None, 2), order(form));
         let folder = Folder::new();
-        let mut build = Build::new(&world, &order, &folder.out()).unwrap();
+        let mut build = Build::new(&world, &order, &output(&folder.out())).unwrap();
         fill_after(&mut build, 4);
         assert!(build.run(Start::Fresh, &Progress::none()).is_err());
         for (n, (path, mut bytes)) in files(&folder.0).into_iter().enumerate() {
@@ -300,7 +297,7 @@ fn what_is_there_is_not_overwritten() {
     let folder = Folder::new();
     let (world, order) = (world(None, 2), order(Form::Zarr));
     let build = |order: &Order, start| {
-        let done = Build::new(&world, order, &folder.out()).unwrap().run(start, &Progress::none());
+        let done = Build::new(&world, order, &output(&folder.out())).unwrap().run(start, &Progress::none());
         done.map_err(|error| error.to_string().replace(&folder.0.display().to_string(), "~"))
     };
     build(&order, Start::Fresh).unwrap();
@@ -336,13 +333,15 @@ fn what_is_there_is_not_overwritten() {
 fn a_begun_build_is_not_begun_again() {
     let folder = Folder::new();
     let (world, order) = (world(None, 2), order(Form::Cog));
-    let mut build = Build::new(&world, &order, &folder.out()).unwrap();
+    let mut build = Build::new(&world, &order, &output(&folder.out())).unwrap();
     fill_after(&mut build, 5);
     assert!(build.run(Start::Fresh, &Progress::none()).is_err());
-    let error = Build::new(&world, &order, &folder.out()).unwrap().run(Start::Fresh, &Progress::none()).unwrap_err();
+    let error =
+        Build::new(&world, &order, &output(&folder.out())).unwrap().run(Start::Fresh, &Progress::none()).unwrap_err();
     assert!(error.to_string().contains("was begun and not finished: --resume goes on with it"), "{error}");
     let other = Order { window: order.window.at(0, 0), ..order };
-    let error = Build::new(&world, &other, &folder.out()).unwrap().run(Start::Resume, &Progress::none()).unwrap_err();
+    let error =
+        Build::new(&world, &other, &output(&folder.out())).unwrap().run(Start::Resume, &Progress::none()).unwrap_err();
     assert!(error.to_string().contains("it was begun over 101 x 77 samples at (7, 11)"), "{error}");
 }
 
@@ -350,8 +349,8 @@ fn a_begun_build_is_not_begun_again() {
 fn only_one_builds_at_a_time() {
     let folder = Folder::new();
     let (world, order) = (world(None, 1), order(Form::Xyz(Encoding::Terrarium)));
-    let build = Build::new(&world, &order, &folder.out()).unwrap();
-    let site = super::site::Site::new(&folder.out(), false).unwrap();
+    let build = Build::new(&world, &order, &output(&folder.out())).unwrap();
+    let site = super::site::Site::new(&output(&folder.out()), false).unwrap();
     let held = site.hold().unwrap();
     for start in [Start::Fresh, Start::Resume, Start::Force] {
         let error = build.run(start, &Progress::none()).unwrap_err();
@@ -368,7 +367,7 @@ fn impossible_orders_are_sentences() {
     let layers = |names: &[&str]| names.iter().map(ToString::to_string).collect::<Vec<String>>();
     let check = |form, window, tile, names: &[&str], expect: &str| {
         let order = Order { form, window, tile, layers: layers(names) };
-        let error = Build::new(&world, &order, &Folder::new().out()).err().unwrap().to_string();
+        let error = Build::new(&world, &order, &output(&Folder::new().out())).err().unwrap().to_string();
         assert!(error.contains(expect), "{error} / {expect}");
     };
     check(Form::Zarr, window, None, &[], "a build of no layer makes nothing");
@@ -383,6 +382,6 @@ fn impossible_orders_are_sentences() {
     check(Form::Zarr, Window::new(500, 5, 5.0), None, &["height"], "is not inside the world");
     let folder = Folder::new();
     fs::write(folder.out(), "a file").unwrap();
-    let error = Build::new(&world, &order(Form::Zarr), &folder.out()).err().unwrap().to_string();
+    let error = Build::new(&world, &order(Form::Zarr), &output(&folder.out())).err().unwrap().to_string();
     assert!(error.contains("it is a file, and a folder has to be there"), "{error}");
 }

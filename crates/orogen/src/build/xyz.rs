@@ -22,6 +22,9 @@ use crate::format::encoding::Encoding;
 use crate::format::png::{self, Picture, Pixel};
 use crate::grid::{Grid, Window};
 
+/// What tells web maps of the tiles.
+const TILEJSON: &str = "tiles.json";
+
 /// Metres around the equator, on the sphere of Web Mercator.
 const EQUATOR: f64 = 2.0 * std::f64::consts::PI * 6_378_137.0;
 
@@ -277,9 +280,13 @@ impl Target for Tree {
                 "width": self.identity.window.width, "height": self.identity.window.height,
             },
         });
-        let path = PathBuf::from("tiles.json");
+        let path = PathBuf::from(TILEJSON);
         let piece = shelf.file(&Place::Result(path.clone()), format!("{tiles:#}\n").as_bytes())?;
         Ok(vec![(path, piece)])
+    }
+
+    fn extras(&self) -> Vec<PathBuf> {
+        vec![TILEJSON.into()]
     }
 
     fn scratch_memory(&self) -> u64 {

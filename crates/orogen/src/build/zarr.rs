@@ -152,6 +152,17 @@ impl Target for Zarr {
         Ok(written)
     }
 
+    fn extras(&self) -> Vec<PathBuf> {
+        let mut paths = vec![PathBuf::from("zarr.json")];
+        for coordinate in coordinates(&self.identity.window) {
+            let chunks = coordinate.values.len().div_ceil(COORDINATES);
+            paths.extend((0..chunks).map(|n| Path::new(coordinate.name).join(format!("c/{n}"))));
+            paths.push(Path::new(coordinate.name).join("zarr.json"));
+        }
+        paths.extend(self.identity.layers.iter().map(|layer| Path::new(layer).join("zarr.json")));
+        paths
+    }
+
     fn scratch_memory(&self) -> u64 {
         // Padded, as bytes, shuffled, packed.
         16 * (self.identity.tile * self.identity.tile) as u64

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::ground::Ground;
+use crate::error::Location;
 
 /// A file of heights named by a recipe. What is in it is read once, when the world is opened.
 #[derive(Debug, Clone, Default)]
@@ -12,6 +13,8 @@ pub struct Imported {
     folder: Option<PathBuf>,
     ground: Option<Arc<Ground>>,
     picture: bool,
+    /// Where a recipe's text names it.
+    location: Option<Box<Location>>,
 }
 
 /// A grey picture named by a recipe: what is read of it are numbers from 0 for black to 1 for white, a metre apart.
@@ -73,6 +76,16 @@ impl Imported {
     /// Says which folder the recipe lies in.
     pub fn lies_in(&mut self, folder: &Path) {
         self.folder = Some(folder.to_path_buf());
+    }
+
+    /// Where a recipe's text names it, if one does.
+    pub fn location(&self) -> Option<&Location> {
+        self.location.as_deref()
+    }
+
+    /// Says where a recipe's text names it.
+    pub fn set_location(&mut self, location: Location) {
+        self.location = Some(Box::new(location));
     }
 
     /// What was read of it.

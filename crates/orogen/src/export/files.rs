@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use crate::file::{self, Staged};
+use crate::file::{self, Output, Staged};
 use crate::progress::Progress;
 use crate::spool::Spool;
 
@@ -16,14 +16,14 @@ pub struct Files<'a> {
 }
 
 enum Sink<'a> {
-    Path(PathBuf),
+    File(&'a Output),
     Stream(&'a mut dyn Write),
 }
 
 impl<'a> Files<'a> {
-    /// A file at `path` and what stands beside it. `progress` may stop the writing.
-    pub fn at(path: &Path, progress: &'a Progress) -> Files<'a> {
-        Files { sink: Sink::Path(path.to_path_buf()), progress, staged: Vec::new() }
+    /// A file at `output` and what stands beside it. `progress` may stop the writing.
+    pub fn at(output: &'a Output, progress: &'a Progress) -> Files<'a> {
+        Files { sink: Sink::File(output), progress, staged: Vec::new() }
     }
 
     /// A stream, such as standard output, beside which nothing stands.
@@ -34,7 +34,7 @@ impl<'a> Files<'a> {
     /// The path that was asked for; none of a stream.
     pub fn path(&self) -> Option<&Path> {
         match &self.sink {
-            Sink::Path(path) => Some(path),
+            Sink::File(output) => Some(output.path()),
             Sink::Stream(_) => None,
         }
     }
@@ -42,7 +42,7 @@ impl<'a> Files<'a> {
     /// A place for bytes that have to wait, on the disk that the file will be on.
     pub fn spool(&self) -> Spool {
         match &self.sink {
-            Sink::Path(path) => Spool::beside(path),
+            Sink::File(output) => Spool::beside(output.path()),
             // A stream has no disk of its own to put bytes aside on.
             Sink::Stream(_) => Spool::beside(&std::env::temp_dir().join("orogen")),
         }
@@ -52,8 +52,8 @@ impl<'a> Files<'a> {
     pub fn write(&mut self, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
         match &mut self.sink {
             Sink::Stream(out) => body(&mut Stopping { out: &mut **out, progress: self.progress }),
-            Sink::Path(path) => {
-                let staged = file::stage(path, |out| body(&mut Stopping { out, progress: self.progress }))?;
+            Sink::File(output) => {
+                let staged = file::stage(output, |out| body(&mut Stopping { out, progress: self.progress }))?;
                 self.staged.push(staged);
                 Ok(())
             }
@@ -67,11 +67,13 @@ impl<'a> Files<'a> {
         name: impl FnOnce(&Path) -> PathBuf,
         body: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> io::Result<()> {
-        let Sink::Path(path) = &self.sink else { return Ok(()) };
+        let Sink::File(output) = &self.sink else { return Ok(()) };
+        let path = output.path();
         if path.exists() && !path.is_file() {
             return Ok(());
         }
-        let staged = file::stage(&name(path), |out| body(&mut Stopping { out, progress: self.progress }))?;
+        let beside = output.policy().output(name(path))?;
+        let staged = file::stage(&beside, |out| body(&mut Stopping { out, progress: self.progress }))?;
         self.staged.push(staged);
         Ok(())
     }
@@ -79,7 +81,7 @@ impl<'a> Files<'a> {
     /// Puts all files in their places: first those beside, then the one that was asked for, whose appearance says that all is there.
     pub(super) fn commit(self) -> io::Result<()> {
         self.progress.check()?;
-        Ok(self.staged.into_iter().rev().try_for_each(Staged::commit)?)
+        Ok(file::commit(self.staged.into_iter().rev().collect())?)
     }
 }
 
@@ -103,6 +105,7 @@ impl Write for Stopping<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::file::OutputPolicy;
 
     fn folder(name: &str) -> PathBuf {
         let folder = std::env::temp_dir().join(format!("orogen-files-{}-{name}", std::process::id()));
@@ -124,7 +127,8 @@ mod tests {
         let path = folder.join("a.png");
         let progress = Progress::none();
         let both = |fail: bool| -> io::Result<()> {
-            let mut files = Files::at(&path, &progress);
+            let output = OutputPolicy::default().output(&path)?;
+            let mut files = Files::at(&output, &progress);
             files.write(|out| out.write_all(b"one"))?;
             files.write_beside(
                 |path| path.with_extension("json"),
@@ -147,7 +151,8 @@ mod tests {
     fn what_is_not_wanted_any_more_leaves_nothing() {
         let folder = folder("stopped");
         let progress = Progress::none();
-        let mut files = Files::at(&folder.join("a.png"), &progress);
+        let output = OutputPolicy::default().output(folder.join("a.png")).unwrap();
+        let mut files = Files::at(&output, &progress);
         files.write(|out| out.write_all(b"one")).unwrap();
         progress.cancel();
         assert!(files.write_beside(|path| path.with_extension("json"), |out| out.write_all(b"two")).is_err());

@@ -6,6 +6,7 @@
 //! [`run`] exports.
 //!
 //! ```
+//! use orogen::file::OutputPolicy;
 //! use orogen::export::{options::Options, registry, run, subject::Subject};
 //! use orogen::{Progress, Window, World};
 //!
@@ -13,7 +14,7 @@
 //! let path = std::env::temp_dir().join(format!("orogen-doc-{}.npy", std::process::id()));
 //! let progress = Progress::none();
 //! let subject = Subject::new(&world, "height", Window::new(100, 80, 20.0), &progress)?;
-//! run::to_file(registry::of_path(&path)?, subject, &Options::default(), &path)?;
+//! run::to_file(registry::of_path(&path)?, subject, &Options::default(), &OutputPolicy::default().output(&path)?)?;
 //! # std::fs::remove_file(&path).ok();
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

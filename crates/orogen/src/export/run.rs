@@ -1,25 +1,34 @@
 //! One export from beginning to end.
 
 use std::io::{self, Write};
-use std::path::Path;
 
 use super::files::Files;
 use super::format::Format;
 use super::options::Options;
 use super::registry;
 use super::subject::Subject;
+use crate::analysis::finite::FiniteCount;
 use crate::error::{Error, ErrorKind, Result};
-use crate::file;
+use crate::file::{self, Output};
 
-/// Exports to a file, and what stands beside it: all of it or nothing. Returns what the samples in it stand for, in words.
+/// What was written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Written {
+    /// What the samples stand for.
+    pub words: String,
+    /// How many samples there are.
+    pub count: FiniteCount,
+}
+
+/// Exports to a file, and what stands beside it: all of it or nothing.
 ///
 /// # Errors
-/// If the format does not know an option or cannot hold the layer, memory does not suffice (then nothing was started), the work was cancelled, or
+/// If the format does not know an option or cannot hold the layer, no sample of the layer is finite, memory does not suffice (then nothing was started), the work was cancelled, or
 /// a file cannot be written.
-pub fn to_file(format: &Format, subject: Subject, options: &Options, path: &Path) -> Result<String> {
-    let (files, words) = staged(format, subject, options, path)?;
-    files.commit().map_err(|cause| file::explain("write", path, &cause))?;
-    Ok(words)
+pub fn to_file(format: &Format, subject: Subject, options: &Options, output: &Output) -> Result<Written> {
+    let (files, written) = staged(format, subject, options, output)?;
+    files.commit().map_err(|cause| file::explain("write", output.path(), &cause))?;
+    Ok(written)
 }
 
 /// As [`to_file`], all but putting the files in their places: for exports of several.
@@ -27,28 +36,36 @@ pub(super) fn staged<'w>(
     format: &Format,
     mut subject: Subject<'w>,
     options: &Options,
-    path: &Path,
-) -> Result<(Files<'w>, String)> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    output: &'w Output,
+) -> Result<(Files<'w>, Written)> {
+    let path = output.path();
     prepare(format, &mut subject, options)?;
-    file::check_folder(folder)?;
-    let mut files = Files::at(path, subject.progress());
+    file::check_folder(file::folder(path))?;
+    let mut files = Files::at(output, subject.progress());
     let words =
         (format.write)(&mut subject, options, &mut files).map_err(|cause| file::explain("write", path, &cause))?;
-    Ok((files, words))
+    Ok((files, written(&subject, words)?))
 }
 
 /// Exports to a stream: the file alone, nothing beside it.
 ///
 /// # Errors
 /// As [`to_file`]; what the stream itself fails with comes back as it is.
-pub fn to_stream(format: &Format, subject: Subject, options: &Options, out: &mut dyn Write) -> io::Result<String> {
+pub fn to_stream(format: &Format, subject: Subject, options: &Options, out: &mut dyn Write) -> io::Result<Written> {
     let mut subject = subject;
     prepare(format, &mut subject, options)?;
     let mut files = Files::stream(out, subject.progress());
     let words = (format.write)(&mut subject, options, &mut files)?;
+    let written = written(&subject, words)?;
     files.commit()?;
-    Ok(words)
+    Ok(written)
+}
+
+/// What was written of a subject, if any sample of it is finite.
+fn written(subject: &Subject, words: String) -> Result<Written> {
+    let count = subject.count();
+    count.check(&format!("the layer `{}`", subject.layer()))?;
+    Ok(Written { words, count })
 }
 
 /// Refuses what cannot be, before anything is begun.
@@ -75,6 +92,7 @@ fn prepare(format: &Format, subject: &mut Subject, options: &Options) -> Result<
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::file::OutputPolicy;
     use crate::full_disk::Full;
     use crate::grid::Window;
     use crate::progress::Progress;
@@ -95,7 +113,7 @@ mod tests {
                 to_stream(format, subject, &Options::default(), out)
             };
             let mut whole = Vec::new();
-            let words = write(&mut whole).unwrap();
+            let words = write(&mut whole).unwrap().words;
             assert!(whole.len() > 100 && !words.is_empty(), "{}: {words}", format.name);
             for left in [0, 1, 50, whole.len() / 2, whole.len() - 1] {
                 let failed = write(&mut Full { left }).unwrap_err();
@@ -116,7 +134,8 @@ mod tests {
             progress.cancel();
             let subject = Subject::new(&world, "height", Window::new(30, 30, 2.0), &progress).unwrap();
             let path = folder.join("a").with_extension(name);
-            let error = to_file(registry::named(name).unwrap(), subject, &Options::default(), &path).unwrap_err();
+            let output = OutputPolicy::default().output(&path).unwrap();
+            let error = to_file(registry::named(name).unwrap(), subject, &Options::default(), &output).unwrap_err();
             assert_eq!(error.kind(), ErrorKind::Cancelled, "{name}");
         }
         assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);

@@ -5,6 +5,7 @@ use std::io;
 use super::derived::layer::{Derived, Nature};
 use super::derived::list;
 use super::derived::rows::Rows;
+use crate::analysis::finite::FiniteCount;
 use crate::error::{Error, ErrorKind, Result};
 use crate::format::dem::Georeference;
 use crate::format::levels::{Levels, NO_SAMPLES, extremes};
@@ -31,6 +32,8 @@ pub struct Subject<'w> {
     ready: Option<Source<'w>>,
     /// The lowest and highest sample so far.
     range: [f32; 2],
+    /// How many there are.
+    count: FiniteCount,
 }
 
 impl<'w> Subject<'w> {
@@ -59,7 +62,17 @@ impl<'w> Subject<'w> {
             world.unit(HEIGHT)?;
         }
         let layer = layer.to_string();
-        Ok(Subject { world, layer, derived, window, progress, beside: 0, ready: None, range: NO_SAMPLES })
+        Ok(Subject {
+            world,
+            layer,
+            derived,
+            window,
+            progress,
+            beside: 0,
+            ready: None,
+            range: NO_SAMPLES,
+            count: FiniteCount::default(),
+        })
     }
 
     /// Plans the rows: what does not fit in memory beside `beside` bytes is refused before a file is begun.
@@ -150,10 +163,11 @@ impl<'w> Subject<'w> {
             Some(source) => source,
             None => self.source()?,
         };
-        self.range = NO_SAMPLES;
+        (self.range, self.count) = (NO_SAMPLES, FiniteCount::default());
         for band in source {
             let band = band?;
             self.range = band.iter().fold(self.range, |range, grid| extremes(range, grid.data()));
+            self.count = band.iter().fold(self.count, |count, grid| count.and(FiniteCount::of(grid.data())));
             visit(&band)?;
         }
         Ok(())
@@ -169,6 +183,11 @@ impl<'w> Subject<'w> {
             Ok(())
         })?;
         Ok(all)
+    }
+
+    /// How many samples were last made, in all channels.
+    pub fn count(&self) -> FiniteCount {
+        self.count
     }
 
     /// The range of the samples that were last made; flat if there were none.

@@ -4,7 +4,7 @@ use crate::declare::Input;
 use crate::dem::ground::Ground;
 use crate::dem::held::Imported;
 use crate::dem::square::metres_of_degrees;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Complaint, Error, ErrorKind, Result};
 use crate::field::dem::Dem;
 use crate::format::crs::Crs;
 use crate::format::dem::{Georeference, Unit};
@@ -145,10 +145,16 @@ impl Recipe {
         self.nodes.iter_mut().flat_map(|named| named.node.files()).for_each(|file| file.lies_in(folder));
     }
 
+    /// The files that its nodes name.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let mut nodes: Vec<Node> = self.nodes.iter().map(|named| named.node.clone()).collect();
+        nodes.iter_mut().flat_map(Node::files).filter(|file| !file.is_empty()).map(|file| file.path()).collect()
+    }
+
     /// Reads the files that its nodes name, each once and not again where it was read, so that together their heights take no more than `allowed` bytes.
     ///
     /// # Errors
-    /// If one cannot be read: with the node that names it.
+    /// If one cannot be read: with the node that names it, and its place if the recipe was read from a text.
     pub fn load(&mut self, allowed: u64) -> Result<()> {
         // One file may be heights to one node and a picture to another.
         let mut known: BTreeMap<(PathBuf, bool), Arc<Ground>> = BTreeMap::new();
@@ -163,9 +169,13 @@ impl Recipe {
                 };
                 let ground = match file.ground().or(known.get(&path)) {
                     Some(ground) => Arc::clone(ground),
-                    None => Arc::new(
-                        read().map_err(|error| Error::new(ErrorKind::File, format!("node `{name}`: {error}")))?,
-                    ),
+                    None => Arc::new(read().map_err(|error| {
+                        let sentence = format!("node `{name}`: {error}");
+                        Error::from_complaints(
+                            ErrorKind::File,
+                            vec![Complaint { sentence, place: file.location().cloned() }],
+                        )
+                    })?),
                 };
                 if known.insert(path, Arc::clone(&ground)).is_none() {
                     self.held = self.held.saturating_add(ground.memory());

@@ -297,8 +297,9 @@ impl Walk<'_> {
                 node.set_input(i, input);
             } else if let Some(i) = spec.params.iter().position(|param| param.name == key.value) {
                 self.places.insert((index, spec.params[i].name), value.span.clone());
-                if let Err(sentence) = node.set_param(i, &value.value) {
-                    self.complain(&value.span, sentence);
+                match node.set_param(i, &value.value) {
+                    Ok(()) => self.remember(&mut node, value),
+                    Err(sentence) => self.complain(&value.span, sentence),
                 }
             } else {
                 let known =
@@ -316,6 +317,13 @@ impl Walk<'_> {
             }
         }
         Some((node, mask))
+    }
+
+    /// Where a file is named, so that whoever cannot read it can say so.
+    fn remember(&self, node: &mut Node, value: &Spanned<Value>) {
+        let Value::Text(name) = &value.value else { return };
+        let files = node.files().into_iter().filter(|file| file.location().is_none() && file.text() == *name);
+        files.for_each(|file| file.set_location(self.text.locate(&value.span)));
     }
 
     fn input(&mut self, key: &str, value: &Spanned<Value>) -> Input {

@@ -30,7 +30,8 @@ impl Text<'_> {
         Error::from_complaints(ErrorKind::Recipe, complaints)
     }
 
-    fn locate(&self, span: &Span) -> Location {
+    /// A part of the text as a place.
+    pub fn locate(&self, span: &Span) -> Location {
         let start = floor_boundary(self.text, span.start);
         let end = floor_boundary(self.text, span.end).max(start);
         let line_start = self.text[..start].rfind('\n').map_or(0, |newline| newline + 1);

@@ -72,7 +72,7 @@ impl Cache {
             return;
         }
         let (name, path) = self.place(key);
-        let _ = file::write_whole(&path, |out| entry::write(out, &name, solution));
+        let _ = file::replace_whole(&path, |out| entry::write(out, &name, solution));
         self.tidy(&path);
     }
 
@@ -90,6 +90,7 @@ impl Cache {
 
     /// Removes the oldest entries beyond the limit but never `newest`, and what a killed process left half written.
     fn tidy(&self, newest: &Path) {
+        file::sweep(&self.folder);
         let Ok(there) = fs::read_dir(&self.folder) else { return };
         let mut entries: Vec<(SystemTime, u64, PathBuf)> = Vec::new();
         for file in there.flatten() {
@@ -97,8 +98,6 @@ impl Cache {
             let (name, used) = (name.to_string_lossy(), meta.modified().unwrap_or(SystemTime::UNIX_EPOCH));
             if name.ends_with(EXTENSION) {
                 entries.push((used, meta.len(), file.path()));
-            } else if file::is_temporary(&name) && used.elapsed().is_ok_and(|age| age > ABANDONED) {
-                let _ = fs::remove_file(file.path());
             }
         }
         entries.sort();
@@ -114,9 +113,6 @@ impl Cache {
 }
 
 const EXTENSION: &str = ".solved";
-
-/// A file that nobody has written to for so long is nobody's.
-const ABANDONED: Duration = Duration::from_secs(3600);
 
 #[cfg(test)]
 mod tests {
@@ -221,10 +217,8 @@ mod tests {
         old(2, 20);
         assert!(cache.find(&[1; 32], true).is_some(), "used again");
         fs::write(cache.folder.join("mine.txt"), "not an entry").unwrap();
-        let abandoned = cache.folder.join(".orogen-1-1.tmp");
+        let abandoned = cache.folder.join(".orogen-1-1-1.tmp");
         fs::write(&abandoned, [0; 99]).unwrap();
-        let file = File::options().append(true).open(&abandoned).unwrap();
-        file.set_modified(SystemTime::now() - 2 * ABANDONED).unwrap();
         cache.keep(&[3; 32], &one);
         assert_eq!([there(1), there(2), there(3)], [true, false, true]);
         assert!(cache.folder.join("mine.txt").exists() && !abandoned.exists());

@@ -1,9 +1,10 @@
 //! An export for an engine.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::frame::Frame;
 use super::target::Target;
+use crate::analysis::finite::FiniteCount;
 use crate::error::{Error, ErrorKind, Result};
 use crate::export::channels::{NORMAL, WEIGHTS, suffixed};
 use crate::export::derived::layer::Nature;
@@ -13,7 +14,7 @@ use crate::export::options::Options;
 use crate::export::run;
 use crate::export::spread::BITS;
 use crate::export::subject::Subject;
-use crate::file;
+use crate::file::{self, Output};
 use crate::grid::Window;
 use crate::progress::Progress;
 use crate::world::{HEIGHT, World};
@@ -26,6 +27,8 @@ pub struct Exported {
     pub samples: [usize; 2],
     /// What the samples in them stand for.
     pub words: String,
+    /// How many samples there are, those of shared edges in each tile.
+    pub count: FiniteCount,
     /// What to type into the engine's import dialogue, a line each; nothing for layers other than the heights.
     pub import: Vec<String>,
 }
@@ -42,8 +45,9 @@ pub fn export(
     world: &World,
     layer: &str,
     progress: &Progress,
-    path: &Path,
+    output: &Output,
 ) -> Result<Exported> {
+    let path = output.path();
     let mut options = Options::default();
     let subject = |window: Window| Subject::new(world, layer, window, progress);
     let mut all = subject(frame.window)?;
@@ -53,6 +57,18 @@ pub fn export(
         let list: Vec<String> = known.iter().map(|name| format!(".{name}")).collect();
         let sentence = format!("{} takes `{layer}` as {}, not as .{}", target.name, list.join(" or "), format.name);
         return Err(Error::new(ErrorKind::Request, sentence));
+    }
+    // What may not be replaced is refused before the first tile is made.
+    let mut outputs = Vec::new();
+    for row in 0..frame.tiles[1] {
+        for column in 0..frame.tiles[0] {
+            outputs.push(match target.tile {
+                Some(name) if frame.tiles != [1, 1] => {
+                    output.policy().output(suffixed(path, &name(column, row, frame.tiles[1])))?
+                }
+                _ => output.clone(),
+            });
+        }
     }
     let mut import = Vec::new();
     let mut less = 0;
@@ -71,22 +87,19 @@ pub fn export(
             less = target.weights_less;
         }
     }
-    let (mut files, mut written, mut words) = (Vec::new(), Vec::new(), String::new());
+    let (mut written, mut words, mut count) = (Vec::new(), String::new(), FiniteCount::default());
     for row in 0..frame.tiles[1] {
         for column in 0..frame.tiles[0] {
-            let path = match target.tile {
-                Some(name) if frame.tiles != [1, 1] => suffixed(path, &name(column, row, frame.tiles[1])),
-                _ => path.to_path_buf(),
-            };
             let tile = frame.tile(column, row);
             let window = Window { width: tile.width - less, height: tile.height - less, ..tile };
-            let (made, told) = run::staged(format, subject(window)?, &options, &path)?;
-            words = told;
+            let output = &outputs[row * frame.tiles[0] + column];
+            let (made, told) = run::staged(format, subject(window)?, &options, output)?;
+            (words, count) = (told.words, count.and(told.count));
             written.push(made);
-            files.push(path);
         }
     }
     written.into_iter().try_for_each(Files::commit).map_err(|cause| file::explain("write", path, &cause))?;
+    let files = outputs.iter().map(|output| output.path().to_path_buf()).collect();
     let samples = [frame.window.width - less, frame.window.height - less];
-    Ok(Exported { files, samples, words, import })
+    Ok(Exported { files, samples, words, count, import })
 }

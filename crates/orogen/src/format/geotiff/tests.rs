@@ -342,8 +342,9 @@ fn a_disk_that_fills_up_at_any_byte_leaves_no_file() {
     let grid = rough(Window::new(18, 2, 1.0));
     let expect = written(&grid, &small_tiles());
     for left in 0..=expect.len() {
-        let result =
-            file::write_whole(&path, |out| write(&mut Full { out, left }, &grid, &small_tiles(), Spool::beside(&path)));
+        let result = file::replace_whole(&path, |out| {
+            write(&mut Full { out, left }, &grid, &small_tiles(), Spool::beside(&path))
+        });
         assert_eq!(result.is_ok(), left == expect.len(), "after {left} of {} bytes", expect.len());
         assert_eq!(fs::read_dir(&folder).unwrap().count(), usize::from(left == expect.len()));
     }

@@ -15,11 +15,13 @@ use crate::spool::Spool;
 ///
 /// ```
 /// use orogen::format::geotiff::{options::Options, writer};
-/// use orogen::{Grid, Window, file, spool::Spool};
+/// use orogen::file::{OutputPolicy, write_whole};
+/// use orogen::{Grid, Window, spool::Spool};
 ///
 /// let grid = Grid::filled(Window::new(600, 400, 30.0), 1200.0);
 /// let path = std::env::temp_dir().join(format!("orogen-doc-{}.tif", std::process::id()));
-/// file::write_whole(&path, |out| writer::write(out, &grid, &Options::default(), Spool::beside(&path)))?;
+/// let output = OutputPolicy::default().output(&path)?;
+/// write_whole(&output, |out| writer::write(out, &grid, &Options::default(), Spool::beside(&path)))?;
 /// # std::fs::remove_file(&path).ok();
 /// # Ok::<(), orogen::Error>(())
 /// ```

@@ -1,30 +1,15 @@
-//! Writing files whole or not at all.
-//!
-//! [`write_whole`] writes under a temporary name beside the target, syncs it, renames it over the target and syncs the folder.
-//! Whoever looks at the target sees the old file or the new one, never a half; after any failure the old file is still there
-//! and the temporary one is gone. [`stage`] does all but the rename, for files that belong together: stage them all, then
-//! [`Staged::commit`] each, and a disk that fills up half way leaves the old set complete. [`check_folder`] finds out early
-//! whether there is any point in starting.
-//!
-//! What the target may already be:
-//!
-//! - *a file*: replaced, keeping its permissions; one marked read-only is left alone and refused.
-//! - *a link*: what it names is replaced and the link stays, as an ordinary write would do. A link to nothing is refused.
-//! - *a folder*: refused.
-//! - *a pipe or a device* (`/dev/null`): cannot be replaced without destroying it, so it is written straight through.
+//! Files that appear whole or not at all.
 
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::policy::Output;
+use super::temporary::Temporary;
 use crate::error::{Error, ErrorKind, Result};
 
 /// Large enough that a system call is rare, small enough not to matter to a memory budget.
 const BUFFER: usize = 256 * 1024;
-
-/// How many temporary names are tried before giving up: all of them taken means that something is wrong with the folder.
-const NAMES: usize = 100;
 
 /// Lets an [`Error`] travel through code that speaks [`io::Result`], such as the body given to [`write_whole`], which takes it
 /// out again unchanged.
@@ -34,28 +19,42 @@ impl From<Error> for io::Error {
     }
 }
 
-/// Writes the file at `path` with what `body` writes: all of it, or nothing.
+/// Writes the file at `output` with what `body` writes: all of it, or nothing.
 ///
 /// `body` may fail with an I/O error, which comes back as a sentence naming the file, or with an [`Error`] of its own (through
 /// `?` or `into`), which comes back as it is.
 ///
 /// ```
 /// # fn main() -> orogen::Result<()> {
+/// use orogen::file::{OutputPolicy, write_whole};
+///
 /// let path = std::env::temp_dir().join(format!("orogen-doc-{}.txt", std::process::id()));
-/// orogen::file::write_whole(&path, |out| out.write_all(b"all of it"))?;
+/// write_whole(&OutputPolicy::default().output(&path)?, |out| out.write_all(b"all of it"))?;
 /// # std::fs::remove_file(&path).ok();
 /// # Ok(())
 /// # }
 /// ```
-pub fn write_whole(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
-    stage(path, body)?.commit()
+pub fn write_whole(output: &Output, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    stage(output, body)?.commit()
 }
 
-/// Writes what `body` writes beside `path` under a temporary name and syncs it, all but [`Staged::commit`]ting it.
+/// Writes what `body` writes beside `output` under a temporary name and syncs it, all but [`Staged::commit`]ting it.
 ///
 /// A pipe or device is written at once.
-pub fn stage(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Staged> {
-    stage_through(path, |file| Box::new(file), body)
+pub fn stage(output: &Output, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Staged> {
+    output.check(None)?;
+    stage_through(output.path(), Some(output), |file| Box::new(file), body)
+}
+
+/// As [`write_whole`], over whatever file is there: for files that are named by nobody but this library.
+pub(crate) fn replace_whole(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    stage_through(path, None, |file| Box::new(file), body)?.commit()
+}
+
+/// Puts files that belong together in their places: none of them if one may not be replaced.
+pub fn commit(files: Vec<Staged>) -> Result<()> {
+    files.iter().try_for_each(Staged::check)?;
+    files.into_iter().try_for_each(Staged::commit)
 }
 
 /// Whether files can be made in `folder`, found out by making one, which is removed at once.
@@ -78,18 +77,35 @@ pub fn check_folder(folder: &Path) -> Result<()> {
 #[derive(Debug)]
 pub struct Staged {
     path: PathBuf,
+    /// What may be replaced; none if anything may.
+    output: Option<Output>,
     /// The temporary file and the target's real name; none for a pipe or device, which has already got it all.
     file: Option<(Temporary, PathBuf)>,
 }
 
 impl Staged {
     /// Puts the file in its place, over what may be there.
+    ///
+    /// # Errors
+    /// If something has appeared there that may not be replaced, or the system refuses.
     pub fn commit(self) -> Result<()> {
+        self.check()?;
         if let Some((temporary, real)) = self.file {
-            temporary.rename(&real).map_err(|cause| Error::file("write", &self.path, &cause))?;
+            let put = match self.output.is_some_and(|output| output.keeps()) {
+                true => temporary.rename_new(&real),
+                false => temporary.rename(&real),
+            };
+            put.map_err(|cause| Error::file("write", &self.path, &cause))?;
             sync_folder(folder(&real));
         }
         Ok(())
+    }
+
+    fn check(&self) -> Result<()> {
+        match (&self.output, &self.file) {
+            (Some(output), Some((temporary, _))) => output.check(Some(temporary.path())),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -113,6 +129,7 @@ enum Target {
 /// [`stage`], with `wrap` around the file: where the tests inject their faults.
 fn stage_through(
     path: &Path,
+    output: Option<&Output>,
     wrap: impl for<'f> FnOnce(&'f File) -> Box<dyn Write + 'f>,
     body: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<Staged> {
@@ -141,7 +158,7 @@ fn stage_through(
             Some((temporary, real))
         }
     };
-    Ok(Staged { path: path.to_path_buf(), file })
+    Ok(Staged { path: path.to_path_buf(), output: output.cloned(), file })
 }
 
 /// Finds out what `path` is, and refuses what cannot be written.
@@ -220,58 +237,6 @@ impl Write for Noting<'_> {
     }
 }
 
-/// A temporary file beside its target, removed when dropped unless it was renamed.
-#[derive(Debug)]
-pub(crate) struct Temporary(PathBuf);
-
-impl Temporary {
-    /// Creates one in `folder`. Its name has nothing of the target's, so that the longest names still work; it must be new, so
-    /// that nothing planted under it is followed or overwritten.
-    pub(crate) fn create(folder: &Path) -> io::Result<(Temporary, File)> {
-        static COUNT: AtomicU64 = AtomicU64::new(0);
-        for _ in 0..NAMES {
-            let count = COUNT.fetch_add(1, Ordering::Relaxed);
-            let name = folder.join(format!(".orogen-{}-{count}.tmp", std::process::id()));
-            match OpenOptions::new().read(true).write(true).create_new(true).open(&name) {
-                Ok(file) => return Ok((Temporary(name), file)),
-                Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => {}
-                Err(cause) => return Err(cause),
-            }
-        }
-        Err(io::Error::other("too many temporary files are left in its folder"))
-    }
-
-    /// Takes the name away from the file, which goes on while it is open; returns it where that is not possible.
-    pub(crate) fn unlink(mut self) -> Option<Temporary> {
-        match fs::remove_file(&self.0) {
-            Ok(()) => {
-                self.0 = PathBuf::new();
-                None
-            }
-            Err(_) => Some(self),
-        }
-    }
-
-    fn rename(mut self, real: &Path) -> io::Result<()> {
-        fs::rename(&self.0, real)?;
-        self.0 = PathBuf::new();
-        Ok(())
-    }
-}
-
-impl Drop for Temporary {
-    fn drop(&mut self) {
-        if !self.0.as_os_str().is_empty() {
-            let _ = fs::remove_file(&self.0);
-        }
-    }
-}
-
-/// Whether a file of this name is one that [`Temporary::create`] made.
-pub(crate) fn is_temporary(name: &str) -> bool {
-    name.starts_with(".orogen-") && name.ends_with(".tmp")
-}
-
 /// The folder that `path` names something in.
 pub(crate) fn folder(path: &Path) -> &Path {
     match path.parent() {
@@ -291,8 +256,17 @@ pub(crate) fn sync_folder(folder: &Path) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::file::{Existing, OutputPolicy};
 
     struct Folder(PathBuf);
+
+    fn write_whole(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+        super::write_whole(&OutputPolicy::new(Existing::Replace).output(path)?, body)
+    }
+
+    fn stage(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Staged> {
+        super::stage(&OutputPolicy::new(Existing::Replace).output(path)?, body)
+    }
 
     impl Folder {
         fn new(name: &str) -> Folder {
@@ -342,7 +316,7 @@ mod tests {
         wrap: impl for<'f> FnOnce(&'f File) -> Box<dyn Write + 'f>,
         body: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<()> {
-        stage_through(path, wrap, body)?.commit()
+        stage_through(path, None, wrap, body)?.commit()
     }
 
     #[test]

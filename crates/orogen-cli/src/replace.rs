@@ -1,0 +1,33 @@
+//! What a command may replace: `--force` and `--no-clobber`, the same for all that write files.
+
+use std::path::Path;
+
+use orogen::file::{Existing, OutputPolicy};
+
+/// The options.
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub struct Replace {
+    /// Replace a file of any kind, not only one of the kind that is written
+    #[arg(long)]
+    pub force: bool,
+    /// Replace nothing: stop if a file is there already
+    #[arg(short = 'n', long, conflicts_with = "force")]
+    pub no_clobber: bool,
+}
+
+impl Replace {
+    /// What a command may replace that reads `inputs`.
+    pub fn policy<P: AsRef<Path>>(self, inputs: impl IntoIterator<Item = P>) -> OutputPolicy {
+        let existing = match (self.no_clobber, self.force) {
+            (true, _) => Existing::Keep,
+            (_, true) => Existing::Replace,
+            _ => Existing::SameKind,
+        };
+        OutputPolicy::new(existing).protecting(inputs)
+    }
+
+    /// The same of one that reads nothing.
+    pub fn anywhere(self) -> OutputPolicy {
+        self.policy::<&Path>([])
+    }
+}

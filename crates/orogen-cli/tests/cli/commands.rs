@@ -1,0 +1,117 @@
+//! All commands in tables, so that what every command owes its users is tested on every command. A command that is in none fails here.
+
+use std::collections::BTreeSet;
+
+use crate::harness::Folder;
+
+/// A command that writes files.
+pub struct Writer {
+    /// What is asked for, the output's name last.
+    pub arguments: &'static [&'static str],
+    /// The files it makes that carry data of the user's.
+    pub files: &'static [&'static str],
+}
+
+const fn writer(arguments: &'static [&'static str], files: &'static [&'static str]) -> Writer {
+    Writer { arguments, files }
+}
+
+/// Every command that writes, in each way that it has of writing. They run in a folder that [`workplace`] made.
+pub const WRITERS: &[Writer] = &[
+    writer(
+        &["generate", "small.toml", "-o", "made"],
+        &["made/height.png", "made/height8.png", "made/map.png", "made/recipe.toml", "made/summary.json"],
+    ),
+    writer(&["export", "small.toml", "-o", "a.tif"], &["a.tif"]),
+    writer(&["export", "small.toml", "-o", "a.asc"], &["a.asc"]),
+    writer(&["export", "small.toml", "-o", "a.npy"], &["a.npy"]),
+    writer(&["export", "small.toml", "-o", "a.exr"], &["a.exr"]),
+    writer(&["export", "small.toml", "-o", "a.pgm"], &["a.pgm"]),
+    writer(&["export", "small.toml", "-o", "a.png"], &["a.png", "a.json"]),
+    writer(&["export", "small.toml", "-o", "a.r16"], &["a.r16", "a.json"]),
+    writer(&["export", "small.toml", "-o", "a.r32"], &["a.r32", "a.json"]),
+    writer(&["export", "small.toml", "-o", "a.obj"], &["a.obj", "a.mtl", "a-texture.png"]),
+    writer(&["export", "small.toml", "-o", "a.ply"], &["a.ply"]),
+    writer(&["export", "small.toml", "-o", "a.stl"], &["a.stl"]),
+    writer(&["export", "small.toml", "-o", "a.glb"], &["a.glb"]),
+    writer(&["export", "small.toml", "-o", "a.svg"], &["a.svg"]),
+    writer(&["export", "small.toml", "-o", "a.geojson"], &["a.geojson"]),
+    writer(
+        &["export", "small.toml", "--target", "unity", "--size", "33", "--tiles", "2x1", "-o", "u.r16"],
+        &["u_0_0.r16", "u_1_0.r16"],
+    ),
+    writer(&["build", "small.toml", "--force", "-o", "b.tif"], &["b.tif"]),
+    writer(&["analyze", "small.toml", "--cell", "5", "-o", "page.png"], &["page.png"]),
+    writer(&["fit", "place.tif", "--tries", "12", "--judges", "1", "-o", "like.toml"], &["like.toml"]),
+    writer(&["grow", "rivers.toml", "--frames", "2", "-o", "grow.png"], &["grow.png"]),
+    writer(&["grow", "rivers.toml", "--frames", "2", "-o", "grow.gif"], &["grow.gif"]),
+    writer(&["grow", "rivers.toml", "--frames", "2", "-o", "grow-%d.png"], &["grow-0.png", "grow-1.png"]),
+    writer(&["render", "small.toml", "--size", "64x36", "-o", "view.png"], &["view.png"]),
+    writer(
+        &["render", "small.toml", "--size", "64x36", "--turntable", "2", "-o", "view-%02d.png"],
+        &["view-00.png", "view-01.png"],
+    ),
+    writer(&["map", "small.toml", "--dpi", "30", "-o", "map.png"], &["map.png"]),
+    writer(&["map", "small.toml", "--dpi", "30", "-o", "map.svg"], &["map.svg"]),
+    writer(&["map", "small.toml", "--dpi", "30", "-o", "map.pdf"], &["map.pdf"]),
+    writer(&["noise", "perlin", "--size", "32", "-o", "noise.png"], &["noise.png"]),
+    writer(&["noise", "perlin", "--size", "32", "-o", "noise.npy"], &["noise.npy"]),
+    writer(&["noise", "perlin", "--size", "32", "--volume", "3", "-o", "block.npy"], &["block.npy"]),
+    writer(&["noise", "perlin", "--size", "32", "--frames", "2", "-o", "n-%d.png"], &["n-0.png", "n-1.png"]),
+    writer(&["compare", "--size", "120", "-o", "compare.png"], &["compare.png"]),
+    writer(&["palettes", "-o", "palettes.png"], &["palettes.png"]),
+];
+
+/// Commands that write nothing but words on standard output.
+const TALKERS: &[&str] = &["presets", "ops", "schema", "explain", "completions", "help"];
+
+/// Commands that never write over anything.
+const STARTERS: &[&str] = &["new"];
+
+/// A recipe that grows.
+const RIVERS: &str = r#"
+orogen = 1
+[world]
+size = [600, 400]
+cell = 20
+[nodes.noise]
+op = "fbm"
+wavelength = 300
+[nodes.land]
+op = "stream-power"
+source = "noise"
+steps = 3
+[outputs]
+height = "land"
+"#;
+
+/// A folder with all that the commands of [`WRITERS`] read.
+pub fn workplace() -> Folder {
+    let folder = Folder::with_small();
+    folder.write("rivers.toml", RIVERS);
+    folder
+}
+
+/// What a command reads that is dear to make, made where it is asked for.
+pub fn prepare(folder: &Folder, writer: &Writer) {
+    if writer.arguments.contains(&"place.tif") && !folder.path("place.tif").exists() {
+        folder.good(&["export", "hills", "-o", "place.tif", "--cell", "30", "--window", "100,120,96,80", "-q"]);
+    }
+}
+
+/// The commands that the program itself lists.
+pub fn listed() -> BTreeSet<String> {
+    let help = Folder::new().good(&["--help"]).text().to_string();
+    let commands = help.split("Commands:").nth(1).unwrap().split("Options:").next().unwrap();
+    let names = commands.lines().filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+    names.filter_map(|line| line.split_whitespace().next()).map(str::to_string).collect()
+}
+
+#[test]
+fn every_command_is_in_a_table() {
+    let writers = WRITERS.iter().map(|writer| writer.arguments[0]);
+    let known: BTreeSet<String> =
+        writers.chain(TALKERS.iter().copied()).chain(STARTERS.iter().copied()).map(str::to_string).collect();
+    let missing: Vec<String> = listed().difference(&known).cloned().collect();
+    assert!(missing.is_empty(), "add to the tables in tests/cli/commands.rs: {missing:?}");
+}

@@ -1,0 +1,60 @@
+//! What killed commands leave behind: removed by the next command that writes there, and nothing else is.
+
+use std::process::{Child, Stdio};
+use std::time::Duration;
+
+use crate::harness::{Folder, SMALL};
+
+fn start(folder: &Folder, arguments: &[&str]) -> Child {
+    folder.command(arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+}
+
+/// The files on their way in a folder that belong to this process.
+fn files_of(folder: &Folder, child: &Child) -> Vec<String> {
+    let mut names = folder.names("");
+    names.retain(|name| name.starts_with(&format!(".orogen-{}-", child.id())) && name.ends_with(".tmp"));
+    names
+}
+
+/// Starts a command and waits until it has a file on its way.
+fn busy(folder: &Folder, arguments: &[&str]) -> Child {
+    let mut child = start(folder, arguments);
+    for _ in 0..2000 {
+        if !files_of(folder, &child).is_empty() {
+            return child;
+        }
+        assert!(child.try_wait().unwrap().is_none(), "{arguments:?} ended before it was killed");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    panic!("{arguments:?} never began a file");
+}
+
+#[test]
+fn files_of_killed_commands_go_and_those_of_the_living_stay() {
+    for arguments in [
+        &["export", "wide.toml", "-o", "a.asc"][..],
+        &["noise", "perlin", "--size", "20000", "--octaves", "20", "-o", "a.npy"],
+        &["render", "small.toml", "--turntable", "500", "-o", "a.gif"],
+    ] {
+        let folder = Folder::with_small();
+        folder.write("wide.toml", SMALL.replace("cell = 10", "cell = 0.05"));
+        let foreign = [".orogen-mine.tmp", ".orogen-1.tmp", "notes.tmp"];
+        foreign.iter().for_each(|name| folder.write(name, "mine"));
+        let mut killed = busy(&folder, arguments);
+        killed.kill().unwrap();
+        killed.wait().unwrap();
+        assert!(!files_of(&folder, &killed).is_empty(), "{arguments:?}: {:?}", folder.names(""));
+        // Another one is alive while a third writes.
+        let mut living = busy(&folder, arguments);
+        folder.good(&["export", "small.toml", "-o", "b.npy", "-q"]);
+        assert!(files_of(&folder, &killed).is_empty(), "{arguments:?}: {:?}", folder.names(""));
+        assert!(!files_of(&folder, &living).is_empty(), "{arguments:?}: {:?}", folder.names(""));
+        living.kill().unwrap();
+        living.wait().unwrap();
+        folder.good(&["export", "small.toml", "-o", "b.npy", "-q"]);
+        let mut left = folder.names("");
+        left.retain(|name| name.starts_with(".orogen"));
+        assert_eq!(left, [".orogen-1.tmp", ".orogen-mine.tmp"], "{arguments:?}");
+        foreign.iter().for_each(|name| assert_eq!(folder.text(name), "mine"));
+    }
+}

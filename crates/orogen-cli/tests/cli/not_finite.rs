@@ -1,0 +1,61 @@
+//! Heights that are NaN or infinite: refused if none is finite, told if some are not, by every command that makes heights.
+
+use crate::commands::{WRITERS, Writer, prepare, workplace};
+use crate::harness::Folder;
+
+/// A recipe of the size of `small.toml` whose heights are NaN where a number becomes too large for 32-bit floats: where noise is high, or everywhere.
+fn recipe(everywhere: bool) -> String {
+    let large = match everywhere {
+        true => "op = \"constant\"\nvalue = 1e5",
+        false => "op = \"remap\"\nsource = \"noise\"\nto = [0, 1e5]",
+    };
+    let mut text = format!(
+        "orogen = 1\n[world]\nsize = [640, 480]\ncell = 10\n[nodes.noise]\nop = \"fbm\"\nwavelength = 200\n[nodes.hills]\n\
+         op = \"remap\"\nsource = \"noise\"\nto = [0, 200]\n[nodes.large]\n{large}\n"
+    );
+    // The eighth power of what is above 63 000 is infinite, and infinity times 0 is NaN.
+    for (name, a, b) in
+        [("a", "\"large\"", "\"large\""), ("b", "\"a\"", "\"a\""), ("c", "\"b\"", "\"b\""), ("d", "\"c\"", "0")]
+    {
+        text.push_str(&format!("[nodes.{name}]\nop = \"multiply\"\na = {a}\nb = {b}\n"));
+    }
+    text + "[nodes.land]\nop = \"add\"\na = \"hills\"\nb = \"d\"\n[outputs]\nheight = \"land\"\n"
+}
+
+/// Commands that make heights of a recipe.
+fn of_recipes() -> impl Iterator<Item = &'static Writer> {
+    WRITERS.iter().filter(|writer| writer.arguments.contains(&"small.toml"))
+}
+
+#[test]
+fn no_finite_height_is_an_error_of_every_command() {
+    for writer in of_recipes() {
+        let folder = workplace();
+        folder.write("small.toml", recipe(true));
+        prepare(&folder, writer);
+        folder.bad(
+            &[writer.arguments, &["-q"]].concat(),
+            2,
+            "no sample of the layer `height` is a finite number: all ",
+        );
+        assert!(writer.files.iter().all(|file| !folder.path(file).exists()), "{:?}", folder.names(""));
+    }
+}
+
+#[test]
+fn some_that_are_not_finite_are_told_by_every_command() {
+    for writer in of_recipes() {
+        let folder = workplace();
+        folder.write("small.toml", recipe(false));
+        let outcome = folder.good(&[writer.arguments, &["-q"]].concat());
+        let told = outcome.err.contains("warning: ") && outcome.err.contains(" %) are NaN or infinite");
+        assert!(told, "{:?}: {}", writer.arguments, outcome.err);
+    }
+    let folder = Folder::new();
+    folder.write("small.toml", recipe(false));
+    folder.good(&["generate", "small.toml", "-q"]);
+    let summary = folder.json("out/summary.json");
+    for key in ["height_min", "height_mean", "height_max", "land_share"] {
+        assert!(summary[key].as_f64().is_some_and(|value| (0.0..=200.0).contains(&value)), "{key}: {summary}");
+    }
+}

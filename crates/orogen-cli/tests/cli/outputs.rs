@@ -1,0 +1,195 @@
+//! What is there before a command writes: inputs, files made by hand, files of other kinds, its own earlier output.
+
+use std::fs;
+
+use crate::commands::{WRITERS, Writer, prepare, workplace};
+use crate::harness::{Folder, SMALL};
+
+/// Whether the command can be asked to replace nothing, or anything.
+const FLAGS: [&str; 2] = ["--no-clobber", "--force"];
+
+/// The arguments with more of them.
+fn with<'a>(writer: &Writer, more: &[&'a str]) -> Vec<&'a str> {
+    let asked = writer.arguments.iter().copied().filter(|argument| !FLAGS.contains(argument));
+    asked.chain(more.iter().copied()).collect()
+}
+
+/// What it takes to write again where a build lies.
+fn again(writer: &Writer) -> &'static [&'static str] {
+    if writer.arguments[0] == "build" { &["--force"] } else { &[] }
+}
+
+fn no_temporaries(folder: &Folder) {
+    assert!(!folder.names("").iter().any(|name| name.starts_with(".orogen")), "{:?}", folder.names(""));
+}
+
+#[test]
+fn a_run_replaces_its_own_output_and_nothing_else() {
+    for writer in WRITERS {
+        let folder = workplace();
+        prepare(&folder, writer);
+        let name = writer.arguments.join(" ");
+        folder.good(&with(writer, &[]));
+        let first: Vec<Vec<u8>> = writer.files.iter().map(|file| folder.read(file)).collect();
+        folder.good(&with(writer, again(writer)));
+        // --no-clobber stops it, whatever is there.
+        let kept = folder.run(&with(writer, &["-n"]));
+        assert_eq!(kept.code, 1, "{name}: {}", kept.err);
+        // What a person has put there is kept, whichever of the files it is.
+        for (file, own) in writer.files.iter().zip(&first) {
+            folder.write(file, "My notes on the walk to the lake.\n");
+            let refused = folder.run(&with(writer, &[]));
+            // What stands beside a file may go beside the other one instead.
+            let elsewhere = file.ends_with(".json") && writer.arguments[0] == "export";
+            assert_eq!(refused.code, i32::from(!elsewhere), "{name}: {file}: {}", refused.err);
+            assert_eq!(folder.text(file), "My notes on the walk to the lake.\n", "{name}: {file}");
+            if !elsewhere {
+                assert!(refused.err.contains(file), "{name}: {file}: {}", refused.err);
+                folder.good(&with(writer, &["--force"]));
+                assert_ne!(folder.read(file), b"My notes on the walk to the lake.\n", "{name}: {file}");
+            }
+            folder.write(file, own);
+        }
+        no_temporaries(&folder);
+    }
+}
+
+#[test]
+fn a_recipe_by_hand_is_replaced_by_no_command() {
+    for writer in WRITERS {
+        let folder = workplace();
+        prepare(&folder, writer);
+        for file in writer.files {
+            if let Some(within) = folder.path(file).parent() {
+                fs::create_dir_all(within).unwrap();
+            }
+            folder.write(file, SMALL);
+            for more in [&[][..], &["--force"], &["--no-clobber"]] {
+                let refused = folder.run(&with(writer, more));
+                // What stands beside a file may go beside the other one instead.
+                let elsewhere = file.ends_with(".json") && writer.arguments[0] == "export";
+                assert!(elsewhere || refused.code == 1, "{file} {more:?}: {}", refused.err);
+                assert_eq!(folder.text(file), SMALL, "{file} {more:?}");
+            }
+            fs::remove_file(folder.path(file)).unwrap();
+        }
+    }
+}
+
+#[test]
+fn no_command_writes_over_what_it_reads() {
+    let folder = workplace();
+    folder.good(&["export", "small.toml", "--cell", "5", "-o", "dem.tif", "-q"]);
+    let dem = folder.read("dem.tif");
+    folder.write(
+        "land.toml",
+        "orogen = 1\n[world]\nsize = [600, 400]\n[nodes.a]\nop = \"dem\"\npath = \"dem.tif\"\n[nodes.b]\n\
+         op = \"stream-power\"\nsource = \"a\"\nsteps = 2\n[outputs]\nheight = \"b\"\n",
+    );
+    // Every name under which the file can be met.
+    fs::hard_link(folder.path("dem.tif"), folder.path("hard.tif")).unwrap();
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("dem.tif", folder.path("soft.tif")).unwrap();
+    let names = if cfg!(unix) { &["dem.tif", "./dem.tif", "hard.tif", "soft.tif"][..] } else { &["dem.tif"] };
+    for name in names {
+        for source in ["dem.tif", "land.toml"] {
+            for more in [&[][..], &["--force"]] {
+                for command in ["export", "build"] {
+                    let out = [&[command, source, "-o", name][..], more].concat();
+                    folder.bad(&out, 1, "this command reads that file");
+                }
+            }
+        }
+    }
+    // Outputs whose names say another kind: the file is a link to what is read.
+    #[cfg(unix)]
+    for (command, more, name) in [
+        ("map", &[][..], "l.png"),
+        ("map", &[], "l.pdf"),
+        ("render", &["--size", "64x36"], "l.png"),
+        ("analyze", &[], "l.png"),
+        ("grow", &["--frames", "2"], "l.gif"),
+        ("grow", &["--frames", "2"], "l-%d.png"),
+        ("fit", &[], "l.toml"),
+        ("generate", &[], "made"),
+    ] {
+        fs::create_dir_all(folder.path("made")).unwrap();
+        for link in ["l.png", "l.pdf", "l.gif", "l-1.png", "l.toml", "made/map.png"] {
+            let _ = std::os::unix::fs::symlink(folder.path("dem.tif"), folder.path(link));
+        }
+        let source = if matches!(command, "grow") { "land.toml" } else { "dem.tif" };
+        for force in [&[][..], &["--force"]] {
+            folder.bad(
+                &[&[command, source, "-o", name, "-q"][..], more, force].concat(),
+                1,
+                "this command reads that file",
+            );
+        }
+    }
+    // Palettes are read, too.
+    folder.write("tint.gpl", "GIMP Palette\n0 0 0 a\n255 255 255 b\n");
+    fs::hard_link(folder.path("tint.gpl"), folder.path("tint.png")).unwrap();
+    for arguments in [
+        &["map", "small.toml", "--palette", "tint.gpl", "-o", "tint.png"][..],
+        &["render", "small.toml", "--colors", "map", "--palette", "tint.gpl", "-o", "tint.png"],
+        &["palettes", "tint.gpl", "-o", "tint.png"],
+    ] {
+        folder.bad(&[arguments, &["--force"]].concat(), 1, "this command reads that file");
+    }
+    assert!(folder.read("dem.tif") == dem, "untouched");
+}
+
+#[test]
+fn a_users_recipe_in_the_folder_of_the_result_is_kept() {
+    let folder = Folder::new();
+    fs::create_dir(folder.path("w")).unwrap();
+    let mine = format!("# My own comment.\n{SMALL}");
+    folder.write("w/recipe.toml", &mine);
+    folder.bad(&["generate", "w/recipe.toml", "-o", "w"], 1, "this command reads that file");
+    folder.bad(&["generate", "hills", "--size", "16", "-o", "w", "--force"], 1, "written or changed by hand");
+    assert_eq!(folder.text("w/recipe.toml"), mine);
+    assert_eq!(folder.names("w"), ["recipe.toml"]);
+    // One that Orogen wrote is its own until somebody changes it.
+    folder.good(&["generate", "w/recipe.toml", "-o", "v", "-q"]);
+    folder.good(&["generate", "w/recipe.toml", "-o", "v", "-q"]);
+    let changed = folder.text("v/recipe.toml").replace("octaves = 4", "octaves = 5");
+    folder.write("v/recipe.toml", &changed);
+    folder.bad(&["generate", "w/recipe.toml", "-o", "v", "-q"], 1, "written or changed by hand");
+    assert_eq!(folder.text("v/recipe.toml"), changed);
+}
+
+#[test]
+fn what_may_not_be_replaced_is_refused_before_the_work() {
+    let folder = Folder::new();
+    // Worlds that take hours.
+    folder.write("vast.toml", SMALL.replace("size = [640, 480]", "size = [400000, 400000]"));
+    folder.write(
+        "rivers.toml",
+        "orogen = 1\n[world]\nsize = [400000, 400000]\n[nodes.a]\nop = \"fbm\"\n[nodes.b]\nop = \"stream-power\"\nsource = \"a\"\n\
+         [outputs]\nheight = \"b\"\n",
+    );
+    folder.write("a.png", "mine");
+    for arguments in [
+        &["export", "vast.toml", "-o", "a.png"][..],
+        &["map", "vast.toml", "-o", "a.png"],
+        &["render", "vast.toml", "-o", "a.png"],
+        &["analyze", "vast.toml", "-o", "a.png"],
+        &["grow", "rivers.toml", "-o", "a.png"],
+        &["noise", "perlin", "--size", "200000", "-o", "a.png"],
+        &["export", "vast.toml", "--target", "unity", "-o", "a.png", "--layer", "slope"],
+    ] {
+        let begun = std::time::Instant::now();
+        folder.bad(&[arguments, &["-q", "--memory", "60GiB"]].concat(), 1, "a.png: there is text in its place");
+        assert!(begun.elapsed().as_secs() < 20, "{arguments:?}: {:?}", begun.elapsed());
+    }
+    assert_eq!(folder.text("a.png"), "mine");
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_written_through() {
+    let folder = Folder::with_small();
+    for more in [&[][..], &["-n"], &["--force"]] {
+        folder.good(&[&["export", "small.toml", "--format", "png", "-o", "/dev/null", "-q"][..], more].concat());
+    }
+}

@@ -1,0 +1,69 @@
+//! How many samples are numbers that mean something: what is NaN or infinite is counted, told, and left out of every summary.
+
+use crate::error::{Error, ErrorKind};
+
+/// Samples, and how many of them are finite.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct FiniteCount {
+    /// How many there are.
+    pub samples: u64,
+    /// How many of them are neither NaN nor infinite.
+    pub finite: u64,
+}
+
+impl FiniteCount {
+    /// Of these samples.
+    pub fn of(samples: &[f32]) -> FiniteCount {
+        let finite = samples.iter().filter(|sample| sample.is_finite()).count();
+        FiniteCount { samples: samples.len() as u64, finite: finite as u64 }
+    }
+
+    /// Of both.
+    pub fn and(self, other: FiniteCount) -> FiniteCount {
+        FiniteCount { samples: self.samples + other.samples, finite: self.finite + other.finite }
+    }
+
+    /// Refuses samples of which none is finite. Returns what a person has to know if some are not; `what` says whose samples they are:
+    /// "the layer `height`".
+    ///
+    /// # Errors
+    /// If there are samples and none is finite.
+    pub fn check(self, what: &str) -> Result<Option<String>, Error> {
+        let FiniteCount { samples, finite } = self;
+        match samples - finite {
+            0 => Ok(None),
+            missing if missing == samples => Err(Error::new(
+                ErrorKind::Request,
+                format!(
+                    "no sample of {what} is a finite number: all {samples} are NaN or infinite. A number somewhere is larger than 3.4e38, or two \
+                     such were subtracted: look for factors that are too large"
+                ),
+            )),
+            missing => {
+                let share = 100.0 * missing as f64 / samples as f64;
+                let share = if share < 0.01 { "less than 0.01".to_string() } else { format!("{share:.2}") };
+                Ok(Some(format!(
+                    "{missing} of {samples} samples of {what} ({share} %) are NaN or infinite; summaries and colours are those of the others"
+                )))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn some_are_told_and_none_is_refused() {
+        let (nan, inf) = (f32::NAN, f32::INFINITY);
+        let check = |samples: &[f32]| FiniteCount::of(samples).check("it").map_err(|error| error.to_string());
+        assert_eq!(check(&[1.0, -2.0, 0.0]), Ok(None));
+        assert_eq!(check(&[]), Ok(None));
+        assert!(check(&[1.0, nan, -inf]).unwrap().unwrap().starts_with("2 of 3 samples of it (66.67 %) are NaN"));
+        assert!(check(&[inf, nan]).unwrap_err().starts_with("no sample of it is a finite number: all 2 are"));
+        let many = FiniteCount { samples: 1_000_000, finite: 999_999 };
+        assert!(many.check("it").unwrap().unwrap().contains("(less than 0.01 %)"));
+        assert_eq!(many.and(FiniteCount::of(&[nan])), FiniteCount { samples: 1_000_001, finite: 999_999 });
+    }
+}

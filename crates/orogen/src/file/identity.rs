@@ -1,0 +1,67 @@
+//! Whether two names lead to the same file.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A file, whatever name or link led to it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FileId {
+    /// Where links end: the only means on systems without file numbers, and a name for messages elsewhere.
+    real: PathBuf,
+    /// Device and file number. Hard links share them.
+    #[cfg(unix)]
+    number: (u64, u64),
+}
+
+impl FileId {
+    /// The file at `path`; none if there is none, or if it is a folder, a pipe or a device.
+    pub fn of(path: &Path) -> Option<FileId> {
+        let there = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
+        let real = fs::canonicalize(path).ok()?;
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::MetadataExt;
+            Some(FileId { real, number: (there.dev(), there.ino()) })
+        }
+        #[cfg(not(unix))]
+        {
+            let _ = there;
+            Some(FileId { real })
+        }
+    }
+
+    /// Whether it is the same file as another.
+    pub fn is(&self, other: &FileId) -> bool {
+        #[cfg(unix)]
+        if self.number == other.number {
+            return true;
+        }
+        self.real == other.real
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn links_lead_to_the_same_file() {
+        let folder = std::env::temp_dir().join(format!("orogen-identity-{}", std::process::id()));
+        fs::create_dir_all(folder.join("in")).unwrap();
+        let path = |name: &str| folder.join(name);
+        fs::write(path("a"), "same").unwrap();
+        fs::write(path("b"), "same").unwrap();
+        fs::hard_link(path("a"), path("hard")).unwrap();
+        let a = FileId::of(&path("a")).unwrap();
+        assert!(a.is(&FileId::of(&path("in/../a")).unwrap()));
+        assert!(!a.is(&FileId::of(&path("b")).unwrap()));
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink("a", path("soft")).unwrap();
+            assert!(a.is(&FileId::of(&path("soft")).unwrap()) && a.is(&FileId::of(&path("hard")).unwrap()));
+            assert_eq!(FileId::of(Path::new("/dev/null")), None);
+        }
+        assert_eq!((FileId::of(&path("in")), FileId::of(&path("none"))), (None, None));
+        fs::remove_dir_all(&folder).unwrap();
+    }
+}

@@ -1,0 +1,287 @@
+//! What kind of file lies at a place, by its first bytes.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use super::mark;
+
+/// Bytes that are looked at: longer than any recipe's head, and than the longest title in front of a document's first element.
+const HEAD: u64 = 64 << 10;
+
+/// Longest recipe whose mark is checked; a longer one counts as a person's.
+const LONGEST_RECIPE: u64 = 16 << 20;
+
+/// A kind of file that is told by its content.
+struct Kind {
+    /// In a sentence: "it holds a PDF document".
+    name: &'static str,
+    /// Extensions of files of this kind.
+    extensions: &'static [&'static str],
+    /// Whether bytes are the beginning of one.
+    begins: fn(&[u8]) -> bool,
+}
+
+/// All kinds that have a signature. A format that is added here is protected in both directions: nothing else is written over its files,
+/// and it is written over nothing else.
+const KINDS: &[Kind] = &[
+    Kind { name: "a PNG picture", extensions: &["png"], begins: |head| head.starts_with(b"\x89PNG\r\n\x1a\n") },
+    Kind { name: "a GIF picture", extensions: &["gif"], begins: |head| head.starts_with(b"GIF8") },
+    Kind { name: "a JPEG picture", extensions: &["jpg", "jpeg"], begins: |head| head.starts_with(b"\xff\xd8\xff") },
+    Kind {
+        name: "a WebP picture",
+        extensions: &["webp"],
+        begins: |head| head.starts_with(b"RIFF") && head.get(8..12) == Some(b"WEBP"),
+    },
+    Kind {
+        name: "a TIFF picture",
+        extensions: &["tif", "tiff"],
+        begins: |head| [&b"II*\0"[..], b"MM\0*", b"II+\0", b"MM\0+"].iter().any(|magic| head.starts_with(magic)),
+    },
+    Kind { name: "a PDF document", extensions: &["pdf"], begins: |head| head.starts_with(b"%PDF-") },
+    Kind { name: "a NumPy array", extensions: &["npy"], begins: |head| head.starts_with(b"\x93NUMPY") },
+    Kind { name: "an OpenEXR picture", extensions: &["exr"], begins: |head| head.starts_with(b"\x76\x2f\x31\x01") },
+    Kind { name: "a glTF mesh", extensions: &["glb"], begins: |head| head.starts_with(b"glTF") },
+    Kind {
+        name: "a PLY mesh",
+        extensions: &["ply"],
+        begins: |head| head.starts_with(b"ply\n") || head.starts_with(b"ply\r"),
+    },
+    Kind {
+        name: "a PGM picture",
+        extensions: &["pgm", "pnm"],
+        begins: |head| matches!(head, [b'P', b'1'..=b'6', space, ..] if space.is_ascii_whitespace()),
+    },
+    Kind {
+        name: "an SQLite database, such as a GeoPackage",
+        extensions: &["gpkg", "sqlite", "mbtiles"],
+        begins: |head| head.starts_with(b"SQLite format 3\0"),
+    },
+    Kind { name: "a FlatGeobuf file", extensions: &["fgb"], begins: |head| head.starts_with(b"fgb") },
+    Kind { name: "a ZIP archive", extensions: &["zip", "npz", "kmz"], begins: |head| head.starts_with(b"PK\x03\x04") },
+    Kind { name: "a gzip archive", extensions: &["gz", "tgz"], begins: |head| head.starts_with(b"\x1f\x8b\x08") },
+    Kind {
+        name: "a program",
+        extensions: &[],
+        begins: |head| head.starts_with(b"\x7fELF") || head.starts_with(b"#!/"),
+    },
+    Kind { name: "an SVG drawing", extensions: &["svg"], begins: |head| is_markup(head) && holds(head, "<svg") },
+    Kind { name: "an HTML page", extensions: &["html", "htm"], begins: |head| is_markup(head) && holds(head, "<html") },
+    Kind { name: "a Wavefront material", extensions: &["mtl"], begins: |head| head.starts_with(b"newmtl") },
+    Kind { name: "an ASCII grid", extensions: &["asc"], begins: |head| starts_with_word(head, "ncols") },
+    Kind {
+        name: "GeoJSON",
+        extensions: &["geojson"],
+        begins: |head| is_json(head) && (holds(head, "\"FeatureCollection\"") || holds(head, "\"Feature\"")),
+    },
+];
+
+/// Kinds of text that people write by hand, and what a file of Orogen's says of itself.
+const SIGNED: &[(&str, &str)] = &[("json", "JSON of Orogen"), ("obj", "a mesh of Orogen")];
+
+/// Kinds without a signature: numbers and nothing else.
+const HEADERLESS: &[&str] = &["r16", "r32", "raw", "hgt"];
+
+/// What is found at a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Found {
+    /// Nothing at all: an empty file loses nothing.
+    Empty,
+    /// A recipe that Orogen wrote, unchanged since.
+    OwnRecipe,
+    /// A recipe that a person wrote or changed.
+    Recipe,
+    /// A kind that has a signature.
+    Known(&'static str),
+    /// JSON that says that Orogen wrote it.
+    OwnText,
+    /// Some other text.
+    Text,
+    /// Bytes that begin like nothing known.
+    Bytes,
+}
+
+impl Found {
+    /// What lies in the file at `path`.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    pub fn at(path: &Path) -> io::Result<Found> {
+        let file = File::open(path)?;
+        let length = file.metadata()?.len();
+        let mut head = Vec::new();
+        file.take(HEAD).read_to_end(&mut head)?;
+        Ok(match Found::of(&head) {
+            Found::Recipe if length <= LONGEST_RECIPE => match std::fs::read_to_string(path) {
+                Ok(text) if mark::is_intact(&text) => Found::OwnRecipe,
+                _ => Found::Recipe,
+            },
+            // An STL has no signature, but a length that follows from its count of triangles.
+            Found::Bytes | Found::Text if is_binary_stl(&head, length) => Found::Known(STL),
+            found => found,
+        })
+    }
+
+    /// What begins so. A recipe's mark is not checked.
+    fn of(head: &[u8]) -> Found {
+        if head.is_empty() {
+            return Found::Empty;
+        }
+        if let Some(kind) = KINDS.iter().find(|kind| (kind.begins)(head)) {
+            return Found::Known(kind.name);
+        }
+        match is_text(head) {
+            true if is_recipe(head) => Found::Recipe,
+            true if head.starts_with(b"solid") && holds(head, "facet") => Found::Known(STL),
+            true if holds(head, "Orogen") || holds(head, "\"height_min\"") && holds(head, "\"sha256\"") => {
+                Found::OwnText
+            }
+            true => Found::Text,
+            false => Found::Bytes,
+        }
+    }
+
+    /// In a sentence.
+    pub fn name(self) -> &'static str {
+        match self {
+            Found::Empty => "nothing",
+            Found::OwnRecipe | Found::Recipe => "a recipe",
+            Found::Known(name) => name,
+            Found::OwnText | Found::Text => "text",
+            Found::Bytes => "data of an unknown kind",
+        }
+    }
+
+    /// Why a file that is named `path` may not take the place of what was found: the kind that is written; none if it may. `new` is what
+    /// is written, where that is known already: it decides where the name tells nothing.
+    pub fn differs(self, path: &Path, new: Option<Found>) -> Option<&'static str> {
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        let extension = extension.as_str();
+        if self == Found::Empty {
+            return None;
+        }
+        if let Some(kind) = KINDS.iter().find(|kind| kind.extensions.contains(&extension)) {
+            return (self != Found::Known(kind.name)).then_some(kind.name);
+        }
+        if let Some((_, kind)) = SIGNED.iter().find(|(signed, _)| *signed == extension) {
+            return (self != Found::OwnText).then_some(*kind);
+        }
+        match extension {
+            "stl" => (self != Found::Known(STL)).then_some(STL),
+            "toml" => (self != Found::OwnRecipe).then_some("a recipe of its own"),
+            _ if HEADERLESS.contains(&extension) => (self != Found::Bytes).then_some("plain numbers"),
+            _ => new.filter(|new| *new != self && *new != Found::Empty).map(Found::name),
+        }
+    }
+}
+
+const STL: &str = "an STL mesh";
+
+fn holds(head: &[u8], word: &str) -> bool {
+    head.windows(word.len()).any(|part| part == word.as_bytes())
+}
+
+fn trimmed(head: &[u8]) -> &[u8] {
+    head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head).trim_ascii_start()
+}
+
+fn is_markup(head: &[u8]) -> bool {
+    trimmed(head).starts_with(b"<")
+}
+
+fn is_json(head: &[u8]) -> bool {
+    trimmed(head).starts_with(b"{")
+}
+
+fn starts_with_word(head: &[u8], word: &str) -> bool {
+    trimmed(head).get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word.as_bytes()))
+}
+
+/// Whether there is nothing in it that no text has. A letter may be cut at the end of the head.
+fn is_text(head: &[u8]) -> bool {
+    let control = |byte: &u8| *byte < 0x20 && !matches!(*byte, b'\t' | b'\n' | b'\r' | 0x0c | 0x1b);
+    let whole = match std::str::from_utf8(head) {
+        Ok(_) => true,
+        Err(error) => error.error_len().is_none() && head.len() as u64 == HEAD,
+    };
+    whole && !head.iter().any(control)
+}
+
+/// Whether a line of TOML or a key of JSON says which version of recipes it is.
+fn is_recipe(head: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(head);
+    let toml = |line: &str| {
+        let rest = line.trim_start().strip_prefix("orogen").map(str::trim_start);
+        rest.and_then(|rest| rest.strip_prefix('='))
+            .is_some_and(|rest| rest.trim_start().starts_with(|c: char| c.is_ascii_digit()))
+    };
+    let json = || {
+        let key = text.split_once("\"orogen\"").map(|(_, rest)| rest.trim_start());
+        key.and_then(|rest| rest.strip_prefix(':'))
+            .is_some_and(|rest| rest.trim_start().starts_with(|c: char| c.is_ascii_digit()))
+    };
+    text.lines().any(toml) || json()
+}
+
+fn is_binary_stl(head: &[u8], length: u64) -> bool {
+    let count = head.get(80..84).and_then(|count| count.try_into().ok()).map(u32::from_le_bytes);
+    count.is_some_and(|count| 84 + 50 * u64::from(count) == length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_takes_its_own_place_and_no_other() {
+        let samples: [(&str, &[u8]); 16] = [
+            ("png", b"\x89PNG\r\n\x1a\n...."),
+            ("gif", b"GIF89a...."),
+            ("tif", b"II*\0...."),
+            ("pdf", b"%PDF-1.7\n"),
+            ("npy", b"\x93NUMPY\x01\0"),
+            ("exr", b"\x76\x2f\x31\x01\x02\0\0\0"),
+            ("glb", b"glTF\x02\0\0\0"),
+            ("ply", b"ply\nformat binary_little_endian 1.0\n"),
+            ("pgm", b"P5\n4 4\n65535\n\0\0"),
+            ("gpkg", b"SQLite format 3\0"),
+            ("fgb", b"fgb\x03fgb\x00"),
+            ("svg", b"<?xml version=\"1.0\"?>\n<svg xmlns=\"\">"),
+            ("asc", b"NCOLS 4\nNROWS 4\n"),
+            ("geojson", b"{\"type\": \"FeatureCollection\"}"),
+            ("json", b"{\"made_by\": \"Orogen 0.1.0\"}"),
+            ("r16", b"\0\0\x01\0"),
+        ];
+        for (own, head) in samples {
+            for (other, _) in samples {
+                let (found, path) = (Found::of(head), format!("a.{other}"));
+                assert_eq!(
+                    found.differs(Path::new(&path), None).is_none(),
+                    own == other,
+                    "{own} under {other}: {found:?}"
+                );
+            }
+        }
+        let notes = b"My notes on the walk to the lake\n";
+        for extension in ["png", "TIF", "r16", "hgt", "json", "toml", "obj", "svg", "stl"] {
+            assert!(Found::of(notes).differs(Path::new(&format!("a.{extension}")), None).is_some(), "{extension}");
+            assert!(Found::of(b"").differs(Path::new(&format!("a.{extension}")), None).is_none(), "{extension}");
+        }
+    }
+
+    #[test]
+    fn recipes_are_known_whatever_they_are_called() {
+        for text in [
+            "orogen = 1\n",
+            "# mine\n\n  orogen=1",
+            "\u{feff}orogen = 1",
+            "{ \"orogen\": 1, \"nodes\": {} }",
+            "about = \"x\"\norogen = 1",
+        ] {
+            assert_eq!(Found::of(text.trim_start_matches('\u{feff}').as_bytes()), Found::Recipe, "{text}");
+        }
+        for text in ["orogenic = 1", "# orogen = 1 is the first line", "[orogen]\na = 1"] {
+            assert_ne!(Found::of(text.as_bytes()), Found::Recipe, "{text}");
+        }
+    }
+}
