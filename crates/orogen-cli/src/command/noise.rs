@@ -8,6 +8,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use orogen::file::{self, Output};
 use orogen::format::png::{Animation, Picture};
 use orogen::format::{npy, png};
+use orogen::words;
 use orogen_noise::{Basis, Fractal, MAX_OCTAVES, Untileable};
 
 use crate::draw::look::{Drawing, Look};
@@ -351,9 +352,9 @@ impl Task<'_> {
         let plural = if octaves == 1 { "" } else { "s" };
         let repeating = if self.args.tileable { ", repeating" } else { "" };
         let (basis, wavelength) = (basis.name(), self.wavelength());
-        format!(
+        words::readable(format!(
             "{sum} of {octaves} octave{plural} of {basis} noise, wavelength {wavelength}{depth}, seed {seed}{repeating}"
-        )
+        ))
     }
 
     /// The wavelength drawn: along each axis, where they differ.

@@ -130,7 +130,7 @@ mod full {
             let _ = child.kill();
             child.wait().unwrap();
             if folder.path("out").is_dir() {
-                for name in folder.names("out").iter().filter(|name| !name.ends_with(".tmp")) {
+                for name in folder.names("out").iter().filter(|name| !name.starts_with(".orogen-")) {
                     assert!(is_whole(&folder.path("out").join(name)), "{name} after {pause} ms");
                 }
             }

@@ -161,13 +161,13 @@ fn nothing_is_echoed_that_nobody_reads() {
     let name = "n".repeat(1_000_000);
     let text = |node: &str, value: &str, source: &str| {
         format!(
-            "orogen = 1\n[nodes.{node}]\nop = \"fbm\"\nwavelength = {value}\n[nodes.b]\nop = \"normalise\"\nsource = \"{source}\"\n\
+            "orogen = 1\n[world]\nsize = [640, 480]\n[nodes.{node}]\nop = \"fbm\"\nwavelength = {value}\n[nodes.b]\nop = \"normalise\"\nsource = \"{source}\"\n\
              [outputs]\nheight = \"b\"\n"
         )
     };
     for (text, expect) in [
         (text(&name, "20", &name), "nnn...nnn"),
-        (text("a", "20", &name), "nnn...nnn"),
+        (text("a", "20", &name), "there is no node `nnn"),
         (text(&name, "20", "a"), "nnn...nnn"),
         (text("a", "1e308", "a"), "1e308"),
         (text("a", "1e-308", "a"), "1e-308"),

@@ -280,7 +280,7 @@ fn force_removes_a_builds_own_files_and_no_others() {
     fs::create_dir(folder.path("b.zarr.build")).unwrap();
     folder.write("b.zarr.build/thesis.txt", "mine");
     folder.bad(
-        &["build", "small.toml", "-o", "b.zarr", "--force"],
+        &["build", "small.toml", "-o", "b.zarr", "--force", "-q"],
         1,
         "b.zarr.build holds thesis.txt, which no build has made",
     );

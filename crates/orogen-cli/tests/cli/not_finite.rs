@@ -47,6 +47,10 @@ fn some_that_are_not_finite_are_told_by_every_command() {
     for writer in of_recipes() {
         let folder = workplace();
         folder.write("small.toml", recipe(false));
+        if writer.arguments.contains(&"a.stl") {
+            folder.bad(writer.arguments, 2, "samples are missing, and a solid with holes cannot be printed");
+            continue;
+        }
         let outcome = folder.good(&[writer.arguments, &["-q"]].concat());
         let told = outcome.err.contains("warning: ") && outcome.err.contains(" %) are NaN or infinite");
         assert!(told, "{:?}: {}", writer.arguments, outcome.err);

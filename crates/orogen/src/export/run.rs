@@ -43,7 +43,7 @@ pub(super) fn staged<'w>(
     file::check_folder(file::folder(path))?;
     let mut files = Files::at(output, subject.progress());
     let words =
-        (format.write)(&mut subject, options, &mut files).map_err(|cause| file::explain("write", path, &cause))?;
+        write(format, &mut subject, options, &mut files).map_err(|cause| file::explain("write", path, &cause))?;
     Ok((files, written(&subject, words)?))
 }
 
@@ -55,17 +55,31 @@ pub fn to_stream(format: &Format, subject: Subject, options: &Options, out: &mut
     let mut subject = subject;
     prepare(format, &mut subject, options)?;
     let mut files = Files::stream(out, subject.progress());
-    let words = (format.write)(&mut subject, options, &mut files)?;
+    let words = write(format, &mut subject, options, &mut files)?;
     let written = written(&subject, words)?;
     files.commit()?;
     Ok(written)
 }
 
+/// Has a format write. A layer without a finite sample is told as such, whatever the format says of it.
+fn write(format: &Format, subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
+    (format.write)(subject, options, files).map_err(|cause| {
+        let own = cause.get_ref().and_then(|inner| inner.downcast_ref::<Error>());
+        match (own.map(Error::kind), finite(subject)) {
+            (Some(ErrorKind::Request), Err(error)) => error.into(),
+            _ => cause,
+        }
+    })
+}
+
 /// What was written of a subject, if any sample of it is finite.
 fn written(subject: &Subject, words: String) -> Result<Written> {
-    let count = subject.count();
-    count.check(&format!("the layer `{}`", subject.layer()))?;
-    Ok(Written { words, count })
+    finite(subject)?;
+    Ok(Written { words, count: subject.count() })
+}
+
+fn finite(subject: &Subject) -> Result<()> {
+    subject.count().check(&format!("the layer `{}`", subject.layer())).map(drop)
 }
 
 /// Refuses what cannot be, before anything is begun.
