@@ -17,6 +17,7 @@ const FEWEST: usize = 4;
 /// The rows of a big window from the north, some at a time: see [`World::bands`].
 pub struct Bands<'w> {
     tiles: Tiles<'w>,
+    layers: usize,
     window: Window,
     rows: usize,
     /// The row that the next band begins with.
@@ -24,9 +25,9 @@ pub struct Bands<'w> {
 }
 
 impl World {
-    /// Makes a layer over a window in bands of whole rows, in little memory: for files larger than it.
+    /// Makes layers over a window in bands of whole rows, in little memory: for files larger than it.
     ///
-    /// The bands come from the north and have the bits of the whole window. Making them, the band at hand and `beside` (bytes
+    /// The bands come from the north, one grid a layer, and have the bits of the whole window. Making them, the band at hand and `beside` (bytes
     /// that the caller holds meanwhile) stay within the world's memory limit; what cannot is refused before anything is started.
     ///
     /// ```
@@ -35,8 +36,8 @@ impl World {
     /// let world = World::open(orogen::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
     /// let window = Window::new(500, 700, 20.0);
     /// let mut heights = Vec::new();
-    /// for band in world.bands("height", &window, 0, &Progress::none())? {
-    ///     heights.extend_from_slice(band?.data());
+    /// for band in world.bands(&["height"], &window, 0, &Progress::none())? {
+    ///     heights.extend_from_slice(band?[0].data());
     /// }
     /// assert_eq!(heights, world.window("height", &window)?.data());
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -44,19 +45,26 @@ impl World {
     ///
     /// # Errors
     /// As [`World::tiles`].
-    pub fn bands<'w>(&'w self, layer: &str, window: &Window, beside: u64, progress: &'w Progress) -> Result<Bands<'w>> {
+    pub fn bands<'w>(
+        &'w self,
+        layers: &[&str],
+        window: &Window,
+        beside: u64,
+        progress: &'w Progress,
+    ) -> Result<Bands<'w>> {
         let mut rows = (SAMPLES / window.width.max(1)).clamp(ROWS[0], ROWS[1]).min(window.height.max(1));
         loop {
-            let band = (window.width as u64).saturating_mul(rows as u64).saturating_mul(4);
+            let band = (window.width as u64).saturating_mul(rows as u64).saturating_mul(4 * layers.len() as u64);
             let held = beside.saturating_add(band);
             let memory = self.memory_limit().map(|limit| limit.saturating_sub(held));
-            match self.tiles(&[layer], window, Tiling { memory, ..Tiling::of(rows) }, progress) {
-                Ok(tiles) => return Ok(Bands { tiles, window: *window, rows, next: 0 }),
+            match self.tiles(layers, window, Tiling { memory, ..Tiling::of(rows) }, progress) {
+                Ok(tiles) => return Ok(Bands { tiles, layers: layers.len(), window: *window, rows, next: 0 }),
                 // Fewer rows take less.
                 Err(error) if error.kind() == ErrorKind::Memory && rows > FEWEST => rows = rows.div_ceil(2),
                 Err(error) if error.kind() == ErrorKind::Memory => {
                     let tile = Window { width: rows.min(window.width), height: rows, ..*window };
-                    let making = self.memory_of(&self.plan(&[layer], &tile)?).saturating_add(4 * tile.len() as u64);
+                    let tiles = 4 * (layers.len() * tile.len()) as u64;
+                    let making = self.memory_of(&self.plan(layers, &tile)?).saturating_add(tiles);
                     let sentence = format!(
                         "this needs at least {} of memory, {rows} rows at a time, and {} is allowed: allow more",
                         bytes(making.saturating_add(held)),
@@ -71,25 +79,25 @@ impl World {
 }
 
 impl Iterator for Bands<'_> {
-    type Item = Result<Grid>;
+    type Item = Result<Vec<Grid>>;
 
-    fn next(&mut self) -> Option<Result<Grid>> {
+    fn next(&mut self) -> Option<Result<Vec<Grid>>> {
         if self.next >= self.window.height {
             return None;
         }
         let height = self.rows.min(self.window.height - self.next);
         let band = Window { y: self.window.y + self.next as i64, height, ..self.window };
         self.next += height;
-        let mut grid = Grid::filled(band, 0.0);
+        let mut grids = vec![Grid::filled(band, 0.0); self.layers];
         for _ in 0..self.tiles.layout()[0] {
             match self.tiles.next()? {
-                Ok(tile) => tile.grids.iter().for_each(|tile| grid.paste(tile)),
+                Ok(tile) => grids.iter_mut().zip(&tile.grids).for_each(|(grid, tile)| grid.paste(tile)),
                 Err(error) => {
                     self.next = self.window.height;
                     return Some(Err(error));
                 }
             }
         }
-        Some(Ok(grid))
+        Some(Ok(grids))
     }
 }

@@ -379,14 +379,14 @@ fn bands_of_rows_are_the_window_in_little_memory() {
         let options = Options { threads: Some(threads), memory: Some(memory), ..Options::default() };
         let world = World::with_options(recipe.clone(), options).unwrap();
         let mut rows = 0;
-        for band in world.bands("height", &whole_window, beside, &Progress::none()).unwrap() {
-            let band = band.unwrap();
+        for band in world.bands(&["height"], &whole_window, beside, &Progress::none()).unwrap() {
+            let band = band.unwrap().remove(0);
             assert_eq!((band.width(), band.window().y), (900, 17 + rows as i64));
             assert_eq!(whole.crop(band.window()).unwrap(), band);
             rows += band.height();
         }
         assert_eq!(rows, 700);
-        let error = world.bands("height", &whole_window, memory, &Progress::none()).err().unwrap().to_string();
+        let error = world.bands(&["height"], &whole_window, memory, &Progress::none()).err().unwrap().to_string();
         assert!(error.contains("this needs at least") && error.contains("4 rows at a time"), "{error}");
     }
 }

@@ -4,6 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use orogen::file::{self, Output};
+use orogen::export::derived::layer::Derived;
+use orogen::export::derived::rows::Rows;
+use orogen::export::derived::{albedo, list, roughness};
 use orogen::format::png::{self, Animation, Picture, Pixel};
 use orogen::palette::palette::Palette;
 use orogen::render::camera::{Camera, View as Shot};
@@ -119,6 +122,8 @@ enum Dress {
     Natural,
     /// Red and yellow beds of rock, sand
     Desert,
+    /// The recipe's surfaces, or the standard ones: grass, sand, scree, rock, snow, river beds
+    Surfaces,
     /// The tints of the relief map
     Map,
     /// A model of clay
@@ -156,6 +161,9 @@ fn render(args: &Args) -> Result<(), Failure> {
     args.view.apply(&mut recipe);
     let policy = args.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
     let outputs = target.outputs(&args.out, args.turntable.unwrap_or(1), &policy)?;
+    if matches!(args.colors, Dress::Surfaces) {
+        COVER.iter().for_each(|layer| list::prepare(&mut recipe, layer.name));
+    }
     let world = args.limits.open(recipe)?;
     let window = args.view.window(&world)?;
     let pixels = (width * height) as u64;
@@ -212,10 +220,12 @@ fn style<'a>(args: &Args, palette: Option<&'a Palette>) -> Result<Style<'a>, Fai
         colors: match args.colors {
             Dress::Natural => Colors::Natural,
             Dress::Desert => Colors::Desert,
+            Dress::Surfaces => Colors::Surfaces,
             Dress::Map => Colors::Map,
             Dress::Clay => Colors::Clay,
         },
         palette,
+        cover: None,
         snow_line: args.snow_line,
         samples: args.samples,
     })
@@ -304,6 +314,9 @@ fn shot(args: &Args) -> Result<Shot, Failure> {
 /// Layers that a picture makes use of where a recipe has them.
 const LAYERS: [&str; 3] = [HEIGHT, "surface", "flow"];
 
+/// The layers that show surfaces.
+const COVER: [&Derived; 2] = [&albedo::LAYER, &roughness::LAYER];
+
 /// What is to be drawn, all of it settled.
 struct Shooting<'a> {
     target: Target,
@@ -332,7 +345,18 @@ fn draw(
         flow: layer("flow"),
         sea_level: Some(world.recipe().world.sea_level),
     };
-    let scene = Scene::new(&land, style, progress)?;
+    let cover = match style.colors {
+        Colors::Surfaces => {
+            let layers = COVER.iter().map(|layer| Rows::new(layer, world, window, 0, progress)?.whole());
+            layers.collect::<orogen::Result<Vec<Vec<Grid>>>>()?.concat()
+        }
+        _ => Vec::new(),
+    };
+    let cover = match cover.as_slice() {
+        [red, green, blue, roughness] => Some([red, green, blue, roughness]),
+        _ => None,
+    };
+    let scene = Scene::new(&land, &Style { cover, ..*style }, progress)?;
     let size = size(args)?;
     let [width, height] = size;
     let origin = [window.east(0), window.south(0)];

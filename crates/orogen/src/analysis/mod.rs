@@ -6,7 +6,6 @@ pub mod distance;
 pub mod finite;
 pub mod fourier;
 pub mod geomorphons;
-pub mod ground_cover;
 pub mod hillshade;
 pub mod hypsometry;
 pub mod roughness;

@@ -1,4 +1,4 @@
-//! Pictures of several channels: normal maps, and splat maps of as many pictures as they take.
+//! Pictures of several channels: normal maps, color maps, and splat maps of as many pictures as they take.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -9,10 +9,10 @@ use super::options::{OptionSpec, Options, Takes};
 use super::sidecar::{self, Held};
 use super::spread;
 use super::subject::Subject;
-use crate::analysis::ground_cover::to_bytes;
 use crate::format::levels::Levels;
 use crate::format::png::{self, Picture, Pixel};
 use crate::grid::Grid;
+use crate::palette::color::Encoder;
 use crate::spool::Spool;
 
 /// The option that turns green.
@@ -61,6 +61,30 @@ pub fn write_normals(subject: &mut Subject, options: &Options, files: &mut Files
         })
     })?;
     Ok(format!("red east, green {green}, blue up"))
+}
+
+/// Writes colors as sRGB of 8 bits.
+///
+/// Fails as the subject and the files do.
+pub fn write_color(subject: &mut Subject, files: &mut Files) -> io::Result<String> {
+    let window = *subject.window();
+    let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+    let about = format!("{}: unlit color, sRGB; {} metres a sample", subject.layer(), window.cell);
+    let notes = [("Software", made_by.as_str()), ("Description", about.as_str())];
+    let picture = Picture { width: window.width, height: window.height, pixel: Pixel::Rgb8, notes: &notes };
+    let encoder = Encoder::new();
+    files.write(|out| {
+        png::write_through(out, &picture, |out| {
+            subject.rows(|band| {
+                let [red, green, blue] = band else { return refuse("a color has three channels".into()) };
+                let light = red.data().iter().zip(green.data()).zip(blue.data());
+                let bytes: Vec<u8> =
+                    light.flat_map(|((red, green), blue)| encoder.bytes([*red, *green, *blue])).collect();
+                out.write_all(&bytes)
+            })
+        })
+    })?;
+    Ok("unlit color, sRGB".to_string())
 }
 
 /// Writes weights that add up to 255 wherever there is ground.
@@ -137,6 +161,28 @@ fn put_aside(spool: &mut Spool, band: &[Grid]) -> io::Result<()> {
     Ok(())
 }
 
+/// Weights as bytes that add up to exactly 255: each rounded down, what is left given to those that lost most, the first of equals first. All 0 if
+/// no weight is above 0.
+fn to_bytes(weights: &[f32], bytes: &mut [u8]) {
+    let total: f64 = weights.iter().map(|weight| f64::from(weight.max(0.0))).sum();
+    bytes.fill(0);
+    if !(total > 0.0 && total.is_finite()) {
+        return;
+    }
+    let exact = |k: usize| f64::from(weights[k].max(0.0)) * 255.0 / total;
+    let mut left = 255u32;
+    for (k, byte) in bytes.iter_mut().enumerate() {
+        *byte = exact(k).floor().min(f64::from(left)) as u8;
+        left -= u32::from(*byte);
+    }
+    while left > 0 {
+        let lost = |k: usize| exact(k) - f64::from(bytes[k]);
+        let most = (0..bytes.len()).fold(0, |most, k| if lost(k) > lost(most) { k } else { most });
+        bytes[most] += 1;
+        left -= 1;
+    }
+}
+
 /// The path with something more before its extension.
 pub(super) fn suffixed(path: &Path, suffix: &str) -> PathBuf {
     let mut name = path.file_stem().unwrap_or_default().to_os_string();
@@ -146,4 +192,25 @@ pub(super) fn suffixed(path: &Path, suffix: &str) -> PathBuf {
         name.push(extension);
     }
     path.with_file_name(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_add_up_to_255() {
+        let mut bytes = [0; 6];
+        for k in 0..500u16 {
+            let weights: Vec<f32> = (0..6).map(|n| f32::from((k * 37 + n * n * 91) % 113)).collect();
+            to_bytes(&weights, &mut bytes);
+            assert_eq!(bytes.iter().map(|byte| u32::from(*byte)).sum::<u32>(), 255);
+        }
+        to_bytes(&[1.0, 1.0, 1.0, 0.0, 0.0, 0.0], &mut bytes);
+        assert_eq!(bytes, [85, 85, 85, 0, 0, 0]);
+        to_bytes(&[0.5, 0.5], &mut bytes[..2]);
+        assert_eq!(bytes[..2], [128, 127]);
+        to_bytes(&[0.0; 6], &mut bytes);
+        assert_eq!(bytes, [0; 6]);
+    }
 }

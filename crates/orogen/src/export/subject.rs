@@ -89,8 +89,7 @@ impl<'w> Subject<'w> {
         if let Some(derived) = self.derived {
             return Ok(Box::new(Rows::new(derived, self.world, &self.window, self.beside, self.progress)?));
         }
-        let bands = self.world.bands(&self.layer, &self.window, self.beside, self.progress)?;
-        Ok(Box::new(bands.map(|band| band.map(|grid| vec![grid]))))
+        Ok(Box::new(self.world.bands(&[&self.layer], &self.window, self.beside, self.progress)?))
     }
 
     /// The world.
@@ -139,13 +138,13 @@ impl<'w> Subject<'w> {
 
     /// How many grids a band has: 1 for plain numbers.
     pub fn channels(&self) -> usize {
-        self.derived.map_or(1, |derived| derived.channels.len())
+        self.derived.map_or(1, |derived| (derived.channels)(self.world.recipe()).len())
     }
 
     /// The channels' names, for formats that have some.
     pub fn channel_names(&self) -> Vec<String> {
         match self.derived {
-            Some(derived) => derived.channels.iter().map(ToString::to_string).collect(),
+            Some(derived) => (derived.channels)(self.world.recipe()),
             None => vec![self.layer.clone()],
         }
     }

@@ -9,6 +9,7 @@ pub mod cpt;
 pub mod fitted;
 pub mod gdaldem;
 pub mod gpl;
+pub mod histogram;
 pub mod named;
 pub mod names;
 pub mod own;

@@ -10,6 +10,8 @@ use crate::format::crs::Crs;
 use crate::format::dem::{Georeference, Unit};
 use crate::node::Node;
 use crate::op::{Op, Setting};
+use crate::palette::histogram;
+use crate::recipe::surface::document::{Expanded, RAMP, Surface};
 use crate::value::{toml_key, toml_string};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -104,13 +106,23 @@ pub struct Recipe {
     pub world: WorldSpec,
     nodes: Vec<NamedNode>,
     outputs: Vec<(String, Input)>,
+    surfaces: Vec<Surface>,
+    expanded: Vec<Expanded>,
     held: u64,
 }
 
 impl Recipe {
     /// A recipe without nodes.
     pub fn new(world: WorldSpec) -> Recipe {
-        Recipe { about: String::new(), world, nodes: Vec::new(), outputs: Vec::new(), held: 0 }
+        Recipe {
+            about: String::new(),
+            world,
+            nodes: Vec::new(),
+            outputs: Vec::new(),
+            surfaces: Vec::new(),
+            expanded: Vec::new(),
+            held: 0,
+        }
     }
 
     /// Adds a node. What is wrong with it is told when the world is opened.
@@ -130,6 +142,27 @@ impl Recipe {
         self
     }
 
+    /// Adds a surface on top of those there are. Without any, those of [`standard`](super::surface::standard) cover the ground.
+    pub fn surface(&mut self, surface: Surface) -> &mut Recipe {
+        self.surfaces.push(surface);
+        self
+    }
+
+    /// Its own surfaces, bottom to top.
+    pub fn surfaces(&self) -> &[Surface] {
+        &self.surfaces
+    }
+
+    /// Its surfaces as far as nodes compute them: after [`expand`](super::surface::expand::expand).
+    pub fn expanded(&self) -> &[Expanded] {
+        &self.expanded
+    }
+
+    /// Notes which nodes compute its surfaces. They are not written out with the recipe.
+    pub(super) fn set_expanded(&mut self, expanded: Vec<Expanded>) {
+        self.expanded = expanded;
+    }
+
     /// The nodes in the order they were written.
     pub fn nodes(&self) -> &[NamedNode] {
         &self.nodes
@@ -142,7 +175,8 @@ impl Recipe {
 
     /// Says which folder the paths in it count from: that of its file.
     pub fn lies_in(&mut self, folder: &Path) {
-        self.nodes.iter_mut().flat_map(|named| named.node.files()).for_each(|file| file.lies_in(folder));
+        let nodes = self.nodes.iter_mut().flat_map(|named| named.node.files());
+        nodes.chain(self.surfaces.iter_mut().filter_map(Surface::picture_mut)).for_each(|file| file.lies_in(folder));
     }
 
     /// The files that its nodes name.
@@ -181,6 +215,13 @@ impl Recipe {
                     self.held = self.held.saturating_add(ground.memory());
                 }
                 file.hold(ground);
+            }
+        }
+        for Expanded { surface, colors, .. } in &mut self.expanded {
+            if let Some(picture) = surface.picture().filter(|_| colors.is_empty()) {
+                let in_surface =
+                    |error: Error| Error::new(error.kind(), format!("surface `{}`: {error}", surface.name));
+                *colors = histogram::read(&picture.path(), RAMP).map_err(in_surface)?;
             }
         }
         self.check_map()
@@ -287,7 +328,8 @@ impl Recipe {
         if let Some([east, north]) = self.world.origin {
             let _ = writeln!(text, "origin = [{east:?}, {north:?}]");
         }
-        for NamedNode { name, node, mask } in &self.nodes {
+        let added = |at: &usize| self.expanded.iter().any(|surface| surface.nodes.contains(at));
+        for (_, NamedNode { name, node, mask }) in self.nodes.iter().enumerate().filter(|(at, _)| !added(at)) {
             let spec = node.spec();
             let _ = writeln!(text, "\n[nodes.{}]\nop = {:?}", toml_key(name), spec.op);
             for (i, input) in spec.inputs.iter().enumerate() {
@@ -302,6 +344,7 @@ impl Recipe {
         for (layer, input) in &self.outputs {
             write_input(&mut text, &toml_key(layer), input);
         }
+        self.surfaces.iter().for_each(|surface| surface.write_toml(&mut text));
         text
     }
 }

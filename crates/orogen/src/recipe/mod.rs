@@ -7,5 +7,6 @@ mod parse;
 pub mod presets;
 pub mod reference;
 pub mod schema;
+pub mod surface;
 mod text;
 mod toml;

@@ -3,7 +3,7 @@
 use super::document::{LONGEST_TEXT, MOST_NODES, Recipe, VERSION, WorldSpec};
 use super::graph::{At, Graph, MOST_FAULTS};
 use super::text::{Text, too_long};
-use super::{json, toml};
+use super::{json, surface, toml};
 use crate::declare::Input;
 use crate::error::{Complaint, Error, ErrorKind, Result};
 use crate::node::Node;
@@ -133,13 +133,19 @@ impl Walk<'_> {
                 "world" => recipe.world = self.world(value),
                 "nodes" => self.nodes(value, &mut recipe)?,
                 "outputs" => self.outputs(value, &mut recipe),
+                // Read last: they are told whether the world has bounds.
+                "surface" => {}
                 unknown => {
-                    let known = ["orogen", "about", "world", "nodes", "outputs"];
+                    let known = ["orogen", "about", "world", "nodes", "outputs", "surface"];
                     let hint = suggestion(unknown, known);
                     self.complain(&key.span, format!("unknown key `{unknown}` in a recipe; {hint}"));
                 }
             }
         }
+        let places = match top.iter().find(|(key, _)| key.value == "surface") {
+            Some((_, value)) => self.surfaces(value, &mut recipe),
+            None => Vec::new(),
+        };
         if recipe.output_inputs().is_empty() && self.complaints.is_empty() {
             self.complain(
                 &(0..0),
@@ -163,9 +169,41 @@ impl Walk<'_> {
                 self.complain(&span, fault.sentence);
             }
         }
+        if self.complaints.is_empty() && !places.is_empty() {
+            self.check_surfaces(&recipe, &places);
+        }
         match self.complaints.is_empty() {
             true => Ok(recipe),
             false => Err(self.text.errors(self.complaints, self.more)),
+        }
+    }
+
+    /// Reads the surfaces, and returns where each stands.
+    fn surfaces(&mut self, value: &Spanned<Value>, recipe: &mut Recipe) -> Vec<Span> {
+        let read = surface::read::read(value, recipe.world.size.is_some());
+        read.faults.into_iter().for_each(|(span, message)| self.complain(&span, message));
+        read.surfaces.into_iter().for_each(|surface| {
+            recipe.surface(surface);
+        });
+        read.places
+    }
+
+    /// What is wrong with surfaces shows in the nodes that compute them.
+    fn check_surfaces(&mut self, recipe: &Recipe, places: &[Span]) {
+        let mut whole = recipe.clone();
+        surface::expand::expand(&mut whole);
+        for fault in Graph::resolve(&whole).err().unwrap_or_default() {
+            let at = match fault.at {
+                At::Node(node, _) => whole.expanded().iter().position(|surface| surface.nodes.contains(&node)),
+                _ => None,
+            };
+            let span = at.and_then(|at| places.get(at)).cloned().unwrap_or(0..0);
+            // The names of nodes that nobody wrote would help nobody.
+            let message = match (at.map(|at| &recipe.surfaces()[at].name), fault.sentence.split_once("`: ")) {
+                (Some(name), Some((_, what))) => format!("surface `{name}`: {what}"),
+                _ => fault.sentence,
+            };
+            self.complain(&span, message);
         }
     }
 

@@ -131,6 +131,7 @@ pub fn json_schema() -> Json {
                 "propertyNames": name,
                 "additionalProperties": { "$ref": "#/definitions/input" },
             },
+            "surface": super::surface::schema::list(),
         },
         "definitions": {
             "input": {

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::grain::Grain;
 use super::relief::{Land, Relief};
+use crate::grid::Grid;
 use crate::palette::color::Light;
 use crate::palette::palette::Palette;
 use crate::palette::tint::Tint;
@@ -16,6 +17,8 @@ pub enum Colors {
     Natural,
     /// Beds of red and yellow rock, sand, and little that grows.
     Desert,
+    /// The albedo and roughness of [`Style::cover`](super::scene::Style::cover), with grain between its samples.
+    Surfaces,
     /// The tints of the relief map.
     Map,
     /// One colour, like a model of clay.
@@ -27,6 +30,7 @@ pub enum Colors {
 pub(super) struct Dress<'a> {
     pub colors: Colors,
     pub palette: Option<&'a Palette>,
+    pub cover: Option<[&'a Grid; 4]>,
     pub snow_line: Option<f64>,
 }
 
@@ -58,6 +62,8 @@ pub(super) struct Ground {
     tint: Tint,
     /// Of each sample: slope east and south (metres a metre), how hollow it is (-1 to 1), how much flows through (0 to 1).
     shape: Vec<[f32; 4]>,
+    /// Albedo and roughness of every sample; empty where surfaces are not shown.
+    cover: Vec<[f32; 4]>,
     columns: usize,
     rows: usize,
     cell: f32,
@@ -77,7 +83,7 @@ const TREE_SHARE: f64 = 0.40;
 impl Ground {
     /// The ground of a land. The map's tint goes by `palette`; snow begins at `snow_line`, in metres, or where it suits the relief.
     pub fn new(land: &Land, relief: &Relief, dress: &Dress) -> Ground {
-        let Dress { colors, palette, snow_line } = *dress;
+        let Dress { colors, palette, cover, snow_line } = *dress;
         let [columns, rows] = relief.samples();
         let (base, top) = (relief.height_of(0.0), relief.height_of(relief.highest()));
         let base = land.sea_level.map_or(base, |sea| base.max(sea));
@@ -92,6 +98,7 @@ impl Ground {
                 None => Tint::fit(land.heights, sea),
             },
             shape: shape(land, relief),
+            cover: covered(cover, columns * rows),
             columns,
             rows,
             cell: relief.cell() as f32,
@@ -109,11 +116,16 @@ impl Ground {
     }
 
     fn shape_at(&self, x: f64, y: f64) -> [f32; 4] {
+        self.between(&self.shape, x, y)
+    }
+
+    /// Samples of four numbers, interpolated bilinearly.
+    fn between(&self, samples: &[[f32; 4]], x: f64, y: f64) -> [f32; 4] {
         let (x, y) = (x.clamp(0.0, (self.columns - 1) as f64), y.clamp(0.0, (self.rows - 1) as f64));
         let (i, j) = ((x as usize).min(self.columns - 2), (y as usize).min(self.rows - 2));
         let (u, v) = ((x - i as f64) as f32, (y - j as f64) as f32);
         let at = j * self.columns + i;
-        let [nw, ne, sw, se] = [at, at + 1, at + self.columns, at + self.columns + 1].map(|at| self.shape[at]);
+        let [nw, ne, sw, se] = [at, at + 1, at + self.columns, at + self.columns + 1].map(|at| samples[at]);
         std::array::from_fn(|c| {
             let north = nw[c] + (ne[c] - nw[c]) * u;
             north + (sw[c] + (se[c] - sw[c]) * u - north) * v
@@ -136,6 +148,7 @@ impl Ground {
         let (albedo, rough) = match self.colors {
             Colors::Natural => self.natural(site, shape),
             Colors::Desert => self.desert(site, shape),
+            Colors::Surfaces => self.covered(site),
             // Paper is brighter than any ground: in the sun it would be all white.
             Colors::Map => (self.tint.at(site.height).map(|c| c * 0.55), 0.0),
             Colors::Clay => ([0.30, 0.265, 0.235], 0.0),
@@ -164,6 +177,14 @@ impl Ground {
             }
             wavelength *= 0.5;
         }
+    }
+
+    /// The recipe's surfaces. Between samples their color varies as that of soil and rock does.
+    fn covered(&self, site: &Site) -> (Light, f32) {
+        let [red, green, blue, roughness] = self.between(&self.cover, site.x, site.y);
+        let (small, fine) = (self.noise(site, 2.0 * self.cell, 2), self.noise(site, 0.5 * self.cell, 3));
+        let grain = 1.0 + 0.16 * small + 0.18 * fine;
+        ([red, green, blue].map(|part| (part * grain).clamp(0.0, 1.0)), 0.25 * roughness)
     }
 
     /// Land in a temperate climate: its colour and how rough it is.
@@ -299,11 +320,19 @@ fn mix(from: Light, to: Light, share: f32) -> Light {
     std::array::from_fn(|c| from[c] + (to[c] - from[c]) * share)
 }
 
+/// Albedo and roughness of every sample; clay where there are none.
+fn covered(cover: Option<[&Grid; 4]>, samples: usize) -> Vec<[f32; 4]> {
+    match cover {
+        Some(layers) => (0..samples).map(|at| layers.map(|layer| layer.data()[at])).collect(),
+        None => Vec::new(),
+    }
+}
+
 /// Slope, hollowness and flow of every sample.
 fn shape(land: &Land, relief: &Relief) -> Vec<[f32; 4]> {
     let [columns, rows] = relief.samples();
     let (bed, scale) = (relief.bed(), 1.0 / relief.exaggeration() as f32);
-    let flows = land.flow.map(crate::grid::Grid::data);
+    let flows = land.flow.map(Grid::data);
     let area = (relief.cell() * relief.cell()) as f32;
     (0..rows * columns)
         .into_par_iter()
@@ -331,7 +360,7 @@ fn shape(land: &Land, relief: &Relief) -> Vec<[f32; 4]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::{Grid, Window};
+    use crate::grid::Window;
 
     /// A ramp that faces south, `rise` metres a metre, from 0 to 4000 m.
     fn ground(rise: f32, colors: Colors, snow_line: Option<f64>) -> Ground {
@@ -339,7 +368,7 @@ mod tests {
         let data = (0..window.len()).map(|at| 4000.0 - 10.0 * (at / 5) as f32).collect();
         let heights = Grid::from_data(window, data).unwrap();
         let land = Land { heights: &heights, surface: None, flow: None, sea_level: None };
-        Ground::new(&land, &Relief::new(&land, 1.0).unwrap(), &Dress { colors, palette: None, snow_line })
+        Ground::new(&land, &Relief::new(&land, 1.0).unwrap(), &Dress { colors, palette: None, cover: None, snow_line })
     }
 
     fn site(height: f32) -> Site {

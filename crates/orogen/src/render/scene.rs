@@ -12,7 +12,8 @@ use super::skylight::Skylight;
 use super::tone::film;
 use super::vector::Vector;
 use super::water::Water;
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
+use crate::grid::Grid;
 use crate::palette::color::{Encoder, Light};
 use crate::palette::palette::Palette;
 use crate::progress::Progress;
@@ -41,6 +42,8 @@ pub struct Style<'a> {
     pub colors: Colors,
     /// The palette of [`Colors::Map`]; by itself the relief map's.
     pub palette: Option<&'a Palette>,
+    /// Albedo (red, green and blue as linear light) and roughness of [`Colors::Surfaces`], over the land's window.
+    pub cover: Option<[&'a Grid; 4]>,
     /// Where snow begins, in metres; by itself it suits the relief.
     pub snow_line: Option<f64>,
     /// Light is gathered in so many places of each pixel.
@@ -56,6 +59,7 @@ impl Default for Style<'_> {
             edge: None,
             colors: Colors::Natural,
             palette: None,
+            cover: None,
             snow_line: None,
             samples: 5,
         }
@@ -137,7 +141,13 @@ impl Scene {
         progress.check()?;
         let skylight = Skylight::new(&relief, &sky);
         progress.check()?;
-        let dress = Dress { colors: style.colors, palette: style.palette, snow_line: style.snow_line };
+        let cover = style.cover.into_iter().flatten().all(|layer| layer.window() == land.heights.window());
+        if !cover || (style.colors == Colors::Surfaces && style.cover.is_none()) {
+            let message = "a picture of surfaces needs their albedo and roughness over the window of the heights";
+            return Err(Error::new(ErrorKind::Request, message));
+        }
+        let Style { colors, palette, cover, snow_line, .. } = *style;
+        let dress = Dress { colors, palette, cover, snow_line };
         let ground = Ground::new(land, &relief, &dress);
         let [east, south] = relief.reach();
         let across = (east * east + south * south).sqrt();

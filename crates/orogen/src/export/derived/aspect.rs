@@ -1,6 +1,6 @@
 //! Which way the ground faces.
 
-use super::layer::{Derived, Nature};
+use super::layer::{Derived, Nature, none, nothing};
 use crate::analysis::aspect::aspect;
 
 /// The layer.
@@ -9,8 +9,9 @@ pub static LAYER: Derived = Derived {
     about: "direction downhill in degrees clockwise from north; NaN on level ground",
     unit: "deg",
     nature: Nature::Numbers,
-    channels: &["aspect"],
-    flow: false,
+    channels: |_| vec!["aspect".into()],
+    prepare: nothing,
+    layers: none,
     reach: |_| 1,
     make: |around, window| vec![aspect(&around.bordered(window))],
 };

@@ -1,6 +1,6 @@
 //! How the ground bends.
 
-use super::layer::{Derived, Nature};
+use super::layer::{Derived, Nature, none, nothing};
 use crate::analysis::curvature::{Curvature, curvature};
 
 /// The layer.
@@ -9,8 +9,9 @@ pub static LAYER: Derived = Derived {
     about: "total curvature in 1/m, above 0 on tops and below 0 in hollows (Zevenbergen and Thorne)",
     unit: "1/m",
     nature: Nature::Numbers,
-    channels: &["curvature"],
-    flow: false,
+    channels: |_| vec!["curvature".into()],
+    prepare: nothing,
+    layers: none,
     reach: |_| 1,
     make: |around, window| vec![curvature(&around.bordered(window), Curvature::Total)],
 };

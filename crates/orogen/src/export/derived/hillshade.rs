@@ -1,6 +1,6 @@
 //! How much light the ground catches.
 
-use super::layer::{Derived, Nature};
+use super::layer::{Derived, Nature, none, nothing};
 use crate::analysis::hillshade::{Light, hillshade};
 
 /// The layer.
@@ -9,8 +9,9 @@ pub static LAYER: Derived = Derived {
     about: "shaded relief: light from the north-west, 45 degrees high, on ground of Horn's slope; 1 is full light, 0 none",
     unit: "",
     nature: Nature::Numbers,
-    channels: &["hillshade"],
-    flow: false,
+    channels: |_| vec!["hillshade".into()],
+    prepare: nothing,
+    layers: none,
     reach: |_| 1,
     make: |around, window| vec![hillshade(&around.bordered(window), &Light::default())],
 };

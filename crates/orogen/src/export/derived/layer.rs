@@ -2,6 +2,7 @@
 
 use crate::analysis::slope::beyond;
 use crate::grid::{Grid, Window};
+use crate::recipe::document::Recipe;
 
 /// What the channels of a layer are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,6 +13,8 @@ pub enum Nature {
     Normal,
     /// Shares of a whole: each 0 to 1, together 1.
     Weights,
+    /// A color as linear light: red, green and blue, 0 to 1.
+    Color,
 }
 
 /// A layer that follows from the heights.
@@ -24,10 +27,12 @@ pub struct Derived {
     pub unit: &'static str,
     /// What its channels are.
     pub nature: Nature,
-    /// Their names.
-    pub channels: &'static [&'static str],
-    /// Whether it also looks at how much ground drains through a sample.
-    pub flow: bool,
+    /// Their names, of a recipe that was [prepared](super::list::prepare).
+    pub channels: fn(&Recipe) -> Vec<String>,
+    /// Adds to a recipe the nodes that compute what it reads beside the heights.
+    pub prepare: fn(&mut Recipe),
+    /// The layers of a prepared recipe that it reads beside the heights.
+    pub layers: fn(&Recipe) -> Vec<String>,
     /// How many samples around one it looks at, at such a cell.
     pub reach: fn(f64) -> usize,
     /// Makes the samples of a window: a grid a channel.
@@ -38,10 +43,18 @@ pub struct Derived {
 pub struct Around<'a> {
     /// Heights in metres: of the window and of what the layer reaches around it, as far as the world goes.
     pub heights: &'a Grid,
-    /// Drainage areas in m^2 over the same window, where they are known.
-    pub flow: Option<&'a Grid>,
-    /// The sea's level in metres.
-    pub sea_level: f64,
+    /// The other layers that it reads, over the same window.
+    pub layers: &'a [Grid],
+    /// The recipe.
+    pub recipe: &'a Recipe,
+}
+
+/// The `prepare` of a layer that reads the heights alone.
+pub fn nothing(_: &mut Recipe) {}
+
+/// The `layers` of a layer that reads the heights alone.
+pub fn none(_: &Recipe) -> Vec<String> {
+    Vec::new()
 }
 
 impl Around<'_> {
@@ -88,6 +101,7 @@ impl Around<'_> {
 mod tests {
     use super::*;
     use crate::analysis::slope::extended;
+    use crate::recipe::document::WorldSpec;
 
     #[test]
     fn at_the_ends_of_a_world_it_is_the_extended_grid() {
@@ -95,7 +109,7 @@ mod tests {
             let window = Window::new(width, height, 5.0);
             let data = (0..width * height).map(|k| (k * k % 23) as f32).collect();
             let ground = Grid::from_data(window, data).unwrap();
-            let around = Around { heights: &ground, flow: None, sea_level: 0.0 };
+            let around = Around { heights: &ground, layers: &[], recipe: &Recipe::new(WorldSpec::default()) };
             let whole = around.bordered(&window);
             assert_eq!(whole, extended(&ground), "{width} x {height}");
             for part in window.tiles(2) {

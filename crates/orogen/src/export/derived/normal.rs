@@ -1,6 +1,6 @@
 //! Where the ground points up.
 
-use super::layer::{Derived, Nature};
+use super::layer::{Derived, Nature, none, nothing};
 use crate::analysis::slope::gradients_between;
 use crate::grid::Grid;
 
@@ -10,8 +10,9 @@ pub static LAYER: Derived = Derived {
     about: "upward normal, its parts east, north and up: a normal map",
     unit: "",
     nature: Nature::Normal,
-    channels: &["X", "Y", "Z"],
-    flow: false,
+    channels: |_| ["X", "Y", "Z"].map(String::from).to_vec(),
+    prepare: nothing,
+    layers: none,
     reach: |_| 1,
     make: |around, window| {
         let heights = around.bordered(window);

@@ -1,6 +1,6 @@
 //! How much sky the ground sees.
 
-use super::layer::{Derived, Nature};
+use super::layer::{Derived, Nature, none, nothing};
 use crate::analysis::sky;
 
 /// How far horizons are looked for, in metres, and at most in samples.
@@ -17,8 +17,9 @@ pub static LAYER: Derived = Derived {
     about: "ambient occlusion: the share of the sky that is seen, up to 1000 m or 128 samples around, 1 on open ground",
     unit: "",
     nature: Nature::Numbers,
-    channels: &["occlusion"],
-    flow: false,
+    channels: |_| vec!["occlusion".into()],
+    prepare: nothing,
+    layers: none,
     reach,
     make: |around, window| vec![sky::view(around.heights, window, reach(window.cell))],
 };

@@ -1,6 +1,6 @@
 //! How steep the ground is.
 
-use super::layer::{Derived, Nature};
+use super::layer::{Derived, Nature, none, nothing};
 use crate::analysis::slope::degrees;
 
 /// The layer.
@@ -9,8 +9,9 @@ pub static LAYER: Derived = Derived {
     about: "steepness in degrees, by Horn's 3 x 3 method",
     unit: "deg",
     nature: Nature::Numbers,
-    channels: &["slope"],
-    flow: false,
+    channels: |_| vec!["slope".into()],
+    prepare: nothing,
+    layers: none,
     reach: |_| 1,
     make: |around, window| vec![degrees(&around.bordered(window))],
 };

@@ -8,6 +8,7 @@ use crate::export::options::{OptionSpec, Options, Takes};
 use crate::export::subject::Subject;
 use crate::format::exr::{Picture, Sample, Writer};
 use crate::grid::Window;
+use crate::recipe::surface::document::MAX_SURFACES;
 
 /// The format.
 pub static FORMAT: Format = Format {
@@ -15,7 +16,7 @@ pub static FORMAT: Format = Format {
     aliases: &[],
     about: "OpenEXR of f32 in the layer's own unit (metres for heights), one channel Y, ZIP",
     options: &[HALF, RGB],
-    channels: 8,
+    channels: MAX_SURFACES,
     memory,
     write,
 };

@@ -13,14 +13,15 @@ use crate::export::spread::{self, BITS, FIRST_ROW, RANGE, Spread};
 use crate::export::subject::Subject;
 use crate::format::encoding::Encoding;
 use crate::format::png::{self, Picture, Pixel};
+use crate::recipe::surface::document::MAX_SURFACES;
 
 /// The format.
 pub static FORMAT: Format = Format {
     name: "png",
     aliases: &[],
-    about: "Grey picture of 16 or 8 bits, black the lowest and white the highest; or heights in its colours (--encoding); normals; weights",
+    about: "Grey picture of 16 or 8 bits, black the lowest and white the highest; or heights in its colours (--encoding); normals; weights; colors",
     options: &[BITS, RANGE, FIRST_ROW, ENCODING, NORMAL, WEIGHTS, NO_SIDECAR],
-    channels: 8,
+    channels: MAX_SURFACES,
     memory: |window, _| aside(2 * whole(window)),
     write,
 };
@@ -40,8 +41,8 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
         (WEIGHTS.name, fits(Nature::Weights), "the layer `splat`"),
         (RANGE.name, fits(Nature::Numbers), "plain numbers"),
         (ENCODING.name, fits(Nature::Numbers), "plain numbers"),
-        (FIRST_ROW.name, !fits(Nature::Normal), "plain numbers and weights"),
-        (BITS.name, !fits(Nature::Weights), "plain numbers and normals"),
+        (FIRST_ROW.name, fits(Nature::Numbers) || fits(Nature::Weights), "plain numbers and weights"),
+        (BITS.name, fits(Nature::Numbers) || fits(Nature::Normal), "plain numbers and normals"),
     ] {
         if options.has(option) && !holds {
             return refuse(format!("--{option} is for {what}: leave it out for `{}`", subject.layer()));
@@ -50,6 +51,7 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
     match subject.nature() {
         Nature::Normal => return channels::write_normals(subject, options, files),
         Nature::Weights => return channels::write_weights(subject, options, files),
+        Nature::Color => return channels::write_color(subject, files),
         Nature::Numbers => {}
     }
     match Encoding::ALL.into_iter().find(|encoding| options.word("encoding") == Some(encoding.name())) {

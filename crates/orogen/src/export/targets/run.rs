@@ -82,6 +82,7 @@ pub fn export(
         }
         Nature::Numbers => options.give(&BITS, "8")?,
         Nature::Normal => options.give(&NORMAL, target.normal)?,
+        Nature::Color => {}
         Nature::Weights => {
             options.give(&WEIGHTS, target.weights)?;
             less = target.weights_less;
