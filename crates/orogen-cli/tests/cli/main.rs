@@ -19,5 +19,6 @@ mod others;
 mod outputs;
 mod palettes;
 mod render;
+mod surfaces;
 mod view;
 mod watch;

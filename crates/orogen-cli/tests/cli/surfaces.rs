@@ -1,0 +1,104 @@
+//! Surfaces: what covers the ground.
+
+use crate::harness::{Folder, png};
+
+/// A slope that rises eastward from -100 m to 900 m, with sand below, rock above and moss between.
+const RECIPE: &str = r##"
+orogen = 1
+[world]
+size = [1000, 640]
+cell = 10
+[nodes.land]
+op = "ramp"
+length = 1
+[nodes.metres]
+op = "remap"
+source = "land"
+from = [0, 1000]
+to = [-100, 900]
+[outputs]
+height = "metres"
+[[surface]]
+name = "rock"
+color = "#808080"
+roughness = 0.5
+[[surface]]
+name = "sand"
+picture = "sand.png"
+grain = 100
+height = { max = 200 }
+[[surface]]
+name = "moss"
+color = "#204010"
+height = [200, 500]
+[[surface]]
+name = "sand"
+color = "#ffe0a0"
+roughness = 1
+layers = { land = { min = 950 } }
+"##;
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    // Two colors, as many pixels of each.
+    let mut bytes = Vec::new();
+    let mut encoder = ::png::Encoder::new(&mut bytes, 2, 1);
+    encoder.set_color(::png::ColorType::Rgb);
+    encoder.write_header().unwrap().write_image_data(&[200, 180, 140, 120, 100, 60]).unwrap();
+    folder.write("sand.png", &bytes);
+    folder.write("a.toml", RECIPE);
+    folder
+}
+
+#[test]
+fn weights_albedo_and_roughness_follow_the_rules() {
+    let folder = folder();
+    folder.good(&["export", "a.toml", "-o", "w.png", "--layer", "splat", "-q"]);
+    let weights = png(&folder.read("w.png"));
+    let names: Vec<String> = folder.json("w.json")["channels"]
+        .as_array()
+        .map_or(Vec::new(), |channels| channels.iter().map(ToString::to_string).collect());
+    assert!(folder.text("w.json").contains("rock") && folder.text("w.json").contains("moss"), "{names:?}");
+    folder.good(&["export", "a.toml", "-o", "c.png", "--layer", "albedo", "-q"]);
+    let colors = png(&folder.read("c.png"));
+    assert_eq!((colors.width, colors.height, colors.channels), (100, 64, 3));
+    folder.good(&["export", "a.toml", "-o", "r.npy", "--layer", "roughness", "-q"]);
+    let roughness = crate::harness::npy(&folder.read("r.npy"));
+    let weight = |i: usize| {
+        let at = (20 * 100 + i) * weights.channels;
+        [0, 1, 2].map(|channel| weights.data[at + channel])
+    };
+    let color = |i: usize| [0, 1, 2].map(|channel| colors.data[(20 * 100 + i) * 3 + channel]);
+    // Channels: rock, sand, moss. Sample i stands at a height of 10 i - 100 metres.
+    for (i, expect, rough) in
+        [(5, [0, 255, 0], 0.9), (40, [0, 0, 255], 0.9), (80, [255, 0, 0], 0.5), (97, [0, 255, 0], 1.0)]
+    {
+        assert_eq!(weight(i), expect, "{i}");
+        assert_eq!(roughness.get(i, 20), rough, "{i}");
+    }
+    assert_eq!([color(40), color(80), color(97)], [[0x20, 0x40, 0x10], [0x80; 3], [0xff, 0xe0, 0xa0]]);
+    // The picture's two colors cover half of the sand each, with a short mix between.
+    let sand: Vec<[u8; 3]> = (0..25)
+        .flat_map(|i| (0..64).map(move |j| (i, j)))
+        .map(|(i, j)| [0, 1, 2].map(|channel| colors.data[(j * 100 + i) * 3 + channel]))
+        .collect();
+    let share = |color: [u8; 3]| sand.iter().filter(|own| **own == color).count() as f64 / sand.len() as f64;
+    let (light, dark) = (share([200, 180, 140]), share([120, 100, 60]));
+    assert!(light > 0.3 && dark > 0.3 && light + dark > 0.9, "{light} {dark}");
+}
+
+#[test]
+fn a_render_shows_them_and_what_is_wrong_is_told_at_its_place() {
+    let folder = folder();
+    folder.good(&["render", "a.toml", "-o", "view.png", "--size", "160x90", "--colors", "surfaces", "-q"]);
+    folder.good(&["render", "a.toml", "-o", "natural.png", "--size", "160x90", "-q"]);
+    assert!(folder.read("view.png") != folder.read("natural.png"));
+    folder.write("b.toml", RECIPE.replace("sand.png", "none.png"));
+    // Who does not ask for colors does not need the picture.
+    folder.good(&["export", "b.toml", "-o", "h.npy", "-q"]);
+    folder.bad(&["export", "b.toml", "-o", "x.png", "--layer", "albedo"], 1, "surface `sand`: cannot read");
+    folder.write("c.toml", RECIPE.replace("height = [200, 500]", "height = [500, 200]"));
+    let error = folder.bad(&["export", "c.toml", "-o", "x.png", "--layer", "albedo"], 1, "lower end of `height`").err;
+    assert!(error.contains("c.toml:28:10"), "{error}");
+    assert!(!folder.names("").iter().any(|name| name.starts_with('x')));
+}
