@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use orogen::file::{self, Output};
 use orogen::export::derived::layer::Derived;
 use orogen::export::derived::rows::Rows;
 use orogen::export::derived::{albedo, list, roughness};
+use orogen::file::{self, Output};
 use orogen::format::png::{self, Animation, Picture, Pixel};
 use orogen::palette::palette::Palette;
 use orogen::render::camera::{Camera, View as Shot};

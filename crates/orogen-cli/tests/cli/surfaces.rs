@@ -97,6 +97,12 @@ fn a_render_shows_them_and_what_is_wrong_is_told_at_its_place() {
     // Who does not ask for colors does not need the picture.
     folder.good(&["export", "b.toml", "-o", "h.npy", "-q"]);
     folder.bad(&["export", "b.toml", "-o", "x.png", "--layer", "albedo"], 1, "surface `sand`: cannot read");
+    // The picture is read, so it is not written over.
+    folder.bad(
+        &["export", "a.toml", "-o", "sand.png", "--layer", "albedo", "--force"],
+        1,
+        "this command reads that file",
+    );
     folder.write("c.toml", RECIPE.replace("height = [200, 500]", "height = [500, 200]"));
     let error = folder.bad(&["export", "c.toml", "-o", "x.png", "--layer", "albedo"], 1, "lower end of `height`").err;
     assert!(error.contains("c.toml:28:10"), "{error}");

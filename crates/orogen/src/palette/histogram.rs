@@ -1,7 +1,7 @@
 //! Colors of a picture by its histogram: as many of each kind as the picture has.
 
 use std::fs::File;
-use std::io::{BufReader, Read, Seek};
+use std::io::{BufRead, BufReader, Seek};
 use std::path::Path;
 
 use super::color::{Light, decode, oklab};
@@ -30,7 +30,7 @@ pub fn read(path: &Path, count: usize) -> Result<Vec<Light>> {
 ///
 /// # Errors
 /// What is wrong with it, as a sentence.
-pub fn parse(input: impl Read + Seek + std::io::BufRead, count: usize) -> std::result::Result<Vec<Light>, String> {
+pub fn parse(input: impl BufRead + Seek, count: usize) -> std::result::Result<Vec<Light>, String> {
     let mut decoder = ::png::Decoder::new(input);
     decoder.set_transformations(::png::Transformations::EXPAND | ::png::Transformations::STRIP_16);
     let mut reader = decoder.read_info().map_err(|cause| format!("it is no PNG picture: {cause}"))?;

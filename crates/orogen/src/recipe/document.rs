@@ -179,10 +179,11 @@ impl Recipe {
         nodes.chain(self.surfaces.iter_mut().filter_map(Surface::picture_mut)).for_each(|file| file.lies_in(folder));
     }
 
-    /// The files that its nodes name.
+    /// The files that its nodes and surfaces name.
     pub fn files(&self) -> Vec<PathBuf> {
         let mut nodes: Vec<Node> = self.nodes.iter().map(|named| named.node.clone()).collect();
-        nodes.iter_mut().flat_map(Node::files).filter(|file| !file.is_empty()).map(|file| file.path()).collect()
+        let files = nodes.iter_mut().flat_map(Node::files).filter(|file| !file.is_empty()).map(|file| file.path());
+        files.chain(self.surfaces.iter().filter_map(Surface::picture).map(Imported::path)).collect()
     }
 
     /// Reads the files that its nodes name, each once and not again where it was read, so that together their heights take no more than `allowed` bytes.

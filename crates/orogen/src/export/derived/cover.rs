@@ -120,7 +120,7 @@ impl<'a> Cover<'a> {
 fn ramp(colors: &[Light], position: f32) -> Light {
     let Some(last) = colors.len().checked_sub(1) else { return [0.5; 3] };
     // Of a position that is not known, the first color.
-    let at = (position.max(0.0).min(1.0)) * last as f32;
+    let at = if position.is_nan() { 0.0 } else { position.clamp(0.0, 1.0) * last as f32 };
     let from = (at as usize).min(last);
     let (a, b) = (colors[from], colors[(from + 1).min(last)]);
     std::array::from_fn(|part| a[part] + (b[part] - a[part]) * (at - from as f32))
