@@ -42,6 +42,20 @@ fn no_finite_height_is_an_error_of_every_command() {
     }
 }
 
+/// Layers that follow from the heights are finite where these are not.
+#[test]
+fn derived_layers_tell_of_the_heights_beneath() {
+    let folder = Folder::new();
+    for layer in ["slope", "hillshade", "normal", "splat", "occlusion"] {
+        folder.write("small.toml", recipe(true));
+        folder.bad(&["export", "small.toml", "--layer", layer, "-o", "a.png"], 2, "is a finite number: all 3072 are");
+        assert!(!folder.path("a.png").exists(), "{layer}");
+        folder.write("small.toml", recipe(false));
+        let told = folder.good(&["export", "small.toml", "--layer", layer, "-o", "a.png", "-q"]).err;
+        assert!(told.contains("warning: ") && told.contains(" of 3072 samples"), "{layer}: {told}");
+    }
+}
+
 #[test]
 fn some_that_are_not_finite_are_told_by_every_command() {
     for writer in of_recipes() {

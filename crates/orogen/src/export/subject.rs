@@ -15,8 +15,8 @@ use crate::progress::Progress;
 use crate::words::nearest;
 use crate::world::{HEIGHT, World};
 
-/// Bands of rows from the north, each a grid a channel.
-type Source<'w> = Box<dyn Iterator<Item = Result<Vec<Grid>>> + 'w>;
+/// Bands of rows from the north, each a grid a channel, with how many of its samples are finite: of a derived layer, of the heights beneath.
+type Source<'w> = Box<dyn Iterator<Item = Result<(Vec<Grid>, FiniteCount)>> + 'w>;
 
 /// A layer of a world over a window.
 pub struct Subject<'w> {
@@ -89,7 +89,12 @@ impl<'w> Subject<'w> {
         if let Some(derived) = self.derived {
             return Ok(Box::new(Rows::new(derived, self.world, &self.window, self.beside, self.progress)?));
         }
-        Ok(Box::new(self.world.bands(&[&self.layer], &self.window, self.beside, self.progress)?))
+        let bands = self.world.bands(&[&self.layer], &self.window, self.beside, self.progress)?;
+        let counted = |grids: Vec<Grid>| {
+            let count = grids.iter().fold(FiniteCount::default(), |count, grid| count.and(FiniteCount::of(grid.data())));
+            (grids, count)
+        };
+        Ok(Box::new(bands.map(move |band| band.map(counted))))
     }
 
     /// The world.
@@ -164,9 +169,9 @@ impl<'w> Subject<'w> {
         };
         (self.range, self.count) = (NO_SAMPLES, FiniteCount::default());
         for band in source {
-            let band = band?;
+            let (band, count) = band?;
+            self.count = self.count.and(count);
             self.range = band.iter().fold(self.range, |range, grid| extremes(range, grid.data()));
-            self.count = band.iter().fold(self.count, |count, grid| count.and(FiniteCount::of(grid.data())));
             visit(&band)?;
         }
         Ok(())
@@ -184,7 +189,7 @@ impl<'w> Subject<'w> {
         Ok(all)
     }
 
-    /// How many samples were last made, in all channels.
+    /// How many samples were last made, and how many of them, or of the heights that they follow from, are finite.
     pub fn count(&self) -> FiniteCount {
         self.count
     }

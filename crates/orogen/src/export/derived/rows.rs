@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::layer::{Around, Derived};
+use crate::analysis::finite::FiniteCount;
 use crate::bands::Bands;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
@@ -76,18 +77,19 @@ impl<'w> Rows<'w> {
     pub fn whole(self) -> Result<Vec<Grid>> {
         let mut all = vec![Grid::filled(self.window, 0.0); self.channels];
         for band in self {
-            all.iter_mut().zip(band?).for_each(|(all, band)| all.paste(&band));
+            all.iter_mut().zip(band?.0).for_each(|(all, band)| all.paste(&band));
         }
         Ok(all)
     }
 
-    fn make(&mut self) -> Result<Vec<Grid>> {
+    /// The next rows, and how many of the heights in their place are finite.
+    fn make(&mut self) -> Result<(Vec<Grid>, FiniteCount)> {
         let height = at_once(&self.window).min(self.window.height - self.next);
         let band = Window { y: self.window.y + self.next as i64, height, ..self.window };
         self.next += height;
         let reach = (self.derived.reach)(band.cell);
         let grids = self.source.around(&band.grown(reach))?;
-        let Some((heights, layers)) = grids.split_first() else { return Ok(Vec::new()) };
+        let Some((heights, layers)) = grids.split_first() else { return Ok((Vec::new(), FiniteCount::default())) };
         let around = Around { heights, layers, recipe: self.world.recipe() };
         let strips: Vec<Window> = (0..height)
             .step_by(STRIP)
@@ -100,7 +102,9 @@ impl<'w> Rows<'w> {
         for strip in made {
             out.iter_mut().zip(&strip).for_each(|(out, strip)| out.paste(strip));
         }
-        Ok(out)
+        // Shades and weights are finite whatever the heights are.
+        let beneath = heights.crop(&meet(&band, heights.window()));
+        Ok((out, beneath.map_or_else(FiniteCount::default, |beneath| FiniteCount::of(beneath.data()))))
     }
 }
 
@@ -145,9 +149,9 @@ impl Source<'_> {
 }
 
 impl Iterator for Rows<'_> {
-    type Item = Result<Vec<Grid>>;
+    type Item = Result<(Vec<Grid>, FiniteCount)>;
 
-    fn next(&mut self) -> Option<Result<Vec<Grid>>> {
+    fn next(&mut self) -> Option<Self::Item> {
         if self.next >= self.window.height {
             return None;
         }
@@ -180,7 +184,7 @@ mod tests {
         let mut all = vec![Grid::filled(*window, 0.0); (derived.channels)(world.recipe()).len()];
         let progress = Progress::none();
         for band in Rows::new(derived, world, window, 0, &progress).unwrap() {
-            all.iter_mut().zip(band.unwrap()).for_each(|(all, band)| all.paste(&band));
+            all.iter_mut().zip(band.unwrap().0).for_each(|(all, band)| all.paste(&band));
         }
         all
     }
