@@ -91,7 +91,8 @@ impl<'w> Subject<'w> {
         }
         let bands = self.world.bands(&[&self.layer], &self.window, self.beside, self.progress)?;
         let counted = |grids: Vec<Grid>| {
-            let count = grids.iter().fold(FiniteCount::default(), |count, grid| count.and(FiniteCount::of(grid.data())));
+            let count =
+                grids.iter().fold(FiniteCount::default(), |count, grid| count.and(FiniteCount::of(grid.data())));
             (grids, count)
         };
         Ok(Box::new(bands.map(move |band| band.map(counted))))
