@@ -72,6 +72,20 @@ for name, recipe, cell, window, tile in [
 said = subprocess.run([RIO, "cogeo", "validate", "--strict", WORK / "alpine.tif"], capture_output=True, text=True)
 checks.that("rio cogeo validate --strict", said.stdout.strip().endswith("is a valid cloud optimized GeoTIFF"), said)
 
+# Invented worlds on a map: where they were laid, and parts of them by their pixels' edges, as gdal_translate -projwin takes them.
+for code, origin in [(32632, (600000, 5200000)), (2264, (1500000, 500000)), (2056, (2600000, 1200000)), (4326, (11, 47))]:
+    place = ("--crs", f"EPSG:{code}", "--origin", ",".join(map(str, origin)))
+    path = export("hills", f"placed-{code}.tif", "--cell", 20, "--window", "0,0,200,150", *place)
+    with rasterio.open(path) as tiff:
+        checks.equal(f"EPSG:{code}: the system", tiff.crs.to_epsg(), code)
+        checks.equal(f"EPSG:{code}: the place", tuple(map(float, tiff.xy(0, 0))), tuple(map(float, origin)))
+        (left, top), (right, bottom) = tiff.transform @ (31, 17), tiff.transform @ (131, 77)
+        expected = tiff.read(1, window=((17, 77), (31, 131)))
+    # Degrees come back as square metres, on another lattice.
+    if code != 4326:
+        part = numpy.load(export(path, f"placed-{code}.npy", "--projwin", left, top, right, bottom))
+        checks.that(f"EPSG:{code}: the part that -projwin takes", same_bits(part, expected))
+
 # A plane that rises 3 m a metre to the east and falls 2 m a metre to the south, as its northing does: 3 east + 2 north, wherever
 # one asks. Mirrored, turned or moved by half a cell it would be another.
 PLANE, CELL = ROOT / "xtask/clients/plane.toml", 0.05

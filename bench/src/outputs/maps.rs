@@ -64,6 +64,7 @@ fn sheet() -> Sheet {
         page: Page::Fitted(240.0),
         resolution: Resolution::Inch(150.0),
         sea_level: Some(0.0),
+        layer: None,
         map: None,
     }
 }

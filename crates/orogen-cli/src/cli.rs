@@ -5,8 +5,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 use orogen::Level;
 
 use crate::command::{
-    analyze, build, compare, completions, explain, export, fit, generate, grow, map, new, noise, ops, palettes,
-    presets, render, schema,
+    analyze, build, cache, check, compare, completions, explain, export, fit, generate, graph, grow, map, new, noise,
+    ops, palettes, presets, render, schema,
 };
 use crate::failure::Failure;
 
@@ -55,6 +55,12 @@ enum Command {
     Schema,
     /// Show how a recipe would be made: its nodes in order, and the memory it takes.
     Explain(explain::Args),
+    /// Check recipes and tell every fault, without making anything.
+    Check(check::Args),
+    /// Draw a recipe's graph: its nodes as boxes, and the wires between them.
+    Graph(graph::Args),
+    /// List or clear the solutions that are kept for later runs.
+    Cache(cache::Args),
     /// Print the completion script of a shell.
     Completions(completions::Args),
 }
@@ -81,6 +87,9 @@ impl Cli {
             Command::Palettes(args) => palettes::run(&args),
             Command::Schema => schema::run(),
             Command::Explain(args) => explain::run(&args),
+            Command::Check(args) => check::run(&args),
+            Command::Graph(args) => graph::run(&args),
+            Command::Cache(args) => cache::run(&args),
             Command::Completions(args) => completions::run(&args, Cli::command()),
         }
     }

@@ -17,6 +17,8 @@ pub enum Failure {
     Engine(Error),
     /// Somebody asked it to stop before it was done: exit code [`INTERRUPTED`].
     Interrupted(String),
+    /// Everything has been told already: exit code 1.
+    Told,
     /// Whoever read our output has had enough of it: no failure of ours, and nothing to tell.
     BrokenPipe,
 }
@@ -41,7 +43,7 @@ impl Failure {
         match self {
             Failure::Usage(_) => ExitCode::from(2),
             Failure::Engine(error) if error.kind() == ErrorKind::Request => ExitCode::from(2),
-            Failure::Engine(_) => ExitCode::FAILURE,
+            Failure::Engine(_) | Failure::Told => ExitCode::FAILURE,
             Failure::Interrupted(_) => ExitCode::from(INTERRUPTED),
             Failure::BrokenPipe => ExitCode::SUCCESS,
         }

@@ -35,6 +35,8 @@ impl clap::Args for FormatOptions {
                 .long(spec.name)
                 .help(format!("{} [{}]", spec.about, formats.join(", ")))
                 .help_heading("Options of formats");
+            // Spelled as people elsewhere do, too.
+            let arg = if spec.name == "color" { arg.aliases(["colors", "colour", "colours"]) } else { arg };
             command = command.arg(match spec.takes {
                 Takes::Nothing => arg.action(ArgAction::SetTrue),
                 _ => arg.value_name(spec.value).allow_hyphen_values(true),

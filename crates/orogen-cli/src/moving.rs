@@ -3,11 +3,12 @@
 use std::io;
 use std::path::Path;
 
-use orogen::file::{self, Output, OutputPolicy, Staged};
+use orogen::file::{self, OutputPolicy, Staged};
 use orogen::format::gif::{self, Palette};
 use orogen::format::png::{self, Animation, Picture, Pixel};
 
 use crate::failure::Failure;
+use crate::sink::{Sink, is_stdout};
 
 /// What frames are written to.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,9 +22,12 @@ pub enum Target {
 }
 
 impl Target {
-    /// What a file's name tells: `.png` and `.gif` are animations, `view-%03d.png` is a file for each frame; or a sentence that
-    /// says why it tells nothing.
+    /// What a file's name tells: `.png` and `.gif` are animations, `view-%03d.png` is a file for each frame, and standard output gets an
+    /// APNG; or a sentence that says why it tells nothing.
     pub fn of(out: &Path) -> Result<Target, String> {
+        if is_stdout(out) {
+            return Ok(Target::Apng);
+        }
         let name = out.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
         let extension = out.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default();
         let help = "frames go into a .png that moves, a .gif, or files of their own such as view-%03d.png";
@@ -46,11 +50,11 @@ impl Target {
     }
 
     /// The files that so many frames go into, if what is there may be replaced.
-    pub fn outputs(&self, out: &Path, frames: u32, policy: &OutputPolicy) -> orogen::Result<Vec<Output>> {
+    pub fn outputs(&self, out: &Path, frames: u32, policy: &OutputPolicy) -> Result<Vec<Sink>, Failure> {
         match self {
-            Target::Apng | Target::Gif => Ok(vec![policy.output(out)?]),
+            Target::Apng | Target::Gif => Ok(vec![Sink::new(out, policy)?]),
             Target::Frames(before, digits, after) => (0..frames)
-                .map(|frame| policy.output(out.with_file_name(format!("{before}{frame:0digits$}{after}"))))
+                .map(|frame| Sink::new(&out.with_file_name(format!("{before}{frame:0digits$}{after}")), policy))
                 .collect(),
         }
     }
@@ -69,7 +73,7 @@ impl Target {
 /// A moving picture about to be written.
 pub struct Moving<'a> {
     /// Where to: what [`Target::outputs`] made.
-    pub outputs: &'a [Output],
+    pub outputs: &'a [Sink],
     /// As what.
     pub target: &'a Target,
     /// What each frame is.
@@ -86,11 +90,9 @@ impl Moving<'_> {
         let Picture { width, height, pixel, .. } = self.picture;
         match self.target {
             Target::Apng => {
-                file::write_whole(&self.outputs[0], |out| {
-                    png::write_animation(out, &self.picture, self.animation, fill)
-                })?;
+                self.outputs[0].write(|out| png::write_animation(out, &self.picture, self.animation, fill))?;
             }
-            Target::Gif => file::write_whole(&self.outputs[0], |out| {
+            Target::Gif => self.outputs[0].write(|out| {
                 let palette = Palette::of(&colors((self.sample)()?, pixel));
                 let mut own = vec![0; if pixel == Pixel::Grey8 { width * height } else { 0 }];
                 gif::write_animation(out, [width, height], &palette, self.animation, |frame, bytes| {
@@ -105,7 +107,8 @@ impl Moving<'_> {
             Target::Frames(..) => {
                 let mut bytes = vec![0; width * height * pixel.bytes()];
                 let mut staged: Vec<Staged> = Vec::new();
-                for (frame, output) in (0..).zip(self.outputs) {
+                for (frame, sink) in (0..).zip(self.outputs) {
+                    let Sink::File(output) = sink else { continue };
                     staged.push(file::stage(output, |out| {
                         fill(frame, &mut bytes)?;
                         png::write(out, &self.picture, |rows, part| {

@@ -49,18 +49,23 @@ impl Limits {
         Options { threads, memory, cache: self.cache(), scratch: None }
     }
 
-    /// Where solutions are kept: what was asked for, else what the environment says, else where the system wants them.
+    /// What keeps solutions, if any are kept.
     fn cache(&self) -> Option<Cache> {
         if self.no_cache {
             return None;
         }
-        let environment = || match std::env::var_os(CACHE_VARIABLE) {
-            Some(folder) if folder.is_empty() => None,
-            Some(folder) => Some(PathBuf::from(folder)),
-            None => Cache::system_folder(),
-        };
-        let mut cache = Cache::new(self.cache.clone().or_else(environment)?);
+        let mut cache = Cache::new(cache_folder(self.cache.as_ref())?);
         cache.limit = self.cache_limit.map_or(cache.limit, |bytes| bytes.0);
         Some(cache)
+    }
+}
+
+/// Where solutions are kept: what was asked for, else what the environment says, else where the system wants them.
+pub fn cache_folder(asked: Option<&PathBuf>) -> Option<PathBuf> {
+    match (asked, std::env::var_os(CACHE_VARIABLE)) {
+        (Some(folder), _) => Some(folder.clone()),
+        (None, Some(folder)) if folder.is_empty() => None,
+        (None, Some(folder)) => Some(PathBuf::from(folder)),
+        (None, None) => Cache::system_folder(),
     }
 }

@@ -20,7 +20,7 @@ pub fn report(failure: &Failure) {
             }
         }
         Failure::Interrupted(sentence) => say::error(&printable(sentence)),
-        Failure::BrokenPipe => {}
+        Failure::Told | Failure::BrokenPipe => {}
     }
 }
 

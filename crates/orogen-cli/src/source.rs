@@ -1,14 +1,17 @@
-//! RECIPE on the command line: a file, the name of a preset, or a file of heights.
+//! RECIPE on the command line: a file, the name of a preset, a file of heights, or a recipe on standard input.
 
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use orogen::dem::ground::{Ground, USUAL_MEMORY};
 use orogen::format::import;
+use orogen::recipe::document::LONGEST_TEXT;
 use orogen::recipe::presets::{self, Preset};
-use orogen::{Recipe, nearest};
+use orogen::{Error, ErrorKind, Recipe, nearest};
 
 use crate::failure::Failure;
+use crate::sink::DASH;
 use crate::{memory, say};
 
 /// Where a recipe comes from.
@@ -20,11 +23,22 @@ pub enum Source {
     Preset(&'static Preset),
     /// Heights of a real place, as a recipe of nothing else.
     Dem(PathBuf),
+    /// Standard input.
+    Stdin,
 }
+
+/// What standard input is called.
+const STDIN: &str = "standard input";
+
+/// What has come from standard input: it comes once, and may be read again.
+static PIPED: OnceLock<Vec<u8>> = OnceLock::new();
 
 impl Source {
     /// What `argument` names: the file, if there is one, else the preset.
     pub fn find(argument: &Path) -> Result<Source, Failure> {
+        if argument == Path::new(DASH) {
+            return Ok(Source::Stdin);
+        }
         let preset = argument.to_str().and_then(presets::find);
         match preset {
             Some(preset) if argument.is_file() => {
@@ -56,12 +70,44 @@ impl Source {
         Ok(match self {
             Source::File(path) => Recipe::read(path)?,
             Source::Preset(preset) => preset.recipe()?,
+            Source::Stdin => piped()?,
             Source::Dem(path) => {
                 let ground = Ground::read(path, None, memory::share_of_free().unwrap_or(USUAL_MEMORY))?;
                 ground.notes.iter().for_each(|note| say::error(&format!("note: {}: {note}", path.display())));
                 Recipe::of_place(path, &Arc::new(ground))
             }
         })
+    }
+}
+
+/// The recipe on standard input. Relative paths in it count from the working folder.
+fn piped() -> Result<Recipe, Failure> {
+    let bytes = match PIPED.get() {
+        Some(bytes) => bytes,
+        None => {
+            let mut bytes = Vec::new();
+            let read = io::stdin().lock().take(LONGEST_TEXT + 1).read_to_end(&mut bytes);
+            read.map_err(|cause| Error::file("read the recipe from", Path::new(STDIN), &cause))?;
+            PIPED.get_or_init(|| bytes)
+        }
+    };
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Ok(Recipe::parse(text, STDIN)?),
+        Err(_) => Err(Error::new(
+            ErrorKind::Recipe,
+            format!(
+                "{STDIN} is not a recipe: a recipe is TOML or JSON, and heights are read from files, by their names"
+            ),
+        )
+        .into()),
+    }
+}
+
+/// What a world is called that comes from `argument`, for headings.
+pub fn title(argument: &Path) -> String {
+    match argument == Path::new(DASH) {
+        true => "Untitled".into(),
+        false => argument.file_stem().unwrap_or(argument.as_os_str()).to_string_lossy().into_owned(),
     }
 }
 

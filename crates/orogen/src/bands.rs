@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::progress::Progress;
 use crate::tiles::{Tiles, Tiling};
-use crate::words::bytes;
+use crate::words::{bytes, count};
 use crate::world::World;
 
 /// About how many samples a band has, and the fewest and most rows.
@@ -66,8 +66,9 @@ impl World {
                     let tiles = 4 * (layers.len() * tile.len()) as u64;
                     let making = self.memory_of(&self.plan(layers, &tile)?).saturating_add(tiles);
                     let sentence = format!(
-                        "this needs at least {} of memory, {rows} rows at a time, and {} is allowed: allow more",
+                        "this needs at least {} of memory, {} at a time, and {} is allowed: allow more",
                         bytes(making.saturating_add(held)),
+                        count(rows, "row"),
                         bytes(self.memory_limit().unwrap_or_default())
                     );
                     return Err(Error::new(ErrorKind::Memory, sentence));

@@ -65,7 +65,7 @@ pub mod sampler;
 pub mod sheet;
 pub mod solver;
 pub mod spool;
-mod store;
+pub mod store;
 pub mod survey;
 pub mod tiles;
 pub mod value;

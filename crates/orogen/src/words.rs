@@ -63,6 +63,20 @@ pub fn list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
+/// Words that are spelled in two ways.
+const SPELLINGS: [(&str, &str); 4] =
+    [("centre", "center"), ("colour", "color"), ("grey", "gray"), ("normalise", "normalize")];
+
+/// A name in the other of its two spellings: "centre" for "center". None if it has one.
+pub fn respelled(name: &str) -> Option<String> {
+    let other = |(one, other): &(&str, &str)| match (name.contains(one), name.contains(other)) {
+        (true, _) => Some(name.replace(one, other)),
+        (_, true) => Some(name.replace(other, one)),
+        _ => None,
+    };
+    SPELLINGS.iter().find_map(other)
+}
+
 /// So many things: "1 tile", "3 tiles".
 pub fn count(n: usize, thing: &str) -> String {
     match n {

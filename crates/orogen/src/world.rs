@@ -17,7 +17,7 @@ use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, Link, MOST_SAMPLES};
 use crate::store::cache::Cache;
 use crate::store::solutions::Store;
-use crate::words::{bytes, suggestion};
+use crate::words::{bytes, number, suggestion};
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -124,8 +124,12 @@ impl World {
         let samples = size.map(|length| (length / cell).round());
         let fault = |why: &str, other: &str| {
             let [width, height] = size;
-            let sentence =
-                format!("the world of {width} x {height} m has {why} at a cell of {cell} m; ask for a {other} cell");
+            let sentence = format!(
+                "the world of {} x {} m has {why} at a cell of {} m; ask for a {other} cell",
+                number(width),
+                number(height),
+                number(cell)
+            );
             Err(Error::new(ErrorKind::Request, sentence))
         };
         if !samples.iter().all(|samples| *samples >= 1.0) {
@@ -386,7 +390,7 @@ impl World {
                     window.height,
                     window.x,
                     window.y,
-                    window.cell,
+                    number(window.cell),
                     world.width - 1,
                     world.height - 1
                 ));

@@ -13,7 +13,7 @@ const VIEWS: [(&str, &str); 5] = [
     ),
     ("view-alpine", "alpine --size 1120x630 --samples 9"),
     ("view-island", "island --size 1120x630 --samples 9 --camera 215,16"),
-    ("view-canyon", "canyon --size 1120x630 --samples 9 --colors desert --camera 225,22 --sun 275,24"),
+    ("view-canyon", "canyon --size 1120x630 --samples 9 --color desert --camera 225,22 --sun 275,24"),
     ("view-volcano", "volcano --size 1120x630 --samples 9 --camera 170,20"),
 ];
 

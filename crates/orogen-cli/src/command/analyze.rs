@@ -6,7 +6,7 @@ use orogen::survey::measures::Measures;
 use orogen::survey::page::{self, Title};
 use orogen::survey::real::{FIGURES, SOURCE, table};
 use orogen::words::number;
-use orogen::{Error, ErrorKind, Window, file};
+use orogen::{Error, ErrorKind, Window};
 use serde_json::{Map, Value, json};
 
 use crate::bar::Bar;
@@ -15,7 +15,8 @@ use crate::format::Format;
 use crate::options::Limits;
 use crate::replace::Replace;
 use crate::seeds::Seeds;
-use crate::source::Source;
+use crate::sink::{Sink, is_stdout};
+use crate::source::{Source, title};
 use crate::view::{SizedView, View};
 use crate::{finite, interrupt, say};
 
@@ -54,6 +55,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 fn measure(args: &Args) -> Result<(), Failure> {
     if let Some(out) = &args.out
+        && !is_stdout(out)
         && Format::of(out, Format::ALL) != Ok(Format::Png)
     {
         return Err(Failure::Usage("the page is a picture; name a file that ends in .png".into()));
@@ -62,7 +64,7 @@ fn measure(args: &Args) -> Result<(), Failure> {
     let mut recipe = source.read()?;
     args.samples.view.apply(&mut recipe);
     let policy = args.replace.policy(source.inputs(&recipe));
-    let output = args.out.as_ref().map(|out| policy.output(out)).transpose()?;
+    let sink = args.out.as_ref().map(|out| Sink::new(out, &policy)).transpose()?;
     let world = args.limits.open(recipe)?;
     let window = args.samples.window(&world)?;
     // A file of heights tells nothing of a sea: all of it is land.
@@ -80,21 +82,23 @@ fn measure(args: &Args) -> Result<(), Failure> {
         let sentence = "there is too little land to measure: it takes 64 x 64 samples, a hundredth of them above the sea, and some relief";
         Error::new(ErrorKind::Request, sentence)
     })?;
-    if let Some(output) = &output {
-        let title = Title { name: name(&args.recipe), about: about(args, &world) };
+    if let Some(sink) = &sink {
+        let title = Title { name: title(&args.recipe), about: about(args, &world) };
         let page = page::draw(&title, &heights, sea_level, &measures)?;
         let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-        file::write_whole(output, |out| page.write_png(out, &[("Software", &software)]))?;
+        sink.write(|out| page.write_png(out, &[("Software", &software)]))?;
     }
-    match (args.json, args.quiet) {
-        (true, _) => say::out(&json(args, &window, &measures)),
-        (false, true) => Ok(()),
-        (false, false) => say::out(&words(args, &window, &measures)),
+    let text = match (args.json, args.quiet) {
+        (true, _) => json(args, &window, &measures),
+        (false, true) => return Ok(()),
+        (false, false) => words(args, &window, &measures),
+    };
+    match sink {
+        // The page has standard output for itself.
+        Some(Sink::Stdout) => say::error(text.trim_end()),
+        _ => say::out(&text)?,
     }
-}
-
-fn name(path: &std::path::Path) -> String {
-    path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+    Ok(())
 }
 
 fn about(args: &Args, world: &orogen::World) -> String {
@@ -107,7 +111,11 @@ fn about(args: &Args, world: &orogen::World) -> String {
 }
 
 fn words(args: &Args, window: &Window, measures: &Measures) -> String {
-    let page = args.out.as_ref().map_or(String::new(), |out| format!("\n{}: the page\n", out.display()));
+    let page = args
+        .out
+        .as_ref()
+        .filter(|out| !is_stdout(out))
+        .map_or(String::new(), |out| format!("\n{}: the page\n", out.display()));
     let [low, mean, high] = measures.heights;
     let land = match measures.land_share {
         share if share < 1.0 => format!(", {:.1} % land", 100.0 * share),

@@ -16,6 +16,7 @@ use crate::failure::Failure;
 use crate::options::Limits;
 use crate::replace::Replace;
 use crate::seeds::Seeds;
+use crate::sink::is_stdout;
 use crate::source::Source;
 use crate::view::{SizedView, View};
 use crate::{disk, finite, interrupt, say};
@@ -76,6 +77,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn build(args: &Args) -> Result<(), Failure> {
+    if is_stdout(&args.out) {
+        let sentence = "a build goes on where it was interrupted, which standard output cannot; name a file, or use `orogen export`";
+        return Err(Failure::Usage(sentence.into()));
+    }
     let begun = Instant::now();
     let form = form(args)?;
     let source = Source::find(&args.recipe)?;

@@ -2,14 +2,13 @@
 
 use std::path::PathBuf;
 
-use orogen::file;
-
 use crate::failure::Failure;
 use crate::format::Format;
+use crate::memory;
 use crate::replace::Replace;
 use crate::sheet::{page, row};
+use crate::sink::{Sink, is_stdout};
 use crate::size::{Bytes, seed};
-use crate::{memory, say};
 
 /// What it takes.
 #[derive(Debug, clap::Args)]
@@ -36,10 +35,10 @@ pub struct Args {
 
 /// Draws the page.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    if Format::of(&args.out, Format::ALL).map_err(Failure::Usage)? != Format::Png {
+    if !is_stdout(&args.out) && Format::of(&args.out, Format::ALL).map_err(Failure::Usage)? != Format::Png {
         return Err(Failure::Usage("the page is a picture; name a file that ends in .png".into()));
     }
-    let output = args.replace.anywhere().output(&args.out)?;
+    let sink = Sink::new(&args.out, &args.replace.anywhere())?;
     let (rows, side) = (row::rows(args.seed), usize::from(args.size));
     let [width, height] = page::size(rows.len(), side);
     // The page, and of each noise its pictures, its heights twice and what they are made of.
@@ -47,13 +46,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     memory::afford((3 * width * height + noises * side * side * 24) as u64, args.memory)?;
     let page = page::draw(&rows, side, args.seed)?;
     let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    file::write_whole(&output, |out| page.write_png(out, &[("Software", &software)]))?;
-    match args.quiet {
-        true => Ok(()),
-        false => say::out(&format!(
-            "{}: {noises} noises and aggregates of seed {}, each as heights and as hillshade; {width} x {height} pixels\n",
-            args.out.display(),
-            args.seed
-        )),
-    }
+    sink.write(|out| page.write_png(out, &[("Software", &software)]))?;
+    let words = format!(
+        "{}: {noises} noises and aggregates of seed {}, each as heights and as hillshade; {width} x {height} pixels\n",
+        args.out.display(),
+        args.seed
+    );
+    sink.tell(args.quiet, &words)
 }

@@ -1,7 +1,6 @@
 //! `orogen export`.
 
-use std::io::{self, BufWriter, IsTerminal, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::builder::PossibleValue;
 use orogen::World;
@@ -21,6 +20,7 @@ use crate::format_options::FormatOptions;
 use crate::options::Limits;
 use crate::replace::Replace;
 use crate::seeds::Seeds;
+use crate::sink::{Sink, is_stdout};
 use crate::size::Size;
 use crate::source::Source;
 use crate::view::{SizedView, View};
@@ -129,12 +129,6 @@ fn export(args: &Args) -> Result<(), Failure> {
     let format = format(args)?;
     let options = args.options.read()?;
     registry::check(format, &options)?;
-    let to_stdout = args.out == Path::new("-");
-    if to_stdout && io::stdout().is_terminal() {
-        return Err(Failure::Usage(
-            "standard output is a terminal, which cannot show binary data; name a file with -o, or pipe it on".into(),
-        ));
-    }
     let source = Source::find(&args.recipe)?;
     let mut recipe = source.read()?;
     args.samples.view.apply(&mut recipe);
@@ -145,33 +139,19 @@ fn export(args: &Args) -> Result<(), Failure> {
         return for_engine(args, target, format, &world, &policy);
     }
     let window = args.samples.window(&world)?;
+    let sink = Sink::new(&args.out, &policy)?;
     let (bar, progress) = Bar::new(args.quiet);
     let subject = Subject::new(&world, &args.layer, window, &progress)?;
-    match to_stdout {
-        true => {
-            let mut out = BufWriter::new(io::stdout().lock());
-            let written = exporting::to_stream(format, subject, &options, &mut out);
-            let written = written.and_then(|written| out.flush().map(|()| written));
-            // What is left in the buffer after a failure must not be tried again on the way out.
-            drop(out.into_parts());
-            let written = written.map_err(|cause| match interrupt::asked() {
-                true => Failure::Interrupted("stopped: what was written is cut short".to_string()),
-                false => Failure::stdout(&cause),
-            })?;
-            Ok(finite::tell(&args.layer, written.count)?)
-        }
-        false => {
-            let Written { words, count } = exporting::to_file(format, subject, &options, &policy.output(&args.out)?)
-                .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?;
-            drop(bar);
-            finite::tell(&args.layer, count)?;
-            let size = format!("{} x {} samples of {} m", window.width, window.height, number(window.cell));
-            match args.quiet {
-                true => Ok(()),
-                false => say::out(&format!("{}: {}, {size}, {words}\n", args.out.display(), args.layer)),
-            }
-        }
-    }
+    let Written { words, count } = match &sink {
+        Sink::Stdout => sink.write(|out| exporting::to_stream(format, subject, &options, out))?,
+        // With what stands beside it.
+        Sink::File(output) => exporting::to_file(format, subject, &options, output)
+            .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?,
+    };
+    drop(bar);
+    finite::tell(&args.layer, count)?;
+    let size = format!("{} x {} samples of {} m", window.width, window.height, number(window.cell));
+    sink.tell(args.quiet, &format!("{}: {}, {size}, {words}\n", args.out.display(), args.layer))
 }
 
 /// Writes the layer for an engine.
@@ -182,7 +162,7 @@ fn for_engine(
     world: &World,
     policy: &OutputPolicy,
 ) -> Result<(), Failure> {
-    if args.out == Path::new("-") {
+    if is_stdout(&args.out) {
         return Err(Failure::Usage("an engine's files have names: give one with -o".into()));
     }
     if let Some(option) = args.options.read()?.names().next() {
@@ -231,7 +211,7 @@ fn for_engine(
 /// The format that is asked for: by name, else by extension, else an array.
 fn format(args: &Args) -> Result<&'static Format, Failure> {
     let named = args.format.and_then(registry::named);
-    if args.out == Path::new("-") {
+    if is_stdout(&args.out) {
         return named.or(registry::named("npy")).ok_or_else(|| Failure::Usage("say --format".into()));
     }
     match (named, registry::of_path(&args.out)) {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use orogen::dem::ground::{Ground, USUAL_MEMORY};
-use orogen::file::{self, mark};
+use orogen::file::mark;
 use orogen::fit::likeness::{Likeness, of_windows};
 use orogen::fit::search::{Effort, MOST_WINDOWS, Target, search};
 use orogen::recipe::presets;
@@ -18,6 +18,7 @@ use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::options::Limits;
 use crate::replace::Replace;
+use crate::sink::{Sink, is_stdout};
 use crate::size::seed;
 use crate::source::preset;
 use crate::{finite, interrupt, memory, say};
@@ -27,7 +28,7 @@ use crate::{finite, interrupt, memory, say};
 pub struct Args {
     /// A file of heights (GeoTIFF, .asc, .hgt, ...)
     place: PathBuf,
-    /// Recipe to write, a .toml; never over one that was written or changed by hand
+    /// Recipe to write, a .toml, or - for standard output; never over one that was written or changed by hand
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
     /// Seed of the search and of the world found
@@ -55,10 +56,10 @@ pub struct Args {
 
 /// Finds a recipe, judges it by worlds of other seeds beside the default preset, and writes it.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    if args.out.extension().is_none_or(|extension| extension != "toml") {
+    if !is_stdout(&args.out) && args.out.extension().is_none_or(|extension| extension != "toml") {
         return Err(Failure::Usage(format!("{} is no name for a recipe: let it end in .toml", args.out.display())));
     }
-    let output = args.replace.policy([&args.place]).output(&args.out)?;
+    let sink = Sink::new(&args.out, &args.replace.policy([&args.place]))?;
     let allowed = args.limits.memory.map(|bytes| bytes.0).or_else(memory::share_of_free).unwrap_or(USUAL_MEMORY);
     let place = Ground::read(&args.place, None, allowed)?;
     if !args.quiet {
@@ -83,13 +84,19 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         ours.push(land(args, recipe.clone(), seed, &target)?);
         defaults.push(land(args, preset(presets::DEFAULT)?.recipe()?, seed, &target)?);
     }
-    file::write_whole(&output, |out| out.write_all(mark::marked(&recipe.to_toml()).as_bytes()))?;
+    sink.write(|out| out.write_all(mark::marked(&recipe.to_toml()).as_bytes()))?;
     let report = Report::of(&target, &place.grid, &ours, &defaults);
-    match (args.json, args.quiet) {
-        (true, _) => say::out(&report.json(&target, found.tried)),
-        (false, true) => Ok(()),
-        (false, false) => say::out(&report.words(args, &name, &target, found.tried)),
+    let text = match (args.json, args.quiet) {
+        (true, _) => report.json(&target, found.tried),
+        (false, true) => return Ok(()),
+        (false, false) => report.words(args, &name, &target, found.tried),
+    };
+    match sink {
+        // The recipe has standard output for itself.
+        Sink::Stdout => say::error(text.trim_end()),
+        Sink::File(_) => say::out(&text)?,
     }
+    Ok(())
 }
 
 /// A world of another seed at the place's cell, as much of it as the place has.

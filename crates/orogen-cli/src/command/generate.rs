@@ -13,6 +13,7 @@ use crate::options::Limits;
 use crate::pictures::{self, FILES, Report};
 use crate::replace::Replace;
 use crate::seeds::Seeds;
+use crate::sink::is_stdout;
 use crate::source::Source;
 use crate::view::{SizedView, View};
 use crate::{finite, interrupt, say, watch};
@@ -53,6 +54,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn generate(args: &Args) -> Result<(), Failure> {
+    if is_stdout(&args.out) {
+        return Err(Failure::Usage(
+            "several files are written: name a folder, or use `orogen export` for one file".into(),
+        ));
+    }
     let source = Source::find(&args.recipe)?;
     let again = |progress: &Progress| make(&source, args, progress);
     match (&source, args.watch) {
@@ -61,6 +67,9 @@ fn generate(args: &Args) -> Result<(), Failure> {
             "--watch waits for changes of a recipe, and {} holds heights; name it in a recipe's node with op = \"dem\"",
             path.display()
         ))),
+        (Source::Stdin, true) => {
+            Err(Failure::Usage("--watch waits for changes of a file, and standard input is none; name the file".into()))
+        }
         (Source::Preset(preset), true) => Err(Failure::Usage(format!(
             "--watch waits for changes of a file, and `{0}` is a preset; `orogen new NAME --preset {0}` makes a file of it",
             preset.name

@@ -3,10 +3,10 @@
 use std::io;
 use std::path::PathBuf;
 
-use orogen::file::Output;
 use orogen::format::png::{Animation, Picture, Pixel};
 use orogen::map::paint::Painter;
 use orogen::node::Node;
+use orogen::words::count;
 use orogen::{Grid, Progress, Recipe};
 
 use crate::bar::Bar;
@@ -15,9 +15,10 @@ use crate::moving::{Moving, Target};
 use crate::options::Limits;
 use crate::replace::Replace;
 use crate::seeds::Seeds;
+use crate::sink::Sink;
 use crate::source::Source;
 use crate::view::{SizedView, View};
-use crate::{finite, interrupt, memory, say};
+use crate::{finite, interrupt, memory};
 
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
@@ -77,14 +78,14 @@ fn grow(args: &Args) -> Result<(), Failure> {
     let made = write(&recipe, args, &target, &outputs, &progress);
     drop(bar);
     let words = made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
-    if args.quiet { Ok(()) } else { say::out(&words) }
+    outputs[0].tell(args.quiet, &words)
 }
 
 fn write(
     recipe: &Recipe,
     args: &Args,
     target: &Target,
-    outputs: &[Output],
+    outputs: &[Sink],
     progress: &Progress,
 ) -> Result<String, Failure> {
     // The last frame first: it tells how large the picture is, and its colours are those of all.
@@ -115,7 +116,7 @@ fn write(
         }
         Ok(())
     })?;
-    Ok(format!("{}: {} frames of {width} x {height} pixels\n", args.out.display(), args.frames))
+    Ok(format!("{}: {} of {width} x {height} pixels\n", args.out.display(), count(usize::from(args.frames), "frame")))
 }
 
 /// A failure on its way through code that writes.

@@ -3,14 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use orogen::export::derived::list;
+use orogen::export::subject::Subject;
+use orogen::layer::LayerKind;
 use orogen::palette::named;
 use orogen::palette::palette::Palette;
 use orogen::sheet::draw::draw;
-use orogen::sheet::options::{Options, Page, Parts, Resolution};
+use orogen::sheet::options::{Layer, Options, Page, Parts, Resolution, Scale};
 use orogen::sheet::relief::Shading;
 use orogen::sheet::{pdf, raster, vector};
 use orogen::words::number;
-use orogen::{Window, file};
+use orogen::world::HEIGHT;
+use orogen::{Grid, Progress, Window, World, file};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
@@ -18,8 +22,9 @@ use crate::options::Limits;
 use crate::paper::Paper;
 use crate::replace::Replace;
 use crate::seeds::Seeds;
-use crate::size::positive;
-use crate::source::Source;
+use crate::sink::{Sink, kind};
+use crate::size::{Numbers, positive};
+use crate::source::{Source, title};
 use crate::view::View;
 use crate::{finite, interrupt, memory, palette, say};
 
@@ -28,12 +33,25 @@ use crate::{finite, interrupt, memory, palette, say};
 pub struct Args {
     /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
-    /// File to write: .png, .svg or .pdf
+    /// File to write: .png, .svg or .pdf; - is standard output
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
-    /// Colours: the name of a palette (`orogen palettes` lists them) or a file (.cpt, .gpl, .toml, or gdaldem's)
-    #[arg(long, value_name = "NAME|FILE", default_value = named::DEFAULT)]
-    palette: PathBuf,
+    /// Format, if the file's extension does not say [default: png]
+    #[arg(long)]
+    format: Option<Kind>,
+    /// Layer that colours the map in place of the heights: an output, `node.layer`, or what follows from the heights, as for `export`
+    #[arg(long, value_name = "L", default_value = HEIGHT)]
+    layer: String,
+    /// How the layer's values become colours [default: log for amounts of water, labels for numbered areas, else linear]
+    #[arg(long, value_name = "HOW")]
+    ramp: Option<Ramp>,
+    /// Values at the ends of the layer's palette [default: the lowest and the highest]
+    #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
+    range: Option<Numbers>,
+    /// Colours: the name of a palette (`orogen palettes` lists them) or a file (.cpt, .gpl, .toml, or gdaldem's) [default: hypsometric;
+    /// of a layer one of its name, else viridis]
+    #[arg(long, value_name = "NAME|FILE")]
+    palette: Option<PathBuf>,
     /// How relief is shaded
     #[arg(long, value_name = "HOW", default_value = "multi")]
     shade: Shade,
@@ -52,7 +70,7 @@ pub struct Args {
     /// Pixels an inch: of a .png, and of the relief within a .svg or .pdf
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=1200), allow_negative_numbers = true)]
     dpi: Option<u16>,
-    /// Pixels of the longer side of a .png
+    /// Pixels of the longer side: of a .png, and of the page that the relief within a .svg or .pdf is made for
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..=30000), conflicts_with = "dpi",
           allow_negative_numbers = true)]
     size: Option<u32>,
@@ -101,8 +119,8 @@ struct Without {
     #[arg(long)]
     no_legend: bool,
     /// The bar of colours
-    #[arg(long)]
-    no_colors: bool,
+    #[arg(long, aliases = ["no-colors", "no-colour", "no-colours"])]
+    no_color: bool,
     /// The scale bar
     #[arg(long)]
     no_scale: bool,
@@ -124,13 +142,32 @@ enum Shade {
     None,
 }
 
+/// How values become colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Ramp {
+    /// Evenly
+    Linear,
+    /// By their logarithms, for amounts over orders of magnitude
+    Log,
+    /// Each number a colour of its own
+    Labels,
+}
+
 /// The kinds of files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Kind {
+    /// A picture
     Png,
+    /// A drawing for browsers
     Svg,
+    /// A page to print
     Pdf,
 }
+
+const KINDS: [(Kind, &[&str]); 3] = [(Kind::Png, &["png"]), (Kind::Svg, &["svg"]), (Kind::Pdf, &["pdf"])];
+
+/// The palette of a layer that has none of its name.
+const LAYER_PALETTE: &str = "viridis";
 
 /// Millimetres of the longer side of a map on a page that fits it.
 const LONGER: f64 = 240.0;
@@ -151,28 +188,36 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn map(args: &Args) -> Result<(), Failure> {
-    let kind = kind(&args.out)?;
-    if args.size.is_some() && kind != Kind::Png {
-        return Err(Failure::Usage(
-            "--size counts pixels, and only a .png is made of them; say --paper or --dpi".into(),
-        ));
-    }
-    let palette = palette::find(&args.palette)?;
+    let kind = kind(&args.out, args.format, &KINDS, "a map")?;
+    let palette = match (&args.palette, args.layer.as_str()) {
+        (Some(palette), _) => palette::find(palette)?,
+        (None, HEIGHT) => palette::find(Path::new(named::DEFAULT))?,
+        (None, layer) => {
+            let own = named::find(layer).map_or(LAYER_PALETTE, |named| named.name);
+            palette::find(Path::new(own))?
+        }
+    };
+    let range = range(args)?;
     let source = Source::find(&args.recipe)?;
     let mut recipe = source.read()?;
     args.view.apply(&mut recipe);
-    let output = args.replace.policy(source.inputs(&recipe)).protecting([&args.palette]).output(&args.out)?;
+    let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)).protecting(&args.palette))?;
+    list::prepare(&mut recipe, &args.layer);
     let world = args.limits.open(recipe)?;
     let window = args.view.window(&world)?;
     let is_place = matches!(source, Source::Dem(_));
-    let options = options(args, kind, palette, &world, is_place);
+    let mut options = options(args, kind, palette, &world, is_place);
     afford(&options, &window, args)?;
     let (bar, progress) = Bar::new(args.quiet);
-    let made = world.grids(&[orogen::world::HEIGHT], &window, &progress);
+    let made = world.grids(&[HEIGHT], &window, &progress);
     let mut grids = made.map_err(|error| interrupt::explain(error.into(), "nothing was written"))?;
-    drop(bar);
     let Some(heights) = grids.pop() else { return Ok(()) };
-    finite::check(orogen::world::HEIGHT, &heights)?;
+    finite::check(HEIGHT, &heights)?;
+    if args.layer != HEIGHT {
+        let made = layer(args, &world, &window, range, &progress);
+        options.layer = Some(made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?);
+    }
+    drop(bar);
     let sheet = draw(&heights, &options)?;
     if !sheet.lacking.is_empty() {
         let letters: String = sheet.lacking.iter().collect();
@@ -189,13 +234,10 @@ fn map(args: &Args) -> Result<(), Failure> {
             if options.title.chars().all(|letter| letter <= '\u{ff}' && !letter.is_control()) {
                 notes.push(("Title", &options.title));
             }
-            file::write_whole(&output, |out| page.write_png(out, &notes))?;
+            sink.write(|out| page.write_png(out, &notes))?;
         }
-        Kind::Svg => file::write_whole(&output, |out| vector::write(out, &sheet.scene))?,
-        Kind::Pdf => file::write_whole(&output, |out| pdf::write(out, &sheet.scene))?,
-    }
-    if args.quiet {
-        return Ok(());
+        Kind::Svg => sink.write(|out| vector::write(out, &sheet.scene))?,
+        Kind::Pdf => sink.write(|out| pdf::write(out, &sheet.scene))?,
     }
     let [width, height] = sheet.scene.size;
     let size = match kind {
@@ -206,46 +248,78 @@ fn map(args: &Args) -> Result<(), Failure> {
         _ => format!("{width:.0} x {height:.0} mm"),
     };
     let contours = sheet.interval.map_or(String::new(), |interval| format!(", contours {} m apart", number(interval)));
-    say::out(&format!(
-        "{}: {size}, {} x {} samples of {} m{contours}\n",
+    let layer = if args.layer == HEIGHT { String::new() } else { format!("{}, ", args.layer) };
+    let words = format!(
+        "{}: {layer}{size}, {} x {} samples of {} m{contours}\n",
         args.out.display(),
         window.width,
         window.height,
         number(window.cell)
-    ))
+    );
+    sink.tell(args.quiet, &words)
 }
 
-fn kind(path: &Path) -> Result<Kind, Failure> {
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
-    match extension.as_str() {
-        "png" => Ok(Kind::Png),
-        "svg" => Ok(Kind::Svg),
-        "pdf" => Ok(Kind::Pdf),
-        _ => {
-            Err(Failure::Usage(format!("{}: a map is a .png, .svg or .pdf; name a file that ends so", path.display())))
-        }
+/// `--range` as two values, which only a layer has.
+fn range(args: &Args) -> Result<Option<[f32; 2]>, Failure> {
+    if args.layer == HEIGHT && (args.range.is_some() || args.ramp.is_some()) {
+        return Err(Failure::Usage("--range and --ramp are for another --layer than height".into()));
+    }
+    match args.range.as_ref().map(|range| range.0.as_slice()) {
+        None => Ok(None),
+        Some(&[low, high]) if low < high => Ok(Some([low as f32, high as f32])),
+        Some(_) => Err(Failure::Usage("--range is LOW,HIGH, the lower value first, such as 0,45".into())),
     }
 }
 
-fn options(args: &Args, kind: Kind, palette: Palette, world: &orogen::World, is_place: bool) -> Options {
-    let stem = args.recipe.file_stem().unwrap_or(args.recipe.as_os_str()).to_string_lossy().into_owned();
+/// The layer that colours the map.
+fn layer(
+    args: &Args,
+    world: &World,
+    window: &Window,
+    range: Option<[f32; 2]>,
+    progress: &Progress,
+) -> Result<Layer, Failure> {
+    let mut subject = Subject::new(world, &args.layer, *window, progress)?;
+    if subject.channels() != 1 {
+        return Err(Failure::Usage(format!(
+            "`{}` has {} channels, and a map shows one value at each place",
+            args.layer,
+            subject.channels()
+        )));
+    }
+    let scale = match (args.ramp, subject.kind()) {
+        (Some(Ramp::Linear), _) => Scale::Linear,
+        (Some(Ramp::Log), _) | (None, LayerKind::Flow) => Scale::Log,
+        (Some(Ramp::Labels), _) | (None, LayerKind::Label) => Scale::Labels,
+        (None, _) => Scale::Linear,
+    };
+    let (name, unit) = (args.layer.clone(), subject.unit());
+    let made = subject.whole().map_err(|cause| file::explain("make the layer of", &args.out, &cause))?;
+    let values = made.into_iter().next().unwrap_or_else(|| Grid::filled(*window, f32::NAN));
+    finite::check(&args.layer, &values)?;
+    Ok(Layer { values, name, unit, scale, range })
+}
+
+fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: bool) -> Options {
     let recipe = world.recipe();
     let page = match args.paper {
         Some(paper) => Page::Paper(paper.sides(args.landscape)),
         None => Page::Fitted(LONGER),
     };
     let without = &args.without;
+    // Lines and water would hide what another layer shows.
+    let is_height = args.layer == HEIGHT;
     let parts = Parts {
         title: !without.no_title,
         axes: !without.no_axes,
-        contours: !without.no_contours,
+        contours: !without.no_contours && (is_height || args.contours.is_some()),
         labels: !without.no_labels,
-        summits: !without.no_summits,
-        rivers: !without.no_rivers,
+        summits: !without.no_summits && is_height,
+        rivers: !without.no_rivers && is_height,
         // Depressions of a real place are mostly gorges that coarse samples dam; its lakes are as level as their outlets.
-        lakes: !without.no_lakes && !is_place,
+        lakes: !without.no_lakes && !is_place && is_height,
         legend: !without.no_legend,
-        colors: !without.no_colors,
+        colors: !without.no_color,
         scale: !without.no_scale,
         north: !without.no_north,
     };
@@ -261,7 +335,7 @@ fn options(args: &Args, kind: Kind, palette: Palette, world: &orogen::World, is_
         about => format!("{}; seed {}", about.trim_end_matches('.'), recipe.world.seed),
     };
     Options {
-        title: args.title.clone().unwrap_or(stem),
+        title: args.title.clone().unwrap_or_else(|| title(&args.recipe)),
         about,
         palette,
         shading: match args.shade {
@@ -277,6 +351,7 @@ fn options(args: &Args, kind: Kind, palette: Palette, world: &orogen::World, is_
         resolution,
         // A file of heights tells nothing of a sea: all of it is land.
         sea_level: (!is_place).then_some(recipe.world.sea_level),
+        layer: None,
         map: recipe.georeference(),
     }
 }
@@ -302,6 +377,7 @@ fn afford(options: &Options, window: &Window, args: &Args) -> Result<(), Failure
         )));
     }
     // The page twice, the picture and its heights, and the heights themselves.
-    let bytes = side * side * 20.0 + window.len() as f64 * 4.0;
+    let layers = if args.layer == HEIGHT { 1.0 } else { 3.0 };
+    let bytes = side * side * 20.0 + window.len() as f64 * 4.0 * layers;
     Ok(memory::afford(bytes as u64, args.limits.memory)?)
 }

@@ -2,12 +2,15 @@
 
 pub mod analyze;
 pub mod build;
+pub mod cache;
+pub mod check;
 pub mod compare;
 pub mod completions;
 pub mod explain;
 pub mod export;
 pub mod fit;
 pub mod generate;
+pub mod graph;
 pub mod grow;
 pub mod map;
 pub mod new;

@@ -7,12 +7,13 @@ use orogen::recipe::presets;
 use orogen::{Error, ErrorKind};
 
 use crate::failure::Failure;
+use crate::sink::is_stdout;
 use crate::{say, source};
 
 /// What it takes.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Name of the new recipe: NAME.toml is written
+    /// Name of the new recipe: NAME.toml is written; - is standard output
     name: PathBuf,
     /// The preset to start from
     #[arg(long, value_name = "PRESET", default_value = presets::DEFAULT)]
@@ -22,6 +23,9 @@ pub struct Args {
 /// Writes the recipe, never over another file.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let preset = source::preset(&args.preset)?;
+    if is_stdout(&args.name) {
+        return say::out(preset.text);
+    }
     let path = path(args)?;
     if path.symlink_metadata().is_ok() {
         let sentence = format!("{} already exists and is left as it is; choose another name", path.display());

@@ -5,7 +5,6 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use orogen::file::{self, Output};
 use orogen::format::png::{Animation, Picture};
 use orogen::format::{npy, png};
 use orogen::words;
@@ -19,6 +18,7 @@ use crate::failure::Failure;
 use crate::format::Format;
 use crate::moving::{Moving, Target};
 use crate::replace::Replace;
+use crate::sink::{Sink, is_stdout};
 use crate::size::{Bytes, MOST, Size, finite, positive, seed, wavelength};
 use crate::{memory, say};
 
@@ -131,6 +131,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     };
     let format = match target {
         Some(_) => Format::Png,
+        None if is_stdout(out) && args.volume.is_some() => Format::Npy,
+        None if is_stdout(out) => Format::Png,
         None => Format::of(out, &[Format::Npy, Format::Png]).map_err(Failure::Usage)?,
     };
     let (width, height) = match args.size {
@@ -146,7 +148,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     task.check()?;
     let outputs = match (&target, args.frames) {
         (Some(target), Some(frames)) => target.outputs(out, frames, &args.replace.anywhere())?,
-        _ => vec![args.replace.anywhere().output(out)?],
+        _ => vec![Sink::new(out, &args.replace.anywhere())?],
     };
     task.afford()?;
     if let (false, Some(note)) = (args.quiet, task.note()) {
@@ -154,12 +156,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     match (&target, args.frames) {
         (Some(target), Some(frames)) => task.write_frames(target, &outputs, frames)?,
-        _ => file::write_whole(&outputs[0], |out| match format {
+        _ => outputs[0].write(|out| match format {
             Format::Npy => task.write_array(out),
             _ => task.write_picture(out),
         })?,
     }
-    if args.quiet { Ok(()) } else { say::out(&task.words()) }
+    outputs[0].tell(args.quiet, &task.words())
 }
 
 fn noise(args: &Args) -> Result<Fractal, Failure> {
@@ -263,7 +265,7 @@ impl Task<'_> {
         })
     }
 
-    fn write_frames(&self, target: &Target, outputs: &[Output], frames: u32) -> Result<(), Failure> {
+    fn write_frames(&self, target: &Target, outputs: &[Sink], frames: u32) -> Result<(), Failure> {
         let drawing = self.drawing();
         if *target == Target::Gif && self.deep() {
             return Err(Failure::Usage("a GIF holds 8 bits; leave --bits 16 out, or name a .png".into()));

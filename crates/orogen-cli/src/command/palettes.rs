@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use orogen::file;
 use orogen::map::swatches::{self, Swatch};
 use orogen::palette::{named, read};
 
 use crate::failure::Failure;
 use crate::replace::Replace;
 use crate::say;
+use crate::sink::{Sink, is_stdout};
 
 /// What it takes.
 #[derive(Debug, clap::Args)]
@@ -28,12 +28,13 @@ pub struct Args {
 /// Lists the palettes, and draws them.
 pub fn run(args: &Args) -> Result<(), Failure> {
     if let Some(out) = &args.out
+        && !is_stdout(out)
         && !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
     {
         return Err(Failure::Usage("the page is a picture; name a file that ends in .png".into()));
     }
     let policy = args.replace.policy(&args.files);
-    let output = args.out.as_ref().map(|out| policy.output(out)).transpose()?;
+    let sink = args.out.as_ref().map(|out| Sink::new(out, &policy)).transpose()?;
     let mut shown: Vec<Swatch> = named::all()
         .iter()
         .map(|named| Swatch { palette: named.palette(), about: named.about.into(), safe: named.safe })
@@ -42,12 +43,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let palette = read::read(path)?;
         shown.push(Swatch { about: path.display().to_string(), palette, safe: false });
     }
-    if let Some(output) = &output {
+    if let Some(sink) = &sink {
         let page = swatches::draw(&shown)?;
         let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-        file::write_whole(output, |out| page.write_png(out, &[("Software", &software)]))?;
+        sink.write(|out| page.write_png(out, &[("Software", &software)]))?;
     }
-    if args.quiet {
+    if args.quiet || matches!(sink, Some(Sink::Stdout)) {
         return Ok(());
     }
     let longest = shown.iter().map(|swatch| swatch.palette.name.chars().count()).max().unwrap_or(0);

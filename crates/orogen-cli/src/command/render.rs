@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use orogen::export::derived::layer::Derived;
 use orogen::export::derived::rows::Rows;
 use orogen::export::derived::{albedo, list, roughness};
-use orogen::file::{self, Output};
+use orogen::file;
 use orogen::format::png::{self, Animation, Picture, Pixel};
 use orogen::palette::palette::Palette;
 use orogen::render::camera::{Camera, View as Shot};
@@ -23,6 +23,7 @@ use crate::moving::{Moving, Target};
 use crate::options::Limits;
 use crate::replace::Replace;
 use crate::seeds::Seeds;
+use crate::sink::{Sink, is_stdout};
 use crate::size::{Numbers, Size, clock, not_negative, positive};
 use crate::source::Source;
 use crate::view::View;
@@ -76,8 +77,8 @@ pub struct Args {
     #[arg(long)]
     edge: Option<Ends>,
     /// How the ground is coloured
-    #[arg(long, value_enum, default_value_t = Dress::Natural)]
-    colors: Dress,
+    #[arg(long, aliases = ["colors", "colour", "colours"], value_enum, default_value_t = Dress::Natural)]
+    color: Dress,
     /// Height from which snow lies, in metres [default: three fifths up the relief, none on low land]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     snow_line: Option<f64>,
@@ -92,7 +93,7 @@ pub struct Args {
     /// How long each frame is shown, in milliseconds
     #[arg(long, value_name = "MS", default_value = "60", requires = "turntable")]
     delay: u16,
-    /// Palette of --colors map, by name or a file (.cpt, .gpl, .toml, gdaldem's .txt) [default: the relief map's]
+    /// Palette of --color map, by name or a file (.cpt, .gpl, .toml, gdaldem's .txt) [default: the relief map's]
     #[arg(long, value_name = "NAME|FILE")]
     palette: Option<PathBuf>,
     #[command(flatten)]
@@ -115,7 +116,7 @@ enum Ends {
     Haze,
 }
 
-/// `--colors`.
+/// `--color`.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Dress {
     /// Forest, meadow, scree, rock and snow
@@ -144,6 +145,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 fn render(args: &Args) -> Result<(), Failure> {
     let target = match args.turntable {
         Some(_) => Target::of(&args.out).map_err(Failure::Usage)?,
+        None if is_stdout(&args.out) => Target::Apng,
         None if args.out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) => Target::Apng,
         None => {
             let sentence = format!("a view is one picture; name a file that ends in .png, not {}", args.out.display());
@@ -152,8 +154,8 @@ fn render(args: &Args) -> Result<(), Failure> {
     };
     let [width, height] = size(args)?;
     let palette = args.palette.as_deref().map(palette::find).transpose()?;
-    if palette.is_some() && !matches!(args.colors, Dress::Map) {
-        return Err(Failure::Usage("--palette is for --colors map".into()));
+    if palette.is_some() && !matches!(args.color, Dress::Map) {
+        return Err(Failure::Usage("--palette is for --color map".into()));
     }
     let (style, shot) = (style(args, palette.as_ref())?, shot(args)?);
     let source = Source::find(&args.recipe)?;
@@ -161,7 +163,7 @@ fn render(args: &Args) -> Result<(), Failure> {
     args.view.apply(&mut recipe);
     let policy = args.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
     let outputs = target.outputs(&args.out, args.turntable.unwrap_or(1), &policy)?;
-    if matches!(args.colors, Dress::Surfaces) {
+    if matches!(args.color, Dress::Surfaces) {
         COVER.iter().for_each(|layer| list::prepare(&mut recipe, layer.name));
     }
     let world = args.limits.open(recipe)?;
@@ -174,10 +176,11 @@ fn render(args: &Args) -> Result<(), Failure> {
     let folder = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     file::check_folder(folder)?;
     let (bar, progress) = Bar::new(args.quiet);
-    let made = draw(args, &world, &window, &Shooting { target, outputs, style, shot }, &progress);
+    let shooting = Shooting { target, outputs, style, shot };
+    let made = draw(args, &world, &window, &shooting, &progress);
     drop(bar);
     let words = made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
-    if args.quiet { Ok(()) } else { say::out(&words) }
+    shooting.outputs[0].tell(args.quiet, &words)
 }
 
 /// The picture's size.
@@ -217,7 +220,7 @@ fn style<'a>(args: &Args, palette: Option<&'a Palette>) -> Result<Style<'a>, Fai
             Ends::Cut => Edge::Cut,
             Ends::Haze => Edge::Haze,
         }),
-        colors: match args.colors {
+        colors: match args.color {
             Dress::Natural => Colors::Natural,
             Dress::Desert => Colors::Desert,
             Dress::Surfaces => Colors::Surfaces,
@@ -320,7 +323,7 @@ const COVER: [&Derived; 2] = [&albedo::LAYER, &roughness::LAYER];
 /// What is to be drawn, all of it settled.
 struct Shooting<'a> {
     target: Target,
-    outputs: Vec<Output>,
+    outputs: Vec<Sink>,
     style: Style<'a>,
     shot: Shot,
 }
@@ -392,8 +395,7 @@ fn draw(
     if let (Some(metres), false) = (camera.lifted(), args.quiet) {
         say::error(&format!("note: the camera stood underground; it is lifted by {metres:.0} m, to just above it"));
     }
-    file::write_whole(&outputs[0], |out| {
-        png::write(out, &picture, |rows, bytes| Ok(scene.paint(&camera, size, rows, bytes, progress)?))
-    })?;
+    outputs[0]
+        .write(|out| png::write(out, &picture, |rows, bytes| Ok(scene.paint(&camera, size, rows, bytes, progress)?)))?;
     Ok(format!("{file}: {width} x {height} pixels, of {samples}\n"))
 }

@@ -3,7 +3,7 @@
 use crate::harness::Folder;
 
 /// A world whose stretching takes longer than what is not worth keeping.
-const SLOW: &str = r#"
+pub const SLOW: &str = r#"
 orogen = 1
 [world]
 size = 15000

@@ -6,6 +6,7 @@ mod bad_places;
 mod bad_recipes;
 mod build;
 mod cache;
+mod check;
 mod commands;
 mod compare;
 mod export;

@@ -59,7 +59,6 @@ fn what_cannot_be_drawn_is_a_sentence_and_leaves_nothing() {
         (&["-o", "a.png", "--landscape"], 2, "--paper"),
         (&["-o", "a.png", "--contours", "0"], 2, "a number above 0"),
         (&["-o", "a.png", "--contours", "0.0001"], 2, "take a larger one"),
-        (&["-o", "a.svg", "--size", "500"], 2, "only a .png is made of them"),
         (&["-o", "a.png", "--size", "500", "--memory", "1MB"], 1, "of memory"),
         (&["-o", "a.png", "--paper", "2000x2000mm", "--dpi", "1200"], 2, "fewer --dpi"),
         (&["-o", "a.png", "--window", "0,0,1,1"], 2, "there is nothing to map"),
@@ -67,5 +66,63 @@ fn what_cannot_be_drawn_is_a_sentence_and_leaves_nothing() {
     ] {
         folder.bad(&[&["map", "small.toml"][..], arguments].concat(), code, expect);
         assert_eq!(folder.names(""), ["small.toml"], "{arguments:?}");
+    }
+}
+
+#[test]
+fn any_layer_colours_a_map() {
+    let folder = Folder::with_small();
+    let text = crate::harness::SMALL.replace(
+        "[outputs]",
+        "[nodes.water]\nop = \"drainage\"\nsource = \"land\"\n[nodes.same]\nop = \"constant\"\nvalue = 1\n[outputs]",
+    );
+    folder.write("wet.toml", text);
+    let map = |out: &str, options: &[&str]| {
+        let told = folder.good(&[&["map", "wet.toml", "-o", out, "--size", "300"][..], options].concat());
+        (told.text().to_string(), folder.read(out))
+    };
+    let (_, heights) = map("h.png", &[]);
+    let mut seen = vec![heights];
+    for options in [
+        &["--layer", "slope"][..],
+        &["--layer", "aspect"],
+        &["--layer", "water.flow"],
+        &["--layer", "water.flow", "--ramp", "linear"],
+        &["--layer", "water.flow", "--range", "1000,10000"],
+        &["--layer", "water.watershed"],
+        &["--layer", "noise", "--palette", "magma"],
+        &["--layer", "noise", "--contours", "20"],
+        &["--layer", "same"],
+    ] {
+        let (told, picture) = map("l.png", options);
+        assert!(told.starts_with(&format!("l.png: {}, ", options[1])), "{told}");
+        assert!(!seen.contains(&picture), "{options:?}");
+        seen.push(picture);
+    }
+    map("l.svg", &["--layer", "water.flow"]);
+    map("l.pdf", &["--layer", "slope"]);
+    for (options, expect) in [
+        (&["--layer", "nothing"][..], "nothing"),
+        (&["--layer", "normal"], "`normal` has 3 channels"),
+        (&["--layer", "slope", "--range", "5"], "--range is LOW,HIGH"),
+        (&["--layer", "slope", "--range", "9,5"], "the lower value first"),
+        (&["--range", "0,5"], "for another --layer than height"),
+        (&["--ramp", "log"], "for another --layer than height"),
+        (&["--layer", "noise", "--ramp", "log", "--range", "-1,1"], "a logarithmic ramp begins above 0"),
+        (&["--layer", "slope", "--palette", "hypsometric"], "made for heights"),
+    ] {
+        folder.bad(&[&["map", "wet.toml", "-o", "x.png", "--size", "300"][..], options].concat(), 2, expect);
+    }
+}
+
+#[test]
+fn a_size_is_for_every_kind_of_file() {
+    let folder = Folder::with_small();
+    let size = |out: &str, size: &str| {
+        folder.good(&["map", "small.toml", "-o", out, "--size", size, "-q"]);
+        folder.read(out).len()
+    };
+    for out in ["a.svg", "a.pdf"] {
+        assert!(size(out, "2000") > size(out, "400") + 100_000, "{out}");
     }
 }

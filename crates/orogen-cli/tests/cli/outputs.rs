@@ -131,7 +131,7 @@ fn no_command_writes_over_what_it_reads() {
     fs::hard_link(folder.path("tint.gpl"), folder.path("tint.png")).unwrap();
     for arguments in [
         &["map", "small.toml", "--palette", "tint.gpl", "-o", "tint.png"][..],
-        &["render", "small.toml", "--colors", "map", "--palette", "tint.gpl", "-o", "tint.png"],
+        &["render", "small.toml", "--color", "map", "--palette", "tint.gpl", "-o", "tint.png"],
         &["palettes", "tint.gpl", "-o", "tint.png"],
     ] {
         folder.bad(&[arguments, &["--force"]].concat(), 1, "this command reads that file");

@@ -26,8 +26,8 @@ fn every_choice_makes_another_picture() {
     let mut seen: Vec<Vec<u8>> = Vec::new();
     for choice in [
         &["--colors", "natural"][..],
-        &["--colors", "desert"],
-        &["--colors", "map"],
+        &["--color", "desert"],
+        &["--colour", "map"],
         &["--colors", "clay"],
         &["--edge", "haze"],
         &["--sun", "100,20"],
@@ -111,7 +111,7 @@ fn a_turntable_goes_into_one_file_or_many() {
     folder.bad(&with(&["-o", "turn.gif"]), 2, "or ask for frames by --turntable");
     folder.bad(&with(&["--turntable", "4", "-o", "turn.mp4"]), 2, "cannot be written as .mp4");
     folder.bad(&with(&["--turntable", "4", "-o", "none/a-%d.png"]), 1, "cannot write into none");
-    folder.bad(&with(&["--colors", "natural", "--palette", "viridis"]), 2, "--palette is for --colors map");
+    folder.bad(&with(&["--colors", "natural", "--palette", "viridis"]), 2, "--palette is for --color map");
     folder.bad(&with(&["--colors", "map", "--palette", "viridos"]), 2, "did you mean `viridis`?");
     folder.good(&with(&["--colors", "map", "--palette", "viridis", "-o", "palette.png"]));
 }

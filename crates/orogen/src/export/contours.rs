@@ -11,6 +11,7 @@ use crate::contour::line::Line;
 use crate::contour::trace;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Window;
+use crate::words::{count, number};
 
 /// The options of formats of lines.
 pub const OPTIONS: &[OptionSpec] = &[
@@ -95,11 +96,10 @@ impl Contours {
         let lines = self.lines.len();
         let apart = self
             .interval
-            .map_or(String::new(), |interval| format!(", one each {interval} {unit}").trim_end().to_string());
+            .map_or(String::new(), |interval| format!(", one each {} {unit}", number(interval)).trim_end().to_string());
         match levels {
             0 => "no contours: no level is crossed".into(),
-            1 => format!("{lines} contour lines of 1 height{apart}"),
-            _ => format!("{lines} contour lines of {levels} heights{apart}"),
+            _ => format!("{} of {}{apart}", count(lines, "contour line"), count(levels, "height")),
         }
     }
 }

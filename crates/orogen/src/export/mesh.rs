@@ -15,6 +15,7 @@ use crate::mesh::relief::HeightCurve;
 use crate::mesh::shape::Shape;
 use crate::mesh::surface::Surface;
 use crate::palette::tint::Tint;
+use crate::words::{count, number};
 
 /// `--max-error`.
 pub const MAX_ERROR: OptionSpec = OptionSpec {
@@ -123,11 +124,11 @@ impl Prepared {
     pub fn words(&self) -> String {
         let counts: Vec<String> = self.shapes.iter().map(|shape| shape.triangles().to_string()).collect();
         let counts = match counts.as_slice() {
-            [only] => format!("{only} triangles"),
+            [_] => count(self.shapes[0].triangles(), "triangle"),
             many => format!("levels of {} triangles", many.join(", ")),
         };
         match self.max_error {
-            Some(error) => format!("{counts}, no sample more than {error} m above or below them"),
+            Some(error) => format!("{counts}, no sample more than {} m above or below them", number(error)),
             None => counts,
         }
     }

@@ -7,7 +7,7 @@ use crate::grid::Window;
 use crate::op::Op;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;
-use crate::words::bytes;
+use crate::words::{bytes, count, number};
 use std::fmt::Write as _;
 
 /// What a plan does: the nodes in order with their locality and halo, then the steps with their windows and memory.
@@ -15,7 +15,7 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
     let mut text = String::new();
     let cell = plan.window.cell;
     let longest = recipe.nodes().iter().map(|node| node.name.chars().count()).max().unwrap_or(4).clamp(4, 24);
-    let _ = writeln!(text, "nodes, in the order they are made, at {cell} m a sample");
+    let _ = writeln!(text, "nodes, in the order they are made, at {} m a sample", number(cell));
     let _ = writeln!(text, "  {:longest$}  {:12}  {:8}  {:18}  what it does", "name", "op", "locality", "looks at");
     const SHOWN: usize = 200;
     for &index in graph.order.iter().take(SHOWN) {
@@ -23,15 +23,15 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
         let spec = named.node.spec();
         let reach = match named.node.op() {
             Op::Field(field) => match field.moves() {
-                Some(crate::op::Moves::Displaced { reach, .. }) => format!("within {reach} m"),
+                Some(crate::op::Moves::Displaced { reach, .. }) => format!("within {} m", number(reach)),
                 Some(crate::op::Moves::Mapped { .. }) => "elsewhere".to_string(),
                 None => match field.slopes() {
-                    Some(slopes) => format!("within {} m", slopes.step),
+                    Some(slopes) => format!("within {} m", number(slopes.step)),
                     None => "its place".to_string(),
                 },
             },
-            Op::Filter(filter) => format!("halo of {} samples", filter.halo(cell)),
-            Op::Solver(solver) => format!("world at {} m", solver.cell(recipe.world.cell)),
+            Op::Filter(filter) => format!("halo of {}", count(filter.halo(cell), "sample")),
+            Op::Solver(solver) => format!("world at {} m", number(solver.cell(recipe.world.cell))),
         };
         let _ = writeln!(
             text,
@@ -58,7 +58,7 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
             name(solve.node),
             solve.world.width,
             solve.world.height,
-            solve.world.cell,
+            number(solve.world.cell),
             bytes(memory::rasters(solve)),
             if solve.on_disk { ", the rest on disk" } else { "" }
         );
@@ -70,11 +70,11 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
                 let made: Vec<String> = out.iter().map(|&grid| format!("`{}`", name(plan.grids[grid].node))).collect();
                 writeln!(
                     text,
-                    "  fill {} with {}: {} instructions over {} registers",
+                    "  fill {} with {}: {} over {}",
                     place(window),
                     made.join(", "),
-                    program.instructions.len(),
-                    program.registers
+                    count(program.instructions.len(), "instruction"),
+                    count(program.registers, "register")
                 )
             }
             Step::Apply { node, halo, out, .. } => {
@@ -89,19 +89,24 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
     if plan.steps.len() > SHOWN {
         let _ = writeln!(text, "  and {} more", plan.steps.len() - SHOWN);
     }
-    let _ = writeln!(text, "\nmemory: {} at most, with {}", bytes(memory::needed(plan, recipe, threads)), on(threads));
+    let _ = writeln!(
+        text,
+        "\nmemory: {} at most, with {}",
+        bytes(memory::needed(plan, recipe, threads)),
+        count(threads, "thread")
+    );
     if let disk @ 1.. = memory::disk(plan) {
         let _ = writeln!(text, "disk: {} while it runs", bytes(disk));
     }
     let solving = plan.solves.iter().fold(0u64, |sum, solve| sum.saturating_add(solve.samples));
-    let solved = if solving > 0 { format!(", and {} to solve the world once", count(solving)) } else { String::new() };
-    let _ = writeln!(text, "samples: {}{solved}", count(plan.samples()));
+    let solved = if solving > 0 { format!(", and {} to solve the world once", about(solving)) } else { String::new() };
+    let _ = writeln!(text, "samples: {}{solved}", about(plan.samples()));
     let nanoseconds = cost::needed(plan, recipe);
     let _ = match duration(nanoseconds) {
         None => writeln!(text, "time: less than 0.1 s"),
         Some(one) => {
             let all = duration(nanoseconds / threads as f64).unwrap_or_else(|| "less than 0.1 s".to_string());
-            writeln!(text, "time: about {one} of one core, {all} with {}; machines differ", on(threads))
+            writeln!(text, "time: about {one} of one core, {all} with {}; machines differ", count(threads, "thread"))
         }
     };
     text
@@ -111,12 +116,8 @@ fn place(window: &Window) -> String {
     format!("{} x {} at ({}, {})", window.width, window.height, window.x, window.y)
 }
 
-fn on(threads: usize) -> String {
-    format!("{threads} thread{}", if threads == 1 { "" } else { "s" })
-}
-
 /// A number of samples as people read it.
-fn count(samples: u64) -> String {
+fn about(samples: u64) -> String {
     match samples as f64 {
         n if n >= 1e9 => format!("{:.1} thousand million", n / 1e9),
         n if n >= 1e6 => format!("{:.1} million", n / 1e6),

@@ -8,7 +8,7 @@ use crate::declare::Input;
 use crate::error::{Complaint, Error, ErrorKind, Result};
 use crate::node::Node;
 use crate::value::{Span, Spanned, Value};
-use crate::words::{list, suggestion};
+use crate::words::{list, respelled, suggestion};
 use std::collections::{HashMap, HashSet};
 use std::io::Read;
 use std::path::Path;
@@ -314,7 +314,8 @@ impl Walk<'_> {
             self.complain(&op.span, format!("`op` must be the name of an op, not {}", op.value.describe()));
             return None;
         };
-        let Some(mut node) = Node::named(op_name) else {
+        let other = || respelled(op_name).and_then(|other| Node::named(&other));
+        let Some(mut node) = Node::named(op_name).or_else(other) else {
             let all = Node::all();
             let hint = suggestion(op_name, all.iter().map(|node| node.spec().op));
             self.complain(&op.span, format!("unknown op `{op_name}`; {hint}"));
@@ -322,7 +323,16 @@ impl Walk<'_> {
         };
         let spec = node.spec();
         let (mut seen, mut mask) = (HashSet::new(), Input::None);
-        for (key, value) in entries {
+        let is_known = |name: &str| {
+            spec.inputs.iter().any(|input| input.name == name) || spec.params.iter().any(|param| param.name == name)
+        };
+        let entries: Vec<(Spanned<String>, &Spanned<Value>)> = (entries.iter())
+            .map(|(key, value)| {
+                let other = respelled(&key.value).filter(|other| !is_known(&key.value) && is_known(other));
+                (Spanned { value: other.unwrap_or_else(|| key.value.clone()), span: key.span.clone() }, value)
+            })
+            .collect();
+        for (key, value) in &entries {
             if self.repeated(&mut seen, key) || key.value == "op" {
                 continue;
             }

@@ -4,6 +4,7 @@ use super::document::{VERSION, WorldSpec};
 use crate::declare::{Param, ParamSpec, Shape, read_param, short};
 use crate::node::Node;
 use crate::value::Value;
+use crate::words::respelled;
 use serde_json::{Map, Value as Json, json};
 use std::collections::BTreeMap;
 
@@ -201,7 +202,12 @@ fn op_schema(node: &Node) -> Json {
         );
     }
     for (i, param) in spec.params.iter().enumerate() {
-        properties.insert(param.name.into(), param_schema(param, Some(&node.param(i))));
+        let schema = param_schema(param, Some(&node.param(i)));
+        // Read as well, under the other of its spellings.
+        if let Some(other) = respelled(param.name) {
+            properties.insert(other, schema.clone());
+        }
+        properties.insert(param.name.into(), schema);
     }
     properties.insert("mask".into(), mask_schema());
     let required: Vec<&str> =

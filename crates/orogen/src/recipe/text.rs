@@ -3,6 +3,7 @@
 use super::document::LONGEST_TEXT;
 use crate::error::{Complaint, Error, ErrorKind, Location};
 use crate::value::Span;
+use crate::words::count;
 
 /// A text and what complaints call it.
 pub struct Text<'a> {
@@ -25,7 +26,7 @@ impl Text<'_> {
     pub fn errors(&self, mut complaints: Vec<Complaint>, more: usize) -> Error {
         complaints.sort_by_key(|complaint| complaint.place.as_ref().map(|place| (place.line, place.column)));
         if more > 0 {
-            complaints.push(Complaint { sentence: format!("and {more} more complaints"), place: None });
+            complaints.push(Complaint { sentence: format!("and {}", count(more, "more complaint")), place: None });
         }
         Error::from_complaints(ErrorKind::Recipe, complaints)
     }

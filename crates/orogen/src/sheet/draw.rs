@@ -1,6 +1,6 @@
 //! A map sheet: heights, and all that belongs to a map of them, on a page.
 
-use super::furniture::{Desk, Entry, Sign, colors_block, legend_block, north_block, scale_block};
+use super::furniture::{COLORS, Desk, Entry, Sign, colors_block, legend_block, north_block, scale_block};
 use super::ground::laid;
 use super::labels::{Label, Setting, Taken, gaps, place};
 use super::layout::{Block, Layout};
@@ -8,6 +8,7 @@ use super::letters::Letters;
 use super::lines::{interval, is_thick, lines, summits, thick_interval};
 use super::marks;
 use super::options::{Options, Page};
+use super::ramp::Ramp;
 use super::relief::paint;
 use super::scene::{INK, Item, Place, Scene, Step};
 use super::ticks::{Count, grouped};
@@ -96,6 +97,8 @@ pub fn draw(heights: &Grid, options: &Options) -> Result<Sheet> {
     let scene = Scene { size: layout.page, title: options.title.clone(), items: Vec::new() };
     let mut desk = Desk { scene, letters: &letters };
     let sea = options.sea_level.map_or(f32::NEG_INFINITY, |sea| sea as f32);
+    let ramp = options.layer.as_ref().map(|layer| Ramp::new(layer, &options.palette)).transpose()?;
+    let colored = options.layer.as_ref().zip(ramp.as_ref()).map(|(layer, ramp)| (&layer.values, ramp));
     let tint = tint(heights, options);
     let map = layout.map;
     let pixels = [map[2], map[3]].map(|side| ((f64::from(side) * layout.dpi / 25.4).round() as usize).max(1));
@@ -103,7 +106,7 @@ pub fn draw(heights: &Grid, options: &Options) -> Result<Sheet> {
         area: map,
         width: pixels[0],
         height: pixels[1],
-        pixels: paint(heights, pixels, &tint, options.shading, sea),
+        pixels: paint(heights, colored, pixels, &tint, options.shading, sea),
     };
     desk.scene.items.push(picture);
     ground.draw(&mut desk, map, options, &tint);
@@ -118,7 +121,10 @@ pub fn draw(heights: &Grid, options: &Options) -> Result<Sheet> {
     let ends = [f64::from(levels.low()), f64::from(levels.high())];
     for (part, at) in parts.into_iter().zip(&layout.blocks) {
         match part {
-            Part::Colors => desk.colors(*at, &tint, ends),
+            Part::Colors => match &ramp {
+                Some(ramp) => desk.ramp(*at, COLORS, ramp),
+                None => desk.colors(*at, &tint, ends),
+            },
             Part::Scale => desk.scale(*at, scale),
             Part::North => desk.north(*at),
             Part::Legend => desk.legend(*at, &entries),
@@ -126,6 +132,7 @@ pub fn draw(heights: &Grid, options: &Options) -> Result<Sheet> {
     }
     if options.parts.title {
         let facts = facts(metres, ends, scale, options);
+        let facts = ramp.as_ref().map_or(facts.clone(), |ramp| format!("{}; {facts}", ramp.words()));
         let about = [options.about.as_str(), &facts];
         desk.heading(&options.title, if options.about.is_empty() { [&facts, ""] } else { about });
     }
@@ -143,6 +150,10 @@ enum Part {
 /// The colours of a sheet. Where nothing is told of a sea, all is land.
 fn tint(heights: &Grid, options: &Options) -> Tint {
     let lowest = Levels::of(heights).low();
+    if options.layer.is_some() {
+        // The palette is the layer's; lines keep the inks that suit heights.
+        return Tint::fit(heights, options.sea_level.map_or(lowest - 1.0, |sea| sea as f32));
+    }
     let sea = options.sea_level.map_or(lowest - 1.0, |sea| sea as f32);
     Tint::of(&options.palette, heights, sea)
 }
@@ -436,6 +447,7 @@ mod tests {
             page: Page::Fitted(100.0),
             resolution: Resolution::Inch(60.0),
             sea_level: Some(0.0),
+            layer: None,
             map: None,
         }
     }

@@ -234,7 +234,7 @@ pub enum Sign {
 
 const SIGN: f32 = 8.0;
 /// The widths of blocks.
-const COLORS: f32 = 88.0;
+pub const COLORS: f32 = 88.0;
 const SCALE: f32 = 62.0;
 const NORTH: f32 = 6.0;
 

@@ -2,6 +2,7 @@
 
 use super::relief::Shading;
 use crate::format::dem::Georeference;
+use crate::grid::Grid;
 use crate::palette::palette::Palette;
 
 /// How large a page is.
@@ -68,6 +69,32 @@ impl Default for Parts {
     }
 }
 
+/// How the values of a layer become colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// Evenly.
+    Linear,
+    /// By their logarithms: for amounts over orders of magnitude.
+    Log,
+    /// Each number a colour of its own.
+    Labels,
+}
+
+/// A layer whose values colour the sheet in place of the heights.
+#[derive(Debug, Clone)]
+pub struct Layer {
+    /// Its values, over the very window of the heights.
+    pub values: Grid,
+    /// What it is called.
+    pub name: String,
+    /// What it is measured in, or empty.
+    pub unit: &'static str,
+    /// How values become colours.
+    pub scale: Scale,
+    /// The values at the ends of the palette; without, the lowest and the highest.
+    pub range: Option<[f32; 2]>,
+}
+
 /// What a sheet is to show, and how.
 #[derive(Debug, Clone)]
 pub struct Options {
@@ -89,6 +116,8 @@ pub struct Options {
     pub resolution: Resolution,
     /// The sea's surface in metres; without, all is land.
     pub sea_level: Option<f64>,
+    /// What colours it in place of the heights, which still shade it.
+    pub layer: Option<Layer>,
     /// How the ground lies on a map of the Earth, if it does.
     pub map: Option<Georeference>,
 }

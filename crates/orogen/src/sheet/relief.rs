@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::ground::{at_pixels, laid};
+use super::ramp::Ramp;
 use crate::analysis::slope::{Gradient, extended, gradients_between};
 use crate::grid::Grid;
 use crate::map::shade::{Lights, Shade};
@@ -27,6 +28,9 @@ pub enum Shading {
 /// How much of the land's shading the sea floor gets: water lies over it.
 const UNDER_WATER: f32 = 0.35;
 
+/// How much of it colours get that stand for a layer: they must still be found on its bar.
+const ON_LAYER: f32 = 0.5;
+
 /// Swiss shading: contrast in the lowlands and on the summits, how much haze lies over the lowlands and its colour, and how many
 /// pixels their relief is smoothed over.
 const CONTRAST: [f32; 2] = [0.62, 1.22];
@@ -34,9 +38,17 @@ const HAZE: f32 = 0.16;
 const AIR: Light = [0.62, 0.72, 0.84];
 const SOFT: usize = 7;
 
-/// The relief of heights in pixels, as sRGB bytes.
-pub fn paint(heights: &Grid, pixels: [usize; 2], tint: &Tint, shading: Shading, sea_level: f32) -> Vec<u8> {
+/// The relief of heights in pixels, as sRGB bytes: in their tint, or in the colours of a layer over the same window.
+pub fn paint(
+    heights: &Grid,
+    layer: Option<(&Grid, &Ramp)>,
+    pixels: [usize; 2],
+    tint: &Tint,
+    shading: Shading,
+    sea_level: f32,
+) -> Vec<u8> {
     let grid = at_pixels(heights, pixels);
+    let layer = layer.map(|(values, ramp)| (ramp.at_pixels(values, pixels), ramp));
     let [width, height] = pixels;
     let encoder = Encoder::new();
     let lights = if shading == Shading::Single { Lights::One } else { Lights::Three };
@@ -59,8 +71,15 @@ pub fn paint(heights: &Grid, pixels: [usize; 2], tint: &Tint, shading: Shading, 
         let here = wide.row(j + 1);
         gradients_between([wide.row(j), here, wide.row(j + 2)], cell, |i, gradient| {
             let height = here[i + 1];
-            let mut color = tint.at(height);
-            let strength = if tint.is_sea(height) { UNDER_WATER } else { 1.0 };
+            let mut color = match &layer {
+                Some((values, ramp)) => ramp.at(values.get(i, j)),
+                None => tint.at(height),
+            };
+            let strength = match layer {
+                Some(_) => ON_LAYER,
+                None if tint.is_sea(height) => UNDER_WATER,
+                None => 1.0,
+            };
             let up = ((height - low) / (high - low)).clamp(0.0, 1.0);
             let factor = match (shading, softly.get(i)) {
                 _ if height.is_nan() => [1.0; 3],
@@ -117,7 +136,7 @@ mod tests {
     fn each_shading_shows_the_relief_in_its_way() {
         let grid = ridges();
         let tint = Tint::hypsometric(0.0, 1400.0, -1.0);
-        let paint = |shading| paint(&grid, [120, 120], &tint, shading, -1.0);
+        let paint = |shading| paint(&grid, None, [120, 120], &tint, shading, -1.0);
         let green = |bytes: &[u8], i: usize, j: usize| i32::from(bytes[3 * (j * 120 + i) + 1]);
         let [none, single, multi, swiss] = [Shading::None, Shading::Single, Shading::Multi, Shading::Swiss].map(paint);
         // The flanks of the ridge that runs along the light are lit alike, those of the other are not.
@@ -137,7 +156,7 @@ mod tests {
         let mut grid = Grid::filled(Window::new(30, 20, 30.0), 5.0);
         grid.row_mut(10)[10..20].fill(f32::NAN);
         for shading in [Shading::None, Shading::Single, Shading::Multi, Shading::Swiss] {
-            assert_eq!(paint(&grid, [60, 40], &Tint::fit(&grid, 0.0), shading, 0.0).len(), 3 * 60 * 40);
+            assert_eq!(paint(&grid, None, [60, 40], &Tint::fit(&grid, 0.0), shading, 0.0).len(), 3 * 60 * 40);
         }
     }
 }

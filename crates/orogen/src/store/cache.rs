@@ -88,6 +88,16 @@ impl Cache {
         (name, self.folder.join(text + EXTENSION))
     }
 
+    /// The key in the name of an entry; none in any other name.
+    pub(super) fn key_of(name: &str) -> Option<Key> {
+        let digits = name.strip_suffix(EXTENSION).filter(|digits| digits.len() == 64)?;
+        let mut key = [0; 32];
+        for (byte, pair) in key.iter_mut().zip(digits.as_bytes().chunks_exact(2)) {
+            *byte = u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok()?;
+        }
+        Some(key)
+    }
+
     /// Removes the oldest entries beyond the limit but never `newest`, and what a killed process left half written.
     fn tidy(&self, newest: &Path) {
         file::sweep(&self.folder);
@@ -96,7 +106,7 @@ impl Cache {
         for file in there.flatten() {
             let (name, Ok(meta)) = (file.file_name(), file.metadata()) else { continue };
             let (name, used) = (name.to_string_lossy(), meta.modified().unwrap_or(SystemTime::UNIX_EPOCH));
-            if name.ends_with(EXTENSION) {
+            if Cache::key_of(&name).is_some() {
                 entries.push((used, meta.len(), file.path()));
             }
         }

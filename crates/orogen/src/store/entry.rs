@@ -96,6 +96,16 @@ pub fn read(file: File, path: &Path, key: &[u8; 32], on_disk: bool) -> Result<So
     Ok(Solution { layers, scalars: head.scalars })
 }
 
+/// The windows of a solution's layers, as its head tells them.
+///
+/// # Errors
+/// If the head cannot be read, is damaged, or is another solution's.
+pub fn windows(file: File, path: &Path, key: &[u8; 32]) -> Result<Vec<Window>> {
+    let length = file.metadata().map_err(|cause| Error::file("read", path, &cause))?.len();
+    let mut reader = Reader { file: Arc::new(PageFile::open(file, path)), path, at: 0 };
+    Ok(reader.head(key, length)?.windows)
+}
+
 struct Head {
     scalars: Vec<f64>,
     windows: Vec<Window>,

@@ -2,4 +2,5 @@
 
 pub mod cache;
 mod entry;
+pub mod listing;
 pub mod solutions;

@@ -4,6 +4,7 @@ use super::target::Target;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Window;
 use crate::tiles::Tiling;
+use crate::words::number;
 use crate::world::World;
 
 /// What was asked for; all of it may be left to the target.
@@ -90,12 +91,19 @@ impl Frame {
                 let left = [0, 1].into_iter().any(|axis| size[axis] - covered[axis] > 1e-6 * size[axis]);
                 let mut note = Vec::new();
                 if (cell - spec.cell).abs() > 1e-9 * cell {
-                    note.push(format!("the cell is {cell} m instead of {} m, so that the world fits", spec.cell));
+                    note.push(format!(
+                        "the cell is {} m instead of {} m, so that the world fits",
+                        number(cell),
+                        number(spec.cell)
+                    ));
                 }
                 if left {
                     note.push(format!(
                         "of the world's {} x {} m these are the first {} x {} m: the engine takes squares",
-                        size[0], size[1], covered[0], covered[1]
+                        number(size[0]),
+                        number(size[1]),
+                        number(covered[0]),
+                        number(covered[1])
                     ));
                 }
                 ([0, 0], cell, (!note.is_empty()).then(|| note.join("; ")))

@@ -1,0 +1,218 @@
+//! `orogen cache`.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::time::{Duration, SystemTime};
+
+use orogen::store::listing::Stored;
+use orogen::words::{bytes, count, number};
+use orogen::{Cache, Window};
+use serde_json::json;
+
+use crate::failure::Failure;
+use crate::options::cache_folder;
+use crate::say;
+use crate::size::Bytes;
+
+/// What it takes.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Action {
+    /// List the solutions that are kept: what they hold, their size, and when they were last used
+    List(List),
+    /// Remove kept solutions: all, those not used for a while, or the longest unused beyond a size
+    Clear(Clear),
+}
+
+/// `orogen cache list`.
+#[derive(Debug, clap::Args)]
+struct List {
+    /// The folder [default: $OROGEN_CACHE, else the system's folder for caches]
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+    /// Print the list as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// `orogen cache clear`.
+#[derive(Debug, clap::Args)]
+struct Clear {
+    /// The folder [default: $OROGEN_CACHE, else the system's folder for caches]
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+    /// Only what has not been used for so long, such as 30d, 12h or 90m
+    #[arg(long, value_name = "AGE")]
+    older_than: Option<Age>,
+    /// Keep so many bytes, those used last
+    #[arg(long, value_name = "BYTES")]
+    keep: Option<Bytes>,
+    /// Leave out the closing words
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// How long something has not been used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Age(Duration);
+
+const UNITS: [(char, u64); 5] = [('s', 1), ('m', 60), ('h', 3600), ('d', 86_400), ('w', 604_800)];
+
+impl FromStr for Age {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Age, String> {
+        let age = UNITS.iter().find_map(|(unit, seconds)| {
+            let number: u64 = text.trim().strip_suffix(*unit)?.trim().parse().ok()?;
+            number.checked_mul(*seconds)
+        });
+        age.map(|seconds| Age(Duration::from_secs(seconds)))
+            .ok_or_else(|| "an age is a number of s, m, h, d or w, such as 30d".into())
+    }
+}
+
+/// Lists or clears.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    match &args.action {
+        Action::List(args) => list(args),
+        Action::Clear(args) => clear(args),
+    }
+}
+
+fn cache(asked: Option<&PathBuf>) -> Result<Cache, Failure> {
+    let folder = cache_folder(asked)
+        .ok_or_else(|| Failure::Usage("no folder for solutions is known; name one by --cache".into()))?;
+    Ok(Cache::new(folder))
+}
+
+fn list(args: &List) -> Result<(), Failure> {
+    let cache = cache(args.cache.as_ref())?;
+    let stored = cache.stored()?;
+    let total: u64 = stored.iter().map(|stored| stored.bytes).sum();
+    if args.json {
+        let entries: Vec<serde_json::Value> = stored
+            .iter()
+            .map(|stored| {
+                let layers = stored.layers.as_ref().map(|layers| {
+                    let layer = |window: &Window| json!({ "width": window.width, "height": window.height, "cell": window.cell });
+                    layers.iter().map(layer).collect::<Vec<_>>()
+                });
+                json!({
+                    "file": stored.path.display().to_string(),
+                    "bytes": stored.bytes,
+                    "unused_seconds": age(stored).as_secs(),
+                    "layers": layers,
+                })
+            })
+            .collect();
+        let whole = json!({ "folder": cache.folder.display().to_string(), "bytes": total, "solutions": entries });
+        // A tree of numbers and strings always has a JSON text.
+        return say::out(&(serde_json::to_string_pretty(&whole).unwrap_or_default() + "\n"));
+    }
+    let mut text = String::new();
+    for stored in &stored {
+        let name = stored.path.file_stem().unwrap_or_default().to_string_lossy();
+        text.push_str(&format!(
+            "{:.12}  {:>9}  used {:>16}  {}\n",
+            name,
+            bytes(stored.bytes),
+            ago(age(stored)),
+            holds(stored)
+        ));
+    }
+    text.push_str(&format!("{}: {}, {}\n", cache.folder.display(), count(stored.len(), "solution"), bytes(total)));
+    say::out(&text)
+}
+
+fn clear(args: &Clear) -> Result<(), Failure> {
+    let cache = cache(args.cache.as_ref())?;
+    let stored = cache.stored()?;
+    let mut left: u64 = stored.iter().map(|stored| stored.bytes).sum();
+    let (mut removed, mut freed) = (0, 0);
+    // The longest unused first.
+    for stored in &stored {
+        let is_old = args.older_than.is_none_or(|Age(limit)| age(stored) >= limit);
+        let is_much = args.keep.is_none_or(|Bytes(keep)| left > keep);
+        if is_old && is_much {
+            cache.remove(stored)?;
+            left -= stored.bytes;
+            freed += stored.bytes;
+            removed += 1;
+        }
+    }
+    match args.quiet {
+        true => Ok(()),
+        false => say::out(&format!(
+            "{}: {} removed, {}; {} kept, {}\n",
+            cache.folder.display(),
+            count(removed, "solution"),
+            bytes(freed),
+            count(stored.len() - removed, "solution"),
+            bytes(left)
+        )),
+    }
+}
+
+/// How long it has not been used.
+fn age(stored: &Stored) -> Duration {
+    SystemTime::now().duration_since(stored.used).unwrap_or_default()
+}
+
+/// A span of time in the unit that suits it.
+fn ago(age: Duration) -> String {
+    let seconds = age.as_secs();
+    let (unit, length) = match seconds {
+        0..60 => ("second", 1),
+        60..3600 => ("minute", 60),
+        3600..86_400 => ("hour", 3600),
+        _ => ("day", 86_400),
+    };
+    format!("{} ago", count((seconds / length) as usize, unit))
+}
+
+/// What it holds.
+fn holds(stored: &Stored) -> String {
+    match stored.layers.as_deref() {
+        None => "damaged; it is made again when it is needed".into(),
+        Some([]) => "numbers".into(),
+        Some([first, ..]) => format!(
+            "{} of {} x {} samples of {} m",
+            count(stored.layers.as_ref().map_or(0, Vec::len), "layer"),
+            first.width,
+            first.height,
+            number(first.cell)
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ages() {
+        for (text, expect) in [
+            ("30d", Some(2_592_000)),
+            ("12h", Some(43_200)),
+            ("90 m", Some(5400)),
+            ("0s", Some(0)),
+            ("5", None),
+            ("-1d", None),
+            ("d", None),
+            ("99999999999999999999d", None),
+            ("999999999999999999w", None),
+        ] {
+            assert_eq!(text.parse::<Age>().ok().map(|age| age.0.as_secs()), expect, "{text}");
+        }
+        let said = [0, 1, 59, 60, 7200, 86_400 * 3].map(|seconds| ago(Duration::from_secs(seconds)));
+        assert_eq!(
+            said,
+            ["0 seconds ago", "1 second ago", "59 seconds ago", "1 minute ago", "2 hours ago", "3 days ago"]
+        );
+    }
+}

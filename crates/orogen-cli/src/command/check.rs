@@ -1,0 +1,106 @@
+//! `orogen check`.
+
+use std::path::{Path, PathBuf};
+
+use orogen::error::Complaint;
+use orogen::words::count;
+use orogen::{Options, World};
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::report::report;
+use crate::say;
+use crate::size::Bytes;
+use crate::source::Source;
+
+/// What it takes.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Recipes to check: files, names of presets, files of heights, or - for standard input
+    #[arg(required = true)]
+    recipes: Vec<PathBuf>,
+    /// Most memory that the files of heights in them may take, such as 512MiB or 2GiB [default: half of what is free]
+    #[arg(long, value_name = "BYTES")]
+    memory: Option<Bytes>,
+    /// Print what was found as JSON, the faults too
+    #[arg(long)]
+    json: bool,
+    /// Print nothing about recipes without a fault
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Checks each, and tells every fault of every one.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let found: Vec<(&Path, Result<World, Failure>)> =
+        args.recipes.iter().map(|recipe| (recipe.as_path(), check(recipe, args))).collect();
+    let faulty = found.iter().filter(|(_, found)| found.is_err()).count();
+    if args.json {
+        let all: Vec<Value> = found.iter().map(|(recipe, found)| described(recipe, found)).collect();
+        // A tree of numbers and strings always has a JSON text.
+        say::out(&(serde_json::to_string_pretty(&all).unwrap_or_default() + "\n"))?;
+    } else {
+        for (recipe, found) in &found {
+            match found {
+                Ok(_) if args.quiet => {}
+                Ok(world) => say::out(&words(recipe, world))?,
+                Err(failure) => report(failure),
+            }
+        }
+    }
+    if faulty == 0 { Ok(()) } else { Err(Failure::Told) }
+}
+
+/// Reads a recipe and all files that it names, and plans each of its layers.
+fn check(recipe: &Path, args: &Args) -> Result<World, Failure> {
+    let memory = args.memory.map(|bytes| bytes.0).or_else(crate::memory::share_of_free);
+    let recipe = Source::find(recipe)?.read()?;
+    let world = World::with_options(recipe, Options { memory, ..Options::default() })?;
+    let cell = world.recipe().world.cell;
+    let window = orogen::Window::new(1, 1, cell);
+    let layers: Vec<&str> = world.recipe().outputs().collect();
+    world.plan(&layers, &window)?;
+    Ok(world)
+}
+
+fn words(recipe: &Path, world: &World) -> String {
+    let outputs: Vec<&str> = world.recipe().outputs().collect();
+    let outputs =
+        if outputs.len() == 1 { format!("output {}", outputs[0]) } else { format!("outputs {}", outputs.join(", ")) };
+    format!("{}: no fault, {}, {outputs}\n", recipe.display(), count(world.recipe().nodes().len(), "node"))
+}
+
+fn described(recipe: &Path, found: &Result<World, Failure>) -> Value {
+    let name = recipe.display().to_string();
+    match found {
+        Ok(world) => json!({
+            "recipe": name,
+            "valid": true,
+            "nodes": world.recipe().nodes().len(),
+            "outputs": world.recipe().outputs().collect::<Vec<_>>(),
+            "errors": [],
+        }),
+        Err(failure) => {
+            let errors: Vec<Value> = match failure {
+                Failure::Engine(error) => error.complaints().iter().map(fault).collect(),
+                Failure::Usage(sentence) | Failure::Interrupted(sentence) => vec![json!({ "message": sentence })],
+                Failure::Told | Failure::BrokenPipe => Vec::new(),
+            };
+            json!({ "recipe": name, "valid": false, "errors": errors })
+        }
+    }
+}
+
+/// A fault with its place: line and column from 1, and how many characters are meant.
+fn fault(Complaint { sentence, place }: &Complaint) -> Value {
+    match place {
+        None => json!({ "message": sentence }),
+        Some(place) => json!({
+            "message": sentence,
+            "file": place.file,
+            "line": place.line,
+            "column": place.column,
+            "length": place.length,
+        }),
+    }
+}

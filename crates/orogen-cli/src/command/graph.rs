@@ -1,0 +1,98 @@
+//! `orogen graph`.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+
+use orogen::sheet::{pdf, raster, vector};
+use orogen::words::count;
+
+use crate::failure::Failure;
+use crate::graph::diagram::Diagram;
+use crate::graph::{dot, draw};
+use crate::replace::Replace;
+use crate::sink::{Sink, kind};
+use crate::source::{Source, title};
+
+/// What it takes.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A recipe's file, the name of a preset, or - for standard input
+    #[arg(default_value = orogen::recipe::presets::DEFAULT)]
+    recipe: PathBuf,
+    /// File to write: .svg, .pdf, .png, or .dot for Graphviz; - is standard output
+    #[arg(short, long, value_name = "FILE", default_value = "graph.svg")]
+    out: PathBuf,
+    /// Format, if the file's extension does not say [default: svg]
+    #[arg(long)]
+    format: Option<Kind>,
+    /// Pixels an inch of a .png
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=1200), default_value = "150")]
+    dpi: u16,
+    #[command(flatten)]
+    replace: Replace,
+    /// Leave out the closing words
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// The kinds of files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// A drawing for browsers
+    Svg,
+    /// A page
+    Pdf,
+    /// A picture
+    Png,
+    /// A text for Graphviz
+    Dot,
+}
+
+const KINDS: [(Kind, &[&str]); 4] =
+    [(Kind::Svg, &["svg"]), (Kind::Pdf, &["pdf"]), (Kind::Png, &["png"]), (Kind::Dot, &["dot", "gv"])];
+
+/// Most boxes of a drawing; Graphviz may take more.
+const MAX_BLOCKS: usize = 2000;
+
+/// Most pixels of a picture.
+const MAX_PIXELS: f32 = 4e8;
+
+/// Draws the graph.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    let kind = kind(&args.out, args.format, &KINDS, "a graph")?;
+    let source = Source::find(&args.recipe)?;
+    let recipe = source.read()?;
+    let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)))?;
+    let diagram = Diagram::of(&recipe)?;
+    let title = title(&args.recipe);
+    let blocks = diagram.blocks.len();
+    if kind == Kind::Dot {
+        let text = dot::text(&diagram, &title);
+        sink.write(|out| out.write_all(text.as_bytes()))?;
+    } else if blocks > MAX_BLOCKS {
+        return Err(Failure::Usage(format!(
+            "a drawing of {blocks} boxes is more than anybody reads ({MAX_BLOCKS} are the most); write a .dot for Graphviz"
+        )));
+    } else {
+        let scene = draw::draw(&diagram, &title)?;
+        match kind {
+            Kind::Svg => sink.write(|out| vector::write(out, &scene))?,
+            Kind::Pdf => sink.write(|out| pdf::write(out, &scene))?,
+            _ => {
+                let dpi = f32::from(args.dpi) / 25.4;
+                if scene.size[0] * scene.size[1] * dpi * dpi > MAX_PIXELS {
+                    return Err(Failure::Usage(
+                        "the picture would be too large; ask for fewer --dpi, or a .svg".into(),
+                    ));
+                }
+                let page = raster::draw(&scene, f64::from(args.dpi));
+                let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+                sink.write(|out| page.write_png(out, &[("Software", &software)]))?;
+            }
+        }
+    }
+    let nodes = recipe.nodes().len();
+    let words = [count(nodes, "node"), count(blocks - nodes, "output"), count(diagram.wires.len(), "wire")];
+    sink.tell(args.quiet, &format!("{}: {}\n", args.out.display(), words.join(", ")))
+}

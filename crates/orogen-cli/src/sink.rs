@@ -1,0 +1,122 @@
+//! Where a single file goes: into a file, or with `-` to standard output.
+
+use std::io::{self, BufWriter, IsTerminal, Write};
+use std::path::Path;
+
+use orogen::file::{self, Output, OutputPolicy};
+
+use crate::failure::Failure;
+use crate::{interrupt, say};
+
+/// A place for one file.
+#[derive(Debug, Clone)]
+pub enum Sink {
+    /// A file, which appears whole or not at all.
+    File(Output),
+    /// Standard output.
+    Stdout,
+}
+
+/// What stands for standard output, and as a recipe for standard input.
+pub const DASH: &str = "-";
+
+/// Whether a path stands for standard output.
+pub fn is_stdout(path: &Path) -> bool {
+    path == Path::new(DASH)
+}
+
+impl Sink {
+    /// Where `out` leads.
+    ///
+    /// # Errors
+    /// If that is a file that may not be replaced, or a terminal, which cannot show what is written.
+    pub fn new(out: &Path, policy: &OutputPolicy) -> Result<Sink, Failure> {
+        match is_stdout(out) {
+            false => Ok(Sink::File(policy.output(out)?)),
+            true if io::stdout().is_terminal() => Err(Failure::Usage(
+                "standard output is a terminal, which cannot show binary data; name a file with -o, or pipe it on"
+                    .into(),
+            )),
+            true => Ok(Sink::Stdout),
+        }
+    }
+
+    /// Writes it as `body` does.
+    pub fn write<T>(&self, body: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> Result<T, Failure> {
+        match self {
+            Sink::File(output) => {
+                let mut made = None;
+                file::write_whole(output, |out| body(out).map(|value| made = Some(value)))?;
+                made.ok_or_else(|| Failure::Usage("nothing was written".into()))
+            }
+            Sink::Stdout => {
+                let mut out = BufWriter::new(Piped { out: io::stdout().lock(), broken: false });
+                let written = body(&mut out).and_then(|value| out.flush().map(|()| value));
+                // What is left in the buffer after a failure must not be tried again on the way out.
+                let (piped, _) = out.into_parts();
+                written.map_err(|cause| match (interrupt::asked(), piped.broken) {
+                    (true, _) => Failure::Interrupted("stopped: what was written is cut short".to_string()),
+                    (false, true) => Failure::BrokenPipe,
+                    (false, false) => Failure::stdout(&cause),
+                })
+            }
+        }
+    }
+
+    /// Says what was written, on standard output where that is free for it.
+    pub fn tell(&self, quiet: bool, words: &str) -> Result<(), Failure> {
+        match self {
+            Sink::File(_) if !quiet => say::out(words),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Standard output, and whether its reader has gone: what encoders make of that failure does not always tell.
+struct Piped {
+    out: io::StdoutLock<'static>,
+    broken: bool,
+}
+
+impl Write for Piped {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.out.write(bytes).inspect_err(|cause| self.broken |= cause.kind() == io::ErrorKind::BrokenPipe)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush().inspect_err(|cause| self.broken |= cause.kind() == io::ErrorKind::BrokenPipe)
+    }
+}
+
+/// The kind of file that `--format` names, or the extension of `out`, or of standard output the first of them all.
+///
+/// # Errors
+/// If neither tells one of `kinds`, or they contradict each other; `what` says what is written, such as "a map".
+pub fn kind<K: Copy + PartialEq>(
+    out: &Path,
+    asked: Option<K>,
+    kinds: &[(K, &[&str])],
+    what: &str,
+) -> Result<K, Failure> {
+    if is_stdout(out) {
+        let first = kinds.first().map(|(kind, _)| *kind);
+        return asked.or(first).ok_or_else(|| Failure::Usage("say --format".into()));
+    }
+    let extension = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let told = kinds.iter().find(|(_, names)| names.contains(&extension.as_str())).map(|(kind, _)| *kind);
+    match (asked, told) {
+        (Some(asked), Some(told)) if asked != told => {
+            Err(Failure::Usage(format!("--format and the extension of {} contradict each other", out.display())))
+        }
+        (Some(kind), _) | (None, Some(kind)) => Ok(kind),
+        (None, None) => {
+            let names: Vec<String> = kinds.iter().map(|(_, names)| format!(".{}", names[0])).collect();
+            let names = match names.as_slice() {
+                [one] => one.clone(),
+                [init @ .., last] => format!("{} or {last}", init.join(", ")),
+                [] => String::new(),
+            };
+            Err(Failure::Usage(format!("{}: {what} is a {names}; name a file that ends so", out.display())))
+        }
+    }
+}
