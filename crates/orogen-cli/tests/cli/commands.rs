@@ -60,10 +60,13 @@ pub const WRITERS: &[Writer] = &[
     writer(&["noise", "perlin", "--size", "32", "--frames", "2", "-o", "n-%d.png"], &["n-0.png", "n-1.png"]),
     writer(&["compare", "--size", "120", "-o", "compare.png"], &["compare.png"]),
     writer(&["palettes", "-o", "palettes.png"], &["palettes.png"]),
+    writer(&["graph", "hills", "-o", "graph.svg"], &["graph.svg"]),
+    writer(&["graph", "hills", "-o", "graph.pdf"], &["graph.pdf"]),
+    writer(&["graph", "hills", "-o", "graph.dot"], &["graph.dot"]),
 ];
 
 /// Commands that write nothing but words on standard output.
-const TALKERS: &[&str] = &["presets", "ops", "schema", "explain", "completions", "help"];
+const TALKERS: &[&str] = &["presets", "ops", "schema", "explain", "check", "cache", "completions", "help"];
 
 /// Commands that never write over anything.
 const STARTERS: &[&str] = &["new"];

@@ -67,6 +67,7 @@ const KINDS: &[Kind] = &[
     },
     Kind { name: "an SVG drawing", extensions: &["svg"], begins: |head| is_markup(head) && holds(head, "<svg") },
     Kind { name: "an HTML page", extensions: &["html", "htm"], begins: |head| is_markup(head) && holds(head, "<html") },
+    Kind { name: "a Graphviz graph", extensions: &["dot", "gv"], begins: |head| head.starts_with(b"digraph ") },
     Kind { name: "a Wavefront material", extensions: &["mtl"], begins: |head| head.starts_with(b"newmtl") },
     Kind { name: "an ASCII grid", extensions: &["asc"], begins: |head| starts_with_word(head, "ncols") },
     Kind {
