@@ -146,7 +146,7 @@ fn export(args: &Args) -> Result<(), Failure> {
     }
     let window = args.samples.window(&world)?;
     let (bar, progress) = Bar::new(args.quiet);
-    let subject = Subject::new(&world, &args.layer, window, &progress)?;
+    let subject = Subject::in_format(format, &world, &args.layer, window, &progress)?;
     match to_stdout {
         true => {
             let mut out = BufWriter::new(io::stdout().lock());

@@ -22,6 +22,7 @@
 pub mod channels;
 pub mod contours;
 pub mod derived;
+pub mod features;
 pub mod files;
 pub mod format;
 pub mod formats;
@@ -34,3 +35,4 @@ pub mod sidecar;
 pub mod spread;
 pub mod subject;
 pub mod targets;
+pub mod vectors;

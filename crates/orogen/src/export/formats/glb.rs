@@ -26,6 +26,7 @@ pub static FORMAT: Format = Format {
     about: "glTF 2.0 mesh in one file: metres, Y up, normals, texture",
     options: &[MAX_ERROR, LODS, COLOR, EXAGGERATION, HEIGHT_CURVE],
     channels: 1,
+    features: false,
     // And the picture, which has to be packed before its size can be told.
     memory: |window, options| memory(window, options).saturating_add(whole(window)),
     write,
