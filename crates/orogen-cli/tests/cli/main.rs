@@ -22,3 +22,4 @@ mod render;
 mod surfaces;
 mod view;
 mod watch;
+mod water;

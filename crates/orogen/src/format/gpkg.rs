@@ -38,9 +38,10 @@ pub fn write<'a>(out: &mut dyn Write, layers: impl Iterator<Item = &'a FeatureLa
     contents(&mut database, layers, srs)?;
     geometry_columns(&mut database, layers, srs)?;
     extensions(&mut database, layers)?;
-    let sequence = layers.iter().enumerate().map(|(k, layer)| {
-        (k as i64 + 1, vec![Column::Text(layer.name), Column::Integer(layer.features.len() as i64)])
-    });
+    let sequence = layers
+        .iter()
+        .enumerate()
+        .map(|(k, layer)| (k as i64 + 1, vec![Column::Text(layer.name), Column::Integer(layer.features.len() as i64)]));
     database.table("sqlite_sequence", "CREATE TABLE sqlite_sequence(name,seq)", sequence)?;
     for layer in layers {
         features(&mut database, layer, srs)?;
@@ -76,7 +77,13 @@ fn spatial_ref_sys(database: &mut Database, srs: i64) -> io::Result<()> {
     let name = format!("EPSG:{srs}");
     let mut rows = vec![
         row("Undefined Cartesian SRS", LOCAL, "NONE", LOCAL_WKT, "undefined Cartesian coordinate reference system"),
-        row("Undefined geographic SRS", GEOGRAPHIC, "NONE", "undefined", "undefined geographic coordinate reference system"),
+        row(
+            "Undefined geographic SRS",
+            GEOGRAPHIC,
+            "NONE",
+            "undefined",
+            "undefined geographic coordinate reference system",
+        ),
         row("WGS 84 geodetic", 4326, "EPSG", WGS_84, "longitude and latitude on the WGS 84 ellipsoid, in degrees"),
     ];
     if !matches!(srs, LOCAL | GEOGRAPHIC | 4326) {
@@ -190,7 +197,8 @@ fn features(database: &mut Database, layer: &FeatureLayer, srs: i64) -> io::Resu
         sql.push_str(&format!(", \"{}\" {kind}", field.name));
     }
     sql.push(')');
-    let blobs: Vec<Vec<u8>> = layer.features.iter().map(|feature| blob(&feature.geometry, layer.geometry, srs)).collect();
+    let blobs: Vec<Vec<u8>> =
+        layer.features.iter().map(|feature| blob(&feature.geometry, layer.geometry, srs)).collect();
     let rows = layer.features.iter().zip(&blobs).enumerate().map(|(k, (feature, blob))| {
         let value = |value: &Value| match value {
             Value::Integer(number) => Column::Integer(*number),
@@ -265,7 +273,8 @@ fn index(database: &mut Database, layer: &FeatureLayer) -> io::Result<()> {
         .filter_map(|(feature, row)| feature.geometry.bounds().map(|bounds| (row, bounds)))
         .unzip();
     let nodes = Nodes::new(&rows, &boxes);
-    let shadow = |what: &str, columns: &str| (format!("{name}_{what}"), format!("CREATE TABLE \"{name}_{what}\"({columns})"));
+    let shadow =
+        |what: &str, columns: &str| (format!("{name}_{what}"), format!("CREATE TABLE \"{name}_{what}\"({columns})"));
     let (own, sql) = shadow("rowid", "rowid INTEGER PRIMARY KEY,nodeno");
     let pair = |(key, value): &(i64, i64)| (*key, vec![Column::Null, Column::Integer(*value)]);
     database.table(&own, &sql, nodes.rows.iter().map(pair))?;
@@ -332,8 +341,10 @@ impl Nodes {
             for (k, children) in below.chunks(NODE_CELLS).enumerate() {
                 let number = first[depth] + k as i64;
                 let start = k * NODE_CELLS;
-                let id = |i: usize| if depth == 0 { rows[order[start + i]] } else { first[depth - 1] + (start + i) as i64 };
-                let cells: Vec<(i64, Bounds)> = children.iter().enumerate().map(|(i, bounds)| (id(i), *bounds)).collect();
+                let id =
+                    |i: usize| if depth == 0 { rows[order[start + i]] } else { first[depth - 1] + (start + i) as i64 };
+                let cells: Vec<(i64, Bounds)> =
+                    children.iter().enumerate().map(|(i, bounds)| (id(i), *bounds)).collect();
                 let kept = if depth == 0 { &mut nodes.rows } else { &mut nodes.parents };
                 kept.extend(cells.iter().map(|(id, _)| (*id, number)));
                 // Only the root says how deep the tree is.
@@ -351,8 +362,10 @@ fn node(depth: u16, cells: &[(i64, Bounds)]) -> Vec<u8> {
     let mut out = Vec::with_capacity(4 + NODE_CELLS * NODE_CELL);
     out.extend_from_slice(&depth.to_be_bytes());
     out.extend_from_slice(&(cells.len() as u16).to_be_bytes());
-    let below = |value: f64| Some(value as f32).filter(|near| f64::from(*near) <= value).unwrap_or((value as f32).next_down());
-    let above = |value: f64| Some(value as f32).filter(|near| f64::from(*near) >= value).unwrap_or((value as f32).next_up());
+    let below =
+        |value: f64| Some(value as f32).filter(|near| f64::from(*near) <= value).unwrap_or((value as f32).next_down());
+    let above =
+        |value: f64| Some(value as f32).filter(|near| f64::from(*near) >= value).unwrap_or((value as f32).next_up());
     for (id, [west, south, east, north]) in cells {
         out.extend_from_slice(&id.to_be_bytes());
         for corner in [below(*west), above(*east), below(*south), above(*north)] {

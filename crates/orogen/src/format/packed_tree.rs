@@ -43,9 +43,8 @@ pub fn levels(boxes: &[Bounds], fanout: usize) -> Vec<Vec<Bounds>> {
     let mut levels: Vec<Vec<Bounds>> = Vec::new();
     let mut below = boxes;
     while !below.is_empty() {
-        let level: Vec<Bounds> = (below.chunks(fanout.max(2)))
-            .filter_map(|children| children.iter().copied().reduce(join))
-            .collect();
+        let level: Vec<Bounds> =
+            (below.chunks(fanout.max(2))).filter_map(|children| children.iter().copied().reduce(join)).collect();
         levels.push(level);
         below = match levels.last() {
             Some(level) if level.len() > 1 => level,

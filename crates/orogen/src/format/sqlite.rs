@@ -129,7 +129,8 @@ impl Database {
         let mut tree = Tree::default();
         for (k, (kind, name, table, root, sql)) in schema.iter().enumerate() {
             let sql = sql.as_deref().map_or(Column::Null, Column::Text);
-            let columns = [Column::Text(kind), Column::Text(name), Column::Text(table), Column::Integer(i64::from(*root)), sql];
+            let columns =
+                [Column::Text(kind), Column::Text(name), Column::Text(table), Column::Integer(i64::from(*root)), sql];
             let cell = self.table_cell(k as i64 + 1, &record(&columns));
             // The first page has less room; whether all fit there is known only at the end.
             if !tree.fits(&cell, PAGE - FILE_HEAD) {
@@ -302,7 +303,8 @@ fn record(columns: &[Column]) -> Vec<u8> {
             Column::Integer(1) => 9,
             Column::Integer(number) => {
                 let sizes = [(1, 1), (2, 2), (3, 3), (4, 4), (6, 5), (8, 6)];
-                let fits = |bytes: u32| bytes == 8 || (-(1i64 << (8 * bytes - 1))..1i64 << (8 * bytes - 1)).contains(number);
+                let fits =
+                    |bytes: u32| bytes == 8 || (-(1i64 << (8 * bytes - 1))..1i64 << (8 * bytes - 1)).contains(number);
                 let (bytes, kind) = sizes.into_iter().find(|(bytes, _)| fits(*bytes)).unwrap_or((8, 6));
                 body.extend_from_slice(&number.to_be_bytes()[8 - bytes as usize..]);
                 kind
@@ -386,9 +388,9 @@ mod tests {
         database.table("t", "CREATE TABLE t(a)", [(1, vec![Column::Blob(&bytes)])]).unwrap();
         let mut out = Vec::new();
         database.write(&mut out, 1, 2).unwrap();
-        // The first page, two or three that go on, and the leaf.
-        assert_eq!((out.len() % PAGE, out.len() / PAGE, &out[..15]), (0, 5, &b"SQLite format 3"[..]));
-        assert_eq!(u32::from_be_bytes([out[28], out[29], out[30], out[31]]), 5);
+        // The first page, two that go on, and the leaf.
+        assert_eq!((out.len() % PAGE, out.len() / PAGE, &out[..15]), (0, 4, &b"SQLite format 3"[..]));
+        assert_eq!(u32::from_be_bytes([out[28], out[29], out[30], out[31]]), 4);
     }
 
     #[test]
@@ -440,7 +442,7 @@ mod tests {
 
     fn read(page: &[u8], at: usize) -> u64 {
         let mut number = 0;
-        for byte in &page[at..at + 8] {
+        for byte in page[at..].iter().take(8) {
             number = number << 7 | u64::from(byte & 0x7F);
             if byte & 0x80 == 0 {
                 break;

@@ -42,6 +42,8 @@ pub struct River {
     pub order: u8,
     /// Samples that drain to its end.
     pub drained: u32,
+    /// The first sample of land that it runs through.
+    pub start: u32,
     /// The last sample that is its alone: behind it is another reach, or water.
     pub end: u32,
     /// Where it begins.
@@ -114,7 +116,8 @@ pub fn rivers(water: &Water, frame: &Frame, rounds: usize, shores: &mut Shores) 
             let drained = water.area.data()[own];
             // Reaches that meet at the border end there together.
             let end = stretch.cells.last().copied().filter(|_| mouth == Mouth::Border).unwrap_or(own) as u32;
-            River { points, order: stretch.order, drained, end, source: stretch.source, mouth, downstream }
+            let start = stretch.cells[usize::from(matches!(stretch.source, Source::Lake(_)))] as u32;
+            River { points, order: stretch.order, drained, start, end, source: stretch.source, mouth, downstream }
         })
         .collect();
     joints.into_points().insert(&mut shores.lines);
@@ -238,4 +241,108 @@ pub fn even(points: &[[f64; 3]], rounds: usize) -> Vec<[f64; 3]> {
         }
     }
     points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::{Grid, Window};
+    use crate::hydrography::water::Least;
+    use crate::hydrology::samples;
+    use crate::progress::Progress;
+
+    fn found(heights: Grid, sea: Option<f32>, frame: Option<Frame>, rounds: usize) -> (Water, Shores, Vec<River>) {
+        let least = Least { spring: 6, lake: 3, depth: 0.0, scattered: false };
+        let window = Window::new(heights.width(), heights.height(), 1.0);
+        let heights = Grid::from_data(window, heights.into_data()).unwrap();
+        let water = Water::of(heights, sea, least, &Progress::none()).unwrap();
+        let frame = frame.unwrap_or_else(|| Frame::whole(&water));
+        let mut shores = Shores::of(&water, &frame, 1).unwrap();
+        let rivers = rivers(&water, &frame, rounds, &mut shores);
+        (water, shores, rivers)
+    }
+
+    /// What holds of all rivers.
+    fn check(water: &Water, shores: &Shores, rivers: &[River]) {
+        let on_shore = |at: [f64; 3], of: u32| {
+            let lines = shores.lines.iter().zip(&shores.waters).filter(|(_, water)| **water == of);
+            lines.into_iter().any(|(line, _)| line.contains(&[at[0], at[1]]))
+        };
+        for (k, river) in rivers.iter().enumerate() {
+            assert!(river.points.len() > 1, "{river:?}");
+            assert!(river.points.windows(2).all(|pair| pair[1][2] <= pair[0][2]), "rises: {river:?}");
+            let (first, last) = (river.points[0], river.points[river.points.len() - 1]);
+            if let Source::Lake(lake) = river.source {
+                assert!(on_shore(first, lake), "{river:?}");
+                assert_eq!(first[2], f64::from(water.lakes[lake as usize - 1].level));
+            }
+            match river.mouth {
+                Mouth::Reach(next) => {
+                    assert_eq!(rivers[next as usize].points[0], last);
+                    assert_eq!(river.downstream, Some(next));
+                }
+                Mouth::Lake(lake) => {
+                    assert!(on_shore(last, lake), "{river:?}");
+                    let next = river.downstream.expect("a lake that rivers run into has one that leaves it");
+                    assert_eq!(rivers[next as usize].source, Source::Lake(lake));
+                }
+                Mouth::Sea => assert!(on_shore(last, 0), "{river:?}"),
+                Mouth::Border => assert_eq!(river.downstream, None),
+            }
+            if let Some(next) = river.downstream.map(|next| &rivers[next as usize]) {
+                assert!(next.points[0][2] <= last[2] && next.order >= river.order && next.drained > river.drained);
+            }
+            // The way down ends.
+            let (mut at, mut steps) = (k, 0);
+            while let Some(next) = rivers[at].downstream {
+                at = next as usize;
+                steps += 1;
+                assert!(steps <= rivers.len());
+            }
+        }
+    }
+
+    #[test]
+    fn reaches_fall_and_join_on_every_kind_of_ground() {
+        let mut count = 0;
+        for heights in samples::grids() {
+            for (sea, rounds) in [(None, 3), (Some(300.0), 0), (Some(300.0), 3), (Some(550.0), 6)] {
+                let (water, shores, rivers) = found(heights.clone(), sea, None, rounds);
+                if heights.data().iter().all(|height| height.is_finite()) {
+                    check(&water, &shores, &rivers);
+                }
+                count += rivers.len();
+            }
+        }
+        assert!(count > 300, "{count}");
+    }
+
+    #[test]
+    fn a_part_of_the_ground_has_the_rivers_of_the_whole() {
+        for seed in 0..6 {
+            let heights = samples::hills(70, 60, seed);
+            let (_, _, whole) = found(heights.clone(), Some(200.0), None, 3);
+            let frame = Frame { columns: 13..52, rows: 9..44 };
+            let (water, shores, part) = found(heights, Some(200.0), Some(frame.clone()), 3);
+            for river in &part {
+                for [x, y, _] in &river.points {
+                    assert!((13.0..=51.0).contains(x) && (9.0..=43.0).contains(y));
+                }
+            }
+            let same = part.iter().filter(|river| whole.iter().any(|other| other.points == river.points));
+            for river in same.clone() {
+                let other = whole.iter().find(|other| other.points == river.points).unwrap();
+                assert_eq!((river.drained, river.order), (other.drained, other.order));
+            }
+            assert!(same.count() * 3 > part.len(), "seed {seed}");
+            // Lakes that are cut off are closed along the frame, and their outlets may lie beyond it.
+            for area in shores.areas() {
+                for ring in area.parts.iter().flatten() {
+                    assert_eq!(ring.first(), ring.last());
+                }
+            }
+            assert!(part.iter().all(|river| river.points.windows(2).all(|pair| pair[1][2] <= pair[0][2])));
+            assert!(water.lakes.len() >= shores.areas().len());
+        }
+    }
 }

@@ -76,7 +76,8 @@ pub struct LakeArea {
 fn depths(water: &Water, frame: &Frame) -> Grid {
     const WALL: f32 = -1e30;
     let (columns, rows) = (&frame.columns, &frame.rows);
-    let window = Window::new(columns.len() + 2, rows.len() + 2, 1.0).at(columns.start as i64 - 1, rows.start as i64 - 1);
+    let window =
+        Window::new(columns.len() + 2, rows.len() + 2, 1.0).at(columns.start as i64 - 1, rows.start as i64 - 1);
     let mut depth = Grid::filled(window, WALL);
     let (width, height) = (water.heights.width(), water.heights.height());
     let level = |label: u32| water.lakes[label as usize - 1].level;

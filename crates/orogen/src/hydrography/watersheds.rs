@@ -20,7 +20,8 @@ pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds
     let width = water.heights.width();
     let mut labels = vec![UNKNOWN; water.heights.data().len()];
     let mut rivers = Vec::new();
-    for (k, reach) in reaches.iter().enumerate().filter(|(_, reach)| matches!(reach.mouth, Mouth::Sea | Mouth::Border)) {
+    for (k, reach) in reaches.iter().enumerate().filter(|(_, reach)| matches!(reach.mouth, Mouth::Sea | Mouth::Border))
+    {
         rivers.push(Some(k as u32));
         // Another reach that joins it there shares its watershed.
         let label = &mut labels[reach.end as usize];
@@ -82,4 +83,46 @@ pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds
         }
     }
     Watersheds { labels: out, rivers }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hydrography::rivers::rivers;
+    use crate::hydrography::shores::Shores;
+    use crate::hydrography::water::Least;
+    use crate::hydrology::samples;
+    use crate::progress::Progress;
+
+    #[test]
+    fn all_land_has_a_watershed_and_rivers_stay_in_theirs() {
+        for seed in 0..5 {
+            let least = Least { spring: 12, lake: 4, depth: 0.0, scattered: false };
+            let water = Water::of(samples::hills(60, 50, seed), Some(250.0), least, &Progress::none()).unwrap();
+            let frame = Frame { columns: 5..55, rows: 4..50 };
+            let mut shores = Shores::of(&water, &frame, 1).unwrap();
+            let reaches = rivers(&water, &frame, 3, &mut shores);
+            let found = watersheds(&water, &frame, &reaches);
+            let mut counts = vec![0; found.rivers.len() + 1];
+            for (k, label) in found.labels.iter().enumerate() {
+                let cell = (4 + k / 50) * 60 + 5 + k % 50;
+                assert_eq!(*label == 0, water.cover(cell) == Cover::Sea);
+                counts[*label as usize] += 1;
+            }
+            assert!(counts[1..].iter().all(|count| *count > 0), "{counts:?}");
+            let label = |cell: u32| {
+                let (i, j) = (cell as usize % 60, cell as usize / 60);
+                found.labels[(j - 4) * 50 + i - 5]
+            };
+            for (k, river) in found.rivers.iter().enumerate() {
+                let Some(river) = river else { continue };
+                assert_eq!(label(reaches[*river as usize].end), k as u32 + 1);
+            }
+            for reach in reaches.iter() {
+                if let Some(next) = reach.downstream {
+                    assert_eq!(label(reach.end), label(reaches[next as usize].end), "seed {seed}");
+                }
+            }
+        }
+    }
 }

@@ -67,7 +67,8 @@ impl Drawing {
         match self.layers.as_slice() {
             [(layer, _)] => Ok(layer),
             _ => {
-                let sentence = format!("a .{format} file holds one layer: name one with --layer, or write all into a .gpkg");
+                let sentence =
+                    format!("a .{format} file holds one layer: name one with --layer, or write all into a .gpkg");
                 Err(Error::new(ErrorKind::Request, sentence).into())
             }
         }
@@ -90,8 +91,11 @@ fn check(layers: &[&VectorLayer], options: &Options) -> Result<()> {
     let all = || super::options::OPTIONS.iter().map(|spec| spec.name);
     for name in options.names().filter(|name| all().any(|known| known == *name)) {
         if !layers.iter().any(|layer| layer.options.contains(&name)) {
-            let knows: Vec<&str> =
-                super::list::all().iter().filter(|layer| layer.options.contains(&name)).map(|layer| layer.name).collect();
+            let knows: Vec<&str> = super::list::all()
+                .iter()
+                .filter(|layer| layer.options.contains(&name))
+                .map(|layer| layer.name)
+                .collect();
             let sentence = format!("--{name} changes nothing here; it is for {}", knows.join(", "));
             return Err(Error::new(ErrorKind::Request, sentence));
         }

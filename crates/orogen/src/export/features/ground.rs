@@ -45,17 +45,25 @@ impl Ground {
     ///
     /// # Errors
     /// If the world has no heights, memory does not suffice, or the work was cancelled.
-    pub fn of(world: &World, window: &Window, options: &FeatureOptions, beside: u64, progress: &Progress) -> Result<Ground> {
+    pub fn of(
+        world: &World,
+        window: &Window,
+        options: &FeatureOptions,
+        beside: u64,
+        progress: &Progress,
+    ) -> Result<Ground> {
         let all = extent(world, window);
         let samples = (all.width as u64).saturating_mul(all.height as u64);
         if samples > u64::from(u32::MAX) {
-            let sentence = format!("water is found on at most 2^32 samples, and there are {} x {}", all.width, all.height);
+            let sentence =
+                format!("water is found on at most 2^32 samples, and there are {} x {}", all.width, all.height);
             return Err(Error::new(ErrorKind::Request, sentence));
         }
         // The heights are counted by the plan that makes them.
         let held = samples.saturating_mul(MEMORY - 4 + FEATURES).saturating_add(beside);
         let heights = world.grid_beside(HEIGHT, &all, held, progress)?;
-        world.install(|| Ground::from_heights(heights, world.recipe().world.sea_level as f32, window, options, progress))
+        world
+            .install(|| Ground::from_heights(heights, world.recipe().world.sea_level as f32, window, options, progress))
     }
 
     /// The same of heights at hand, which hold the window.

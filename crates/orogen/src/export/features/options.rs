@@ -108,7 +108,8 @@ impl<'a> FeatureOptions<'a> {
 
     /// The samples of a cell that drain to a spring, and that a lake has, at least.
     pub fn fewest(&self, cell: f64) -> [u32; 2] {
-        let samples = |area: f64, fewest: u32| (area / (cell * cell)).ceil().clamp(f64::from(fewest), f64::from(u32::MAX)) as u32;
+        let samples =
+            |area: f64, fewest: u32| (area / (cell * cell)).ceil().clamp(f64::from(fewest), f64::from(u32::MAX)) as u32;
         [samples(self.river.0, self.river.1.max(1)), samples(self.lake, 4)]
     }
 

@@ -108,7 +108,10 @@ mod tests {
     fn a_group_for_each_layer_and_a_path_for_each_feature() {
         let layers = [
             (samples::layer("summits", GeometryType::Point, 2), vectors::summits::LAYER.style),
-            (samples::layer("rivers", GeometryType::LineZ, 3), Style { by: Some("area"), ..vectors::rivers::LAYER.style }),
+            (
+                samples::layer("rivers", GeometryType::LineZ, 3),
+                Style { by: Some("area"), ..vectors::rivers::LAYER.style },
+            ),
             (samples::layer("lakes", GeometryType::MultiPolygon, 1), vectors::lakes::LAYER.style),
         ];
         let mut bytes = Vec::new();

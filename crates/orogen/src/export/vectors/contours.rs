@@ -1,11 +1,11 @@
 //! Contours.
 
+use crate::contour::levels::is_index;
 use crate::error::Result;
 use crate::export::contours::{self, Contours};
 use crate::export::features::ground::Ground;
 use crate::export::features::layer::{Style, VectorLayer};
 use crate::export::features::options::FeatureOptions;
-use crate::contour::levels::is_index;
 use crate::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value};
 
 /// The layer.
@@ -19,7 +19,11 @@ pub static LAYER: VectorLayer = VectorLayer {
 
 const FIELDS: &[Field] = &[
     Field { name: "elevation", kind: FieldType::Real, about: "height, m" },
-    Field { name: "index", kind: FieldType::Boolean, about: "whether it is an index contour: every fifth of an interval" },
+    Field {
+        name: "index",
+        kind: FieldType::Boolean,
+        about: "whether it is an index contour: every fifth of an interval",
+    },
 ];
 
 fn make(ground: &Ground, options: &FeatureOptions) -> Result<FeatureLayer> {

@@ -23,7 +23,11 @@ const FIELDS: &[Field] = &[
     Field { name: "area", kind: FieldType::Real, about: "area of the surface, m^2" },
     Field { name: "depth", kind: FieldType::Real, about: "greatest depth, m" },
     Field { name: "volume", kind: FieldType::Real, about: "volume of the water, m^3" },
-    Field { name: "outlet", kind: FieldType::Integer, about: "id of the reach that leaves it; none if the water that leaves makes no river" },
+    Field {
+        name: "outlet",
+        kind: FieldType::Integer,
+        about: "id of the reach that leaves it; none if the water that leaves makes no river",
+    },
 ];
 
 fn make(ground: &Ground, _: &FeatureOptions) -> Result<FeatureLayer> {
@@ -60,5 +64,11 @@ fn make(ground: &Ground, _: &FeatureOptions) -> Result<FeatureLayer> {
         ];
         features.push(Feature { geometry: Geometry::MultiPolygon(parts), values });
     }
-    Ok(FeatureLayer { name: LAYER.name, about: LAYER.about, geometry: GeometryType::MultiPolygon, fields: FIELDS, features })
+    Ok(FeatureLayer {
+        name: LAYER.name,
+        about: LAYER.about,
+        geometry: GeometryType::MultiPolygon,
+        fields: FIELDS,
+        features,
+    })
 }

@@ -18,7 +18,11 @@ pub static LAYER: VectorLayer = VectorLayer {
 
 const FIELDS: &[Field] = &[
     Field { name: "id", kind: FieldType::Integer, about: "number of the reach, from 1" },
-    Field { name: "downstream", kind: FieldType::Integer, about: "id of the reach that the water flows on in, behind a lake if the reach ends in one" },
+    Field {
+        name: "downstream",
+        kind: FieldType::Integer,
+        about: "id of the reach that the water flows on in, behind a lake if the reach ends in one",
+    },
     Field { name: "strahler", kind: FieldType::Integer, about: "Strahler order" },
     Field { name: "drainage_area", kind: FieldType::Real, about: "area that drains to the end of the reach, m^2" },
     Field { name: "discharge", kind: FieldType::Real, about: "mean discharge at the end of the reach, m^3/s" },

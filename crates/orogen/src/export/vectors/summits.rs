@@ -19,7 +19,11 @@ pub static LAYER: VectorLayer = VectorLayer {
 const FIELDS: &[Field] = &[
     Field { name: "id", kind: FieldType::Integer, about: "number of the summit, from 1" },
     Field { name: "height", kind: FieldType::Real, about: "height, m" },
-    Field { name: "prominence", kind: FieldType::Real, about: "metres down to the key col; of the highest, to the sea or the lowest ground" },
+    Field {
+        name: "prominence",
+        kind: FieldType::Real,
+        about: "metres down to the key col; of the highest, to the sea or the lowest ground",
+    },
     Field { name: "key_col", kind: FieldType::Real, about: "height of the highest pass to higher ground, m" },
 ];
 

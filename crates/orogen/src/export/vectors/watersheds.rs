@@ -21,7 +21,11 @@ pub static LAYER: VectorLayer = VectorLayer {
 
 const FIELDS: &[Field] = &[
     Field { name: "id", kind: FieldType::Integer, about: "number of the watershed, from 1" },
-    Field { name: "river", kind: FieldType::Integer, about: "id of the last reach of its river; none where none drains it" },
+    Field {
+        name: "river",
+        kind: FieldType::Integer,
+        about: "id of the last reach of its river; none where none drains it",
+    },
     Field { name: "area", kind: FieldType::Real, about: "area of its samples, m^2" },
     Field { name: "mouth", kind: FieldType::Text, about: "what its river ends in: sea or border" },
     Field { name: "lowest", kind: FieldType::Real, about: "lowest height, m" },
@@ -59,10 +63,11 @@ fn make(ground: &Ground, options: &FeatureOptions) -> Result<FeatureLayer> {
     let mut features = Vec::with_capacity(areas.len());
     for (k, parts) in areas.iter().enumerate() {
         let (river, known) = (found.rivers[k], measures[k + 1]);
-        let mouth = river.and_then(|river| ground.rivers.get(river as usize)).map_or(Value::Null, |river| match river.mouth {
-            Mouth::Sea => Value::Text("sea"),
-            _ => Value::Text("border"),
-        });
+        let mouth =
+            river.and_then(|river| ground.rivers.get(river as usize)).map_or(Value::Null, |river| match river.mouth {
+                Mouth::Sea => Value::Text("sea"),
+                _ => Value::Text("border"),
+            });
         let values = vec![
             Value::Integer(k as i64 + 1),
             Value::id(river.map(|river| river + 1)),
@@ -74,5 +79,11 @@ fn make(ground: &Ground, options: &FeatureOptions) -> Result<FeatureLayer> {
         ];
         features.push(Feature { geometry: Geometry::MultiPolygon(ground.parts(parts)), values });
     }
-    Ok(FeatureLayer { name: LAYER.name, about: LAYER.about, geometry: GeometryType::MultiPolygon, fields: FIELDS, features })
+    Ok(FeatureLayer {
+        name: LAYER.name,
+        about: LAYER.about,
+        geometry: GeometryType::MultiPolygon,
+        fields: FIELDS,
+        features,
+    })
 }
