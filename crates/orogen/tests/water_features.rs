@@ -23,11 +23,12 @@ fn ground(world: &World, window: &Window) -> Ground {
 
 #[test]
 fn beds_never_rise_and_every_reach_ends_somewhere() {
-    for (name, cell) in [("island", 80.0), ("archipelago", 160.0), ("hills", 60.0), ("classic", 40.0)] {
+    let mut count = 0;
+    for (name, cell) in [("island", 80.0), ("archipelago", 160.0), ("hills", 60.0), ("mesa", 80.0)] {
         for seed in [1, 2, 3] {
             let world = preset(name, seed, cell);
             let ground = ground(&world, &world.whole(cell).unwrap());
-            assert!(!ground.rivers.is_empty(), "{name} {seed}");
+            count += ground.rivers.len();
             for river in &ground.rivers {
                 assert!(river.points.windows(2).all(|pair| pair[1][2] <= pair[0][2]), "{name} {seed}: {river:?}");
                 let last = river.points[river.points.len() - 1];
@@ -50,6 +51,7 @@ fn beds_never_rise_and_every_reach_ends_somewhere() {
             }
         }
     }
+    assert!(count > 100, "{count}");
 }
 
 #[test]
