@@ -136,7 +136,11 @@ const STEPS: &[&Step] = &[
         run: || script("meshes"),
     },
     &Step { name: "contours", about: "gdal_contour draws the same contours", run: || script("contours") },
-    &Step { name: "water", about: "GDAL, SQLite and Shapely read rivers, lakes and watersheds", run: || script("water") },
+    &Step {
+        name: "water",
+        about: "GDAL, SQLite and Shapely read rivers, lakes and watersheds",
+        run: || script("water"),
+    },
     &Step { name: "maps", about: "Poppler and librsvg draw map sheets", run: || script("maps") },
     &Step {
         name: "formats",

@@ -28,7 +28,8 @@ impl Drawing {
     /// Fails as the subject does, and if an option was given that none of the layers knows.
     pub fn of(subject: &mut Subject, options: &Options) -> io::Result<Drawing> {
         let (map, cell) = (subject.map(), subject.window().cell);
-        let layers = match subject.vectors() {
+        let asked = subject.vectors().to_vec();
+        let layers = match asked.as_slice() {
             [] => {
                 let found = contours::of(subject, options)?;
                 vec![(vectors::contours::features(&found), vectors::contours::LAYER.style)]
@@ -37,7 +38,9 @@ impl Drawing {
                 check(asked, options)?;
                 let wanted = FeatureOptions::new(options, subject.world().recipe())?;
                 let ground = Ground::of(subject.world(), subject.window(), &wanted, 0, subject.progress())?;
-                subject.made_of(ground.heights().map_or(FiniteCount::default(), |heights| FiniteCount::of(heights.data())));
+                subject.made_of(
+                    ground.heights().map_or(FiniteCount::default(), |heights| FiniteCount::of(heights.data())),
+                );
                 let make = |layer: &&VectorLayer| Ok(((layer.make)(&ground, &wanted)?, layer.style));
                 asked.iter().map(make).collect::<Result<Vec<_>>>()?
             }
