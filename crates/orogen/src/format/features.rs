@@ -170,6 +170,11 @@ impl FeatureLayer {
     }
 }
 
+/// The length of a line in the plane.
+pub fn length(points: &[[f64; 3]]) -> f64 {
+    points.windows(2).map(|pair| libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1])).sum()
+}
+
 /// What holds two bounds.
 pub fn join(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
     [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])]

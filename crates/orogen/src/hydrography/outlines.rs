@@ -147,7 +147,8 @@ fn straightened(points: &[[f64; 2]], fixed: &[[f64; 2]]) -> Path {
 /// A ring as rings that do not touch themselves.
 fn parted(ring: Vec<(i64, i64)>) -> Vec<Vec<(i64, i64)>> {
     let mut places = std::collections::HashMap::with_capacity(ring.len());
-    let (mut open, mut rings): (Vec<(i64, i64)>, Vec<Vec<(i64, i64)>>) = (Vec::new(), Vec::new());
+    let mut open: Vec<(i64, i64)> = Vec::new();
+    let mut rings = Vec::new();
     for at in ring {
         if let Some(start) = places.get(&at).copied() {
             let part: Vec<(i64, i64)> = open.drain(start..).collect();

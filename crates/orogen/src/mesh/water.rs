@@ -46,7 +46,7 @@ impl WaterMesh {
         for (k, [x, y, z]) in points.iter().copied().enumerate() {
             let (before, after) = (points[k.saturating_sub(1)], points[(k + 1).min(points.len() - 1)]);
             let (east, south) = (after[0] - before[0], after[1] - before[1]);
-            let length = east.hypot(south).max(1e-12);
+            let length = libm::hypot(east, south).max(1e-12);
             let share = k as f64 / (points.len() - 1) as f64;
             let half = (ribbon.widths[0] + (ribbon.widths[1] - ribbon.widths[0]) * share) / 2.0 / cell;
             // From the left bank to the right one, as one looks downstream.
@@ -110,7 +110,7 @@ fn resampled(points: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let mut out: Vec<[f64; 3]> = points.first().copied().into_iter().collect();
     for pair in points.windows(2) {
         let (from, to) = (pair[0], pair[1]);
-        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
         let steps = (length / STEP).ceil().max(1.0);
         if length > 0.0 {
             out.extend(

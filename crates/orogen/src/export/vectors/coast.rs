@@ -5,7 +5,7 @@ use crate::export::contours;
 use crate::export::features::ground::Ground;
 use crate::export::features::layer::{Style, VectorLayer};
 use crate::export::features::options::FeatureOptions;
-use crate::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value};
+use crate::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value, length};
 
 /// The layer.
 pub static LAYER: VectorLayer = VectorLayer {
@@ -32,10 +32,8 @@ fn make(ground: &Ground, _: &FeatureOptions) -> Result<FeatureLayer> {
                 [east, south, 0.0]
             })
             .collect();
-        let step = |pair: &[[f64; 3]]| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
-        let length = points.windows(2).map(step).sum();
         let closed = points.first() == points.last();
-        let values = vec![Value::Integer(id), Value::Real(level), Value::Real(length), Value::Boolean(closed)];
+        let values = vec![Value::Integer(id), Value::Real(level), Value::Real(length(&points)), Value::Boolean(closed)];
         Feature { geometry: Geometry::Line(points), values }
     };
     let features = (1..).zip(ground.shores.coasts()).map(coast).collect();

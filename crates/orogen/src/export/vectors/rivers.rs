@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::export::features::ground::Ground;
 use crate::export::features::layer::{Style, VectorLayer};
 use crate::export::features::options::{FeatureOptions, WATER};
-use crate::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value};
+use crate::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value, length};
 use crate::hydrography::rivers::{Mouth, Source};
 
 /// The layer.
@@ -46,8 +46,6 @@ fn make(ground: &Ground, options: &FeatureOptions) -> Result<FeatureLayer> {
                 [east, south, *z]
             })
             .collect();
-        let step = |pair: &[[f64; 3]]| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
-        let length: f64 = points.windows(2).map(step).sum();
         let area = f64::from(river.drained) * cell_area;
         let discharge = options.channel.discharge(area);
         let (source, source_lake) = match river.source {
@@ -69,7 +67,7 @@ fn make(ground: &Ground, options: &FeatureOptions) -> Result<FeatureLayer> {
             Value::Real(area),
             Value::Real(discharge),
             Value::Real(options.channel.width_of(discharge)),
-            Value::Real(length),
+            Value::Real(length(&points)),
             end(points.first()),
             end(points.last()),
             Value::Text(source),
