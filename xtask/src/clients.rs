@@ -36,6 +36,7 @@ Builds `orogen` for release, installs what is missing and runs every client, or 
   dems      files of heights that rasterio writes in every kind there is: orogen reads the very samples, and keeps where they lie
   meshes    the glTF validator, trimesh, meshio and admesh read GLB, OBJ, PLY and STL: the samples, the right way round, closed
   contours  GDAL draws contours of the same heights: the same lines at the same places, and reads ours
+  water     GDAL, SQLite and Shapely read rivers, lakes and watersheds: valid, joined, falling, where the GeoTIFF lies
   maps      Poppler and librsvg draw map sheets: the picture of the .png
   formats   OpenEXR, GDAL, rasterio, Pillow and Godot read exported heights of every format, none mirrored, turned or moved
   relief    gdaldem shades and measures the ground: hillshade, slope and aspect
@@ -80,6 +81,12 @@ const CLIENTS: &[Client] = &[
         npm: &["gltf-validator@2.0.0-dev.3.10"],
     },
     Client { name: "contours", apt: &[("gdal_contour", "gdal-bin")], pip: &[NUMPY], npm: &[] },
+    Client {
+        name: "water",
+        apt: &[("ogrinfo", "gdal-bin")],
+        pip: &[NUMPY, RASTERIO, "shapely==2.2.0", "pyogrio==0.13.0"],
+        npm: &[],
+    },
     Client {
         name: "maps",
         apt: &[("pdftoppm", "poppler-utils"), ("rsvg-convert", "librsvg2-bin")],
@@ -129,6 +136,11 @@ const STEPS: &[&Step] = &[
         run: || script("meshes"),
     },
     &Step { name: "contours", about: "gdal_contour draws the same contours", run: || script("contours") },
+    &Step {
+        name: "water",
+        about: "GDAL, SQLite and Shapely read rivers, lakes and watersheds",
+        run: || script("water"),
+    },
     &Step { name: "maps", about: "Poppler and librsvg draw map sheets", run: || script("maps") },
     &Step {
         name: "formats",

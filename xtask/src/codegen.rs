@@ -1,7 +1,8 @@
 //! `cargo xtask codegen`: the lists that a new node would otherwise have to be written into by hand.
 //!
 //! A node is one file with one `op!` block. Its module line, its place in the list of nodes and its part of the JSON Schema
-//! follow from that file. A format of exports is one file, too, that declares a `FORMAT`.
+//! follow from that file. A format of exports is one file, too, that declares a `FORMAT`, and a layer of vector features one that
+//! declares a `LAYER`.
 
 mod lists;
 mod op;
@@ -21,6 +22,7 @@ Reads the op! block of every file in crates/orogen/src/{field,filter,solver} and
   - the module lines at the end of each folder's mod.rs
   - crates/orogen/src/node_list.rs
   - crates/orogen/src/export/format_list.rs, of the files in export/formats that declare a FORMAT
+  - crates/orogen/src/export/vector_list.rs, of the files in export/vectors that declare a LAYER
   - recipes/orogen.schema.json, from `orogen schema`
   - docs/ops.md, from `orogen ops --markdown`
 
@@ -71,22 +73,29 @@ pub fn lists(check: bool) -> Result {
     }
     lists::distinct(&ops).map_err(Failure::new)?;
     settle(&src.join("node_list.rs"), &lists::node_list(&LOCALITIES, &ops), check)?;
-    formats(&src.join("export"), check)
+    exports(&src.join("export"), check)
 }
 
-/// The module lines of the export formats, and the list of those that declare one.
-fn formats(export: &Path, check: bool) -> Result {
-    let folder = export.join("formats");
-    let names = modules(&folder)?;
-    let mut declared = Vec::new();
-    for name in &names {
-        let text = shell::read(&folder.join(format!("{name}.rs")))?;
-        if text.lines().any(|line| line.starts_with("pub static FORMAT: Format")) {
-            declared.push(name.clone());
+/// What exports are made of, each in a file that declares it: the folder, the declaration, and the list of all.
+const DECLARED: [(&str, &str, &str); 2] =
+    [("formats", "FORMAT: Format", "format_list.rs"), ("vectors", "LAYER: VectorLayer", "vector_list.rs")];
+
+/// The module lines of the export formats and of the layers of vector features, and the lists of those that declare one.
+fn exports(export: &Path, check: bool) -> Result {
+    for (folder, declaration, list) in DECLARED {
+        let (constant, _) = declaration.split_once(':').unwrap_or((declaration, ""));
+        let names = modules(&export.join(folder))?;
+        let mut declared = Vec::new();
+        for name in &names {
+            let text = shell::read(&export.join(folder).join(format!("{name}.rs")))?;
+            if text.lines().any(|line| line.starts_with(&format!("pub static {declaration}"))) {
+                declared.push(name.clone());
+            }
         }
+        settle_modules(&export.join(folder), &names, check)?;
+        settle(&export.join(list), &lists::declared_list(folder, constant, &declared), check)?;
     }
-    settle_modules(&folder, &names, check)?;
-    settle(&export.join("format_list.rs"), &lists::format_list(&declared), check)
+    Ok(())
 }
 
 /// The module lines at the end of a folder's mod.rs.

@@ -254,6 +254,17 @@ impl World {
         self.run(&self.plan(layers, window)?, progress)
     }
 
+    /// Makes a layer over a window that may reach beyond the world by the margin of its solvers, beside `beside` bytes that the caller holds.
+    ///
+    /// # Errors
+    /// As [`World::plan`] and [`World::run`].
+    pub(crate) fn grid_beside(&self, layer: &str, window: &Window, beside: u64, progress: &Progress) -> Result<Grid> {
+        let plan = self.planned(&[self.target(layer)?], *window, false)?;
+        self.allow(self.memory_of(&plan).saturating_add(beside))?;
+        let mut grids = self.run(&plan, progress)?;
+        grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "nothing was asked for"))
+    }
+
     /// Makes one layer over a window.
     ///
     /// # Errors

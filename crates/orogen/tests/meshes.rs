@@ -213,7 +213,7 @@ fn shapes(grid: &Grid) -> Vec<Shape> {
 
 fn glb_bytes(levels: &[Surface], texture: Option<&[u8]>) -> Vec<u8> {
     let mut bytes = Vec::new();
-    glb::write(&mut bytes, &Model { levels, texture, extras: serde_json::Map::new() }).unwrap();
+    glb::write(&mut bytes, &Model { levels, texture, water: &[], extras: serde_json::Map::new() }).unwrap();
     bytes
 }
 
@@ -400,7 +400,12 @@ fn a_writer_that_fails_is_an_error_wherever_it_fails() {
     type Writing<'a> = &'a dyn Fn(&mut dyn Write) -> io::Result<()>;
     let levels = [surface];
     let writers: [Writing; 4] = [
-        &|out| glb::write(out, &Model { levels: &levels, texture: Some(&[1, 2, 3]), extras: serde_json::Map::new() }),
+        &|out| {
+            glb::write(
+                out,
+                &Model { levels: &levels, texture: Some(&[1, 2, 3]), water: &[], extras: serde_json::Map::new() },
+            )
+        },
         &|out| ply::write(out, &surface, &[]),
         &|out| obj::write(out, &surface, &[], Some("a.mtl")),
         &|out| stl::write(out, &surface, &Print { size: 10.0, base: 1.0 }).map(|_| ()),

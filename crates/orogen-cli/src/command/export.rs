@@ -141,7 +141,7 @@ fn export(args: &Args) -> Result<(), Failure> {
     let window = args.samples.window(&world)?;
     let sink = Sink::new(&args.out, &policy)?;
     let (bar, progress) = Bar::new(args.quiet);
-    let subject = Subject::new(&world, &args.layer, window, &progress)?;
+    let subject = Subject::in_format(format, &world, &args.layer, window, &progress)?;
     let Written { words, count } = match &sink {
         Sink::Stdout => sink.write(|out| exporting::to_stream(format, subject, &options, out))?,
         // With what stands beside it.

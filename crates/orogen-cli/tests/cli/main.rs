@@ -23,3 +23,4 @@ mod render;
 mod surfaces;
 mod view;
 mod watch;
+mod water;

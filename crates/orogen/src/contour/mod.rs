@@ -2,7 +2,6 @@
 
 pub mod band;
 pub mod chaikin;
-pub mod geojson;
 pub mod levels;
 pub mod line;
 pub mod svg;

@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::geojson::{decimals, number};
 use super::levels::is_index;
 use super::line::Line;
+use crate::format::geojson::{decimals, number};
 use crate::grid::Window;
 
 /// Writes lines as an SVG of the window's extent, its unit the metre, north up: a group for each height, named by it, with one

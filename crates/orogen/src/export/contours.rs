@@ -10,30 +10,34 @@ use crate::contour::levels::{every, given, round_interval};
 use crate::contour::line::Line;
 use crate::contour::trace;
 use crate::error::{Error, ErrorKind, Result};
-use crate::grid::Window;
+use crate::format::levels::Levels;
+use crate::grid::{Grid, Window};
 use crate::words::{count, number};
 
-/// The options of formats of lines.
-pub const OPTIONS: &[OptionSpec] = &[
-    OptionSpec {
-        name: "interval",
-        value: "M",
-        about: "Metres from one contour to the next [default: a round number that makes 10 to 25]",
-        takes: Takes::Number(1e-6, 1e6),
-    },
-    OptionSpec {
-        name: "levels",
-        value: "A,B,...",
-        about: "Heights of contours, instead of an interval",
-        takes: Takes::Text,
-    },
-    OptionSpec {
-        name: "smooth",
-        value: "N",
-        about: "How often the corners of lines are cut, each time doubling their points [default: 0]",
-        takes: Takes::Whole(0, 6),
-    },
-];
+/// `--interval`.
+pub const INTERVAL: OptionSpec = OptionSpec {
+    name: "interval",
+    value: "M",
+    about: "Metres from one contour to the next [default: a round number that makes 10 to 25]",
+    takes: Takes::Number(1e-6, 1e6),
+};
+
+/// `--levels`.
+pub const LEVELS: OptionSpec = OptionSpec {
+    name: "levels",
+    value: "A,B,...",
+    about: "Heights of contours, instead of an interval",
+    takes: Takes::Text,
+};
+
+/// `--smooth`.
+pub const SMOOTH: OptionSpec = OptionSpec {
+    name: "smooth",
+    value: "N",
+    about: "How often the corners of lines are cut, each time doubling their points, and rivers are evened out \
+            [default: 0 for contours, 1 for shores and watersheds, 3 for rivers]",
+    takes: Takes::Whole(0, 6),
+};
 
 /// Most contours, where nobody says.
 const MOST: usize = 25;
@@ -55,25 +59,41 @@ pub fn memory(window: &Window, _: &Options) -> u64 {
 ///
 /// Fails as the subject does, or if the levels cannot be read.
 pub fn of(subject: &mut Subject, options: &Options) -> io::Result<Contours> {
-    if options.has("interval") && options.has("levels") {
+    check(options)?;
+    Ok(on(&subject.whole()?.swap_remove(0), options)?)
+}
+
+/// Whether the options that say which contours are wanted go together, and can be read.
+///
+/// # Errors
+/// If not.
+pub fn check(options: &Options) -> Result<()> {
+    if options.has(INTERVAL.name) && options.has(LEVELS.name) {
         let sentence = "--interval and --levels contradict each other: give one of them";
-        return Err(Error::new(ErrorKind::Request, sentence).into());
+        return Err(Error::new(ErrorKind::Request, sentence));
     }
-    let named = options.text("levels").map(parse).transpose()?;
-    let grid = subject.whole()?.swap_remove(0);
-    let range = subject.levels();
+    options.text(LEVELS.name).map_or(Ok(()), |text| parse(text).map(drop))
+}
+
+/// The contours of a grid.
+///
+/// # Errors
+/// If the levels cannot be read, or there are more lines than can be numbered.
+pub fn on(grid: &Grid, options: &Options) -> Result<Contours> {
+    let named = options.text(LEVELS.name).map(parse).transpose()?;
+    let range = Levels::of(grid);
     let (low, high) = (f64::from(range.low()), f64::from(range.high()));
     let interval = match &named {
         Some(_) => None,
-        None => Some(options.number("interval").unwrap_or_else(|| round_interval(high - low, MOST))),
+        None => Some(options.number(INTERVAL.name).unwrap_or_else(|| round_interval(high - low, MOST))),
     };
     let levels = match (named, interval) {
         (Some(levels), _) => levels,
         (None, Some(interval)) => every(interval, low, high)?,
         (None, None) => Vec::new(),
     };
-    let lines = trace::contours(&grid, &levels)?;
-    let rounds = options.whole("smooth").unwrap_or(0) as usize;
+    let lines = trace::contours(grid, &levels)?;
+    let rounds = options.whole(SMOOTH.name).unwrap_or(0) as usize;
     let lines = if rounds > 0 { lines.iter().map(|line| smooth(line, rounds)).collect() } else { lines };
     Ok(Contours { lines, interval })
 }

@@ -20,6 +20,8 @@ pub struct Format {
     pub options: &'static [OptionSpec],
     /// The most channels that it holds: 1 where it is a layer of plain numbers, more where normals or weights go in, too.
     pub channels: usize,
+    /// Whether it holds vector features.
+    pub features: bool,
     /// Bytes that writing such a window holds beside the rows at hand. A format that asks for the [whole](Subject::whole) counts it
     /// here.
     pub memory: fn(&Window, &Options) -> u64,

@@ -2,8 +2,10 @@
 &[
     &formats::asc::FORMAT,
     &formats::exr::FORMAT,
+    &formats::fgb::FORMAT,
     &formats::geojson::FORMAT,
     &formats::glb::FORMAT,
+    &formats::gpkg::FORMAT,
     &formats::hgt::FORMAT,
     &formats::npy::FORMAT,
     &formats::obj::FORMAT,

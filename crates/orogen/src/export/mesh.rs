@@ -7,6 +7,7 @@ use super::format::whole;
 use super::options::{OptionSpec, Options, Takes};
 use super::subject::Subject;
 use crate::error::Result;
+use crate::format::levels::{NO_SAMPLES, extremes};
 use crate::grid::{Grid, Window};
 use crate::map::paint::Painter;
 use crate::map::shade::Shade;
@@ -66,6 +67,8 @@ pub struct Prepared {
     pub painter: Painter,
     exaggeration: f32,
     max_error: Option<f64>,
+    /// The curve that the heights were bent by, and their range before.
+    curve: Option<(HeightCurve, [f32; 2])>,
 }
 
 impl Prepared {
@@ -79,9 +82,11 @@ impl Prepared {
         let sea_level = subject.world().recipe().world.sea_level as f32;
         // A mesh is lit by whoever shows it, so the map's own light stays out.
         let painter = Painter::new(Tint::fit(&grid, sea_level), Shade::new(0.0));
-        if let Some(curve) = curve {
+        let range = extremes(NO_SAMPLES, grid.data());
+        if let Some(curve) = &curve {
             curve.bend(&mut grid);
         }
+        let curve = curve.map(|curve| (curve, range));
         let max_error = options.number(MAX_ERROR.name);
         let shape = |level: usize| match max_error {
             Some(max_error) => adaptive(&grid, max_error * (1u64 << level) as f64),
@@ -89,7 +94,7 @@ impl Prepared {
         };
         let shapes = (0..levels).map(shape).collect::<Result<Vec<Shape>>>()?;
         let exaggeration = options.number(EXAGGERATION.name).unwrap_or(1.0) as f32;
-        Ok(Prepared { grid, shapes, painter, exaggeration, max_error })
+        Ok(Prepared { grid, shapes, painter, exaggeration, max_error, curve })
     }
 
     /// A level of detail, its corners with colours if they are wanted.
@@ -99,6 +104,23 @@ impl Prepared {
             shape: &self.shapes[level],
             exaggeration: self.exaggeration,
             painter: colors.then_some(&self.painter),
+        }
+    }
+
+    /// What heights are multiplied by.
+    pub fn exaggeration(&self) -> f32 {
+        self.exaggeration
+    }
+
+    /// How far samples are from the surface at most, where it has few triangles.
+    pub fn max_error(&self) -> Option<f64> {
+        self.max_error
+    }
+
+    /// Bends heights as those of the mesh were.
+    pub fn bend(&self, heights: &mut [f32]) {
+        if let Some((curve, range)) = &self.curve {
+            curve.bend_within(*range, heights);
         }
     }
 

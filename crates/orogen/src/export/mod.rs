@@ -22,10 +22,12 @@
 pub mod channels;
 pub mod contours;
 pub mod derived;
+pub mod features;
 pub mod files;
 pub mod format;
 pub mod formats;
 pub mod mesh;
+pub mod mesh_water;
 pub mod notes;
 pub mod options;
 pub mod registry;
@@ -34,3 +36,4 @@ pub mod sidecar;
 pub mod spread;
 pub mod subject;
 pub mod targets;
+pub mod vectors;

@@ -5,6 +5,9 @@ use std::io;
 use super::derived::layer::{Derived, Nature};
 use super::derived::list;
 use super::derived::rows::Rows;
+use super::features::layer::VectorLayer;
+use super::features::list as vector_list;
+use super::format::Format;
 use crate::analysis::finite::FiniteCount;
 use crate::error::{Error, ErrorKind, Result};
 use crate::format::dem::Georeference;
@@ -24,6 +27,8 @@ pub struct Subject<'w> {
     layer: String,
     /// What the layer is if the recipe has none of that name.
     derived: Option<&'static Derived>,
+    /// Layers of vector features in place of samples.
+    vectors: Vec<&'static VectorLayer>,
     window: Window,
     progress: &'w Progress,
     /// Bytes held beside the rows at hand.
@@ -49,7 +54,9 @@ impl<'w> Subject<'w> {
             Err(error) => match list::named(layer) {
                 Some(derived) => Some(derived),
                 None => {
-                    let names: Vec<&str> = list::all().iter().map(|derived| derived.name).collect();
+                    let names: Vec<&str> = (list::all().iter().map(|derived| derived.name))
+                        .chain(vector_list::all().iter().map(|layer| layer.name))
+                        .collect();
                     let hint = match nearest(layer, names.iter().copied()) {
                         Some(near) => format!("did you mean `{near}`, which follows from the heights?"),
                         None => format!("the heights also give {}", names.join(", ")),
@@ -66,6 +73,7 @@ impl<'w> Subject<'w> {
             world,
             layer,
             derived,
+            vectors: Vec::new(),
             window,
             progress,
             beside: 0,
@@ -75,13 +83,62 @@ impl<'w> Subject<'w> {
         })
     }
 
+    /// What a format is asked to hold: layers of vector features, if it holds such and all of `layers` (names with commas between them) are; else the layer
+    /// of that name, as [`Subject::new`].
+    ///
+    /// # Errors
+    /// As [`Subject::new`].
+    pub fn in_format(
+        format: &Format,
+        world: &'w World,
+        layers: &str,
+        window: Window,
+        progress: &'w Progress,
+    ) -> Result<Subject<'w>> {
+        match vector_list::listed(layers) {
+            Some(vectors) if format.features => {
+                let mut subject = Subject::new(world, HEIGHT, window, progress)?;
+                subject.layer = vectors.iter().map(|layer| layer.name).collect::<Vec<_>>().join(", ");
+                subject.vectors = vectors;
+                Ok(subject)
+            }
+            Some(vectors) if vectors.len() > 1 || world.unit(layers).is_err() => {
+                let holds: Vec<String> = super::registry::all()
+                    .iter()
+                    .filter(|format| format.features)
+                    .map(|format| format!(".{}", format.name))
+                    .collect();
+                let sentence = format!(
+                    "`{layers}` is made of vector features, which .{} does not hold; those that do: {}",
+                    format.name,
+                    holds.join(", ")
+                );
+                Err(Error::new(ErrorKind::Request, sentence))
+            }
+            _ => Subject::new(world, layers, window, progress),
+        }
+    }
+
+    /// Says how many samples features were made of, where these do not come as rows.
+    pub(super) fn made_of(&mut self, count: FiniteCount) {
+        self.count = count;
+    }
+
+    /// The layers of vector features that are wanted in place of samples.
+    pub fn vectors(&self) -> &[&'static VectorLayer] {
+        &self.vectors
+    }
+
     /// Plans the rows: what does not fit in memory beside `beside` bytes is refused before a file is begun.
     ///
     /// # Errors
     /// As [`World::bands`].
     pub(super) fn prepare(&mut self, beside: u64) -> Result<()> {
         self.beside = beside;
-        self.ready = Some(self.source()?);
+        // Features are made of more than the window's rows, and count their memory themselves.
+        if self.vectors.is_empty() {
+            self.ready = Some(self.source()?);
+        }
         Ok(())
     }
 

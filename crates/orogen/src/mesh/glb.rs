@@ -10,6 +10,7 @@ use std::io::{self, Write};
 use serde_json::{Map, Value, json};
 
 use super::surface::{Corner, Surface, Wanted, push};
+use super::water::WaterMesh;
 use crate::error::{Error, ErrorKind};
 
 /// A surface in one or several levels of detail, the finest first, over the same grid.
@@ -18,6 +19,8 @@ pub struct Model<'a> {
     pub levels: &'a [Surface<'a>],
     /// A PNG picture of the grid with a pixel for each sample.
     pub texture: Option<&'a [u8]>,
+    /// Water on it: a node and a translucent material each.
+    pub water: &'a [WaterMesh],
     /// What is told of it beside its corners, for readers that look: keys and values.
     pub extras: Map<String, Value>,
 }
@@ -79,6 +82,17 @@ pub fn write(out: &mut dyn Write, model: &Model) -> io::Result<()> {
     if let Some(texture) = model.texture {
         out.write_all(texture)?;
         pad(out, texture.len() as u64)?;
+    }
+    for water in model.water {
+        let mut bytes = Vec::new();
+        for corner in &water.corners {
+            push(corner, &mut bytes);
+            push(&[0.0, 1.0, 0.0], &mut bytes);
+        }
+        out.write_all(&bytes)?;
+        bytes.clear();
+        bytes.extend(water.triangles.iter().flatten().flat_map(|corner| corner.to_le_bytes()));
+        out.write_all(&bytes)?;
     }
     Ok(())
 }
@@ -171,16 +185,50 @@ impl Document {
             json["samplers"] = json!([{"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}]);
             json["textures"] = json!([{"source": 0, "sampler": 0}]);
         }
+        let mut materials = vec![material];
+        for water in model.water {
+            let corners = water.corners.len();
+            let stride = 24;
+            let corner_view = view(corners as u64 * stride, json!({"byteStride": stride, "target": ARRAY_BUFFER}));
+            let index_view = view(12 * water.triangles.len() as u64, json!({"target": ELEMENT_ARRAY_BUFFER}));
+            let bound = |pick: fn(f32, f32) -> f32, start: f32| {
+                water.corners.iter().fold([start; 3], |all, corner| std::array::from_fn(|i| pick(all[i], corner[i])))
+            };
+            let [least, greatest] =
+                [bound(f32::min, f32::INFINITY), bound(f32::max, f32::NEG_INFINITY)].map(|ends| ends.map(f64::from));
+            let attribute = |offset: u32| json!({"bufferView": corner_view, "byteOffset": offset, "componentType": F32, "count": corners, "type": "VEC3"});
+            let mut place = attribute(0);
+            place["min"] = json!(least);
+            place["max"] = json!(greatest);
+            let first = accessors.len();
+            let count = 3 * water.triangles.len();
+            let indices = json!({"bufferView": index_view, "componentType": U32, "count": count, "type": "SCALAR"});
+            accessors.extend([place, attribute(12), indices]);
+            let attributes = json!({"POSITION": first, "NORMAL": first + 1});
+            let primitive = json!({"attributes": attributes, "indices": first + 2, "material": materials.len()});
+            meshes.push(json!({"name": water.name, "primitives": [primitive]}));
+            let color = water.color.map(f64::from);
+            materials.push(json!({
+                "name": water.name,
+                "alphaMode": "BLEND",
+                "pbrMetallicRoughness": {"baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.1}
+            }));
+        }
         let levels = model.levels.len();
-        let nodes: Vec<Value> = (0..levels).map(|level| node(model, level)).collect();
+        let mut nodes: Vec<Value> = (0..levels).map(|level| node(model, level)).collect();
+        let mut shown = vec![0];
+        for (k, water) in model.water.iter().enumerate() {
+            shown.push(nodes.len());
+            nodes.push(placed(model, json!({"name": water.name, "mesh": levels + k})));
+        }
         if levels > 1 {
             json["extensionsUsed"] = json!(["MSFT_lod"]);
         }
         json["scene"] = json!(0);
-        json["scenes"] = json!([{"nodes": [0]}]);
+        json["scenes"] = json!([{"nodes": shown}]);
         json["nodes"] = json!(nodes);
         json["meshes"] = json!(meshes);
-        json["materials"] = json!([material]);
+        json["materials"] = json!(materials);
         json["accessors"] = json!(accessors);
         json["bufferViews"] = json!(views);
         json["buffers"] = json!([{"byteLength": length}]);
@@ -188,16 +236,21 @@ impl Document {
     }
 }
 
-/// A level's node. The first one names the others.
-fn node(model: &Model, level: usize) -> Value {
-    let levels = model.levels.len();
-    let name = if levels == 1 { "terrain".to_string() } else { format!("LOD{level}") };
-    let mut node = json!({"name": name, "mesh": level});
-    let window = model.levels[level].grid.window();
+/// A node where the grid begins in its world.
+fn placed(model: &Model, mut node: Value) -> Value {
+    let Some(window) = model.levels.first().map(|level| level.grid.window()) else { return node };
     let [east, south] = [window.east(0), window.south(0)];
     if east != 0.0 || south != 0.0 {
         node["translation"] = json!([east, 0.0, south]);
     }
+    node
+}
+
+/// A level's node. The first one names the others.
+fn node(model: &Model, level: usize) -> Value {
+    let levels = model.levels.len();
+    let name = if levels == 1 { "terrain".to_string() } else { format!("LOD{level}") };
+    let mut node = placed(model, json!({"name": name, "mesh": level}));
     if level == 0 {
         node["extras"] = Value::Object(model.extras.clone());
         if levels > 1 {

@@ -27,3 +27,4 @@ pub mod stl;
 pub mod surface;
 mod tile;
 mod tin;
+pub mod water;

@@ -54,25 +54,26 @@ impl HeightCurve {
 
     /// Bends the heights of a grid. Level ground and holes stay as they are.
     pub fn bend(&self, grid: &mut Grid) {
-        let [low, high] = extremes(NO_SAMPLES, grid.data()).map(f64::from);
+        let range = extremes(NO_SAMPLES, grid.data());
+        for j in 0..grid.height() {
+            self.bend_within(range, grid.row_mut(j));
+        }
+    }
+
+    /// Bends heights as those of a grid whose lowest and highest are these.
+    pub fn bend_within(&self, range: [f32; 2], heights: &mut [f32]) {
+        let [low, high] = range.map(f64::from);
         let relief = high - low;
         if !(relief > 0.0 && relief.is_finite()) {
             return;
         }
         let curve = Curve { source: Input::None, points: self.points.clone() };
         let setting: Setting = WorldSpec::default().setting();
-        let height = grid.height();
-        let mut shares = vec![0.0; grid.width()];
-        for j in 0..height {
-            let row = grid.row_mut(j);
-            for (share, height) in shares.iter_mut().zip(&*row) {
-                *share = ((f64::from(*height) - low) / relief) as f32;
-            }
-            let places = [];
-            curve.eval(&Points::Scattered { x: &places, y: &places }, &Slots::new(&[Some(&shares)]), &setting, row);
-            for share in row {
-                *share = (low + f64::from(*share) * relief) as f32;
-            }
+        let shares: Vec<f32> = heights.iter().map(|height| ((f64::from(*height) - low) / relief) as f32).collect();
+        let places = [];
+        curve.eval(&Points::Scattered { x: &places, y: &places }, &Slots::new(&[Some(&shares)]), &setting, heights);
+        for share in heights {
+            *share = (low + f64::from(*share) * relief) as f32;
         }
     }
 }

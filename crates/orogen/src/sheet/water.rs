@@ -1,28 +1,13 @@
 //! Rivers and lakes of a sheet, found in its heights.
 
-use crate::contour::chaikin::smooth;
-use crate::contour::trace::contours;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
-use crate::hydrology::accumulation::accumulate;
-use crate::hydrology::lakes::{Lakes, lakes};
-use crate::hydrology::outlets::Outlets;
-use crate::hydrology::rivers::network;
-use crate::hydrology::steepest::Descent;
-use crate::hydrology::{drainage, strahler};
+use crate::hydrography::rivers::rivers;
+use crate::hydrography::shores::Shores;
+use crate::hydrography::water::{self, Cover, Frame};
+use crate::progress::Progress;
 
-/// What counts as water.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Least {
-    /// Samples that drain to where a river begins.
-    pub spring: u32,
-    /// Samples that a lake covers.
-    pub lake: u32,
-    /// Metres that it is deep.
-    pub depth: f32,
-    /// Whether water goes down by scattered steps: on heights that are smooth between few samples steepest ones run in parallel.
-    pub scattered: bool,
-}
+pub use crate::hydrography::water::Least;
 
 /// A stretch of river between two confluences.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,8 +29,9 @@ pub struct Water {
     pub surface: Grid,
 }
 
-/// How often the stairs of a river's cells are evened out.
+/// How often the stairs of a river's cells are evened out, and the corners of shores are cut.
 const EVEN: usize = 6;
+const CUT: usize = 1;
 
 /// Finds the rivers and lakes of heights.
 ///
@@ -53,105 +39,27 @@ const EVEN: usize = 6;
 /// If there are more shores than can be numbered.
 pub fn find(heights: &Grid, sea_level: Option<f32>, least: Least) -> Result<Water> {
     let window = Window::new(heights.width(), heights.height(), 1.0);
-    let nothing = || Water { rivers: Vec::new(), lakes: Vec::new(), surface: heights.clone() };
     // In samples, so that what is found is, too.
-    let Some(heights) = Grid::from_data(window, heights.data().to_vec()) else { return Ok(nothing()) };
-    if heights.width() < 3 || heights.height() < 3 {
-        return Ok(nothing());
-    }
-    let outlets = Outlets::new(&heights, sea_level);
-    let descent = if least.scattered { Descent::Scattered(1) } else { Descent::Steepest };
-    let drainage = drainage::over_bed(&heights, &outlets, descent);
-    let found = lakes(&heights, &outlets, &drainage, least.lake);
-    let deep: Vec<bool> = std::iter::once(false)
-        .chain(found.lakes.iter().map(|lake| lake.level - heights.data()[lake.deepest as usize] >= least.depth))
-        .collect();
-    let lake = |c: usize| Some(found.labels.data()[c]).filter(|label| deep[*label as usize]);
-    let drained = accumulate(&drainage.receivers);
-    let orders = strahler::orders(&drainage.receivers, &drained, least.spring.max(1));
-    let wet = |c: usize| {
-        let height = heights.data()[c];
-        !height.is_finite() || sea_level.is_some_and(|sea| height <= sea) || lake(c).is_some()
+    let grid = Grid::from_data(window, heights.data().to_vec()).filter(|_| window.width.min(window.height) > 2);
+    let Some(grid) = grid else {
+        return Ok(Water { rivers: Vec::new(), lakes: Vec::new(), surface: heights.clone() });
     };
-    let mut rivers = Vec::new();
-    for reach in network(&drainage.receivers, &orders) {
-        let cells: Vec<usize> = reach.cells.iter().map(|cell| *cell as usize).collect();
-        // The parts on land, each with the first cell of the water it comes from and flows into.
-        let mut part: Vec<usize> = Vec::new();
-        for (k, cell) in cells.iter().enumerate() {
-            if !wet(*cell) {
-                if part.is_empty() && k > 0 {
-                    part.push(cells[k - 1]);
-                }
-                part.push(*cell);
-            }
-            let ends = wet(*cell) || k + 1 == cells.len();
-            if ends && !part.is_empty() {
-                if wet(*cell) {
-                    part.push(*cell);
-                }
-                // The last cell is the next reach's first, which more drains to.
-                let end = part[part.len().saturating_sub(2)];
-                let area = drained.area.data()[end];
-                rivers.push(River { points: even(&part, heights.width()), drained: area });
-                part.clear();
-            }
-        }
-    }
-    rivers.retain(|river| river.points.len() > 1);
-    let shores = shores(&heights, &found, &deep);
-    let lines = contours(&shores, &[0.0])?;
-    let lakes = lines.iter().map(|line| smooth(line, 1).path().collect()).collect();
+    let found = water::Water::of(grid, sea_level, least, &Progress::none())?;
+    let frame = Frame::whole(&found);
+    let mut shores = Shores::of(&found, &frame, CUT)?;
+    let rivers = rivers(&found, &frame, EVEN, &mut shores)
+        .into_iter()
+        .map(|river| River { points: river.points.iter().map(|[x, y, _]| [*x, *y]).collect(), drained: river.drained });
+    let rivers = rivers.collect();
+    let lakes =
+        shores.lines.into_iter().zip(shores.waters).filter(|(_, lake)| *lake > 0).map(|(line, _)| line).collect();
     let mut surface = heights.clone();
-    for (c, height) in surface.data_mut().iter_mut().enumerate() {
-        if let Some(label) = lake(c).and_then(|label| found.lakes.get(label as usize - 1)) {
-            *height = label.level.max(*height);
+    for (cell, height) in surface.data_mut().iter_mut().enumerate() {
+        if let Cover::Lake(lake) = found.cover(cell) {
+            *height = found.lakes[lake as usize - 1].level.max(*height);
         }
     }
     Ok(Water { rivers, lakes, surface })
-}
-
-/// The way through cells, its stairs evened out; its ends stay.
-fn even(cells: &[usize], width: usize) -> Vec<[f64; 2]> {
-    let mut points: Vec<[f64; 2]> = cells.iter().map(|c| [(c % width) as f64, (c / width) as f64]).collect();
-    for _ in 0..EVEN {
-        let before = points.clone();
-        for (point, three) in points.iter_mut().skip(1).zip(before.windows(3)) {
-            *point = [0, 1].map(|c| (three[0][c] + 2.0 * three[1][c] + three[2][c]) / 4.0);
-        }
-    }
-    points
-}
-
-/// Water over ground in and beside the deep lakes, below 0 elsewhere: 0 is their shore.
-fn shores(heights: &Grid, found: &Lakes, deep: &[bool]) -> Grid {
-    let mut depth = Grid::filled(*heights.window(), -1.0f32);
-    let (width, height) = (heights.width(), heights.height());
-    for j in 0..height {
-        for i in 0..width {
-            let here = heights.get(i, j);
-            let label = found.labels.get(i, j);
-            if deep[label as usize] {
-                depth.row_mut(j)[i] = (found.lakes[label as usize - 1].level - here).max(1e-3);
-                continue;
-            }
-            // Land beside a lake lies above its surface by what it does.
-            let mut beside: Option<f32> = None;
-            for y in j.saturating_sub(1)..(j + 2).min(height) {
-                for x in i.saturating_sub(1)..(i + 2).min(width) {
-                    let other = found.labels.get(x, y);
-                    if deep[other as usize] {
-                        let level = found.lakes[other as usize - 1].level;
-                        beside = Some(beside.map_or(level, |best: f32| best.max(level)));
-                    }
-                }
-            }
-            if let Some(level) = beside {
-                depth.row_mut(j)[i] = (level - here).min(-1e-3);
-            }
-        }
-    }
-    depth
 }
 
 #[cfg(test)]

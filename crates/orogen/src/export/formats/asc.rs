@@ -15,6 +15,7 @@ pub static FORMAT: Format = Format {
     about: "ESRI ASCII grid: numbers as text, in local metres or on the map of a real place",
     options: &[],
     channels: 1,
+    features: false,
     memory: |_, _| 0,
     write,
 };

@@ -17,6 +17,7 @@ pub static FORMAT: Format = Format {
     about: "OpenEXR of f32 in the layer's own unit (metres for heights), one channel Y, ZIP",
     options: &[HALF, RGB],
     channels: MAX_SURFACES,
+    features: false,
     memory,
     write,
 };

@@ -1,28 +1,32 @@
-//! Contours as GeoJSON.
+//! Contours and vector features as GeoJSON.
 
 use std::io;
 
-use crate::contour::geojson;
 use crate::export::contours;
+use crate::export::features::drawing::Drawing;
+use crate::export::features::options::OPTIONS;
 use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::options::Options;
 use crate::export::subject::Subject;
+use crate::format::geojson;
 
 /// The format.
 pub static FORMAT: Format = Format {
     name: "geojson",
     aliases: &[],
-    about: "contour lines, in local metres, or where a real place lies",
-    options: contours::OPTIONS,
+    about: "contour lines or vector features, in local metres, or where a real place lies",
+    options: OPTIONS,
     channels: 1,
+    features: true,
     memory: contours::memory,
     write,
 };
 
 fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let found = contours::of(subject, options)?;
-    let (cell, map) = (subject.window().cell, subject.map());
-    files.write(|out| geojson::write(out, &found.lines, cell, found.interval, map.as_ref()))?;
-    Ok(found.words(subject.unit()))
+    let mut drawing = Drawing::of(subject, options)?;
+    drawing.place();
+    let layer = drawing.only("geojson")?;
+    files.write(|out| geojson::write(out, layer, drawing.crs(), drawing.step()))?;
+    Ok(drawing.words())
 }

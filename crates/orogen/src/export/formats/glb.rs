@@ -7,8 +7,10 @@ use serde_json::{Map, json};
 use crate::export::files::Files;
 use crate::export::format::{Format, whole};
 use crate::export::mesh::{COLOR, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, color, memory};
+use crate::export::mesh_water::{self, WATER, memory as water_memory};
 use crate::export::options::{OptionSpec, Options, Takes};
 use crate::export::subject::Subject;
+use crate::grid::Window;
 use crate::mesh::glb::{Model, write as write_model};
 use crate::mesh::surface::Surface;
 
@@ -24,12 +26,17 @@ pub static FORMAT: Format = Format {
     name: "glb",
     aliases: &[],
     about: "glTF 2.0 mesh in one file: metres, Y up, normals, texture",
-    options: &[MAX_ERROR, LODS, COLOR, EXAGGERATION, HEIGHT_CURVE],
+    options: &[MAX_ERROR, LODS, COLOR, EXAGGERATION, HEIGHT_CURVE, WATER],
     channels: 1,
+    features: false,
     // And the picture, which has to be packed before its size can be told.
-    memory: |window, options| memory(window, options).saturating_add(whole(window)),
+    memory: |window, options| beside(window, options).saturating_add(water_memory(window, options)),
     write,
 };
+
+fn beside(window: &Window, options: &Options) -> u64 {
+    memory(window, options).saturating_add(whole(window))
+}
 
 fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
     let mesh = Prepared::new(subject, options, options.whole(LODS.name).unwrap_or(1) as usize)?;
@@ -48,6 +55,8 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
     .into_iter()
     .collect();
     let texture = (!texture.is_empty()).then_some(texture.as_slice());
-    files.write(|out| write_model(out, &Model { levels: &levels, texture, extras }))?;
-    Ok(mesh.words())
+    let water = mesh_water::of(subject, &mesh, options, beside(subject.window(), options))?;
+    files.write(|out| write_model(out, &Model { levels: &levels, texture, water: &water, extras }))?;
+    let also: String = water.iter().map(|water| format!(", {}", water.name)).collect();
+    Ok(mesh.words() + &also)
 }

@@ -16,6 +16,7 @@ pub static FORMAT: Format = Format {
     about: "SRTM tile of 1201 x 1201 or 3601 x 3601 samples: whole metres, rounded to the nearest, big-endian",
     options: &[],
     channels: 1,
+    features: false,
     memory: |_, _| 0,
     write,
 };

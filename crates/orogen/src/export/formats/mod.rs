@@ -3,8 +3,10 @@
 // The list below is written by `cargo xtask codegen`.
 pub mod asc;
 pub mod exr;
+pub mod fgb;
 pub mod geojson;
 pub mod glb;
+pub mod gpkg;
 pub mod hgt;
 pub mod npy;
 pub mod obj;

@@ -15,6 +15,7 @@ pub static FORMAT: Format = Format {
     about: "NumPy array of f32, the layer's own unit (metres for heights); several channels as the last axis",
     options: &[],
     channels: 8,
+    features: false,
     memory: |_, _| 0,
     write,
 };

@@ -17,6 +17,7 @@ pub static FORMAT: Format = Format {
     about: "Wavefront mesh, text: metres, y up, normals; NAME.mtl and NAME-texture.png beside it",
     options: &[MAX_ERROR, COLOR, EXAGGERATION, HEIGHT_CURVE],
     channels: 1,
+    features: false,
     memory,
     write,
 };

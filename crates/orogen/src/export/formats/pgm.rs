@@ -18,6 +18,7 @@ pub static FORMAT: Format = Format {
     about: "Netpbm's grey picture of 16 or 8 bits, over the range of the window",
     options: &[BITS, RANGE, FIRST_ROW, NO_SIDECAR],
     channels: 1,
+    features: false,
     memory: |window, _| aside(whole(window)),
     write,
 };

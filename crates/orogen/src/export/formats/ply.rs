@@ -17,6 +17,7 @@ pub static FORMAT: Format = Format {
     about: "Stanford polygon mesh, binary: metres, z up, normals, colours or texture coordinates",
     options: &[MAX_ERROR, COLOR, EXAGGERATION, HEIGHT_CURVE],
     channels: 1,
+    features: false,
     memory,
     write,
 };

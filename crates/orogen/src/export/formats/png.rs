@@ -22,6 +22,7 @@ pub static FORMAT: Format = Format {
     about: "Grey picture of 16 or 8 bits, black the lowest and white the highest; or heights in its colours (--encoding); normals; weights; colors",
     options: &[BITS, RANGE, FIRST_ROW, ENCODING, NORMAL, WEIGHTS, NO_SIDECAR],
     channels: MAX_SURFACES,
+    features: false,
     memory: |window, _| aside(2 * whole(window)),
     write,
 };

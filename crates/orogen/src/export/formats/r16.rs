@@ -17,6 +17,7 @@ pub static FORMAT: Format = Format {
     about: "Headerless whole numbers of 16 bits, little-endian, over the range of the window, told in NAME.json",
     options: &[RANGE, FIRST_ROW, NO_SIDECAR],
     channels: 1,
+    features: false,
     memory: |window, _| aside(whole(window)),
     write,
 };

@@ -17,6 +17,7 @@ pub static FORMAT: Format = Format {
     about: "Headerless f32, little-endian, the layer's own unit, the size told in NAME.json",
     options: &[FIRST_ROW, NO_SIDECAR],
     channels: 1,
+    features: false,
     memory: |window, options| if spread::from_south(options) { aside(whole(window)) } else { 0 },
     write,
 };

@@ -30,6 +30,7 @@ pub static FORMAT: Format = Format {
     about: "Solid to print, with walls and a base, binary: millimetres, z up",
     options: &[MAX_ERROR, EXAGGERATION, HEIGHT_CURVE, PRINT_SIZE, BASE],
     channels: 1,
+    features: false,
     memory,
     write,
 };

@@ -1,9 +1,12 @@
-//! Contours as a drawing.
+//! Contours and vector features as a drawing.
 
 use std::io;
 
 use crate::contour::svg;
 use crate::export::contours;
+use crate::export::features::drawing::Drawing;
+use crate::export::features::options::OPTIONS;
+use crate::export::features::svg as drawn;
 use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::options::Options;
@@ -13,16 +16,22 @@ use crate::export::subject::Subject;
 pub static FORMAT: Format = Format {
     name: "svg",
     aliases: &[],
-    about: "contour lines as a drawing, its unit the metre",
-    options: contours::OPTIONS,
+    about: "contour lines or vector features as a drawing, its unit the metre",
+    options: OPTIONS,
     channels: 1,
+    features: true,
     memory: contours::memory,
     write,
 };
 
 fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let found = contours::of(subject, options)?;
     let window = *subject.window();
+    if !subject.vectors().is_empty() {
+        let drawing = Drawing::of(subject, options)?;
+        files.write(|out| drawn::write(out, &drawing.layers, &window))?;
+        return Ok(drawing.words());
+    }
+    let found = contours::of(subject, options)?;
     files.write(|out| svg::write(out, &found.lines, &window, found.interval))?;
     Ok(found.words(subject.unit()))
 }

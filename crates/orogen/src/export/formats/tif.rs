@@ -17,6 +17,7 @@ pub static FORMAT: Format = Format {
     about: "Cloud-Optimised GeoTIFF of f32 with overviews, in local metres or on the map of a real place",
     options: &[],
     channels: 1,
+    features: false,
     memory,
     write,
 };

@@ -1,0 +1,107 @@
+//! Layers ready to be written: those of vector features that were asked for, or the contours of a layer of samples.
+
+use std::io;
+
+use super::ground::Ground;
+use super::layer::{Style, VectorLayer};
+use super::options::FeatureOptions;
+use crate::analysis::finite::FiniteCount;
+use crate::error::{Error, ErrorKind, Result};
+use crate::export::contours;
+use crate::export::options::Options;
+use crate::export::subject::Subject;
+use crate::export::vectors;
+use crate::format::dem::Georeference;
+use crate::format::features::{Crs, FeatureLayer};
+
+/// Layers, and where they lie.
+pub struct Drawing {
+    /// The layers, and how each is drawn.
+    pub layers: Vec<(FeatureLayer, Style)>,
+    map: Option<Georeference>,
+    cell: f64,
+}
+
+impl Drawing {
+    /// What a subject's layers are as features, in metres east and south of the world's origin.
+    ///
+    /// Fails as the subject does, and if an option was given that none of the layers knows.
+    pub fn of(subject: &mut Subject, options: &Options) -> io::Result<Drawing> {
+        let (map, cell) = (subject.map(), subject.window().cell);
+        let asked = subject.vectors().to_vec();
+        let layers = match asked.as_slice() {
+            [] => {
+                let found = contours::of(subject, options)?;
+                vec![(vectors::contours::features(&found), vectors::contours::LAYER.style)]
+            }
+            asked => {
+                check(asked, options)?;
+                let wanted = FeatureOptions::new(options, subject.world().recipe())?;
+                let ground = Ground::of(subject.world(), subject.window(), &wanted, 0, subject.progress())?;
+                subject.made_of(
+                    ground.heights().map_or(FiniteCount::default(), |heights| FiniteCount::of(heights.data())),
+                );
+                let make = |layer: &&VectorLayer| Ok(((layer.make)(&ground, &wanted)?, layer.style));
+                asked.iter().map(make).collect::<Result<Vec<_>>>()?
+            }
+        };
+        Ok(Drawing { layers, map, cell })
+    }
+
+    /// Turns metres of the world into map coordinates.
+    pub fn place(&mut self) {
+        self.layers.iter_mut().for_each(|(layer, _)| layer.place(self.map.as_ref()));
+    }
+
+    /// The system of the coordinates once they are placed.
+    pub fn crs(&self) -> Crs<'_> {
+        self.map.as_ref().map_or(Crs::Local, Crs::Map)
+    }
+
+    /// From one sample to the next, in the map's unit.
+    pub fn step(&self) -> f64 {
+        self.map.as_ref().map_or(self.cell, |map| self.cell * map.per_metre[0].min(map.per_metre[1]))
+    }
+
+    /// The only layer, for formats that hold no more.
+    ///
+    /// Fails if there are several.
+    pub fn only(&self, format: &str) -> io::Result<&FeatureLayer> {
+        match self.layers.as_slice() {
+            [(layer, _)] => Ok(layer),
+            _ => {
+                let sentence =
+                    format!("a .{format} file holds one layer: name one with --layer, or write all into a .gpkg");
+                Err(Error::new(ErrorKind::Request, sentence).into())
+            }
+        }
+    }
+
+    /// How much there is, in words.
+    pub fn words(&self) -> String {
+        let counts: Vec<String> = (self.layers.iter())
+            .map(|(layer, _)| match layer.features.len() {
+                1 => format!("1 feature of {}", layer.name),
+                count => format!("{count} features of {}", layer.name),
+            })
+            .collect();
+        counts.join(", ")
+    }
+}
+
+/// Whether each option that was given changes one of the layers.
+fn check(layers: &[&VectorLayer], options: &Options) -> Result<()> {
+    let all = || super::options::OPTIONS.iter().map(|spec| spec.name);
+    for name in options.names().filter(|name| all().any(|known| known == *name)) {
+        if !layers.iter().any(|layer| layer.options.contains(&name)) {
+            let knows: Vec<&str> = super::list::all()
+                .iter()
+                .filter(|layer| layer.options.contains(&name))
+                .map(|layer| layer.name)
+                .collect();
+            let sentence = format!("--{name} changes nothing here; it is for {}", knows.join(", "));
+            return Err(Error::new(ErrorKind::Request, sentence));
+        }
+    }
+    Ok(())
+}

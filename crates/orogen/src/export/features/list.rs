@@ -1,0 +1,28 @@
+//! The layers of vector features there are.
+
+use super::layer::VectorLayer;
+use crate::export::vectors;
+
+static ALL: &[&VectorLayer] = include!("../vector_list.rs");
+
+/// All of them, by name.
+pub fn all() -> &'static [&'static VectorLayer] {
+    ALL
+}
+
+/// The one of that name.
+pub fn named(name: &str) -> Option<&'static VectorLayer> {
+    ALL.iter().copied().find(|layer| layer.name == name)
+}
+
+/// The layers of a list of names with commas between them; none unless all of them are layers of vector features.
+pub fn listed(names: &str) -> Option<Vec<&'static VectorLayer>> {
+    let mut layers: Vec<&VectorLayer> = Vec::new();
+    for name in names.split(',') {
+        let layer = named(name.trim())?;
+        if !layers.iter().any(|known| known.name == layer.name) {
+            layers.push(layer);
+        }
+    }
+    Some(layers)
+}

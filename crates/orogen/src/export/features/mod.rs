@@ -1,0 +1,9 @@
+//! Vector features out of heights: what is asked for (`options`, `layer`), the ground that it is made of (`ground`), and layers ready to be written
+//! (`drawing`). The layers themselves are in [`vectors`](super::vectors).
+
+pub mod drawing;
+pub mod ground;
+pub mod layer;
+pub mod list;
+pub mod options;
+pub mod svg;

@@ -1,0 +1,32 @@
+//! Vector features as FlatGeobuf.
+
+use std::io;
+
+use crate::export::contours;
+use crate::export::features::drawing::Drawing;
+use crate::export::features::options::OPTIONS;
+use crate::export::files::Files;
+use crate::export::format::Format;
+use crate::export::options::Options;
+use crate::export::subject::Subject;
+use crate::format::fgb;
+
+/// The format.
+pub static FORMAT: Format = Format {
+    name: "fgb",
+    aliases: &[],
+    about: "contour lines or vector features, one layer with its index: FlatGeobuf",
+    options: OPTIONS,
+    channels: 1,
+    features: true,
+    memory: contours::memory,
+    write,
+};
+
+fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
+    let mut drawing = Drawing::of(subject, options)?;
+    drawing.place();
+    let layer = drawing.only("fgb")?;
+    files.write(|out| fgb::write(out, layer, drawing.crs()))?;
+    Ok(drawing.words())
+}

@@ -1,0 +1,204 @@
+//! GeoJSON (RFC 7946).
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+use super::features::{Crs, FeatureLayer, Geometry, LOCAL_WKT, Value};
+
+/// Writes a layer as a collection of features, one a line. `step` is the distance between samples in the unit of the coordinates, which are rounded to
+/// a thousandth of it or finer; heights are rounded to millimetres.
+///
+/// RFC 7946 wants longitude and latitude (WGS 84). Coordinates in those are written so. Those of another system get the `crs` member of the
+/// older GeoJSON 2008, which GDAL and QGIS read; so do metres that are nowhere on Earth, as WKT.
+///
+/// Fails as `out` does.
+pub fn write(out: &mut dyn Write, layer: &FeatureLayer, crs: Crs, step: f64) -> io::Result<()> {
+    write!(out, "{{\"type\":\"FeatureCollection\",\"name\":\"{}\",", layer.name)?;
+    let system = match crs {
+        Crs::Local => Some(LOCAL_WKT.replace('"', "\\\"")),
+        // WGS 84, which is what RFC 7946 takes for granted; or a map whose system is not known.
+        Crs::Map(map) => map.epsg().filter(|code| *code != 4326).map(|code| format!("urn:ogc:def:crs:EPSG::{code}")),
+    };
+    if let Some(system) = system {
+        write!(out, "\"crs\":{{\"type\":\"name\",\"properties\":{{\"name\":\"{system}\"}}}},")?;
+    }
+    writeln!(out, "\"features\":[")?;
+    let decimals = decimals(step);
+    let mut text = String::new();
+    for (k, feature) in layer.features.iter().enumerate() {
+        text.clear();
+        if k > 0 {
+            text.push_str(",\n");
+        }
+        let _ = write!(text, "{{\"type\":\"Feature\",\"id\":{},\"properties\":{{", k + 1);
+        for (i, (field, value)) in layer.fields.iter().zip(&feature.values).enumerate() {
+            let _ = write!(text, "{}\"{}\":", if i > 0 { "," } else { "" }, field.name);
+            let _ = match value {
+                Value::Integer(number) => write!(text, "{number}"),
+                Value::Real(number) if number.is_finite() => write!(text, "{number}"),
+                Value::Boolean(is) => write!(text, "{is}"),
+                Value::Text(word) => write!(text, "\"{word}\""),
+                Value::Null | Value::Real(_) => write!(text, "null"),
+            };
+        }
+        text.push_str("},\"geometry\":{");
+        geometry(&mut text, &feature.geometry, layer.geometry.has_z(), decimals);
+        text.push_str("}}");
+        out.write_all(text.as_bytes())?;
+    }
+    writeln!(out, "\n]}}")
+}
+
+fn geometry(text: &mut String, geometry: &Geometry, z: bool, decimals: usize) {
+    let numbers = if z { 3 } else { 2 };
+    match geometry {
+        Geometry::Point(at) => {
+            text.push_str("\"type\":\"Point\",\"coordinates\":");
+            position(text, &at[..numbers], decimals);
+        }
+        Geometry::Line(points) => {
+            text.push_str("\"type\":\"LineString\",\"coordinates\":");
+            list(text, points, |text, point| position(text, &point[..numbers], decimals));
+        }
+        Geometry::MultiPolygon(parts) => {
+            text.push_str("\"type\":\"MultiPolygon\",\"coordinates\":");
+            list(text, parts, |text, part| {
+                list(text, part, |text, ring| list(text, ring, |text, point| position(text, point, decimals)));
+            });
+        }
+    }
+}
+
+fn list<T>(text: &mut String, items: &[T], mut item: impl FnMut(&mut String, &T)) {
+    text.push('[');
+    for (k, one) in items.iter().enumerate() {
+        if k > 0 {
+            text.push(',');
+        }
+        item(text, one);
+    }
+    text.push(']');
+}
+
+fn position(text: &mut String, at: &[f64], decimals: usize) {
+    text.push('[');
+    for (k, value) in at.iter().enumerate() {
+        if k > 0 {
+            text.push(',');
+        }
+        number(text, *value, if k < 2 { decimals } else { 3 });
+    }
+    text.push(']');
+}
+
+/// Decimals that tell a thousandth of a step.
+pub fn decimals(step: f64) -> usize {
+    (3.0 - libm::log10(step).floor()).clamp(0.0, 15.0) as usize
+}
+
+/// Adds a number of at most so many decimals, none of them a 0 at the end.
+pub fn number(text: &mut String, value: f64, decimals: usize) {
+    let power = POWERS[decimals.min(POWERS.len() - 1)];
+    let scaled = (value * power).round();
+    // Whole numbers are much faster to write than fractions.
+    if scaled.abs() < 9e15 && decimals < POWERS.len() {
+        let (whole, part) = ((scaled.abs() as u64) / power as u64, (scaled.abs() as u64) % power as u64);
+        if scaled < 0.0 {
+            text.push('-');
+        }
+        let _ = write!(text, "{whole}");
+        if part > 0 {
+            let _ = write!(text, ".{part:0decimals$}");
+            text.truncate(text.trim_end_matches('0').len());
+        }
+    } else {
+        let _ = write!(text, "{value}");
+    }
+}
+
+const POWERS: [f64; 16] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::format::dem::{GeoKeys, Georeference};
+    use crate::format::features::{Feature, GeometryType, samples};
+    use serde_json::{Value as Json, json};
+
+    fn lines() -> FeatureLayer {
+        let line = |points: &[[f64; 3]], values: [Value; 4]| Feature {
+            geometry: Geometry::Line(points.to_vec()),
+            values: values.to_vec(),
+        };
+        let mut layer = samples::layer("lines", GeometryType::Line, 0);
+        let values = || [Value::Integer(1), Value::Real(250.0), Value::Boolean(true), Value::Null];
+        layer.features.push(line(&[[0.0, 0.0, 0.0], [10.25, 30.0, 0.0]], values()));
+        layer.features.push(line(&[[0.0, 0.0, 0.0], [10.0, 10.0 / 3.0, 0.0], [0.0; 3]], values()));
+        layer
+    }
+
+    fn written(mut layer: FeatureLayer, map: Option<&Georeference>) -> Json {
+        let mut bytes = Vec::new();
+        layer.place(map);
+        let step = map.map_or(10.0, |map| 10.0 * map.per_metre[1]);
+        write(&mut bytes, &layer, map.map_or(Crs::Local, Crs::Map), step).unwrap();
+        serde_json::from_slice(&bytes).unwrap()
+    }
+
+    #[test]
+    fn local_metres_have_north_up_and_no_place_on_earth() {
+        let collection = written(lines(), None);
+        assert_eq!(collection["type"], "FeatureCollection");
+        assert!(collection["crs"]["properties"]["name"].as_str().unwrap().starts_with("ENGCRS[\"local metres\""));
+        let first = &collection["features"][0];
+        assert_eq!(first["geometry"]["type"], "LineString");
+        assert_eq!(first["geometry"]["coordinates"], json!([[0, 0], [10.25, -30]]));
+        assert_eq!(first["properties"], json!({ "id": 1, "area": 250, "closed": true, "ends_in": null }));
+        assert_eq!(collection["features"][1]["geometry"]["coordinates"], json!([[0, 0], [10, -3.33], [0, 0]]));
+    }
+
+    #[test]
+    fn all_types_of_geometries_are_written() {
+        let points = written(samples::layer("a", GeometryType::Point, 3), None);
+        assert_eq!(points["features"][1]["geometry"], json!({ "type": "Point", "coordinates": [370, -530, 1] }));
+        let areas = written(samples::layer("a", GeometryType::MultiPolygon, 1), None);
+        let ring = &areas["features"][0]["geometry"]["coordinates"][0][0];
+        assert_eq!(*ring, json!([[0, 0], [8, 0], [8, -8], [0, -8], [0, 0]]));
+        let lines = written(samples::layer("a", GeometryType::LineZ, 1), None);
+        assert_eq!(lines["features"][0]["geometry"]["coordinates"][1], json!([1, -1, 99]));
+    }
+
+    #[test]
+    fn a_place_has_its_own_coordinates_and_names_their_system() {
+        let keys = |directory: &[u16]| Some(GeoKeys { directory: directory.to_vec(), ..GeoKeys::default() });
+        let mut map = Georeference {
+            origin: [11.0, 47.0],
+            per_metre: [1e-5, 9e-6],
+            keys: keys(&[1, 1, 0, 2, 1024, 0, 1, 2, 2048, 0, 1, 4326]),
+        };
+        let collection = written(lines(), Some(&map));
+        assert_eq!(collection.get("crs"), None);
+        let expect = json!([[11, 47], [11.0001025, 46.99973]]);
+        assert_eq!(collection["features"][0]["geometry"]["coordinates"], expect);
+        map.keys = keys(&[1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 32633]);
+        assert_eq!(written(lines(), Some(&map))["crs"]["properties"]["name"], "urn:ogc:def:crs:EPSG::32633");
+    }
+
+    #[test]
+    fn numbers_are_short_and_exact() {
+        for (value, decimals, expect) in [
+            (0.0, 2, "0"),
+            (-0.001, 2, "0"),
+            (12.5, 3, "12.5"),
+            (-12.0625, 4, "-12.0625"),
+            (1e6 / 3.0, 2, "333333.33"),
+            (7.0, 0, "7"),
+            (1e300, 3, &format!("{}", 1e300)),
+        ] {
+            let mut text = String::new();
+            number(&mut text, value, decimals);
+            assert_eq!(text, expect, "{value}");
+        }
+        assert_eq!([0.01, 1.0, 30.0, 1e5, 1e-4].map(decimals), [5, 3, 2, 0, 7]);
+    }
+}

@@ -1,0 +1,11 @@
+//! The water of heights as points, lines and areas: rivers that end at the shores of lakes and of the sea, lakes, watersheds, coasts, summits.
+//!
+//! [`water::Water`] finds the drainage once; everything else is drawn from it. Positions are columns and rows of its grid.
+
+pub mod joints;
+pub mod outlines;
+pub mod rivers;
+pub mod shores;
+pub mod summits;
+pub mod water;
+pub mod watersheds;

@@ -1,0 +1,348 @@
+//! Rivers as lines: reaches over land, from springs, confluences and lakes to confluences, lakes, the sea and the border.
+//!
+//! Where a reach meets a shore, line and shore share a point. Reaches that meet share one too. Heights along a reach never rise, nor where one goes on in
+//! the next.
+
+use std::collections::HashMap;
+
+use super::joints::Joints;
+use super::shores::Shores;
+use super::water::{Cover, Frame, Water};
+
+/// Where a reach begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Source {
+    /// Where enough ground drains together, or where reaches meet.
+    Land,
+    /// In a lake, by its number from 1.
+    Lake(u32),
+    /// Where it comes in from outside, or out of samples without heights.
+    Border,
+}
+
+/// Where a reach ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mouth {
+    /// In another reach, by its index.
+    Reach(u32),
+    /// In a lake, by its number from 1.
+    Lake(u32),
+    /// In the sea.
+    Sea,
+    /// Where the land ends that is looked at.
+    Border,
+}
+
+/// A reach over land.
+#[derive(Debug, Clone, PartialEq)]
+pub struct River {
+    /// Column, row and height of each point, downstream.
+    pub points: Vec<[f64; 3]>,
+    /// Strahler's order.
+    pub order: u8,
+    /// Samples that drain to its end.
+    pub drained: u32,
+    /// The first sample of land that it runs through.
+    pub start: u32,
+    /// The last sample that is its alone: behind it is another reach, or water.
+    pub end: u32,
+    /// Where it begins.
+    pub source: Source,
+    /// Where it ends.
+    pub mouth: Mouth,
+    /// The reach that its water flows on in, behind a lake if it ends in one.
+    pub downstream: Option<u32>,
+}
+
+/// A stretch over land while it is put together.
+struct Stretch {
+    cells: Vec<usize>,
+    order: u8,
+    source: Source,
+    mouth: End,
+}
+
+/// Where a stretch ends, before reaches are numbered.
+#[derive(Clone, Copy)]
+enum End {
+    /// At the first cell of another reach of the network.
+    Network(u32),
+    Lake(u32),
+    Sea,
+    Border,
+}
+
+/// The number of the sea among waters whose others are lakes, from 1.
+const SEA: u32 = 0;
+
+/// The reaches within a frame, the stairs of their cells evened out `rounds` times. Their crossings with the shores are put into these.
+pub fn rivers(water: &Water, frame: &Frame, rounds: usize, shores: &mut Shores) -> Vec<River> {
+    let mut stretches: Vec<Stretch> = Vec::new();
+    // The stretch that a reach of the network begins with, and the one that leaves a lake.
+    let mut of_network: HashMap<u32, u32> = HashMap::new();
+    let mut of_lake: HashMap<u32, u32> = HashMap::new();
+    for (k, reach) in water.reaches.iter().enumerate() {
+        let cells: Vec<usize> = reach.cells.iter().map(|cell| *cell as usize).collect();
+        for stretch in cut(water, frame, &cells, reach.order, reach.next) {
+            let number = stretches.len() as u32;
+            match stretch.source {
+                Source::Lake(lake) => {
+                    of_lake.insert(lake, number);
+                }
+                _ if stretch.cells[0] == cells[0] => {
+                    of_network.insert(k as u32, number);
+                }
+                _ => {}
+            }
+            stretches.push(stretch);
+        }
+    }
+    let mut joints = Joints::new(&shores.lines, &shores.waters);
+    let made: Vec<River> = (stretches.iter())
+        .map(|stretch| {
+            let mouth = match stretch.mouth {
+                End::Network(next) => of_network.get(&next).map_or(Mouth::Border, |next| Mouth::Reach(*next)),
+                End::Lake(lake) => Mouth::Lake(lake),
+                End::Sea => Mouth::Sea,
+                End::Border => Mouth::Border,
+            };
+            let downstream = match mouth {
+                Mouth::Reach(next) => Some(next),
+                Mouth::Lake(lake) => of_lake.get(&lake).copied(),
+                Mouth::Sea | Mouth::Border => None,
+            };
+            let points = line(water, stretch, mouth, rounds, &mut joints);
+            let own = last_own(stretch);
+            let drained = water.area.data()[own];
+            // Reaches that meet at the border end there together.
+            let end = stretch.cells.last().copied().filter(|_| mouth == Mouth::Border).unwrap_or(own) as u32;
+            let start = stretch.cells[usize::from(matches!(stretch.source, Source::Lake(_)))] as u32;
+            River { points, order: stretch.order, drained, start, end, source: stretch.source, mouth, downstream }
+        })
+        .collect();
+    joints.into_points().insert(&mut shores.lines);
+    made
+}
+
+/// The last cell that is the stretch's alone: the one behind it is the next reach's, or water.
+fn last_own(stretch: &Stretch) -> usize {
+    let count = stretch.cells.len();
+    match stretch.mouth {
+        End::Border => stretch.cells[count - 1],
+        _ => stretch.cells[count.saturating_sub(2)],
+    }
+}
+
+/// Cuts a reach of the network where it runs into water and out of it, and at the frame. Each stretch also has the first cell of the water at its ends.
+fn cut(water: &Water, frame: &Frame, cells: &[usize], order: u8, next: Option<u32>) -> Vec<Stretch> {
+    let mut stretches = Vec::new();
+    let mut part: Vec<usize> = Vec::new();
+    let mut source = Source::Land;
+    let mut finish = |part: &mut Vec<usize>, source: Source, mouth: End| {
+        let cells = std::mem::take(part);
+        if cells.len() > 1 {
+            stretches.push(Stretch { cells, order, source, mouth });
+        }
+    };
+    for (k, cell) in cells.iter().copied().enumerate() {
+        let cover = match frame.holds(water, cell) {
+            true => water.cover(cell),
+            false => Cover::Missing,
+        };
+        let end = match cover {
+            Cover::Land => {
+                if part.is_empty() {
+                    let before = k.checked_sub(1).map(|k| cells[k]);
+                    source = match before.map(|before| (before, water.cover(before), frame.holds(water, before))) {
+                        None => Source::Land,
+                        Some((before, Cover::Lake(lake), true)) => {
+                            part.push(before);
+                            Source::Lake(lake)
+                        }
+                        Some(_) => Source::Border,
+                    };
+                }
+                part.push(cell);
+                continue;
+            }
+            _ if part.is_empty() => continue,
+            Cover::Lake(lake) => End::Lake(lake),
+            Cover::Sea => End::Sea,
+            Cover::Missing => End::Border,
+        };
+        if cover != Cover::Missing {
+            part.push(cell);
+        }
+        finish(&mut part, source, end);
+    }
+    if !part.is_empty() {
+        finish(&mut part, source, next.map_or(End::Border, End::Network));
+    }
+    stretches
+}
+
+/// The line of a stretch, from shore to shore.
+fn line(water: &Water, stretch: &Stretch, mouth: Mouth, rounds: usize, joints: &mut Joints) -> Vec<[f64; 3]> {
+    let sea_level = f64::from(water.sea_level.unwrap_or_default());
+    let height = |cell: usize| match water.cover(cell) {
+        Cover::Sea => sea_level,
+        _ => f64::from(water.surface.data()[cell]),
+    };
+    let point = |cell: &usize| {
+        let [x, y] = water.place(*cell);
+        [x, y, height(*cell)]
+    };
+    let raw: Vec<[f64; 3]> = stretch.cells.iter().map(point).collect();
+    let mut points = even(&raw, rounds);
+    match mouth {
+        Mouth::Lake(lake) => end_at(&mut points, &raw, joints, lake),
+        Mouth::Sea => end_at(&mut points, &raw, joints, SEA),
+        Mouth::Reach(_) | Mouth::Border => {}
+    }
+    if let Source::Lake(lake) = stretch.source {
+        let raw: Vec<[f64; 3]> = raw.into_iter().rev().collect();
+        points.reverse();
+        end_at(&mut points, &raw, joints, lake);
+        points.reverse();
+    }
+    points
+}
+
+/// Ends a line that leads into a water at its shore. The height there is that of the water.
+fn end_at(points: &mut Vec<[f64; 3]>, raw: &[[f64; 3]], joints: &mut Joints, water: u32) {
+    let [.., land, wet] = raw else { return };
+    let level = wet[2];
+    // The part near its end: evened out, a line runs no further beside the cells it came from.
+    const NEAR: usize = 12;
+    let start = points.len().saturating_sub(NEAR);
+    if let Some((k, along, at)) = joints.first(&points[start..], water) {
+        // At least one point of the line itself is left.
+        let keep = (start + k + usize::from(along > 0.0)).max(1);
+        points.truncate(keep);
+        points.push([at[0], at[1], level]);
+        return;
+    }
+    let straight = joints.first(&[*land, *wet], water).map(|(_, _, at)| at);
+    let at = straight.or_else(|| joints.nearest([land[0], land[1]], water));
+    if let Some(at) = at {
+        points.pop();
+        points.push([at[0], at[1], level]);
+    }
+}
+
+/// A line with the stairs of its cells evened out, by means of three points with weights of 1, 2 and 1; its ends stay. What falls all the way still
+/// does.
+pub fn even(points: &[[f64; 3]], rounds: usize) -> Vec<[f64; 3]> {
+    let mut points = points.to_vec();
+    for _ in 0..rounds {
+        let before = points.clone();
+        for (point, three) in points.iter_mut().skip(1).zip(before.windows(3)) {
+            *point = [0, 1, 2].map(|c| (three[0][c] + 2.0 * three[1][c] + three[2][c]) / 4.0);
+        }
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::{Grid, Window};
+    use crate::hydrography::water::Least;
+    use crate::hydrology::samples;
+    use crate::progress::Progress;
+
+    fn found(heights: Grid, sea: Option<f32>, frame: Option<Frame>, rounds: usize) -> (Water, Shores, Vec<River>) {
+        let least = Least { spring: 6, lake: 3, depth: 0.0, scattered: false };
+        let window = Window::new(heights.width(), heights.height(), 1.0);
+        let heights = Grid::from_data(window, heights.into_data()).unwrap();
+        let water = Water::of(heights, sea, least, &Progress::none()).unwrap();
+        let frame = frame.unwrap_or_else(|| Frame::whole(&water));
+        let mut shores = Shores::of(&water, &frame, 1).unwrap();
+        let rivers = rivers(&water, &frame, rounds, &mut shores);
+        (water, shores, rivers)
+    }
+
+    /// What holds of all rivers.
+    fn check(water: &Water, shores: &Shores, rivers: &[River]) {
+        let on_shore = |at: [f64; 3], of: u32| {
+            let lines = shores.lines.iter().zip(&shores.waters).filter(|(_, water)| **water == of);
+            lines.into_iter().any(|(line, _)| line.contains(&[at[0], at[1]]))
+        };
+        for (k, river) in rivers.iter().enumerate() {
+            assert!(river.points.len() > 1, "{river:?}");
+            assert!(river.points.windows(2).all(|pair| pair[1][2] <= pair[0][2]), "rises: {river:?}");
+            let (first, last) = (river.points[0], river.points[river.points.len() - 1]);
+            if let Source::Lake(lake) = river.source {
+                assert!(on_shore(first, lake), "{river:?}");
+                assert_eq!(first[2], f64::from(water.lakes[lake as usize - 1].level));
+            }
+            match river.mouth {
+                Mouth::Reach(next) => {
+                    assert_eq!(rivers[next as usize].points[0], last);
+                    assert_eq!(river.downstream, Some(next));
+                }
+                Mouth::Lake(lake) => {
+                    assert!(on_shore(last, lake), "{river:?}");
+                    let next = river.downstream.expect("a lake that rivers run into has one that leaves it");
+                    assert_eq!(rivers[next as usize].source, Source::Lake(lake));
+                }
+                Mouth::Sea => assert!(on_shore(last, 0), "{river:?}"),
+                Mouth::Border => assert_eq!(river.downstream, None),
+            }
+            if let Some(next) = river.downstream.map(|next| &rivers[next as usize]) {
+                assert!(next.points[0][2] <= last[2] && next.order >= river.order && next.drained > river.drained);
+            }
+            // The way down ends.
+            let (mut at, mut steps) = (k, 0);
+            while let Some(next) = rivers[at].downstream {
+                at = next as usize;
+                steps += 1;
+                assert!(steps <= rivers.len());
+            }
+        }
+    }
+
+    #[test]
+    fn reaches_fall_and_join_on_every_kind_of_ground() {
+        let mut count = 0;
+        for heights in samples::grids() {
+            for (sea, rounds) in [(None, 3), (Some(300.0), 0), (Some(300.0), 3), (Some(550.0), 6)] {
+                let (water, shores, rivers) = found(heights.clone(), sea, None, rounds);
+                if heights.data().iter().all(|height| height.is_finite()) {
+                    check(&water, &shores, &rivers);
+                }
+                count += rivers.len();
+            }
+        }
+        assert!(count > 300, "{count}");
+    }
+
+    #[test]
+    fn a_part_of_the_ground_has_the_rivers_of_the_whole() {
+        for seed in 0..6 {
+            let heights = samples::hills(70, 60, seed);
+            let (_, _, whole) = found(heights.clone(), Some(200.0), None, 3);
+            let frame = Frame { columns: 13..52, rows: 9..44 };
+            let (water, shores, part) = found(heights, Some(200.0), Some(frame.clone()), 3);
+            for river in &part {
+                for [x, y, _] in &river.points {
+                    assert!((13.0..=51.0).contains(x) && (9.0..=43.0).contains(y));
+                }
+            }
+            let same = part.iter().filter(|river| whole.iter().any(|other| other.points == river.points));
+            for river in same.clone() {
+                let other = whole.iter().find(|other| other.points == river.points).unwrap();
+                assert_eq!((river.drained, river.order), (other.drained, other.order));
+            }
+            assert!(same.count() * 3 > part.len(), "seed {seed}");
+            // Lakes that are cut off are closed along the frame, and their outlets may lie beyond it.
+            for area in shores.areas() {
+                for ring in area.parts.iter().flatten() {
+                    assert_eq!(ring.first(), ring.last());
+                }
+            }
+            assert!(part.iter().all(|river| river.points.windows(2).all(|pair| pair[1][2] <= pair[0][2])));
+            assert!(water.lakes.len() >= shores.areas().len());
+        }
+    }
+}

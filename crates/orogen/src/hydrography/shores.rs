@@ -1,0 +1,150 @@
+//! Shores: lakes as areas with islands, and the coast of the sea, between the samples where the level of the water lies.
+
+use std::collections::BTreeMap;
+
+use super::joints::Path;
+use super::water::{Frame, Water};
+use crate::contour::chaikin::smooth;
+use crate::contour::line::twice_area;
+use crate::contour::trace::contours;
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+
+/// What stands for just above or below the level where a sample is exactly on it, in metres.
+const HARDLY: f32 = 1e-3;
+
+/// The shores of lakes and of the sea, lines in columns and rows. With north up, land lies to the right of the shore of a lake, as one goes along it, and to
+/// the left of the coast of the sea.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Shores {
+    /// Rings, whose last point repeats their first; coasts of the sea may be open.
+    pub lines: Vec<Path>,
+    /// What each is the shore of: the number of a lake, or 0 for the sea.
+    pub waters: Vec<u32>,
+}
+
+impl Shores {
+    /// All shores within a frame, their corners cut `rounds` times. Lakes that reach beyond the frame are closed along it.
+    ///
+    /// # Errors
+    /// If there are more than can be numbered.
+    pub fn of(water: &Water, frame: &Frame, rounds: usize) -> Result<Shores> {
+        let mut shores = Shores::default();
+        for line in contours(&depths(water, frame), &[0.0])? {
+            let Some(lake) = line.points.iter().find_map(|at| wet_beside(*at, &water.labels)) else { continue };
+            shores.lines.push(smooth(&line, rounds).path().collect());
+            shores.waters.push(lake);
+        }
+        if let Some(rise) = water.sea_level.and_then(|sea| over_the_sea(water, frame, sea)) {
+            for line in contours(&rise, &[0.0])? {
+                shores.lines.push(smooth(&line, rounds).path().collect());
+                shores.waters.push(0);
+            }
+        }
+        Ok(shores)
+    }
+
+    /// The coast of the sea.
+    pub fn coasts(&self) -> impl Iterator<Item = &Path> {
+        self.lines.iter().zip(&self.waters).filter(|(_, water)| **water == 0).map(|(line, _)| line)
+    }
+
+    /// Lakes as areas, in the order of their numbers.
+    pub fn areas(&self) -> Vec<LakeArea> {
+        let mut of_lake: BTreeMap<u32, Vec<&Path>> = BTreeMap::new();
+        for (line, lake) in self.lines.iter().zip(&self.waters).filter(|(_, water)| **water > 0) {
+            if line.len() > 3 && line.first() == line.last() {
+                of_lake.entry(*lake).or_default().push(line);
+            }
+        }
+        let area = |(lake, rings): (u32, Vec<&Path>)| LakeArea { lake, parts: nested(rings) };
+        of_lake.into_iter().map(area).filter(|area| !area.parts.is_empty()).collect()
+    }
+}
+
+/// A lake as an area: parts, each an outer ring and the islands in it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LakeArea {
+    /// The lake, from 1.
+    pub lake: u32,
+    /// Its parts, the largest first.
+    pub parts: Vec<Vec<Path>>,
+}
+
+/// Depth of water in the lakes of a frame and one sample around it, and below 0 how far the land beside them rises over it. Around the frame there is a wall
+/// so high that shores run along the outermost samples.
+fn depths(water: &Water, frame: &Frame) -> Grid {
+    const WALL: f32 = -1e30;
+    let (columns, rows) = (&frame.columns, &frame.rows);
+    let window =
+        Window::new(columns.len() + 2, rows.len() + 2, 1.0).at(columns.start as i64 - 1, rows.start as i64 - 1);
+    let mut depth = Grid::filled(window, WALL);
+    let (width, height) = (water.heights.width(), water.heights.height());
+    let level = |label: u32| water.lakes[label as usize - 1].level;
+    for j in rows.clone() {
+        for i in columns.clone() {
+            let here = water.heights.get(i, j);
+            let around = || {
+                let rows = j.saturating_sub(1)..(j + 2).min(height);
+                rows.flat_map(move |y| (i.saturating_sub(1)..(i + 2).min(width)).map(move |x| water.labels.get(x, y)))
+            };
+            let beside = || around().filter(|other| *other > 0).map(level).reduce(f32::max);
+            depth.row_mut(j - rows.start + 1)[i - columns.start + 1] = match water.labels.get(i, j) {
+                0 => beside().map_or(-1.0, |level| (level - here).min(-HARDLY)),
+                label => (level(label) - here).max(HARDLY),
+            };
+        }
+    }
+    depth
+}
+
+/// How far the samples of a frame rise over the sea. Samples at its level are sea.
+fn over_the_sea(water: &Water, frame: &Frame, sea: f32) -> Option<Grid> {
+    let (columns, rows) = (&frame.columns, &frame.rows);
+    let window = Window::new(columns.len(), rows.len(), 1.0).at(columns.start as i64, rows.start as i64);
+    let rise = |height: f32| if height > sea { (height - sea).max(HARDLY) } else { (height - sea).min(-HARDLY) };
+    let of_row = |j: usize| water.heights.row(j)[columns.clone()].iter().map(move |height| rise(*height));
+    Grid::from_data(window, rows.clone().flat_map(of_row).collect())
+}
+
+/// The lake at one of the two samples that a crossing lies between.
+fn wet_beside([x, y]: [f64; 2], labels: &Grid<u32>) -> Option<u32> {
+    let ends = |v: f64| [v.floor() as usize, v.ceil() as usize];
+    let ([west, east], [north, south]) = (ends(x), ends(y));
+    let there = |i: usize, j: usize| (i < labels.width() && j < labels.height()).then(|| labels.get(i, j));
+    [there(west, north), there(east, south)].into_iter().flatten().find(|label| *label > 0)
+}
+
+/// Rings as parts: each outer ring with the holes that lie in it, the largest first.
+pub fn nested(rings: Vec<&Path>) -> Vec<Vec<Path>> {
+    let (outer, holes): (Vec<&Path>, Vec<&Path>) = rings.into_iter().partition(|ring| twice_area(ring) > 0.0);
+    let mut parts: Vec<Vec<Path>> = outer.into_iter().map(|ring| vec![ring.clone()]).collect();
+    parts.sort_by(|a, b| twice_area(&b[0]).total_cmp(&twice_area(&a[0])));
+    for hole in holes {
+        // A hole may touch the ring around it, but not along an edge. The smallest part that holds it: they are sorted.
+        let at = match hole.as_slice() {
+            [[ax, ay], [bx, by], ..] => [(ax + bx) / 2.0, (ay + by) / 2.0],
+            _ => continue,
+        };
+        let home = match parts.len() {
+            1 => parts.first_mut(),
+            _ => parts.iter_mut().rev().find(|part| holds(&part[0], at)),
+        };
+        if let Some(part) = home {
+            part.push(hole.clone());
+        }
+    }
+    parts
+}
+
+/// Whether a ring holds a point: a line from there to the west crosses it an odd number of times.
+fn holds(ring: &Path, [x, y]: [f64; 2]) -> bool {
+    let mut inside = false;
+    for pair in ring.windows(2) {
+        let ([ax, ay], [bx, by]) = (pair[0], pair[1]);
+        if (ay > y) != (by > y) && x > ax + (y - ay) / (by - ay) * (bx - ax) {
+            inside = !inside;
+        }
+    }
+    inside
+}

@@ -1,0 +1,128 @@
+//! Watersheds of river mouths, and the land between them.
+
+use super::rivers::{Mouth, River};
+use super::water::{Cover, Frame, Water};
+
+/// Which watershed each sample of a frame belongs to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Watersheds {
+    /// Row after row of the frame: numbers from 1; 0 for the sea.
+    pub labels: Vec<u32>,
+    /// For each number less 1, the index of the reach that ends at the mouth; none of land that no river drains.
+    pub rivers: Vec<Option<u32>>,
+}
+
+const UNKNOWN: u32 = u32::MAX;
+
+/// The watersheds of all reaches that end in the sea or at the border of a frame, in the order of the reaches; then what land is left, a number for each
+/// stretch of it that hangs together by the sides of samples. Costs O(samples).
+pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds {
+    let width = water.heights.width();
+    let mut labels = vec![UNKNOWN; water.heights.data().len()];
+    let mut rivers = Vec::new();
+    for (k, reach) in reaches.iter().enumerate().filter(|(_, reach)| matches!(reach.mouth, Mouth::Sea | Mouth::Border))
+    {
+        rivers.push(Some(k as u32));
+        // Another reach that joins it there shares its watershed.
+        let label = &mut labels[reach.end as usize];
+        if *label == UNKNOWN {
+            *label = rivers.len() as u32;
+        } else {
+            rivers.pop();
+        }
+    }
+    // Down from each sample to what is known, and back.
+    let mut way: Vec<u32> = Vec::new();
+    for start in 0..labels.len() {
+        let mut at = start;
+        while labels[at] == UNKNOWN {
+            way.push(at as u32);
+            let next = water.receivers.of(at);
+            if next == at {
+                // It drains to no mouth.
+                labels[at] = 0;
+                break;
+            }
+            at = next;
+        }
+        let label = labels[at];
+        way.drain(..).for_each(|cell| labels[cell as usize] = label);
+    }
+    let cell = |i: usize, j: usize| (frame.rows.start + j) * width + frame.columns.start + i;
+    let (across, down) = (frame.columns.len(), frame.rows.len());
+    let mut out = vec![0u32; across * down];
+    let is_land = |cell: usize| matches!(water.cover(cell), Cover::Land | Cover::Lake(_));
+    for j in 0..down {
+        for i in 0..across {
+            let cell = cell(i, j);
+            out[j * across + i] = match labels[cell] {
+                _ if !is_land(cell) => 0,
+                0 => UNKNOWN,
+                label => label,
+            };
+        }
+    }
+    let mut waiting = Vec::new();
+    for start in 0..out.len() {
+        if out[start] != UNKNOWN {
+            continue;
+        }
+        rivers.push(None);
+        let label = rivers.len() as u32;
+        out[start] = label;
+        waiting.push(start);
+        while let Some(at) = waiting.pop() {
+            let (i, j) = (at % across, at / across);
+            let beside = [(i > 0, 1, 0), (i + 1 < across, 0, 1), (j > 0, across, 0), (j + 1 < down, 0, across)];
+            for other in beside.into_iter().filter(|(there, ..)| *there).map(|(_, back, on)| at + on - back) {
+                if out[other] == UNKNOWN {
+                    out[other] = label;
+                    waiting.push(other);
+                }
+            }
+        }
+    }
+    Watersheds { labels: out, rivers }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hydrography::rivers::rivers;
+    use crate::hydrography::shores::Shores;
+    use crate::hydrography::water::Least;
+    use crate::hydrology::samples;
+    use crate::progress::Progress;
+
+    #[test]
+    fn all_land_has_a_watershed_and_rivers_stay_in_theirs() {
+        for seed in 0..5 {
+            let least = Least { spring: 12, lake: 4, depth: 0.0, scattered: false };
+            let water = Water::of(samples::hills(60, 50, seed), Some(250.0), least, &Progress::none()).unwrap();
+            let frame = Frame { columns: 5..55, rows: 4..50 };
+            let mut shores = Shores::of(&water, &frame, 1).unwrap();
+            let reaches = rivers(&water, &frame, 3, &mut shores);
+            let found = watersheds(&water, &frame, &reaches);
+            let mut counts = vec![0; found.rivers.len() + 1];
+            for (k, label) in found.labels.iter().enumerate() {
+                let cell = (4 + k / 50) * 60 + 5 + k % 50;
+                assert_eq!(*label == 0, water.cover(cell) == Cover::Sea);
+                counts[*label as usize] += 1;
+            }
+            assert!(counts[1..].iter().all(|count| *count > 0), "{counts:?}");
+            let label = |cell: u32| {
+                let (i, j) = (cell as usize % 60, cell as usize / 60);
+                found.labels[(j - 4) * 50 + i - 5]
+            };
+            for (k, river) in found.rivers.iter().enumerate() {
+                let Some(river) = river else { continue };
+                assert_eq!(label(reaches[*river as usize].end), k as u32 + 1);
+            }
+            for reach in reaches.iter() {
+                if let Some(next) = reach.downstream {
+                    assert_eq!(label(reach.end), label(reaches[next as usize].end), "seed {seed}");
+                }
+            }
+        }
+    }
+}

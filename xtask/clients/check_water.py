@@ -1,0 +1,214 @@
+"""GDAL, SQLite and Shapely read the water: every format alike, areas valid and without gaps, beds that never rise, reaches that join."""
+
+import json
+import sqlite3
+import subprocess
+
+import numpy
+import pyogrio
+import rasterio
+import shapely
+from orogen import ROOT, WORK, Checks, export
+
+checks = Checks()
+LAYERS = ["rivers", "lakes", "watersheds", "summits", "coast", "contours"]
+TYPES = {
+    "rivers": "LineString Z",
+    "lakes": "MultiPolygon",
+    "watersheds": "MultiPolygon",
+    "summits": "Point Z",
+    "coast": "LineString",
+    "contours": "LineString",
+}
+
+
+def read(path, layer=None):
+    """The columns of a layer, its geometries and its coordinate system."""
+    meta, _, geometry, values = pyogrio.raw.read(path, layer=layer)
+    return dict(zip(meta["fields"], values)), shapely.from_wkb(geometry), meta
+
+
+def rivers_join(name, rivers, lines, lakes, areas, coasts):
+    """What holds of every network."""
+    ids = rivers["id"].astype(int)
+    at = {number: k for k, number in enumerate(ids)}
+    parts = [shapely.get_coordinates(line, include_z=True) for line in lines]
+    heights = [part[:, 2] for part in parts]
+    checks.that(f"{name}: beds never rise", all((numpy.diff(z) <= 0).all() for z in heights))
+    checks.that(f"{name}: no reach crosses itself", lines.size == 0 or shapely.is_valid(lines).all())
+    lake_at = {int(number): k for k, number in enumerate(lakes["id"])}
+    shore = [shapely.boundary(area) for area in areas]
+    coast = shapely.union_all(coasts)
+    joined = falls = grows = shores = mouths = 0
+    for k, part in enumerate(parts):
+        down, mouth = rivers["downstream"][k], rivers["mouth"][k]
+        follows = None if numpy.isnan(down) else at.get(int(down))
+        if mouth == "reach":
+            joined += follows is not None and (parts[follows][0] == part[-1]).all()
+        elif mouth == "lake":
+            k_lake = lake_at[int(rivers["mouth_lake"][k])]
+            level = lakes["level"][k_lake]
+            joined += shapely.distance(shore[k_lake], shapely.Point(part[-1])) < 1e-6 and abs(part[-1, 2] - level) < 1e-9
+            joined += 0 if follows is None or rivers["source_lake"][follows] == rivers["mouth_lake"][k] else -1
+            shores += 1
+        elif mouth == "sea":
+            joined += shapely.distance(coast, shapely.Point(part[-1])) < 1e-6
+            shores += 1
+        else:
+            joined += mouth == "border"
+        mouths += 1
+        if rivers["source"][k] == "lake":
+            k_lake = lake_at[int(rivers["source_lake"][k])]
+            checks.that(f"{name}: reach {ids[k]} leaves its lake at the shore", shapely.distance(shore[k_lake], shapely.Point(part[0])) < 1e-6)
+        if follows is not None:
+            falls += part[-1, 2] < parts[follows][0, 2]
+            grows += rivers["drainage_area"][follows] < rivers["drainage_area"][k] or rivers["strahler"][follows] < rivers["strahler"][k]
+    checks.equal(f"{name}: every reach ends in a reach, a lake, the sea or at the border, and shares that point", joined, mouths)
+    checks.equal(f"{name}: nowhere is the next reach higher, or smaller", (falls, grows), (0, 0))
+    checks.that(f"{name}: following the ids downstream ends", all(ends(k, rivers["downstream"], at) for k in range(len(parts))))
+    return shores
+
+
+def ends(k, downstream, at):
+    """Whether the way down from a reach comes to an end."""
+    for _ in range(len(downstream) + 1):
+        if numpy.isnan(downstream[k]):
+            return True
+        k = at[int(downstream[k])]
+    return False
+
+
+def tiles(name, areas, frame, land):
+    """Areas that cover the land and do not overlap."""
+    checks.that(f"{name}: watersheds are valid", shapely.is_valid(areas).all(), shapely.is_valid_reason(areas[~shapely.is_valid(areas)])[:3])
+    whole = shapely.union_all(areas)
+    checks.near(f"{name}: watersheds do not overlap", shapely.area(areas).sum() / whole.area, 1.0, 1e-9)
+    checks.near(f"{name}: watersheds cover the land", whole.area / land, 1.0, 0.01)
+    parts = shapely.get_parts(whole)
+    gaps = [ring for part in parts for ring in shapely.get_rings(part)[1:]]
+    return whole, gaps
+
+
+DEM = WORK / "place.tif"
+export("rolling", DEM.name, "--window", "100,150,260,220")
+# The same ground where it lies on a map.
+with rasterio.open(DEM) as source:
+    heights = source.read(1)
+UTM = WORK / "utm.tif"
+profile = {"driver": "GTiff", "dtype": "float32", "count": 1, "height": heights.shape[0], "width": heights.shape[1]}
+with rasterio.open(UTM, "w", crs="EPSG:32633", transform=rasterio.transform.from_origin(400_000, 5_200_000, 30, 30), **profile) as out:
+    out.write(heights, 1)
+DEGREES = WORK / "degrees.tif"
+step = 30 / 111_195
+with rasterio.open(DEGREES, "w", crs="EPSG:4326", transform=rasterio.transform.from_origin(11, 1, step, step), **profile) as out:
+    out.write(heights, 1)
+
+CASES = [
+    ("alpine", "alpine", ["--cell", "120"], None),
+    ("alpine_part", "alpine", ["--window", "150,210,300,260"], None),
+    ("island", "island", [], None),
+    ("archipelago", "archipelago", ["--seed", "9"], None),
+    ("fjords", "fjords", ["--seed", "3"], None),
+    ("utm", UTM, ["--river-area", "300000"], "EPSG:32633"),
+    ("degrees", DEGREES, ["--river-area", "300000"], "EPSG:4326"),
+]
+
+for name, recipe, options, crs in CASES:
+    path = export(recipe, f"{name}.gpkg", "--layer", ",".join(LAYERS), *options)
+    tiff = export(recipe, f"{name}_height.tif", *options[: 2 if "--river-area" not in options else 0])
+    done = subprocess.run(["ogrinfo", "-al", "-so", path], capture_output=True, text=True)
+    checks.that(f"{name}: ogrinfo opens it without a word", done.returncode == 0 and not done.stderr, done.stderr)
+    base = sqlite3.connect(path)
+    checks.equal(f"{name}: SQLite finds the file sound", base.execute("PRAGMA integrity_check").fetchall(), [("ok",)])
+    checks.equal(f"{name}: all keys are there", base.execute("PRAGMA foreign_key_check").fetchall(), [])
+    for layer in LAYERS:
+        found = base.execute(f"SELECT rtreecheck('rtree_{layer}_geom')").fetchone()
+        checks.equal(f"{name}: the index of {layer} is sound", found, ("ok",))
+        count = base.execute(f"SELECT count(*) FROM {layer}").fetchone()[0]
+        checks.that(f"{name}: ogrinfo counts {layer}", f"Layer name: {layer}\n" in done.stdout and f"Feature Count: {count}\n" in done.stdout)
+    base.close()
+    data = {layer: read(path, layer) for layer in LAYERS}
+    with rasterio.open(tiff) as source:
+        box, cell, ground = source.bounds, source.res, source.read(1)
+        raster_crs = source.crs
+    slack = 1e-6 * cell[0]
+    for layer, (_, geometries, meta) in data.items():
+        checks.equal(f"{name}: type of {layer}", meta["geometry_type"], TYPES[layer])
+        if crs:
+            checks.that(f"{name}: {layer} lie on their map", meta["crs"] == crs and raster_crs.to_string() == crs, meta["crs"])
+        if len(geometries):
+            west, south, east, north = shapely.total_bounds(geometries)
+            inside = west >= box.left - slack and east <= box.right + slack and south >= box.bottom - slack and north <= box.top + slack
+            checks.that(f"{name}: {layer} lie where the GeoTIFF does", inside, f"({west, south, east, north} in {box})")
+    rivers, lines, _ = data["rivers"]
+    lakes, areas, _ = data["lakes"]
+    checks.that(f"{name}: lakes are valid and closed", len(areas) == 0 or shapely.is_valid(areas).all(), shapely.is_valid_reason(areas))
+    checks.that(f"{name}: lakes do not overlap", len(areas) == 0 or abs(shapely.area(areas).sum() / shapely.area(shapely.union_all(areas)) - 1) < 1e-9)
+    if crs is None:
+        checks.that(f"{name}: areas are those of the polygons", numpy.allclose(shapely.area(areas), lakes["area"], rtol=1e-9))
+        checks.that(f"{name}: lengths are those of the lines", numpy.allclose(shapely.length(lines), rivers["length"], rtol=1e-9))
+    shores = rivers_join(name, rivers, lines, lakes, areas, data["coast"][1])
+    sea = (ground <= 0).sum() if len(data["coast"][1]) else 0
+    land = (ground.size - sea) * cell[0] * cell[1]
+    whole, gaps = tiles(name, data["watersheds"][1], box, land)
+    if len(data["coast"][1]) == 0:
+        checks.equal(f"{name}: watersheds fill the GeoTIFF's extent without a gap", (whole.geom_type, len(gaps), whole.bounds == tuple(shapely.box(*box).bounds)), ("Polygon", 0, True)) if crs is None else checks.equal(f"{name}: no gap", len(gaps), 0)
+    # Summits are samples of the GeoTIFF, the highest of those around them.
+    summits, points, _ = data["summits"]
+    for point, height in zip(points, summits["height"]):
+        i, j = int((point.x - box.left) / cell[0]), int((box.top - point.y) / cell[1])
+        beside = ground[max(j - 1, 0) : j + 2, max(i - 1, 0) : i + 2]
+        checks.that(f"{name}: a summit stands at its height", ground[j, i] == height == beside.max() and point.z == height)
+    # Lines lie in valleys: the middle of a reach is lower than the ground 3 cells to its sides, mostly.
+    lower = sides = 0
+    for line in lines:
+        part = shapely.get_coordinates(line)
+        for k in range(4, len(part) - 4, 4):
+            along = part[k + 1] - part[k - 1]
+            normal = numpy.array([-along[1], along[0]]) / max(numpy.hypot(*along), 1e-12)
+            at = [part[k] + side * 3 * cell[0] * normal for side in (0, -1, 1)]
+            i = [int((x - box.left) / cell[0]) for x, _ in at]
+            j = [int((box.top - y) / cell[1]) for _, y in at]
+            if min(i) < 0 or min(j) < 0 or max(i) >= ground.shape[1] or max(j) >= ground.shape[0]:
+                continue
+            here, left, right = (ground[b, a] for a, b in zip(i, j))
+            sides += 2
+            lower += int(here <= left) + int(here <= right)
+    checks.that(f"{name}: rivers lie in valleys", sides > 0 and lower / sides > 0.75, f"({lower} of {sides})")
+    print(f"{name}: {', '.join(f'{len(data[layer][1])} {layer}' for layer in LAYERS)}; {shores} mouths at shores, {lower / max(sides, 1):.3f} of banks higher")
+
+# All formats hold the same.
+for layer in LAYERS:
+    columns, geometries, _ = read(WORK / "island.gpkg", layer)
+    for ending in ["geojson", "fgb"]:
+        path = export("island", f"island_{layer}.{ending}", "--layer", layer)
+        others, shapes, meta = read(path)
+        order = numpy.argsort(others["id"]) if "id" in others else None
+        if order is None:
+            key = lambda found: sorted(shapely.to_wkb(shapely.normalize(shapely.set_precision(found, 0.02))))
+            checks.equal(f"{layer}.{ending}: as many", len(shapes), len(geometries))
+            continue
+        near = [shapely.equals_exact(a, b, 0.02) for a, b in zip(geometries, shapes[order])]
+        checks.that(f"{layer}.{ending}: the same geometries", len(shapes) == len(geometries) and all(near))
+        same = all(
+            (a is None and b is None) or a == b or (isinstance(a, float) and (numpy.isnan(a) and numpy.isnan(b) or abs(a - b) < 1e-9 * abs(a)))
+            for field in columns
+            for a, b in zip(columns[field], others[field][order])
+        )
+        checks.that(f"{layer}.{ending}: the same attributes", list(columns) == [field for field in others] and same)
+    # The indexes find what a search of all finds.
+    box = tuple(shapely.total_bounds(geometries[: max(1, len(geometries) // 3)]))
+    expect = int(shapely.intersects(shapely.box(*box), geometries).sum())
+    for path in [WORK / "island.gpkg", WORK / f"island_{layer}.fgb"]:
+        found = pyogrio.raw.read(path, layer=layer, bbox=box)[2]
+        checks.that(f"{layer}: {path.suffix} finds what lies in a box", len(found) >= expect > 0, f"({len(found)}, {expect})")
+
+# A file that is cut short is refused, and one in which a river rises is found out.
+whole = (WORK / "island.gpkg").read_bytes()
+damaged = WORK / "damaged.gpkg"
+damaged.write_bytes(whole[: len(whole) // 2])
+checks.that("half a GeoPackage is refused", subprocess.run(["ogrinfo", "-al", "-so", damaged], capture_output=True).returncode != 0)
+flat = json.loads((WORK / "island_rivers.geojson").read_text())
+checks.that("GeoJSON lines have heights", all(len(point) == 3 for point in flat["features"][0]["geometry"]["coordinates"]))
+
+checks.end()
