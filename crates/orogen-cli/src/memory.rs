@@ -1,6 +1,6 @@
-//! How much memory may be used.
+//! How much memory may be used: the whole process counts.
 
-use orogen::{Error, ErrorKind, words};
+use orogen::Budget;
 use sysinfo::{Pid, ProcessRefreshKind, ProcessesToUpdate, System};
 
 use crate::size::Bytes;
@@ -24,20 +24,22 @@ pub fn share_of_free() -> Option<u64> {
         .map(|free| free / 2)
 }
 
-/// Refuses work that needs more bytes than `allowed`, or than [`share_of_free`] if nobody says: nothing starts that cannot
-/// finish.
-pub fn afford(needed: u64, allowed: Option<Bytes>) -> Result<(), Error> {
-    match allowed.map(|bytes| bytes.0).or_else(share_of_free) {
-        Some(allowed) if needed > allowed => Err(Error::new(
-            ErrorKind::Memory,
-            format!(
-                "this needs up to {} of memory and {} is allowed: ask for fewer samples, or allow more",
-                words::bytes(needed),
-                words::bytes(allowed)
-            ),
-        )),
-        _ => Ok(()),
-    }
+/// Bytes that the program takes whatever it does: its code, the runtime and the tables of its libraries.
+const PROGRAM: u64 = 14 << 20;
+
+/// Bytes that a thread takes beside what it works on: the stack that it touches, and what the allocator keeps for it.
+const THREAD: u64 = 256 << 10;
+
+/// How many threads work at once, if nobody says.
+pub fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// What the work may use of so many bytes for the whole process, or of [`share_of_free`] if nobody says: the program's own share is taken off.
+pub fn budget(allowed: Option<Bytes>, threads: usize) -> Budget {
+    let budget = Budget::of(allowed.map(|bytes| bytes.0).or_else(share_of_free));
+    budget.charge(PROGRAM + THREAD * threads as u64).keep();
+    budget
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use orogen::{Cache, Options, Recipe, World};
+use orogen::{Budget, Cache, Options, Recipe, World};
 
 use crate::failure::Failure;
 use crate::memory;
@@ -12,10 +12,10 @@ use crate::size::Bytes;
 /// What the work may use.
 #[derive(Debug, Clone, Args)]
 pub struct Limits {
-    /// Threads to work with [default: all there are]
+    /// Threads to work with, at most as many as there are cores [default: all there are]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
-    /// Most memory to use, such as 512MiB or 2GiB [default: half of what is free]
+    /// Most memory that the program may take, such as 512MiB or 2GiB [default: half of what is free]
     #[arg(long, value_name = "BYTES")]
     pub memory: Option<Bytes>,
     /// Folder in which slow solutions are kept for later runs [default: $OROGEN_CACHE, else the system's folder for caches]
@@ -33,20 +33,29 @@ pub struct Limits {
 const CACHE_VARIABLE: &str = "OROGEN_CACHE";
 
 impl Limits {
-    /// Opens the world of a recipe within these limits.
-    pub fn open(&self, recipe: Recipe) -> Result<World, Failure> {
-        Ok(World::with_options(recipe, self.options())?)
+    /// Opens the world of a recipe within these limits; what it takes and what the command itself [reserves](Budget::reserve) share `budget`, which
+    /// is [`Limits::budget`].
+    pub fn open(&self, recipe: Recipe, budget: &Budget) -> Result<World, Failure> {
+        Ok(World::with_options(recipe, self.options(budget))?)
+    }
+
+    /// What of `--memory` the work may take.
+    pub fn budget(&self) -> Budget {
+        memory::budget(self.memory, self.threads())
     }
 
     /// The limits as the library takes them.
-    pub fn options(&self) -> Options {
-        let threads = self.threads.map(usize::from);
-        if let Some(threads) = threads {
-            // For what is made from grids; fails only if already set, when remaking: then it is the same.
-            let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-        }
-        let memory = self.memory.map(|bytes| bytes.0).or_else(memory::share_of_free);
-        Options { threads, memory, cache: self.cache(), scratch: None }
+    pub fn options(&self, budget: &Budget) -> Options {
+        let threads = self.threads();
+        // For what is made from grids; fails only if already set, when remaking: then it is the same.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+        Options { threads: Some(threads), memory: budget.clone(), cache: self.cache(), scratch: None }
+    }
+
+    /// As many as are asked for, but no more than there are cores: more would take turns, and memory.
+    fn threads(&self) -> usize {
+        let cores = memory::cores();
+        self.threads.map_or(cores, |threads| usize::from(threads).min(cores))
     }
 
     /// What keeps solutions, if any are kept.

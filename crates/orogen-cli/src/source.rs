@@ -8,11 +8,11 @@ use orogen::dem::ground::{Ground, USUAL_MEMORY};
 use orogen::format::import;
 use orogen::recipe::document::LONGEST_TEXT;
 use orogen::recipe::presets::{self, Preset};
-use orogen::{Error, ErrorKind, Recipe, nearest};
+use orogen::{Budget, Error, ErrorKind, Recipe, nearest};
 
 use crate::failure::Failure;
 use crate::sink::DASH;
-use crate::{memory, say};
+use crate::say;
 
 /// Where a recipe comes from.
 #[derive(Debug, Clone)]
@@ -65,14 +65,14 @@ impl Source {
         files
     }
 
-    /// Reads the recipe.
-    pub fn read(&self) -> Result<Recipe, Failure> {
+    /// Reads the recipe; heights of a real place take no more than what is left of `budget`.
+    pub fn read(&self, budget: &Budget) -> Result<Recipe, Failure> {
         Ok(match self {
             Source::File(path) => Recipe::read(path)?,
             Source::Preset(preset) => preset.recipe()?,
             Source::Stdin => piped()?,
             Source::Dem(path) => {
-                let ground = Ground::read(path, None, memory::share_of_free().unwrap_or(USUAL_MEMORY))?;
+                let ground = Ground::read(path, None, budget.left().unwrap_or(USUAL_MEMORY))?;
                 ground.notes.iter().for_each(|note| say::error(&format!("note: {}: {note}", path.display())));
                 Recipe::of_place(path, &Arc::new(ground))
             }

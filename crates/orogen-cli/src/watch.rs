@@ -1,6 +1,5 @@
 //! Making something again whenever a file changes.
 
-use std::io::Read;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -84,11 +83,9 @@ struct Seen {
     missed: u32,
 }
 
-/// The file's bytes, as many as a recipe may have and one more.
+/// The file's bytes, if it has no more than a recipe may have.
 fn read(path: &Path) -> Option<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).ok()?;
-    file.take(LONGEST_TEXT + 1).read_to_end(&mut bytes).ok().map(|_| bytes)
+    orogen::open::bytes(path, "read the recipe", LONGEST_TEXT).ok().flatten()
 }
 
 impl Seen {

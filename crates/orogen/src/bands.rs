@@ -1,10 +1,10 @@
 //! A big window as bands of whole rows, as most files are written.
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::progress::Progress;
 use crate::tiles::{Tiles, Tiling};
-use crate::words::{bytes, count};
+use crate::words::count;
 use crate::world::World;
 
 /// About how many samples a band has, and the fewest and most rows.
@@ -65,13 +65,8 @@ impl World {
                     let tile = Window { width: rows.min(window.width), height: rows, ..*window };
                     let tiles = 4 * (layers.len() * tile.len()) as u64;
                     let making = self.memory_of(&self.plan(layers, &tile)?).saturating_add(tiles);
-                    let sentence = format!(
-                        "this needs at least {} of memory, {} at a time, and {} is allowed: allow more",
-                        bytes(making.saturating_add(held)),
-                        count(rows, "row"),
-                        bytes(self.memory_limit().unwrap_or_default())
-                    );
-                    return Err(Error::new(ErrorKind::Memory, sentence));
+                    let what = format!("making {} at a time", count(rows, "row"));
+                    return Err(self.budget().refusal(&what, making.saturating_add(held), "allow more"));
                 }
                 Err(error) => return Err(error),
             }

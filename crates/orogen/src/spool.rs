@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use crate::file::{self, Temporary};
 
-/// How many bytes stay in memory.
-const FEW: usize = 64 << 20;
+/// How many bytes stay in memory: little beside any `--memory`, and small files need no other.
+pub const IN_MEMORY: usize = 8 << 20;
 
 /// What can be written and read back.
 trait Disk: Read + Write + Seek + Send {}
@@ -34,10 +34,10 @@ impl Spool {
         Spool::default()
     }
 
-    /// Keeps up to 64 MiB in memory, and more than that in a file on the disk that a file at `path` would be on. If `path` is a
-    /// pipe or a device there is no such disk and all stays in memory.
+    /// Keeps up to [`IN_MEMORY`] in memory, and more than that in a file on the disk that a file at `path` would be on. If `path` is a
+    /// pipe or a device there is no such disk: the file is in the system's folder for temporary ones.
     pub fn beside(path: &Path) -> Spool {
-        Spool { folder: folder_of(path), most: FEW, ..Spool::default() }
+        Spool { folder: Some(folder_of(path)), most: IN_MEMORY, ..Spool::default() }
     }
 
     /// Puts bytes aside; returns where [`Spool::read`] finds them.
@@ -85,12 +85,12 @@ impl Write for Spool {
     }
 }
 
-/// The folder for a file that waits to be copied to `path`; none if that is no file.
-fn folder_of(path: &Path) -> Option<PathBuf> {
+/// The folder for a file that waits to be copied to `path`.
+fn folder_of(path: &Path) -> PathBuf {
     match fs::canonicalize(path) {
-        Ok(real) if real.is_file() => Some(file::folder(&real).to_path_buf()),
-        Ok(_) => None,
-        Err(_) => Some(file::folder(path).to_path_buf()),
+        Ok(real) if real.is_file() => file::folder(&real).to_path_buf(),
+        Ok(_) => std::env::temp_dir(),
+        Err(_) => file::folder(path).to_path_buf(),
     }
 }
 
@@ -175,9 +175,9 @@ mod tests {
     #[test]
     fn a_pipe_or_a_device_has_no_disk_beside_it() {
         let folder = std::env::temp_dir();
-        assert_eq!(folder_of(&folder.join("orogen-not-yet-there.tif")), Some(folder));
-        assert_eq!(folder_of(Path::new("a.tif")), Some(".".into()));
+        assert_eq!(folder_of(&folder.join("none").join("not-yet-there.tif")), folder.join("none"));
+        assert_eq!(folder_of(Path::new("a.tif")), PathBuf::from("."));
         #[cfg(unix)]
-        assert_eq!(folder_of(Path::new("/dev/null")), None);
+        assert_eq!(folder_of(Path::new("/dev/null")), folder);
     }
 }

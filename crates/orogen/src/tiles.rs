@@ -1,9 +1,9 @@
 //! A big window as a stream of tiles.
 
+use crate::budget::Budget;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::progress::Progress;
-use crate::words::bytes;
 use crate::world::World;
 use std::collections::VecDeque;
 
@@ -213,15 +213,11 @@ impl<'w> Tiles<'w> {
                 match allowed {
                     Some(allowed) if needed > allowed => {
                         if at_once == [1, 1] {
-                            let sentence = format!(
-                                "a tile of {} x {} samples needs up to {} of memory and {} is allowed: ask for smaller tiles, or \
-                                 allow more",
-                                self.tiling.side,
-                                self.tiling.side,
-                                bytes(needed),
-                                bytes(allowed)
-                            );
-                            return Err(Error::new(ErrorKind::Memory, sentence));
+                            let side = self.tiling.side;
+                            let what = format!("a tile of {side} x {side} samples");
+                            let own = self.tiling.memory.map(Budget::of);
+                            let budget = own.as_ref().unwrap_or(self.world.budget());
+                            return Err(budget.refusal(&what, needed, "ask for smaller tiles, or allow more"));
                         }
                     }
                     _ => return Ok(at_once),

@@ -1,5 +1,6 @@
 //! The front door: a recipe opened, asked for windows and points.
 
+use crate::budget::Budget;
 use crate::dem::ground::USUAL_MEMORY;
 use crate::engine::alone::Ready;
 use crate::engine::run::Engine;
@@ -17,7 +18,7 @@ use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, Link, MOST_SAMPLES};
 use crate::store::cache::Cache;
 use crate::store::solutions::Store;
-use crate::words::{bytes, number, suggestion};
+use crate::words::{number, suggestion};
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -27,8 +28,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub struct Options {
     /// Threads; `None` takes as many as the machine has cores.
     pub threads: Option<usize>,
-    /// Bytes that a request may need; `None` for no limit. Solutions that are too large for it are kept on disk.
-    pub memory: Option<u64>,
+    /// Bytes that a request may need. Solutions that are too large for it are kept on disk.
+    pub memory: Budget,
     /// Where solutions are found again by later runs; `None` keeps none.
     pub cache: Option<Cache>,
     /// The folder for what does not fit in memory; `None` takes the cache's, or else the system's for temporary files. Nothing
@@ -65,7 +66,7 @@ pub struct World {
     setting: Setting,
     store: Store,
     pool: rayon::ThreadPool,
-    memory: Option<u64>,
+    memory: Budget,
     /// Plans for points of layers that depend on no grid: the same for every point.
     pointwise: Mutex<HashMap<String, Arc<Plan>>>,
 }
@@ -88,7 +89,7 @@ impl World {
     /// If the recipe is not valid, a file that it names cannot be read, or no threads can be started.
     pub fn with_options(mut recipe: Recipe, options: Options) -> Result<World> {
         let graph = Graph::resolve(&recipe).map_err(Graph::error)?;
-        recipe.load(options.memory.unwrap_or(USUAL_MEMORY))?;
+        recipe.load(options.memory.left().unwrap_or(USUAL_MEMORY))?;
         if recipe.outputs().next().is_none() {
             let sentence = "the recipe has no outputs: name at least one, such as `height`";
             return Err(Error::new(ErrorKind::Recipe, sentence));
@@ -170,14 +171,19 @@ impl World {
         self.planned(&targets, *window, false)
     }
 
+    /// The memory that requests share with what the caller holds: see [`Budget::reserve`].
+    pub fn budget(&self) -> &Budget {
+        &self.memory
+    }
+
     /// Bytes that a request may need; `None` for no limit.
     pub fn memory_limit(&self) -> Option<u64> {
-        self.memory
+        self.memory.left()
     }
 
     fn planned(&self, targets: &[Link], window: Window, scattered: bool) -> Result<Plan> {
         let threads = self.pool.current_num_threads();
-        Planner::new(&self.recipe, &self.graph).fitting(targets, window, scattered, threads, self.memory)
+        Planner::new(&self.recipe, &self.graph).fitting(targets, window, scattered, threads, self.memory_limit())
     }
 
     /// Bytes of disk that running a plan takes at most, what stays in the cache not counted.
@@ -412,31 +418,17 @@ impl World {
 
     /// Whether there is memory for a window's samples, beside what is held already.
     pub(crate) fn afford_grid(&self, window: &Window) -> Result<()> {
-        self.allow((window.width as u64).saturating_mul(window.height as u64).saturating_mul(4))
+        self.memory.afford((window.width as u64).saturating_mul(window.height as u64).saturating_mul(4))
     }
 
     /// Refuses a plan that needs more than is allowed, and lets go of other solutions to make room for it.
     fn afford(&self, plan: &Plan) -> Result<()> {
         let needed = self.memory_of(plan);
-        self.allow(needed)?;
-        if let Some(allowed) = self.memory {
+        self.memory.afford(needed)?;
+        if let Some(allowed) = self.memory_limit() {
             let keys: Vec<Key> = plan.solves.iter().map(|solve| solve.key).collect();
-            self.store.make_room(allowed - needed, &keys);
+            self.store.make_room(allowed.saturating_sub(needed), &keys);
         }
         Ok(())
-    }
-
-    fn allow(&self, needed: u64) -> Result<()> {
-        match self.memory {
-            Some(allowed) if needed > allowed => Err(Error::new(
-                ErrorKind::Memory,
-                format!(
-                    "this needs up to {} of memory and {} is allowed: ask for fewer samples at once, or allow more",
-                    bytes(needed),
-                    bytes(allowed)
-                ),
-            )),
-            _ => Ok(()),
-        }
     }
 }

@@ -6,7 +6,9 @@ mod support;
 use orogen::chunks::seam::{Sides, stitch};
 use orogen::node::Node;
 use orogen::op::Op;
-use orogen::{ChunkId, ChunkStep, Chunks, Grid, Options, Progress, Rings, Sampler, Window, World, WorldSpec, presets};
+use orogen::{
+    Budget, ChunkId, ChunkStep, Chunks, Grid, Options, Progress, Rings, Sampler, Window, World, WorldSpec, presets,
+};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex};
 use support::{Random, open, recipe_of, world_of};
@@ -376,7 +378,7 @@ fn bands_of_rows_are_the_window_in_little_memory() {
     let whole = open(&recipe, 2).window("height", &whole_window).unwrap();
     // 900 x 700 samples alone are 2.4 MiB.
     for (memory, beside, threads) in [(4 << 20, 0, 1), (8 << 20, 1 << 20, 2)] {
-        let options = Options { threads: Some(threads), memory: Some(memory), ..Options::default() };
+        let options = Options { threads: Some(threads), memory: Budget::of(memory), ..Options::default() };
         let world = World::with_options(recipe.clone(), options).unwrap();
         let mut rows = 0;
         for band in world.bands(&["height"], &whole_window, beside, &Progress::none()).unwrap() {
@@ -387,6 +389,6 @@ fn bands_of_rows_are_the_window_in_little_memory() {
         }
         assert_eq!(rows, 700);
         let error = world.bands(&["height"], &whole_window, memory, &Progress::none()).err().unwrap().to_string();
-        assert!(error.contains("this needs at least") && error.contains("4 rows at a time"), "{error}");
+        assert!(error.contains("making 4 rows at a time needs up to"), "{error}");
     }
 }

@@ -11,7 +11,7 @@ use orogen::format::geotiff::{reader, writer};
 use orogen::format::import;
 use orogen::format::sidecar::Sidecar;
 use orogen::spool::Spool;
-use orogen::{Options, Recipe, Window, World, WorldSpec};
+use orogen::{Budget, Options, Recipe, Window, World, WorldSpec};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use support::Random;
@@ -133,7 +133,8 @@ fn degrees_and_oblong_cells_become_square_metres() {
 fn world(dem: Node, size: Option<[f64; 2]>) -> World {
     let mut recipe = Recipe::new(WorldSpec { size, cell: 30.0, ..WorldSpec::default() });
     recipe.add("place", dem).output("height", "place");
-    World::with_options(recipe, Options { threads: Some(1), memory: Some(64 << 20), ..Options::default() }).unwrap()
+    World::with_options(recipe, Options { threads: Some(1), memory: Budget::of(64 << 20), ..Options::default() })
+        .unwrap()
 }
 
 fn node(name: &str) -> Node {

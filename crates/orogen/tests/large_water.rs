@@ -1,7 +1,7 @@
 //! Filling and drainage on disk, tile by tile, are those in memory, bit for bit.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
-use orogen::{Options, Progress, Recipe, Window, World};
+use orogen::{Budget, Options, Progress, Recipe, Window, World};
 
 const LAYERS: [&str; 7] = ["flow", "receiver", "watershed", "strahler", "filled", "full", "depth"];
 
@@ -51,7 +51,7 @@ depth = "full.depth"
 }
 
 fn open(recipe: &Recipe, memory: Option<u64>) -> World {
-    World::with_options(recipe.clone(), Options { memory, ..Options::default() }).unwrap()
+    World::with_options(recipe.clone(), Options { memory: Budget::of(memory), ..Options::default() }).unwrap()
 }
 
 /// Compares all layers window by window. So little `memory` moves them to disk; without a limit the plan is told to.

@@ -354,7 +354,7 @@ fn a_plan_is_a_value_that_can_be_sent() {
 #[test]
 fn a_plan_over_memory_is_refused_before_it_starts() {
     let recipe = recipe_of(&Node::named("fbm").unwrap(), WorldSpec::default(), false);
-    let options = orogen::Options { threads: Some(1), memory: Some(64 << 20), ..Default::default() };
+    let options = orogen::Options { threads: Some(1), memory: orogen::Budget::of(64 << 20), ..Default::default() };
     let world = World::with_options(recipe, options).unwrap();
     let error = world.window("height", &Window::new(1 << 20, 1 << 20, 10.0)).unwrap_err();
     assert_eq!(error.kind(), orogen::ErrorKind::Memory);

@@ -6,7 +6,7 @@ mod support;
 use orogen::field::{fbm::Fbm, warp::Warp};
 use orogen::filter::blur::Blur;
 use orogen::node::Node;
-use orogen::{ErrorKind, Options, Recipe, Sampler, Window, World, WorldSpec};
+use orogen::{Budget, ErrorKind, Options, Recipe, Sampler, Window, World, WorldSpec};
 use std::sync::Arc;
 use support::{Random, open, recipe_of, world_of};
 
@@ -106,7 +106,7 @@ fn what_cannot_be_is_said() {
     assert!(short.contains("5 x 4") && short.contains("buffer of 19") && short.contains("needs 20"), "{short}");
     let unpaired = said(sampler.points(&[1.0], &[1.0, 2.0], &mut [0.0]).unwrap_err());
     assert!(unpaired.contains("1 eastings, 2 southings"), "{unpaired}");
-    let options = Options { threads: Some(1), memory: Some(64 << 20), ..Options::default() };
+    let options = Options { threads: Some(1), memory: Budget::of(64 << 20), ..Options::default() };
     let world = World::with_options(recipe_of(&Node::named("fbm").unwrap(), WorldSpec::default(), false), options);
     let error =
         Sampler::new(world.unwrap(), "height").unwrap().window(&Window::new(1 << 20, 1 << 20, 1.0)).unwrap_err();

@@ -6,7 +6,7 @@ mod support;
 use orogen::field::{fbm::Fbm, warp::Warp};
 use orogen::filter::{blur::Blur, slope::Slope};
 use orogen::solver::{bake::Bake, normalise::Normalise};
-use orogen::{Cache, Grid, Options, Progress, Recipe, Window, World};
+use orogen::{Budget, Cache, Grid, Options, Progress, Recipe, Window, World};
 use std::fs;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -98,8 +98,10 @@ fn memory_disk_and_folder_make_the_same_bits() {
             [(1, None, true), (2, None, true), (2, short, false), (1, short, true), (2, short, true)]
         {
             let cache = cached.then(|| folder.cache());
-            let world =
-                open(&recipe, Options { threads: Some(threads), memory, cache, scratch: Some(folder.0.clone()) });
+            let world = open(
+                &recipe,
+                Options { threads: Some(threads), memory: Budget::of(memory), cache, scratch: Some(folder.0.clone()) },
+            );
             let name = format!("{threads} threads, {memory:?} of memory, cache {cached}, cell {cell}");
             let mut moved = 0;
             for part in &parts {
@@ -117,7 +119,8 @@ fn memory_disk_and_folder_make_the_same_bits() {
             assert_eq!(point.to_bits(), whole[0].get(i, j).to_bits(), "{name}");
             if cell != 10.24 {
                 // The others differ in their positions alone: one way through the disk tells.
-                let world = open(&recipe, Options { threads: Some(2), memory: short, ..Options::default() });
+                let world =
+                    open(&recipe, Options { threads: Some(2), memory: Budget::of(short), ..Options::default() });
                 same("disk", &whole, &layers(&world, &parts[2]));
                 break;
             }
@@ -133,7 +136,7 @@ fn tiles_of_any_size_solve_the_same() {
     let whole = layers(&open(&recipe, Options::default()), &window);
     let mut sides = Vec::new();
     for memory in [40 << 20, 11 << 20, 8 << 20] {
-        let world = open(&recipe, Options { threads: Some(2), memory: Some(memory), ..Options::default() });
+        let world = open(&recipe, Options { threads: Some(2), memory: Budget::of(memory), ..Options::default() });
         let plan = world.plan(&["height", "steep", "again"], &window).unwrap();
         assert!(world.memory_of(&plan) <= memory, "{memory}: {}", world.explain(&plan));
         sides.push(plan.solves[0].side);
@@ -202,12 +205,12 @@ fn what_was_quick_is_not_kept_and_no_folder_is_no_error() {
 #[test]
 fn what_cannot_fit_is_refused_with_the_figure() {
     let recipe = stacked(10.0, false);
-    let world = open(&recipe, Options { threads: Some(2), memory: Some(2 << 20), ..Options::default() });
+    let world = open(&recipe, Options { threads: Some(2), memory: Budget::of(2 << 20), ..Options::default() });
     let error = world.window("height", &Window::new(10, 10, 10.0)).unwrap_err();
     assert_eq!(error.kind(), orogen::ErrorKind::Memory);
     assert!(error.to_string().contains("2.0 MiB is allowed"), "{error}");
     let recipe = stacked(10.0, true);
-    let none = Options { memory: Some(8 << 20), scratch: Some("/dev/null/nowhere".into()), ..Options::default() };
+    let none = Options { memory: Budget::of(8 << 20), scratch: Some("/dev/null/nowhere".into()), ..Options::default() };
     let error = open(&recipe, none).window("height", &Window::new(10, 10, 10.0)).unwrap_err();
     assert_eq!(error.kind(), orogen::ErrorKind::File, "{error}");
     assert!(error.to_string().contains("cannot work in /dev/null/nowhere"), "{error}");
@@ -221,7 +224,7 @@ fn solutions_of_other_layers_leave_memory_when_it_is_short() {
     // Just enough for either layer alone.
     let needed = |layer| ample.memory_of(&ample.plan(&[layer], &window).unwrap());
     let limit = needed("height").max(needed("steep"));
-    let world = open(&recipe, Options { memory: Some(limit), ..Options::default() });
+    let world = open(&recipe, Options { memory: Budget::of(limit), ..Options::default() });
     for layer in ["steep", "height", "steep", "again", "height"] {
         assert_eq!(world.window(layer, &window).unwrap(), ample.window(layer, &window).unwrap());
     }
@@ -256,7 +259,10 @@ fn several_worlds_share_a_folder_at_once() {
         for memory in [None, Some(6 << 20), None] {
             let (recipe, expect, cache) = (&recipe, &expect, folder.cache());
             scope.spawn(move || {
-                let world = open(recipe, Options { threads: Some(1), memory, cache: Some(cache), scratch: None });
+                let world = open(
+                    recipe,
+                    Options { threads: Some(1), memory: Budget::of(memory), cache: Some(cache), scratch: None },
+                );
                 same("shared", expect, &layers(&world, &window));
             });
         }

@@ -5,7 +5,7 @@ mod support;
 
 use orogen::node::Node;
 use orogen::tiles::{Tile, Tiling};
-use orogen::{ErrorKind, Options, Progress, Recipe, Window, World};
+use orogen::{Budget, ErrorKind, Options, Progress, Recipe, Window, World};
 use std::collections::HashSet;
 use support::{open, recipe_of, world_of};
 
@@ -14,7 +14,7 @@ fn recipe(op: &str) -> Recipe {
 }
 
 fn limited(recipe: &Recipe, memory: u64) -> World {
-    World::with_options(recipe.clone(), Options { threads: Some(2), memory: Some(memory), ..Options::default() })
+    World::with_options(recipe.clone(), Options { threads: Some(2), memory: Budget::of(memory), ..Options::default() })
         .unwrap()
 }
 

@@ -61,17 +61,22 @@ fn measure(args: &Args) -> Result<(), Failure> {
         return Err(Failure::Usage("the page is a picture; name a file that ends in .png".into()));
     }
     let source = Source::find(&args.recipe)?;
-    let mut recipe = source.read()?;
+    let budget = args.limits.budget();
+    let mut recipe = source.read(&budget)?;
     args.samples.view.apply(&mut recipe);
     let policy = args.replace.policy(source.inputs(&recipe));
     let sink = args.out.as_ref().map(|out| Sink::new(out, &policy)).transpose()?;
-    let world = args.limits.open(recipe)?;
+    let world = args.limits.open(recipe, &budget)?;
     let window = args.samples.window(&world)?;
     // A file of heights tells nothing of a sea: all of it is land.
     let sea_level = match source {
         Source::Dem(_) => None,
         _ => Some(world.recipe().world.sea_level as f32),
     };
+    // The heights are part of a plan and of what measuring takes.
+    let measuring = Measures::memory(window.len() as u64).saturating_sub(4 * window.len() as u64);
+    let page = if args.out.is_some() { page::MEMORY } else { 0 };
+    let _measuring = world.budget().reserve(measuring + page)?;
     let (bar, progress) = Bar::new(args.quiet);
     let grids = world.grids(&[&args.layer], &window, &progress);
     let mut grids = grids.map_err(|error| interrupt::explain(error.into(), "nothing was measured"))?;

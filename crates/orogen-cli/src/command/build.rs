@@ -84,10 +84,11 @@ fn build(args: &Args) -> Result<(), Failure> {
     let begun = Instant::now();
     let form = form(args)?;
     let source = Source::find(&args.recipe)?;
-    let mut recipe = source.read()?;
+    let budget = args.limits.budget();
+    let mut recipe = source.read(&budget)?;
     args.samples.view.apply(&mut recipe);
     let output = args.replace.policy(source.inputs(&recipe)).output(&args.out)?;
-    let world = args.limits.open(recipe)?;
+    let world = args.limits.open(recipe, &budget)?;
     let tile = args.tile.map(|tile| tile as usize);
     let order = Order { form, window: window(args, &world, form)?, tile, layers: args.layers.clone() };
     let build = Build::new(&world, &order, &output)?;

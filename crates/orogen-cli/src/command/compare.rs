@@ -23,7 +23,7 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(120..=4000), default_value = "200",
           allow_negative_numbers = true)]
     size: u16,
-    /// Most memory to use, such as 512MiB or 2GiB [default: half of what is free]
+    /// Most memory that the program may take, such as 512MiB or 2GiB [default: half of what is free]
     #[arg(long, value_name = "BYTES")]
     memory: Option<Bytes>,
     #[command(flatten)]
@@ -43,7 +43,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let [width, height] = page::size(rows.len(), side);
     // The page, and of each noise its pictures, its heights twice and what they are made of.
     let noises: usize = rows.iter().map(|row| row.noises.len()).sum();
-    memory::afford((3 * width * height + noises * side * side * 24) as u64, args.memory)?;
+    memory::budget(args.memory, memory::cores()).afford((3 * width * height + noises * side * side * 24) as u64)?;
     let page = page::draw(&rows, side, args.seed)?;
     let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
     sink.write(|out| page.write_png(out, &[("Software", &software)]))?;

@@ -33,14 +33,15 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn tell(args: &Args) -> Result<(), Failure> {
-    let mut recipe = Source::find(&args.recipe)?.read()?;
+    let budget = args.limits.budget();
+    let mut recipe = Source::find(&args.recipe)?.read(&budget)?;
     args.samples.view.apply(&mut recipe);
     let layers: Vec<String> = match &args.layer {
         Some(layer) => vec![layer.clone()],
         None => recipe.outputs().map(String::from).collect(),
     };
     let layers: Vec<&str> = layers.iter().map(String::as_str).collect();
-    let world = args.limits.open(recipe)?;
+    let world = args.limits.open(recipe, &budget)?;
     let plan = world.plan(&layers, &args.samples.window(&world)?)?;
     say::out(&world.explain(&plan))
 }

@@ -130,11 +130,12 @@ fn export(args: &Args) -> Result<(), Failure> {
     let options = args.options.read()?;
     registry::check(format, &options)?;
     let source = Source::find(&args.recipe)?;
-    let mut recipe = source.read()?;
+    let budget = args.limits.budget();
+    let mut recipe = source.read(&budget)?;
     args.samples.view.apply(&mut recipe);
     let policy = args.replace.policy(source.inputs(&recipe));
     list::prepare(&mut recipe, &args.layer);
-    let world = args.limits.open(recipe)?;
+    let world = args.limits.open(recipe, &budget)?;
     if let Some(target) = args.target.and_then(targets::list::named) {
         return for_engine(args, target, format, &world, &policy);
     }

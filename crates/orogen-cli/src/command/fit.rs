@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use orogen::dem::ground::{Ground, USUAL_MEMORY};
 use orogen::file::mark;
-use orogen::fit::likeness::{Likeness, of_windows};
-use orogen::fit::search::{Effort, MOST_WINDOWS, Target, search};
+use orogen::fit::likeness::{self, Likeness};
+use orogen::fit::search::{Effort, MOST_WINDOWS, SIDE, Target, search};
 use orogen::recipe::presets;
 use orogen::survey::measures::Measures;
 use orogen::survey::real::FIGURES;
 use orogen::world::HEIGHT;
-use orogen::{Error, ErrorKind, Grid, Recipe, Window};
+use orogen::{Budget, Error, ErrorKind, Grid, Recipe, Window};
 use serde_json::json;
 
 use crate::bar::Bar;
@@ -21,7 +21,7 @@ use crate::replace::Replace;
 use crate::sink::{Sink, is_stdout};
 use crate::size::seed;
 use crate::source::preset;
-use crate::{finite, interrupt, memory, say};
+use crate::{finite, interrupt, say};
 
 /// What it takes.
 #[derive(Debug, clap::Args)]
@@ -54,14 +54,19 @@ pub struct Args {
     quiet: bool,
 }
 
+/// Bytes of a sample that is measured.
+const MEASURED: u64 = 64;
+
 /// Finds a recipe, judges it by worlds of other seeds beside the default preset, and writes it.
 pub fn run(args: &Args) -> Result<(), Failure> {
     if !is_stdout(&args.out) && args.out.extension().is_none_or(|extension| extension != "toml") {
         return Err(Failure::Usage(format!("{} is no name for a recipe: let it end in .toml", args.out.display())));
     }
     let sink = Sink::new(&args.out, &args.replace.policy([&args.place]))?;
-    let allowed = args.limits.memory.map(|bytes| bytes.0).or_else(memory::share_of_free).unwrap_or(USUAL_MEMORY);
-    let place = Ground::read(&args.place, None, allowed)?;
+    let budget = args.limits.budget();
+    let place = Ground::read(&args.place, None, budget.left().unwrap_or(USUAL_MEMORY))?;
+    // The place, and what a window takes while it is measured.
+    budget.reserve(place.memory() + MEASURED * (SIDE * SIDE) as u64)?.keep();
     if !args.quiet {
         place.notes.iter().for_each(|note| say::error(&format!("note: {}: {note}", args.place.display())));
     }
@@ -71,21 +76,21 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let random = args.tries as usize / 2;
     let effort = Effort { random, improving: args.tries as usize - random, seed: args.seed };
     let (bar, progress) = Bar::new(args.quiet);
-    let found = search(&target, &effort, &args.limits.options(), &progress);
+    let found = search(&target, &effort, &args.limits.options(&budget), &progress);
     let found = found.map_err(|error| interrupt::explain(error.into(), "no recipe was written"))?;
     drop(bar);
     let name = args.place.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let about = format!("Invented land like {name}: fitted by its figures, nothing of it is in here");
     let recipe = found.recipe(&target, args.seed, &about);
+    let mut lands = [windows(&place.grid, &target), Vec::new(), Vec::new()];
     // Judged by worlds that the search has not seen.
-    let seeds = (1..=u64::from(args.judges)).map(|k| args.seed.wrapping_add(1000 * k));
-    let (mut ours, mut defaults) = (Vec::new(), Vec::new());
-    for seed in seeds {
-        ours.push(land(args, recipe.clone(), seed, &target)?);
-        defaults.push(land(args, preset(presets::DEFAULT)?.recipe()?, seed, &target)?);
+    for seed in (1..=u64::from(args.judges)).map(|k| args.seed.wrapping_add(1000 * k)) {
+        lands[1].append(&mut windows(&land(args, &budget, recipe.clone(), seed, &target)?, &target));
+        let default = preset(presets::DEFAULT)?.recipe()?;
+        lands[2].append(&mut windows(&land(args, &budget, default, seed, &target)?, &target));
     }
     sink.write(|out| out.write_all(mark::marked(&recipe.to_toml()).as_bytes()))?;
-    let report = Report::of(&target, &place.grid, &ours, &defaults);
+    let report = Report::of(&target, &lands);
     let text = match (args.json, args.quiet) {
         (true, _) => report.json(&target, found.tried),
         (false, true) => return Ok(()),
@@ -100,9 +105,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// A world of another seed at the place's cell, as much of it as the place has.
-fn land(args: &Args, mut recipe: Recipe, seed: u64, target: &Target) -> Result<Grid, Failure> {
+fn land(args: &Args, budget: &Budget, mut recipe: Recipe, seed: u64, target: &Target) -> Result<Grid, Failure> {
     recipe.world.seed = seed;
-    let world = args.limits.open(recipe)?;
+    let world = args.limits.open(recipe, budget)?;
     let whole = world.whole(target.cell)?;
     let [width, height] = target.size;
     let window = Window { width: whole.width.min(width), height: whole.height.min(height), ..whole };
@@ -111,6 +116,12 @@ fn land(args: &Args, mut recipe: Recipe, seed: u64, target: &Target) -> Result<G
     let mut grids = grids.map_err(|error| interrupt::explain(error.into(), "no recipe was written"))?;
     drop(bar);
     grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "nothing was asked for").into())
+}
+
+/// The measures of windows of a land, those left out that cannot be measured.
+fn windows(land: &Grid, target: &Target) -> Vec<Measures> {
+    let windows = likeness::windows(land.window(), target.side, MOST_WINDOWS);
+    windows.into_iter().filter_map(|window| Measures::of(&land.crop(&window)?, None)).collect()
 }
 
 /// Three lands side by side: the place, the recipe's, the default preset's.
@@ -122,28 +133,19 @@ struct Report {
 }
 
 impl Report {
-    fn of(target: &Target, place: &Grid, ours: &[Grid], defaults: &[Grid]) -> Report {
-        let apart = |lands: &[Grid]| {
-            let windows: Vec<Likeness> =
-                lands.iter().flat_map(|land| of_windows(land, target.side, MOST_WINDOWS)).collect();
-            let distances = windows.iter().map(|window| window.distance(&target.middle)).collect();
-            (windows.len(), median(distances).unwrap_or(f64::NAN))
+    fn of(target: &Target, lands: &[Vec<Measures>; 3]) -> Report {
+        let apart = |land: &[Measures]| {
+            let distances = land.iter().map(|window| Likeness::of(window).distance(&target.middle)).collect();
+            (land.len(), median(distances).unwrap_or(f64::NAN))
         };
         let own = (target.windows, median(target.own.clone()).unwrap_or(f64::NAN));
-        let measured = [&[place.clone()][..], ours, defaults].map(|lands| {
-            let windows = lands.iter().flat_map(|land| {
-                let windows = orogen::fit::likeness::windows(land.window(), target.side, MOST_WINDOWS);
-                windows.into_iter().filter_map(|window| Measures::of(&land.crop(&window)?, None)).collect::<Vec<_>>()
-            });
-            windows.collect::<Vec<Measures>>()
-        });
         let figures = FIGURES
             .iter()
             .map(|figure| {
-                [0, 1, 2].map(|k| median(measured[k].iter().filter_map(|measures| figure.value(measures)).collect()))
+                [0, 1, 2].map(|k| median(lands[k].iter().filter_map(|measures| figure.value(measures)).collect()))
             })
             .collect();
-        Report { distances: [own, apart(ours), apart(defaults)], figures }
+        Report { distances: [own, apart(&lands[1]), apart(&lands[2])], figures }
     }
 
     fn words(&self, args: &Args, name: &str, target: &Target, tried: usize) -> String {

@@ -44,6 +44,9 @@ pub struct Args {
     watch: bool,
 }
 
+/// Bytes that writing the pictures takes beside the heights.
+const ENCODERS: u64 = 2 << 20;
+
 /// Makes the terrain.
 pub fn run(args: &Args) -> Result<(), Failure> {
     Seeds::each(args.samples.view.seed.as_ref(), Some(&args.out), |seed, out| {
@@ -86,14 +89,17 @@ fn generate(args: &Args) -> Result<(), Failure> {
 /// Makes it once, and returns what there is to say on standard output.
 fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Failure> {
     let begun = Instant::now();
-    let mut recipe = source.read()?;
+    let budget = args.limits.budget();
+    let mut recipe = source.read(&budget)?;
     args.samples.view.apply(&mut recipe);
     let policy = args.replace.policy(source.inputs(&recipe));
-    let world = args.limits.open(recipe)?;
+    let world = args.limits.open(recipe, &budget)?;
     let window = args.samples.window(&world)?;
     let outputs = pictures::outputs(&args.out, &policy)?;
     let plan = world.plan(&[orogen::world::HEIGHT], &window)?;
     let folder = Folder::ready(&args.out)?;
+    // The pictures are encoded side by side, some rows at a time.
+    let _pictures = budget.reserve(ENCODERS)?;
     let mut grids = world.run(&plan, progress)?;
     let Some(grid) = grids.pop() else {
         return Ok(String::new());

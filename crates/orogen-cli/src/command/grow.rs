@@ -7,7 +7,7 @@ use orogen::format::png::{Animation, Picture, Pixel};
 use orogen::map::paint::Painter;
 use orogen::node::Node;
 use orogen::words::count;
-use orogen::{Grid, Progress, Recipe};
+use orogen::{Budget, Grid, Progress, Recipe};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
@@ -18,7 +18,7 @@ use crate::seeds::Seeds;
 use crate::sink::Sink;
 use crate::source::Source;
 use crate::view::{SizedView, View};
-use crate::{finite, interrupt, memory};
+use crate::{finite, interrupt};
 
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
@@ -64,7 +64,8 @@ fn grow(args: &Args) -> Result<(), Failure> {
         return Err(Failure::Usage(format!("--years is {years}; it goes from 0 to 1e9")));
     }
     let source = Source::find(&args.recipe)?;
-    let mut recipe = source.read()?;
+    let budget = args.limits.budget();
+    let mut recipe = source.read(&budget)?;
     args.samples.view.apply(&mut recipe);
     if !recipe.nodes().iter().any(|named| matches!(named.node, Node::StreamPower(_))) {
         return Err(Failure::Usage(format!(
@@ -75,7 +76,7 @@ fn grow(args: &Args) -> Result<(), Failure> {
     let policy = args.replace.policy(source.inputs(&recipe));
     let outputs = target.outputs(&args.out, u32::from(args.frames), &policy)?;
     let (bar, progress) = Bar::new(args.quiet);
-    let made = write(&recipe, args, &target, &outputs, &progress);
+    let made = write(&recipe, args, &target, &outputs, &budget, &progress);
     drop(bar);
     let words = made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
     outputs[0].tell(args.quiet, &words)
@@ -86,14 +87,17 @@ fn write(
     args: &Args,
     target: &Target,
     outputs: &[Sink],
+    budget: &Budget,
     progress: &Progress,
 ) -> Result<String, Failure> {
+    let frame = |steps: u16| frame(recipe, args, steps, budget, progress);
     // The last frame first: it tells how large the picture is, and its colours are those of all.
-    let last = frame(recipe, args, args.frames - 1, progress)?;
+    let last = frame(args.frames - 1)?;
     finite::check(orogen::world::HEIGHT, &last)?;
     let (width, height) = (last.width(), last.height());
     let pixels = (width * height) as u64;
-    memory::afford(pixels.saturating_mul(9).saturating_add(target.beside(pixels)), args.limits.memory)?;
+    // The last frame, the picture of one, and what is made of it.
+    let _frames = budget.reserve(pixels.saturating_mul(7).saturating_add(target.beside(pixels)))?;
     let painter = Painter::fit(&last, recipe.world.sea_level);
     let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
     let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", &software)] };
@@ -101,7 +105,7 @@ fn write(
     let painted = |ground: &Grid, bytes: &mut [u8]| painter.paint(ground, 0..height, bytes);
     // The beginning is smooth and the end is rough: colours and shades of both.
     let sample = || {
-        let first = frame(recipe, args, 0, progress).map_err(carried)?;
+        let first = frame(0).map_err(carried)?;
         let mut bytes = vec![0; width * height * 6];
         let (one, other) = bytes.split_at_mut(width * height * 3);
         painted(&first, one);
@@ -111,7 +115,7 @@ fn write(
     let moving = Moving { outputs, target, picture, animation, sample: &sample };
     moving.write(|k, bytes| {
         match k + 1 < u32::from(args.frames) {
-            true => painted(&frame(recipe, args, k as u16, progress).map_err(carried)?, bytes),
+            true => painted(&frame(k as u16).map_err(carried)?, bytes),
             false => painted(&last, bytes),
         }
         Ok(())
@@ -128,7 +132,7 @@ fn carried(failure: Failure) -> io::Error {
 }
 
 /// The ground after so many steps.
-fn frame(recipe: &Recipe, args: &Args, steps: u16, progress: &Progress) -> Result<Grid, Failure> {
+fn frame(recipe: &Recipe, args: &Args, steps: u16, budget: &Budget, progress: &Progress) -> Result<Grid, Failure> {
     let mut recipe = recipe.clone();
     recipe.change(|node| {
         if let Node::StreamPower(rivers) = node {
@@ -138,7 +142,7 @@ fn frame(recipe: &Recipe, args: &Args, steps: u16, progress: &Progress) -> Resul
             rivers.steps = u32::from(steps.max(1));
         }
     });
-    let world = args.limits.open(recipe)?;
+    let world = args.limits.open(recipe, budget)?;
     let window = args.samples.window(&world)?;
     let plan = world.plan(&[orogen::world::HEIGHT], &window)?;
     let grid = world.run(&plan, progress)?.pop();

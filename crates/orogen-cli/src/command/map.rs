@@ -8,7 +8,7 @@ use orogen::export::subject::Subject;
 use orogen::layer::LayerKind;
 use orogen::palette::named;
 use orogen::palette::palette::Palette;
-use orogen::sheet::draw::draw;
+use orogen::sheet::draw::{draw, lines_at};
 use orogen::sheet::options::{Layer, Options, Page, Parts, Resolution, Scale};
 use orogen::sheet::relief::Shading;
 use orogen::sheet::{pdf, raster, vector};
@@ -26,7 +26,7 @@ use crate::sink::{Sink, kind};
 use crate::size::{Numbers, positive};
 use crate::source::{Source, title};
 use crate::view::View;
-use crate::{finite, interrupt, memory, palette, say};
+use crate::{finite, interrupt, palette, say};
 
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
@@ -199,15 +199,16 @@ fn map(args: &Args) -> Result<(), Failure> {
     };
     let range = range(args)?;
     let source = Source::find(&args.recipe)?;
-    let mut recipe = source.read()?;
+    let budget = args.limits.budget();
+    let mut recipe = source.read(&budget)?;
     args.view.apply(&mut recipe);
     let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)).protecting(&args.palette))?;
     list::prepare(&mut recipe, &args.layer);
-    let world = args.limits.open(recipe)?;
+    let world = args.limits.open(recipe, &budget)?;
     let window = args.view.window(&world)?;
     let is_place = matches!(source, Source::Dem(_));
     let mut options = options(args, kind, palette, &world, is_place);
-    afford(&options, &window, args)?;
+    let _drawing = world.budget().reserve(drawing(&options, &window, args)?)?;
     let (bar, progress) = Bar::new(args.quiet);
     let made = world.grids(&[HEIGHT], &window, &progress);
     let mut grids = made.map_err(|error| interrupt::explain(error.into(), "nothing was written"))?;
@@ -364,8 +365,8 @@ fn longer(page: Page) -> f64 {
     }
 }
 
-/// Refuses pages that no memory holds.
-fn afford(options: &Options, window: &Window, args: &Args) -> Result<(), Failure> {
+/// Bytes that drawing takes beside the heights, or the reason why no memory holds the page.
+fn drawing(options: &Options, window: &Window, args: &Args) -> Result<u64, Failure> {
     let side = match options.resolution {
         Resolution::Inch(dpi) => longer(options.page) * dpi / 25.4,
         Resolution::Longer(pixels) => f64::from(pixels),
@@ -376,8 +377,10 @@ fn afford(options: &Options, window: &Window, args: &Args) -> Result<(), Failure
             side
         )));
     }
-    // The page twice, the picture and its heights, and the heights themselves.
-    let layers = if args.layer == HEIGHT { 1.0 } else { 3.0 };
-    let bytes = side * side * 20.0 + window.len() as f64 * 4.0 * layers;
-    Ok(memory::afford(bytes as u64, args.limits.memory)?)
+    let lines = lines_at(longer(options.page)) as f64;
+    // First the water and the contours are found; then they are held beside the page twice, the picture and its heights.
+    let page = f64::max(64.0 * lines * lines, 20.0 * side * side + 16.0 * lines * lines);
+    // The heights are part of the world's plan; another layer is held beside them, twice while it is made.
+    let layer = if args.layer == HEIGHT { 0.0 } else { 8.0 * window.len() as f64 };
+    Ok((page + layer) as u64)
 }

@@ -88,7 +88,7 @@ pub struct Args {
     /// Write a block of so many slices one sample apart from --z on, as .npy of shape (N, H, W)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MOST), allow_negative_numbers = true)]
     volume: Option<u64>,
-    /// Most memory to use, such as 512MiB or 2GiB [default: half of what is free]
+    /// Most memory that the program may take, such as 512MiB or 2GiB [default: half of what is free]
     #[arg(long, value_name = "BYTES")]
     memory: Option<Bytes>,
     #[command(flatten)]
@@ -223,7 +223,7 @@ impl Task<'_> {
             None => 0,
         };
         let needed = band.saturating_add(frame);
-        Ok(memory::afford(needed, self.args.memory)?)
+        Ok(memory::budget(self.args.memory, memory::cores()).afford(needed)?)
     }
 
     fn deep(&self) -> bool {

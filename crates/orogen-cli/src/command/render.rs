@@ -27,7 +27,7 @@ use crate::sink::{Sink, is_stdout};
 use crate::size::{Numbers, Size, clock, not_negative, positive};
 use crate::source::Source;
 use crate::view::View;
-use crate::{finite, interrupt, memory, palette, say};
+use crate::{finite, interrupt, palette, say};
 
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
@@ -134,6 +134,9 @@ enum Dress {
 /// Where the camera stands if nobody says: a little west of south, looking down a little.
 const CAMERA: [f64; 2] = [200.0, 24.0];
 
+/// Bytes of a sample of the land beside its layers.
+const LAND: u64 = 116;
+
 /// Draws the picture.
 pub fn run(args: &Args) -> Result<(), Failure> {
     Seeds::each(args.view.seed.as_ref(), Some(&args.out), |seed, out| {
@@ -159,20 +162,21 @@ fn render(args: &Args) -> Result<(), Failure> {
     }
     let (style, shot) = (style(args, palette.as_ref())?, shot(args)?);
     let source = Source::find(&args.recipe)?;
-    let mut recipe = source.read()?;
+    let budget = args.limits.budget();
+    let mut recipe = source.read(&budget)?;
     args.view.apply(&mut recipe);
     let policy = args.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
     let outputs = target.outputs(&args.out, args.turntable.unwrap_or(1), &policy)?;
     if matches!(args.color, Dress::Surfaces) {
         COVER.iter().for_each(|layer| list::prepare(&mut recipe, layer.name));
     }
-    let world = args.limits.open(recipe)?;
+    let world = args.limits.open(recipe, &budget)?;
     let window = args.view.window(&world)?;
     let pixels = (width * height) as u64;
-    // Of each sample of the land: what is asked for, the pyramid, slopes, and light twice while it is made.
-    let land = (window.len() as u64).saturating_mul(128);
+    // Of each sample of the land: the pyramid, slopes, and light twice while it is made.
+    let land = (window.len() as u64).saturating_mul(LAND);
     let needed = land.saturating_add(3 * pixels).saturating_add(target.beside(pixels));
-    memory::afford(needed, args.limits.memory)?;
+    let _drawing = budget.reserve(needed)?;
     let folder = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     file::check_folder(folder)?;
     let (bar, progress) = Bar::new(args.quiet);

@@ -165,7 +165,7 @@ fn wait_until_it_listens(child: &Child) {
 #[test]
 fn ctrl_c_stops_cleanly() {
     let folder = Folder::with_small();
-    let asked = ["small.toml", "--cell", "0.1", "--tile", "64", "--memory", "8MiB", "--threads", "1"];
+    let asked = ["small.toml", "--cell", "0.1", "--tile", "64", "--memory", "22MiB", "--threads", "1"];
     for signal in ["-INT", "-TERM"] {
         let child = start(&folder, &arguments("a.zarr", &asked, &["--resume"]));
         // Not before it has begun.
@@ -216,7 +216,7 @@ fn a_limit_on_files_leaves_a_build_to_go_on_with() {
 #[test]
 fn two_builds_do_not_work_on_one_place() {
     let folder = Folder::with_small();
-    let asked = ["small.toml", "--cell", "0.1", "--tile", "64", "--memory", "8MiB", "--threads", "1"];
+    let asked = ["small.toml", "--cell", "0.1", "--tile", "64", "--memory", "22MiB", "--threads", "1"];
     let mut child = start(&folder, &arguments("a.zarr", &asked, &["-q"]));
     while !folder.path("a.zarr/height").exists() {
         std::thread::sleep(Duration::from_millis(5));

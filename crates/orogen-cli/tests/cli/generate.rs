@@ -146,7 +146,7 @@ fn what_cannot_be_asked_for_is_usage() {
 #[test]
 fn what_exceeds_memory_is_refused_with_what_it_needs() {
     let folder = Folder::with_small();
-    folder.bad(&["generate", "small.toml", "--memory", "10kB"], 1, "KiB of memory");
+    folder.bad(&["generate", "small.toml", "--memory", "10kB"], 1, "of memory and 9.8 KiB is allowed");
     folder.bad(&["generate", "small.toml", "--size", "100000000"], 1, "PiB of memory");
     assert_eq!(folder.names(""), ["small.toml"]);
 }

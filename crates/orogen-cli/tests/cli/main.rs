@@ -14,6 +14,7 @@ mod generate;
 mod harness;
 mod leftovers;
 mod map;
+mod memory;
 mod noise;
 mod not_finite;
 mod others;

@@ -4,9 +4,8 @@ use std::collections::BTreeSet;
 
 use super::job::Stage;
 use super::target::Target;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::grid::Window;
-use crate::words::bytes;
 use crate::world::World;
 
 /// How many tiles a thread should find in a block: fewer, and threads wait for each other at its end.
@@ -36,12 +35,8 @@ impl Block {
         let mut block = of(1, 1)?;
         let allowed = world.memory_limit().unwrap_or(u64::MAX);
         if block.memory > allowed {
-            let sentence = format!(
-                "making one tile needs up to {} of memory and {} is allowed: ask for smaller tiles, or allow more",
-                bytes(block.memory),
-                bytes(allowed)
-            );
-            return Err(Error::new(ErrorKind::Memory, sentence));
+            let instead = "ask for smaller tiles, or allow more";
+            return Err(world.budget().refusal("making one tile", block.memory, instead));
         }
         let enough = TILES_A_THREAD * world.threads();
         while block.columns * block.rows < enough {

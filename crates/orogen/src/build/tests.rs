@@ -13,7 +13,7 @@ use crate::file::{Existing, Output, OutputPolicy};
 use crate::format::encoding::Encoding;
 use crate::format::geotiff::{options, writer};
 use crate::spool::Spool;
-use crate::{Options, Progress, Recipe, Window, World};
+use crate::{Budget, Options, Progress, Recipe, Window, World};
 
 /// A world with a filter and a solver in it, and an unbounded one.
 const BOUNDED: &str = r#"
@@ -44,7 +44,8 @@ const FORMS: [Form; 7] = Form::ALL;
 
 fn world(memory: Option<u64>, threads: usize) -> World {
     let recipe = Recipe::parse(BOUNDED, "test").unwrap();
-    World::with_options(recipe, Options { threads: Some(threads), memory, ..Options::default() }).unwrap()
+    World::with_options(recipe, Options { threads: Some(threads), memory: Budget::of(memory), ..Options::default() })
+        .unwrap()
 }
 
 /// Odd sides, so that tiles and overviews do not come out even.

@@ -1,17 +1,17 @@
 //! A real place, ready to be worked with.
 
-use std::fs::File;
 use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
 use super::fill::fill;
 use super::square::{Layout, steps};
-use crate::error::{Error, Result};
-use crate::format::dem::{Dem, Georeference, Unit, afford, refused};
+use crate::error::Result;
+use crate::format::dem::{Dem, Georeference, Unit, afford, afford_beside, refused};
 use crate::format::import;
 use crate::format::sidecar::Sidecar;
 use crate::grid::Grid;
+use crate::open;
 
 /// Most bytes of heights where nobody says.
 pub const USUAL_MEMORY: u64 = 4 << 30;
@@ -55,10 +55,7 @@ impl Ground {
         if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
             return Err(refused(&name, "pictures are read from .png; heights of other formats by the op `dem`"));
         }
-        if path.is_dir() {
-            return Err(refused(&name, "it is a folder"));
-        }
-        let mut file = File::open(path).map_err(|cause| Error::file("read", path, &cause))?;
+        let mut file = open::regular(path, "read")?;
         let greys = Sidecar { low: Some(0.0), high: Some(1.0), cell: Some(1.0), ..Sidecar::default() };
         let dem = import::parse(&mut file, &name, "png", Some(greys), allowed)?;
         Ground::of(dem, None, allowed).map_err(|why| refused(&name, why))
@@ -82,6 +79,10 @@ impl Ground {
         let layout = Layout::new([dem.width, dem.height], steps);
         afford(layout.size[0] as u64, layout.size[1] as u64, allowed)?;
         let samples = dem.heights.len();
+        // The pyramid of a hole, and while samples are laid on squares those before and after.
+        let holes = if dem.missing() > 0 { samples as u64 / 3 * 4 } else { 0 };
+        let laid = if layout.is_square() { 0 } else { 4 * (layout.size[0] * layout.size[1]) as u64 };
+        afford_beside(samples, holes.max(laid), allowed)?;
         let mut notes = Vec::new();
         let missing = fill(&mut dem.heights, dem.width, dem.height);
         if missing > 0 {

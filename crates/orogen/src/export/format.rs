@@ -7,6 +7,7 @@ use super::options::{OptionSpec, Options};
 use super::subject::Subject;
 use crate::error::{Error, ErrorKind};
 use crate::grid::Window;
+use crate::spool;
 
 /// A format of files, declared in a file of its own in `formats/`.
 pub struct Format {
@@ -54,10 +55,7 @@ pub fn whole(window: &Window) -> u64 {
     (window.width as u64).saturating_mul(window.height as u64).saturating_mul(4)
 }
 
-/// What a spool keeps in memory before it goes to the disk.
-const SPOOL_MEMORY: u64 = 64 << 20;
-
 /// Bytes of memory that putting `bytes` aside takes.
 pub fn aside(bytes: u64) -> u64 {
-    bytes.min(SPOOL_MEMORY)
+    bytes.min(spool::IN_MEMORY as u64)
 }

@@ -181,6 +181,26 @@ pub fn afford(width: u64, height: u64, allowed: u64) -> Result<usize, String> {
     }
 }
 
+/// Bytes that a reader's buffers may take uncounted.
+const BUFFER: u64 = 4 << 20;
+
+/// Checks that `beside` bytes more, which a reader holds while it unpacks them, can be held with `count` heights in `allowed` bytes.
+///
+/// # Errors
+/// A sentence with both figures.
+pub fn afford_beside(count: usize, beside: u64, allowed: u64) -> Result<(), String> {
+    let needed = (count as u64).saturating_mul(4).saturating_add(beside);
+    match beside > BUFFER && needed > allowed {
+        true => Err(format!(
+            "reading it takes {}, its heights and what is unpacked at once, and {} is allowed: save it in smaller blocks, or \
+             allow more memory",
+            bytes(needed),
+            bytes(allowed)
+        )),
+        false => Ok(()),
+    }
+}
+
 /// How long an input is; it stands at its beginning afterwards.
 pub fn length(input: &mut dyn Input) -> Result<u64, String> {
     let length = input.seek(std::io::SeekFrom::End(0)).map_err(|cause| cause.to_string())?;

@@ -1,13 +1,13 @@
 //! Which format a file of heights is in: the one list of those that are read.
 
-use std::fs::File;
 use std::path::Path;
 
 use super::dem::{Dem, Input, Place, Unit, refused};
 use super::raw::Sample;
 use super::sidecar::Sidecar;
 use super::{asc, geotiff, grey, hgt, npy, raw};
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::open;
 
 /// The extensions of files that heights are read from.
 pub const EXTENSIONS: [&str; 8] = ["tif", "tiff", "asc", "hgt", "png", "r16", "r32", "npy"];
@@ -31,11 +31,7 @@ pub fn read(path: &Path, allowed: u64) -> Result<Dem> {
         let known = "known are .tif, .asc, .hgt, .png, .r16, .r32 and .npy";
         return Err(refused(&name, format!("its extension does not tell a format of heights; {known}")));
     }
-    let failed = |cause: std::io::Error| Error::file("read", path, &cause);
-    if path.is_dir() {
-        return Err(refused(&name, "it is a folder"));
-    }
-    let mut file = File::open(path).map_err(failed)?;
+    let mut file = open::regular(path, "read")?;
     let sidecar = Sidecar::beside(path)?;
     parse(&mut file, &name, &extension(path).unwrap_or_default(), sidecar, allowed)
 }

@@ -8,6 +8,9 @@ use super::sidecar::{Sidecar, needs};
 use crate::error::Result;
 use crate::grid::Grid;
 
+/// Bytes that are read at a time.
+const PIECE: usize = 1 << 16;
+
 /// What samples are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sample {
@@ -66,27 +69,34 @@ fn open(input: &mut dyn Input, sample: Sample, sidecar: &Sidecar, allowed: u64) 
             count as u64 * size
         ));
     }
-    let mut bytes = Vec::with_capacity(there as usize);
-    input.take(there).read_to_end(&mut bytes).map_err(|cause| cause.to_string())?;
     let nodata = |value: f64| sidecar.nodata == Some(value);
-    let heights: Vec<f32> = match sample {
-        Sample::U16 => {
-            let height = |pair: &[u8]| {
-                let number = [pair[0], pair[1]];
-                let number = f64::from(if big { u16::from_be_bytes(number) } else { u16::from_le_bytes(number) });
-                if nodata(number) { f32::NAN } else { (low + number / 65535.0 * (high - low)) as f32 }
-            };
-            bytes.chunks_exact(2).map(height).collect()
+    let mut heights: Vec<f32> = Vec::with_capacity(count);
+    let mut bytes = Vec::with_capacity(PIECE);
+    while heights.len() < count {
+        bytes.clear();
+        input.take(PIECE as u64).read_to_end(&mut bytes).map_err(|cause| cause.to_string())?;
+        if bytes.is_empty() {
+            return Err("it ends within its samples".into());
         }
-        Sample::F32 => {
-            let height = |four: &[u8]| {
-                let four = [four[0], four[1], four[2], four[3]];
-                let number = if big { f32::from_be_bytes(four) } else { f32::from_le_bytes(four) };
-                if nodata(f64::from(number)) { f32::NAN } else { number }
-            };
-            bytes.chunks_exact(4).map(height).collect()
+        match sample {
+            Sample::U16 => {
+                let height = |pair: &[u8]| {
+                    let number = [pair[0], pair[1]];
+                    let number = f64::from(if big { u16::from_be_bytes(number) } else { u16::from_le_bytes(number) });
+                    if nodata(number) { f32::NAN } else { (low + number / 65535.0 * (high - low)) as f32 }
+                };
+                heights.extend(bytes.chunks_exact(2).map(height));
+            }
+            Sample::F32 => {
+                let height = |four: &[u8]| {
+                    let four = [four[0], four[1], four[2], four[3]];
+                    let number = if big { f32::from_be_bytes(four) } else { f32::from_le_bytes(four) };
+                    if nodata(f64::from(number)) { f32::NAN } else { number }
+                };
+                heights.extend(bytes.chunks_exact(4).map(height));
+            }
         }
-    };
+    }
     let heights = sidecar.from_north(heights, width as usize)?;
     Dem::new([width as usize, height as usize], heights, sidecar.place(height))
 }

@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::shape::{Shape, enough};
+use super::shape::{Part, Shape, enough};
 use super::tile::Tile;
-use super::tin::triangulate;
+use super::tin::{Triangulation, triangulate};
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Grid;
 
@@ -44,17 +44,14 @@ pub fn adaptive(grid: &Grid, max_error: f64) -> Result<Shape> {
         .into_par_iter()
         .map(|[[left, top], [right, bottom]]| {
             let tile = Tile::of(grid, [left, top], [right - left + 1, bottom - top + 1]);
-            ([left as u32, top as u32], triangulate(&tile, max_error))
+            let Triangulation { places, triangles } = triangulate(&tile, max_error);
+            let samples = places.iter().map(|&[column, row]| [left as u32 + column as u32, top as u32 + row as u32]);
+            // From clockwise on the page, y downwards, to counter-clockwise from above. Nothing is kept that the part does not need.
+            let triangles = triangles.iter().map(|&[a, b, c]| [a, c, b]);
+            Part { samples: samples.collect(), triangles: triangles.collect() }
         })
         .collect();
-    let (mut samples, mut triangles) = (Vec::new(), Vec::new());
-    for ([left, top], part) in parts {
-        let first = samples.len() as u32;
-        samples.extend(part.places.iter().map(|&[column, row]| [left + column as u32, top + row as u32]));
-        // From clockwise on the page, y downwards, to counter-clockwise from above.
-        triangles.extend(part.triangles.iter().map(|&[a, b, c]| [a, c, b].map(|corner| first + corner)));
-    }
-    Shape::listed(samples, triangles)
+    Ok(Shape::joined(parts))
 }
 
 /// The columns (or rows) at which so many samples are cut into tiles, evenly, with the first and the last.

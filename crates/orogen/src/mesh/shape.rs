@@ -24,6 +24,14 @@ enum Kind {
     Listed { samples: Vec<[u32; 2]>, triangles: Vec<[u32; 3]> },
 }
 
+/// Some triangles over samples of a grid.
+pub(super) struct Part {
+    /// Columns and rows.
+    pub samples: Box<[[u32; 2]]>,
+    /// Triples of them, counter-clockwise seen from above.
+    pub triangles: Box<[[u32; 3]]>,
+}
+
 impl Shape {
     /// Every `step`-th column and row of a grid and always the last ones; two triangles for each cell between them, along the
     /// diagonal whose ends are nearer in height. With a step of 1, every sample.
@@ -41,24 +49,21 @@ impl Shape {
         if whole { Ok(lattice) } else { lattice.without_holes(grid) }
     }
 
-    /// The corners at `samples` (column, row), each triple of `triangles` counter-clockwise seen from above. Samples may come in
-    /// any order and several times; those of no triangle are left out.
-    pub(super) fn listed(mut samples: Vec<[u32; 2]>, mut triangles: Vec<[u32; 3]>) -> Result<Shape> {
+    /// Parts that share samples along their edges. All samples of a part must be corners of its triangles.
+    pub(super) fn joined(parts: Vec<Part>) -> Shape {
         let by_row = |&[column, row]: &[u32; 2]| (row, column);
-        let mut order: Vec<u32> = (0..samples.len() as u32).collect();
-        order.par_sort_unstable_by_key(|&corner| by_row(&samples[corner as usize]));
-        let mut number = vec![0; samples.len()];
-        let mut kept: Vec<[u32; 2]> = Vec::with_capacity(samples.len());
-        for corner in order {
-            let sample = samples[corner as usize];
-            if kept.last() != Some(&sample) {
-                kept.push(sample);
-            }
-            number[corner as usize] = kept.len() as u32 - 1;
+        let mut samples = Vec::with_capacity(parts.iter().map(|part| part.samples.len()).sum());
+        parts.iter().for_each(|part| samples.extend_from_slice(&part.samples));
+        samples.par_sort_unstable_by_key(by_row);
+        samples.dedup();
+        let mut triangles = Vec::with_capacity(parts.iter().map(|part| part.triangles.len()).sum());
+        // Each part goes as soon as it is taken over, so that a mesh is not held twice.
+        for part in parts {
+            let number = |sample: &[u32; 2]| samples.partition_point(|other| by_row(other) < by_row(sample)) as u32;
+            let numbers: Vec<u32> = part.samples.par_iter().map(number).collect();
+            triangles.extend(part.triangles.iter().map(|triangle| triangle.map(|corner| numbers[corner as usize])));
         }
-        samples = kept;
-        triangles.par_iter_mut().for_each(|triangle| *triangle = triangle.map(|corner| number[corner as usize]));
-        Ok(Shape { kind: Kind::Listed { samples, triangles } })
+        Shape { kind: Kind::Listed { samples, triangles } }
     }
 
     /// A lattice's triangles that have all their corners.

@@ -86,7 +86,8 @@ impl Surface<'_> {
     /// Writes what `emit` makes of each triangle, in order.
     pub fn triangles(&self, out: &mut dyn Write, emit: impl Fn([u32; 3], &mut Vec<u8>) + Sync) -> io::Result<()> {
         let pieces: Vec<usize> = (0..self.shape.pieces()).collect();
-        for band in pieces.chunks((BAND / self.grid.width().max(1)).clamp(8, 256)) {
+        let each = self.shape.triangles() / pieces.len().max(1);
+        for band in pieces.chunks((BAND / each.max(1)).clamp(8, 256)) {
             let made: Vec<Vec<u8>> = band
                 .par_iter()
                 .map(|&piece| {

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::palette::Palette;
 use super::{cpt, gdaldem, gpl, own};
 use crate::error::{Error, ErrorKind, Result};
+use crate::open;
 
 /// Larger than any palette.
 const MOST: u64 = 1 << 20;
@@ -16,11 +17,9 @@ const MOST: u64 = 1 << 20;
 pub fn read(path: &Path) -> Result<Palette> {
     let refused =
         |why: String| Error::new(ErrorKind::File, format!("cannot read the palette {}: {why}", path.display()));
-    let length = std::fs::metadata(path).map_err(|cause| Error::file("read", path, &cause))?.len();
-    if length > MOST {
-        return Err(refused(format!("{length} bytes are no palette")));
-    }
-    let bytes = std::fs::read(path).map_err(|cause| Error::file("read", path, &cause))?;
+    let Some(bytes) = open::bytes(path, "read", MOST)? else {
+        return Err(refused(format!("it has more than {MOST} bytes, which no palette has")));
+    };
     let text = String::from_utf8(bytes).map_err(|_| refused("it is not a text in UTF-8".into()))?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();

@@ -7,10 +7,10 @@ use super::{json, surface, toml};
 use crate::declare::Input;
 use crate::error::{Complaint, Error, ErrorKind, Result};
 use crate::node::Node;
+use crate::open;
 use crate::value::{Span, Spanned, Value};
 use crate::words::{list, respelled, suggestion};
 use std::collections::{HashMap, HashSet};
-use std::io::Read;
 use std::path::Path;
 
 /// Words that other programs use for what has one name here.
@@ -34,19 +34,9 @@ impl Recipe {
     /// If the file cannot be read, is no text, or is no valid recipe: then every complaint has its line and column.
     pub fn read(path: &Path) -> Result<Recipe> {
         let doing = "read the recipe";
-        let failed = |cause: std::io::Error| Error::file(doing, path, &cause);
-        if path.is_dir() {
-            return Err(Error::new(
-                ErrorKind::File,
-                format!("cannot read the recipe {}: it is a folder", path.display()),
-            ));
-        }
-        // Read with a bound, not by the length that is told: a device tells none and never ends.
-        let mut bytes = Vec::new();
-        std::fs::File::open(path).map_err(failed)?.take(LONGEST_TEXT + 1).read_to_end(&mut bytes).map_err(failed)?;
-        if bytes.len() as u64 > LONGEST_TEXT {
+        let Some(bytes) = open::bytes(path, doing, LONGEST_TEXT)? else {
             return Err(too_long(&path.display().to_string()));
-        }
+        };
         match String::from_utf8(bytes) {
             Ok(text) => {
                 let mut recipe = Recipe::parse(&text, &path.display().to_string())?;

@@ -67,6 +67,11 @@ const LABEL: Setting = Setting { size: 2.1, apart: 7.0, every: 95.0 };
 const APART: f64 = 26.0;
 const SUMMITS: usize = 24;
 
+/// How many samples lie along the longer side of a map of so many millimetres, to draw lines from.
+pub fn lines_at(longer: f64) -> usize {
+    ((longer / SAMPLE).ceil() as usize).clamp(8, MOST)
+}
+
 /// Draws a sheet of heights in metres. What is not finite is left as paper.
 ///
 /// # Errors
@@ -244,7 +249,7 @@ impl Ground {
                 if width / height > aspect { height * aspect.max(1.0) } else { width / aspect.min(1.0) }
             }
         };
-        let samples = ((longer / SAMPLE).ceil() as usize).clamp(8, MOST);
+        let samples = lines_at(longer);
         let size = sides.map(|side| ((samples as f64 * side / sides[0].max(sides[1])).round() as usize).max(1) + 1);
         let sample = longer / samples as f64;
         let grid = laid(heights, size);

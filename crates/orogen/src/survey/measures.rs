@@ -1,5 +1,7 @@
 //! A piece of land in numbers.
 
+use std::borrow::Cow;
+
 use super::water::{self, Water};
 use crate::analysis::aspect::aspect_of;
 use crate::analysis::curvature::{Curvature, curvature};
@@ -18,6 +20,9 @@ const LEVEL: f64 = 1.0;
 
 /// Side of the blocks whose mean slopes are compared, in cells.
 const BLOCK: usize = 32;
+
+/// Bytes of a sample while its water is measured, which takes the most.
+const SAMPLE: u64 = 48;
 
 /// Steps of the hypsometric curve.
 const STEPS: usize = 100;
@@ -74,61 +79,42 @@ pub struct Measures {
 }
 
 impl Measures {
+    /// Bytes that measuring so many samples takes at most, the heights themselves included.
+    pub fn memory(samples: u64) -> u64 {
+        samples.saturating_mul(SAMPLE)
+    }
+
     /// Measures heights; what lies at or below the sea level, if there is one, is no land and does not count. None if fewer than 64 x 64
     /// samples or less than a hundredth of them are land, or all of it is level.
     pub fn of(heights: &Grid, sea_level: Option<f32>) -> Option<Measures> {
-        let mut land = heights.clone();
-        if let Some(sea) = sea_level {
-            land.data_mut().iter_mut().filter(|height| **height <= sea).for_each(|height| *height = f32::NAN);
-        }
-        let mut sorted: Vec<f32> = land.data().iter().copied().filter(|height| height.is_finite()).collect();
-        let count = sorted.len();
-        if land.width().min(land.height()) < 64 || count * 100 < land.data().len() {
-            return None;
-        }
-        sorted.sort_unstable_by(f32::total_cmp);
-        let quantile = |share: f64| f64::from(sorted[(share * (count - 1) as f64) as usize]);
-        let (low, high) = (quantile(0.001), quantile(0.999));
-        let relief = high - low;
-        if relief <= 0.0 {
-            return None;
-        }
-        let mean = sorted.iter().map(|height| f64::from(*height)).sum::<f64>() / count as f64;
-        let clipped = sorted.iter().map(|height| f64::from(*height).clamp(low, high) - low).sum::<f64>() / count as f64;
-        let hypsometry = (0..=STEPS)
-            .map(|k| {
-                let level = (low + relief * k as f64 / STEPS as f64) as f32;
-                (count - sorted.partition_point(|height| *height < level)) as f64 / count as f64
-            })
-            .collect();
+        // Nothing that is as large as the land outlives what is counted of it.
+        let land = match sea_level {
+            Some(sea) if heights.data().iter().any(|height| *height <= sea) => {
+                let mut land = heights.clone();
+                land.data_mut().iter_mut().filter(|height| **height <= sea).for_each(|height| *height = f32::NAN);
+                Cow::Owned(land)
+            }
+            _ => Cow::Borrowed(heights),
+        };
+        let Heights { count, ends, mean, base, relief, integral, hypsometry } = Heights::of(&land)?;
         let slope = Slopes::of(&land)?;
-        let bends = curvature(&land, Curvature::Total);
-        let mut bend: Vec<f32> = bends.data().iter().copied().filter(|bend| bend.is_finite()).collect();
-        bend.sort_unstable_by(f32::total_cmp);
-        // Means of the tails: quantiles of heights in whole metres would stand on steps.
-        let tail = (bend.len() / 50).max(1);
-        let mean_of = |bends: &[f32]| bends.iter().map(|bend| f64::from(*bend)).sum::<f64>() / bends.len() as f64;
-        let (concave, convex) = (mean_of(&bend[..tail]), mean_of(&bend[bend.len() - tail..]));
-        let middle = mean_of(&bend);
-        let squares = bend.iter().map(|bend| f64::from(*bend) * f64::from(*bend)).sum::<f64>() / bend.len() as f64;
-        let rugged: Vec<f64> =
-            ruggedness(&land).data().iter().filter(|r| r.is_finite()).map(|r| f64::from(*r)).collect();
+        let (curvature, skew) = bends(&land);
         let bands = spectrum::spectrum(&land);
         Some(Measures {
             land: count,
             land_share: count as f64 / land.data().len() as f64,
-            heights: [f64::from(sorted[0]), mean, f64::from(sorted[count - 1])],
-            base: low,
+            heights: [ends[0], mean, ends[1]],
+            base,
             relief,
-            hypsometric_integral: clipped / relief,
+            hypsometric_integral: integral,
             slope_mean: slope.mean,
-            slope_median: slope.at(0.5),
-            slope_p90: slope.at(0.9),
+            slope_median: slope.median,
+            slope_p90: slope.p90,
             slope_spread: slope.spread,
             slope_patches: slope.patches,
-            curvature: 1000.0 * squares.sqrt(),
-            curvature_skew: (2.0 * middle - convex - concave) / (convex - concave).max(f64::MIN_POSITIVE),
-            ruggedness: rugged.iter().sum::<f64>() / rugged.len() as f64,
+            curvature,
+            curvature_skew: skew,
+            ruggedness: mean_of(ruggedness(&land).data()),
             grid_bias: slope.grid_bias,
             spectrum: spectrum::slope(&bands, land.window().cell),
             hurst: spectrum::hurst(&land),
@@ -142,13 +128,82 @@ impl Measures {
     }
 }
 
+/// The mean of what is finite.
+fn mean_of(samples: &[f32]) -> f64 {
+    let finite = samples.iter().filter(|sample| sample.is_finite());
+    let (sum, count) = finite.fold((0.0, 0usize), |(sum, count), sample| (sum + f64::from(*sample), count + 1));
+    sum / count as f64
+}
+
+/// What is finite, the least first.
+fn sorted(grid: &Grid) -> Vec<f32> {
+    let mut sorted: Vec<f32> = grid.data().iter().copied().filter(|sample| sample.is_finite()).collect();
+    sorted.sort_unstable_by(f32::total_cmp);
+    sorted
+}
+
+/// What is counted of heights.
+struct Heights {
+    count: usize,
+    ends: [f64; 2],
+    mean: f64,
+    base: f64,
+    relief: f64,
+    integral: f64,
+    hypsometry: Vec<f64>,
+}
+
+impl Heights {
+    fn of(land: &Grid) -> Option<Heights> {
+        let sorted = sorted(land);
+        let count = sorted.len();
+        if land.width().min(land.height()) < 64 || count * 100 < land.data().len() {
+            return None;
+        }
+        let quantile = |share: f64| f64::from(sorted[(share * (count - 1) as f64) as usize]);
+        let (low, high) = (quantile(0.001), quantile(0.999));
+        let relief = high - low;
+        if relief <= 0.0 {
+            return None;
+        }
+        let clipped = sorted.iter().map(|height| f64::from(*height).clamp(low, high) - low).sum::<f64>() / count as f64;
+        let hypsometry = (0..=STEPS)
+            .map(|k| {
+                let level = (low + relief * k as f64 / STEPS as f64) as f32;
+                (count - sorted.partition_point(|height| *height < level)) as f64 / count as f64
+            })
+            .collect();
+        Some(Heights {
+            count,
+            ends: [f64::from(sorted[0]), f64::from(sorted[count - 1])],
+            mean: sorted.iter().map(|height| f64::from(*height)).sum::<f64>() / count as f64,
+            base: low,
+            relief,
+            integral: clipped / relief,
+            hypsometry,
+        })
+    }
+}
+
+/// Root of the mean square of the total curvature in 1/km, and how much heavier its concave tail is than the convex.
+fn bends(land: &Grid) -> (f64, f64) {
+    let bend = sorted(&curvature(land, Curvature::Total));
+    // Means of the tails: quantiles of heights in whole metres would stand on steps.
+    let tail = (bend.len() / 50).max(1);
+    let (concave, convex) = (mean_of(&bend[..tail]), mean_of(&bend[bend.len() - tail..]));
+    let middle = mean_of(&bend);
+    let squares = bend.iter().map(|bend| f64::from(*bend) * f64::from(*bend)).sum::<f64>() / bend.len() as f64;
+    (1000.0 * squares.sqrt(), (2.0 * middle - convex - concave) / (convex - concave).max(f64::MIN_POSITIVE))
+}
+
 /// What is counted of slopes.
 struct Slopes {
     mean: f64,
+    median: f64,
+    p90: f64,
     spread: f64,
     patches: f64,
     grid_bias: f64,
-    sorted: Vec<f32>,
     classes: Vec<f64>,
     aspects: Vec<f64>,
 }
@@ -157,8 +212,7 @@ impl Slopes {
     fn of(land: &Grid) -> Option<Slopes> {
         let steep = from_gradients(land, |gradient| gradient.steepness());
         let faces = from_gradients(land, aspect_of);
-        let mut sorted: Vec<f32> = steep.data().iter().copied().filter(|rise| rise.is_finite()).collect();
-        let count = sorted.len() as f64;
+        let count = steep.data().iter().filter(|rise| rise.is_finite()).count() as f64;
         let degrees = |rise: f32| f64::from(libm::atanf(rise)).to_degrees();
         let (mut classes, mut aspects) = (vec![0.0; (90.0 / SLOPE_CLASS) as usize], vec![0.0; 36]);
         let (mut sum, mut squares, mut angles) = (0.0, 0.0, 0.0);
@@ -184,21 +238,19 @@ impl Slopes {
         }
         aspects.iter_mut().for_each(|share| *share /= f64::max(facing, 1.0));
         let mean = sum / count;
-        sorted.sort_unstable_by(f32::total_cmp);
+        drop(faces);
+        let sorted = sorted(&steep);
+        let at = |share: f64| degrees(sorted[(share * (sorted.len() - 1) as f64) as usize]);
         Some(Slopes {
             mean: angles / count,
+            median: at(0.5),
+            p90: at(0.9),
             spread: (squares / count - mean * mean).max(0.0).sqrt() / mean,
             patches: patches(&steep),
             grid_bias: (cos * cos + sin * sin).sqrt() / f64::max(facing, 1.0),
-            sorted,
             classes,
             aspects,
         })
-    }
-
-    fn at(&self, share: f64) -> f64 {
-        let rise = self.sorted[(share * (self.sorted.len() - 1) as f64) as usize];
-        f64::from(libm::atanf(rise)).to_degrees()
     }
 }
 

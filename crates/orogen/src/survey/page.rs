@@ -15,6 +15,9 @@ use crate::map::text::Lettering;
 use crate::resample;
 use orogen_noise::Points;
 
+/// Bytes that drawing it takes at most, beside the heights.
+pub const MEMORY: u64 = 16 << 20;
+
 const WIDTH: f64 = 1500.0;
 const HEIGHT: f64 = 1490.0;
 const MARGIN: f64 = 54.0;

@@ -50,6 +50,8 @@ pub fn measure(heights: &Grid) -> Water {
     let outlets = Outlets::new(heights, None);
     let filled = fill::fill(heights, &outlets);
     let receivers = drainage::over_surface(&filled, &outlets, Descent::Steepest);
+    // Outlets are not asked for again.
+    drop(outlets);
     let drained = accumulate(&receivers);
     let spring = ((SPRING / (window.cell * window.cell)) as u32).max(FEWEST_CELLS);
     let orders = strahler::orders(&receivers, &drained, spring);

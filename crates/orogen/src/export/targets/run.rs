@@ -75,6 +75,8 @@ pub fn export(
     match nature {
         // One scale for all tiles: the whole range is known before the first is written.
         Nature::Numbers if layer == HEIGHT => {
+            // What no tile can be written in is refused before the range is looked for.
+            all.prepare((format.memory)(&frame.tile(0, 0), &options))?;
             all.rows(|_| Ok(())).map_err(|cause| file::explain("make", path, &cause))?;
             let levels = all.levels();
             (target.heights)(&levels, &mut options)?;

@@ -8,7 +8,7 @@ use super::entries::Tiff;
 use super::place;
 use super::unpack::{Layout, MOST_GROWTH, unpack};
 use crate::error::Result;
-use crate::format::dem::{Dem, Input, afford, refused};
+use crate::format::dem::{Dem, Input, afford, afford_beside, refused};
 
 /// Reads a GeoTIFF whose heights take no more than `allowed` bytes. `name` is what errors call it.
 ///
@@ -67,6 +67,7 @@ fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String>
             if packed > 0 && at > 0 && length > packed.saturating_mul(MOST_GROWTH) {
                 return Err(format!("a block of {packed} bytes is said to hold {length}: it is damaged"));
             }
+            afford_beside(count, length.saturating_add(packed), allowed)?;
             let mut bytes = match packed == 0 || at == 0 {
                 true => Vec::new(),
                 false => unpack(compression, tiff.bytes(at, packed, "samples")?, length as usize)?,
@@ -90,7 +91,11 @@ fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String>
     }
     let found = place::find(tiff, height as usize)?;
     if found.from_south {
-        heights = heights.chunks_exact(width as usize).rev().flatten().copied().collect();
+        let width = width as usize;
+        for j in 0..height as usize / 2 {
+            let (upper, lower) = heights.split_at_mut((height as usize - 1 - j) * width);
+            upper[j * width..(j + 1) * width].swap_with_slice(&mut lower[..width]);
+        }
     }
     if found.metres_high != 1.0 {
         heights.iter_mut().for_each(|h| *h = (f64::from(*h) * found.metres_high) as f32);

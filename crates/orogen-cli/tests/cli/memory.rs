@@ -1,0 +1,225 @@
+//! What every command takes of memory beside what `--memory` allows. The whole process counts: its peak is read from the system.
+//!
+//! The table goes over all formats, derived layers, engines and forms of builds that the library lists, and a command that is in no row fails
+//! the test, so what is new is measured by existing. With `OROGEN_LONG` set it is measured on 4096 x 4096 samples at three limits:
+//!
+//!     OROGEN_LONG=1 cargo test -p orogen-cli --test cli memory -- --nocapture
+
+use std::io::Read;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use orogen::export::derived::list as derived;
+use orogen::export::registry;
+use orogen::export::targets::list as targets;
+
+use crate::harness::Folder;
+
+/// The most that a process may take of what it is allowed.
+const MOST: f64 = 1.1;
+
+/// Commands that hold no more than a text or a page of fixed size, and have no `--memory`.
+const SMALL: [&str; 7] = ["presets", "new", "ops", "palettes", "schema", "completions", "help"];
+
+/// Rough land, which makes many contours, rivers and triangles.
+fn recipe(side: usize, last: &str) -> String {
+    format!(
+        "orogen = 1\n[world]\nseed = 3\nsize = [{0}.0, {0}.0]\ncell = 10.0\n\
+         [nodes.noise]\nop = \"fbm\"\nwavelength = 9000\noctaves = 10\n\
+         [nodes.land]\nop = \"remap\"\nsource = \"noise\"\nfrom = [-0.5, 0.5]\nto = [-200, 1500]\n{last}",
+        side * 10
+    )
+}
+
+/// Everything that takes memory, as arguments after which `--memory` may stand.
+fn rows(side: usize) -> Vec<Vec<String>> {
+    let mut rows: Vec<String> = vec![
+        "explain land.toml".into(),
+        "generate land.toml -o made -q".into(),
+        "generate dem.tif -o placed -q".into(),
+        "analyze land.toml -q".into(),
+        "analyze dem.tif -o page.png -q".into(),
+        "render land.toml --size 480x270 --samples 1 -q".into(),
+        "grow rising.toml --frames 2 -q".into(),
+        "grow rising.toml --frames 2 -o grow.gif -q".into(),
+        "fit dem.tif -o fitted.toml --tries 12 --judges 1 -q".into(),
+        format!("noise perlin --size {side} -q"),
+        format!("noise perlin --size {side} -o noise.npy -q"),
+        format!("noise perlin --size {side} --frames 2 -o frames.png -q"),
+        format!("compare --size {} -q", (side / 8).max(120)),
+    ];
+    rows.extend(["png", "svg", "pdf"].map(|kind| format!("map land.toml -o map.{kind} -q")));
+    // Few pixels, but as many samples to draw lines from.
+    rows.push("map land.toml --dpi 40 -o small.png -q".into());
+    // SRTM's sizes are its own.
+    let formats = registry::all().iter().filter(|format| format.name != "hgt");
+    for format in formats {
+        rows.push(format!("export land.toml -o out.{} -q", format.name));
+        if format.knows("max-error") {
+            rows.push(format!("export land.toml -o few.{} --max-error 3 -q", format.name));
+        }
+    }
+    let land = orogen::Recipe::parse(&recipe(side, "[outputs]\nheight = \"land\"\n"), "land").unwrap();
+    for layer in derived::all() {
+        let kind = if (layer.channels)(&land).len() > 1 { "png" } else { "tif" };
+        rows.push(format!("export land.toml -o layer.{kind} --layer {} -q", layer.name));
+    }
+    for target in targets::all() {
+        let fits = target.sides.iter().filter(|samples| **samples <= side).max();
+        let size = fits.map_or(String::new(), |samples| format!("--size {samples}"));
+        rows.push(format!("export land.toml --target {} -o engine.{} {size} -q", target.name, target.formats[0]));
+    }
+    rows.extend(["tif", "zarr"].map(|kind| format!("build land.toml -o built.{kind} --force -q")));
+    let tiles = ["png", "r16", "r32", "terrarium", "terrain-rgb"];
+    rows.extend(tiles.map(|tiles| format!("build land.toml -o built-{tiles} --tiles {tiles} --force -q")));
+    rows.iter().map(|row| row.split_whitespace().map(String::from).collect()).collect()
+}
+
+/// How a run ended: its exit code, what it said on standard error, and the most memory that it took, in bytes.
+fn measured(mut command: Command) -> (i32, String, u64) {
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let (status, mut peak) = (format!("/proc/{}/status", child.id()), 0);
+    let code = loop {
+        // The system keeps the most that there was, so only what comes after the last look is missed.
+        let text = std::fs::read_to_string(&status).unwrap_or_default();
+        let most = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let most = most.and_then(|most| most.trim().trim_end_matches(" kB").parse::<u64>().ok());
+        peak = peak.max(most.unwrap_or(0) << 10);
+        if let Some(ended) = child.try_wait().unwrap() {
+            break ended.code().unwrap();
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    };
+    let mut said = String::new();
+    child.stderr.take().unwrap().read_to_string(&mut said).unwrap();
+    (code, said, peak)
+}
+
+#[test]
+#[cfg_attr(not(target_os = "linux"), ignore = "the peak of a process is read from /proc")]
+fn every_command_keeps_its_memory() {
+    let long = std::env::var_os("OROGEN_LONG").is_some();
+    let (side, limits) = if long { (4096, &[64, 200, 1024][..]) } else { (1536, &[64][..]) };
+    let folder = Folder::new();
+    folder.write("land.toml", recipe(side, "[outputs]\nheight = \"land\"\n"));
+    let rising =
+        "[nodes.up]\nop = \"stream-power\"\nsource = \"land\"\nyears = 20000\nsteps = 2\n[outputs]\nheight = \"up\"\n";
+    folder.write("rising.toml", recipe(side, rising));
+    folder.good(&["export", "land.toml", "-o", "dem.tif", "-q"]);
+    let mut worst = Vec::new();
+    for row in rows(side) {
+        let mut line = format!("{:<60}", row.join(" "));
+        for limit in limits {
+            let _ = std::fs::remove_file(folder.path("fitted.toml"));
+            let memory = format!("{limit}MiB");
+            let mut arguments: Vec<&str> = row.iter().map(String::as_str).collect();
+            arguments.extend(["--memory", &memory]);
+            let (code, said, peak) = measured(folder.command(&arguments));
+            let share = peak as f64 / f64::from(limit << 20);
+            line += &format!(" {:>9.2}{}", share, if code == 0 { ' ' } else { '-' });
+            // What does not fit is refused at once, with what it needs and what it may have.
+            let refused = code == 1 && said.contains("of memory and") && said.contains("is allowed");
+            if share > MOST || code != 0 && !refused {
+                worst.push(format!("{arguments:?}: {share:.2} times {limit} MiB, exit {code}: {said}"));
+            }
+        }
+        println!("{line}");
+    }
+    assert!(worst.is_empty(), "{}", worst.join("\n"));
+}
+
+#[test]
+fn no_command_is_forgotten() {
+    let folder = Folder::new();
+    let help = folder.good(&["--help"]).text().to_string();
+    let (_, list) = help.split_once("Commands:\n").unwrap();
+    let names = list.lines().take_while(|line| !line.trim().is_empty()).filter_map(|line| {
+        let is_name = line.starts_with("  ") && !line.starts_with("   ");
+        line.split_whitespace().next().filter(|_| is_name)
+    });
+    let rows = rows(1024);
+    for name in names {
+        let is_measured = rows.iter().any(|row| row[0] == name);
+        assert!(is_measured != SMALL.contains(&name), "`{name}` is in no row of this table");
+    }
+}
+
+#[test]
+fn a_file_that_unpacks_to_more_than_is_allowed_is_refused() {
+    // A picture of 20000 x 20000 in a few hundred kilobytes.
+    let folder = Folder::new();
+    let mut picture = Vec::new();
+    let side = 20_000u32;
+    let mut encoder = ::png::Encoder::new(&mut picture, side, side);
+    encoder.set_color(::png::ColorType::Grayscale);
+    encoder.set_depth(::png::BitDepth::Sixteen);
+    encoder.set_compression(::png::Compression::Fastest);
+    let mut writer = encoder.write_header().unwrap();
+    let mut rows = writer.stream_writer().unwrap();
+    let row = vec![7u8; 2 * side as usize];
+    (0..side).for_each(|_| std::io::Write::write_all(&mut rows, &row).unwrap());
+    rows.finish().unwrap();
+    drop(writer);
+    assert!(picture.len() < 8 << 20, "{}", picture.len());
+    folder.write("bomb.png", picture);
+    folder.write("bomb.png.json", "{\"cell\": 1, \"low\": 0, \"high\": 9}");
+    for command in [
+        &["explain", "bomb.png"][..],
+        &["generate", "bomb.png", "-o", "x"],
+        &["export", "bomb.png", "-o", "x.npy"],
+        &["map", "bomb.png", "-o", "x.png"],
+        &["render", "bomb.png"],
+        &["analyze", "bomb.png"],
+        &["fit", "bomb.png", "-o", "x.toml"],
+        &["build", "bomb.png", "-o", "x.tif"],
+    ] {
+        let (code, said, peak) = measured(folder.command(&[command, &["--memory", "256MiB"]].concat()));
+        assert!(code == 1 && said.contains("take 1.5 GiB, and"), "{command:?}: {said}");
+        assert!(peak < 64 << 20, "{command:?}: {peak}");
+    }
+    assert_eq!(folder.names(""), ["bomb.png", "bomb.png.json"]);
+}
+
+#[test]
+#[cfg(unix)]
+fn what_may_never_end_is_refused() {
+    let folder = Folder::with_small();
+    assert!(Command::new("mkfifo").arg(folder.path("pipe.tif")).status().unwrap().success());
+    assert!(Command::new("mkfifo").arg(folder.path("pipe.toml")).status().unwrap().success());
+    for (arguments, expect) in [
+        (
+            &["map", "small.toml", "-o", "a.png", "--palette", "/dev/urandom"][..],
+            "/dev/urandom: it is a pipe or a device",
+        ),
+        (&["map", "small.toml", "-o", "a.png", "--palette", "pipe.toml"], "pipe.toml: it is a pipe or a device"),
+        (&["palettes", "/dev/zero"], "/dev/zero: it is a pipe or a device"),
+        (&["generate", "pipe.tif"], "pipe.tif: it is a pipe or a device"),
+        (&["generate", "pipe.toml"], "pipe.toml: it is a pipe or a device"),
+        (&["explain", "/dev/zero"], "/dev/zero: it is a pipe or a device"),
+        (&["fit", "pipe.tif", "-o", "a.toml"], "pipe.tif: it is a pipe or a device"),
+    ] {
+        folder.bad(arguments, 1, expect);
+    }
+    folder.write("reads.toml", "orogen = 1\n[nodes.a]\nop = \"dem\"\npath = \"pipe.tif\"\n[outputs]\nheight = \"a\"\n");
+    folder.bad(&["export", "reads.toml", "-o", "a.npy"], 1, "pipe.tif: it is a pipe or a device");
+    // What a shell puts in place of <(command) is read.
+    let script = format!("{} explain /dev/fd/3 3< <(cat small.toml)", env!("CARGO_BIN_EXE_orogen"));
+    let ended = Command::new("bash").arg("-c").arg(script).current_dir(&folder.0).output().unwrap();
+    assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+}
+
+#[test]
+fn many_threads_are_no_more_than_there_is_work_for() {
+    let folder = Folder::with_small();
+    let made = |threads: &str| {
+        folder.good(&["export", "small.toml", "-o", "a.npy", "-q", "--threads", threads]);
+        folder.read("a.npy")
+    };
+    assert!(made("1") == made("1000"));
+    if cfg!(target_os = "linux") {
+        // A thousand stacks would take more.
+        let (code, said, peak) =
+            measured(folder.command(&["export", "small.toml", "-o", "a.npy", "--threads", "1000"]));
+        assert!(code == 0 && peak < 24 << 20, "{peak}: {said}");
+    }
+}
