@@ -11,8 +11,8 @@ use orogen::recipe::presets::{self, Preset};
 use orogen::{Budget, Error, ErrorKind, Recipe, nearest};
 
 use crate::failure::Failure;
-use crate::sink::DASH;
 use crate::say;
+use crate::sink::DASH;
 
 /// Where a recipe comes from.
 #[derive(Debug, Clone)]

@@ -266,7 +266,7 @@ impl World {
     /// As [`World::plan`] and [`World::run`].
     pub(crate) fn grid_beside(&self, layer: &str, window: &Window, beside: u64, progress: &Progress) -> Result<Grid> {
         let plan = self.planned(&[self.target(layer)?], *window, false)?;
-        self.allow(self.memory_of(&plan).saturating_add(beside))?;
+        self.memory.afford(self.memory_of(&plan).saturating_add(beside))?;
         let mut grids = self.run(&plan, progress)?;
         grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "nothing was asked for"))
     }

@@ -9,9 +9,9 @@ use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::report::report;
-use crate::say;
 use crate::size::Bytes;
 use crate::source::Source;
+use crate::{memory, say};
 
 /// What it takes.
 #[derive(Debug, clap::Args)]
@@ -53,8 +53,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 /// Reads a recipe and all files that it names, and plans each of its layers.
 fn check(recipe: &Path, args: &Args) -> Result<World, Failure> {
-    let memory = args.memory.map(|bytes| bytes.0).or_else(crate::memory::share_of_free);
-    let recipe = Source::find(recipe)?.read()?;
+    let memory = memory::budget(args.memory, memory::cores());
+    let recipe = Source::find(recipe)?.read(&memory)?;
     let world = World::with_options(recipe, Options { memory, ..Options::default() })?;
     let cell = world.recipe().world.cell;
     let window = orogen::Window::new(1, 1, cell);

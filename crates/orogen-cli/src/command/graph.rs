@@ -10,8 +10,10 @@ use orogen::words::count;
 use crate::failure::Failure;
 use crate::graph::diagram::Diagram;
 use crate::graph::{dot, draw};
+use crate::memory;
 use crate::replace::Replace;
 use crate::sink::{Sink, kind};
+use crate::size::Bytes;
 use crate::source::{Source, title};
 
 /// What it takes.
@@ -29,6 +31,9 @@ pub struct Args {
     /// Pixels an inch of a .png
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=1200), default_value = "150")]
     dpi: u16,
+    /// Most memory that the program may take, such as 512MiB or 2GiB [default: half of what is free]
+    #[arg(long, value_name = "BYTES")]
+    memory: Option<Bytes>,
     #[command(flatten)]
     replace: Replace,
     /// Leave out the closing words
@@ -62,7 +67,7 @@ const MAX_PIXELS: f32 = 4e8;
 pub fn run(args: &Args) -> Result<(), Failure> {
     let kind = kind(&args.out, args.format, &KINDS, "a graph")?;
     let source = Source::find(&args.recipe)?;
-    let recipe = source.read()?;
+    let recipe = source.read(&memory::budget(args.memory, memory::cores()))?;
     let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)))?;
     let diagram = Diagram::of(&recipe)?;
     let title = title(&args.recipe);

@@ -19,7 +19,7 @@ use crate::harness::Folder;
 const MOST: f64 = 1.1;
 
 /// Commands that hold no more than a text or a page of fixed size, and have no `--memory`.
-const SMALL: [&str; 7] = ["presets", "new", "ops", "palettes", "schema", "completions", "help"];
+const SMALL: [&str; 8] = ["cache", "presets", "new", "ops", "palettes", "schema", "completions", "help"];
 
 /// Rough land, which makes many contours, rivers and triangles.
 fn recipe(side: usize, last: &str) -> String {
@@ -35,6 +35,9 @@ fn recipe(side: usize, last: &str) -> String {
 fn rows(side: usize) -> Vec<Vec<String>> {
     let mut rows: Vec<String> = vec![
         "explain land.toml".into(),
+        "check land.toml -q".into(),
+        "check dem.tif -q".into(),
+        "graph land.toml -o graph.svg -q".into(),
         "generate land.toml -o made -q".into(),
         "generate dem.tif -o placed -q".into(),
         "analyze land.toml -q".into(),
