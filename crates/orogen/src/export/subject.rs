@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::derived::layer::{Derived, Nature};
+use super::derived::layer::{Made, Nature, RowLayer};
 use super::derived::list;
 use super::derived::rows::Rows;
 use crate::analysis::finite::FiniteCount;
@@ -23,7 +23,7 @@ pub struct Subject<'w> {
     world: &'w World,
     layer: String,
     /// What the layer is if the recipe has none of that name.
-    derived: Option<&'static Derived>,
+    derived: Option<&'static RowLayer>,
     window: Window,
     progress: &'w Progress,
     /// Bytes held beside the rows at hand.
@@ -47,7 +47,11 @@ impl<'w> Subject<'w> {
         let derived = match world.unit(layer) {
             Ok(_) => None,
             Err(error) => match list::named(layer) {
-                Some(derived) => Some(derived),
+                Some(derived) => match &derived.made {
+                    Made::Rows(rows) => Some(rows),
+                    // Its nodes are appended before a world is opened.
+                    Made::Nodes(_) => return Err(error),
+                },
                 None => {
                     let names: Vec<&str> = list::all().iter().map(|derived| derived.name).collect();
                     let hint = match nearest(layer, names.iter().copied()) {
