@@ -40,6 +40,7 @@ Builds `orogen` for release, installs what is missing and runs every client, or 
   maps      Poppler and librsvg draw map sheets: the picture of the .png
   formats   OpenEXR, GDAL, rasterio, Pillow and Godot read exported heights of every format, none mirrored, turned or moved
   relief    gdaldem shades and measures the ground: hillshade, slope and aspect
+  layers    GRASS and gdaldem make the layers that follow from heights: wetness, insolation, viewshed, landforms ...
   fuzz      libFuzzer feeds the readers of foreign files, half a minute each
   taplo     taplo checks every recipe against the JSON Schema, and refuses broken ones
 
@@ -100,6 +101,12 @@ const CLIENTS: &[Client] = &[
         npm: &[],
     },
     Client { name: "relief", apt: &[("gdaldem", "gdal-bin")], pip: &[NUMPY, RASTERIO], npm: &[] },
+    Client {
+        name: "layers",
+        apt: &[("gdaldem", "gdal-bin"), ("grass", "grass-core")],
+        pip: &[NUMPY, RASTERIO],
+        npm: &[],
+    },
     Client { name: "fuzz", apt: &[("g++", "g++")], pip: &[], npm: &[] },
     Client { name: "taplo", apt: &[("node", "nodejs"), ("npm", "npm")], pip: &[], npm: &["@taplo/cli@0.7.0"] },
 ];
@@ -148,6 +155,11 @@ const STEPS: &[&Step] = &[
         run: || script("formats"),
     },
     &Step { name: "relief", about: "gdaldem shades the ground as orogen does", run: || script("relief") },
+    &Step {
+        name: "layers",
+        about: "GRASS makes the layers that follow from heights as orogen does",
+        run: || script("layers"),
+    },
     &Step { name: "fuzz", about: "libFuzzer on the readers of foreign files", run: fuzz },
     &Step { name: "taplo", about: "taplo checks the recipes against the schema", run: || script("taplo") },
 ];

@@ -1,5 +1,6 @@
 //! Windows and grids: plain data, and reading between samples.
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// A rectangle of samples of the infinite lattice with spacing `cell`.
@@ -222,6 +223,38 @@ impl<T: Copy> Grid<T> {
             let to = (left - ours.x) as usize;
             let source = &other.row((y - theirs.y) as usize)[from..from + width];
             self.row_mut((y - ours.y) as usize)[to..to + width].copy_from_slice(source);
+        }
+    }
+}
+
+/// Samples of rows of `columns` as samples of columns, in squares that stay in cache; squares side by side.
+pub fn transposed<T: Copy + Default + Send + Sync>(samples: &[T], columns: usize) -> Vec<T> {
+    const SIDE: usize = 32;
+    let rows = samples.len() / columns.max(1);
+    let mut out = vec![T::default(); samples.len()];
+    out.par_chunks_mut(SIDE * rows.max(1)).enumerate().for_each(|(block, out)| {
+        let first = block * SIDE;
+        for top in (0..rows).step_by(SIDE) {
+            for (i, column) in out.chunks_exact_mut(rows.max(1)).enumerate() {
+                for (j, out) in column.iter_mut().enumerate().take(rows.min(top + SIDE)).skip(top) {
+                    *out = samples[j * columns + first + i];
+                }
+            }
+        }
+    });
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_become_columns() {
+        for (columns, rows) in [(1usize, 1usize), (5, 3), (70, 33), (33, 70), (32, 64), (0, 0)] {
+            let samples: Vec<usize> = (0..columns * rows).collect();
+            let turned = transposed(&samples, columns);
+            assert!((0..samples.len()).all(|k| turned[k % columns * rows + k / columns] == k), "{columns} x {rows}");
         }
     }
 }

@@ -42,13 +42,19 @@ nodes! {
         blur::Blur,
         distance::Distance,
         droplets::Droplets,
+        flow_direction::FlowDirection,
+        flow_indices::FlowIndices,
+        geomorphons::Geomorphons,
         local_stream_power::LocalStreamPower,
         pipes::Pipes,
+        ruggedness::Ruggedness,
         select_aspect::SelectAspect,
         select_curvature::SelectCurvature,
         select_slope::SelectSlope,
         slope::Slope,
+        soil_depth::SoilDepth,
         thermal::Thermal,
+        topographic_position::TopographicPosition,
     }
     solver {
         bake::Bake,
@@ -56,9 +62,12 @@ nodes! {
         dla::Dla,
         drainage::Drainage,
         fill::Fill,
+        height_above_drainage::HeightAboveDrainage,
+        insolation::Insolation,
         lakes::Lakes,
         normalise::Normalise,
         rivers::Rivers,
         stream_power::StreamPower,
+        viewshed::Viewshed,
     }
 }

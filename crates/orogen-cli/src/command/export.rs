@@ -15,8 +15,8 @@ use orogen::file::OutputPolicy;
 use orogen::words::{count, number};
 
 use crate::bar::Bar;
+use crate::export_options::{FormatOptions, LayerOptions};
 use crate::failure::Failure;
-use crate::format_options::FormatOptions;
 use crate::options::Limits;
 use crate::replace::Replace;
 use crate::seeds::Seeds;
@@ -28,6 +28,7 @@ use crate::{finite, interrupt, say};
 
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
+#[command(after_long_help = layers(), after_help = "`orogen export --help` lists the layers that follow from the heights.")]
 pub struct Args {
     /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
@@ -37,7 +38,7 @@ pub struct Args {
     /// Format, if the file's extension does not say [default: npy]
     #[arg(long, value_parser = Named)]
     format: Option<&'static str>,
-    /// Layer to write: an output, `node.layer`, or what follows from the heights: slope, aspect, curvature, hillshade, normal, occlusion, splat
+    /// Layer to write: an output, `node.layer`, or what follows from the heights, listed below
     #[arg(long, value_name = "L", default_value = orogen::world::HEIGHT)]
     layer: String,
     #[command(flatten)]
@@ -58,6 +59,15 @@ pub struct Args {
     quiet: bool,
     #[command(flatten)]
     options: FormatOptions,
+    #[command(flatten)]
+    layer_options: LayerOptions,
+}
+
+/// The layers that follow from the heights, for the help.
+fn layers() -> String {
+    let widest = list::all().iter().map(|layer| layer.name.len()).max().unwrap_or_default();
+    let lines = list::all().iter().map(|layer| format!("  {:widest$}  {}", layer.name, layer.about));
+    format!("Layers that follow from the heights:\n{}", lines.collect::<Vec<_>>().join("\n"))
 }
 
 /// The names of engines.
@@ -134,7 +144,7 @@ fn export(args: &Args) -> Result<(), Failure> {
     let mut recipe = source.read(&budget)?;
     args.samples.view.apply(&mut recipe);
     let policy = args.replace.policy(source.inputs(&recipe));
-    list::prepare(&mut recipe, &args.layer);
+    list::prepare(&mut recipe, &args.layer, &args.layer_options.read()?)?;
     let world = args.limits.open(recipe, &budget)?;
     if let Some(target) = args.target.and_then(targets::list::named) {
         return for_engine(args, target, format, &world, &policy);

@@ -17,6 +17,7 @@ use orogen::world::HEIGHT;
 use orogen::{Grid, Progress, Window, World, file};
 
 use crate::bar::Bar;
+use crate::export_options::LayerOptions;
 use crate::failure::Failure;
 use crate::options::Limits;
 use crate::paper::Paper;
@@ -80,6 +81,8 @@ pub struct Args {
     without: Without,
     #[command(flatten)]
     replace: Replace,
+    #[command(flatten)]
+    layer_options: LayerOptions,
     #[command(flatten)]
     limits: Limits,
     /// Show neither progress nor the closing words
@@ -193,7 +196,8 @@ fn map(args: &Args) -> Result<(), Failure> {
         (Some(palette), _) => palette::find(palette)?,
         (None, HEIGHT) => palette::find(Path::new(named::DEFAULT))?,
         (None, layer) => {
-            let own = named::find(layer).map_or(LAYER_PALETTE, |named| named.name);
+            let derived = list::named(layer).map(|derived| derived.palette).filter(|palette| !palette.is_empty());
+            let own = derived.or(named::find(layer).map(|named| named.name)).unwrap_or(LAYER_PALETTE);
             palette::find(Path::new(own))?
         }
     };
@@ -203,7 +207,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     let mut recipe = source.read(&budget)?;
     args.view.apply(&mut recipe);
     let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)).protecting(&args.palette))?;
-    list::prepare(&mut recipe, &args.layer);
+    list::prepare(&mut recipe, &args.layer, &args.layer_options.read()?)?;
     let world = args.limits.open(recipe, &budget)?;
     let window = args.view.window(&world)?;
     let is_place = matches!(source, Source::Dem(_));

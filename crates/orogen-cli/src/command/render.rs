@@ -3,16 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use orogen::analysis::sun::Moment;
 use orogen::export::derived::layer::Derived;
 use orogen::export::derived::rows::Rows;
 use orogen::export::derived::{albedo, list, roughness};
+use orogen::export::options::Options;
 use orogen::file;
 use orogen::format::png::{self, Animation, Picture, Pixel};
 use orogen::palette::palette::Palette;
 use orogen::render::camera::{Camera, View as Shot};
 use orogen::render::relief::Land;
 use orogen::render::scene::{Colors, Edge, Scene, Style};
-use orogen::render::sun::Moment;
 use orogen::words::{count, number};
 use orogen::world::HEIGHT;
 use orogen::{Grid, Progress, Window, World};
@@ -168,7 +169,7 @@ fn render(args: &Args) -> Result<(), Failure> {
     let policy = args.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
     let outputs = target.outputs(&args.out, args.turntable.unwrap_or(1), &policy)?;
     if matches!(args.color, Dress::Surfaces) {
-        COVER.iter().for_each(|layer| list::prepare(&mut recipe, layer.name));
+        COVER.iter().try_for_each(|layer| list::prepare(&mut recipe, layer.name, &Options::default()))?;
     }
     let world = args.limits.open(recipe, &budget)?;
     let window = args.view.window(&world)?;
@@ -354,7 +355,10 @@ fn draw(
     };
     let cover = match style.colors {
         Colors::Surfaces => {
-            let layers = COVER.iter().map(|layer| Rows::new(layer, world, window, 0, progress)?.whole());
+            let layers = COVER
+                .iter()
+                .filter_map(|layer| layer.rows())
+                .map(|rows| Rows::new(rows, world, window, 0, progress)?.whole());
             layers.collect::<orogen::Result<Vec<Vec<Grid>>>>()?.concat()
         }
         _ => Vec::new(),

@@ -472,3 +472,67 @@ fn npy_heights(folder: &Folder) -> orogen::Grid {
     folder.good(&["export", "small.toml", "-o", "heights.npy", "-q"]);
     npy(&folder.read("heights.npy"))
 }
+
+#[test]
+fn layers_that_follow_from_the_heights_have_options_of_their_own() {
+    let folder = Folder::with_small();
+    folder.good(&["export", "small.toml", "-o", "heights.tif", "-q"]);
+    let export = |layer: &str, options: &[&str]| {
+        let mut arguments = vec!["export", "heights.tif", "-o", "layer.npy", "-q", "--layer", layer];
+        arguments.extend(options);
+        folder.good(&arguments);
+        npy(&folder.read("layer.npy"))
+    };
+    // Every one is made, with what it cannot do without.
+    let help = folder.good(&["export", "--help"]);
+    let (_, list) = help.text().split_once("Layers that follow from the heights:").unwrap();
+    let names: Vec<&str> = list.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    assert!(names.len() >= 24, "{names:?}");
+    for name in names.iter().filter(|name| !["normal", "splat"].contains(name)) {
+        let needed: &[&str] = if *name == "viewshed" { &["--observer", "300,200"] } else { &[] };
+        let made = export(name, needed);
+        assert_eq!((made.width(), made.height()), (64, 48), "{name}");
+    }
+    // Options change what is made.
+    let (june, winter) = (export("insolation", &["--day", "172"]), export("insolation", &["--season", "winter"]));
+    assert!(june.data().iter().zip(winter.data()).all(|(june, winter)| june > winter));
+    let south = export("insolation", &["--season", "winter", "--latitude", "-45"]);
+    assert!(south.data().iter().zip(june.data()).all(|(south, june)| south < june));
+    let few = export("height-above-drainage", &["--stream", "1e9"]);
+    let many = export("height-above-drainage", &["--stream", "500"]);
+    assert!(few.data().iter().sum::<f32>() > 2.0 * many.data().iter().sum::<f32>());
+    let (low, high) = (
+        export("viewshed", &["--observer", "300,200"]),
+        export("viewshed", &["--observer", "300,200", "--observer-height", "5000"]),
+    );
+    assert!(low.data().iter().sum::<f32>() < high.data().iter().sum::<f32>());
+    let codes = export("flow-direction", &["--codes", "grass"]);
+    assert!(codes.data().iter().all(|code| (0.0..=8.0).contains(code)) && codes.data().contains(&7.0));
+}
+
+#[test]
+fn what_a_layer_cannot_do_is_a_sentence() {
+    let folder = Folder::with_small();
+    let endless = "orogen = 1\n[nodes.a]\nop = \"fbm\"\n[outputs]\nheight = \"a\"\n";
+    folder.write("endless.toml", endless);
+    for (recipe, options, expect) in [
+        (
+            "small.toml",
+            &["--layer", "slope", "--day", "5"][..],
+            "--day is no option of the layer slope; those that know it: insolation",
+        ),
+        ("small.toml", &["--day", "5"], "--day is no option of the layer height"),
+        ("small.toml", &["--layer", "viewshed"], "a viewshed needs an observer: --observer X,Y"),
+        ("small.toml", &["--layer", "viewshed", "--observer", "9e9,0"], "stands outside the world"),
+        ("small.toml", &["--layer", "insolation", "--day", "366"], "a whole number from 1 to 365"),
+        ("small.toml", &["--layer", "insolation", "--day", "5", "--season", "winter"], "contradict each other"),
+        ("endless.toml", &["--layer", "wetness"], "the layer wetness needs a world with bounds"),
+    ] {
+        let mut arguments = vec!["export", recipe, "-o", "x.npy"];
+        arguments.extend(options);
+        folder.bad(&arguments, 2, expect);
+    }
+    assert!(!folder.path("x.npy").exists());
+    // What needs no bounds is made without.
+    folder.good(&["export", "endless.toml", "-o", "x.npy", "--layer", "landforms", "--window", "0,0,9,9", "-q"]);
+}

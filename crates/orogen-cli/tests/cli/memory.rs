@@ -9,6 +9,7 @@ use std::io::Read;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
+use orogen::export::derived::layer::{Made, Nature};
 use orogen::export::derived::list as derived;
 use orogen::export::registry;
 use orogen::export::targets::list as targets;
@@ -62,9 +63,11 @@ fn rows(side: usize) -> Vec<Vec<String>> {
             rows.push(format!("export land.toml -o few.{} --max-error 3 -q", format.name));
         }
     }
-    let land = orogen::Recipe::parse(&recipe(side, "[outputs]\nheight = \"land\"\n"), "land").unwrap();
     for layer in derived::all() {
-        let kind = if (layer.channels)(&land).len() > 1 { "png" } else { "tif" };
+        let kind = match &layer.made {
+            Made::Rows(rows) if rows.nature != Nature::Numbers => "png",
+            _ => "tif",
+        };
         rows.push(format!("export land.toml -o layer.{kind} --layer {} -q", layer.name));
     }
     for target in targets::all() {

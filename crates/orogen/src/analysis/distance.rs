@@ -10,14 +10,24 @@ use rayon::prelude::*;
 /// Roerdink and W. Hesselink, "A general algorithm for computing distance transforms in linear time", 2000): O(samples)
 /// whatever the reach.
 pub fn nearest(grid: &Grid, threshold: f32, reach: usize) -> Grid {
-    let window = grid.window().shrunk(reach);
+    nearest_within(grid, threshold, reach, reach)
+}
+
+/// The same of every sample of `grid`, however far the nearest is.
+pub fn nearest_in_whole(grid: &Grid, threshold: f32) -> Grid {
+    nearest_within(grid, threshold, 0, grid.width() + grid.height())
+}
+
+/// The distance of each sample without a border of `border`, up to `reach`.
+fn nearest_within(grid: &Grid, threshold: f32, border: usize, reach: usize) -> Grid {
+    let window = grid.window().shrunk(border);
     let mut out = Grid::filled(window, f32::INFINITY);
     if window.is_empty() {
         return out;
     }
-    let columns = down_columns(grid, threshold, reach, window.height);
+    let columns = down_columns(grid, threshold, border, window.height);
     let rows = out.data_mut().par_chunks_mut(window.width).zip(columns.par_chunks(grid.width()));
-    rows.for_each_init(Vec::new, |hull, (out, down)| along_row(down, reach, hull, out));
+    rows.for_each_init(Vec::new, |hull, (out, down)| along_row(down, border, reach, hull, out));
     out
 }
 
@@ -25,7 +35,7 @@ pub fn nearest(grid: &Grid, threshold: f32, reach: usize) -> Grid {
 const NONE: u32 = u32::MAX / 2;
 
 /// Samples to the nearest marked one in the same column, row after row of the inner ones.
-fn down_columns(grid: &Grid, threshold: f32, reach: usize, height: usize) -> Vec<u32> {
+fn down_columns(grid: &Grid, threshold: f32, border: usize, height: usize) -> Vec<u32> {
     let width = grid.width();
     let mut out = vec![NONE; width * height];
     let rows: [Box<dyn Iterator<Item = usize>>; 2] = [Box::new(0..grid.height()), Box::new((0..grid.height()).rev())];
@@ -35,8 +45,8 @@ fn down_columns(grid: &Grid, threshold: f32, reach: usize, height: usize) -> Vec
             for (step, value) in steps.iter_mut().zip(grid.row(j)) {
                 *step = if *value >= threshold { 0 } else { (*step + 1).min(NONE) };
             }
-            if (reach..reach + height).contains(&j) {
-                let row = &mut out[(j - reach) * width..(j - reach + 1) * width];
+            if (border..border + height).contains(&j) {
+                let row = &mut out[(j - border) * width..(j - border + 1) * width];
                 row.iter_mut().zip(&steps).for_each(|(nearest, step)| *nearest = (*nearest).min(*step));
             }
         }
@@ -52,7 +62,7 @@ struct Lowest {
 }
 
 /// Distances of a row's inner samples from what is told of its columns.
-fn along_row(down: &[u32], reach: usize, hull: &mut Vec<Lowest>, out: &mut [f32]) {
+fn along_row(down: &[u32], border: usize, reach: usize, hull: &mut Vec<Lowest>, out: &mut [f32]) {
     hull.clear();
     let columns = down.iter().enumerate().filter(|(_, steps)| (**steps as usize) <= reach);
     for (column, steps) in columns {
@@ -76,7 +86,7 @@ fn along_row(down: &[u32], reach: usize, hull: &mut Vec<Lowest>, out: &mut [f32]
     let farthest = (reach * reach) as i64;
     let mut k = 0;
     for (i, out) in out.iter_mut().enumerate() {
-        let at = (i + reach) as i64;
+        let at = (i + border) as i64;
         while hull.get(k + 1).is_some_and(|next| next.from <= at) {
             k += 1;
         }

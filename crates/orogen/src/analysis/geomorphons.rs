@@ -26,11 +26,48 @@ const CODES: [[u8; 9]; 9] = [
 
 const STEPS: [(isize, isize); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
-/// The form of every sample of `grid` that is `radius` samples or more from its border, as a code from 1 (see [`FORMS`]); 0
-/// where it or a sample in sight is not finite. Ground counts as level within `flat` degrees.
+/// When a direction counts as level.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    /// If the angles from zenith and nadir to its horizon differ by no more than the limit, as in the paper.
+    ByDifference,
+    /// If neither the highest nor the lowest line of sight is steeper than the limit, as in r.geomorphon; else the steeper of the two counts.
+    BySteepest,
+}
+
+/// How far one looks, and what is level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Look {
+    /// Samples along the axes.
+    pub straight: usize,
+    /// Samples along the diagonals, no more than along the axes.
+    pub diagonal: usize,
+    /// The limit of level ground, in degrees.
+    pub flat: f64,
+    /// What it limits.
+    pub level: Level,
+}
+
+impl Look {
+    /// As many samples each way, by the paper's rule.
+    pub fn square(radius: usize, flat: f64) -> Look {
+        Look { straight: radius, diagonal: radius, flat, level: Level::ByDifference }
+    }
+
+    /// As far along the diagonals as along the axes: `reach` cells.
+    pub fn round(reach: f64, flat: f64, level: Level) -> Look {
+        let straight = (reach as usize).max(1);
+        let diagonal = ((reach * std::f64::consts::FRAC_1_SQRT_2) as usize).clamp(1, straight);
+        Look { straight, diagonal, flat, level }
+    }
+}
+
+/// The form of every sample of `grid` that is `straight` samples or more from its border, as a code from 1 (see [`FORMS`]); 0
+/// where it or a sample in sight is not finite.
 ///
 /// Costs O(samples times 8 radius); rows side by side.
-pub fn geomorphons(grid: &Grid, radius: usize, flat: f64) -> Grid<u8> {
+pub fn geomorphons(grid: &Grid, look: &Look) -> Grid<u8> {
+    let radius = look.straight;
     let from = *grid.window();
     let window = Window {
         x: from.x + radius as i64,
@@ -43,22 +80,24 @@ pub fn geomorphons(grid: &Grid, radius: usize, flat: f64) -> Grid<u8> {
     if window.is_empty() {
         return out;
     }
-    let level = libm::tan(flat.to_radians());
+    let limit = libm::tan(look.flat.to_radians());
     out.data_mut().par_chunks_mut(window.width).enumerate().for_each(|(j, row)| {
         for (i, form) in row.iter_mut().enumerate() {
-            *form = form_at(grid, i + radius, j + radius, radius, level).unwrap_or(0);
+            *form = form_at(grid, [i + radius, j + radius], look, limit).unwrap_or(0);
         }
     });
     out
 }
 
-fn form_at(grid: &Grid, i: usize, j: usize, radius: usize, level: f64) -> Option<u8> {
+/// The form of one sample; `limit` is the tangent of the limit of level ground.
+fn form_at(grid: &Grid, [i, j]: [usize; 2], look: &Look, limit: f64) -> Option<u8> {
     let here = f64::from(grid.get(i, j));
     let (mut lower, mut higher) = (0usize, 0usize);
     for (east, south) in STEPS {
         let length = ((east * east + south * south) as f64).sqrt() * grid.window().cell;
         let (mut up, mut down) = (f64::NEG_INFINITY, f64::INFINITY);
-        for step in 1..=radius as isize {
+        let farthest = if east * south == 0 { look.straight } else { look.diagonal };
+        for step in 1..=farthest as isize {
             let there = grid.get(i.wrapping_add_signed(east * step), j.wrapping_add_signed(south * step));
             let slope = (f64::from(there) - here) / (length * step as f64);
             if !slope.is_finite() {
@@ -67,9 +106,16 @@ fn form_at(grid: &Grid, i: usize, j: usize, radius: usize, level: f64) -> Option
             up = up.max(slope);
             down = down.min(slope);
         }
-        // With the highest line of sight at angle b and the lowest at d, nadir less zenith is b + d; its tangent is sum / rest.
-        let (sum, rest) = (up + down, 1.0 - up * down);
-        let tells = rest <= 0.0 || sum.abs() > level * rest;
+        let sum = up + down;
+        let tells = match look.level {
+            // With the highest line of sight at angle b and the lowest at d, nadir less zenith is b + d; its tangent is sum / rest.
+            Level::ByDifference => {
+                let rest = 1.0 - up * down;
+                rest <= 0.0 || sum.abs() > limit * rest
+            }
+            Level::BySteepest => up.abs().max(down.abs()) > limit,
+        };
+        // The highest line is above the lowest: it is the steeper one if the sum is above 0.
         higher += usize::from(tells && sum > 0.0);
         lower += usize::from(tells && sum < 0.0);
     }
@@ -96,7 +142,7 @@ mod tests {
                 grid.row_mut(j)[i] = f(window.east(i), window.south(j)) as f32;
             }
         }
-        let forms = geomorphons(&grid, 4, 1.0);
+        let forms = geomorphons(&grid, &Look::square(4, 1.0));
         assert_eq!((forms.width(), forms.height()), (1, 1));
         FORMS[usize::from(forms.get(0, 0)) - 1]
     }
@@ -120,10 +166,10 @@ mod tests {
     fn shares_sum_to_one_and_missing_samples_have_no_form() {
         let mut grid = Grid::filled(Window::new(20, 20, 1.0), 1.0);
         grid.row_mut(10)[10] = f32::NAN;
-        let forms = geomorphons(&grid, 3, 1.0);
+        let forms = geomorphons(&grid, &Look::square(3, 1.0));
         assert_eq!(forms.data().iter().filter(|f| **f == 0).count(), 25);
         assert_eq!(shares(&forms)[0], 1.0);
         assert_eq!(shares(&Grid::filled(Window::new(2, 2, 1.0), 0)), [0.0; 10]);
-        assert!(geomorphons(&grid, 10, 1.0).window().is_empty());
+        assert!(geomorphons(&grid, &Look::square(10, 1.0)).window().is_empty());
     }
 }

@@ -1,5 +1,6 @@
 //! How rough the ground is underfoot.
 
+use super::nine::over_nine;
 use super::slope::inner;
 use crate::grid::Grid;
 
@@ -19,6 +20,16 @@ pub fn ruggedness(grid: &Grid) -> Grid {
     out
 }
 
+/// The terrain ruggedness index: the square root of the sum of squared differences in metres between a sample and its eight neighbours (Riley, DeGloria and
+/// Elliot, "A terrain ruggedness index that quantifies topographic heterogeneity", 1999). Smaller than `grid` by a border of one sample; NaN where one of
+/// the nine is missing.
+pub fn riley(grid: &Grid) -> Grid {
+    over_nine(grid, |z| {
+        let here = z[1][1];
+        z.iter().flatten().map(|there| (there - here) * (there - here)).sum::<f64>().sqrt() as f32
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -29,5 +40,18 @@ mod tests {
         let grid = Grid::from_data(Window::new(5, 4, 1.0), (0..20).map(|k| (k % 5) as f32).collect()).unwrap();
         let rugged = ruggedness(&grid);
         assert!(rugged.data().len() == 6 && rugged.data().iter().all(|r| *r == 0.75));
+    }
+
+    #[test]
+    fn the_index_of_a_plane_and_of_a_peak() {
+        let made = |f: fn(usize, usize) -> f32| {
+            let data = (0..25).map(|k| f(k % 5, k / 5)).collect();
+            riley(&Grid::from_data(Window::new(5, 5, 10.0), data).unwrap())
+        };
+        // A plane that rises by 3 a sample: six of the eight neighbours differ by 3.
+        assert!(made(|x, _| 3.0 * x as f32).data().iter().all(|r| (r - 54.0f32.sqrt()).abs() < 1e-6));
+        let peak = made(|x, y| if (x, y) == (2, 2) { 7.0 } else { 0.0 });
+        assert!((peak.get(1, 1) - 392.0f32.sqrt()).abs() < 1e-5 && peak.get(0, 0) == 7.0, "{:?}", peak.data());
+        assert!(made(|x, _| if x == 0 { f32::NAN } else { 0.0 }).get(0, 1).is_nan());
     }
 }

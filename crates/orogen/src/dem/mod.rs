@@ -3,4 +3,5 @@
 pub mod fill;
 pub mod ground;
 pub mod held;
+pub mod latitude;
 pub mod square;

@@ -28,6 +28,8 @@ pub enum Takes {
     Number(f64, f64),
     /// Two numbers with a comma between them, the lower first.
     Range,
+    /// Two numbers with a comma between them: a place.
+    Point,
     /// One of these words.
     Word(&'static [&'static str]),
     /// Any text.
@@ -41,6 +43,7 @@ enum Value {
     Whole(u64),
     Number(f64),
     Range([f64; 2]),
+    Point([f64; 2]),
     Word(&'static str),
     Text(String),
 }
@@ -62,6 +65,10 @@ impl OptionSpec {
             Takes::Range => match text.split_once(',').map(|(low, high)| (number(low), number(high))) {
                 Some((Some(low), Some(high))) if low < high => Ok(Value::Range([low, high])),
                 _ => Err("it is two numbers, the lower first, such as -500,4500".into()),
+            },
+            Takes::Point => match text.split_once(',').map(|(x, y)| (number(x), number(y))) {
+                Some((Some(x), Some(y))) => Ok(Value::Point([x, y])),
+                _ => Err("it is two numbers with a comma between them, such as 1200,850".into()),
             },
             Takes::Word(words) => match words.iter().find(|word| word.eq_ignore_ascii_case(text)) {
                 Some(word) => Ok(Value::Word(word)),
@@ -134,6 +141,14 @@ impl Options {
         }
     }
 
+    /// A place.
+    pub fn point(&self, name: &str) -> Option<[f64; 2]> {
+        match self.given.get(name)? {
+            Value::Point(place) => Some(*place),
+            _ => None,
+        }
+    }
+
     /// One of an option's words, as it declares it.
     pub fn word(&self, name: &str) -> Option<&'static str> {
         match self.given.get(name)? {
@@ -171,6 +186,7 @@ mod tests {
         assert_eq!(given(Takes::Number(0.0, 1.0), " .5").unwrap().number("x"), Some(0.5));
         assert_eq!(given(Takes::Range, "-5, 7").unwrap().range("x"), Some([-5.0, 7.0]));
         assert_eq!(given(Takes::Word(&["half", "float"]), "HALF").unwrap().word("x"), Some("half"));
+        assert_eq!(given(Takes::Point, "7, -5").unwrap().point("x"), Some([7.0, -5.0]));
         assert_eq!(given(Takes::Text, "any").unwrap().text("x"), Some("any"));
         let flag = given(Takes::Nothing, "").unwrap();
         assert!(flag.has("x") && !flag.has("y") && flag.whole("x").is_none());
@@ -183,6 +199,8 @@ mod tests {
             (Takes::Number(0.0, 1.0), "nan", "a number from 0 to 1"),
             (Takes::Range, "7,-5", "the lower first"),
             (Takes::Range, "7", "two numbers"),
+            (Takes::Point, "7", "two numbers"),
+            (Takes::Point, "7,inf", "two numbers"),
             (Takes::Word(&["a", "b", "c"]), "d", "it is a, b or c"),
         ] {
             let why = given(takes, text).unwrap_err();

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::derived::layer::{Derived, Nature};
+use super::derived::layer::{Made, Nature, RowLayer};
 use super::derived::list;
 use super::derived::rows::Rows;
 use super::features::layer::VectorLayer;
@@ -26,7 +26,7 @@ pub struct Subject<'w> {
     world: &'w World,
     layer: String,
     /// What the layer is if the recipe has none of that name.
-    derived: Option<&'static Derived>,
+    derived: Option<&'static RowLayer>,
     /// Layers of vector features in place of samples.
     vectors: Vec<&'static VectorLayer>,
     window: Window,
@@ -52,7 +52,11 @@ impl<'w> Subject<'w> {
         let derived = match world.unit(layer) {
             Ok(_) => None,
             Err(error) => match list::named(layer) {
-                Some(derived) => Some(derived),
+                Some(derived) => match &derived.made {
+                    Made::Rows(rows) => Some(rows),
+                    // Its nodes are appended before a world is opened.
+                    Made::Nodes(_) => return Err(error),
+                },
                 None => {
                     let names: Vec<&str> = (list::all().iter().map(|derived| derived.name))
                         .chain(vector_list::all().iter().map(|layer| layer.name))

@@ -42,6 +42,28 @@ pub const DISTANCES: [f64; 8] = [
     std::f64::consts::SQRT_2,
 ];
 
+/// How a program numbers the eight directions, and a cell that drains to none: its numbers in the order of our codes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Convention([u8; 9]);
+
+impl Convention {
+    /// Powers of two clockwise from the east: ArcGIS, pysheds.
+    pub const ESRI: Convention = Convention([1, 2, 4, 8, 16, 32, 64, 128, 0]);
+    /// 1 to 8 counter-clockwise from the north-east.
+    pub const GRASS: Convention = Convention([8, 7, 6, 5, 4, 3, 2, 1, 0]);
+    /// 1 to 8 counter-clockwise from the east.
+    pub const TAUDEM: Convention = Convention([1, 8, 7, 6, 5, 4, 3, 2, 0]);
+    /// Powers of two clockwise from the north-east.
+    pub const WHITEBOX: Convention = Convention([2, 4, 8, 16, 32, 64, 128, 1, 0]);
+    /// The keys of a numeric keypad.
+    pub const PCRASTER: Convention = Convention([6, 3, 2, 1, 4, 7, 8, 9, 5]);
+
+    /// The number of one of our codes; that of [`NONE`] for any other.
+    pub fn of(self, code: u8) -> u8 {
+        self.0[usize::from(code.min(NONE))]
+    }
+}
+
 /// A number that depends on a sample's place on the lattice alone, for choices between equals: they then neither lean to one
 /// side nor depend on the window. (Multiplication and xor-shifts as in splitmix64's finaliser, Steele, Lea and Flood 2014.)
 #[inline]

@@ -1,6 +1,7 @@
 //! Water finds its way: depressions, drainage, areas, lakes, rivers and what they cut. Pure functions on grids, one algorithm
 //! a file.
 
+pub mod above_drainage;
 pub mod accumulation;
 pub mod basins;
 pub mod breach;

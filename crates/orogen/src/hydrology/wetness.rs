@@ -1,19 +1,54 @@
-//! The topographic wetness index.
+//! Indices of how much water comes to the ground and how steep it is.
 
 use super::accumulation::Accumulation;
 use crate::analysis::slope::{extended, steepness};
 use crate::grid::Grid;
 
-/// ln(a / tan b) (Beven and Kirkby 1979): a is the drainage area over the cell's width in metres, tan b the slope by Horn's
-/// method, at the grid's border one-sided. High where much water comes to level ground. Slopes below 1 in 1000 count as that, or
-/// level ground would be infinitely wet. NaN where a sample is missing.
+/// How ground counts that is level: as sloping by so much, or it would be infinitely wet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LevelGround {
+    /// The least slope, rise over run.
+    pub least_slope: f64,
+}
+
+impl Default for LevelGround {
+    fn default() -> LevelGround {
+        LevelGround { least_slope: 1e-3 }
+    }
+}
+
+impl LevelGround {
+    /// The slope that counts; NaN stays NaN.
+    pub fn slope(&self, slope: f32) -> f64 {
+        let slope = f64::from(slope);
+        if slope < self.least_slope { self.least_slope } else { slope }
+    }
+}
+
+/// The topographic wetness index ln(a / tan b) (Beven and Kirkby 1979) of a specific catchment area in metres and a slope, rise over run.
+pub fn wetness_index(area: f64, slope: f64) -> f64 {
+    libm::log(area / slope)
+}
+
+/// The stream power index a tan b (Moore, Grayson and Ladson 1991), in metres.
+pub fn stream_power(area: f64, slope: f64) -> f64 {
+    area * slope
+}
+
+/// The LS factor 1.4 (a / 22.13)^0.4 (sin b / 0.0896)^1.3 (Moore and Burch, "Physical basis of the length-slope factor in the universal soil loss equation",
+/// 1986): how much soil a slope loses beside one of 22.13 m and 9 %.
+pub fn ls_factor(area: f64, slope: f64) -> f64 {
+    let sine = slope / (1.0 + slope * slope).sqrt();
+    1.4 * libm::pow(area / 22.13, 0.4) * libm::pow(sine / 0.0896, 1.3)
+}
+
+/// The topographic wetness index of a whole map, with slopes by Horn's method, at the grid's border one-sided. High where much water comes to level ground.
+/// Slopes below 1 in 1000 count as that. NaN where a sample is missing.
 pub fn wetness(heights: &Grid, drained: &Accumulation) -> Grid {
     let mut out = steepness(&extended(heights));
-    let cell = heights.window().cell;
+    let (cell, level) = (heights.window().cell, LevelGround::default());
     for (value, cells) in out.data_mut().iter_mut().zip(drained.area.data()) {
-        let slope = f64::from(*value).max(1e-3);
-        // `max` would hide a missing slope.
-        *value = if value.is_nan() { f32::NAN } else { libm::log(f64::from(*cells) * cell / slope) as f32 };
+        *value = wetness_index(f64::from(*cells) * cell, level.slope(*value)) as f32;
     }
     out
 }

@@ -13,7 +13,6 @@ pub mod scene;
 mod shade;
 pub mod sky;
 mod skylight;
-pub mod sun;
 mod tone;
 pub mod vector;
 mod water;

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use super::relief::Relief;
 use super::sky::Sky;
 use super::vector::Vector;
+use crate::grid::transposed;
 use crate::palette::color::Light;
 
 /// Directions in which horizons are looked for.
@@ -217,12 +218,6 @@ impl Sweep<'_> {
             }
         });
     }
-}
-
-/// Columns as rows.
-fn transposed<T: Copy + Send + Sync>(samples: &[T], columns: usize) -> Vec<T> {
-    let rows = samples.len() / columns;
-    (0..samples.len()).into_par_iter().map(|at| samples[at % rows * columns + at / rows]).collect()
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::water::{self, Water};
 use crate::analysis::aspect::aspect_of;
 use crate::analysis::curvature::{Curvature, curvature};
-use crate::analysis::geomorphons::{geomorphons, shares};
+use crate::analysis::geomorphons::{Look, geomorphons, shares};
 use crate::analysis::roughness::ruggedness;
 use crate::analysis::slope::from_gradients;
 use crate::analysis::spectrum::{self, Band};
@@ -118,7 +118,7 @@ impl Measures {
             grid_bias: slope.grid_bias,
             spectrum: spectrum::slope(&bands, land.window().cell),
             hurst: spectrum::hurst(&land),
-            forms: shares(&geomorphons(&land, SIGHT, LEVEL)),
+            forms: shares(&geomorphons(&land, &Look::square(SIGHT, LEVEL))),
             water: water::measure(&land),
             hypsometry,
             slopes: slope.classes,

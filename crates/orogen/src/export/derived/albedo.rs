@@ -1,18 +1,22 @@
 //! The color of the ground.
 
 use super::cover::{self, Cover};
-use super::layer::{Derived, Nature};
+use super::layer::{Derived, Made, Nature, RowLayer};
 use crate::recipe::surface::expand::expand;
 
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "albedo",
     about: "color of the ground by the recipe's surfaces, unlit: an albedo or base color map",
-    unit: "",
-    nature: Nature::Color,
-    channels: |_| ["R", "G", "B"].map(String::from).to_vec(),
-    prepare: expand,
-    layers: cover::shares_and_positions,
-    reach: |_| 0,
-    make: |around, window| Cover::new(around).albedo(window),
+    palette: "",
+    options: &[],
+    made: Made::Rows(RowLayer {
+        unit: "",
+        nature: Nature::Color,
+        channels: |_| ["R", "G", "B"].map(String::from).to_vec(),
+        prepare: expand,
+        layers: cover::shares_and_positions,
+        reach: |_| 0,
+        make: |around, window| Cover::new(around).albedo(window),
+    }),
 };

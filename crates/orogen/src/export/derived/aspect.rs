@@ -1,17 +1,21 @@
 //! Which way the ground faces.
 
-use super::layer::{Derived, Nature, none, nothing};
+use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
 use crate::analysis::aspect::aspect;
 
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "aspect",
     about: "direction downhill in degrees clockwise from north; NaN on level ground",
-    unit: "deg",
-    nature: Nature::Numbers,
-    channels: |_| vec!["aspect".into()],
-    prepare: nothing,
-    layers: none,
-    reach: |_| 1,
-    make: |around, window| vec![aspect(&around.bordered(window))],
+    palette: "aspect",
+    options: &[],
+    made: Made::Rows(RowLayer {
+        unit: "deg",
+        nature: Nature::Numbers,
+        channels: |_| vec!["aspect".into()],
+        prepare: nothing,
+        layers: none,
+        reach: |_| 1,
+        make: |around, window| vec![aspect(&around.bordered(window))],
+    }),
 };

@@ -1,17 +1,21 @@
 //! How the ground bends.
 
-use super::layer::{Derived, Nature, none, nothing};
+use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
 use crate::analysis::curvature::{Curvature, curvature};
 
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "curvature",
     about: "total curvature in 1/m, above 0 on tops and below 0 in hollows (Zevenbergen and Thorne)",
-    unit: "1/m",
-    nature: Nature::Numbers,
-    channels: |_| vec!["curvature".into()],
-    prepare: nothing,
-    layers: none,
-    reach: |_| 1,
-    make: |around, window| vec![curvature(&around.bordered(window), Curvature::Total)],
+    palette: "oleron",
+    options: &[],
+    made: Made::Rows(RowLayer {
+        unit: "1/m",
+        nature: Nature::Numbers,
+        channels: |_| vec!["curvature".into()],
+        prepare: nothing,
+        layers: none,
+        reach: |_| 1,
+        make: |around, window| vec![curvature(&around.bordered(window), Curvature::Total)],
+    }),
 };

@@ -1,17 +1,21 @@
 //! How much light the ground catches.
 
-use super::layer::{Derived, Nature, none, nothing};
+use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
 use crate::analysis::hillshade::{Light, hillshade};
 
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "hillshade",
     about: "shaded relief: light from the north-west, 45 degrees high, on ground of Horn's slope; 1 is full light, 0 none",
-    unit: "",
-    nature: Nature::Numbers,
-    channels: |_| vec!["hillshade".into()],
-    prepare: nothing,
-    layers: none,
-    reach: |_| 1,
-    make: |around, window| vec![hillshade(&around.bordered(window), &Light::default())],
+    palette: "grey",
+    options: &[],
+    made: Made::Rows(RowLayer {
+        unit: "",
+        nature: Nature::Numbers,
+        channels: |_| vec!["hillshade".into()],
+        prepare: nothing,
+        layers: none,
+        reach: |_| 1,
+        make: |around, window| vec![hillshade(&around.bordered(window), &Light::default())],
+    }),
 };

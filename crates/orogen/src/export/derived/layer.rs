@@ -1,6 +1,10 @@
 //! What a derived layer is.
 
+use super::appended::Appended;
 use crate::analysis::slope::beyond;
+use crate::declare::Input;
+use crate::error::Result;
+use crate::export::options::OptionSpec;
 use crate::grid::{Grid, Window};
 use crate::recipe::document::Recipe;
 
@@ -19,11 +23,49 @@ pub enum Nature {
 
 /// A layer that follows from the heights.
 pub struct Derived {
-    /// What `--layer` calls it.
+    /// Its name after `--layer`.
     pub name: &'static str,
     /// One line for a list.
     pub about: &'static str,
-    /// What a sample is measured in, or empty.
+    /// The palette that suits a map of it; empty where a map of it makes no sense.
+    pub palette: &'static str,
+    /// The options it knows.
+    pub options: &'static [OptionSpec],
+    /// How it is made.
+    pub made: Made,
+}
+
+impl Derived {
+    /// How its rows are made, if it is made of rows.
+    pub fn rows(&self) -> Option<&RowLayer> {
+        match &self.made {
+            Made::Rows(rows) => Some(rows),
+            Made::Nodes(_) => None,
+        }
+    }
+}
+
+/// How a derived layer is made.
+pub enum Made {
+    /// Band of rows by band of rows, from the heights around each sample.
+    Rows(RowLayer),
+    /// By nodes that are appended to the recipe before its world is opened.
+    Nodes(NodeLayer),
+}
+
+/// A layer that nodes make.
+pub struct NodeLayer {
+    /// Whether one of them is a solver, which needs a world with bounds.
+    pub bounded: bool,
+    /// Appends the nodes, and returns what the layer reads.
+    ///
+    /// Fails if an option is missing or does not fit.
+    pub append: fn(&mut Appended) -> Result<Input>,
+}
+
+/// A layer that is made of rows of heights.
+pub struct RowLayer {
+    /// Unit of a sample, or empty.
     pub unit: &'static str,
     /// What its channels are.
     pub nature: Nature,

@@ -1,6 +1,6 @@
 //! How much sky the ground sees.
 
-use super::layer::{Derived, Nature, none, nothing};
+use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
 use crate::analysis::sky;
 
 /// How far horizons are looked for, in metres, and at most in samples.
@@ -15,11 +15,15 @@ fn reach(cell: f64) -> usize {
 pub static LAYER: Derived = Derived {
     name: "occlusion",
     about: "ambient occlusion: the share of the sky that is seen, up to 1000 m or 128 samples around, 1 on open ground",
-    unit: "",
-    nature: Nature::Numbers,
-    channels: |_| vec!["occlusion".into()],
-    prepare: nothing,
-    layers: none,
-    reach,
-    make: |around, window| vec![sky::view(around.heights, window, reach(window.cell))],
+    palette: "grey",
+    options: &[],
+    made: Made::Rows(RowLayer {
+        unit: "",
+        nature: Nature::Numbers,
+        channels: |_| vec!["occlusion".into()],
+        prepare: nothing,
+        layers: none,
+        reach,
+        make: |around, window| vec![sky::view(around.heights, window, reach(window.cell))],
+    }),
 };

@@ -1,18 +1,22 @@
 //! How matt the ground is.
 
 use super::cover::{self, Cover};
-use super::layer::{Derived, Nature};
+use super::layer::{Derived, Made, Nature, RowLayer};
 use crate::recipe::surface::expand::expand;
 
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "roughness",
     about: "roughness of the ground by the recipe's surfaces, 0 a mirror to 1 matt: a roughness map",
-    unit: "",
-    nature: Nature::Numbers,
-    channels: |_| vec!["roughness".into()],
-    prepare: expand,
-    layers: cover::shares,
-    reach: |_| 0,
-    make: |around, window| Cover::new(around).roughness(window),
+    palette: "grey",
+    options: &[],
+    made: Made::Rows(RowLayer {
+        unit: "",
+        nature: Nature::Numbers,
+        channels: |_| vec!["roughness".into()],
+        prepare: expand,
+        layers: cover::shares,
+        reach: |_| 0,
+        make: |around, window| Cover::new(around).roughness(window),
+    }),
 };

@@ -1,17 +1,21 @@
 //! How steep the ground is.
 
-use super::layer::{Derived, Nature, none, nothing};
+use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
 use crate::analysis::slope::degrees;
 
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "slope",
     about: "steepness in degrees, by Horn's 3 x 3 method",
-    unit: "deg",
-    nature: Nature::Numbers,
-    channels: |_| vec!["slope".into()],
-    prepare: nothing,
-    layers: none,
-    reach: |_| 1,
-    make: |around, window| vec![degrees(&around.bordered(window))],
+    palette: "slope",
+    options: &[],
+    made: Made::Rows(RowLayer {
+        unit: "deg",
+        nature: Nature::Numbers,
+        channels: |_| vec!["slope".into()],
+        prepare: nothing,
+        layers: none,
+        reach: |_| 1,
+        make: |around, window| vec![degrees(&around.bordered(window))],
+    }),
 };

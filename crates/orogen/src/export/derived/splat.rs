@@ -1,18 +1,22 @@
 //! What covers the ground.
 
 use super::cover::{self, Cover};
-use super::layer::{Derived, Nature};
+use super::layer::{Derived, Made, Nature, RowLayer};
 use crate::recipe::surface::expand::expand;
 
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "splat",
     about: "weights of the recipe's surfaces, or of grass, sand, scree, rock, snow and river bed: a splat map",
-    unit: "",
-    nature: Nature::Weights,
-    channels: cover::names,
-    prepare: expand,
-    layers: cover::shares,
-    reach: |_| 0,
-    make: |around, window| Cover::new(around).weights(window),
+    palette: "",
+    options: &[],
+    made: Made::Rows(RowLayer {
+        unit: "",
+        nature: Nature::Weights,
+        channels: cover::names,
+        prepare: expand,
+        layers: cover::shares,
+        reach: |_| 0,
+        make: |around, window| Cover::new(around).weights(window),
+    }),
 };

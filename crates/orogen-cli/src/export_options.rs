@@ -1,0 +1,115 @@
+//! The options of formats and of derived layers on the command line, made of what these declare.
+
+use std::marker::PhantomData;
+
+use clap::{Arg, ArgAction, ArgMatches, Command};
+use orogen::export::derived::list;
+use orogen::export::options::{OptionSpec, Options, Takes};
+use orogen::export::registry;
+
+/// What declares options.
+pub trait Declares {
+    /// The heading in the help.
+    const HEADING: &'static str;
+
+    /// All its options, each with the names of those that know it.
+    fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)>;
+}
+
+/// The formats.
+#[derive(Debug, Clone, Default)]
+pub struct Formats;
+
+impl Declares for Formats {
+    const HEADING: &'static str = "Options of formats";
+
+    fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
+        let names = |(spec, formats): (_, Vec<&orogen::export::format::Format>)| {
+            (spec, formats.iter().map(|format| format.name).collect())
+        };
+        registry::options().into_iter().map(names).collect()
+    }
+}
+
+/// The layers that follow from the heights.
+#[derive(Debug, Clone, Default)]
+pub struct Layers;
+
+impl Declares for Layers {
+    const HEADING: &'static str = "Options of layers";
+
+    fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
+        list::options()
+    }
+}
+
+/// Those that were given.
+#[derive(Debug, Clone, Default)]
+pub struct OptionsOf<D> {
+    /// Names and values as they were typed; of an option without a value, nothing.
+    given: Vec<(&'static str, String)>,
+    declares: PhantomData<D>,
+}
+
+/// The options of formats.
+pub type FormatOptions = OptionsOf<Formats>;
+
+/// The options of layers.
+pub type LayerOptions = OptionsOf<Layers>;
+
+impl<D: Declares> OptionsOf<D> {
+    /// As the library takes them.
+    ///
+    /// # Errors
+    /// If a value is none that its option has.
+    pub fn read(&self) -> orogen::Result<Options> {
+        let mut options = Options::default();
+        for (spec, _) in D::options() {
+            for (_, text) in self.given.iter().filter(|(name, _)| *name == spec.name) {
+                options.give(spec, text)?;
+            }
+        }
+        Ok(options)
+    }
+}
+
+impl<D: Declares> clap::Args for OptionsOf<D> {
+    fn augment_args(mut command: Command) -> Command {
+        for (spec, known) in D::options() {
+            let arg = Arg::new(spec.name)
+                .long(spec.name)
+                .help(format!("{} [{}]", spec.about, known.join(", ")))
+                .help_heading(D::HEADING);
+            // Spelled as people elsewhere do, too.
+            let arg = if spec.name == "color" { arg.aliases(["colors", "colour", "colours"]) } else { arg };
+            command = command.arg(match spec.takes {
+                Takes::Nothing => arg.action(ArgAction::SetTrue),
+                _ => arg.value_name(spec.value).allow_hyphen_values(true),
+            });
+        }
+        command
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        OptionsOf::<D>::augment_args(command)
+    }
+}
+
+impl<D: Declares> clap::FromArgMatches for OptionsOf<D> {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<OptionsOf<D>, clap::Error> {
+        let mut given = Vec::new();
+        for (spec, _) in D::options() {
+            match spec.takes {
+                Takes::Nothing if matches.get_flag(spec.name) => given.push((spec.name, String::new())),
+                Takes::Nothing => {}
+                _ => given.extend(matches.get_one::<String>(spec.name).map(|text| (spec.name, text.clone()))),
+            }
+        }
+        Ok(OptionsOf { given, declares: PhantomData })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = OptionsOf::from_arg_matches(matches)?;
+        Ok(())
+    }
+}

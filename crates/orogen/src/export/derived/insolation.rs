@@ -1,0 +1,90 @@
+//! How much light of the sun the ground gets.
+
+use super::appended::Appended;
+use super::layer::{Derived, Made, NodeLayer};
+use crate::dem::latitude;
+use crate::error::{Error, ErrorKind, Result};
+use crate::export::options::{OptionSpec, Takes};
+use crate::solver::insolation::Insolation;
+
+/// One day.
+const DAY: OptionSpec = OptionSpec {
+    name: "day",
+    value: "N",
+    about: "Day of the year that the sun shines on, 1 to 365 [default: the whole year]",
+    takes: Takes::Whole(1, 365),
+};
+
+/// A season.
+const SEASON: OptionSpec = OptionSpec {
+    name: "season",
+    value: "WHEN",
+    about: "Season that the sun shines in, from equinox to solstice or solstice to equinox at the latitude: spring, summer, autumn or winter",
+    takes: Takes::Word(&["spring", "summer", "autumn", "winter"]),
+};
+
+/// Where on the earth.
+const LATITUDE: OptionSpec = OptionSpec {
+    name: "latitude",
+    value: "DEG",
+    about: "Degrees north of the equator [default: that of a file of heights, else 45]",
+    takes: Takes::Number(-90.0, 90.0),
+};
+
+/// How hazy the air is.
+const TURBIDITY: OptionSpec = OptionSpec {
+    name: "turbidity",
+    value: "T",
+    about: "Linke's turbidity of the air: 1 clean and dry, 6 hazy [default: 3]",
+    takes: Takes::Number(1.0, 10.0),
+};
+
+/// The first day of each season in the north, and the last.
+const SEASONS: [(&str, [f64; 2]); 4] =
+    [("spring", [79.0, 171.0]), ("summer", [172.0, 265.0]), ("autumn", [266.0, 354.0]), ("winter", [355.0, 78.0])];
+
+/// The layer.
+pub static LAYER: Derived = Derived {
+    name: "insolation",
+    about: "energy of the sun on an average day under a clear sky, in kWh/m^2: direct, from the sky and reflected, with the shadows of mountains",
+    palette: "inferno",
+    options: &[DAY, SEASON, LATITUDE, TURBIDITY],
+    made: Made::Nodes(NodeLayer {
+        bounded: true,
+        append: |to| {
+            let (options, defaults) = (to.options(), Insolation::default());
+            let latitude =
+                options.number(LATITUDE.name).unwrap_or_else(|| latitude_of(to).unwrap_or(defaults.latitude));
+            let node = Insolation {
+                source: to.heights(),
+                latitude,
+                days: days(to, latitude)?.unwrap_or(defaults.days),
+                turbidity: options.number(TURBIDITY.name).unwrap_or(defaults.turbidity),
+                ..defaults
+            };
+            Ok(to.add(node).layer("energy"))
+        },
+    }),
+};
+
+/// The days that are asked for.
+fn days(to: &Appended, latitude: f64) -> Result<Option<[f64; 2]>> {
+    match (to.options().whole(DAY.name), to.options().word(SEASON.name)) {
+        (Some(_), Some(_)) => {
+            Err(Error::new(ErrorKind::Request, "--day and --season contradict each other: give one of them"))
+        }
+        (Some(day), None) => Ok(Some([day as f64; 2])),
+        (None, Some(season)) => {
+            let north = SEASONS.iter().position(|(name, _)| *name == season);
+            // In the south it is half a year away.
+            Ok(north.map(|k| SEASONS[if latitude < 0.0 { (k + 2) % 4 } else { k }].1))
+        }
+        (None, None) => Ok(None),
+    }
+}
+
+/// The latitude of the world's middle, if its heights are a real place whose map tells it.
+fn latitude_of(to: &Appended) -> Option<f64> {
+    let size = to.recipe().world.size?;
+    latitude::latitude(&to.recipe().georeference()?, size[0] / 2.0, size[1] / 2.0)
+}

@@ -1,0 +1,87 @@
+//! What is seen from a point.
+
+use super::layer::{Derived, Made, NodeLayer};
+use crate::error::{Error, ErrorKind};
+use crate::export::options::{OptionSpec, Takes};
+use crate::solver::viewshed::Viewshed;
+
+/// Where the observer stands.
+const OBSERVER: OptionSpec = OptionSpec {
+    name: "observer",
+    value: "X,Y",
+    about: "Where the observer of a viewshed stands: metres east and south of the world's north-west corner",
+    takes: Takes::Point,
+};
+
+/// Height of the eye.
+const OBSERVER_HEIGHT: OptionSpec = OptionSpec {
+    name: "observer-height",
+    value: "M",
+    about: "Height of the observer's eye above the ground, in metres [default: 1.75]",
+    takes: Takes::Number(0.0, 1e6),
+};
+
+/// Height of what is looked at.
+const TARGET_HEIGHT: OptionSpec = OptionSpec {
+    name: "target-height",
+    value: "M",
+    about: "Height above the ground of what the observer looks at, in metres [default: 0]",
+    takes: Takes::Number(0.0, 1e6),
+};
+
+/// How far the observer looks.
+const RADIUS: OptionSpec = OptionSpec {
+    name: "radius",
+    value: "M",
+    about: "How far the observer looks, in metres [default: over the whole world]",
+    takes: Takes::Number(0.0, 1e9),
+};
+
+/// Whether the earth is curved, and the air bends rays.
+const REFRACTION: OptionSpec = OptionSpec {
+    name: "refraction",
+    value: "K",
+    about: "The observer stands on a curved earth, and the air bends lines of sight by this share of its curvature, such as 0.13 [default: a flat earth]",
+    takes: Takes::Number(0.0, 1.0),
+};
+
+/// The layer.
+pub static LAYER: Derived = Derived {
+    name: "viewshed",
+    about: "what an observer sees: 1 where the ground is visible, else 0; --observer says from where",
+    palette: "grey",
+    options: &[OBSERVER, OBSERVER_HEIGHT, TARGET_HEIGHT, RADIUS, REFRACTION],
+    made: Made::Nodes(NodeLayer {
+        bounded: true,
+        append: |to| {
+            let (options, defaults) = (to.options(), Viewshed::default());
+            let number = |option: &OptionSpec, default: f64| options.number(option.name).unwrap_or(default);
+            let size = to.recipe().world.size.unwrap_or_default();
+            let Some(observer) = options.point(OBSERVER.name) else {
+                let message = format!(
+                    "a viewshed needs an observer: --observer X,Y, metres east and south of the world's north-west corner; the world is {} x {} m",
+                    size[0], size[1]
+                );
+                return Err(Error::new(ErrorKind::Request, message));
+            };
+            if !(0..2).all(|axis| (0.0..=size[axis]).contains(&observer[axis])) {
+                let message = format!(
+                    "the observer at {},{} stands outside the world, which is {} x {} m",
+                    observer[0], observer[1], size[0], size[1]
+                );
+                return Err(Error::new(ErrorKind::Request, message));
+            }
+            let source = to.heights();
+            let node = Viewshed {
+                source,
+                observer,
+                observer_height: number(&OBSERVER_HEIGHT, defaults.observer_height),
+                target_height: number(&TARGET_HEIGHT, defaults.target_height),
+                radius: number(&RADIUS, defaults.radius),
+                curvature: options.has(REFRACTION.name),
+                refraction: number(&REFRACTION, defaults.refraction),
+            };
+            Ok(to.add(node).layer("visible"))
+        },
+    }),
+};

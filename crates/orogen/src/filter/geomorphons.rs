@@ -1,0 +1,75 @@
+//! What form the ground has.
+
+use crate::analysis::geomorphons::{Level, Look, geomorphons};
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use crate::op::{Context, Filter};
+
+choice! {
+    /// When a direction counts as level.
+    pub enum Comparison {
+        /// If neither its highest nor its lowest line of sight is steeper than `flat`; else the steeper of the two counts, as in r.geomorphon of GRASS.
+        Steepest = "steepest",
+        /// If its angles from zenith and nadir differ by no more than `flat`, as in the paper.
+        Difference = "difference",
+    }
+}
+
+op! {
+    /// Landforms of the source by geomorphons: which of the eight directions lead up and which down, as far as one looks (Jasiewicz and Stepinski 2013).
+    ///
+    /// Along each direction the highest and the lowest line of sight within `reach` are compared. Between cells of different size forms agree best at the same
+    /// `reach`. Time grows with the reach.
+    pub struct Geomorphons = "geomorphons", filter, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// How far one looks; at least a sample, at most 1024.
+        reach: f64 = 500.0, unit "m", range 0.0 to 1e6;
+        /// Ground that rises or falls by less is level.
+        flat: f64 = 1.0, unit "degrees", range 0.0 to 45.0;
+        /// What `flat` is compared with.
+        comparison: Comparison = Comparison::Steepest;
+    }
+    layers {
+        /// The form: 1 flat, 2 peak, 3 ridge, 4 shoulder, 5 spur, 6 slope, 7 hollow, 8 footslope, 9 valley, 10 pit.
+        form: label;
+    }
+}
+
+/// Most samples one looks.
+const FARTHEST: f64 = 1024.0;
+
+impl Filter for Geomorphons {
+    fn halo(&self, cell: f64) -> usize {
+        (self.reach / cell).floor().clamp(1.0, FARTHEST) as usize
+    }
+
+    fn scratch(&self, window: &Window) -> u64 {
+        window.len() as u64
+    }
+
+    fn apply(
+        &self,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        out: &mut [Option<Grid>],
+        context: &Context,
+    ) -> Result<()> {
+        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+        context.progress.check()?;
+        let level = match self.comparison {
+            Comparison::Steepest => Level::BySteepest,
+            Comparison::Difference => Level::ByDifference,
+        };
+        let forms = geomorphons(source, &Look::round((self.reach / window.cell).min(FARTHEST), self.flat, level));
+        out.data_mut().iter_mut().zip(forms.data()).for_each(|(out, form)| *out = f32::from(*form));
+        Ok(())
+    }
+
+    fn cost(&self, cell: f64) -> f64 {
+        10.0 * self.halo(cell) as f64
+    }
+}

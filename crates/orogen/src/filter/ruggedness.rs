@@ -1,0 +1,35 @@
+//! How rugged the ground is.
+
+use crate::analysis::roughness::riley;
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use crate::op::{Context, Filter};
+
+op! {
+    /// The terrain ruggedness index of the source: the square root of the sum of squared height differences to the eight neighbours (Riley, DeGloria and
+    /// Elliot 1999).
+    ///
+    /// It is a difference between samples: on a coarser cell the same ground has a higher index.
+    pub struct Ruggedness = "ruggedness", filter, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    layers {
+        /// The index.
+        ruggedness: height, unit "m";
+    }
+}
+
+impl Filter for Ruggedness {
+    fn halo(&self, _: f64) -> usize {
+        1
+    }
+
+    fn apply(&self, inputs: &[Option<&Grid>], _: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+        context.progress.check()?;
+        *out = riley(source);
+        Ok(())
+    }
+}

@@ -1,0 +1,77 @@
+//! How high a sample lies among those around it.
+
+use crate::analysis::position::{class, positions};
+use crate::analysis::slope::degrees;
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use crate::op::{Context, Filter};
+
+op! {
+    /// Topographic position index of the source: its height above the mean of a disc, and the slope position that follows from it (Weiss 2001).
+    ///
+    /// The disc holds all samples within `radius`, the middle one included; a radius below a cell is a cell. Weiss measures the index in standard deviations
+    /// of the index over the map; here it is in standard deviations of the heights in the disc (Wilson and Gallant 2000), so that no sample depends on ground
+    /// out of reach. Heights are counted in 256ths of a metre. Time grows with the radius.
+    pub struct TopographicPosition = "topographic-position", filter, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// Radius of the disc.
+        radius: f64 = 300.0, unit "m", range 0.0 to 1e6;
+    }
+    layers {
+        /// Height above the mean of the disc.
+        position: height, unit "m";
+        /// The same in standard deviations of the heights in the disc; 0 on level ground.
+        deviation: height;
+        /// Slope position: 1 ridge (deviation above 1), 2 upper slope (above 0.5), 3 middle slope, 4 flat (the same, up to 5 degrees steep), 5 lower slope (below -0.5), 6 valley
+        /// (below -1).
+        class: label;
+    }
+}
+
+/// Most samples of a radius.
+const FARTHEST: f64 = 1024.0;
+
+impl Filter for TopographicPosition {
+    fn halo(&self, cell: f64) -> usize {
+        (self.radius / cell).floor().clamp(1.0, FARTHEST) as usize
+    }
+
+    fn scratch(&self, window: &Window) -> u64 {
+        let grown = window.grown(self.halo(window.cell));
+        16 * (grown.width as u64 + 1) * grown.height as u64 + 16 * window.len() as u64
+    }
+
+    fn apply(
+        &self,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        out: &mut [Option<Grid>],
+        context: &Context,
+    ) -> Result<()> {
+        let ([Some(source)], [position, deviation, classes]) = (inputs, out) else { return Ok(()) };
+        context.progress.check()?;
+        let found = positions(source, self.halo(window.cell));
+        for (layer, value) in [(position, 0), (deviation, 1)] {
+            let Some(layer) = layer else { continue };
+            for (out, found) in layer.data_mut().iter_mut().zip(found.data()) {
+                *out = if value == 0 { found.above_mean } else { found.deviation };
+            }
+        }
+        if let Some(classes) = classes {
+            let slopes = source.crop(&window.grown(1)).map(|around| degrees(&around));
+            let slopes = slopes.as_ref().map_or(&[][..], Grid::data);
+            for ((out, found), slope) in classes.data_mut().iter_mut().zip(found.data()).zip(slopes) {
+                *out = f32::from(class(found.deviation, *slope));
+            }
+        }
+        Ok(())
+    }
+
+    fn cost(&self, cell: f64) -> f64 {
+        4.0 * self.halo(cell) as f64
+    }
+}

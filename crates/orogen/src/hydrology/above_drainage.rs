@@ -1,0 +1,72 @@
+//! How high and how far ground lies above the stream that it drains to.
+
+use super::accumulation::Accumulation;
+use super::direction::DISTANCES;
+use super::receivers::Receivers;
+use crate::grid::Grid;
+
+/// Where each cell lies beside the stream that it drains to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AboveDrainage {
+    /// Height above nearest drainage, in the unit of the surface.
+    pub height: Grid,
+    /// Length of the way down to the stream, in the unit of the cell.
+    pub distance: Grid,
+}
+
+/// Height above nearest drainage (Rennó and others, "HAND, a new terrain descriptor using SRTM-DEM", 2008; Nobre and others 2011) over a surface that falls along
+/// its receivers, and the length of the way there: from each cell down the receivers to the first that drains `threshold` cells or more, or, where there is
+/// none on the way, to where water leaves the map. Both are 0 in streams and at outlets.
+///
+/// Holds 12 bytes a cell. Costs O(cells).
+pub fn above_drainage(surface: Grid, receivers: &Receivers, drained: &Accumulation, threshold: u32) -> AboveDrainage {
+    let window = *surface.window();
+    let mut distance = vec![0.0f64; window.len()];
+    // Heights of the streams first, then what is above them.
+    let mut base = surface.data().to_vec();
+    for cell in drained.downstream_first() {
+        let receiver = receivers.of(cell);
+        if receiver != cell && drained.area.data()[cell] < threshold {
+            base[cell] = base[receiver];
+            distance[cell] = distance[receiver] + DISTANCES[usize::from(receivers.code(cell) & 7)] * window.cell;
+        }
+    }
+    let mut height = surface;
+    height.data_mut().iter_mut().zip(&base).for_each(|(height, base)| *height -= base);
+    let metres = distance.into_iter().map(|metres| metres as f32).collect();
+    AboveDrainage { height, distance: Grid::from_data(window, metres).unwrap_or_else(|| Grid::filled(window, 0.0)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hydrology::accumulation::accumulate;
+    use crate::hydrology::outlets::Outlets;
+    use crate::hydrology::steepest::Descent;
+    use crate::hydrology::{drainage, fill, samples};
+
+    #[test]
+    fn it_is_what_walking_downstream_finds() {
+        for heights in samples::grids() {
+            let outlets = Outlets::new(&heights, None);
+            let drained = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+            let filled = fill::filled(&heights, &drained.basins);
+            let areas = accumulate(&drained.receivers);
+            for threshold in [1, 5, 40, u32::MAX] {
+                let got = above_drainage(filled.clone(), &drained.receivers, &areas, threshold);
+                for cell in 0..filled.data().len() {
+                    let (mut at, mut way) = (cell, 0.0);
+                    while areas.area.data()[at] < threshold && drained.receivers.of(at) != at {
+                        way += DISTANCES[usize::from(drained.receivers.code(at) & 7)];
+                        at = drained.receivers.of(at);
+                    }
+                    let above = filled.data()[cell] - filled.data()[at];
+                    let (height, distance) = (got.height.data()[cell], got.distance.data()[cell]);
+                    assert!(height == above || height.is_nan() && above.is_nan(), "{height} {above}");
+                    assert!(!(height < 0.0), "the filled surface never rises downstream");
+                    assert!((f64::from(distance) - way).abs() <= 1e-5 * way, "{distance} {way}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! How high and how far the ground lies above the streams.
+
+use crate::analysis::distance::nearest_in_whole;
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use crate::hydrology::above_drainage::above_drainage;
+use crate::hydrology::accumulation::accumulate;
+use crate::hydrology::outlets::Outlets;
+use crate::hydrology::steepest::Descent;
+use crate::hydrology::{drainage, fill};
+use crate::op::{Context, Solution, Solver, Sources};
+
+op! {
+    /// Height above nearest drainage (HAND), and the distance to the nearest stream: along the flow, and as the crow flies.
+    ///
+    /// Water takes the way of `drainage` (D8, depressions drained along their bed); streams are the cells that drain `stream` or more. The height is that of the
+    /// source with depressions filled, less that of the first stream cell downstream (Rennó and others 2008, Nobre and others 2011), so it is never below 0.
+    /// Ground that reaches the sea or the world's border before a stream is measured down to there. Time and memory grow with the world, 56 bytes a cell.
+    pub struct HeightAboveDrainage = "height-above-drainage", solver, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// Drainage area from which on there is a stream.
+        stream: f64 = 1e6, unit "m^2", range 0.0 to 1e15;
+        /// Whether water also leaves where the ground is at or below sea level.
+        sea: bool = true;
+    }
+    layers {
+        /// Height above the stream that the ground drains to; 0 in streams.
+        height: height, unit "m";
+        /// Length of the way that water takes to it, diagonal steps counted as the square root of 2; 0 in streams.
+        flow_distance: height, unit "m";
+        /// Distance to the nearest stream in a straight line; in a world without streams the length of its diagonal.
+        distance: height, unit "m";
+    }
+}
+
+impl Solver for HeightAboveDrainage {
+    fn scratch(&self, padded: &Window) -> u64 {
+        padded.len() as u64 * 56
+    }
+
+    fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
+        let heights = sources.whole(0, sources.padded())?;
+        context.progress.check()?;
+        let window = *heights.window();
+        let outlets = Outlets::new(&heights, self.sea.then_some(context.setting.sea_level as f32));
+        let drained = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+        let filled = fill::filled(&heights, &drained.basins);
+        drop(heights);
+        let receivers = drained.receivers;
+        context.progress.check()?;
+        let areas = accumulate(&receivers);
+        let threshold = (self.stream / (window.cell * window.cell)).ceil().clamp(1.0, f64::from(u32::MAX)) as u32;
+        let found = above_drainage(filled, &receivers, &areas, threshold);
+        let layers = [sources.keep(found.height)?, sources.keep(found.distance)?];
+        context.progress.check()?;
+        let mut streams = Grid::filled(window, 0.0f32);
+        for (stream, area) in streams.data_mut().iter_mut().zip(areas.area.data()) {
+            *stream = f32::from(u8::from(*area >= threshold));
+        }
+        drop((areas, receivers));
+        let mut distance = nearest_in_whole(&streams, 1.0);
+        let (across, down) = (window.width as f64, window.height as f64);
+        let diagonal = (across * across + down * down).sqrt();
+        for samples in distance.data_mut() {
+            *samples = (f64::from(*samples).min(diagonal) * window.cell) as f32;
+        }
+        Ok(Solution { layers: layers.into_iter().chain([sources.keep(distance)?]).collect(), scalars: Vec::new() })
+    }
+
+    fn cost(&self) -> f64 {
+        80.0
+    }
+}

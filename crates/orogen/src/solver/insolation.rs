@@ -1,0 +1,59 @@
+//! How much light of the sun the ground gets.
+
+use crate::analysis::clear_sky::ClearSky;
+use crate::analysis::insolation::{Period, insolation};
+use crate::error::Result;
+use crate::grid::Window;
+use crate::op::{Context, Solution, Solver, Sources};
+
+op! {
+    /// The sun's energy that comes to the source on an average day of a period under a clear sky: direct, from the sky and reflected by the ground around, with
+    /// the shadows that the ground casts.
+    ///
+    /// The clear sky of the European Solar Radiation Atlas (Rigollier, Bauer and Wald 2000) with Muneer's model (1990) of the sky's light on slopes. The sun stands
+    /// where Spencer's series (1971) puts it, by true solar time; one day stands for at most 30, and a moment in the middle of each `step` for the step. A shadow reaches
+    /// as far as it is long; the earth is taken as flat. Time grows with the world and the number of suns: about 25 a day, 300 for a year. Memory is 28 bytes a cell.
+    pub struct Insolation = "insolation", solver, revision 1;
+    inputs {
+        /// The heights, above sea level.
+        source: required,
+    }
+    params {
+        /// Degrees north of the equator.
+        latitude: f64 = 45.0, unit "degrees", range -90.0 to 90.0;
+        /// The first and the last day of the year, 1 to 365; a first one after the last runs over the turn of the year.
+        days: [f64; 2] = [1.0, 365.0], range 1.0 to 365.0;
+        /// The longest step through a day.
+        step: f64 = 0.5, unit "h", range 0.01 to 6.0;
+        /// Linke's turbidity of the air: 1 clean and dry, 3 usual, 6 hazy.
+        turbidity: f64 = 3.0, range 1.0 to 10.0;
+        /// Share of the light that the ground around reflects.
+        albedo: f64 = 0.2, range 0.0 to 1.0;
+    }
+    layers {
+        /// Energy on an average day.
+        energy: height, unit "kWh/m^2";
+    }
+}
+
+impl Solver for Insolation {
+    fn scratch(&self, padded: &Window) -> u64 {
+        padded.len() as u64 * 28
+    }
+
+    fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
+        let heights = sources.whole(0, sources.padded())?;
+        let period = Period { latitude: self.latitude, days: self.days.map(|day| day.round() as u16), step: self.step };
+        let sky = ClearSky { turbidity: self.turbidity, albedo: self.albedo };
+        let energy = insolation(&heights, &period, &sky, &|| context.progress.check())?;
+        drop(heights);
+        Ok(Solution { layers: vec![sources.keep(energy)?], scalars: Vec::new() })
+    }
+
+    fn cost(&self) -> f64 {
+        // One sun costs about 20 ns a sample.
+        let [first, last] = self.days;
+        let days = if last >= first { last - first } else { last - first + 365.0 };
+        20.0 * ((days + 1.0) / 30.0).ceil() * 12.0 / self.step
+    }
+}
