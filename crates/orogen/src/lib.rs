@@ -46,6 +46,7 @@ pub mod format;
 #[cfg(test)]
 mod full_disk;
 pub mod grid;
+pub mod growth;
 pub mod hydrology;
 mod large;
 pub mod layer;

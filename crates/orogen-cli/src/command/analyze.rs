@@ -12,6 +12,7 @@ use serde_json::{Map, Value, json};
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::format::Format;
+use crate::interrupt::Stoppable;
 use crate::options::Limits;
 use crate::replace::Replace;
 use crate::seeds::Seeds;
@@ -71,12 +72,14 @@ fn measure(args: &Args) -> Result<(), Failure> {
         _ => Some(world.recipe().world.sea_level as f32),
     };
     let (bar, progress) = Bar::new(args.quiet);
-    let grids = world.grids(&[&args.layer], &window, &progress);
-    let mut grids = grids.map_err(|error| interrupt::explain(error.into(), "nothing was measured"))?;
-    drop(bar);
+    let stopped = |error: Error| interrupt::explain(error.into(), "nothing was measured");
+    let plan = world.plan(&[&args.layer], &window)?;
+    let drawing = if args.out.is_some() { DRAWING * window.len() as f64 } else { 0.0 };
+    let [making, measuring, drawing] = progress.parts([world.work(&plan), MEASURING * window.len() as f64, drawing]);
+    let mut grids = world.run(&plan, &making).map_err(stopped)?;
     let Some(heights) = grids.pop() else { return Ok(()) };
     finite::check(&args.layer, &heights)?;
-    let measures = Measures::of(&heights, sea_level).ok_or_else(|| {
+    let measures = Measures::of_with(&heights, sea_level, &measuring).map_err(stopped)?.ok_or_else(|| {
         let sentence = "there is too little land to measure: it takes 64 x 64 samples, a hundredth of them above the sea, and some relief";
         Error::new(ErrorKind::Request, sentence)
     })?;
@@ -84,14 +87,21 @@ fn measure(args: &Args) -> Result<(), Failure> {
         let title = Title { name: name(&args.recipe), about: about(args, &world) };
         let page = page::draw(&title, &heights, sea_level, &measures)?;
         let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-        file::write_whole(output, |out| page.write_png(out, &[("Software", &software)]))?;
+        file::write_whole(output, |out| page.write_png(&mut Stoppable(out), &[("Software", &software)]))
+            .map_err(stopped)?;
     }
+    drawing.finish();
+    drop(bar);
     match (args.json, args.quiet) {
         (true, _) => say::out(&json(args, &window, &measures)),
         (false, true) => Ok(()),
         (false, false) => say::out(&words(args, &window, &measures)),
     }
 }
+
+/// Nanoseconds that measuring a sample takes, and drawing its share of the page, about.
+const MEASURING: f64 = 700.0;
+const DRAWING: f64 = 200.0;
 
 fn name(path: &std::path::Path) -> String {
     path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()

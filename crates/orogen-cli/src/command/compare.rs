@@ -4,12 +4,14 @@ use std::path::PathBuf;
 
 use orogen::file;
 
+use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::format::Format;
+use crate::interrupt::Stoppable;
 use crate::replace::Replace;
 use crate::sheet::{page, row};
 use crate::size::{Bytes, seed};
-use crate::{memory, say};
+use crate::{interrupt, memory, say};
 
 /// What it takes.
 #[derive(Debug, clap::Args)]
@@ -45,9 +47,15 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     // The page, and of each noise its pictures, its heights twice and what they are made of.
     let noises: usize = rows.iter().map(|row| row.noises.len()).sum();
     memory::afford((3 * width * height + noises * side * side * 24) as u64, args.memory)?;
-    let page = page::draw(&rows, side, args.seed)?;
+    let (bar, progress) = Bar::new(args.quiet);
+    let stopped = |error: orogen::Error| interrupt::explain(error.into(), "nothing was written");
+    let [drawing, writing] = progress.parts([4.0, 1.0]);
+    let page = page::draw(&rows, side, args.seed, &drawing).map_err(stopped)?;
     let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    file::write_whole(&output, |out| page.write_png(out, &[("Software", &software)]))?;
+    file::write_whole(&output, |out| page.write_png(&mut Stoppable(out), &[("Software", &software)]))
+        .map_err(stopped)?;
+    writing.finish();
+    drop(bar);
     match args.quiet {
         true => Ok(()),
         false => say::out(&format!(

@@ -14,6 +14,7 @@ use orogen::{Window, file};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
+use crate::interrupt::Stoppable;
 use crate::options::Limits;
 use crate::paper::Paper;
 use crate::replace::Replace;
@@ -142,6 +143,10 @@ const PRINT: f64 = 220.0;
 /// Most pixels of a page.
 const MOST: f64 = 4e8;
 
+/// Nanoseconds that drawing takes for each sample of the heights, and drawing and writing for each pixel of the page, about.
+const DRAWING: f64 = 400.0;
+const WRITING: f64 = 60.0;
+
 /// Draws the sheet.
 pub fn run(args: &Args) -> Result<(), Failure> {
     Seeds::each(args.view.seed.as_ref(), Some(&args.out), |seed, out| {
@@ -168,12 +173,15 @@ fn map(args: &Args) -> Result<(), Failure> {
     let options = options(args, kind, palette, &world, is_place);
     afford(&options, &window, args)?;
     let (bar, progress) = Bar::new(args.quiet);
-    let made = world.grids(&[orogen::world::HEIGHT], &window, &progress);
-    let mut grids = made.map_err(|error| interrupt::explain(error.into(), "nothing was written"))?;
-    drop(bar);
+    let stopped = |error: orogen::Error| interrupt::explain(error.into(), "nothing was written");
+    let plan = world.plan(&[orogen::world::HEIGHT], &window)?;
+    let [making, drawing, writing] =
+        progress.parts([world.work(&plan), DRAWING * window.len() as f64, WRITING * pixels(&options)]);
+    let mut grids = world.run(&plan, &making).map_err(stopped)?;
     let Some(heights) = grids.pop() else { return Ok(()) };
     finite::check(orogen::world::HEIGHT, &heights)?;
-    let sheet = draw(&heights, &options)?;
+    let sheet = draw(&heights, &options, &drawing).map_err(stopped)?;
+    drawing.finish();
     if !sheet.lacking.is_empty() {
         let letters: String = sheet.lacking.iter().collect();
         say::error(&format!(
@@ -189,11 +197,17 @@ fn map(args: &Args) -> Result<(), Failure> {
             if options.title.chars().all(|letter| letter <= '\u{ff}' && !letter.is_control()) {
                 notes.push(("Title", &options.title));
             }
-            file::write_whole(&output, |out| page.write_png(out, &notes))?;
+            file::write_whole(&output, |out| page.write_png(&mut Stoppable(out), &notes)).map_err(stopped)?;
         }
-        Kind::Svg => file::write_whole(&output, |out| vector::write(out, &sheet.scene))?,
-        Kind::Pdf => file::write_whole(&output, |out| pdf::write(out, &sheet.scene))?,
+        Kind::Svg => {
+            file::write_whole(&output, |out| vector::write(&mut Stoppable(out), &sheet.scene)).map_err(stopped)?
+        }
+        Kind::Pdf => {
+            file::write_whole(&output, |out| pdf::write(&mut Stoppable(out), &sheet.scene)).map_err(stopped)?
+        }
     }
+    writing.finish();
+    drop(bar);
     if args.quiet {
         return Ok(());
     }
@@ -289,12 +303,18 @@ fn longer(page: Page) -> f64 {
     }
 }
 
-/// Refuses pages that no memory holds.
-fn afford(options: &Options, window: &Window, args: &Args) -> Result<(), Failure> {
+/// Pixels of a square that the page fits in.
+fn pixels(options: &Options) -> f64 {
     let side = match options.resolution {
         Resolution::Inch(dpi) => longer(options.page) * dpi / 25.4,
         Resolution::Longer(pixels) => f64::from(pixels),
     };
+    side * side
+}
+
+/// Refuses pages that no memory holds.
+fn afford(options: &Options, window: &Window, args: &Args) -> Result<(), Failure> {
+    let side = pixels(options).sqrt();
     if side * side > MOST {
         return Err(Failure::Usage(format!(
             "a page of {:.0} pixels a side is more than there is memory for; ask for fewer --dpi or a smaller --paper",

@@ -7,7 +7,9 @@ use crate::analysis::geomorphons::{geomorphons, shares};
 use crate::analysis::roughness::ruggedness;
 use crate::analysis::slope::from_gradients;
 use crate::analysis::spectrum::{self, Band};
+use crate::error::Result;
 use crate::grid::Grid;
+use crate::progress::Progress;
 
 /// Slopes are counted in classes of so many degrees.
 pub const SLOPE_CLASS: f64 = 2.0;
@@ -77,6 +79,22 @@ impl Measures {
     /// Measures heights; what lies at or below the sea level, if there is one, is no land and does not count. None if fewer than 64 x 64
     /// samples or less than a hundredth of them are land, or all of it is level.
     pub fn of(heights: &Grid, sea_level: Option<f32>) -> Option<Measures> {
+        Measures::of_with(heights, sea_level, &Progress::none()).ok().flatten()
+    }
+
+    /// [`Measures::of`] that reports how far it has come, and can be stopped.
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    pub fn of_with(heights: &Grid, sea_level: Option<f32>, progress: &Progress) -> Result<Option<Measures>> {
+        // Sorted heights, slopes, curvatures, ruggedness, the spectrum, Hurst's exponent, geomorphons, water: by what each takes.
+        let weights = [1.0, 2.0, 1.5, 0.5, 1.0, 1.0, 6.0, 4.0];
+        progress.expect(weights.iter().sum());
+        let mut phases = weights.into_iter();
+        let mut phase = || {
+            progress.advance(phases.next().unwrap_or(0.0));
+            progress.check()
+        };
         let mut land = heights.clone();
         if let Some(sea) = sea_level {
             land.data_mut().iter_mut().filter(|height| **height <= sea).for_each(|height| *height = f32::NAN);
@@ -84,14 +102,15 @@ impl Measures {
         let mut sorted: Vec<f32> = land.data().iter().copied().filter(|height| height.is_finite()).collect();
         let count = sorted.len();
         if land.width().min(land.height()) < 64 || count * 100 < land.data().len() {
-            return None;
+            return Ok(None);
         }
         sorted.sort_unstable_by(f32::total_cmp);
+        phase()?;
         let quantile = |share: f64| f64::from(sorted[(share * (count - 1) as f64) as usize]);
         let (low, high) = (quantile(0.001), quantile(0.999));
         let relief = high - low;
         if relief <= 0.0 {
-            return None;
+            return Ok(None);
         }
         let mean = sorted.iter().map(|height| f64::from(*height)).sum::<f64>() / count as f64;
         let clipped = sorted.iter().map(|height| f64::from(*height).clamp(low, high) - low).sum::<f64>() / count as f64;
@@ -101,10 +120,12 @@ impl Measures {
                 (count - sorted.partition_point(|height| *height < level)) as f64 / count as f64
             })
             .collect();
-        let slope = Slopes::of(&land)?;
+        let Some(slope) = Slopes::of(&land) else { return Ok(None) };
+        phase()?;
         let bends = curvature(&land, Curvature::Total);
         let mut bend: Vec<f32> = bends.data().iter().copied().filter(|bend| bend.is_finite()).collect();
         bend.sort_unstable_by(f32::total_cmp);
+        phase()?;
         // Means of the tails: quantiles of heights in whole metres would stand on steps.
         let tail = (bend.len() / 50).max(1);
         let mean_of = |bends: &[f32]| bends.iter().map(|bend| f64::from(*bend)).sum::<f64>() / bends.len() as f64;
@@ -113,8 +134,16 @@ impl Measures {
         let squares = bend.iter().map(|bend| f64::from(*bend) * f64::from(*bend)).sum::<f64>() / bend.len() as f64;
         let rugged: Vec<f64> =
             ruggedness(&land).data().iter().filter(|r| r.is_finite()).map(|r| f64::from(*r)).collect();
+        phase()?;
         let bands = spectrum::spectrum(&land);
-        Some(Measures {
+        phase()?;
+        let hurst = spectrum::hurst(&land);
+        phase()?;
+        let forms = shares(&geomorphons(&land, SIGHT, LEVEL));
+        phase()?;
+        let water = water::measure(&land);
+        phase()?;
+        Ok(Some(Measures {
             land: count,
             land_share: count as f64 / land.data().len() as f64,
             heights: [f64::from(sorted[0]), mean, f64::from(sorted[count - 1])],
@@ -131,14 +160,14 @@ impl Measures {
             ruggedness: rugged.iter().sum::<f64>() / rugged.len() as f64,
             grid_bias: slope.grid_bias,
             spectrum: spectrum::slope(&bands, land.window().cell),
-            hurst: spectrum::hurst(&land),
-            forms: shares(&geomorphons(&land, SIGHT, LEVEL)),
-            water: water::measure(&land),
+            hurst,
+            forms,
+            water,
             hypsometry,
             slopes: slope.classes,
             aspects: slope.aspects,
             bands,
-        })
+        }))
     }
 }
 
