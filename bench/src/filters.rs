@@ -45,7 +45,7 @@ const CASES: &[Case] = &[
     Case {
         name: "droplets, 500 000 and those of their halo",
         halo: |cell| droplets(cell).halo(cell),
-        work: |ground| droplets(ground.window().cell).run(ground, &|| Ok(())).map(drop),
+        work: |ground| droplets(ground.window().cell).run(ground, &orogen::Progress::none()).map(drop),
         target: Some(1.0),
     },
     Case { name: "thermal, 100 passes", halo: |_| ITERATIONS, work: thermal, target: None },
@@ -121,16 +121,16 @@ fn law() -> Pipes {
 }
 
 fn boxed(ground: &Grid) -> Result<(), orogen::Error> {
-    law().enclosed(Wet::new(ground), ITERATIONS, &|| Ok(())).map(|wet| _ = std::hint::black_box(wet))
+    law().enclosed(Wet::new(ground), ITERATIONS, &orogen::Progress::none()).map(|wet| _ = std::hint::black_box(wet))
 }
 
 fn open(ground: &Grid) -> Result<(), orogen::Error> {
-    law().open(Wet::new(ground), ITERATIONS, &|| Ok(())).map(|wet| _ = std::hint::black_box(wet))
+    law().open(Wet::new(ground), ITERATIONS, &orogen::Progress::none()).map(|wet| _ = std::hint::black_box(wet))
 }
 
 fn thermal(ground: &Grid) -> Result<(), orogen::Error> {
     let law = Thermal { talus: 0.1, rate: 1.0 };
-    law.run(ground, ITERATIONS, &|| Ok(())).map(|heights| _ = std::hint::black_box(heights))
+    law.run(ground, ITERATIONS, &orogen::Progress::none()).map(|heights| _ = std::hint::black_box(heights))
 }
 
 fn local(ground: &Grid) -> Result<(), orogen::Error> {
@@ -151,7 +151,7 @@ fn local(ground: &Grid) -> Result<(), orogen::Error> {
         planes.set(local_stream_power::HEIGHT, j, ground.row(j));
         planes.row_mut(j)[local_stream_power::AREA].fill((cell * cell) as f32);
     }
-    law.run(planes, ITERATIONS, &|| Ok(())).map(|planes| _ = std::hint::black_box(planes))
+    law.run(planes, ITERATIONS, &orogen::Progress::none()).map(|planes| _ = std::hint::black_box(planes))
 }
 
 /// Beyer's: 30 cells, a radius of 3.

@@ -46,7 +46,7 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
         figure(
             format!("map sheet of {SIDE} x {SIDE} heights, contours, labels, rivers, at 150 dpi, as PNG"),
             &|ground| {
-                let drawn = draw(ground, &sheet()).map_err(|e| e.to_string())?;
+                let drawn = draw(ground, &sheet(), &orogen::Progress::none()).map_err(|e| e.to_string())?;
                 raster::draw(&drawn.scene, drawn.dpi).write_png(&mut Counted(0), &[]).map_err(|e| e.to_string())
             },
         )?,

@@ -1,66 +1,195 @@
-//! A progress bar for long work, on a terminal.
+//! Progress of long work: a bar on a terminal, or lines for logs and other programs.
 
-use std::fmt::Write;
 use std::io::{self, IsTerminal};
-use std::sync::{Arc, Mutex};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressState, ProgressStyle};
+use clap::ValueEnum;
+use indicatif::{ProgressBar, ProgressStyle};
 use orogen::Progress;
 
-use crate::interrupt;
+use crate::{interrupt, say};
+
+/// How progress is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum Mode {
+    /// A bar where standard error is a terminal, nothing elsewhere
+    #[default]
+    Auto,
+    /// A line on standard error each second: "12 %, 34 s left"
+    Plain,
+    /// A line of JSON on standard error ten times a second: share (0 to 1), seconds so far, and seconds left or null
+    Json,
+    /// Nothing
+    None,
+}
+
+static MODE: OnceLock<Mode> = OnceLock::new();
+
+/// Sets how all progress of this process is shown.
+pub fn set_mode(mode: Mode) {
+    let _ = MODE.set(mode);
+}
 
 /// Work that is done sooner needs no bar.
 const PATIENCE: Duration = Duration::from_millis(400);
 
+/// How often what is shown is brought up to date.
+const INTERVAL: Duration = Duration::from_millis(100);
+
+/// How often a line is printed for logs.
+const LOGGED: Duration = Duration::from_secs(1);
+
+/// Parts that a bar is divided into.
+const STEPS: u64 = 1000;
+
 /// Shows the progress of one piece of work until dropped.
 pub struct Bar {
-    shown: Arc<Mutex<Option<ProgressBar>>>,
+    watch: Arc<Watch>,
+    painter: Option<JoinHandle<()>>,
+}
+
+/// What the work and the thread that shows its progress share.
+struct Watch {
+    begun: Instant,
+    /// Bits of the share that is done.
+    share: AtomicU64,
+    ended: AtomicBool,
 }
 
 impl Bar {
-    /// A bar, and the progress that moves it: on standard error if that is a terminal and `quiet` is not asked for, else
-    /// nowhere. Ctrl-C stops the work.
+    /// Progress of one piece of work, and what shows it unless `quiet` is asked for. Ctrl-C stops the work.
     pub fn new(quiet: bool) -> (Bar, Progress) {
-        let shown = Arc::new(Mutex::new(None));
-        let bar = Bar { shown: Arc::clone(&shown) };
-        if quiet || !io::stderr().is_terminal() {
-            return (bar, Progress::none().stopped_by(interrupt::flag()));
+        let watch = Arc::new(Watch { begun: Instant::now(), share: AtomicU64::new(0), ended: AtomicBool::new(false) });
+        let mode = match MODE.get().copied().unwrap_or_default() {
+            _ if quiet => Mode::None,
+            Mode::Auto if !io::stderr().is_terminal() => Mode::None,
+            mode => mode,
+        };
+        if mode == Mode::None {
+            return (Bar { watch, painter: None }, Progress::none().stopped_by(interrupt::flag()));
         }
-        let begun = Instant::now();
-        let progress = Progress::new(move |done, total| {
-            // A bar that another thread is just moving needs no second push.
-            if begun.elapsed() > PATIENCE
-                && let Ok(mut shown) = shown.try_lock()
-            {
-                let bar = shown.get_or_insert_with(ready);
-                bar.set_length(total);
-                bar.set_position(done);
-            }
+        let heard = Arc::clone(&watch);
+        let progress = Progress::new(move |share| heard.share.store(share.to_bits(), Ordering::Relaxed));
+        let seen = Arc::clone(&watch);
+        // A thread of its own: the time left goes on while the work has nothing to report.
+        let painter = std::thread::spawn(move || match mode {
+            Mode::Plain => seen.print(LOGGED, |at| match at.left() {
+                Some(left) => format!("{:.0} %, {} left", at.percent(), duration(left)),
+                None => format!("{:.0} %", at.percent()),
+            }),
+            Mode::Json => seen.print(INTERVAL, |at| {
+                let left = at.left().map_or("null".to_string(), |left| format!("{left:.1}"));
+                format!(r#"{{"share":{:.5},"seconds":{:.2},"left":{left}}}"#, at.share, at.elapsed)
+            }),
+            Mode::Auto | Mode::None => seen.paint(),
         });
-        (bar, progress.stopped_by(interrupt::flag()))
+        (Bar { watch, painter: Some(painter) }, progress.stopped_by(interrupt::flag()))
     }
 }
 
 impl Drop for Bar {
     fn drop(&mut self) {
-        if let Ok(mut shown) = self.shown.lock()
-            && let Some(bar) = shown.take()
-        {
-            bar.finish_and_clear();
+        self.watch.ended.store(true, Ordering::Relaxed);
+        if let Some(painter) = self.painter.take() {
+            painter.thread().unpark();
+            let _ = painter.join();
         }
     }
 }
 
-fn ready() -> ProgressBar {
-    let bar = ProgressBar::new(0);
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {rate}, {eta} left") {
-        bar.set_style(style.with_key("rate", rate));
-    }
-    bar
+/// How far work is at a moment.
+#[derive(Debug, Clone, Copy)]
+struct Moment {
+    share: f64,
+    /// Seconds since it was begun.
+    elapsed: f64,
 }
 
-/// The unit of progress is samples.
-fn rate(state: &ProgressState, out: &mut dyn Write) {
-    let _ = write!(out, "{:.1} Msamples/s", state.per_sec() / 1e6);
+impl Moment {
+    /// Whole per cent: 100 only once all is done.
+    fn percent(&self) -> f64 {
+        (100.0 * self.share + 1e-9).floor()
+    }
+
+    /// Seconds left if the work goes on as it has come so far; `None` while too little is done to tell.
+    fn left(&self) -> Option<f64> {
+        let tells = self.share > 0.005 && self.elapsed > 0.5 || self.share > 0.0 && self.elapsed > 10.0;
+        tells.then(|| self.elapsed * (1.0 - self.share) / self.share)
+    }
+}
+
+impl Watch {
+    fn moment(&self) -> Moment {
+        Moment {
+            share: f64::from_bits(self.share.load(Ordering::Relaxed)),
+            elapsed: self.begun.elapsed().as_secs_f64(),
+        }
+    }
+
+    fn has_ended(&self) -> bool {
+        self.ended.load(Ordering::Relaxed)
+    }
+
+    /// Prints lines until the end, `interval` apart.
+    fn print(&self, interval: Duration, line: impl Fn(&Moment) -> String) {
+        let mut printed = Instant::now();
+        while !self.has_ended() {
+            std::thread::park_timeout(INTERVAL.min(interval));
+            if printed.elapsed() >= interval {
+                printed = Instant::now();
+                say::error(&line(&self.moment()));
+            }
+        }
+        // Whoever reads the lines learns how it ended.
+        say::error(&line(&self.moment()));
+    }
+
+    /// Shows a bar until the end.
+    fn paint(&self) {
+        while !self.has_ended() && self.begun.elapsed() < PATIENCE {
+            std::thread::park_timeout(PATIENCE.saturating_sub(self.begun.elapsed()));
+        }
+        if self.has_ended() {
+            return;
+        }
+        let bar = ProgressBar::new(STEPS);
+        if let Ok(style) = ProgressStyle::with_template("{bar:40} {msg}") {
+            bar.set_style(style);
+        }
+        while !self.has_ended() {
+            let at = self.moment();
+            bar.set_position((at.share * STEPS as f64) as u64);
+            let left = at.left().map_or(String::new(), |left| format!("  {} left", duration(left)));
+            bar.set_message(format!("{:>3} %{left}", at.percent()));
+            std::thread::park_timeout(INTERVAL);
+        }
+        bar.finish_and_clear();
+    }
+}
+
+/// Seconds as people read them.
+fn duration(seconds: f64) -> String {
+    let seconds = seconds.round().clamp(0.0, 1e9) as u64;
+    match seconds {
+        0..60 => format!("{seconds} s"),
+        60..3600 => format!("{} min {} s", seconds / 60, seconds % 60),
+        _ => format!("{} h {} min", seconds / 3600, seconds / 60 % 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_follows_from_the_share() {
+        let at = |share, elapsed| Moment { share, elapsed };
+        assert_eq!(at(0.25, 10.0).left(), Some(30.0));
+        assert_eq!(at(0.001, 10.0).left(), None, "too early to tell");
+        assert_eq!([at(0.999, 1.0).percent(), at(1.0, 1.0).percent()], [99.0, 100.0]);
+        assert_eq!([4.4, 75.0, 7260.0].map(duration), ["4 s", "1 min 15 s", "2 h 1 min"]);
+    }
 }

@@ -4,6 +4,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use orogen::Level;
 
+use crate::bar::{Mode, set_mode};
 use crate::command::{
     analyze, build, cache, check, compare, completions, explain, export, fit, generate, graph, grow, map, new, noise,
     ops, palettes, presets, render, schema,
@@ -19,6 +20,9 @@ use crate::failure::Failure;
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// How progress is shown: a bar on a terminal, or lines on standard error
+    #[arg(long, global = true, value_name = "HOW", default_value = "auto")]
+    progress: Mode,
 }
 
 #[derive(Debug, Subcommand)]
@@ -70,6 +74,7 @@ impl Cli {
     pub fn run(self) -> Result<(), Failure> {
         // Somebody who forces a level is hunting a difference between levels: never quietly take another.
         Level::environment().map_err(|wrong| Failure::Usage(format!("OROGEN_SIMD: {wrong}")))?;
+        set_mode(self.progress);
         match self.command {
             Command::Generate(args) => generate::run(&args),
             Command::Export(args) => export::run(&args),

@@ -43,6 +43,14 @@ pub fn afford(path: &Path, needed: u64, free: Option<u64>) -> Result<(), Error> 
     }
 }
 
+/// Refuses a file of so many bytes at `path` if its disk has not as much room. What is there and no file, such as a pipe, takes any number.
+pub fn afford_file(path: &Path, needed: u64) -> Result<(), Error> {
+    match path.metadata() {
+        Ok(there) if !there.is_file() => Ok(()),
+        _ => afford(path, needed, free_at(path)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,6 +6,7 @@ use std::path::Path;
 use orogen::file::{self, Output, OutputPolicy};
 
 use crate::failure::Failure;
+use crate::interrupt::Stoppable;
 use crate::{interrupt, say};
 
 /// A place for one file.
@@ -41,17 +42,18 @@ impl Sink {
         }
     }
 
-    /// Writes it as `body` does.
+    /// Writes it as `body` does, until an interruption is asked for.
     pub fn write<T>(&self, body: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> Result<T, Failure> {
         match self {
             Sink::File(output) => {
                 let mut made = None;
-                file::write_whole(output, |out| body(out).map(|value| made = Some(value)))?;
+                file::write_whole(output, |out| body(&mut Stoppable(out)).map(|value| made = Some(value)))
+                    .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?;
                 made.ok_or_else(|| Failure::Usage("nothing was written".into()))
             }
             Sink::Stdout => {
                 let mut out = BufWriter::new(Piped { out: io::stdout().lock(), broken: false });
-                let written = body(&mut out).and_then(|value| out.flush().map(|()| value));
+                let written = body(&mut Stoppable(&mut out)).and_then(|value| out.flush().map(|()| value));
                 // What is left in the buffer after a failure must not be tried again on the way out.
                 let (piped, _) = out.into_parts();
                 written.map_err(|cause| match (interrupt::asked(), piped.broken) {

@@ -50,7 +50,7 @@ impl World {
         layers: &[&str],
         window: &Window,
         beside: u64,
-        progress: &'w Progress,
+        progress: &Progress,
     ) -> Result<Bands<'w>> {
         let mut rows = (SAMPLES / window.width.max(1)).clamp(ROWS[0], ROWS[1]).min(window.height.max(1));
         loop {

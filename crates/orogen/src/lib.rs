@@ -47,6 +47,7 @@ pub mod format;
 #[cfg(test)]
 mod full_disk;
 pub mod grid;
+pub mod growth;
 pub mod hydrography;
 pub mod hydrology;
 mod large;

@@ -184,8 +184,22 @@ impl Affine {
 pub struct Context<'a> {
     /// The world's facts.
     pub setting: &'a Setting,
-    /// Where to ask whether the work is still wanted.
+    /// Where to report how far the work has come, and to ask whether it is still wanted.
     pub progress: &'a Progress,
+    /// Who wants to know what a solver that goes step by step would end with earlier.
+    pub observer: Option<&'a (dyn StepObserver + Sync)>,
+}
+
+/// Takes what a solver that goes step by step would end with after some of its steps: the solution of a shorter run of the same steps.
+pub trait StepObserver {
+    /// Whether the solution after so many steps is wanted. It is not asked about the last.
+    fn wants(&self, step: u32) -> bool;
+
+    /// Takes that solution.
+    ///
+    /// # Errors
+    /// Any error ends the solver's work with it.
+    fn take(&self, step: u32, solution: Solution) -> Result<()>;
 }
 
 /// A filter looks at a finite halo. Its inputs arrive grown by that halo; what it makes is the same whatever window it is

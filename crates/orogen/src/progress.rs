@@ -1,65 +1,226 @@
-//! Telling how far work has come, and asking it to stop.
+//! How far work has come, and the request to stop it.
+//!
+//! A [`Progress`] belongs to one piece of work. Whoever does the work declares how much there is ([`Progress::expect`]), in any unit, and counts what
+//! is done ([`Progress::advance`]). Work that consists of several pieces gives each a [part](Progress::part) with a weight, and hands the part on. The
+//! caller hears one number, the share of all work that is done, which only grows.
+//!
+//! ```
+//! use orogen::Progress;
+//! use std::sync::{Arc, Mutex};
+//!
+//! let heard = Arc::new(Mutex::new(Vec::new()));
+//! let told = Arc::clone(&heard);
+//! let progress = Progress::new(move |share| told.lock().unwrap().push(share));
+//! let [short, long] = progress.parts([1.0, 3.0]);
+//! short.finish();
+//! long.expect(2.0);
+//! long.advance(1.0);
+//! long.finish();
+//! assert_eq!(*heard.lock().unwrap(), [0.25, 0.625, 1.0]);
+//! ```
 
 use crate::error::{Error, ErrorKind, Result};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-/// Shared between the caller and the work: counts up, and carries the wish to stop.
-#[derive(Default)]
+/// Progress of one piece of work, shared between the caller and the work. A clone is another handle to the same.
+#[derive(Clone, Default)]
 pub struct Progress {
-    done: AtomicU64,
-    total: AtomicU64,
-    cancelled: Arc<AtomicBool>,
-    /// Another's wish to stop.
-    stop: Option<Arc<AtomicBool>>,
-    tell: Option<Box<dyn Fn(u64, u64) + Send + Sync>>,
+    piece: Arc<Piece>,
+}
+
+/// Hears the share of the work that is done.
+type Listener = dyn Fn(f64) + Send + Sync;
+
+/// What all pieces of a run share.
+#[derive(Default)]
+struct Run {
+    cancelled: AtomicBool,
+    /// Set by somebody who has no [`Progress`], such as a signal handler.
+    stop: OnceLock<Arc<AtomicBool>>,
+    listener: Option<Box<Listener>>,
+}
+
+#[derive(Default)]
+struct Piece {
+    run: Arc<Run>,
+    /// The progress that this piece is a part of, and its weight there.
+    whole: Option<(Progress, f64)>,
+    count: Mutex<Count>,
+}
+
+#[derive(Debug, Default)]
+struct Count {
+    expected: f64,
+    done: f64,
+    /// The share that was reported: 0 to 1, never less than before.
+    share: f64,
 }
 
 impl Progress {
-    /// Tells nobody.
+    /// Progress that nobody listens to.
     pub fn none() -> Progress {
         Progress::default()
     }
 
-    /// Calls `tell(done, total)` whenever some work is done, from any thread. The unit is samples.
-    pub fn new(tell: impl Fn(u64, u64) + Send + Sync + 'static) -> Progress {
-        Progress { tell: Some(Box::new(tell)), ..Progress::default() }
+    /// Calls `listener` with the share of the work that is done, from 0 to 1, each time it grows. The calls come from any thread, one at a time,
+    /// and never with a smaller share than before.
+    pub fn new(listener: impl Fn(f64) + Send + Sync + 'static) -> Progress {
+        let run = Run { listener: Some(Box::new(listener)), ..Run::default() };
+        Progress { piece: Arc::new(Piece { run: Arc::new(run), ..Piece::default() }) }
     }
 
-    /// The same, stopped also by whoever sets `flag`: a signal's handler, which has no way to call [`Progress::cancel`].
+    /// The same, stopped also by whoever sets `flag`: a signal handler, which cannot call [`Progress::cancel`]. The first flag stays.
     pub fn stopped_by(self, flag: Arc<AtomicBool>) -> Progress {
-        Progress { stop: Some(flag), ..self }
-    }
-
-    /// Progress of a part of the work, which is stopped with the whole of it and tells nobody how far it has come.
-    pub(crate) fn part(&self) -> Progress {
-        Progress { cancelled: Arc::clone(&self.cancelled), stop: self.stop.clone(), ..Progress::none() }
+        let _ = self.piece.run.stop.set(flag);
+        self
     }
 
     /// Asks the work to stop soon; it ends with [`ErrorKind::Cancelled`].
     pub fn cancel(&self) {
-        self.cancelled.store(true, Ordering::Relaxed);
+        self.piece.run.cancelled.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the work is to stop.
+    pub fn is_cancelled(&self) -> bool {
+        let run = &self.piece.run;
+        run.cancelled.load(Ordering::Relaxed) || run.stop.get().is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
     /// Ok while the work is still wanted.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Cancelled`] once it is to stop.
     pub fn check(&self) -> Result<()> {
-        let asked = [Some(&self.cancelled), self.stop.as_ref()];
-        match asked.into_iter().flatten().any(|flag| flag.load(Ordering::Relaxed)) {
+        match self.is_cancelled() {
             true => Err(Error::new(ErrorKind::Cancelled, "the work was cancelled")),
             false => Ok(()),
         }
     }
 
-    /// More work has become known, or less of it.
-    pub(crate) fn expect(&self, samples: i64) {
-        let _ = self.total.fetch_add(samples as u64, Ordering::Relaxed);
+    /// Adds to the work that there is to do. Declare all of it before the first [`Progress::advance`]: what becomes known later holds the share
+    /// where it is until the work has caught up.
+    pub fn expect(&self, work: f64) {
+        if self.is_heard() {
+            self.count().expected += work.max(0.0);
+        }
     }
 
-    /// Some work is done.
-    pub(crate) fn advance(&self, samples: u64) {
-        let done = self.done.fetch_add(samples, Ordering::Relaxed) + samples;
-        if let Some(tell) = &self.tell {
-            tell(done, self.total.load(Ordering::Relaxed));
+    /// Counts work as done, in the unit of [`Progress::expect`].
+    pub fn advance(&self, work: f64) {
+        if self.is_heard() {
+            let mut count = self.count();
+            count.done += work.max(0.0);
+            let share = if count.expected > 0.0 { count.done / count.expected } else { 0.0 };
+            self.report(count, share);
         }
+    }
+
+    /// Counts the whole piece as done.
+    pub fn finish(&self) {
+        if self.is_heard() {
+            self.report(self.count(), 1.0);
+        }
+    }
+
+    /// A part of this work, which counts as `work` of it once it is finished. It does not add to what is [expected](Progress::expect).
+    pub fn part(&self, work: f64) -> Progress {
+        let whole = Some((self.clone(), work.max(0.0)));
+        Progress { piece: Arc::new(Piece { run: Arc::clone(&self.piece.run), whole, ..Piece::default() }) }
+    }
+
+    /// Divides this work into parts by their weights, which are all that is expected.
+    pub fn parts<const N: usize>(&self, weights: [f64; N]) -> [Progress; N] {
+        weights.iter().for_each(|weight| self.expect(*weight));
+        weights.map(|weight| self.part(weight))
+    }
+
+    fn is_heard(&self) -> bool {
+        self.piece.run.listener.is_some()
+    }
+
+    fn count(&self) -> MutexGuard<'_, Count> {
+        self.piece.count.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Reports a larger share, to the whole that this is a part of or to the listener. The lock is held meanwhile, so that reports keep their order.
+    fn report(&self, mut count: MutexGuard<'_, Count>, share: f64) {
+        let share = share.min(1.0);
+        let more = share - count.share;
+        if more > 0.0 {
+            count.share = share;
+            match (&self.piece.whole, &self.piece.run.listener) {
+                (Some((whole, weight)), _) => whole.advance(more * weight),
+                (None, Some(listener)) => listener(share),
+                (None, None) => {}
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Progress, and all shares that were heard.
+    fn heard() -> (Progress, Arc<Mutex<Vec<f64>>>) {
+        let shares = Arc::new(Mutex::new(Vec::new()));
+        let told = Arc::clone(&shares);
+        (Progress::new(move |share| told.lock().unwrap().push(share)), shares)
+    }
+
+    #[test]
+    fn work_that_becomes_known_late_never_takes_the_share_back() {
+        let (progress, shares) = heard();
+        progress.expect(2.0);
+        progress.advance(1.0);
+        progress.expect(8.0);
+        (0..9).for_each(|_| progress.advance(1.0));
+        progress.advance(5.0);
+        assert_eq!(*shares.lock().unwrap(), [0.5, 0.6, 0.7, 0.8, 0.9, 1.0]);
+    }
+
+    #[test]
+    fn a_part_counts_as_its_weight_however_much_work_it_is_in_itself() {
+        let (progress, shares) = heard();
+        let [first, second] = progress.parts([3.0, 1.0]);
+        first.expect(1000.0);
+        first.advance(500.0);
+        // Nothing was expected of this one, and nothing is heard before its end.
+        second.advance(7.0);
+        second.finish();
+        first.advance(9000.0);
+        assert_eq!(*shares.lock().unwrap(), [0.375, 0.625, 1.0]);
+    }
+
+    #[test]
+    fn many_threads_at_once_are_heard_in_order() {
+        let (progress, shares) = heard();
+        progress.expect(8.0);
+        std::thread::scope(|scope| {
+            for _ in 0..8 {
+                scope.spawn(|| {
+                    let part = progress.part(1.0);
+                    part.expect(100.0);
+                    (0..100).for_each(|_| part.advance(1.0));
+                });
+            }
+        });
+        let shares = shares.lock().unwrap();
+        assert!(shares.windows(2).all(|pair| pair[0] < pair[1]) && (shares[shares.len() - 1] - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn whoever_asks_stops_all_parts() {
+        let progress = Progress::none();
+        let part = progress.part(1.0).part(1.0);
+        assert!(part.check().is_ok());
+        progress.clone().cancel();
+        assert_eq!(part.check().unwrap_err().kind(), ErrorKind::Cancelled);
+        let flag = Arc::new(AtomicBool::new(false));
+        let progress = Progress::none().stopped_by(Arc::clone(&flag));
+        assert!(progress.check().is_ok());
+        flag.store(true, Ordering::Relaxed);
+        assert!(progress.part(1.0).check().is_err());
     }
 }

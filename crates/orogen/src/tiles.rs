@@ -68,7 +68,9 @@ pub struct Tiles<'w> {
     layers: Vec<String>,
     window: Window,
     tiling: Tiling,
-    progress: &'w Progress,
+    progress: Progress,
+    /// The work of solving, which comes before the first strip, and of a sample; known once the first strip is asked for.
+    work: Option<[f64; 2]>,
     /// Tiles made at once, east and south.
     at_once: [usize; 2],
     /// Strips still to make: the first tile of each and how many.
@@ -111,7 +113,7 @@ impl World {
         layers: &[&str],
         window: &Window,
         tiling: Tiling,
-        progress: &'w Progress,
+        progress: &Progress,
     ) -> Result<Tiles<'w>> {
         if tiling.side == 0 {
             return Err(Error::new(
@@ -129,7 +131,8 @@ impl World {
             layers: layers.iter().map(ToString::to_string).collect(),
             window: *window,
             tiling,
-            progress,
+            progress: progress.clone(),
+            work: None,
             at_once: [1, 1],
             strips: VecDeque::new(),
             made: VecDeque::new(),
@@ -170,6 +173,10 @@ impl<'w> Tiles<'w> {
         if !self.made.is_empty() {
             return Some(Ok(self.made.drain(..).collect()));
         }
+        if let Err(error) = self.weigh() {
+            self.strips.clear();
+            return Some(Err(error));
+        }
         while let Some((first, count)) = self.strips.pop_front() {
             match self.make(first, count) {
                 Ok(tiles) if tiles.is_empty() => {}
@@ -183,14 +190,39 @@ impl<'w> Tiles<'w> {
         None
     }
 
-    /// Makes the wanted tiles among `count` from `first` on.
-    fn make(&self, first: [usize; 2], count: [usize; 2]) -> Result<Vec<Tile>> {
+    /// Declares all work, before the first strip.
+    fn weigh(&mut self) -> Result<()> {
+        if self.work.is_some() {
+            return Ok(());
+        }
+        let layers: Vec<&str> = self.layers.iter().map(String::as_str).collect();
+        let window = self.tiling.run(&self.window, [0, 0], self.at_once);
+        let [solving, making] = self.world.work_of(&self.world.plan(&layers, &window)?);
+        let each = making / window.len().max(1) as f64;
+        let samples = self.strips.iter().filter_map(|(first, count)| Some(self.wanted(*first, *count)?.1.len() as f64));
+        self.progress.expect(solving + each * samples.sum::<f64>());
+        self.work = Some([solving, each]);
+        Ok(())
+    }
+
+    /// The wanted tiles among `count` from `first` on, and the window of them all; `None` if there are none.
+    fn wanted(&self, first: [usize; 2], count: [usize; 2]) -> Option<(Vec<[usize; 2]>, Window)> {
         let all = (0..count[1]).flat_map(|row| (0..count[0]).map(move |column| [first[0] + column, first[1] + row]));
         let wanted: Vec<[usize; 2]> = all.filter(|[column, row]| (self.wanted)(*column, *row)).collect();
         let windows = wanted.iter().map(|[column, row]| self.tiling.tile(&self.window, *column, *row));
-        let Some(window) = windows.reduce(|all, tile| all.union(&tile)) else { return Ok(Vec::new()) };
+        let window = windows.reduce(|all, tile| all.union(&tile))?;
+        Some((wanted, window))
+    }
+
+    /// Makes the wanted tiles among `count` from `first` on.
+    fn make(&mut self, first: [usize; 2], count: [usize; 2]) -> Result<Vec<Tile>> {
+        let Some((wanted, window)) = self.wanted(first, count) else { return Ok(Vec::new()) };
+        let [solving, each] = self.work.unwrap_or_default();
+        // What had to be solved is solved by the end of the first strip.
+        self.work = Some([0.0, each]);
+        let part = self.progress.part(solving + each * window.len() as f64);
         let layers: Vec<&str> = self.layers.iter().map(String::as_str).collect();
-        let grids = self.world.grids(&layers, &window, self.progress)?;
+        let grids = self.world.grids(&layers, &window, &part)?;
         let cut = |[column, row]: [usize; 2]| {
             let tile = self.tiling.tile(&self.window, column, row);
             Tile { column, row, grids: grids.iter().filter_map(|grid| grid.crop(&tile)).collect() }

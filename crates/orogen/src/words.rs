@@ -170,9 +170,55 @@ pub fn bytes(n: u64) -> String {
     }
 }
 
+/// Most letters of a text that is set in one line: no page is wider.
+const LONGEST_LINE: usize = 1000;
+
+/// As much of a text as a line of this width holds, with an ellipsis where it is cut; `measure` tells how wide a text is.
+pub fn shortened(text: &str, width: f32, measure: impl Fn(&str) -> f32) -> String {
+    let ends: Vec<usize> = text.char_indices().map(|(at, _)| at).take(LONGEST_LINE + 1).collect();
+    if ends.len() <= LONGEST_LINE && measure(text) <= width {
+        return text.to_string();
+    }
+    let cut = |letters: usize| format!("{}…", text[..ends.get(letters).copied().unwrap_or(text.len())].trim_end());
+    // The most letters that fit: at least none do, all do not.
+    let (mut fits, mut most) = (0, ends.len().saturating_sub(1));
+    while fits < most {
+        let middle = (fits + most).div_ceil(2);
+        if measure(&cut(middle)) <= width {
+            fits = middle;
+        } else {
+            most = middle - 1;
+        }
+    }
+    cut(fits)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_line_holds_as_much_as_fits_however_long_the_text() {
+        let measured = std::cell::Cell::new(0usize);
+        let measure = |text: &str| {
+            measured.set(measured.get() + text.chars().count());
+            text.chars().count() as f32
+        };
+        for (text, width, expect) in [
+            ("short", 5.0, "short"),
+            ("a longer one", 5.0, "a lo…"),
+            ("a longer one", 3.0, "a…"),
+            ("äöü ß", 3.0, "äö…"),
+            ("x", 0.5, "…"),
+            ("", 0.5, ""),
+        ] {
+            assert_eq!(shortened(text, width, measure), expect);
+        }
+        measured.set(0);
+        let long = shortened(&"w".repeat(100_000), 80.0, measure);
+        assert_eq!(long.chars().count(), 80);
+        assert!(measured.get() < 20_000, "{} letters were measured", measured.get());
+    }
 
     #[test]
     fn near_words() {

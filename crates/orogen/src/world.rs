@@ -7,7 +7,8 @@ use crate::engine::run::Engine;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::layer::LayerKind;
-use crate::op::Setting;
+use crate::op::{Setting, Solution, StepObserver};
+use crate::plan::cost;
 use crate::plan::explain::explain;
 use crate::plan::key::{Key, keys, link_key};
 use crate::plan::memory;
@@ -15,7 +16,7 @@ use crate::plan::planner::{Planner, world_windows};
 use crate::plan::steps::Plan;
 use crate::progress::Progress;
 use crate::recipe::document::Recipe;
-use crate::recipe::graph::{Graph, Link, MOST_SAMPLES};
+use crate::recipe::graph::{Graph, Link, MOST_SAMPLES, Target};
 use crate::store::cache::Cache;
 use crate::store::solutions::Store;
 use crate::words::{number, suggestion};
@@ -65,7 +66,7 @@ pub struct World {
     graph: Graph,
     setting: Setting,
     store: Store,
-    pool: rayon::ThreadPool,
+    pool: Arc<rayon::ThreadPool>,
     memory: Budget,
     /// Plans for points of layers that depend on no grid: the same for every point.
     pointwise: Mutex<HashMap<String, Arc<Plan>>>,
@@ -104,10 +105,60 @@ impl World {
             graph,
             setting,
             store: Store::new(options.cache, options.scratch),
-            pool,
+            pool: Arc::new(pool),
             memory: options.memory,
             pointwise: Mutex::default(),
         })
+    }
+
+    /// A world of the same recipe with other parameters, on the same threads and in as much memory. What it solves is kept nowhere; what is
+    /// solved already is given.
+    ///
+    /// # Errors
+    /// If the recipe is not valid.
+    pub(crate) fn variant(&self, recipe: Recipe, solved: Vec<(Key, Arc<Solution>)>) -> Result<World> {
+        let graph = Graph::resolve(&recipe).map_err(Graph::error)?;
+        Ok(World {
+            setting: recipe.world.setting(),
+            recipe,
+            graph,
+            store: Store::holding(solved, self.store.scratch().clone()),
+            pool: Arc::clone(&self.pool),
+            memory: self.memory.clone(),
+            pointwise: Mutex::default(),
+        })
+    }
+
+    /// The solution stored under a key, if there is one.
+    pub(crate) fn solution(&self, key: &Key, on_disk: bool) -> Result<Option<Arc<Solution>>> {
+        self.store.find(key, on_disk)
+    }
+
+    /// A plan that does no more than solve nodes and what they read.
+    pub(crate) fn plan_to_solve(&self, nodes: &[usize]) -> Result<Plan> {
+        let links: Vec<Link> = nodes.iter().map(|&node| Link::Node(Target { node, layer: 0 })).collect();
+        self.planned(&links, Window::new(1, 1, self.setting.cell), false)
+    }
+
+    /// Runs a plan while somebody observes the steps of a node's solver.
+    ///
+    /// # Errors
+    /// As [`World::run`], and what the observer fails with.
+    pub(crate) fn run_observed(
+        &self,
+        plan: &Plan,
+        progress: &Progress,
+        node: usize,
+        observer: &(dyn StepObserver + Sync),
+    ) -> Result<()> {
+        self.afford(plan)?;
+        let engine = Engine { observer: Some((node, observer)), ..self.engine(progress) };
+        self.pool.install(|| engine.run(plan)).map(drop)
+    }
+
+    /// The nodes in an order in which each comes after those that it reads.
+    pub(crate) fn order(&self) -> &[usize] {
+        &self.graph.order
     }
 
     /// The recipe.
@@ -194,6 +245,22 @@ impl World {
     /// Bytes that running a plan takes at most.
     pub fn memory_of(&self, plan: &Plan) -> u64 {
         memory::needed(plan, &self.recipe, self.pool.current_num_threads())
+    }
+
+    /// About how many nanoseconds of one core running a plan takes: solving what is not solved yet, and the steps.
+    pub(crate) fn work_of(&self, plan: &Plan) -> [f64; 2] {
+        [self.engine(&Progress::none()).solving_work(plan), cost::steps(plan, &self.recipe)]
+    }
+
+    /// About how many nanoseconds of one core running a plan takes, what is solved already not counted: the weight of a
+    /// [part](Progress::part) of more work.
+    pub fn work(&self, plan: &Plan) -> f64 {
+        self.work_of(plan).iter().sum()
+    }
+
+    /// About how many nanoseconds of one core a plan's steps take, all that they read being solved.
+    pub(crate) fn steps_work(&self, plan: &Plan) -> f64 {
+        cost::steps(plan, &self.recipe)
     }
 
     /// What a plan does, in words.
@@ -359,7 +426,14 @@ impl World {
     }
 
     pub(crate) fn engine<'a>(&'a self, progress: &'a Progress) -> Engine<'a> {
-        Engine { recipe: &self.recipe, graph: &self.graph, setting: &self.setting, store: &self.store, progress }
+        Engine {
+            recipe: &self.recipe,
+            graph: &self.graph,
+            setting: &self.setting,
+            store: &self.store,
+            progress,
+            observer: None,
+        }
     }
 
     /// What a layer's name means: one of the outputs, else a node or `node.layer`.

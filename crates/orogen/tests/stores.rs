@@ -145,17 +145,16 @@ fn tiles_of_any_size_solve_the_same() {
     assert!(sides[0] > sides[2], "several sizes of tiles were seen: {sides:?}");
 }
 
-/// Samples made while `world` makes a window.
-fn samples(recipe: &Recipe, cache: Cache, window: &Window) -> (u64, Grid) {
+/// The work that making a window takes, how often progress was reported meanwhile, and what was made.
+fn made(recipe: &Recipe, cache: Cache, window: &Window) -> (f64, u64, Grid) {
     let world = open(recipe, Options { cache: Some(cache), ..Options::default() });
-    let made = Arc::new(AtomicU64::new(0));
-    let last = Arc::clone(&made);
-    let progress = Progress::new(move |done, total| {
-        assert!(done <= total, "{done} of {total}");
-        last.fetch_max(done, Ordering::Relaxed);
-    });
-    let grid = world.grids(&["height"], window, &progress).unwrap().remove(0);
-    (made.load(Ordering::Relaxed), grid)
+    let plan = world.plan(&["height"], window).unwrap();
+    let work = world.work(&plan);
+    let reports = Arc::new(AtomicU64::new(0));
+    let heard = Arc::clone(&reports);
+    let progress = Progress::new(move |_| _ = heard.fetch_add(1, Ordering::Relaxed));
+    let grid = world.run(&plan, &progress).unwrap().remove(0);
+    (work, reports.load(Ordering::Relaxed), grid)
 }
 
 #[test]
@@ -163,31 +162,31 @@ fn a_later_run_finds_what_was_solved_and_makes_again_what_is_damaged() {
     let folder = Folder::new("later");
     let recipe = stacked(10.0, false);
     let window = Window::new(20, 20, 10.0).at(600, 30);
-    let (first, expect) = samples(&recipe, folder.cache(), &window);
-    let (second, again) = samples(&recipe, folder.cache(), &window);
+    let (work, reports, expect) = made(&recipe, folder.cache(), &window);
+    let (less, fewer, again) = made(&recipe, folder.cache(), &window);
     assert_eq!(expect, again);
-    assert!(second * 20 < first, "{second} samples after {first}");
+    assert!(less * 20.0 < work && fewer < reports, "{less} after {work}, {fewer} reports after {reports}");
     // Of the last solver's solution alone, the ones it was made of are not needed.
     let entries = folder.names();
     assert_eq!(entries.len(), 3);
     let height: Vec<&PathBuf> = entries.iter().filter(|path| fs::metadata(path).unwrap().len() < 1000).collect();
     assert_eq!(height.len(), 1, "normalise keeps numbers alone");
     fs::remove_file(height[0]).unwrap();
-    assert_eq!(samples(&recipe, folder.cache(), &window), (second, expect.clone()));
+    assert_eq!(made(&recipe, folder.cache(), &window), (less, fewer, expect.clone()));
     for damaged in folder.names() {
         let mut bytes = fs::read(&damaged).unwrap();
         let middle = bytes.len() / 2;
         bytes[middle] ^= 1;
         fs::write(&damaged, &bytes).unwrap();
-        let (third, again) = samples(&recipe, folder.cache(), &window);
-        assert!(third > second && again == expect, "{third}");
+        let (_, third, again) = made(&recipe, folder.cache(), &window);
+        assert!(third > fewer && again == expect, "{third}");
         assert!(fs::read(&damaged).unwrap() != bytes, "it was made again");
     }
     // Another world's solutions are others.
     let mut other = recipe.clone();
     other.world.seed += 1;
-    assert!(samples(&other, folder.cache(), &window).0 > second);
-    assert_eq!(samples(&recipe, folder.cache(), &window), (second, expect));
+    assert!(made(&other, folder.cache(), &window).0 > less);
+    assert_eq!(made(&recipe, folder.cache(), &window), (less, fewer, expect));
 }
 
 #[test]
@@ -195,11 +194,11 @@ fn what_was_quick_is_not_kept_and_no_folder_is_no_error() {
     let folder = Folder::new("quick");
     let window = Window::new(20, 20, 10.0);
     let slow = Cache { slower_than: Duration::from_secs(3600), ..folder.cache() };
-    let (_, expect) = samples(&stacked(10.0, false), slow, &window);
+    let (_, _, expect) = made(&stacked(10.0, false), slow, &window);
     assert!(folder.names().is_empty());
     fs::write(folder.0.join("file"), "in the way").unwrap();
-    let (_, made) = samples(&stacked(10.0, false), Cache::new(folder.0.join("file")), &window);
-    assert_eq!(made, expect);
+    let (_, _, again) = made(&stacked(10.0, false), Cache::new(folder.0.join("file")), &window);
+    assert_eq!(again, expect);
 }
 
 #[test]

@@ -78,12 +78,14 @@ fn measure(args: &Args) -> Result<(), Failure> {
     let page = if args.out.is_some() { page::MEMORY } else { 0 };
     let _measuring = world.budget().reserve(measuring + page)?;
     let (bar, progress) = Bar::new(args.quiet);
-    let grids = world.grids(&[&args.layer], &window, &progress);
-    let mut grids = grids.map_err(|error| interrupt::explain(error.into(), "nothing was measured"))?;
-    drop(bar);
+    let stopped = |error: Error| interrupt::explain(error.into(), "nothing was measured");
+    let plan = world.plan(&[&args.layer], &window)?;
+    let drawing = if args.out.is_some() { DRAWING * window.len() as f64 } else { 0.0 };
+    let [making, measuring, drawing] = progress.parts([world.work(&plan), MEASURING * window.len() as f64, drawing]);
+    let mut grids = world.run(&plan, &making).map_err(stopped)?;
     let Some(heights) = grids.pop() else { return Ok(()) };
     finite::check(&args.layer, &heights)?;
-    let measures = Measures::of(&heights, sea_level).ok_or_else(|| {
+    let measures = Measures::of_with(&heights, sea_level, &measuring).map_err(stopped)?.ok_or_else(|| {
         let sentence = "there is too little land to measure: it takes 64 x 64 samples, a hundredth of them above the sea, and some relief";
         Error::new(ErrorKind::Request, sentence)
     })?;
@@ -93,6 +95,8 @@ fn measure(args: &Args) -> Result<(), Failure> {
         let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
         sink.write(|out| page.write_png(out, &[("Software", &software)]))?;
     }
+    drawing.finish();
+    drop(bar);
     let text = match (args.json, args.quiet) {
         (true, _) => json(args, &window, &measures),
         (false, true) => return Ok(()),
@@ -105,6 +109,10 @@ fn measure(args: &Args) -> Result<(), Failure> {
     }
     Ok(())
 }
+
+/// Nanoseconds that measuring a sample takes, and drawing its share of the page, about.
+const MEASURING: f64 = 700.0;
+const DRAWING: f64 = 200.0;
 
 fn about(args: &Args, world: &orogen::World) -> String {
     let spec = &world.recipe().world;

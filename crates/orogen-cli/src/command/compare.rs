@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::format::Format;
+use crate::interrupt;
 use crate::memory;
 use crate::replace::Replace;
 use crate::sheet::{page, row};
@@ -44,9 +46,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     // The page, and of each noise its pictures, its heights twice and what they are made of.
     let noises: usize = rows.iter().map(|row| row.noises.len()).sum();
     memory::budget(args.memory, memory::cores()).afford((3 * width * height + noises * side * side * 24) as u64)?;
-    let page = page::draw(&rows, side, args.seed)?;
+    let (bar, progress) = Bar::new(args.quiet);
+    let stopped = |error: orogen::Error| interrupt::explain(error.into(), "nothing was written");
+    let [drawing, writing] = progress.parts([4.0, 1.0]);
+    let page = page::draw(&rows, side, args.seed, &drawing).map_err(stopped)?;
     let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
     sink.write(|out| page.write_png(out, &[("Software", &software)]))?;
+    writing.finish();
+    drop(bar);
     let words = format!(
         "{}: {noises} noises and aggregates of seed {}, each as heights and as hillshade; {width} x {height} pixels\n",
         args.out.display(),

@@ -11,7 +11,7 @@ use orogen::recipe::presets;
 use orogen::survey::measures::Measures;
 use orogen::survey::real::FIGURES;
 use orogen::world::HEIGHT;
-use orogen::{Budget, Error, ErrorKind, Grid, Recipe, Window};
+use orogen::{Budget, Error, ErrorKind, Grid, Progress, Recipe, Window, World};
 use serde_json::json;
 
 use crate::bar::Bar;
@@ -75,20 +75,28 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let target = Target::of(&place.grid)?;
     let random = args.tries as usize / 2;
     let effort = Effort { random, improving: args.tries as usize - random, seed: args.seed };
+    let stopped = |error: Error| interrupt::explain(error.into(), "no recipe was written");
+    let options = args.limits.options(&budget);
     let (bar, progress) = Bar::new(args.quiet);
-    let found = search(&target, &effort, &args.limits.options(&budget), &progress);
-    let found = found.map_err(|error| interrupt::explain(error.into(), "no recipe was written"))?;
-    drop(bar);
+    let default = preset(presets::DEFAULT)?.recipe()?;
+    // Each judge is a world of the recipe found, which is about as much work as the default preset, and one of that.
+    let judging = 2.0 * f64::from(args.judges) * land_work(args, &budget, default.clone(), &target)?;
+    let [searching, judging] = progress.parts([effort.work(&target, &options)?, judging]);
+    judging.expect(2.0 * f64::from(args.judges));
+    let found = search(&target, &effort, &options, &searching).map_err(stopped)?;
+    searching.finish();
     let name = args.place.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let about = format!("Invented land like {name}: fitted by its figures, nothing of it is in here");
     let recipe = found.recipe(&target, args.seed, &about);
     let mut lands = [windows(&place.grid, &target), Vec::new(), Vec::new()];
     // Judged by worlds that the search has not seen.
     for seed in (1..=u64::from(args.judges)).map(|k| args.seed.wrapping_add(1000 * k)) {
-        lands[1].append(&mut windows(&land(args, &budget, recipe.clone(), seed, &target)?, &target));
-        let default = preset(presets::DEFAULT)?.recipe()?;
-        lands[2].append(&mut windows(&land(args, &budget, default, seed, &target)?, &target));
+        let ours = land(args, &budget, recipe.clone(), seed, &target, &judging.part(1.0))?;
+        lands[1].append(&mut windows(&ours, &target));
+        let theirs = land(args, &budget, default.clone(), seed, &target, &judging.part(1.0))?;
+        lands[2].append(&mut windows(&theirs, &target));
     }
+    drop(bar);
     sink.write(|out| out.write_all(mark::marked(&recipe.to_toml()).as_bytes()))?;
     let report = Report::of(&target, &lands);
     let text = match (args.json, args.quiet) {
@@ -104,17 +112,33 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A world of another seed at the place's cell, as much of it as the place has.
-fn land(args: &Args, budget: &Budget, mut recipe: Recipe, seed: u64, target: &Target) -> Result<Grid, Failure> {
-    recipe.world.seed = seed;
-    let world = args.limits.open(recipe, budget)?;
+/// The samples that are compared with the place's.
+fn land_window(world: &World, target: &Target) -> Result<Window, Failure> {
     let whole = world.whole(target.cell)?;
     let [width, height] = target.size;
-    let window = Window { width: whole.width.min(width), height: whole.height.min(height), ..whole };
-    let (bar, progress) = Bar::new(args.quiet);
-    let grids = world.grids(&[HEIGHT], &window, &progress);
+    Ok(Window { width: whole.width.min(width), height: whole.height.min(height), ..whole })
+}
+
+/// The work of [`land`].
+fn land_work(args: &Args, budget: &Budget, recipe: Recipe, target: &Target) -> Result<f64, Failure> {
+    let world = args.limits.open(recipe, budget)?;
+    let plan = world.plan(&[HEIGHT], &land_window(&world, target)?)?;
+    Ok(world.work(&plan))
+}
+
+/// A world of another seed at the place's cell, as much of it as the place has.
+fn land(
+    args: &Args,
+    budget: &Budget,
+    mut recipe: Recipe,
+    seed: u64,
+    target: &Target,
+    progress: &Progress,
+) -> Result<Grid, Failure> {
+    recipe.world.seed = seed;
+    let world = args.limits.open(recipe, budget)?;
+    let grids = world.grids(&[HEIGHT], &land_window(&world, target)?, progress);
     let mut grids = grids.map_err(|error| interrupt::explain(error.into(), "no recipe was written"))?;
-    drop(bar);
     grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "nothing was asked for").into())
 }
 

@@ -86,6 +86,9 @@ fn generate(args: &Args) -> Result<(), Failure> {
     }
 }
 
+/// Nanoseconds that a sample takes to be painted, packed and written, about.
+const WRITING: f64 = 150.0;
+
 /// Makes it once, and returns what there is to say on standard output.
 fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Failure> {
     let begun = Instant::now();
@@ -100,12 +103,14 @@ fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Fai
     let folder = Folder::ready(&args.out)?;
     // The pictures are encoded side by side, some rows at a time.
     let _pictures = budget.reserve(ENCODERS)?;
-    let mut grids = world.run(&plan, progress)?;
+    let [making, writing] = progress.parts([world.work(&plan), WRITING * window.len() as f64]);
+    let mut grids = world.run(&plan, &making)?;
     let Some(grid) = grids.pop() else {
         return Ok(String::new());
     };
     finite::check(orogen::world::HEIGHT, &grid)?;
     let report = pictures::write(&outputs, world.recipe(), &grid, || begun.elapsed().as_secs_f64())?;
+    writing.finish();
     folder.keep();
     Ok(match (args.json, args.quiet) {
         (true, _) => report.json(),

@@ -1,13 +1,19 @@
 //! `orogen grow`.
 
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
 
 use orogen::format::png::{Animation, Picture, Pixel};
+use orogen::growth::Growth;
 use orogen::map::paint::Painter;
 use orogen::node::Node;
+use orogen::spool::Spool;
 use orogen::words::count;
-use orogen::{Budget, Grid, Progress, Recipe};
+use orogen::world::HEIGHT;
+use orogen::{Budget, Error, Grid, Progress, Recipe, Window};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
@@ -30,11 +36,11 @@ pub struct Args {
     /// Picture to write: a .png that moves (APNG), a .gif, or a file for each frame such as grow-%03d.png
     #[arg(short, long, value_name = "FILE", default_value = "grow.png")]
     out: PathBuf,
-    /// How many frames: the beginning, and after each step
+    /// How many frames, from the beginning to the terrain itself. Where a node has fewer steps than that, heights between two of them are mixed
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=1000), default_value = "25",
           allow_negative_numbers = true)]
     frames: u16,
-    /// Years from the first frame to the last [default: those of the recipe's node]
+    /// Years that each node `stream-power` goes on for [default: those of the recipe]
     #[arg(long, value_name = "YR", allow_negative_numbers = true)]
     years: Option<f64>,
     /// How long each frame is shown, in milliseconds
@@ -67,6 +73,13 @@ fn grow(args: &Args) -> Result<(), Failure> {
     let budget = args.limits.budget();
     let mut recipe = source.read(&budget)?;
     args.samples.view.apply(&mut recipe);
+    if let Some(years) = args.years {
+        recipe.change(|node| {
+            if let Node::StreamPower(rivers) = node {
+                rivers.years = years;
+            }
+        });
+    }
     if !recipe.nodes().iter().any(|named| matches!(named.node, Node::StreamPower(_))) {
         return Err(Failure::Usage(format!(
             "nothing grows in {}: it has no node with op = \"stream-power\", which lifts land and cuts rivers into it",
@@ -76,75 +89,149 @@ fn grow(args: &Args) -> Result<(), Failure> {
     let policy = args.replace.policy(source.inputs(&recipe));
     let outputs = target.outputs(&args.out, u32::from(args.frames), &policy)?;
     let (bar, progress) = Bar::new(args.quiet);
-    let made = write(&recipe, args, &target, &outputs, &budget, &progress);
+    let made = write(recipe, args, &target, &outputs, &budget, &progress);
     drop(bar);
     let words = made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
     outputs[0].tell(args.quiet, &words)
 }
 
 fn write(
-    recipe: &Recipe,
+    recipe: Recipe,
     args: &Args,
     target: &Target,
     outputs: &[Sink],
     budget: &Budget,
     progress: &Progress,
 ) -> Result<String, Failure> {
-    let frame = |steps: u16| frame(recipe, args, steps, budget, progress);
-    // The last frame first: it tells how large the picture is, and its colours are those of all.
-    let last = frame(args.frames - 1)?;
-    finite::check(orogen::world::HEIGHT, &last)?;
-    let (width, height) = (last.width(), last.height());
+    let sea_level = recipe.world.sea_level;
+    let world = args.limits.open(recipe, budget)?;
+    let window = args.samples.window(&world)?;
+    let (width, height) = (window.width, window.height);
     let pixels = (width * height) as u64;
-    // The last frame, the picture of one, and what is made of it.
-    let _frames = budget.reserve(pixels.saturating_mul(7).saturating_add(target.beside(pixels)))?;
-    let painter = Painter::fit(&last, recipe.world.sea_level);
+    // Two frames' heights and what they are mixed to; the picture; and what packs it.
+    let _frames = budget.reserve(pixels.saturating_mul(3 + 12).saturating_add(target.beside(pixels)))?;
+    let growth = Growth::new(&world, HEIGHT, window)?;
+    let frames = Frames::new(args.frames, growth.steps());
+    let plan = world.plan(&[HEIGHT], &window)?;
+    // Growing is the terrain itself and what each frame takes after its step, about a twentieth of that.
+    let growing = world.work(&plan) * (1.0 + frames.steps.len() as f64 / 20.0);
+    let [growing, painting] = progress.parts([growing, PAINTING * pixels as f64 * f64::from(args.frames)]);
+    // The last frame's colours are those of all: the heights wait until it is made.
+    let heights = Mutex::new((Spool::beside(&args.out), BTreeMap::new()));
+    growth.run(&frames.steps, &growing, &|step, grid| {
+        let (spool, places) = &mut *heights.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut at = None;
+        for row in 0..height {
+            let bytes: Vec<u8> = grid.row(row).iter().flat_map(|sample| sample.to_le_bytes()).collect();
+            let place = spool.push(&bytes).map_err(|cause| Error::file("write", &args.out, &cause))?;
+            at.get_or_insert(place);
+        }
+        places.insert(step, at.unwrap_or_default());
+        Ok(())
+    })?;
+    let (spool, places) = heights.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let land = Land { spool: RefCell::new(spool), places, window };
+    let last =
+        land.at(growth.steps()).map_err(|cause| Error::file("read back what was put aside for", &args.out, &cause))?;
+    finite::check(HEIGHT, &last)?;
+    let painter = Painter::fit(&last, sea_level);
     let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
     let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", &software)] };
     let animation = Animation { frames: u32::from(args.frames), delay: args.delay };
     let painted = |ground: &Grid, bytes: &mut [u8]| painter.paint(ground, 0..height, bytes);
     // The beginning is smooth and the end is rough: colours and shades of both.
     let sample = || {
-        let first = frame(0).map_err(carried)?;
         let mut bytes = vec![0; width * height * 6];
         let (one, other) = bytes.split_at_mut(width * height * 3);
-        painted(&first, one);
+        painted(&land.at(0)?, one);
         painted(&last, other);
         Ok(bytes)
     };
     let moving = Moving { outputs, target, picture, animation, sample: &sample };
+    painting.expect(f64::from(args.frames));
     moving.write(|k, bytes| {
-        match k + 1 < u32::from(args.frames) {
-            true => painted(&frame(k as u16).map_err(carried)?, bytes),
-            false => painted(&last, bytes),
-        }
+        painting.check()?;
+        painted(&land.between(frames.at(k))?, bytes);
+        painting.advance(1.0);
         Ok(())
     })?;
     Ok(format!("{}: {} of {width} x {height} pixels\n", args.out.display(), count(usize::from(args.frames), "frame")))
 }
 
-/// A failure on its way through code that writes.
-fn carried(failure: Failure) -> io::Error {
-    match failure {
-        Failure::Engine(error) => error.into(),
-        other => io::Error::other(format!("a frame could not be made: {other:?}")),
+/// Nanoseconds that painting and packing a pixel takes, about.
+const PAINTING: f64 = 150.0;
+
+/// Which steps the frames show.
+struct Frames {
+    count: u32,
+    /// Of the terrain.
+    all: u32,
+    /// Those that are made.
+    steps: BTreeSet<u32>,
+}
+
+impl Frames {
+    fn new(count: u16, all: u32) -> Frames {
+        let mut frames = Frames { count: u32::from(count), all, steps: BTreeSet::new() };
+        let shown = (0..frames.count).map(|k| frames.at(k));
+        frames.steps = shown.flat_map(|at| [at.floor() as u32, at.ceil() as u32]).collect();
+        frames
+    }
+
+    /// The step that frame `k` shows: a whole one where there are as many steps as frames, else on the way between two.
+    fn at(&self, k: u32) -> f64 {
+        let at = f64::from(self.all) * f64::from(k) / f64::from(self.count - 1);
+        if self.all >= self.count - 1 { at.round() } else { at }
     }
 }
 
-/// The ground after so many steps.
-fn frame(recipe: &Recipe, args: &Args, steps: u16, budget: &Budget, progress: &Progress) -> Result<Grid, Failure> {
-    let mut recipe = recipe.clone();
-    recipe.change(|node| {
-        if let Node::StreamPower(rivers) = node {
-            let years = args.years.unwrap_or(rivers.years);
-            // Each frame is a run of its own through the same steps: what comes after changes nothing about it.
-            rivers.years = years / f64::from(args.frames - 1) * f64::from(steps);
-            rivers.steps = u32::from(steps.max(1));
+/// Heights after steps, put aside.
+struct Land {
+    spool: RefCell<Spool>,
+    /// Where those after each step are.
+    places: BTreeMap<u32, u64>,
+    window: Window,
+}
+
+impl Land {
+    /// The heights after a step.
+    fn at(&self, step: u32) -> io::Result<Grid> {
+        let at = *self.places.get(&step).ok_or(io::ErrorKind::NotFound)?;
+        let mut grid = Grid::filled(self.window, 0.0);
+        let mut bytes = vec![0; 4 * self.window.width];
+        for row in 0..self.window.height {
+            self.spool.borrow_mut().read(at + (row * bytes.len()) as u64, &mut bytes)?;
+            for (sample, bytes) in grid.row_mut(row).iter_mut().zip(bytes.as_chunks().0) {
+                *sample = f32::from_le_bytes(*bytes);
+            }
         }
-    });
-    let world = args.limits.open(recipe, budget)?;
-    let window = args.samples.window(&world)?;
-    let plan = world.plan(&[orogen::world::HEIGHT], &window)?;
-    let grid = world.run(&plan, progress)?.pop();
-    Ok(grid.unwrap_or_else(|| Grid::filled(window, 0.0)))
+        Ok(grid)
+    }
+
+    /// The heights on the way from one step to the next, as far as the fraction says.
+    fn between(&self, step: f64) -> io::Result<Grid> {
+        let mut grid = self.at(step.floor() as u32)?;
+        let share = step.fract() as f32;
+        if share > 0.0 {
+            let next = self.at(step.ceil() as u32)?;
+            let pairs = grid.data_mut().iter_mut().zip(next.data());
+            pairs.for_each(|(height, next)| *height += share * (next - *height));
+        }
+        Ok(grid)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_whole_steps_where_there_are_enough() {
+        let frames = Frames::new(5, 4);
+        assert_eq!((0..5).map(|k| frames.at(k)).collect::<Vec<_>>(), [0.0, 1.0, 2.0, 3.0, 4.0]);
+        let frames = Frames::new(4, 70);
+        assert_eq!(frames.steps.into_iter().collect::<Vec<_>>(), [0, 23, 47, 70]);
+        let frames = Frames::new(5, 2);
+        assert_eq!((frames.at(1), frames.steps.len()), (0.5, 3));
+    }
 }

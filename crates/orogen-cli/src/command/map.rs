@@ -182,6 +182,10 @@ const PRINT: f64 = 220.0;
 /// Most pixels of a page.
 const MOST: f64 = 4e8;
 
+/// Nanoseconds that drawing takes for each sample of the heights, and drawing and writing for each pixel of the page, about.
+const DRAWING: f64 = 400.0;
+const WRITING: f64 = 60.0;
+
 /// Draws the sheet.
 pub fn run(args: &Args) -> Result<(), Failure> {
     Seeds::each(args.view.seed.as_ref(), Some(&args.out), |seed, out| {
@@ -214,16 +218,21 @@ fn map(args: &Args) -> Result<(), Failure> {
     let mut options = options(args, kind, palette, &world, is_place);
     let _drawing = world.budget().reserve(drawing(&options, &window, args)?)?;
     let (bar, progress) = Bar::new(args.quiet);
-    let made = world.grids(&[HEIGHT], &window, &progress);
-    let mut grids = made.map_err(|error| interrupt::explain(error.into(), "nothing was written"))?;
+    let stopped = |error: orogen::Error| interrupt::explain(error.into(), "nothing was written");
+    let plan = world.plan(&[HEIGHT], &window)?;
+    let work = world.work(&plan);
+    let layered = if args.layer == HEIGHT { 0.0 } else { work };
+    let [making, layering, drawing, writing] =
+        progress.parts([work, layered, DRAWING * window.len() as f64, WRITING * pixels(&options)]);
+    let mut grids = world.run(&plan, &making).map_err(stopped)?;
     let Some(heights) = grids.pop() else { return Ok(()) };
     finite::check(HEIGHT, &heights)?;
     if args.layer != HEIGHT {
-        let made = layer(args, &world, &window, range, &progress);
+        let made = layer(args, &world, &window, range, &layering);
         options.layer = Some(made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?);
     }
-    drop(bar);
-    let sheet = draw(&heights, &options)?;
+    let sheet = draw(&heights, &options, &drawing).map_err(stopped)?;
+    drawing.finish();
     if !sheet.lacking.is_empty() {
         let letters: String = sheet.lacking.iter().collect();
         say::error(&format!(
@@ -243,6 +252,11 @@ fn map(args: &Args) -> Result<(), Failure> {
         }
         Kind::Svg => sink.write(|out| vector::write(out, &sheet.scene))?,
         Kind::Pdf => sink.write(|out| pdf::write(out, &sheet.scene))?,
+    }
+    writing.finish();
+    drop(bar);
+    if args.quiet {
+        return Ok(());
     }
     let [width, height] = sheet.scene.size;
     let size = match kind {
@@ -369,12 +383,18 @@ fn longer(page: Page) -> f64 {
     }
 }
 
-/// Bytes that drawing takes beside the heights, or the reason why no memory holds the page.
-fn drawing(options: &Options, window: &Window, args: &Args) -> Result<u64, Failure> {
+/// Pixels of a square that the page fits in.
+fn pixels(options: &Options) -> f64 {
     let side = match options.resolution {
         Resolution::Inch(dpi) => longer(options.page) * dpi / 25.4,
         Resolution::Longer(pixels) => f64::from(pixels),
     };
+    side * side
+}
+
+/// Bytes that drawing takes beside the heights, or the reason why no memory holds the page.
+fn drawing(options: &Options, window: &Window, args: &Args) -> Result<u64, Failure> {
+    let side = pixels(options).sqrt();
     if side * side > MOST {
         return Err(Failure::Usage(format!(
             "a page of {:.0} pixels a side is more than there is memory for; ask for fewer --dpi or a smaller --paper",

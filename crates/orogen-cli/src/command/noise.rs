@@ -5,11 +5,13 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use orogen::Progress;
 use orogen::format::png::{Animation, Picture};
 use orogen::format::{npy, png};
 use orogen::words;
 use orogen_noise::{Basis, Fractal, MAX_OCTAVES, Untileable};
 
+use crate::bar::Bar;
 use crate::draw::look::{Drawing, Look};
 use crate::draw::slice::Slice;
 use crate::draw::sum;
@@ -20,7 +22,7 @@ use crate::moving::{Moving, Target};
 use crate::replace::Replace;
 use crate::sink::{Sink, is_stdout};
 use crate::size::{Bytes, MOST, Size, finite, positive, seed, wavelength};
-use crate::{memory, say};
+use crate::{disk, interrupt, memory, say};
 
 /// Milliseconds that a frame is shown.
 const DELAY: u16 = 40;
@@ -30,6 +32,9 @@ const FRAMES_A_WAVELENGTH: f64 = 24.0;
 
 /// Bytes of samples that are made at a time.
 const BAND: usize = 1 << 22;
+
+/// Most bytes of an array file before its samples.
+const HEADER: u64 = 256;
 
 /// What it takes.
 #[derive(Debug, clap::Args)]
@@ -93,7 +98,7 @@ pub struct Args {
     memory: Option<Bytes>,
     #[command(flatten)]
     replace: Replace,
-    /// Leave out the closing words
+    /// Show neither progress nor the closing words
     #[arg(short, long)]
     quiet: bool,
 }
@@ -117,6 +122,7 @@ struct Task<'a> {
     look: Look,
     width: usize,
     height: usize,
+    progress: Progress,
 }
 
 /// Draws the noise.
@@ -144,7 +150,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         (true, None) => Look::Normal,
         (false, None) => Look::Grey,
     };
-    let task = Task { args, out, format, noise: noise(args)?, look, width, height };
+    let task = Task { args, out, format, noise: noise(args)?, look, width, height, progress: Progress::none() };
     task.check()?;
     let outputs = match (&target, args.frames) {
         (Some(target), Some(frames)) => target.outputs(out, frames, &args.replace.anywhere())?,
@@ -154,13 +160,17 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if let (false, Some(note)) = (args.quiet, task.note()) {
         say::error(&note);
     }
-    match (&target, args.frames) {
-        (Some(target), Some(frames)) => task.write_frames(target, &outputs, frames)?,
+    let (bar, progress) = Bar::new(args.quiet);
+    let task = Task { progress, ..task };
+    let written = match (&target, args.frames) {
+        (Some(target), Some(frames)) => task.write_frames(target, &outputs, frames),
         _ => outputs[0].write(|out| match format {
             Format::Npy => task.write_array(out),
             _ => task.write_picture(out),
-        })?,
-    }
+        }),
+    };
+    drop(bar);
+    written.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
     outputs[0].tell(args.quiet, &task.words())
 }
 
@@ -223,7 +233,19 @@ impl Task<'_> {
             None => 0,
         };
         let needed = band.saturating_add(frame);
-        Ok(memory::budget(self.args.memory, memory::cores()).afford(needed)?)
+        memory::budget(self.args.memory, memory::cores()).afford(needed)?;
+        // How large a picture gets is known once it is packed.
+        let array = |grids: u64| {
+            let samples = (self.width as u64).saturating_mul(self.height as u64).saturating_mul(grids);
+            samples.saturating_mul(4).saturating_add(HEADER)
+        };
+        match (self.format, self.args.volume) {
+            _ if is_stdout(self.out) => {}
+            (Format::Npy, Some(slices)) => disk::afford_file(self.out, array(slices))?,
+            (Format::Npy, None) => disk::afford_file(self.out, array(if self.args.gradient { 2 } else { 1 }))?,
+            _ => {}
+        }
+        Ok(())
     }
 
     fn deep(&self) -> bool {
@@ -259,8 +281,12 @@ impl Task<'_> {
         let (software, description) = (format!("Orogen {}", env!("CARGO_PKG_VERSION")), self.description());
         let notes = [("Software", software.as_str()), ("Description", description.as_str())];
         let picture = Picture { width: self.width, height: self.height, pixel: drawing.pixel(), notes: &notes };
+        self.progress.expect(self.height as f64);
         png::write(out, &picture, |rows, bytes| {
+            self.progress.check()?;
+            let work = rows.len() as f64;
             drawing.paint(self.args.z, rows, bytes);
+            self.progress.advance(work);
             Ok(())
         })
     }
@@ -284,8 +310,11 @@ impl Task<'_> {
         };
         let animation = Animation { frames, delay: DELAY };
         let moving = Moving { outputs, target, picture, animation, sample: &sample };
+        self.progress.expect(f64::from(frames));
         moving.write(|k, bytes| {
+            self.progress.check()?;
             frame(k, bytes);
+            self.progress.advance(1.0);
             Ok(())
         })
     }
@@ -307,6 +336,8 @@ impl Task<'_> {
     fn write_array(&self, out: &mut dyn Write) -> io::Result<()> {
         let slice = self.slice(self.args.z);
         let (width, height) = (self.width, self.height);
+        let grids = if self.args.gradient { 2 } else { self.args.volume.unwrap_or(1) };
+        self.progress.expect(grids as f64 * height as f64);
         if let Some(slices) = self.args.volume {
             npy::write_shape(out, &[slices as usize, height, width])?;
             let first = self.args.z.unwrap_or(0.0);
@@ -337,8 +368,10 @@ impl Task<'_> {
         for first in (0..self.height).step_by(self.rows_a_band()) {
             let last = (first + self.rows_a_band()).min(self.height);
             let value = &mut band[..(last - first) * self.width];
+            self.progress.check()?;
             fill(first..last, value);
             npy::write_rows(out, value)?;
+            self.progress.advance((last - first) as f64);
         }
         Ok(())
     }

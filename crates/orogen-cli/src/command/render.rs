@@ -325,6 +325,13 @@ const LAYERS: [&str; 3] = [HEIGHT, "surface", "flow"];
 /// The layers that show surfaces.
 const COVER: [&Derived; 2] = [&albedo::LAYER, &roughness::LAYER];
 
+/// Nanoseconds that preparing a sample of the land takes, and a ray through a pixel, about.
+const PREPARING: f64 = 1600.0;
+const RAY: f64 = 500.0;
+
+/// The pixels that a GIF's colours are taken from, as a share of a frame's.
+const PREVIEW: f64 = 0.25;
+
 /// What is to be drawn, all of it settled.
 struct Shooting<'a> {
     target: Target,
@@ -343,7 +350,21 @@ fn draw(
     let Shooting { target, outputs, style, shot } = shooting;
     let has = |layer: &&str| world.recipe().outputs().any(|name| name == *layer);
     let layers: Vec<&str> = LAYERS.into_iter().filter(|layer| *layer == HEIGHT || has(layer)).collect();
-    let grids = world.grids(&layers, window, progress)?;
+    let size = size(args)?;
+    let [width, height] = size;
+    let plan = world.plan(&layers, window)?;
+    let pixels = (width * height) as f64 * f64::from(args.turntable.unwrap_or(1));
+    let preview = match (args.turntable, target) {
+        (Some(_), Target::Gif) => PREVIEW,
+        _ => 0.0,
+    };
+    let [making, preparing, previewing, painting] = progress.parts([
+        world.work(&plan),
+        PREPARING * window.len() as f64,
+        preview * (width * height) as f64 * RAY * style.samples as f64,
+        pixels * RAY * style.samples as f64,
+    ]);
+    let grids = world.run(&plan, &making)?;
     layers.iter().zip(&grids).try_for_each(|(layer, grid)| finite::check(layer, grid))?;
     let layer = |name: &str| layers.iter().position(|layer| *layer == name).and_then(|at| grids.get(at));
     let nothing = Grid::filled(*window, 0.0);
@@ -358,7 +379,7 @@ fn draw(
             let layers = COVER
                 .iter()
                 .filter_map(|layer| layer.rows())
-                .map(|rows| Rows::new(rows, world, window, 0, progress)?.whole());
+                .map(|rows| Rows::new(rows, world, window, 0, &progress.part(0.0))?.whole());
             layers.collect::<orogen::Result<Vec<Vec<Grid>>>>()?.concat()
         }
         _ => Vec::new(),
@@ -367,9 +388,8 @@ fn draw(
         [red, green, blue, roughness] => Some([red, green, blue, roughness]),
         _ => None,
     };
-    let scene = Scene::new(&land, &Style { cover, ..*style }, progress)?;
-    let size = size(args)?;
-    let [width, height] = size;
+    let scene = Scene::new(&land, &Style { cover, ..*style }, &preparing)?;
+    preparing.finish();
     let origin = [window.east(0), window.south(0)];
     let camera = |shot: &Shot| Camera::new(shot, scene.relief(), origin, size, args.fov, &scene.frame());
     let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
@@ -386,24 +406,32 @@ fn draw(
         // Four sides, small: enough to know the colours by.
         let sample = || {
             let small = size.map(|side| side.div_ceil(4));
+            previewing.expect(4.0);
             let mut sample = Vec::new();
             for quarter in 0..4 {
                 let mut bytes = vec![0; 3 * small[0] * small[1]];
-                scene.paint(&side(quarter * frames / 4), small, 0..small[1], &mut bytes, progress)?;
+                let part = previewing.part(1.0);
+                scene.paint(&side(quarter * frames / 4), small, 0..small[1], &mut bytes, &part)?;
                 sample.append(&mut bytes);
             }
             Ok(sample)
         };
         let animation = Animation { frames, delay: args.delay };
         let moving = Moving { outputs, target, picture, animation, sample: &sample };
-        moving.write(|frame, bytes| Ok(scene.paint(&side(frame), size, 0..height, bytes, progress)?))?;
+        painting.expect(f64::from(frames));
+        moving.write(|frame, bytes| Ok(scene.paint(&side(frame), size, 0..height, bytes, &painting.part(1.0))?))?;
         return Ok(format!("{file}: {} of {width} x {height} pixels, of {samples}\n", count(frames as usize, "frame")));
     }
     let camera = camera(shot);
     if let (Some(metres), false) = (camera.lifted(), args.quiet) {
         say::error(&format!("note: the camera stood underground; it is lifted by {metres:.0} m, to just above it"));
     }
-    outputs[0]
-        .write(|out| png::write(out, &picture, |rows, bytes| Ok(scene.paint(&camera, size, rows, bytes, progress)?)))?;
+    painting.expect(height as f64);
+    outputs[0].write(|out| {
+        png::write(out, &picture, |rows, bytes| {
+            let part = painting.part(rows.len() as f64);
+            Ok(scene.paint(&camera, size, rows, bytes, &part)?)
+        })
+    })?;
     Ok(format!("{file}: {width} x {height} pixels, of {samples}\n"))
 }

@@ -1,5 +1,6 @@
 //! The page: headings, pictures and captions on a grid.
 
+use orogen::Progress;
 use orogen::map::canvas::{Canvas, Ink};
 use orogen::map::text::{Face, Lettering, Style};
 use rayon::prelude::*;
@@ -47,12 +48,24 @@ fn scale(side: usize) -> f64 {
 }
 
 /// Draws the page.
-pub fn draw(rows: &[Row], side: usize, seed: u64) -> orogen::Result<Canvas> {
+///
+/// # Errors
+/// If there is no font, or the work is cancelled.
+pub fn draw(rows: &[Row], side: usize, seed: u64, progress: &Progress) -> orogen::Result<Canvas> {
     let [width, height] = size(rows.len(), side);
     let canvas = Canvas::new(width, height, PAPER);
     let mut layout = Layout { rows, side, scale: scale(side), lettering: Lettering::new()?, canvas };
-    let pictures: Vec<Vec<Pictures>> =
-        rows.par_iter().map(|row| row.noises.par_iter().map(|shown| panel::draw(shown, side)).collect()).collect();
+    progress.expect(rows.iter().map(|row| row.noises.len() as f64).sum());
+    let picture = |shown| {
+        progress.check()?;
+        let pictures = panel::draw(shown, side);
+        progress.advance(1.0);
+        Ok(pictures)
+    };
+    let pictures: Vec<Vec<Pictures>> = rows
+        .par_iter()
+        .map(|row| row.noises.par_iter().map(picture).collect())
+        .collect::<orogen::Result<Vec<Vec<Pictures>>>>()?;
     let mut top = layout.header();
     let mut number = 1;
     for (row, pictures) in rows.iter().zip(&pictures) {

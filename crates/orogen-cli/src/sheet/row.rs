@@ -1,5 +1,6 @@
 //! What the page shows: its rows and the noises in them.
 
+use orogen::Progress;
 use orogen::aggregate::relief::{self, Ridges};
 use orogen::aggregate::single;
 use orogen_noise::{Basis, Falloff, Feature, Fractal, Kind, Mismatch, Points, Worley};
@@ -72,8 +73,12 @@ impl Noise {
             }
             Noise::Peaks(seed) => {
                 let ridges = Ridges { seed, reach: 0.95, density: 0.2, gain: 0.65, taper: 8.0 };
-                let (across, _, heights) = relief::heights(SIDE as usize, SIDE as usize, &ridges);
-                sample(&heights, across, xs, ys, out);
+                // Nobody cancels a part of a second.
+                if let Ok((across, _, heights)) =
+                    relief::heights(SIDE as usize, SIDE as usize, &ridges, &Progress::none())
+                {
+                    sample(&heights, across, xs, ys, out);
+                }
                 Ok(())
             }
         }

@@ -20,6 +20,7 @@ mod not_finite;
 mod others;
 mod outputs;
 mod palettes;
+mod progress;
 mod render;
 mod surfaces;
 mod view;

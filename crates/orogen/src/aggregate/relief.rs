@@ -2,6 +2,8 @@
 
 use super::random::Random;
 use super::tree::Tree;
+use crate::error::Result;
+use crate::progress::Progress;
 use rayon::prelude::*;
 
 /// What a relief is made of.
@@ -27,7 +29,10 @@ const COARSEST: usize = 12;
 /// On the coarsest grid an aggregate grows from the middle. Each finer grid takes it over bent a little (see [`Tree::refined`]) and lets it
 /// grow on. At every scale a ridge is high by how far it is from the tips of what grew on it, 1 - 1 / (1 + d / taper); the heights of all
 /// scales are added, those of the coarser ones smoothed each time the grid gets finer. Costs O(cells).
-pub fn heights(width: usize, height: usize, ridges: &Ridges) -> (usize, usize, Vec<f32>) {
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn heights(width: usize, height: usize, ridges: &Ridges, progress: &Progress) -> Result<(usize, usize, Vec<f32>)> {
     let longest = width.max(height).max(1);
     let mut scales = 0u32;
     while COARSEST << scales < longest {
@@ -42,31 +47,40 @@ pub fn heights(width: usize, height: usize, ridges: &Ridges) -> (usize, usize, V
     tree.put(across as i64 / 2, down as i64 / 2, None);
     let mut map = vec![0.0f32; across * down];
     let (mut weight, mut total) = (1.0f32, 0.0f32);
+    // Each scale has four times the cells of the one before.
+    let cells = |scale: u32| (1u64 << (2 * scale)) as f64;
+    (0..=scales).for_each(|scale| progress.expect(cells(scale)));
     for scale in 0..=scales {
+        let part = progress.part(cells(scale));
+        let [refining, growing, raising] = part.parts([1.0, 3.0, 1.0]);
         let mut random = Random::new(ridges.seed, u64::from(scale) + 1);
         if scale > 0 {
             let (finer_across, finer_down) = at(scale);
             tree = tree.refined(finer_across, finer_down, &mut random);
+            progress.check()?;
             map = doubled(&map, across, finer_across, finer_down);
             for _ in 0..3 {
                 map = blurred(&map, finer_across);
             }
+            progress.check()?;
             (across, down) = (finer_across, finer_down);
         }
         // The coarsest, a few cells wide, has to reach all around.
         let share = if scale == 0 { ridges.density.max(0.3) } else { ridges.density };
-        tree.grow((tree.room() as f64 * share) as usize, &mut random);
+        refining.finish();
+        tree.grow((tree.room() as f64 * share) as usize, &mut random, &growing)?;
         let taper = ridges.taper.max(1e-3);
         for (cell, steps) in tree.cells().iter().zip(tree.to_tips()) {
             let high = 1.0 - 1.0 / (1.0 + (f64::from(steps) + 0.5) / taper);
             map[*cell as usize] += weight * high as f32;
         }
+        raising.finish();
         total += weight;
         weight *= ridges.gain as f32;
     }
     map = blurred(&map, across);
     map.par_iter_mut().for_each(|h| *h /= total);
-    (across, down, map)
+    Ok((across, down, map))
 }
 
 /// A grid of twice as many cells a side, bilinear between the middles of the old.
@@ -117,7 +131,7 @@ mod tests {
     #[test]
     fn it_is_highest_within_and_low_at_the_edges() {
         for (width, height) in [(100, 100), (150, 70), (13, 13), (5, 40), (1, 1)] {
-            let (across, down, map) = heights(width, height, &RIDGES);
+            let (across, down, map) = heights(width, height, &RIDGES, &Progress::none()).unwrap();
             assert!(across >= width && down >= height && map.len() == across * down);
             assert!(map.iter().all(|h| (0.0..=1.5).contains(h)));
             if width > 20 && height > 20 {
@@ -139,9 +153,9 @@ mod tests {
 
     #[test]
     fn other_seeds_are_other_mountains_and_threads_change_nothing() {
-        let one = heights(90, 90, &RIDGES);
+        let one = heights(90, 90, &RIDGES, &Progress::none()).unwrap();
         let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
-        assert_eq!(one, pool.install(|| heights(90, 90, &RIDGES)));
-        assert!(one.2 != heights(90, 90, &Ridges { seed: 5, ..RIDGES }).2);
+        assert_eq!(one, pool.install(|| heights(90, 90, &RIDGES, &Progress::none()).unwrap()));
+        assert!(one.2 != heights(90, 90, &Ridges { seed: 5, ..RIDGES }, &Progress::none()).unwrap().2);
     }
 }

@@ -1,11 +1,19 @@
 //! A growing figure on a grid: cells, each but the first beside the one it stuck to.
 
 use super::random::Random;
+use crate::error::Result;
+use crate::progress::Progress;
 
 /// Columns east and rows south to the eight neighbours, sides first.
 const AROUND: [(i64, i64); 8] = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
 
 const FREE: u32 = u32::MAX;
+
+/// Members between two reports of progress.
+const REPORTED: usize = 1 << 10;
+
+/// Steps of walkers between two questions whether the work is still wanted.
+const UNCHECKED: u32 = 1 << 16;
 
 /// An aggregate on a grid of its own, of `width` x `height` cells.
 #[derive(Debug, Clone)]
@@ -100,8 +108,13 @@ impl Tree {
     ///
     /// Walkers that start everywhere find the gaps between branches, which get filled about evenly; each wanders about as many steps as the
     /// square of the gap's width.
-    pub fn grow(&mut self, members: usize, random: &mut Random) {
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    pub fn grow(&mut self, members: usize, random: &mut Random, progress: &Progress) -> Result<()> {
         let most = members.min(self.room());
+        progress.expect(most.saturating_sub(self.cells.len()) as f64);
+        let mut steps = 0u32;
         while self.cells.len() < most {
             let (mut i, mut j) = (random.below(self.width) as i64, random.below(self.height) as i64);
             if !self.holds(i, j) || self.members[self.index(i, j)] != FREE {
@@ -110,7 +123,14 @@ impl Tree {
             loop {
                 if let Some(parent) = self.beside(i, j, random) {
                     self.put(i, j, Some(parent));
+                    if self.cells.len().is_multiple_of(REPORTED) {
+                        progress.advance(REPORTED as f64);
+                    }
                     break;
+                }
+                steps = steps.wrapping_add(1);
+                if steps.is_multiple_of(UNCHECKED) {
+                    progress.check()?;
                 }
                 let (east, south) = AROUND[random.below(8)];
                 if !self.holds(i + east, j + south) {
@@ -119,6 +139,8 @@ impl Tree {
                 (i, j) = (i + east, j + south);
             }
         }
+        progress.finish();
+        progress.check()
     }
 
     /// The same aggregate on a grid of `width` x `height` cells, about twice as many each way: every cell becomes one of the four in its place by
@@ -203,12 +225,12 @@ mod tests {
         let mut random = Random::new(5, 1);
         let mut tree = Tree::new(40, 30, 0.8);
         tree.put(20, 15, None);
-        tree.grow(200, &mut random);
+        tree.grow(200, &mut random, &Progress::none()).unwrap();
         is_sound(&tree);
         assert_eq!(tree.cells.len(), 200);
         assert!(tree.cells.iter().all(|cell| tree.holds(i64::from(*cell) % 40, i64::from(*cell) / 40)));
         let room = tree.room();
-        tree.grow(1 << 20, &mut random);
+        tree.grow(1 << 20, &mut random, &Progress::none()).unwrap();
         assert_eq!(tree.cells.len(), room, "it can fill all there is");
     }
 
@@ -221,7 +243,7 @@ mod tests {
                 tree.put(6, down as i64 / 2, None);
                 for _ in 0..5 {
                     tree = tree.refined(tree.width() * 2, tree.height() * 2, &mut random);
-                    tree.grow(tree.room() / 2, &mut random);
+                    tree.grow(tree.room() / 2, &mut random, &Progress::none()).unwrap();
                     is_sound(&tree);
                 }
                 assert!(tree.cells.len() >= tree.room() / 2);
@@ -235,7 +257,7 @@ mod tests {
             let mut random = Random::new(seed, 1);
             let mut tree = Tree::new(16, 16, 1.0);
             tree.put(8, 8, None);
-            tree.grow(50, &mut random);
+            tree.grow(50, &mut random, &Progress::none()).unwrap();
             let fine = tree.refined(32, 31, &mut random);
             is_sound(&fine);
             let (was, is) = (tree.to_tips()[0], fine.to_tips()[0]);

@@ -37,6 +37,9 @@ pub enum Start {
     Force,
 }
 
+/// Nanoseconds that a sample takes to be packed and written, about.
+const PACKING: f64 = 15.0;
+
 /// What has been done.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
@@ -281,12 +284,19 @@ impl<'a> Build<'a> {
     /// Does the jobs, stage after stage. Returns how many of the samples are finite.
     fn make(&self, wanted: &BTreeSet<Job>, shelf: &Shelf, progress: &Progress) -> Result<FiniteCount> {
         let mut count = FiniteCount::default();
-        progress.expect(wanted.iter().map(|job| self.stages[job.stage].samples as i64).sum());
+        let samples = |stage: usize| {
+            wanted.iter().filter(|job| job.stage == stage).map(|job| self.stages[job.stage].samples as f64).sum::<f64>()
+        };
+        let [mut solving, each] = self.work(wanted)?;
+        let packing: f64 = (0..self.stages.len()).map(|stage| PACKING * samples(stage)).sum();
+        progress.expect(solving + each * samples(0) + packing);
         for (n, stage) in self.stages.iter().enumerate() {
             let tiles = wanted.iter().filter(|job| job.stage == n).map(|job| (job.row, job.column));
             if n == 0 {
                 for group in self.block.groups(&tiles.collect(), *stage) {
-                    count = count.and(self.make_group(&group, shelf, progress)?);
+                    // What had to be solved is solved with the first group.
+                    let work = std::mem::take(&mut solving) + each * (group.len() * stage.samples) as f64;
+                    count = count.and(self.make_group(&group, shelf, progress, work)?);
                 }
             } else {
                 let tiles: Vec<(usize, usize)> = tiles.collect();
@@ -298,13 +308,28 @@ impl<'a> Build<'a> {
         Ok(count)
     }
 
-    /// Makes the samples of tiles that lie together, then each tile of them.
-    fn make_group(&self, group: &[(usize, usize)], shelf: &Shelf, progress: &Progress) -> Result<FiniteCount> {
+    /// About how many nanoseconds solving takes before the first samples are made, and making a sample.
+    fn work(&self, wanted: &BTreeSet<Job>) -> Result<[f64; 2]> {
+        let first = wanted.iter().find(|job| job.stage == 0).map(|job| (job.row, job.column));
+        let Some(window) = union(self.target.as_ref(), first.into_iter()) else { return Ok([0.0; 2]) };
+        let layers: Vec<&str> = self.identity.layers.iter().map(String::as_str).collect();
+        let [solving, making] = self.world.work_of(&self.world.plan(&layers, &window)?);
+        Ok([solving, making / window.len().max(1) as f64])
+    }
+
+    /// Makes the samples of tiles that lie together, which is `work`, then each tile of them.
+    fn make_group(
+        &self,
+        group: &[(usize, usize)],
+        shelf: &Shelf,
+        progress: &Progress,
+        work: f64,
+    ) -> Result<FiniteCount> {
         let Some(window) = union(self.target.as_ref(), group.iter().copied()) else {
             return Ok(FiniteCount::default());
         };
         let layers: Vec<&str> = self.identity.layers.iter().map(String::as_str).collect();
-        let grids = self.world.grids(&layers, &window, &progress.part())?;
+        let grids = self.world.grids(&layers, &window, &progress.part(work))?;
         group.par_iter().try_for_each(|&(row, column)| {
             let window = self.target.window(row, column);
             let tiles: Option<Vec<Grid>> = grids.iter().map(|grid| grid.crop(&window)).collect();
@@ -322,7 +347,7 @@ impl<'a> Build<'a> {
             made.ranges = grids.iter().map(range).collect();
         }
         shelf.keep(job, &self.target.places(job), &made)?;
-        progress.advance(self.stages[job.stage].samples as u64);
+        progress.advance(PACKING * self.stages[job.stage].samples as f64);
         Ok(())
     }
 

@@ -224,17 +224,23 @@ fn cancelled_it_goes_on() {
     for form in FORMS {
         let (expect, whole) = undisturbed(form);
         let (world, order) = (world(None, 1), order(form));
-        let folder = Folder::new();
-        let build = Build::new(&world, &order, &output(&folder.out())).unwrap();
-        let flag = Arc::new(AtomicBool::new(false));
-        let stop = Arc::clone(&flag);
-        let progress =
-            Progress::new(move |done, total| stop.store(2 * done >= total, Ordering::Relaxed)).stopped_by(flag);
-        let error = build.run(Start::Fresh, &progress).unwrap_err();
-        assert_eq!(error.kind(), ErrorKind::Cancelled, "{error}");
-        let report = build.run(Start::Resume, &Progress::none()).unwrap();
-        assert!(report.made > 0 && report.kept > 0 && report.made + report.kept == whole.made, "{form:?} {report:?}");
-        assert!(result(&folder.out()) == expect, "{form:?}");
+        // Somewhere among these some tiles are made and others are not.
+        let mut amid = false;
+        for share_at_stop in [0.5, 0.7, 0.8, 0.9, 0.95, 0.98] {
+            let folder = Folder::new();
+            let build = Build::new(&world, &order, &output(&folder.out())).unwrap();
+            let flag = Arc::new(AtomicBool::new(false));
+            let stop = Arc::clone(&flag);
+            let progress =
+                Progress::new(move |share| stop.store(share >= share_at_stop, Ordering::Relaxed)).stopped_by(flag);
+            let Err(error) = build.run(Start::Fresh, &progress) else { continue };
+            assert_eq!(error.kind(), ErrorKind::Cancelled, "{error}");
+            let report = build.run(Start::Resume, &Progress::none()).unwrap();
+            assert_eq!(report.made + report.kept, whole.made, "{form:?} {report:?}");
+            assert!(result(&folder.out()) == expect, "{form:?}");
+            amid |= report.made > 0 && report.kept > 0;
+        }
+        assert!(amid, "{form:?}");
     }
 }
 

@@ -3,7 +3,8 @@
 use super::machine::{Bindings, Machine};
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
-use crate::op::{Context, Field, Op, Setting, Solution, Solver};
+use crate::op::{Context, Field, Op, Setting, Solution, Solver, StepObserver};
+use crate::plan::cost;
 use crate::plan::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use crate::plan::steps::{Plan, Step};
 use crate::progress::Progress;
@@ -21,6 +22,15 @@ pub struct Engine<'a> {
     pub setting: &'a Setting,
     pub store: &'a Store,
     pub progress: &'a Progress,
+    /// Who observes the steps of which node's solver. That node is solved even if its solution is stored.
+    pub observer: Option<(usize, &'a (dyn StepObserver + Sync))>,
+}
+
+/// A program to be run over a window.
+struct Filling<'a> {
+    program: &'a Program,
+    window: &'a Window,
+    outputs: usize,
 }
 
 /// What solvers found, by node.
@@ -29,17 +39,23 @@ pub type Solutions = HashMap<usize, Arc<Solution>>;
 impl<'a> Engine<'a> {
     /// Makes a plan's output grids.
     pub fn run(&self, plan: &Plan) -> Result<Vec<Grid>> {
-        self.progress.expect(plan.samples() as i64);
+        let work = cost::steps(plan, self.recipe);
+        self.progress.expect(work);
         let solutions = self.solve(plan)?;
-        self.steps(plan, &solutions)
+        let grids = self.steps(plan, &solutions, &self.progress.part(work))?;
+        self.progress.finish();
+        Ok(grids)
     }
 
     /// Makes a plan's output grids, all that it reads being solved.
-    pub(super) fn steps(&self, plan: &Plan, solutions: &Solutions) -> Result<Vec<Grid>> {
+    pub(super) fn steps(&self, plan: &Plan, solutions: &Solutions, progress: &Progress) -> Result<Vec<Grid>> {
+        progress.expect(cost::steps(plan, self.recipe));
         let mut grids: Vec<Option<Grid>> = plan.grids.iter().map(|_| None).collect();
         for (at, step) in plan.steps.iter().enumerate() {
-            self.progress.check()?;
-            self.step(step, solutions, &mut grids)?;
+            progress.check()?;
+            let part = progress.part(cost::step(step, plan, self.recipe));
+            self.step(step, solutions, &mut grids, &part)?;
+            part.finish();
             for (grid, slot) in grids.iter_mut().zip(&plan.grids) {
                 if slot.last_use <= at {
                     *grid = None;
@@ -64,16 +80,19 @@ impl<'a> Engine<'a> {
         for step in &plan.steps {
             match step {
                 Step::Fill { out, .. } if out.is_empty() => {}
-                _ => self.step(step, &solutions, &mut grids)?,
+                _ => self.step(step, &solutions, &mut grids, self.progress)?,
             }
         }
         Ok((solutions, grids))
     }
 
-    fn step(&self, step: &Step, solutions: &Solutions, grids: &mut [Option<Grid>]) -> Result<()> {
+    fn step(&self, step: &Step, solutions: &Solutions, grids: &mut [Option<Grid>], progress: &Progress) -> Result<()> {
         let made = match step {
-            Step::Fill { program, window, out } => self.fill(program, window, out.len(), solutions, grids)?,
-            Step::Apply { .. } => self.apply(step, grids)?,
+            Step::Fill { program, window, out } => {
+                let filling = Filling { program, window, outputs: out.len() };
+                self.fill(&filling, solutions, grids, progress)?
+            }
+            Step::Apply { .. } => self.apply(step, grids, progress)?,
         };
         for (slot, grid) in step.writes().into_iter().zip(made) {
             grids[slot] = Some(grid);
@@ -121,12 +140,12 @@ impl<'a> Engine<'a> {
     /// Runs a program over a window: bands of rows side by side, each band block by block.
     fn fill(
         &self,
-        program: &Program,
-        window: &Window,
-        outputs: usize,
+        filling: &Filling,
         solutions: &Solutions,
         grids: &[Option<Grid>],
+        progress: &Progress,
     ) -> Result<Vec<Grid>> {
+        let Filling { program, window, outputs } = *filling;
         let mut out: Vec<Grid> = (0..outputs).map(|_| Grid::filled(*window, 0.0f32)).collect();
         if window.is_empty() {
             return Ok(out);
@@ -136,6 +155,7 @@ impl<'a> Engine<'a> {
         let bindings = Bindings { setting: self.setting, fields: &fields, solvers: &solvers, grids };
         // Enough bands for every thread to have some, none so thin that rows of noise lattice are made over and over.
         let rows = window.height.div_ceil(2 * rayon::current_num_threads()).clamp(8, BLOCK_HEIGHT);
+        progress.expect(window.height as f64);
         let mut bands: Vec<Vec<&mut [f32]>> = (0..window.height.div_ceil(rows)).map(|_| Vec::new()).collect();
         for grid in &mut out {
             for (band, samples) in bands.iter_mut().zip(grid.data_mut().chunks_mut(rows * window.width)) {
@@ -145,7 +165,7 @@ impl<'a> Engine<'a> {
         bands.into_par_iter().enumerate().try_for_each_init(
             || Machine::new(program),
             |machine, (band, mut out)| {
-                self.progress.check()?;
+                progress.check()?;
                 let top = band * rows;
                 let height = rows.min(window.height - top);
                 for left in (0..window.width).step_by(BLOCK_WIDTH) {
@@ -164,14 +184,14 @@ impl<'a> Engine<'a> {
                         }
                     }
                 }
-                self.progress.advance((height * window.width) as u64);
+                progress.advance(height as f64);
                 Ok::<(), Error>(())
             },
         )?;
         Ok(out)
     }
 
-    fn apply(&self, step: &Step, grids: &[Option<Grid>]) -> Result<Vec<Grid>> {
+    fn apply(&self, step: &Step, grids: &[Option<Grid>], progress: &Progress) -> Result<Vec<Grid>> {
         let Step::Apply { node, inputs, window, halo, out } = step else { return Ok(Vec::new()) };
         let Op::Filter(filter) = self.recipe.nodes()[*node].node.op() else {
             return Err(Error::new(ErrorKind::Recipe, "a node that is no filter was to be applied"));
@@ -190,11 +210,10 @@ impl<'a> Engine<'a> {
             .zip(&cropped)
             .map(|(input, cropped)| cropped.as_ref().or_else(|| input.and_then(|slot| grids[slot].as_ref())))
             .collect();
-        let context = Context { setting: self.setting, progress: self.progress };
+        let context = Context { setting: self.setting, progress, observer: None };
         let mut made: Vec<Option<Grid>> =
             out.iter().map(|wanted| wanted.map(|_| Grid::filled(*window, 0.0f32))).collect();
         filter.apply(&given, window, &mut made, &context)?;
-        self.progress.advance(window.len() as u64);
         Ok(made.into_iter().flatten().collect())
     }
 }

@@ -5,10 +5,11 @@ use super::tiles::Tiles;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Window;
 use crate::op::{Context, Op, Solution};
+use crate::plan::cost;
 use crate::plan::planner::Planner;
 use crate::plan::steps::{Plan, Solve};
+use crate::progress::Progress;
 use crate::recipe::graph::Link;
-use std::cell::Cell;
 use std::sync::Arc;
 
 impl Engine<'_> {
@@ -23,21 +24,36 @@ impl Engine<'_> {
                 continue;
             }
             match self.store.find(&order.key, order.on_disk)? {
-                Some(solution) => {
+                Some(solution) if self.observer.is_none_or(|(node, _)| node != order.node) => {
                     there.insert(order.node, solution);
                 }
-                None => {
+                _ => {
                     wanted.extend(&order.reads);
                     missing.push(order);
                 }
             }
         }
-        missing.iter().for_each(|order| self.progress.expect(order.samples as i64));
+        missing.iter().for_each(|order| self.progress.expect(order.work()));
         for order in missing.into_iter().rev() {
-            let solution = self.store.make(&order.key, || self.solved(order, &there))?;
+            let part = self.progress.part(order.work());
+            let solution = self.store.make(&order.key, || self.solved(order, &there, &part))?;
+            part.finish();
             there.insert(order.node, self.moved(order, solution)?);
         }
         Ok(there)
+    }
+
+    /// Nanoseconds of one core that solving takes before a plan's steps can be run, about.
+    pub fn solving_work(&self, plan: &Plan) -> f64 {
+        let mut wanted = plan.solvers_read();
+        let mut work = 0.0;
+        for order in plan.solves.iter().rev() {
+            if wanted.contains(&order.node) && !self.store.has(&order.key) {
+                wanted.extend(&order.reads);
+                work += order.work();
+            }
+        }
+        work
     }
 
     /// A solution that two requests made at once may be in memory though this one wants it on disk.
@@ -49,24 +65,19 @@ impl Engine<'_> {
     }
 
     /// Solves one solver, all that its sources read being there.
-    fn solved(&self, order: &Solve, there: &Solutions) -> Result<Solution> {
+    fn solved(&self, order: &Solve, there: &Solutions, progress: &Progress) -> Result<Solution> {
         let Op::Solver(solver) = self.recipe.nodes()[order.node].node.op() else {
             return Err(Error::new(ErrorKind::Recipe, "a node that is no solver was to be solved"));
         };
         let planner = Planner::new(self.recipe, self.graph);
-        let left = Cell::new(order.samples);
+        let [sources, own] = progress.parts([order.source_work, order.own_work]);
+        sources.expect(order.source_work);
         let make = |link: Link, tile: Window| {
             let plan = planner.source(link, tile)?;
-            // How much there is to do was estimated: what is beyond that becomes known now.
-            let (samples, expected) = (plan.samples(), left.get());
-            left.set(expected.saturating_sub(samples));
-            self.progress.expect(samples.saturating_sub(expected) as i64);
-            self.steps(&plan, there)
+            self.steps(&plan, there, &sources.part(cost::steps(&plan, self.recipe)))
         };
         let tiles = Tiles { links: &self.graph.links[order.node], order, make: &make, scratch: self.store.scratch() };
-        let context = Context { setting: self.setting, progress: self.progress };
-        let solution = solver.solve(&tiles, &context)?;
-        self.progress.expect(-(left.get() as i64));
-        Ok(solution)
+        let observer = self.observer.and_then(|(node, observer)| (node == order.node).then_some(observer));
+        solver.solve(&tiles, &Context { setting: self.setting, progress: &own, observer })
     }
 }

@@ -1,6 +1,8 @@
 //! The ways of a batch of droplets over ground that does not change meanwhile.
 
+use crate::error::Result;
 use crate::grid::Grid;
+use crate::progress::Progress;
 use orogen_simd::{Body, Simd, dispatch};
 use std::ops::Range;
 
@@ -51,9 +53,15 @@ const COLUMNS: usize = 128;
 /// Speed at which all start, m/s.
 const START: f32 = 1.0;
 
-/// Runs all droplets that start in `rows`.
-pub fn run(heights: &Grid, step: &Step, rows: Range<usize>, sums: Sums) {
-    dispatch(Batch { heights, step, rows, sums });
+/// Droplets between two looks at whether the work is still wanted.
+const UNCHECKED: u64 = 64;
+
+/// Runs all droplets that start in `rows`. The unit of `progress` is rows.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn run(heights: &Grid, step: &Step, rows: Range<usize>, sums: Sums, progress: &Progress) -> Result<()> {
+    dispatch(Batch { heights, step, rows, sums, progress })
 }
 
 struct Batch<'a> {
@@ -61,29 +69,37 @@ struct Batch<'a> {
     step: &'a Step,
     rows: Range<usize>,
     sums: Sums<'a>,
+    progress: &'a Progress,
 }
 
 impl Body for Batch<'_> {
-    type Output = ();
+    type Output = Result<()>;
 
     #[inline(always)]
-    fn run<S: Simd>(mut self, _: S) {
+    fn run<S: Simd>(mut self, _: S) -> Result<()> {
         let window = *self.heights.window();
         for left in (0..window.width).step_by(COLUMNS) {
+            let right = window.width.min(left + COLUMNS);
             for j in self.rows.clone() {
-                for i in left..window.width.min(left + COLUMNS) {
+                self.progress.check()?;
+                for i in left..right {
                     let (x, y) = ((window.x + i as i64) as u64, (window.y + j as i64) as u64);
                     let chance = mix(self.step.seed ^ x.wrapping_mul(0x9E37_79B9_7F4A_7C15));
                     let chance = mix(chance ^ y.wrapping_mul(0xD1B5_4A32_D192_ED03));
                     let count = self.step.expected + (chance >> 11) as f64 / (1u64 << 53) as f64;
                     for drop in 0..count as u64 {
+                        if drop % UNCHECKED == UNCHECKED - 1 {
+                            self.progress.check()?;
+                        }
                         let place = mix(chance ^ (drop + 1).wrapping_mul(0xE703_7ED1_A0B4_28DB));
                         let start = [place >> 40, place << 24 >> 40].map(|share| share as f32 / (1u32 << 24) as f32);
                         go(self.heights, self.step, [i, j], start, &mut self.sums);
                     }
                 }
             }
+            self.progress.advance(self.rows.len() as f64 * (right - left) as f64 / window.width as f64);
         }
+        Ok(())
     }
 }
 

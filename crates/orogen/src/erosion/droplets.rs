@@ -6,6 +6,7 @@ use super::loose::{LOOSE, Loose};
 use super::planes::Planes;
 use crate::error::Result;
 use crate::grid::Grid;
+use crate::progress::Progress;
 use rayon::prelude::*;
 
 /// Erosion by droplets after H. T. Beyer, "Implementation of a method for hydraulic erosion" (2015), in metres.
@@ -75,31 +76,32 @@ impl Droplets {
     /// The heights after all batches, over a window that is smaller by [`Droplets::halo`] on each side.
     ///
     /// # Errors
-    /// What `check` says, which is asked now and then.
-    pub fn run(&self, heights: &Grid, check: &(dyn Fn() -> Result<()> + Sync)) -> Result<Grid> {
+    /// If the work is cancelled.
+    pub fn run(&self, heights: &Grid, progress: &Progress) -> Result<Grid> {
         let mut heights = heights.clone();
         let mut sums = [Vec::new(), Vec::new()];
+        progress.expect(self.batches as f64);
         for batch in 0..self.batches {
-            check()?;
-            heights = self.batch(&heights, batch as u64, &mut sums, check)?;
+            progress.check()?;
+            let part = progress.part(1.0);
+            heights = self.batch(&heights, batch as u64, &mut sums, &part)?;
+            part.finish();
         }
         Ok(heights)
     }
 
     /// One batch; `sums` is memory that is kept from call to call.
-    fn batch(
-        &self,
-        heights: &Grid,
-        batch: u64,
-        sums: &mut [Vec<i64>; 2],
-        check: &(dyn Fn() -> Result<()> + Sync),
-    ) -> Result<Grid> {
+    fn batch(&self, heights: &Grid, batch: u64, sums: &mut [Vec<i64>; 2], progress: &Progress) -> Result<Grid> {
         let window = *heights.window();
         let reach = self.reach(window.cell);
         if window.shrunk(reach).is_empty() {
             return Ok(Grid::filled(window.shrunk(reach), 0.0f32));
         }
-        self.sum(heights, batch, sums, check)?;
+        // Nanoseconds a cell, about.
+        let rain = self.density * window.cell * window.cell / 1e6 / self.batches as f64;
+        let [raining, settling] =
+            progress.parts([5.0 + rain * (100.0 + 30.0 * self.steps(window.cell) as f64), 2.0 * SETTLED as f64]);
+        self.sum(heights, batch, sums, &raining)?;
         let [cut, laid] = &*sums;
         let brush = self.brush(window.cell);
         let border = reach - SETTLED;
@@ -114,7 +116,7 @@ impl Droplets {
             }
             loose.copy_from_slice(&laid[j * inner.width..][..inner.width]);
         });
-        let settled = Loose { stands: (LIES * window.cell) as f32 }.run(planes, SETTLED, check)?;
+        let settled = Loose { stands: (LIES * window.cell) as f32 }.run(planes, SETTLED, &settling)?;
         let mut out = Grid::filled(window.shrunk(reach), 0.0f32);
         let width = out.width();
         out.data_mut().par_chunks_mut(width).enumerate().for_each(|(j, row)| {
@@ -131,13 +133,7 @@ impl Droplets {
 
     /// What one batch cuts and lays down at each cell, as multiples of [`droplet_paths::UNIT`]. Bands of rows go side
     /// by side, first those of even number and then the others: no two of a kind reach the same rows.
-    fn sum(
-        &self,
-        heights: &Grid,
-        batch: u64,
-        sums: &mut [Vec<i64>; 2],
-        check: &(dyn Fn() -> Result<()> + Sync),
-    ) -> Result<()> {
+    fn sum(&self, heights: &Grid, batch: u64, sums: &mut [Vec<i64>; 2], progress: &Progress) -> Result<()> {
         let window = *heights.window();
         let reach = self.steps(window.cell) + 2;
         let step = self.step(window.cell, batch);
@@ -153,6 +149,7 @@ impl Droplets {
             sums.truncate(window.len());
             sums.par_chunks_mut(window.width.max(1)).for_each(|row| row.fill(0));
         }
+        progress.expect(window.height as f64);
         for parity in [0, 1] {
             let mut bands = Vec::new();
             let [mut cut, mut laid] = sums.each_mut().map(Vec::as_mut_slice);
@@ -166,9 +163,7 @@ impl Droplets {
                 taken = last;
             }
             bands.into_par_iter().with_max_len(1).try_for_each(|(rows, first, cut, laid)| {
-                check()?;
-                droplet_paths::run(heights, &step, rows, droplet_paths::Sums { first, cut, laid });
-                Ok(())
+                droplet_paths::run(heights, &step, rows, droplet_paths::Sums { first, cut, laid }, progress)
             })?;
         }
         Ok(())
@@ -250,7 +245,7 @@ mod tests {
         let droplets = droplets();
         let window = Window::new(90, 140, 10.0).at(-31, 17);
         let grown = |by: usize| ground(window.grown(by + droplets.halo(10.0)));
-        let ok = || Ok(());
+        let ok = Progress::none();
         let large = droplets.run(&grown(23), &ok).unwrap().crop(&window).unwrap();
         for threads in [1, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -274,7 +269,7 @@ mod tests {
                 }
             }
         }
-        let done = droplets.run(&ground, &|| Ok(())).unwrap();
+        let done = droplets.run(&ground, &Progress::none()).unwrap();
         let before = ground.crop(done.window()).unwrap();
         let [mut net, mut total] = [0.0, 0.0];
         for (a, b) in before.data().iter().zip(done.data()) {
@@ -285,7 +280,7 @@ mod tests {
         assert!(net.abs() < 2e-6 * total, "{net} of {total}");
         // What one batch cuts it lays down.
         let mut sums = [Vec::new(), Vec::new()];
-        droplets.sum(&ground, 0, &mut sums, &|| Ok(())).unwrap();
+        droplets.sum(&ground, 0, &mut sums, &Progress::none()).unwrap();
         let [cut, laid] = sums;
         let metres = |sums: &[i64]| sums.iter().map(|sum| *sum as f64 * droplet_paths::UNIT).sum::<f64>();
         assert!(metres(&cut) > 1000.0 && (metres(&laid) / metres(&cut) - 1.0).abs() < 1e-8, "{}", metres(&cut));

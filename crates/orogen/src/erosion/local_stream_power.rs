@@ -4,6 +4,7 @@ use super::planes::{self, Pass, Planes};
 use super::power::power;
 use super::rows::{least, most, positive};
 use crate::error::Result;
+use crate::progress::Progress;
 use orogen_simd::{Body, Simd, dispatch};
 
 /// The stream power law with uplift and deposition, all cells at once: after H. Schott, A. Paris, L. Fournier, E.
@@ -61,14 +62,9 @@ impl LocalStreamPower {
     /// The planes after some iterations, smaller by [`RADIUS`] cells an iteration on each side.
     ///
     /// # Errors
-    /// What `check` says.
-    pub fn run(
-        &self,
-        planes: Planes<3>,
-        iterations: usize,
-        check: &(dyn Fn() -> Result<()> + Sync),
-    ) -> Result<Planes<3>> {
-        planes::run(planes, iterations, &self.constants(), check)
+    /// If the work is cancelled.
+    pub fn run(&self, planes: Planes<3>, iterations: usize, progress: &Progress) -> Result<Planes<3>> {
+        planes::run(planes, iterations, &self.constants(), progress)
     }
 
     fn constants(&self) -> Constants {
@@ -261,7 +257,7 @@ mod tests {
     }
 
     fn run(law: &LocalStreamPower, from: Planes<3>, iterations: usize, to: Window) -> [Grid; 3] {
-        let done = law.run(from, iterations, &|| Ok(())).unwrap();
+        let done = law.run(from, iterations, &Progress::none()).unwrap();
         [HEIGHT, AREA, SEDIMENT].map(|plane| done.grid(plane, to))
     }
 

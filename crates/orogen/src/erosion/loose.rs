@@ -3,6 +3,7 @@
 use super::planes::{self, Pass, Planes};
 use super::rows::{least, positive, settle};
 use crate::error::Result;
+use crate::progress::Progress;
 use orogen_simd::{Body, Simd, dispatch};
 
 /// Loose ground on firm: of what a cell stands higher than a neighbour, beyond what stands, a fifth crosses their side
@@ -21,9 +22,9 @@ impl Loose {
     /// The planes after `passes`, smaller by a cell a pass on each side.
     ///
     /// # Errors
-    /// What `check` says.
-    pub fn run(&self, planes: Planes<2>, passes: usize, check: &(dyn Fn() -> Result<()> + Sync)) -> Result<Planes<2>> {
-        planes::run(planes, passes, self, check)
+    /// If the work is cancelled.
+    pub fn run(&self, planes: Planes<2>, passes: usize, progress: &Progress) -> Result<Planes<2>> {
+        planes::run(planes, passes, self, progress)
     }
 }
 

@@ -4,6 +4,7 @@ use super::pipe_rows::{AHEAD, BED, Constants, DEPTH, EAST, SOUTH, Sweep};
 use super::planes::Planes;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
+use crate::progress::Progress;
 use orogen_simd::{Body, Simd, dispatch};
 use rayon::prelude::*;
 
@@ -138,29 +139,31 @@ impl Pipes {
     /// Goes on by `iterations` within the walls.
     ///
     /// # Errors
-    /// What `check` says, which is asked now and then.
-    pub fn enclosed(&self, wet: Wet, iterations: usize, check: &(dyn Fn() -> Result<()> + Sync)) -> Result<Wet> {
-        self.go(wet, iterations, 0, check)
+    /// If the work is cancelled.
+    pub fn enclosed(&self, wet: Wet, iterations: usize, progress: &Progress) -> Result<Wet> {
+        self.go(wet, iterations, 0, progress)
     }
 
     /// Goes on by `iterations` in the midst of more ground: the result is smaller by [`RADIUS`] cells an iteration on
     /// each side, which the walls may have reached.
     ///
     /// # Errors
-    /// What `check` says, which is asked now and then.
-    pub fn open(&self, wet: Wet, iterations: usize, check: &(dyn Fn() -> Result<()> + Sync)) -> Result<Wet> {
-        self.go(wet, iterations, RADIUS, check)
+    /// If the work is cancelled.
+    pub fn open(&self, wet: Wet, iterations: usize, progress: &Progress) -> Result<Wet> {
+        self.go(wet, iterations, RADIUS, progress)
     }
 
-    fn go(&self, mut wet: Wet, iterations: usize, lost: usize, check: &(dyn Fn() -> Result<()> + Sync)) -> Result<Wet> {
+    fn go(&self, mut wet: Wet, iterations: usize, lost: usize, progress: &Progress) -> Result<Wet> {
         let constants = self.constants(wet.window.cell);
         let mut next = Wet { planes: Planes::new(0, 0), window: wet.window };
         let mut spare = Vec::new();
         let mut left = iterations;
+        progress.expect(iterations as f64);
         while left > 0 && !wet.window.is_empty() {
-            check()?;
+            progress.check()?;
             let now = left.min(AT_ONCE);
-            advance(&wet, &mut next, &mut spare, Stride { iterations: now, lost: now * lost }, &constants);
+            let stride = Stride { iterations: now, lost: now * lost };
+            advance(&wet, &mut next, &mut spare, stride, &constants, progress)?;
             std::mem::swap(&mut wet, &mut next);
             left -= now;
         }
@@ -198,7 +201,14 @@ struct Stride {
 
 /// `to` from `from`. Bands of rows, one a thread, go side by side, each with enough rows of its neighbours' to know
 /// what they do: the same bits however many there are. `spare` is memory that is kept from call to call.
-fn advance(from: &Wet, to: &mut Wet, spare: &mut Vec<Planes<5>>, stride: Stride, constants: &Constants) {
+fn advance(
+    from: &Wet,
+    to: &mut Wet,
+    spare: &mut Vec<Planes<5>>,
+    stride: Stride,
+    constants: &Constants,
+    progress: &Progress,
+) -> Result<()> {
     let (window, lost) = (from.window, stride.lost);
     to.window = window.shrunk(lost);
     let (width, height) = (to.window.width, to.window.height);
@@ -207,19 +217,23 @@ fn advance(from: &Wet, to: &mut Wet, spare: &mut Vec<Planes<5>>, stride: Stride,
     let rows = height.div_ceil(rayon::current_num_threads()).max(4 * reach);
     spare.resize_with(height.div_ceil(rows), || Planes::new(0, 0));
     let bands = to.planes.bands_mut(1, height, rows).into_par_iter().zip(spare);
-    bands.enumerate().for_each(|(band, (mut out, planes))| {
+    let work = stride.iterations as f64 / bands.len().max(1) as f64;
+    bands.enumerate().try_for_each(|(band, (mut out, planes))| {
         let (top, bottom) = (lost + band * rows, lost + height.min((band + 1) * rows));
         let (first, last) = (top.saturating_sub(reach), window.height.min(bottom + reach));
         // Cells first up to last, and a row on each side as walls.
         planes.copy_rows(&from.planes, first, last + 2);
-        dispatch(Down { planes, iterations: stride.iterations, constants });
+        dispatch(Down { planes, iterations: stride.iterations, constants, progress })?;
         for (j, out) in out.iter_mut().enumerate() {
             for (out, row) in out.iter_mut().zip(planes.row(top - first + j + 1)) {
                 out[1..=width].copy_from_slice(&row[1 + lost..=width + lost]);
             }
         }
-    });
+        progress.advance(work);
+        Ok(())
+    })?;
     to.wall();
+    Ok(())
 }
 
 /// Iterations that follow each other down the rows, in place.
@@ -227,24 +241,27 @@ struct Down<'a> {
     planes: &'a mut Planes<5>,
     iterations: usize,
     constants: &'a Constants,
+    progress: &'a Progress,
 }
 
 impl Body for Down<'_> {
-    type Output = ();
+    type Output = Result<()>;
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
+    fn run<S: Simd>(self, simd: S) -> Result<()> {
         let (width, rows) = (self.planes.width(), self.planes.height());
         let mut sweeps: Vec<Sweep> = (0..self.iterations).map(|_| Sweep::new(width)).collect();
         // An iteration at a row has made the second one above it final; the next reads that row as the one below its
         // own.
         for step in 0..=rows + AHEAD * self.iterations {
+            self.progress.check()?;
             for (k, sweep) in sweeps.iter_mut().enumerate() {
                 if let Some(j) = step.checked_sub(AHEAD * k).filter(|j| *j <= rows) {
                     simd.run(Row { sweep, planes: &mut *self.planes, j, constants: self.constants });
                 }
             }
         }
+        Ok(())
     }
 }
 
@@ -304,7 +321,7 @@ mod tests {
     fn a_closed_box_keeps_its_mass_and_accounts_for_rain_and_evaporation() {
         let bed = ground(Window::new(120, 90, 10.0));
         let pipes = pipes();
-        let ok = || Ok(());
+        let ok = Progress::none();
         let wet = pipes.enclosed(Wet::new(&bed), 200, &ok).unwrap();
         let cells = bed.window().len() as f64;
         let dt = pipes.step(10.0);
@@ -323,7 +340,7 @@ mod tests {
     #[test]
     fn an_open_window_is_the_middle_of_a_larger_one_on_any_number_of_threads() {
         let (window, iterations) = (Window::new(70, 260, 10.0).at(-9, 4), 7);
-        let ok = || Ok(());
+        let ok = Progress::none();
         let grown = |by: usize| ground(window.grown(by + RADIUS * iterations));
         let large = pipes().open(Wet::new(&grown(20)), iterations, &ok).unwrap();
         for threads in [1, 3] {
@@ -352,7 +369,7 @@ mod tests {
         for j in 1..=41 {
             wet.planes.row_mut(j)[DEPTH][1..=41].fill(2.0);
         }
-        let done = still.enclosed(wet, 3000, &|| Ok(())).unwrap();
+        let done = still.enclosed(wet, 3000, &Progress::none()).unwrap();
         let (bed, depth) = (done.plane(BED), done.plane(DEPTH));
         let surfaces: Vec<f32> =
             bed.data().iter().zip(depth.data()).filter(|(_, d)| **d > 0.05).map(|(b, d)| b + d).collect();

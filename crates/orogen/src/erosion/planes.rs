@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::grid::{Grid, Window};
+use crate::progress::Progress;
 use rayon::prelude::*;
 
 /// N planes of one size. Rows of all planes lie next to each other: a pass that goes down the rows reads one stretch of
@@ -133,27 +134,29 @@ const BAND: usize = 64;
 /// of threads.
 ///
 /// # Errors
-/// What `check` says, which is asked now and then.
+/// If the work is cancelled.
 pub fn run<const N: usize, P: Pass<N>>(
     mut planes: Planes<N>,
     passes: usize,
     pass: &P,
-    check: &(dyn Fn() -> Result<()> + Sync),
+    progress: &Progress,
 ) -> Result<Planes<N>> {
     let mut next = Planes::new(0, 0);
     let mut left = passes;
+    progress.expect(passes as f64);
     while left > 0 {
-        check()?;
+        progress.check()?;
         let now = left.min(AT_ONCE);
         let inset = now * P::RADIUS;
         let (width, height) = (planes.width.saturating_sub(2 * inset), planes.height.saturating_sub(2 * inset));
         next.resize(width, height);
         let from = &planes;
         let bands = next.bands_mut(0, height, BAND).into_par_iter().enumerate();
+        let work = now as f64 / bands.len().max(1) as f64;
         bands.try_for_each_init(
             || (Planes::new(0, 0), Planes::new(0, 0), Vec::new()),
             |(here, spare, scratch), (band, mut out)| {
-                check()?;
+                progress.check()?;
                 let top = band * BAND;
                 here.copy_rows(from, top, top + out.len() + 2 * inset);
                 for _ in 0..now {
@@ -164,6 +167,7 @@ pub fn run<const N: usize, P: Pass<N>>(
                 for (j, out) in out.iter_mut().enumerate() {
                     out.iter_mut().zip(here.row(j)).for_each(|(out, row)| out.copy_from_slice(row));
                 }
+                progress.advance(work);
                 Ok(())
             },
         )?;

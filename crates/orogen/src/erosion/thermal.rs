@@ -4,6 +4,7 @@ use super::planes::{self, Pass, Planes};
 use super::rows::settle;
 use crate::error::Result;
 use crate::grid::Grid;
+use crate::progress::Progress;
 use orogen_simd::{Body, Simd, dispatch};
 
 /// Thermal weathering after F. K. Musgrave, C. E. Kolb and R. S. Mace, "The synthesis and rendering of eroded fractal
@@ -33,12 +34,12 @@ impl Thermal {
     /// The heights after `passes` passes, over a window that is smaller by one sample a pass on each side.
     ///
     /// # Errors
-    /// What `check` says.
-    pub fn run(&self, heights: &Grid, passes: usize, check: &(dyn Fn() -> Result<()> + Sync)) -> Result<Grid> {
+    /// If the work is cancelled.
+    pub fn run(&self, heights: &Grid, passes: usize, progress: &Progress) -> Result<Grid> {
         let mut planes = Planes::new(heights.width(), heights.height());
         planes.fill(0, heights);
         let pass = Slide { stands: (self.talus * heights.window().cell) as f32, share: (self.rate * FASTEST) as f32 };
-        let settled = planes::run(planes, passes, &pass, check)?;
+        let settled = planes::run(planes, passes, &pass, progress)?;
         Ok(settled.grid(0, heights.window().shrunk(passes)))
     }
 }
@@ -142,7 +143,7 @@ mod tests {
 
     fn weathered(heights: &Grid, angle: f64, passes: usize) -> Grid {
         let thermal = Thermal { talus: libm::tan(angle.to_radians()), rate: 1.0 };
-        thermal.run(heights, passes, &|| Ok(())).unwrap()
+        thermal.run(heights, passes, &Progress::none()).unwrap()
     }
 
     #[test]

@@ -10,7 +10,7 @@ use crate::spool::Spool;
 /// The files of one export.
 pub struct Files<'a> {
     sink: Sink<'a>,
-    progress: &'a Progress,
+    progress: Progress,
     /// Those that are written but not yet in their places.
     staged: Vec<Staged>,
 }
@@ -22,13 +22,13 @@ enum Sink<'a> {
 
 impl<'a> Files<'a> {
     /// A file at `output` and what stands beside it. `progress` may stop the writing.
-    pub fn at(output: &'a Output, progress: &'a Progress) -> Files<'a> {
-        Files { sink: Sink::File(output), progress, staged: Vec::new() }
+    pub fn at(output: &'a Output, progress: &Progress) -> Files<'a> {
+        Files { sink: Sink::File(output), progress: progress.clone(), staged: Vec::new() }
     }
 
     /// A stream, such as standard output, beside which nothing stands.
-    pub fn stream(out: &'a mut dyn Write, progress: &'a Progress) -> Files<'a> {
-        Files { sink: Sink::Stream(out), progress, staged: Vec::new() }
+    pub fn stream(out: &'a mut dyn Write, progress: &Progress) -> Files<'a> {
+        Files { sink: Sink::Stream(out), progress: progress.clone(), staged: Vec::new() }
     }
 
     /// The path that was asked for; none of a stream.
@@ -51,9 +51,9 @@ impl<'a> Files<'a> {
     /// Writes the file that was asked for.
     pub fn write(&mut self, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
         match &mut self.sink {
-            Sink::Stream(out) => body(&mut Stopping { out: &mut **out, progress: self.progress }),
+            Sink::Stream(out) => body(&mut Stopping { out: &mut **out, progress: &self.progress }),
             Sink::File(output) => {
-                let staged = file::stage(output, |out| body(&mut Stopping { out, progress: self.progress }))?;
+                let staged = file::stage(output, |out| body(&mut Stopping { out, progress: &self.progress }))?;
                 self.staged.push(staged);
                 Ok(())
             }
@@ -73,7 +73,7 @@ impl<'a> Files<'a> {
             return Ok(());
         }
         let beside = output.policy().output(name(path))?;
-        let staged = file::stage(&beside, |out| body(&mut Stopping { out, progress: self.progress }))?;
+        let staged = file::stage(&beside, |out| body(&mut Stopping { out, progress: &self.progress }))?;
         self.staged.push(staged);
         Ok(())
     }

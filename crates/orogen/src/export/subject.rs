@@ -30,7 +30,7 @@ pub struct Subject<'w> {
     /// Layers of vector features in place of samples.
     vectors: Vec<&'static VectorLayer>,
     window: Window,
-    progress: &'w Progress,
+    progress: Progress,
     /// Bytes held beside the rows at hand.
     beside: u64,
     /// Rows that are about to be made.
@@ -47,7 +47,7 @@ impl<'w> Subject<'w> {
     ///
     /// # Errors
     /// If there is no such layer, or the window is not one of this world.
-    pub fn new(world: &'w World, layer: &str, window: Window, progress: &'w Progress) -> Result<Subject<'w>> {
+    pub fn new(world: &'w World, layer: &str, window: Window, progress: &Progress) -> Result<Subject<'w>> {
         world.check(&window)?;
         let derived = match world.unit(layer) {
             Ok(_) => None,
@@ -79,7 +79,7 @@ impl<'w> Subject<'w> {
             derived,
             vectors: Vec::new(),
             window,
-            progress,
+            progress: progress.clone(),
             beside: 0,
             ready: None,
             range: NO_SAMPLES,
@@ -148,9 +148,9 @@ impl<'w> Subject<'w> {
 
     fn source(&self) -> Result<Source<'w>> {
         if let Some(derived) = self.derived {
-            return Ok(Box::new(Rows::new(derived, self.world, &self.window, self.beside, self.progress)?));
+            return Ok(Box::new(Rows::new(derived, self.world, &self.window, self.beside, &self.progress)?));
         }
-        let bands = self.world.bands(&[&self.layer], &self.window, self.beside, self.progress)?;
+        let bands = self.world.bands(&[&self.layer], &self.window, self.beside, &self.progress)?;
         let counted = |grids: Vec<Grid>| {
             let count =
                 grids.iter().fold(FiniteCount::default(), |count, grid| count.and(FiniteCount::of(grid.data())));
@@ -199,8 +199,8 @@ impl<'w> Subject<'w> {
     }
 
     /// The progress that hears of the samples.
-    pub fn progress(&self) -> &'w Progress {
-        self.progress
+    pub fn progress(&self) -> &Progress {
+        &self.progress
     }
 
     /// How many grids a band has: 1 for plain numbers.

@@ -85,8 +85,7 @@ impl Filter for LocalStreamPower {
                 None => areas.fill(own),
             }
         }
-        let done =
-            self.law(window.cell, context).run(planes, self.iterations as usize, &|| context.progress.check())?;
+        let done = self.law(window.cell, context).run(planes, self.iterations as usize, context.progress)?;
         for (layer, plane) in out.iter_mut().zip([HEIGHT, AREA, SEDIMENT]) {
             if let Some(layer) = layer {
                 *layer = done.grid(plane, *window);

@@ -80,7 +80,7 @@ impl Filter for Pipes {
             return Ok(());
         }
         let law = self.law();
-        let wet = law.open(Wet::new(source), self.iterations as usize, &|| context.progress.check())?;
+        let wet = law.open(Wet::new(source), self.iterations as usize, context.progress)?;
         let planes: [&dyn Fn() -> Grid; 4] =
             [&|| wet.plane(BED), &|| wet.plane(DEPTH), &|| carried(&wet), &|| wet.speed(&law)];
         for (layer, plane) in out.iter_mut().zip(planes) {

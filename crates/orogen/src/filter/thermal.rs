@@ -50,7 +50,7 @@ impl Filter for Thermal {
             return Ok(());
         }
         let law = Law { talus: libm::tan(self.talus_angle.to_radians()), rate: self.rate };
-        *out = law.run(source, self.iterations as usize, &|| context.progress.check())?;
+        *out = law.run(source, self.iterations as usize, context.progress)?;
         Ok(())
     }
 

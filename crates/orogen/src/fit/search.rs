@@ -76,6 +76,11 @@ impl Target {
             integral: median(|m| m.hypsometric_integral),
         })
     }
+
+    /// Windows along a side of the worlds that are looked at in the end.
+    fn across(&self) -> usize {
+        (self.size[0].min(self.size[1]) / self.side).clamp(1, WIDEST)
+    }
 }
 
 /// How long is searched, and from which chance.
@@ -127,6 +132,7 @@ const FARTHEST: f64 = 100.0;
 /// # Errors
 /// If the work is cancelled, or memory is short.
 pub fn search(target: &Target, effort: &Effort, options: &Options, progress: &Progress) -> Result<Found> {
+    progress.expect(effort.windows(target));
     let mut trial = Trial { target, effort, options, progress, tried: 0, nearest: Vec::new() };
     let mut chance = Chance(effort.seed);
     let mut tried: Vec<(f64, Setting)> = Vec::new();
@@ -208,7 +214,9 @@ impl Trial<'_> {
     /// How the land of one world, `across` windows wide, is stretched, and how far its windows are in the mean; what makes no land is
     /// farthest.
     fn look(&self, setting: &Setting, seed: u64, across: usize) -> Result<(Stretch, f64)> {
-        let (stretch, windows) = self.make(setting, seed, across)?;
+        let part = self.progress.part((across * across) as f64);
+        let (stretch, windows) = self.make(setting, seed, across, &part)?;
+        self.progress.check()?;
         let far = |land: &Grid| {
             Measures::of(land, None).map_or(FARTHEST, |made| Likeness::of(&made).distance(&self.target.middle))
         };
@@ -218,7 +226,7 @@ impl Trial<'_> {
     /// Of the nearest settings the one whose worlds are nearest in the mean, stretched as they are in the mean.
     fn choose(mut self) -> Result<Found> {
         // Land is another in the midst of a larger world: more of it lies far from where rivers end.
-        let across = (self.target.size[0].min(self.target.size[1]) / self.target.side).clamp(1, WIDEST);
+        let across = self.target.across();
         let mut best: Option<Found> = None;
         for (_, setting) in std::mem::take(&mut self.nearest) {
             let seeds = self.effort.seed..=self.effort.seed.saturating_add(OTHER_WORLDS);
@@ -242,15 +250,11 @@ impl Trial<'_> {
 
     /// The windows of a world of a setting, stretched so that the middle ones of their hypsometric integrals and mean slopes are the
     /// target's.
-    fn make(&self, setting: &Setting, seed: u64, across: usize) -> Result<(Stretch, Vec<Grid>)> {
+    fn make(&self, setting: &Setting, seed: u64, across: usize, progress: &Progress) -> Result<(Stretch, Vec<Grid>)> {
         let Target { side, cell, lowest, .. } = *self.target;
-        let inner = side * across;
         let plain = Stretch { from: [0.0, 1.0], to: [0.0, 1.0], bend: 0.0 };
-        let recipe = recipe(setting, &plain, [inner + 2 * MARGIN; 2], cell, seed);
-        let options = Options { cache: None, ..self.options.clone() };
-        let world = World::with_options(recipe, options)?;
-        let inside = Window::new(inner, inner, cell).at(MARGIN as i64, MARGIN as i64);
-        let mut grids = world.grids(&["soft"], &inside, self.progress)?;
+        let (world, inside) = trial_world(self.target, setting, seed, across, self.options)?;
+        let mut grids = world.grids(&["soft"], &inside, progress)?;
         let soft = grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "the world has no middle"))?;
         let from = [quantile(&soft, 0.001), quantile(&soft, 0.999)];
         let windows: Vec<Grid> = inside.tiles(side).filter_map(|window| soft.crop(&window)).collect();
@@ -283,6 +287,44 @@ impl Trial<'_> {
         Ok(made([lowest, lowest + relief], bend))
     }
 }
+
+/// A world of a setting, `across` windows wide, and its samples that are looked at.
+fn trial_world(
+    target: &Target,
+    setting: &Setting,
+    seed: u64,
+    across: usize,
+    options: &Options,
+) -> Result<(World, Window)> {
+    let inner = target.side * across;
+    let plain = Stretch { from: [0.0, 1.0], to: [0.0, 1.0], bend: 0.0 };
+    let recipe = recipe(setting, &plain, [inner + 2 * MARGIN; 2], target.cell, seed);
+    let world = World::with_options(recipe, Options { cache: None, ..options.clone() })?;
+    let inside = Window::new(inner, inner, target.cell).at(MARGIN as i64, MARGIN as i64);
+    Ok((world, inside))
+}
+
+impl Effort {
+    /// Windows that a search makes, about.
+    fn windows(&self, target: &Target) -> f64 {
+        let first = self.random.max(1) + KNOBS.len() + self.improving;
+        let last = FINALISTS * (OTHER_WORLDS as usize + 1) * target.across() * target.across();
+        (first + last) as f64
+    }
+
+    /// About how many nanoseconds of one core a search takes: the weight of a [part](Progress::part) of more work.
+    ///
+    /// # Errors
+    /// As [`search`].
+    pub fn work(&self, target: &Target, options: &Options) -> Result<f64> {
+        let (world, inside) = trial_world(target, &[0.5; KNOBS.len()], self.seed, 1, options)?;
+        let plan = world.plan(&["soft"], &inside)?;
+        Ok(self.windows(target) * (world.work(&plan) + MEASURING * inside.len() as f64))
+    }
+}
+
+/// Nanoseconds that measuring and stretching a sample of a window takes, about.
+const MEASURING: f64 = 400.0;
 
 /// The middle one, or the mean of the two in the middle.
 fn middle(values: impl Iterator<Item = f64>) -> f64 {

@@ -8,17 +8,16 @@
 
 use std::io::{self, Write};
 
-use miniz_oxide::deflate::compress_to_vec_zlib;
 use rayon::prelude::*;
 
-use super::half;
+use super::{deflate, half};
 use crate::spool::Spool;
 
 /// Rows of a block.
 const ROWS: usize = 16;
 
-/// How hard to pack, as of GeoTIFF.
-const LEVEL: u8 = 3;
+/// Bytes that are looked at together: heights' halves are noise or are not.
+const PLANE: usize = 4096;
 
 /// What a sample is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -108,10 +107,17 @@ impl Writer {
             for j in first..last {
                 for channel in &self.order {
                     let row = &channels[*channel][j * width..(j + 1) * width];
+                    let start = self.waiting.len();
+                    self.waiting.resize(start + width * self.picture.sample.bytes(), 0);
+                    let bytes = &mut self.waiting[start..];
                     match self.picture.sample {
-                        Sample::Float => self.waiting.extend(row.iter().flat_map(|sample| sample.to_le_bytes())),
+                        Sample::Float => {
+                            let pairs = bytes.as_chunks_mut::<4>().0.iter_mut().zip(row);
+                            pairs.for_each(|(bytes, sample)| *bytes = sample.to_le_bytes());
+                        }
                         Sample::Half => {
-                            self.waiting.extend(row.iter().flat_map(|sample| half::from_f32(*sample).to_le_bytes()));
+                            let pairs = bytes.as_chunks_mut::<2>().0.iter_mut().zip(row);
+                            pairs.for_each(|(bytes, sample)| *bytes = half::from_f32(*sample).to_le_bytes());
                         }
                     }
                 }
@@ -210,14 +216,21 @@ impl Head {
 
 /// A block as the format packs it; as it is, if that is not longer.
 fn pack(bytes: &[u8]) -> Vec<u8> {
-    let mut parted: Vec<u8> = Vec::with_capacity(bytes.len());
-    parted.extend(bytes.iter().step_by(2));
-    parted.extend(bytes.iter().skip(1).step_by(2));
-    // From the end, so that each difference is taken from what was there.
-    for k in (1..parted.len()).rev() {
-        parted[k] = parted[k].wrapping_sub(parted[k - 1]).wrapping_add(128);
+    let mut parted = vec![0u8; bytes.len()];
+    let (even, odd) = parted.split_at_mut(bytes.len().div_ceil(2));
+    let pairs = bytes.as_chunks::<2>().0;
+    for ((even, odd), pair) in even.iter_mut().zip(&mut *odd).zip(pairs) {
+        (*even, *odd) = (pair[0], pair[1]);
     }
-    let packed = compress_to_vec_zlib(&parted, LEVEL);
+    if let ([.., last], [.., byte]) = (&mut *even, bytes)
+        && bytes.len() % 2 == 1
+    {
+        *last = *byte;
+    }
+    let mut differences = Vec::with_capacity(parted.len());
+    differences.extend(parted.first());
+    differences.extend(parted.windows(2).map(|pair| pair[1].wrapping_sub(pair[0]).wrapping_add(128)));
+    let packed = deflate::pack(&differences, PLANE);
     if packed.len() < bytes.len() { packed } else { bytes.to_vec() }
 }
 

@@ -3,6 +3,7 @@
 
 pub mod asc;
 pub mod crs;
+mod deflate;
 pub mod dem;
 pub mod encoding;
 pub mod exr;

@@ -48,17 +48,27 @@ pub struct WayOut {
 /// [`flats::resolve`](super::flats::resolve)), and floods them.
 ///
 /// Among equally low passes the first in row order is taken. Costs O(cells + basins log basins).
-pub fn basins(heights: &Grid, outlets: &Outlets, receivers: &Receivers) -> Basins {
+///
+/// `phase` is called after each of the three phases, and ends the work with its error.
+pub(super) fn find_basins<E>(
+    heights: &Grid,
+    outlets: &Outlets,
+    receivers: &Receivers,
+    phase: &mut impl FnMut() -> Result<(), E>,
+) -> Result<Basins, E> {
     let (labels, pits) = label(outlets, receivers);
+    phase()?;
     let mut basins = Basins { labels, ways_out: Vec::with_capacity(pits.len()), order: Vec::with_capacity(pits.len()) };
     for pit in pits {
         basins.ways_out.push(WayOut { level: f32::NEG_INFINITY, pit, last: pit, code: NONE, next: OUTSIDE });
     }
     if basins.ways_out.len() > 1 {
         let passes = passes(heights, &basins.labels);
+        phase()?;
         flood(&passes, &mut basins, &strides(heights.width()));
+        phase()?;
     }
-    basins
+    Ok(basins)
 }
 
 /// The basin of each cell and the pit of each basin; the outside's is no cell. Only what drains to a pit is walked over.
@@ -307,7 +317,8 @@ mod tests {
             let outlets = Outlets::new(&heights, None);
             let mut receivers = steepest::receivers(&heights, &outlets, Descent::Steepest);
             flats::resolve(&heights, &outlets, &mut receivers);
-            let basins = basins(&heights, &outlets, &receivers);
+            let Ok(basins) =
+                find_basins(&heights, &outlets, &receivers, &mut || Ok::<(), std::convert::Infallible>(()));
             let strides = strides(heights.width());
             let count = basins.ways_out.len();
             assert_eq!(basins.order.len() + 1, count, "every basin is reached");

@@ -1,7 +1,9 @@
 //! Soil creeps downhill and rounds what rivers have cut.
 
 use super::outlets::Outlets;
-use crate::grid::Grid;
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use crate::progress::Progress;
 use rayon::prelude::*;
 
 /// Linear diffusion of the heights, dh/dt = D (d2h/dx2 + d2h/dy2) (Culling 1960): `amount` is D times the time, in m^2. Outlets
@@ -11,17 +13,19 @@ use rayon::prelude::*;
 /// Runge-Kutta-Legendre (Meyer, Balsara and Aslam 2014, first order): s of them are stable for s (s + 1) / 2 times the longest
 /// plain step. So it costs O(cells) times 1 + 5.3 sqrt(amount) / cell; rows side by side. What would spread further than the map is
 /// wide counts as that wide.
-pub fn creep(heights: &mut Grid, outlets: &Outlets, amount: f64) {
-    creep_again(heights, outlets, amount, &mut Vec::new());
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn creep(heights: &mut Grid, outlets: &Outlets, amount: f64, progress: &Progress) -> Result<()> {
+    creep_again(heights, outlets, amount, &mut Vec::new(), progress)
 }
 
-/// The same many times over on one map: `buffers`, empty at first, spares asking for memory anew.
-pub(super) fn creep_again(heights: &mut Grid, outlets: &Outlets, amount: f64, buffers: &mut Vec<Grid>) {
-    let window = *heights.window();
+/// How a map creeps by an amount: the amount in squares of the cell, in how many strides, of how many stages each. `None` if nothing moves.
+fn strides(window: &Window, amount: f64) -> Option<[f64; 3]> {
     let widest = (window.width * window.width + window.height * window.height) as f64;
     let whole = (amount / (window.cell * window.cell)).min(widest);
     if window.width < 3 || window.height < 3 || !(whole > 0.0 && whole.is_finite()) {
-        return;
+        return None;
     }
     // A single stride of many stages rings; what is left of that after four does not show.
     let strides = if whole > LONGEST { 4.0 } else { 1.0 };
@@ -29,18 +33,39 @@ pub(super) fn creep_again(heights: &mut Grid, outlets: &Outlets, amount: f64, bu
     while LONGEST * stages * (stages + 1.0) / 2.0 < whole / strides {
         stages += 1.0;
     }
+    Some([whole, strides, stages])
+}
+
+/// How many passes over the map it takes.
+pub(super) fn creep_stages(window: &Window, amount: f64) -> f64 {
+    strides(window, amount).map_or(0.0, |[_, strides, stages]| strides * stages)
+}
+
+/// The same many times over on one map: `buffers`, empty at first, spares asking for memory anew.
+pub(super) fn creep_again(
+    heights: &mut Grid,
+    outlets: &Outlets,
+    amount: f64,
+    buffers: &mut Vec<Grid>,
+    progress: &Progress,
+) -> Result<()> {
+    let Some([whole, strides, stages]) = strides(heights.window(), amount) else { return Ok(()) };
+    progress.expect(strides * stages);
     let share = whole / strides * 2.0 / (stages * (stages + 1.0));
     buffers.resize_with(2, || heights.clone());
-    let [last, next] = &mut buffers[..] else { return };
+    let [last, next] = &mut buffers[..] else { return Ok(()) };
     [&mut *last, &mut *next].into_iter().for_each(|buffer| buffer.data_mut().copy_from_slice(heights.data()));
     for stage in (0..strides as u64).flat_map(|_| 1..=stages as u64) {
         // Y_j = mu Y_(j-1) + nu Y_(j-2) + mu share L Y_(j-1), with mu = (2j - 1) / j and nu = (1 - j) / j.
         let j = stage as f64;
         let factors = [(j - 1.0) / j, (2.0 * j - 1.0) / j * share / 6.0].map(|factor| factor as f32);
+        progress.check()?;
         advance(heights, last, outlets, factors, next);
         std::mem::swap(last, heights);
         std::mem::swap(heights, next);
+        progress.advance(1.0);
     }
+    Ok(())
 }
 
 /// The longest plain step, in squares of the cell: beyond 0.3 a cell would give more than it has.
@@ -80,7 +105,7 @@ mod tests {
         let mut heights = Grid::filled(Window::new(61, 61, 10.0), 0.0);
         heights.row_mut(30)[30] = 1000.0;
         let outlets = Outlets::new(&heights, None);
-        creep(&mut heights, &outlets, amount);
+        creep(&mut heights, &outlets, amount, &Progress::none()).unwrap();
         let (mut sum, mut east, mut across) = (0.0, 0.0, 0.0);
         for j in 0..61 {
             for i in 0..61 {
@@ -103,7 +128,7 @@ mod tests {
         for heights in samples::grids() {
             let outlets = Outlets::new(&heights, Some(300.0));
             let mut crept = heights.clone();
-            creep(&mut crept, &outlets, 0.7);
+            creep(&mut crept, &outlets, 0.7, &Progress::none()).unwrap();
             for (c, (new, old)) in crept.data().iter().zip(heights.data()).enumerate() {
                 if outlets.at(c) {
                     assert_eq!(new.to_bits(), old.to_bits());
@@ -125,7 +150,7 @@ mod tests {
             }
         }
         let outlets = Outlets::new(&heights, None);
-        creep(&mut heights, &outlets, 1e30);
+        creep(&mut heights, &outlets, 1e30, &Progress::none()).unwrap();
         let farthest = heights.data().iter().map(|h| (h - 100.0).abs()).fold(0.0, f32::max);
         assert!(farthest < 4.0, "of hills of 600 m there is left {farthest}");
     }

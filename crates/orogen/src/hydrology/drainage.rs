@@ -1,12 +1,15 @@
 //! Where every cell drains to, depressions included.
 
-use super::basins::{Basins, WayOut, basins};
+use super::basins::{Basins, WayOut, find_basins};
 use super::direction::opposite;
 use super::flats;
 use super::outlets::Outlets;
 use super::receivers::Receivers;
 use super::steepest::{self, Descent};
+use crate::error::Result;
 use crate::grid::Grid;
+use crate::progress::Progress;
+use std::convert::Infallible;
 
 /// Receivers that lead from every cell to an outlet.
 #[derive(Debug, Clone)]
@@ -23,13 +26,42 @@ pub struct Drainage {
 ///
 /// So a lake's bed keeps its own valleys, where drainage of the *filled* surface has to be made up over level water.
 pub fn over_bed(heights: &Grid, outlets: &Outlets, descent: Descent) -> Drainage {
+    let Ok(drainage) = route_bed(heights, outlets, descent, || Ok::<(), Infallible>(()));
+    drainage
+}
+
+/// [`over_bed`] that reports how far it has come, and can be stopped.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn over_bed_with(heights: &Grid, outlets: &Outlets, descent: Descent, progress: &Progress) -> Result<Drainage> {
+    progress.expect(PHASES);
+    route_bed(heights, outlets, descent, || {
+        progress.advance(1.0);
+        progress.check()
+    })
+}
+
+/// How often [`route_bed`] says that a phase is done.
+const PHASES: f64 = 6.0;
+
+/// [`over_bed`]; `phase` is called after each of its phases, and ends it with its error.
+fn route_bed<E>(
+    heights: &Grid,
+    outlets: &Outlets,
+    descent: Descent,
+    mut phase: impl FnMut() -> std::result::Result<(), E>,
+) -> std::result::Result<Drainage, E> {
     let mut receivers = steepest::receivers(heights, outlets, descent);
+    phase()?;
     flats::resolve(heights, outlets, &mut receivers);
-    let basins = basins(heights, outlets, &receivers);
+    phase()?;
+    let basins = find_basins(heights, outlets, &receivers, &mut phase)?;
     for basin in &basins.order {
         lead_out(&basins.ways_out[*basin as usize], &mut receivers);
     }
-    Drainage { receivers, basins }
+    phase()?;
+    Ok(Drainage { receivers, basins })
 }
 
 /// Turns the way from the pass to the pit around.
@@ -51,6 +83,21 @@ pub fn over_surface(filled: &Grid, outlets: &Outlets, descent: Descent) -> Recei
     let mut receivers = steepest::receivers(filled, outlets, descent);
     flats::resolve(filled, outlets, &mut receivers);
     receivers
+}
+
+/// [`over_surface`] that reports how far it has come, and can be stopped.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn over_surface_with(filled: &Grid, outlets: &Outlets, descent: Descent, progress: &Progress) -> Result<Receivers> {
+    let [falling, resolving] = progress.parts([1.0, 1.0]);
+    let mut receivers = steepest::receivers(filled, outlets, descent);
+    falling.finish();
+    progress.check()?;
+    flats::resolve(filled, outlets, &mut receivers);
+    resolving.finish();
+    progress.check()?;
+    Ok(receivers)
 }
 
 #[cfg(test)]

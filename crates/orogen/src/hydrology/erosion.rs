@@ -1,7 +1,7 @@
 //! Land that rises and is cut, step by step.
 
 use super::accumulation::{Accumulation, accumulate};
-use super::creep::creep_again;
+use super::creep::{creep_again, creep_stages};
 use super::drainage;
 use super::outlets::Outlets;
 use super::points::Points;
@@ -9,6 +9,7 @@ use super::steepest::Descent;
 use super::stream_power::{Ground, StreamPower};
 use crate::error::Result;
 use crate::grid::Grid;
+use crate::progress::Progress;
 
 /// A run of the stream power law.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,59 +29,128 @@ pub struct Erosion {
 }
 
 impl Erosion {
-    /// Erodes `heights`, whose sea, if it has one, and whose border stay as they are. `go_on` is asked before each step and ends
-    /// the run with its error.
+    /// Erodes `heights`, whose sea, if it has one, and whose border stay as they are.
     ///
     /// In the end every cell stands higher than the one it drains to: no depressions and no flats are left. Returns how the
     /// water runs then, by the steepest descent. Costs O(cells) a step.
     ///
     /// # Errors
-    /// Those of `go_on`.
+    /// If the work is cancelled.
     pub fn run(
         &self,
         heights: &mut Grid,
         ground: &Ground,
         sea_level: Option<f32>,
-        go_on: &dyn Fn() -> Result<()>,
+        progress: &Progress,
     ) -> Result<Accumulation> {
-        let outlets = Outlets::new(heights, sea_level);
-        let years = self.years / f64::from(self.steps.max(1));
-        let mut buffers = Vec::new();
-        let salt = self.scattered.unwrap_or_default();
-        let points = (self.irregular > 0.0).then(|| Points::new(*heights.window(), self.irregular, salt));
-        let between = Ground { points: points.as_ref(), ..*ground };
-        for step in 0..self.steps {
-            go_on()?;
-            // Other ways in each step: over the steps a slope's water spreads as wide as it would in nature.
-            let descent = match (&points, self.scattered) {
-                (Some(points), _) => Descent::Between(points),
-                (None, Some(seed)) => Descent::Scattered(seed.wrapping_add(step)),
-                (None, None) => Descent::Steepest,
-            };
-            self.cut(heights, &outlets, &between, descent, years);
-            creep_again(heights, &outlets, years * self.creep, &mut buffers);
+        let mut run = ErosionRun::new(*self, heights, ground, sea_level);
+        progress.expect(self.work());
+        for _ in 0..self.steps {
+            let step = progress.part(1.0);
+            run.step(heights, &step)?;
+            step.finish();
         }
-        go_on()?;
-        let mut last = *self;
-        if let Some(points) = &points {
-            points.onto_lattice(heights, &outlets);
+        run.finish(heights, &progress.part(ErosionRun::FINISHING))
+    }
+
+    /// The work of a whole run, in steps.
+    pub fn work(&self) -> f64 {
+        f64::from(self.steps) + ErosionRun::FINISHING
+    }
+
+    fn cut(
+        &self,
+        heights: &mut Grid,
+        outlets: &Outlets,
+        ground: &Ground,
+        descent: Descent,
+        years: f64,
+        progress: &Progress,
+    ) -> Result<()> {
+        let [routing, cutting] = progress.parts([3.0, 2.0]);
+        let receivers = drainage::over_bed_with(heights, outlets, descent, &routing)?.receivers;
+        routing.finish();
+        let drained = accumulate(&receivers);
+        progress.check()?;
+        self.law.step(heights, &receivers, &drained, ground, years);
+        cutting.finish();
+        progress.check()
+    }
+}
+
+/// A run between two of its steps.
+pub struct ErosionRun<'a> {
+    erosion: Erosion,
+    ground: &'a Ground<'a>,
+    outlets: Outlets,
+    /// Where the heights stand until the end, if not on the lattice.
+    points: Option<Points>,
+    buffers: Vec<Grid>,
+    /// Steps done.
+    done: u32,
+}
+
+impl<'a> ErosionRun<'a> {
+    /// The work that comes after the last step, in steps.
+    pub const FINISHING: f64 = 2.0;
+
+    /// Before the first step.
+    pub fn new(erosion: Erosion, heights: &Grid, ground: &'a Ground<'a>, sea_level: Option<f32>) -> ErosionRun<'a> {
+        let salt = erosion.scattered.unwrap_or_default();
+        let points = (erosion.irregular > 0.0).then(|| Points::new(*heights.window(), erosion.irregular, salt));
+        ErosionRun { erosion, ground, outlets: Outlets::new(heights, sea_level), points, buffers: Vec::new(), done: 0 }
+    }
+
+    /// Does the next step. Between steps the heights are those of the run's points.
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    pub fn step(&mut self, heights: &mut Grid, progress: &Progress) -> Result<()> {
+        let Erosion { years, steps, creep, scattered, .. } = self.erosion;
+        let years = years / f64::from(steps.max(1));
+        // Other ways in each step: over the steps a slope's water spreads as wide as it would in nature.
+        let descent = match (&self.points, scattered) {
+            (Some(points), _) => Descent::Between(points),
+            (None, Some(seed)) => Descent::Scattered(seed.wrapping_add(self.done)),
+            (None, None) => Descent::Steepest,
+        };
+        let between = Ground { points: self.points.as_ref(), ..*self.ground };
+        let amount = years * creep;
+        let stages = creep_stages(heights.window(), amount);
+        let [cutting, creeping] = progress.parts([45.0, 2.0 * stages]);
+        self.erosion.cut(heights, &self.outlets, &between, descent, years, &cutting)?;
+        cutting.finish();
+        creep_again(heights, &self.outlets, amount, &mut self.buffers, &creeping)?;
+        self.done += 1;
+        Ok(())
+    }
+
+    /// Makes the heights that a run ends with if these are its last: on the lattice, drained. Returns how water runs over them.
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    pub fn finish(&self, heights: &mut Grid, progress: &Progress) -> Result<Accumulation> {
+        progress.check()?;
+        let [cutting, routing] = progress.parts([1.0, 1.0]);
+        let mut last = self.erosion;
+        if let Some(points) = &self.points {
+            points.onto_lattice(heights, &self.outlets);
             // What was too steep has slid between the points; along the lattice it would fall into facets after all.
             last.law.steepest = f64::INFINITY;
         }
-        last.cut(heights, &outlets, ground, Descent::Steepest, 0.0);
-        Ok(accumulate(&drainage::over_surface(heights, &outlets, Descent::Steepest)))
-    }
-
-    fn cut(&self, heights: &mut Grid, outlets: &Outlets, ground: &Ground, descent: Descent, years: f64) {
-        let receivers = drainage::over_bed(heights, outlets, descent).receivers;
-        self.law.step(heights, &receivers, &accumulate(&receivers), ground, years);
+        last.cut(heights, &self.outlets, self.ground, Descent::Steepest, 0.0, &cutting)?;
+        cutting.finish();
+        let receivers = drainage::over_surface_with(heights, &self.outlets, Descent::Steepest, &routing)?;
+        progress.check()?;
+        let drained = accumulate(&receivers);
+        routing.finish();
+        Ok(drained)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::{Error, ErrorKind};
     use crate::hydrology::samples;
 
     fn erosion() -> Erosion {
@@ -89,7 +159,7 @@ mod tests {
 
     fn eroded(heights: &Grid, erosion: &Erosion, sea: Option<f32>) -> Grid {
         let mut out = heights.clone();
-        erosion.run(&mut out, &Ground::default(), sea, &|| Ok(())).unwrap();
+        erosion.run(&mut out, &Ground::default(), sea, &Progress::none()).unwrap();
         out
     }
 
@@ -150,7 +220,8 @@ mod tests {
     #[test]
     fn it_stops_when_asked() {
         let mut heights = samples::hills(20, 20, 3);
-        let stop = || Err(Error::new(ErrorKind::Cancelled, "stop"));
-        assert!(erosion().run(&mut heights, &Ground::default(), None, &stop).is_err());
+        let progress = Progress::none();
+        progress.cancel();
+        assert!(erosion().run(&mut heights, &Ground::default(), None, &progress).is_err());
     }
 }

@@ -3,8 +3,10 @@
 use super::direction::{DISTANCES, neighbour, strides};
 use super::drainage::Drainage;
 use super::outlets::Outlets;
+use crate::error::Result;
 use crate::grid::Grid;
-use crate::hydrology::accumulation::accumulate;
+use crate::hydrology::accumulation::{Accumulation, accumulate};
+use crate::progress::Progress;
 
 /// One lake.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,8 +43,31 @@ const GENTLEST: f64 = 1e-4;
 /// the one it drains to, up to a lake's shore, the sea or the border, and every lake's outlet drains. Costs O(cells).
 pub fn lakes(heights: &Grid, outlets: &Outlets, drainage: &Drainage, fewest: u32) -> Lakes {
     let mut found = find(heights, drainage, fewest);
-    raise(&mut found, outlets, drainage);
+    raise(&mut found, outlets, drainage, &accumulate(&drainage.receivers));
     found
+}
+
+/// [`lakes`] that reports how far it has come, and can be stopped.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn lakes_with(
+    heights: &Grid,
+    outlets: &Outlets,
+    drainage: &Drainage,
+    fewest: u32,
+    progress: &Progress,
+) -> Result<Lakes> {
+    let [finding, counting, raising] = progress.parts([1.0, 1.0, 1.0]);
+    let mut found = find(heights, drainage, fewest);
+    finding.finish();
+    progress.check()?;
+    let drained = accumulate(&drainage.receivers);
+    counting.finish();
+    progress.check()?;
+    raise(&mut found, outlets, drainage, &drained);
+    raising.finish();
+    Ok(found)
 }
 
 /// The connected cells under water. Neighbours under water have one level, or the higher water would run off.
@@ -93,10 +118,10 @@ fn find(heights: &Grid, drainage: &Drainage, fewest: u32) -> Lakes {
 }
 
 /// Raises land, from the outlets up, to stand above what it drains to, and lakes to where their outlet then lies.
-fn raise(found: &mut Lakes, outlets: &Outlets, drainage: &Drainage) {
+fn raise(found: &mut Lakes, outlets: &Outlets, drainage: &Drainage, drained: &Accumulation) {
     let cell = found.bed.window().cell;
     let (bed, surface) = (found.bed.data_mut(), found.surface.data_mut());
-    for c in accumulate(&drainage.receivers).downstream_first() {
+    for c in drained.downstream_first() {
         let label = found.labels.data()[c];
         if let Some(lake) = label.checked_sub(1).and_then(|k| found.lakes.get_mut(k as usize)) {
             lake.level = surface[lake.outlet as usize].max(lake.level);

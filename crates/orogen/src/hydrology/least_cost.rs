@@ -6,7 +6,9 @@ use super::fill;
 use super::outlets::Outlets;
 use super::steepest::{self, Descent};
 use super::{flats, receivers::Receivers};
+use crate::error::Result;
 use crate::grid::Grid;
+use crate::progress::Progress;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -27,17 +29,34 @@ pub struct Limits {
 /// dear ways the first in row order is taken. Beds are level. Unlike [`breach`](super::breach::breach) a channel may cross a rim anywhere: it
 /// goes through a thin dam rather than around it. Costs O(n log n) for the n cells that searches look at: a depression's own and those
 /// around it, up to the square of the longest channel.
-pub fn breach(heights: &Grid, outlets: &Outlets, limits: &Limits) -> Grid {
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn breach(heights: &Grid, outlets: &Outlets, limits: &Limits, progress: &Progress) -> Result<Grid> {
+    let [searching, filling] = progress.parts([3.0, 1.0]);
     let mut out = heights.clone();
     let mut receivers = steepest::receivers(heights, outlets, Descent::Steepest);
     flats::resolve(heights, outlets, &mut receivers);
     let mut search = Search::new(&receivers);
-    for pit in bottoms(heights, outlets, &receivers) {
-        search.drain(out.data_mut(), outlets, pit, limits);
+    progress.check()?;
+    let bottoms = bottoms(heights, outlets, &receivers);
+    searching.expect(bottoms.len() as f64);
+    for (n, pit) in bottoms.into_iter().enumerate() {
+        search.drain(out.data_mut(), outlets, pit, limits, progress)?;
+        if n % REPORTED == REPORTED - 1 {
+            searching.advance(REPORTED as f64);
+        }
     }
-    let drained = drainage::over_bed(&out, outlets, Descent::Steepest);
-    fill::filled(&out, &drained.basins)
+    searching.finish();
+    let drained = drainage::over_bed_with(&out, outlets, Descent::Steepest, &filling)?;
+    Ok(fill::filled(&out, &drained.basins))
 }
+
+/// Searches between two reports of progress.
+const REPORTED: usize = 64;
+
+/// Cells that a search looks at between two questions whether the work is still wanted.
+const UNCHECKED: usize = 1 << 14;
 
 /// A cell at the bottom of each depression, the lowest first.
 fn bottoms(heights: &Grid, outlets: &Outlets, receivers: &Receivers) -> Vec<usize> {
@@ -76,20 +95,32 @@ impl Search {
     }
 
     /// Cuts the least dear channel from `pit`, if one is within the limits (Dijkstra's algorithm).
-    fn drain(&mut self, h: &mut [f32], outlets: &Outlets, pit: usize, limits: &Limits) {
+    fn drain(
+        &mut self,
+        h: &mut [f32],
+        outlets: &Outlets,
+        pit: usize,
+        limits: &Limits,
+        progress: &Progress,
+    ) -> Result<()> {
         self.searches += 1;
         let (search, bed) = (self.searches, h[pit]);
         self.found[pit] = Found { search, length: 0, cost: 0.0, back: NONE, settled: false };
         // Costs are not below zero, so their bits are ordered as they are.
         let mut waiting = BinaryHeap::from([Reverse((0u64, pit))]);
+        let mut looked = 0usize;
         while let Some(Reverse((_, cell))) = waiting.pop() {
+            if looked.is_multiple_of(UNCHECKED) {
+                progress.check()?;
+            }
+            looked += 1;
             let here = self.found[cell];
             if std::mem::replace(&mut self.found[cell].settled, true) {
                 continue;
             }
             if h[cell] < bed || outlets.at(cell) && h[cell] <= bed {
                 self.cut(h, cell, bed);
-                return;
+                return Ok(());
             }
             // An outlet is not cut, so nothing leads on over a higher one.
             if outlets.at(cell) || here.length >= limits.longest {
@@ -109,6 +140,7 @@ impl Search {
                 }
             }
         }
+        Ok(())
     }
 
     /// Lowers the way back from `end` to the bed.
@@ -132,7 +164,7 @@ mod tests {
         for heights in samples::grids() {
             for (deepest, longest) in [(0.0, 50), (20.0, 4), (150.0, 50), (1e9, 1000)] {
                 let outlets = Outlets::new(&heights, None);
-                let out = breach(&heights, &outlets, &Limits { deepest, longest });
+                let out = breach(&heights, &outlets, &Limits { deepest, longest }, &Progress::none()).unwrap();
                 let full = fill::fill(&out, &outlets);
                 for (c, (new, old)) in out.data().iter().zip(heights.data()).enumerate() {
                     assert!(new.to_bits() == full.data()[c].to_bits() || new.is_nan(), "a depression at {c}");
@@ -152,11 +184,11 @@ mod tests {
         (1..5).for_each(|j| heights.row_mut(j)[3] = 3.0);
         heights.row_mut(0)[3] = 0.0;
         let outlets = Outlets::new(&heights, None);
-        let out = breach(&heights, &outlets, &Limits { deepest: 10.0, longest: 20 });
+        let out = breach(&heights, &outlets, &Limits { deepest: 10.0, longest: 20 }, &Progress::none()).unwrap();
         assert_eq!(out.row(5)[2..8], [4.0, 2.0, 1.0, 1.0, 1.0, 0.8]);
         assert_eq!(out.get(3, 2), 3.0, "the lip stays");
         // Not so deep: through neither, so it is filled to the lip.
-        let shallow = breach(&heights, &outlets, &Limits { deepest: 1.0, longest: 20 });
+        let shallow = breach(&heights, &outlets, &Limits { deepest: 1.0, longest: 20 }, &Progress::none()).unwrap();
         assert_eq!(shallow.row(5)[2..7], [4.0, 3.0, 3.0, 3.0, 5.0]);
         let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
         let around = along_valleys::breach(&heights, &outlets, &drainage, 10.0);
@@ -178,7 +210,8 @@ mod tests {
             let moved = |out: &Grid| -> f64 {
                 out.data().iter().zip(heights.data()).map(|(new, old)| f64::from((new - old).abs())).sum()
             };
-            let least = moved(&breach(&heights, &outlets, &Limits { deepest: 1e9, longest: 1000 }));
+            let least =
+                moved(&breach(&heights, &outlets, &Limits { deepest: 1e9, longest: 1000 }, &Progress::none()).unwrap());
             let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
             let valleys = moved(&along_valleys::breach(&heights, &outlets, &drainage, 1e9));
             let full = moved(&fill::fill(&heights, &outlets));

@@ -149,7 +149,7 @@ mod tests {
         let law =
             StreamPower { area_exponent: 0.5, erodibility: 1e-2, uplift: 1e-2, steepest: 1e9, ..Default::default() };
         let erosion = Erosion { law, creep: 0.0, years: 2e4, steps: 150, scattered: None, irregular: 0.0 };
-        let drained = erosion.run(&mut heights, &Ground::default(), None, &|| Ok(())).unwrap();
+        let drained = erosion.run(&mut heights, &Ground::default(), None, &crate::Progress::none()).unwrap();
         let receivers = drainage::over_surface(&heights, &Outlets::new(&heights, None), Descent::Steepest);
         let theta = concavity(&heights, &receivers, &drained, 10).unwrap();
         let (hack, area) = (hack_exponent(&receivers, &drained, 10).unwrap(), area_exponent(&drained).unwrap());

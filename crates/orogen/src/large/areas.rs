@@ -119,6 +119,7 @@ enum End {
 impl Areas<'_> {
     fn tile(&self, t: usize) -> Result<Tile> {
         self.progress.check()?;
+        self.progress.advance(1.0);
         Ok(Tile::new(&self.codes.get(&self.tiling.tile(t))?, self.tiling))
     }
 

@@ -30,6 +30,7 @@ pub fn drain(
     for t in 0..tiling.count() {
         progress.check()?;
         shares.push(Share::of(&Basins::new(heights, codes, tiling, t, sea)?, tiling));
+        progress.advance(1.0);
     }
     let map = Map::new(tiling, &shares);
     // Ways that go on in another tile: the cell where they do, and its new receiver.
@@ -51,6 +52,7 @@ pub fn drain(
         }
         filled.put(&surface)?;
         turns[t].extend(ways);
+        progress.advance(1.0);
     }
     // Ways of different basins share no cell, so it is all one in which order they are turned around.
     while turns.iter().any(|turns| !turns.is_empty()) {

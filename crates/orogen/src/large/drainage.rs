@@ -44,6 +44,7 @@ impl Water<'_> {
     /// # Errors
     /// If the disk fails, or the work is cancelled.
     pub fn over_bed(&self, codes: &mut Raster, filled: &mut Raster) -> Result<()> {
+        self.progress.expect((FLAT_PASSES + BASIN_PASSES) * self.tiling.count() as f64);
         flats::resolve(self.heights, &self.tiling, self.sea, codes, self.progress)?;
         basins::drain(self.heights, &self.tiling, self.sea, codes, filled, self.progress)
     }
@@ -54,6 +55,7 @@ impl Water<'_> {
     /// # Errors
     /// If the disk fails, or the work is cancelled.
     pub fn over_surface(&self, codes: &mut Raster) -> Result<()> {
+        self.progress.expect(FLAT_PASSES * self.tiling.count() as f64);
         flats::resolve(self.heights, &self.tiling, self.sea, codes, self.progress)
     }
 
@@ -62,9 +64,15 @@ impl Water<'_> {
     /// # Errors
     /// If the disk fails, or the work is cancelled.
     pub fn areas(&self, codes: &Raster, layers: Layers) -> Result<()> {
+        self.progress.expect(AREA_PASSES * self.tiling.count() as f64);
         areas::make(codes, &self.tiling, layers, self.progress)
     }
 }
+
+/// How often a tile is worked on, about: the unit of progress.
+const FLAT_PASSES: f64 = 3.0;
+const BASIN_PASSES: f64 = 2.0;
+const AREA_PASSES: f64 = 4.0;
 
 #[cfg(test)]
 mod tests {

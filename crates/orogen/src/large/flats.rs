@@ -62,6 +62,7 @@ struct Known {
 impl Flats<'_> {
     fn ground(&self, t: usize) -> Result<Ground<'_>> {
         self.progress.check()?;
+        self.progress.advance(1.0);
         Ground::new(self.heights, self.tiling, t, self.sea)
     }
 

@@ -10,6 +10,7 @@ use crate::palette::color::Encoder;
 use crate::palette::fitted::Fitted;
 use crate::palette::palette::{Palette, Position};
 use crate::palette::tint::Tint;
+use crate::words;
 
 /// What is shown of a palette.
 #[derive(Debug, Clone)]
@@ -151,14 +152,7 @@ impl Page {
 
 /// As much of a text as there is room for.
 fn shortened(lettering: &Lettering, text: &str, style: Style, width: f32) -> String {
-    if lettering.width(text, style) <= width {
-        return text.to_string();
-    }
-    let mut letters: Vec<char> = text.chars().collect();
-    while !letters.is_empty() && lettering.width(&format!("{}…", letters.iter().collect::<String>()), style) > width {
-        letters.pop();
-    }
-    format!("{}…", letters.iter().collect::<String>().trim_end())
+    words::shortened(text, width, |text| lettering.width(text, style))
 }
 
 /// An island with two summits, a border of one sample around it.

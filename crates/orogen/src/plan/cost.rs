@@ -6,7 +6,7 @@
 //! more. There it was within a third of what the presets took at 4096 samples a side.
 
 use super::program::{Instruction, Program};
-use super::steps::{Plan, Step};
+use super::steps::{Plan, Solve, Step};
 use crate::op::Op;
 use crate::recipe::document::Recipe;
 
@@ -23,22 +23,24 @@ const MASKED: f64 = 0.5;
 
 /// Nanoseconds of one core that a plan's steps take.
 pub fn steps(plan: &Plan, recipe: &Recipe) -> f64 {
-    let nanoseconds = |step: &Step| {
-        let sample = match step {
-            Step::Fill { program, out, .. } => program_cost(program, plan.scattered && out.is_empty(), recipe),
-            Step::Apply { node, window, .. } => match recipe.nodes()[*node].node.op() {
-                Op::Filter(filter) => filter.cost(window.cell),
-                _ => 0.0,
-            },
-        };
-        sample * step.window().len() as f64
+    plan.steps.iter().map(|one| step(one, plan, recipe)).sum()
+}
+
+/// Nanoseconds of one core that a step takes.
+pub fn step(step: &Step, plan: &Plan, recipe: &Recipe) -> f64 {
+    let sample = match step {
+        Step::Fill { program, out, .. } => program_cost(program, plan.scattered && out.is_empty(), recipe),
+        Step::Apply { node, window, .. } => match recipe.nodes()[*node].node.op() {
+            Op::Filter(filter) => filter.cost(window.cell),
+            _ => 0.0,
+        },
     };
-    plan.steps.iter().map(nanoseconds).sum()
+    sample * step.window().len() as f64
 }
 
 /// Nanoseconds of one core that a plan takes with nothing solved before.
 pub fn needed(plan: &Plan, recipe: &Recipe) -> f64 {
-    plan.solves.iter().map(|solve| solve.work).sum::<f64>() + steps(plan, recipe)
+    plan.solves.iter().map(Solve::work).sum::<f64>() + steps(plan, recipe)
 }
 
 /// Nanoseconds a sample.

@@ -1,7 +1,7 @@
 //! Plans: what will be done, in which order, with which memory, before any sample is made.
 
 mod compile;
-mod cost;
+pub(crate) mod cost;
 pub mod explain;
 pub mod key;
 mod materials;

@@ -125,12 +125,13 @@ impl<'a> Planner<'a> {
         let window = Window { width: padded.width.min(self.side), height: padded.height.min(self.side), ..padded };
         let share = padded.width as f64 * padded.height as f64 / window.len().max(1) as f64;
         let (mut tile, mut reads, mut samples) = (0, BTreeSet::new(), 0);
-        let mut work = solver.cost() * padded.width as f64 * padded.height as f64;
+        let own_work = solver.cost() * padded.width as f64 * padded.height as f64;
+        let mut source_work = 0.0;
         for link in self.graph.links[node].iter().filter(|link| **link != Link::None) {
             let plan = self.source(*link, window)?;
             tile = tile.max(memory::steps(&plan, self.recipe, self.threads));
             samples += (plan.samples() as f64 * share) as u64;
-            work += cost::steps(&plan, self.recipe) * share;
+            source_work += cost::steps(&plan, self.recipe) * share;
             reads.append(&mut plan.solvers_read());
         }
         Ok(Solve {
@@ -146,7 +147,8 @@ impl<'a> Planner<'a> {
             tile,
             reads: reads.into_iter().collect(),
             samples,
-            work,
+            source_work,
+            own_work,
         })
     }
 

@@ -50,8 +50,17 @@ pub struct Solve {
     pub reads: Vec<usize>,
     /// Samples made for its sources, about.
     pub samples: u64,
+    /// Nanoseconds of one core that making its sources takes, about.
+    pub source_work: f64,
+    /// Nanoseconds of one core that solving takes beside them, about.
+    pub own_work: f64,
+}
+
+impl Solve {
     /// Nanoseconds of one core that it takes, about.
-    pub work: f64,
+    pub fn work(&self) -> f64 {
+        self.source_work + self.own_work
+    }
 }
 
 /// One step of a plan.

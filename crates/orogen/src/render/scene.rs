@@ -134,13 +134,14 @@ impl Scene {
     /// # Errors
     /// As [`Relief::new`], or if the work is cancelled.
     pub fn new(land: &Land, style: &Style, progress: &Progress) -> Result<Scene> {
+        let [raising, lighting, painting] = progress.parts([1.0, 8.0, 2.0]);
         let relief = Relief::new(land, style.exaggeration)?;
+        raising.finish();
         progress.check()?;
         let [azimuth, elevation] = style.sun;
         let sky = Sky::new(azimuth, elevation);
         progress.check()?;
-        let skylight = Skylight::new(&relief, &sky);
-        progress.check()?;
+        let skylight = Skylight::new(&relief, &sky, &lighting)?;
         let cover = style.cover.into_iter().flatten().all(|layer| layer.window() == land.heights.window());
         if !cover || (style.colors == Colors::Surfaces && style.cover.is_none()) {
             let message = "a picture of surfaces needs their albedo and roughness over the window of the heights";
@@ -149,6 +150,8 @@ impl Scene {
         let Style { colors, palette, cover, snow_line, .. } = *style;
         let dress = Dress { colors, palette, cover, snow_line };
         let ground = Ground::new(land, &relief, &dress);
+        painting.finish();
+        progress.check()?;
         let [east, south] = relief.reach();
         let across = (east * east + south * south).sqrt();
         let wet = wet_edge(&relief);
@@ -226,7 +229,7 @@ impl Scene {
     ) -> Result<()> {
         let [width, height] = size;
         let pixel = camera.pixel(width);
-        progress.expect((rows.len() * width) as i64);
+        progress.expect(rows.len() as f64);
         bytes.par_chunks_exact_mut(3 * width).zip(rows).try_for_each(|(bytes, j)| {
             progress.check()?;
             for (i, bytes) in bytes.chunks_exact_mut(3).enumerate() {
@@ -240,7 +243,7 @@ impl Scene {
                 }
                 bytes.copy_from_slice(&self.encoder.bytes(sum.map(|c| c / self.samples as f32)));
             }
-            progress.advance(width as u64);
+            progress.advance(1.0);
             Ok(())
         })
     }

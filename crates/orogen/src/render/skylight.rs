@@ -10,8 +10,10 @@ use rayon::prelude::*;
 use super::relief::Relief;
 use super::sky::Sky;
 use super::vector::Vector;
+use crate::error::Result;
 use crate::grid::transposed;
 use crate::palette::color::Light;
+use crate::progress::Progress;
 
 /// Directions in which horizons are looked for.
 const AZIMUTHS: usize = 16;
@@ -37,7 +39,10 @@ pub(super) struct Skylight {
 
 impl Skylight {
     /// Works it out.
-    pub fn new(relief: &Relief, sky: &Sky) -> Skylight {
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    pub fn new(relief: &Relief, sky: &Sky, progress: &Progress) -> Result<Skylight> {
         let [all_columns, all_rows] = relief.samples();
         let stride = all_columns.max(all_rows).div_ceil(MOST);
         let (columns, rows) = (all_columns.div_ceil(stride), all_rows.div_ceil(stride));
@@ -48,7 +53,9 @@ impl Skylight {
         let turned = transposed(&bed, columns);
         let nothing = || vec![[0.0f32; 4]; bed.len()];
         let (mut shed, mut shed_turned) = (nothing(), nothing());
+        progress.expect(AZIMUTHS as f64);
         for k in 0..AZIMUTHS {
+            progress.check()?;
             // Between the axes, where ridges of grids seldom run.
             let azimuth = (k as f64 + 0.5) * 360.0 / AZIMUTHS as f64;
             let towards = Vector::towards(azimuth, 0.0);
@@ -60,10 +67,11 @@ impl Skylight {
                 let sweep = Sweep { bed: &turned, length: rows, lines: columns, towards: [towards.y, towards.x] };
                 sweep.gather(&dome, &mut shed_turned);
             }
+            progress.advance(1.0);
         }
         let back = transposed(&shed_turned, rows);
         shed.par_iter_mut().zip(back).for_each(|(shed, more)| shed.iter_mut().zip(more).for_each(|(s, m)| *s += m));
-        Skylight { columns, rows, stride, shed }
+        Ok(Skylight { columns, rows, stride, shed })
     }
 
     /// The light at a place, in cells.
@@ -231,7 +239,7 @@ mod tests {
         let data = (0..window.len()).map(|at| f((at % columns) as f64, (at / columns) as f64) as f32).collect();
         let heights = Grid::from_data(window, data).unwrap();
         let relief = Relief::new(&Land { heights: &heights, surface: None, flow: None, sea_level: None }, 1.0).unwrap();
-        Skylight::new(&relief, &Sky::new(200.0, 40.0))
+        Skylight::new(&relief, &Sky::new(200.0, 40.0), &Progress::none()).unwrap()
     }
 
     #[test]

@@ -22,6 +22,7 @@ use crate::grid::Grid;
 use crate::map::text::Face;
 use crate::palette::color::{Light, Rgb};
 use crate::palette::tint::Tint;
+use crate::progress::Progress;
 
 /// A sheet that is drawn.
 pub struct Sheet {
@@ -75,8 +76,8 @@ pub fn lines_at(longer: f64) -> usize {
 /// Draws a sheet of heights in metres. What is not finite is left as paper.
 ///
 /// # Errors
-/// If there are fewer than 2 x 2 heights or none at all, or the contours asked for are too many.
-pub fn draw(heights: &Grid, options: &Options) -> Result<Sheet> {
+/// If there are fewer than 2 x 2 heights or none at all, the contours asked for are too many, or the work is cancelled.
+pub fn draw(heights: &Grid, options: &Options, progress: &Progress) -> Result<Sheet> {
     let window = heights.window();
     if window.width < 2 || window.height < 2 || heights.data().iter().all(|height| !height.is_finite()) {
         let sentence = format!(
@@ -87,8 +88,11 @@ pub fn draw(heights: &Grid, options: &Options) -> Result<Sheet> {
         );
         return Err(Error::new(ErrorKind::Request, sentence));
     }
+    let [water, painting, drawing] = progress.parts([4.0, 1.0, 1.0]);
     let letters = Letters::for_texts([options.title.as_str(), options.about.as_str()])?;
     let ground = Ground::of(heights, options)?;
+    water.finish();
+    progress.check()?;
     let entries = ground.legend(options);
     let parts = [
         (options.parts.colors, Part::Colors, colors_block()),
@@ -114,7 +118,11 @@ pub fn draw(heights: &Grid, options: &Options) -> Result<Sheet> {
         pixels: paint(heights, colored, pixels, &tint, options.shading, sea),
     };
     desk.scene.items.push(picture);
+    painting.finish();
+    progress.check()?;
     ground.draw(&mut desk, map, options, &tint);
+    drawing.finish();
+    progress.check()?;
     desk.scene.frame(map, 0.3, INK);
     let metres = [window.width, window.height].map(|samples| (samples - 1) as f64 * window.cell);
     let scale = metres[0] / f64::from(map[2]);
@@ -438,6 +446,10 @@ mod tests {
     use super::super::relief::Shading;
     use super::super::{pdf, raster, vector};
     use super::*;
+
+    fn draw(heights: &Grid, options: &Options) -> Result<Sheet> {
+        super::draw(heights, options, &Progress::none())
+    }
     use crate::grid::Window;
     use crate::palette::named;
 

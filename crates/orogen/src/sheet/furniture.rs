@@ -7,6 +7,7 @@ use super::ticks::{Count, grouped, step, ticks};
 use crate::map::text::Face;
 use crate::palette::color::{Encoder, Rgb};
 use crate::palette::tint::Tint;
+use crate::words;
 
 /// Small print.
 pub const SOFT: Rgb = [92, 90, 88];
@@ -54,17 +55,7 @@ impl Desk<'_> {
 
     /// As much of a text as a width holds.
     fn shortened(&self, text: &str, face: Face, size: f32, width: f32) -> String {
-        if self.letters.width(text, face, size) <= width {
-            return text.to_string();
-        }
-        let mut letters: Vec<char> = text.chars().collect();
-        loop {
-            letters.pop();
-            let cut = format!("{}…", letters.iter().collect::<String>().trim_end());
-            if letters.is_empty() || self.letters.width(&cut, face, size) <= width {
-                return cut;
-            }
-        }
+        words::shortened(text, width, |text| self.letters.width(text, face, size))
     }
 
     /// The heading and two lines beneath it.

@@ -64,12 +64,12 @@ impl Solver for Breach {
         let deepest = self.deepest as f32;
         let out = match self.way {
             Way::Valley => {
-                let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+                let drainage = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, context.progress)?;
                 breach::breach(&heights, &outlets, &drainage, deepest)
             }
             Way::LeastCost => {
                 let longest = (self.longest / heights.window().cell).min(f64::from(u32::MAX)) as u32;
-                least_cost::breach(&heights, &outlets, &Limits { deepest, longest })
+                least_cost::breach(&heights, &outlets, &Limits { deepest, longest }, context.progress)?
             }
         };
         heights.data_mut().iter_mut().zip(out.data()).for_each(|(change, new)| *change = new - *change);

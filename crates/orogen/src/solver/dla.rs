@@ -49,7 +49,7 @@ impl Solver for Dla {
             gain: self.gain,
             taper: self.taper,
         };
-        let (across, down, map) = relief::heights(world.width, world.height, &ridges);
+        let (across, down, map) = relief::heights(world.width, world.height, &ridges, context.progress)?;
         context.progress.check()?;
         let summit = map.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
         let factor = self.height as f32 / summit;

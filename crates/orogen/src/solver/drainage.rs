@@ -77,24 +77,31 @@ impl Solver for Drainage {
         let heights = sources.whole(0, sources.padded())?;
         context.progress.check()?;
         let outlets = Outlets::new(&heights, self.sea.then_some(context.setting.sea_level as f32));
-        let drained = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+        let [bed, surface, counting, naming] = context.progress.parts([3.0, 1.0, 1.0, 2.0]);
+        let drained = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, &bed)?;
         let filled = fill::filled(&heights, &drained.basins);
         drop(heights);
         context.progress.check()?;
         let receivers = match self.over {
             Over::Bed => drained.receivers,
-            Over::Surface => drainage::over_surface(&filled, &outlets, Descent::Steepest),
+            Over::Surface => drainage::over_surface_with(&filled, &outlets, Descent::Steepest, &surface)?,
         };
         let filled = sources.keep(filled)?;
+        surface.finish();
         let accumulation = accumulate(&receivers);
+        counting.finish();
         context.progress.check()?;
         let cell_area = receivers.window().cell * receivers.window().cell;
         let threshold = self.threshold(receivers.window());
         let flow = as_samples(&accumulation.area, |cells| (f64::from(cells) * cell_area) as f32);
+        naming.expect(2.0);
+        let watersheds = watersheds::watersheds(&receivers, &outlets, &accumulation);
+        naming.advance(1.0);
+        context.progress.check()?;
         let layers = vec![
             sources.keep(flow)?,
             sources.keep(as_samples(receivers.grid(), f32::from))?,
-            sources.keep(as_samples(&watersheds::watersheds(&receivers, &outlets, &accumulation), |n| n as f32))?,
+            sources.keep(as_samples(&watersheds, |n| n as f32))?,
             sources.keep(as_samples(&strahler::orders(&receivers, &accumulation, threshold), f32::from))?,
             filled,
         ];

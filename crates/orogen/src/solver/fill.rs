@@ -2,7 +2,9 @@
 
 use crate::error::Result;
 use crate::grid::{Grid, Window};
-use crate::hydrology::{fill, outlets::Outlets};
+use crate::hydrology::outlets::Outlets;
+use crate::hydrology::steepest::Descent;
+use crate::hydrology::{drainage, fill};
 use crate::large::drainage::{self as large, Water};
 use crate::large::tiling::Tiling;
 use crate::op::{Context, Solution, Solver, Sources};
@@ -52,7 +54,9 @@ impl Solver for Fill {
         let heights = sources.whole(0, sources.padded())?;
         context.progress.check()?;
         let outlets = Outlets::new(&heights, self.sea.then_some(context.setting.sea_level as f32));
-        let filled = fill::fill(&heights, &outlets);
+        let drained = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, context.progress)?;
+        let filled = fill::filled(&heights, &drained.basins);
+        drop(drained);
         let depth = difference(&filled, heights);
         Ok(Solution { layers: vec![sources.keep(filled)?, sources.keep(depth)?], scalars: Vec::new() })
     }

@@ -46,10 +46,10 @@ impl Solver for Lakes {
         context.progress.check()?;
         let window = *heights.window();
         let outlets = Outlets::new(&heights, self.sea.then_some(context.setting.sea_level as f32));
-        let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
-        context.progress.check()?;
+        let [routing, filling] = context.progress.parts([1.0, 3.0]);
+        let drainage = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, &routing)?;
         let fewest = (self.smallest / (window.cell * window.cell)).ceil().clamp(4.0, f64::from(u32::MAX)) as u32;
-        let found = lakes::lakes(&heights, &outlets, &drainage, fewest);
+        let found = lakes::lakes_with(&heights, &outlets, &drainage, fewest, &filling)?;
         let mut depth = heights;
         for (depth, (surface, bed)) in
             depth.data_mut().iter_mut().zip(found.surface.data().iter().zip(found.bed.data()))

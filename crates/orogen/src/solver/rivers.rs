@@ -56,16 +56,23 @@ impl Solver for Rivers {
         context.progress.check()?;
         let window = *heights.window();
         let outlets = Outlets::new(&heights, self.sea.then_some(context.setting.sea_level as f32));
-        let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+        let [routing, breaching, counting, carving] = context.progress.parts([2.0, 1.0, 1.0, 2.0]);
+        let drainage = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, &routing)?;
         let mut ground = breach::breach(&heights, &outlets, &drainage, self.deepest as f32);
         drop(heights);
+        breaching.finish();
         context.progress.check()?;
         let drained = accumulate(&drainage.receivers);
+        counting.finish();
+        context.progress.check()?;
         let cell_area = window.cell * window.cell;
         let threshold = (self.stream / cell_area).ceil().clamp(1.0, f64::from(u32::MAX)) as u32;
         let orders = strahler::orders(&drainage.receivers, &drained, threshold);
         let channel = Channel { runoff: self.runoff, width: self.width, depth: self.depth };
+        context.progress.check()?;
         carve(&mut ground, &drainage.receivers, &drained, &orders, &channel);
+        carving.finish();
+        context.progress.check()?;
         let area = |c: usize| f64::from(drained.area.data()[c]) * cell_area;
         let wide = |c: usize| if orders.data()[c] > 0 { channel.width_of(channel.discharge(area(c))) } else { 0.0 };
         let layers = vec![

@@ -2,7 +2,8 @@
 
 use crate::error::Result;
 use crate::grid::{Grid, Window};
-use crate::hydrology::erosion::Erosion;
+use crate::hydrology::accumulation::Accumulation;
+use crate::hydrology::erosion::{Erosion, ErosionRun};
 use crate::hydrology::stream_power::{Ground, StreamPower as Law};
 use crate::op::{Context, Solution, Solver, Sources};
 
@@ -79,7 +80,7 @@ impl Solver for StreamPower {
 
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         let window = *sources.padded();
-        let mut change = sources.whole(0, &window)?;
+        let source = sources.whole(0, &window)?;
         let given = |i: usize| sources.given(i).then(|| sources.whole(i, &window)).transpose();
         let (softness, rise) = (given(1)?, given(2)?);
         let erosion = Erosion {
@@ -98,20 +99,40 @@ impl Solver for StreamPower {
             scattered: self.scatter.then_some(context.setting.seed_of(self.seed) as u32),
         };
         let ground = Ground { softness: softness.as_ref(), rise: rise.as_ref(), points: None };
-        let mut heights = change.clone();
+        let mut heights = source.clone();
         let sea_level = self.sea.then_some(context.setting.sea_level as f32);
-        let drained = erosion.run(&mut heights, &ground, sea_level, &|| context.progress.check())?;
-        for (change, height) in change.data_mut().iter_mut().zip(heights.data()) {
-            *change = height - *change;
+        let progress = context.progress;
+        progress.expect(erosion.work());
+        let mut run = ErosionRun::new(erosion, &heights, &ground, sea_level);
+        for done in 1..=self.steps {
+            let part = progress.part(1.0);
+            run.step(&mut heights, &part)?;
+            part.finish();
+            if let Some(observer) = context.observer.filter(|observer| done < self.steps && observer.wants(done)) {
+                let mut now = heights.clone();
+                let drained = run.finish(&mut now, &progress.part(0.0))?;
+                observer.take(done, solution(sources, now, &drained, source.clone())?)?;
+            }
         }
-        let cell_area = window.cell * window.cell;
-        let flow = drained.area.data().iter().map(|cells| (f64::from(*cells) * cell_area) as f32).collect();
-        let flow = Grid::from_data(window, flow).unwrap_or_else(|| Grid::filled(window, 0.0));
-        let layers = vec![sources.keep(heights)?, sources.keep(flow)?, sources.keep(change)?];
-        Ok(Solution { layers, scalars: Vec::new() })
+        let drained = run.finish(&mut heights, &progress.part(ErosionRun::FINISHING))?;
+        solution(sources, heights, &drained, source)
     }
 
     fn cost(&self) -> f64 {
         45.0 * f64::from(self.steps)
     }
+}
+
+/// The layers of heights that began as `source`.
+fn solution(sources: &dyn Sources, heights: Grid, drained: &Accumulation, source: Grid) -> Result<Solution> {
+    let window = *heights.window();
+    let mut change = source;
+    for (change, height) in change.data_mut().iter_mut().zip(heights.data()) {
+        *change = height - *change;
+    }
+    let cell_area = window.cell * window.cell;
+    let flow = drained.area.data().iter().map(|cells| (f64::from(*cells) * cell_area) as f32).collect();
+    let flow = Grid::from_data(window, flow).unwrap_or_else(|| Grid::filled(window, 0.0));
+    let layers = vec![sources.keep(heights)?, sources.keep(flow)?, sources.keep(change)?];
+    Ok(Solution { layers, scalars: Vec::new() })
 }

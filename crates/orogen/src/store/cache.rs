@@ -65,6 +65,11 @@ impl Cache {
         }
     }
 
+    /// Whether there is an entry under `key`, sound or not.
+    pub(crate) fn has(&self, key: &Key) -> bool {
+        self.place(key).1.is_file()
+    }
+
     /// Stores a solution, and removes the oldest ones if there are too many bytes now. That it could not be stored is no reason
     /// to fail: the solution is there.
     pub(crate) fn keep(&self, key: &Key, solution: &Solution) {

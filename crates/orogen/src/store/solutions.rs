@@ -35,6 +35,12 @@ impl Store {
         Store { held: Mutex::default(), cache, scratch: scratch.unwrap_or_else(std::env::temp_dir) }
     }
 
+    /// A store that holds these solutions, and keeps no others for later runs.
+    pub fn holding(solutions: Vec<(Key, Arc<Solution>)>, scratch: PathBuf) -> Store {
+        let solutions = solutions.into_iter().map(|(key, solution)| (key, (0, solution))).collect();
+        Store { held: Mutex::new(Held { solutions, turn: 0 }), cache: None, scratch }
+    }
+
     /// The folder for what does not fit in memory.
     pub fn scratch(&self) -> &PathBuf {
         &self.scratch
@@ -68,6 +74,11 @@ impl Store {
                 Ok(found.map(|solution| self.hold(*key, Arc::new(solution), false)))
             }
         }
+    }
+
+    /// Whether a solution is stored under `key`; a file of it may still turn out to be damaged.
+    pub fn has(&self, key: &Key) -> bool {
+        self.lock().solutions.contains_key(key) || self.cache.as_ref().is_some_and(|cache| cache.has(key))
     }
 
     /// Makes a solution and stores it under `key`. A failure stores nothing.

@@ -9,7 +9,9 @@ use crate::analysis::geomorphons::{Look, geomorphons, shares};
 use crate::analysis::roughness::ruggedness;
 use crate::analysis::slope::from_gradients;
 use crate::analysis::spectrum::{self, Band};
+use crate::error::Result;
 use crate::grid::Grid;
+use crate::progress::Progress;
 
 /// Slopes are counted in classes of so many degrees.
 pub const SLOPE_CLASS: f64 = 2.0;
@@ -87,6 +89,22 @@ impl Measures {
     /// Measures heights; what lies at or below the sea level, if there is one, is no land and does not count. None if fewer than 64 x 64
     /// samples or less than a hundredth of them are land, or all of it is level.
     pub fn of(heights: &Grid, sea_level: Option<f32>) -> Option<Measures> {
+        Measures::of_with(heights, sea_level, &Progress::none()).ok().flatten()
+    }
+
+    /// [`Measures::of`] that reports how far it has come, and can be stopped.
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    pub fn of_with(heights: &Grid, sea_level: Option<f32>, progress: &Progress) -> Result<Option<Measures>> {
+        // Sorted heights, slopes, curvatures, ruggedness, the spectrum, Hurst's exponent, geomorphons, water: by what each takes.
+        let weights = [1.0, 2.0, 1.5, 0.5, 1.0, 1.0, 6.0, 4.0];
+        progress.expect(weights.iter().sum());
+        let mut phases = weights.into_iter();
+        let mut phase = || {
+            progress.advance(phases.next().unwrap_or(0.0));
+            progress.check()
+        };
         // Nothing that is as large as the land outlives what is counted of it.
         let land = match sea_level {
             Some(sea) if heights.data().iter().any(|height| *height <= sea) => {
@@ -96,11 +114,25 @@ impl Measures {
             }
             _ => Cow::Borrowed(heights),
         };
-        let Heights { count, ends, mean, base, relief, integral, hypsometry } = Heights::of(&land)?;
-        let slope = Slopes::of(&land)?;
+        let Some(Heights { count, ends, mean, base, relief, integral, hypsometry }) = Heights::of(&land) else {
+            return Ok(None);
+        };
+        phase()?;
+        let Some(slope) = Slopes::of(&land) else { return Ok(None) };
+        phase()?;
         let (curvature, skew) = bends(&land);
+        phase()?;
+        let ruggedness = mean_of(ruggedness(&land).data());
+        phase()?;
         let bands = spectrum::spectrum(&land);
-        Some(Measures {
+        phase()?;
+        let hurst = spectrum::hurst(&land);
+        phase()?;
+        let forms = shares(&geomorphons(&land, &Look::square(SIGHT, LEVEL)));
+        phase()?;
+        let water = water::measure(&land);
+        phase()?;
+        Ok(Some(Measures {
             land: count,
             land_share: count as f64 / land.data().len() as f64,
             heights: [ends[0], mean, ends[1]],
@@ -114,17 +146,17 @@ impl Measures {
             slope_patches: slope.patches,
             curvature,
             curvature_skew: skew,
-            ruggedness: mean_of(ruggedness(&land).data()),
+            ruggedness,
             grid_bias: slope.grid_bias,
             spectrum: spectrum::slope(&bands, land.window().cell),
-            hurst: spectrum::hurst(&land),
-            forms: shares(&geomorphons(&land, &Look::square(SIGHT, LEVEL))),
-            water: water::measure(&land),
+            hurst,
+            forms,
+            water,
             hypsometry,
             slopes: slope.classes,
             aspects: slope.aspects,
             bands,
-        })
+        }))
     }
 }
 

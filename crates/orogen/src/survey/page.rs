@@ -13,6 +13,7 @@ use crate::map::canvas::Canvas;
 use crate::map::paint::Painter;
 use crate::map::text::Lettering;
 use crate::resample;
+use crate::words;
 use orogen_noise::Points;
 
 /// Bytes that drawing it takes at most, beside the heights.
@@ -42,7 +43,12 @@ pub fn draw(title: &Title, heights: &Grid, sea_level: Option<f32>, measures: &Me
     let canvas = Canvas::new(WIDTH as usize, HEIGHT as usize, PAPER);
     let mut sheet = Sheet { canvas, lettering: Lettering::new()? };
     let window = heights.window();
-    sheet.text(MARGIN, 74.0, 0.0, &title.name, bold(34.0));
+    let wide = (WIDTH - 2.0 * MARGIN) as f32;
+    let fitted =
+        |lettering: &Lettering, text: &str, style| words::shortened(text, wide, |text| lettering.width(text, style));
+    let name = fitted(&sheet.lettering, &title.name, bold(34.0));
+    let about = fitted(&sheet.lettering, &title.about, small());
+    sheet.text(MARGIN, 74.0, 0.0, &name, bold(34.0));
     let size = [window.width, window.height].map(|samples| samples as f64 * window.cell / 1000.0);
     let [low, mean, high] = measures.heights;
     let facts = format!(
@@ -50,7 +56,7 @@ pub fn draw(title: &Title, heights: &Grid, sea_level: Option<f32>, measures: &Me
         window.width, window.height, window.cell, size[0], size[1]
     );
     sheet.text(MARGIN, 102.0, 0.0, &facts, plain(16.0));
-    sheet.text(MARGIN, 124.0, 0.0, &title.about, small());
+    sheet.text(MARGIN, 124.0, 0.0, &about, small());
     let top = 172.0;
     let shown = Shown::of(heights);
     let second = MARGIN + PICTURE + GAP;

@@ -52,7 +52,7 @@ impl<'w> Rows<'w> {
         world: &'w World,
         window: &Window,
         beside: u64,
-        progress: &'w Progress,
+        progress: &Progress,
     ) -> Result<Rows<'w>> {
         let reach = (derived.reach)(window.cell);
         let mut wide = window.grown(reach);

@@ -49,8 +49,11 @@ pub fn export(
 ) -> Result<Exported> {
     let path = output.path();
     let mut options = Options::default();
-    let subject = |window: Window| Subject::new(world, layer, window, progress);
-    let mut all = subject(frame.window)?;
+    // All heights are made twice: for their range, and tile by tile.
+    let [ranging, writing] = progress.parts([if layer == HEIGHT { 1.0 } else { 0.0 }, 1.0]);
+    writing.expect((frame.tiles[0] * frame.tiles[1]) as f64);
+    let subject = |window: Window, progress: &Progress| Subject::new(world, layer, window, progress);
+    let mut all = subject(frame.window, &ranging)?;
     let nature = all.nature();
     let known: &[&str] = if layer == HEIGHT { target.formats } else { &["png"] };
     if !known.contains(&format.name) {
@@ -96,7 +99,7 @@ pub fn export(
             let tile = frame.tile(column, row);
             let window = Window { width: tile.width - less, height: tile.height - less, ..tile };
             let output = &outputs[row * frame.tiles[0] + column];
-            let (made, told) = run::staged(format, subject(window)?, &options, output)?;
+            let (made, told) = run::staged(format, subject(window, &writing.part(1.0))?, &options, output)?;
             (words, count) = (told.words, count.and(told.count));
             written.push(made);
         }

@@ -21,7 +21,6 @@
 //! The bytes depend on the samples, the window and the options, not on the number of threads nor on the size of the pieces in which
 //! the rows arrive.
 
-mod deflate;
 mod directory;
 mod entries;
 pub mod options;

@@ -1,6 +1,6 @@
 //! One tile: cut out, filtered, packed.
 
-use super::deflate;
+use crate::format::deflate;
 
 /// Packs the tile in `column` of a row of tiles, of which `rows` are the samples, `width` a row. What of the tile lies beyond the
 /// raster repeats the edge: readers do not show it, and little is packed better.

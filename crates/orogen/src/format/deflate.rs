@@ -1,11 +1,12 @@
-//! Deflate for the planes of heights (RFC 1950, RFC 1951).
+//! Deflate for the bytes of heights (RFC 1950, RFC 1951): GeoTIFF and OpenEXR.
 //!
-//! A row of a tile comes as planes: all highest bytes, then all second highest, and so on. Of heights, the two lower planes are noise to the last bit, and a
-//! general packer spends most of its time on looking for what repeats in them, only to mix their codes with those of the upper planes. Here each plane of each
-//! row is looked at by itself: noise is *stored*, byte by byte; the planes between are coded by Huffman's method in blocks of their own, of bytes, of runs of one
-//! byte, and of planes that are those of the row above. That is several times as fast, and mostly smaller.
+//! In a GeoTIFF a row of a tile comes as planes: all highest bytes, then all second highest, and so on. Of heights, the two lower planes are noise to the last
+//! bit, and a general packer spends most of its time on looking for what repeats in them, only to mix their codes with those of the upper planes. Here each plane
+//! of each row is looked at by itself: noise is *stored*, byte by byte; the planes between are coded by Huffman's method in blocks of their own, of bytes, of runs
+//! of one byte, and of planes that are those of the row above. That is several times as fast, and mostly smaller. Other formats mix the bytes of a sample in
+//! other ways; there a plane is just a piece of the bytes.
 //!
-//! Tiles of which little is noise (whole metres, masks, labels, level ground) hold what repeats at other distances, too: those are left to a packer that looks for it.
+//! Bytes of which little is noise (whole metres, masks, labels, level ground) hold what repeats at other distances, too: those are left to a packer that looks for it.
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
@@ -26,33 +27,30 @@ const LENGTHS: usize = 19;
 /// Most tokens of a block.
 const BLOCK: usize = 1 << 15;
 
-/// Packs rows of planes of `side` bytes, four planes a row, as a zlib stream.
+/// Packs rows of planes of `side` bytes, four planes a row, as a zlib stream. The last plane may be shorter.
 pub fn pack(rows: &[u8], side: usize) -> Vec<u8> {
     let logarithms = Logarithms::new(side);
-    let planes = rows.len() / side;
-    let noise: Vec<bool> = rows.chunks_exact(side).map(|plane| logarithms.is_noise(plane)).collect();
+    let planes: Vec<&[u8]> = rows.chunks(side).collect();
+    let noise: Vec<bool> = planes.iter().map(|plane| logarithms.is_noise(plane)).collect();
     // Fewer than one in four.
-    if 4 * noise.iter().filter(|noise| **noise).count() < planes || 4 * side > 32768 {
+    if 4 * noise.iter().filter(|noise| **noise).count() < planes.len() || 4 * side > 32768 {
         return compress_to_vec_zlib(rows, LEVEL);
     }
+    let is_repeated = |at: usize| at >= 4 && planes[at] == planes[at - 4];
     let mut packer = Packer { out: vec![0x78, 0x01], bits: 0, count: 0, tokens: Vec::with_capacity(BLOCK) };
     let mut at = 0;
-    while at < planes {
-        let plane = &rows[at * side..(at + 1) * side];
-        if at >= 4 && *plane == rows[(at - 4) * side..(at - 3) * side] {
+    while at < planes.len() {
+        if is_repeated(at) {
             packer.repeat(side, 4 * side);
             at += 1;
         } else if noise[at] {
             let first = at;
-            while at < planes
-                && noise[at]
-                && (at < 4 || at == first || rows[at * side..][..side] != rows[(at - 4) * side..][..side])
-            {
+            while at < planes.len() && noise[at] && !is_repeated(at) {
                 at += 1;
             }
-            packer.store(&rows[first * side..at * side]);
+            packer.store(&rows[first * side..rows.len().min(at * side)]);
         } else {
-            packer.runs(plane);
+            packer.runs(planes[at]);
             at += 1;
         }
         if packer.tokens.len() > BLOCK - side {
@@ -434,6 +432,10 @@ mod tests {
                         .collect()
                 };
                 let rows: Vec<u8> = (0..40).flat_map(|row| (0..4).flat_map(move |p| plane(row, p))).collect();
+                for cut in [1, side / 2, side + 3] {
+                    let rows = &rows[..rows.len() - cut];
+                    assert!(decompress_to_vec_zlib(&pack(rows, side)).unwrap() == rows, "{kind} of {side} less {cut}");
+                }
                 let packed = pack(&rows, side);
                 assert!(decompress_to_vec_zlib(&packed).unwrap() == rows, "{kind} of {side}");
                 assert!(packed.len() < rows.len() + rows.len() / 50 + 100, "{kind} of {side}: {}", packed.len());

@@ -1,0 +1,78 @@
+//! Progress as other programs read it, and what a run leaves behind that is stopped.
+
+use crate::harness::Folder;
+
+const RIVERS: &str = r#"
+orogen = 1
+[world]
+size = [6000, 4000]
+cell = 50.0
+[nodes.land]
+op = "fbm"
+wavelength = 3000
+[nodes.metres]
+op = "remap"
+source = "land"
+to = [50, 400]
+[nodes.terrain]
+op = "stream-power"
+source = "metres"
+steps = 4
+[outputs]
+height = "terrain"
+"#;
+
+/// The shares that a command reports.
+fn shares(folder: &Folder, arguments: &[&str]) -> Vec<f64> {
+    let outcome = folder.good(&[arguments, &["--progress", "json"]].concat());
+    let lines = outcome.err.lines().filter(|line| line.starts_with('{'));
+    lines.map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap()["share"].as_f64().unwrap()).collect()
+}
+
+#[test]
+fn every_command_reports_one_share_that_only_grows_to_the_end() {
+    let folder = Folder::new();
+    folder.write("rivers.toml", RIVERS);
+    let commands: [&[&str]; 10] = [
+        &["generate", "rivers.toml", "-o", "out"],
+        &["export", "rivers.toml", "-o", "land.tif"],
+        &["export", "rivers.toml", "--layer", "normal", "-o", "normal.png"],
+        &["map", "rivers.toml", "-o", "map.png"],
+        &["analyze", "rivers.toml", "-o", "page.png"],
+        &["render", "rivers.toml", "--size", "120", "--turntable", "3", "-o", "around.gif"],
+        &["grow", "rivers.toml", "--frames", "9", "-o", "grow.gif"],
+        &["build", "rivers.toml", "-o", "built.tif"],
+        &["noise", "perlin", "--size", "64", "--frames", "8", "-o", "noise.png"],
+        &["compare", "-o", "compare.png"],
+    ];
+    for command in commands {
+        let shares = shares(&folder, command);
+        assert!(shares.windows(2).all(|pair| pair[0] <= pair[1]), "{command:?}: {shares:?}");
+        assert_eq!(shares.last(), Some(&1.0), "{command:?}: {shares:?}");
+    }
+    // Nothing where nobody asks for it.
+    assert_eq!(folder.good(&["generate", "rivers.toml", "-o", "out"]).err, "");
+    assert!(folder.good(&["generate", "rivers.toml", "-o", "out", "--progress", "plain"]).err.ends_with("100 %\n"));
+}
+
+#[test]
+fn arrays_that_no_disk_holds_are_refused_before_they_are_begun() {
+    let folder = Folder::new();
+    folder.bad(&["noise", "perlin", "--volume", "100000000", "--size", "4096", "-o", "block.npy"], 1, "of disk where");
+    assert_eq!(folder.names(""), [] as [&str; 0]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_block_that_is_interrupted_leaves_nothing() {
+    let folder = Folder::new();
+    let mut command = folder.command(&["noise", "worley", "--volume", "3000", "--size", "512", "-o", "block.npy"]);
+    let mut child = command.stderr(std::process::Stdio::piped()).spawn().unwrap();
+    let begun = std::time::Instant::now();
+    while folder.names("").is_empty() && begun.elapsed().as_secs() < 60 {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let status = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(status.success() && child.wait().unwrap().code() == Some(130));
+    assert_eq!(folder.names(""), [] as [&str; 0]);
+}

@@ -1,0 +1,96 @@
+//! Progress is told truly and work stops when it is asked to, for every node: a new one joins by existing.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
+
+mod support;
+
+use orogen::node::Node;
+use orogen::op::Op;
+use orogen::{ErrorKind, Grid, Progress, Recipe, Result, Window, World, WorldSpec};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+use support::{Random, open, recipe_of, world_of};
+
+/// Samples along a side of the worlds made here.
+fn side() -> usize {
+    if std::env::var_os("OROGEN_LONG").is_some() { 1024 } else { 384 }
+}
+
+/// A node in a world large enough that it takes its time.
+fn recipe(node: &Node) -> Recipe {
+    let size = (side() - 1) as f64 * 10.0;
+    let world = WorldSpec { size: Some([size, size]), ..world_of(10.0) };
+    recipe_of(node, world, false)
+}
+
+fn make(world: &World, progress: &Progress) -> Result<Vec<Grid>> {
+    let layers: Vec<&str> = world.recipe().outputs().collect();
+    world.grids(&layers, &Window::new(side(), side(), 10.0), progress)
+}
+
+/// When which share was told.
+type Told = Vec<(Duration, f64)>;
+
+fn recorded(world: &World) -> (Told, Duration) {
+    let told = Arc::new(Mutex::new(Told::new()));
+    let (heard, begun) = (Arc::clone(&told), Instant::now());
+    make(world, &Progress::new(move |share| heard.lock().unwrap().push((begun.elapsed(), share)))).unwrap();
+    (std::mem::take(&mut told.lock().unwrap()), begun.elapsed())
+}
+
+/// The longest time without a word, from the beginning to the end.
+fn silence(told: &Told, all: Duration) -> Duration {
+    let times = || told.iter().map(|(at, _)| *at);
+    let pairs = std::iter::once(Duration::ZERO).chain(times()).zip(times().chain([all]));
+    pairs.map(|(one, next)| next.saturating_sub(one)).max().unwrap_or_default()
+}
+
+#[test]
+fn shares_grow_from_nothing_to_all_without_long_silences() {
+    for node in Node::all() {
+        let name = node.spec().op;
+        let (told, all) = recorded(&open(&recipe(&node), 2));
+        let shares: Vec<f64> = told.iter().map(|(_, share)| *share).collect();
+        assert!(shares.windows(2).all(|pair| pair[0] < pair[1]), "{name}: never backwards: {shares:?}");
+        assert!(shares.first().is_some_and(|share| *share > 0.0), "{name}: {shares:?}");
+        assert_eq!(shares.last(), Some(&1.0), "{name}: ends at all");
+        let silence = silence(&told, all);
+        println!("{name:20} {:4} reports in {all:8.1?}, the longest silence {silence:7.1?}", told.len());
+        // What is over at once needs to say nothing.
+        assert!(silence < all / 3 || silence < Duration::from_millis(100), "{name}: {silence:?} of {all:?}");
+    }
+}
+
+#[test]
+fn whatever_is_cancelled_at_any_moment_ends_at_once() {
+    let mut random = Random(5);
+    for node in Node::all() {
+        let name = node.spec().op;
+        if matches!(node.op(), Op::Field(_)) {
+            continue;
+        }
+        let recipe = recipe(&node);
+        let (_, all) = recorded(&open(&recipe, 2));
+        let mut longest = Duration::ZERO;
+        for _ in 0..5 {
+            let world = open(&recipe, 2);
+            let progress = Progress::none();
+            let when = all.mul_f64(random.below(1000) as f64 / 1000.0);
+            let (ended, asked) = std::thread::scope(|scope| {
+                let stopper = scope.spawn(|| {
+                    std::thread::sleep(when);
+                    progress.cancel();
+                    Instant::now()
+                });
+                let made = make(&world, &progress);
+                let ended = Instant::now();
+                if let Err(error) = made {
+                    assert_eq!(error.kind(), ErrorKind::Cancelled, "{name}: {error}");
+                }
+                (ended, stopper.join().unwrap())
+            });
+            longest = longest.max(ended.saturating_duration_since(asked));
+        }
+        println!("{name:20} {all:8.1?}, stopped within {longest:7.1?}");
+        assert!(longest < Duration::from_millis(100), "{name} went on for {longest:?} of {all:?}");
+    }
+}
