@@ -102,7 +102,13 @@ fn full_grid(grid: &Grid, options: &Options) -> Result<Figure, String> {
         let mut texture = Vec::new();
         let drawn = painter.write_png(&mut texture, grid, &[]);
         let levels = [Surface { grid, shape: &shape, exaggeration: 1.0, painter: None }];
-        let model = Model { levels: &levels, texture: Some(&texture), water: &[], extras: serde_json::Map::new() };
+        let model = Model {
+            levels: &levels,
+            texture: Some(&texture),
+            material: None,
+            water: &[],
+            extras: serde_json::Map::new(),
+        };
         drawn.and_then(|()| write_glb(&mut bytes, &model)).map_err(|e| e.to_string())
     })?;
     let mib = bytes.0 as f64 / f64::from(1 << 20);

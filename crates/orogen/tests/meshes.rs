@@ -213,7 +213,8 @@ fn shapes(grid: &Grid) -> Vec<Shape> {
 
 fn glb_bytes(levels: &[Surface], texture: Option<&[u8]>) -> Vec<u8> {
     let mut bytes = Vec::new();
-    glb::write(&mut bytes, &Model { levels, texture, water: &[], extras: serde_json::Map::new() }).unwrap();
+    glb::write(&mut bytes, &Model { levels, texture, material: None, water: &[], extras: serde_json::Map::new() })
+        .unwrap();
     bytes
 }
 
@@ -403,7 +404,13 @@ fn a_writer_that_fails_is_an_error_wherever_it_fails() {
         &|out| {
             glb::write(
                 out,
-                &Model { levels: &levels, texture: Some(&[1, 2, 3]), water: &[], extras: serde_json::Map::new() },
+                &Model {
+                    levels: &levels,
+                    texture: Some(&[1, 2, 3]),
+                    material: None,
+                    water: &[],
+                    extras: serde_json::Map::new(),
+                },
             )
         },
         &|out| ply::write(out, &surface, &[]),

@@ -10,7 +10,7 @@ use orogen::export::run::Written;
 use orogen::export::subject::Subject;
 use orogen::export::targets::frame::{Asked, Frame};
 use orogen::export::targets::target::Target;
-use orogen::export::{registry, run as exporting, targets};
+use orogen::export::{mesh_cover, registry, run as exporting, targets};
 use orogen::file::OutputPolicy;
 use orogen::words::{count, number};
 
@@ -145,6 +145,7 @@ fn export(args: &Args) -> Result<(), Failure> {
     args.samples.view.apply(&mut recipe);
     let policy = args.replace.policy(source.inputs(&recipe));
     list::prepare(&mut recipe, &args.layer, &args.layer_options.read()?)?;
+    mesh_cover::prepare(&mut recipe, &options);
     let world = args.limits.open(recipe, &budget)?;
     if let Some(target) = args.target.and_then(targets::list::named) {
         return for_engine(args, target, format, &world, &policy);

@@ -13,6 +13,8 @@ mod export;
 mod generate;
 mod harness;
 mod leftovers;
+#[cfg(unix)]
+mod limits;
 mod map;
 mod memory;
 mod noise;

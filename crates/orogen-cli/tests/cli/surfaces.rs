@@ -88,6 +88,36 @@ fn weights_albedo_and_roughness_follow_the_rules() {
 }
 
 #[test]
+fn meshes_wear_them() {
+    let folder = folder();
+    folder.good(&["export", "a.toml", "-o", "a.obj", "--surfaces", "-q"]);
+    folder.good(&["export", "a.toml", "-o", "c.png", "--layer", "albedo", "-q"]);
+    assert!(png(&folder.read("a-texture.png")).data == png(&folder.read("c.png")).data, "the albedo");
+    folder.good(&["export", "a.toml", "-o", "a.glb", "--surfaces", "-q"]);
+    let glb = folder.read("a.glb");
+    let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+    let json: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
+    let material = &json["materials"][0];
+    assert_eq!(material["occlusionTexture"]["index"], 1);
+    assert_eq!(material["pbrMetallicRoughness"]["metallicRoughnessTexture"]["index"], 1);
+    let picture = |image: usize| {
+        let view = &json["bufferViews"][json["images"][image]["bufferView"].as_u64().unwrap() as usize];
+        let start = 20 + length + 8 + view["byteOffset"].as_u64().unwrap() as usize;
+        png(&glb[start..start + view["byteLength"].as_u64().unwrap() as usize])
+    };
+    assert!(picture(0).data == png(&folder.read("c.png")).data);
+    // Occlusion, roughness, metalness of the rock: ground of 45 degrees, which sees three quarters of the sky; a roughness of one half; no metal.
+    let packed = picture(1);
+    let at = 3 * (20 * 100 + 80);
+    assert_eq!(packed.data[at..at + 3], [192, 128, 0]);
+    folder.bad(
+        &["export", "a.toml", "-o", "b.glb", "--surfaces", "--color", "vertex"],
+        2,
+        "--surfaces makes a texture",
+    );
+}
+
+#[test]
 fn a_render_shows_them_and_what_is_wrong_is_told_at_its_place() {
     let folder = folder();
     folder.good(&["render", "a.toml", "-o", "view.png", "--size", "160x90", "--colors", "surfaces", "-q"]);

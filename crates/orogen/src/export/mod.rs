@@ -27,6 +27,7 @@ pub mod files;
 pub mod format;
 pub mod formats;
 pub mod mesh;
+pub mod mesh_cover;
 pub mod mesh_water;
 pub mod notes;
 pub mod options;

@@ -19,6 +19,8 @@ pub struct Model<'a> {
     pub levels: &'a [Surface<'a>],
     /// A PNG picture of the grid with a pixel for each sample.
     pub texture: Option<&'a [u8]>,
+    /// A PNG picture of the grid that goes with the texture: occlusion in red, roughness in green, metalness in blue.
+    pub material: Option<&'a [u8]>,
     /// Water on it: a node and a translucent material each.
     pub water: &'a [WaterMesh],
     /// What is told of it beside its corners, for readers that look: keys and values.
@@ -79,9 +81,9 @@ pub fn write(out: &mut dyn Write, model: &Model) -> io::Result<()> {
         }
         pad(out, indices(level))?;
     }
-    if let Some(texture) = model.texture {
-        out.write_all(texture)?;
-        pad(out, texture.len() as u64)?;
+    for picture in pictures(model) {
+        out.write_all(picture)?;
+        pad(out, picture.len() as u64)?;
     }
     for water in model.water {
         let mut bytes = Vec::new();
@@ -95,6 +97,11 @@ pub fn write(out: &mut dyn Write, model: &Model) -> io::Result<()> {
         out.write_all(&bytes)?;
     }
     Ok(())
+}
+
+/// The pictures of the ground's material, in the order of the file.
+fn pictures<'a>(model: &Model<'a>) -> impl Iterator<Item = &'a [u8]> {
+    model.texture.into_iter().flat_map(|texture| [Some(texture), model.material]).flatten()
 }
 
 fn vertex(corner: &Corner, bytes: &mut Vec<u8>) {
@@ -177,13 +184,21 @@ impl Document {
         let mut material =
             json!({"name": "terrain", "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 1.0}});
         let mut json = json!({"asset": {"version": "2.0", "generator": concat!("Orogen ", env!("CARGO_PKG_VERSION"))}});
-        if let Some(texture) = model.texture {
-            let picture = view(texture.len() as u64, json!({}));
+        let images: Vec<Value> = pictures(model)
+            .map(|picture| json!({"bufferView": view(picture.len() as u64, json!({})), "mimeType": "image/png"}))
+            .collect();
+        if !images.is_empty() {
             material["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 0});
-            json["images"] = json!([{"bufferView": picture, "mimeType": "image/png"}]);
+            if images.len() > 1 {
+                material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = json!({"index": 1});
+                material["pbrMetallicRoughness"]["metallicFactor"] = json!(1.0);
+                material["occlusionTexture"] = json!({"index": 1});
+            }
+            let textures: Vec<Value> = (0..images.len()).map(|k| json!({"source": k, "sampler": 0})).collect();
+            json["images"] = json!(images);
             // Linear within and between the sizes of the picture; not repeated beyond its edges.
             json["samplers"] = json!([{"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}]);
-            json["textures"] = json!([{"source": 0, "sampler": 0}]);
+            json["textures"] = json!(textures);
         }
         let mut materials = vec![material];
         for water in model.water {

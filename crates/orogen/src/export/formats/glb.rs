@@ -7,6 +7,7 @@ use serde_json::{Map, json};
 use crate::export::files::Files;
 use crate::export::format::{Format, whole};
 use crate::export::mesh::{COLOR, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, color, memory};
+use crate::export::mesh_cover::{self, SURFACES};
 use crate::export::mesh_water::{self, WATER, memory as water_memory};
 use crate::export::options::{OptionSpec, Options, Takes};
 use crate::export::subject::Subject;
@@ -26,7 +27,7 @@ pub static FORMAT: Format = Format {
     name: "glb",
     aliases: &[],
     about: "glTF 2.0 mesh in one file: metres, Y up, normals, texture",
-    options: &[MAX_ERROR, LODS, COLOR, EXAGGERATION, HEIGHT_CURVE, WATER],
+    options: &[MAX_ERROR, LODS, COLOR, EXAGGERATION, HEIGHT_CURVE, WATER, SURFACES],
     channels: 1,
     features: false,
     // And the picture, which has to be packed before its size can be told.
@@ -35,7 +36,7 @@ pub static FORMAT: Format = Format {
 };
 
 fn beside(window: &Window, options: &Options) -> u64 {
-    memory(window, options).saturating_add(whole(window))
+    memory(window, options).saturating_add(whole(window)).saturating_add(mesh_cover::memory(window, options))
 }
 
 fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
@@ -43,8 +44,11 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
     let color = color(options, "texture", files, false);
     let levels: Vec<Surface> = (0..mesh.shapes.len()).map(|level| mesh.surface(level, color == "vertex")).collect();
     let mut texture = Vec::new();
-    if color == "texture" {
-        mesh.picture(&mut texture)?;
+    let mut material = Vec::new();
+    match mesh_cover::of(subject, options, true)? {
+        Some(pictures) => (texture, material) = (pictures.base, pictures.material),
+        None if color == "texture" => mesh.picture(&mut texture)?,
+        None => {}
     }
     let window = mesh.grid.window();
     let extras: Map<String, serde_json::Value> = [
@@ -54,9 +58,9 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
     ]
     .into_iter()
     .collect();
-    let texture = (!texture.is_empty()).then_some(texture.as_slice());
+    let [texture, material] = [&texture, &material].map(|picture| (!picture.is_empty()).then_some(picture.as_slice()));
     let water = mesh_water::of(subject, &mesh, options, beside(subject.window(), options))?;
-    files.write(|out| write_model(out, &Model { levels: &levels, texture, water: &water, extras }))?;
+    files.write(|out| write_model(out, &Model { levels: &levels, texture, material, water: &water, extras }))?;
     let also: String = water.iter().map(|water| format!(", {}", water.name)).collect();
     Ok(mesh.words() + &also)
 }

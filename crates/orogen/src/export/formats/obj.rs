@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::mesh::{COLOR, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, color, memory};
+use crate::export::mesh_cover::{self, SURFACES};
 use crate::export::options::Options;
 use crate::export::subject::Subject;
 use crate::mesh::obj;
@@ -15,7 +16,7 @@ pub static FORMAT: Format = Format {
     name: "obj",
     aliases: &[],
     about: "Wavefront mesh, text: metres, y up, normals; NAME.mtl and NAME-texture.png beside it",
-    options: &[MAX_ERROR, COLOR, EXAGGERATION, HEIGHT_CURVE],
+    options: &[MAX_ERROR, COLOR, EXAGGERATION, HEIGHT_CURVE, SURFACES],
     channels: 1,
     features: false,
     memory,
@@ -30,7 +31,10 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
     let library = path.as_deref().map(|path| file_name(&material(path)));
     files.write(|out| obj::write(out, &mesh.surface(0, color == "vertex"), &comments, library.as_deref()))?;
     if let Some(path) = path {
-        files.write_beside(picture, |out| mesh.picture(out))?;
+        match mesh_cover::of(subject, options, false)? {
+            Some(pictures) => files.write_beside(picture, |out| out.write_all(&pictures.base))?,
+            None => files.write_beside(picture, |out| mesh.picture(out))?,
+        }
         files.write_beside(material, |out| obj::write_material(out, &file_name(&picture(&path))))?;
     }
     Ok(mesh.words())

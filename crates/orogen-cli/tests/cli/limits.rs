@@ -1,0 +1,212 @@
+//! What every command owes its users, command by command. The table in docs/development.md says what is tested here; it is compared with what the
+//! tests really did, and `OROGEN_BLESS=1` writes it anew.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::commands::{WRITERS, Writer, prepare, workplace};
+use crate::harness::{Folder, SMALL};
+
+/// One promise, in the order of the table's columns.
+struct Promise {
+    name: &'static str,
+    /// Tests it on a way of writing. False where the promise does not apply.
+    check: fn(&Writer) -> bool,
+}
+
+const PROMISES: [Promise; 6] = [
+    Promise { name: "memory", check: memory },
+    Promise { name: "cancel", check: cancel },
+    Promise { name: "full disk", check: full_disk },
+    Promise { name: "existing output", check: existing },
+    Promise { name: "stdin", check: stdin },
+    Promise { name: "bad input", check: bad_input },
+];
+
+/// Where the table stands, and between which lines.
+const TABLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/development.md");
+const BEGIN: &str = "<!-- commands and limits: begin -->\n";
+const END: &str = "<!-- commands and limits: end -->\n";
+
+#[test]
+fn every_command_keeps_every_promise() {
+    let mut kept: BTreeMap<&str, [bool; PROMISES.len()]> = BTreeMap::new();
+    for writer in WRITERS {
+        let row = kept.entry(writer.arguments[0]).or_default();
+        for (cell, promise) in row.iter_mut().zip(&PROMISES) {
+            *cell |= (promise.check)(writer);
+        }
+    }
+    let names: Vec<&str> = PROMISES.iter().map(|promise| promise.name).collect();
+    let mut table = format!("| command | {} |\n|---{}|\n", names.join(" | "), "|---".repeat(names.len()));
+    for (command, row) in kept {
+        let cells = row.map(|kept| if kept { "yes" } else { "-" });
+        table.push_str(&format!("| `{command}` | {} |\n", cells.join(" | ")));
+    }
+    let text = std::fs::read_to_string(TABLE).unwrap();
+    let (before, rest) = text.split_once(BEGIN).expect("docs/development.md has the table's first line");
+    let (written, after) = rest.split_once(END).expect("docs/development.md has the table's last line");
+    if std::env::var_os("OROGEN_BLESS").is_some() {
+        std::fs::write(TABLE, format!("{before}{BEGIN}{table}{END}{after}")).unwrap();
+    } else {
+        assert_eq!(written, table, "OROGEN_BLESS=1 cargo test -p orogen-cli --test cli limits writes the table");
+    }
+}
+
+/// A folder in which a command can run.
+fn ready(writer: &Writer) -> Folder {
+    let folder = workplace();
+    prepare(&folder, writer);
+    folder
+}
+
+/// The arguments with some of them replaced.
+fn with(writer: &Writer, change: impl Fn(&'static str) -> &'static str) -> Vec<&'static str> {
+    writer.arguments.iter().map(|argument| change(argument)).collect()
+}
+
+/// The recipe that a command reads.
+fn recipe(writer: &Writer) -> Option<&'static str> {
+    // Outputs come last.
+    let inputs = &writer.arguments[..writer.arguments.len() - 1];
+    inputs.iter().copied().find(|argument| argument.ends_with(".toml"))
+}
+
+/// The files below a folder, sorted.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() { files.extend(self::files(&path)) } else { files.push(path) }
+    }
+    files.sort();
+    files
+}
+
+/// A command that may take 64 KiB refuses with a sentence that says so, and writes nothing. What it takes of larger limits is measured in memory.rs.
+fn memory(writer: &Writer) -> bool {
+    let folder = ready(writer);
+    let help = folder.good(&[writer.arguments[0], "--help"]).text().to_string();
+    if !help.contains("--memory") {
+        return false;
+    }
+    let before = files(&folder.0);
+    let refused = folder.run(&[writer.arguments, &["--memory", "64KiB"]].concat());
+    assert!(refused.code != 0 && refused.err.contains("memory"), "{:?}: {}", writer.arguments, refused.err);
+    assert_eq!(files(&folder.0), before, "{:?}", writer.arguments);
+    true
+}
+
+/// A world that takes long.
+const LONG: &str = "size = [60000, 40000]";
+
+/// A command that is interrupted while it works ends with code 130 within seconds, and leaves nothing.
+fn cancel(writer: &Writer) -> bool {
+    let mut arguments = with(writer, |argument| match argument {
+        "12" if writer.arguments[0] == "fit" => "10000",
+        "32" if writer.arguments[0] == "noise" => "16384",
+        "64x36" => "4000x3000",
+        "30" if writer.arguments[0] == "map" => "300",
+        argument => argument,
+    });
+    match writer.arguments[0] {
+        // Pages of fixed size, made in the blink of an eye; a build keeps what it has made, which build.rs tests.
+        "compare" | "palettes" | "build" => return false,
+        // One way of writing stands for all.
+        "export" if !arguments.contains(&"a.tif") => return false,
+        "noise" if !arguments.contains(&"block.npy") => return false,
+        "noise" => arguments.iter_mut().filter(|argument| **argument == "3").for_each(|argument| *argument = "2000"),
+        _ => {}
+    }
+    let folder = ready(writer);
+    folder.write("small.toml", SMALL.replace("size = [640, 480]", LONG));
+    let rivers = folder.text("rivers.toml");
+    folder.write("rivers.toml", rivers.replace("size = [600, 400]", LONG));
+    let before = files(&folder.0);
+    let mut child = folder.command(&arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(700));
+    assert!(child.try_wait().unwrap().is_none(), "{arguments:?} has ended before it could be interrupted");
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let asked = Instant::now();
+    let ended = child.wait_with_output().unwrap();
+    let said = String::from_utf8_lossy(&ended.stderr).into_owned();
+    assert_eq!(ended.status.code(), Some(130), "{arguments:?}: {said}");
+    assert!(asked.elapsed() < Duration::from_secs(10), "{arguments:?}: {:?}", asked.elapsed());
+    assert_eq!(files(&folder.0), before, "{arguments:?}");
+    true
+}
+
+/// A disk that is full is told, and no other file of the same run is left.
+fn full_disk(writer: &Writer) -> bool {
+    // A build checks the room before it starts; build.rs fills disks below it.
+    if !Path::new("/dev/full").exists() || writer.arguments[0] == "build" {
+        return false;
+    }
+    let folder = ready(writer);
+    let first = folder.path(writer.files[0]);
+    std::fs::create_dir_all(first.parent().unwrap()).unwrap();
+    std::os::unix::fs::symlink("/dev/full", &first).unwrap();
+    let before = files(&folder.0);
+    let ended = folder.run(writer.arguments);
+    assert!(ended.code == 1 && ended.err.contains("cannot write"), "{:?}: {}", writer.arguments, ended.err);
+    assert_eq!(files(&folder.0), before, "{:?}", writer.arguments);
+    true
+}
+
+/// What a person has put where the output goes is kept. outputs.rs tests all that may be there.
+fn existing(writer: &Writer) -> bool {
+    let folder = ready(writer);
+    let file = writer.files[0];
+    std::fs::create_dir_all(folder.path(file).parent().unwrap()).unwrap();
+    folder.write(file, "by hand");
+    let kept: Vec<&str> = writer.arguments.iter().copied().filter(|argument| *argument != "--force").collect();
+    let refused = folder.run(&kept);
+    assert!(refused.code == 1 && refused.err.contains(file), "{:?}: {}", writer.arguments, refused.err);
+    assert_eq!(folder.text(file), "by hand", "{:?}", writer.arguments);
+    true
+}
+
+/// A recipe on standard input makes the same files.
+fn stdin(writer: &Writer) -> bool {
+    let Some(name) = recipe(writer) else { return false };
+    let folder = ready(writer);
+    folder.good(writer.arguments);
+    let first: Vec<Vec<u8>> = writer.files.iter().map(|file| folder.read(file)).collect();
+    let other = ready(writer);
+    let mut command = other.command(&with(writer, |argument| if argument == name { "-" } else { argument }));
+    let input = std::fs::File::open(other.path(name)).unwrap();
+    let ended = command.stdin(input).output().unwrap();
+    let said = String::from_utf8_lossy(&ended.stderr);
+    assert!(ended.status.success(), "{:?}: {said}", writer.arguments);
+    for (file, first) in writer.files.iter().zip(&first) {
+        // Summaries tell the time that it took, sheets and reports the name of the recipe.
+        let named = file.ends_with(".json") || matches!(writer.arguments[0], "map" | "analyze");
+        assert!(named || other.read(file) == *first, "{:?}: {file}", writer.arguments);
+    }
+    true
+}
+
+/// What is no recipe is refused with a sentence, and nothing is written.
+fn bad_input(writer: &Writer) -> bool {
+    let Some(name) = writer.arguments[1..]
+        .iter()
+        .copied()
+        .find(|argument| argument.ends_with(".toml") && Some(*argument) == recipe(writer) || *argument == "place.tif")
+    else {
+        return false;
+    };
+    let folder = ready(writer);
+    for garbage in
+        [&b"\xff\xfe\x00garbage"[..], b"", b"orogen = 1\n[nodes.a]\nop = \"fmb\"\n[outputs]\nheight = \"a\"\n"]
+    {
+        folder.write(name, garbage);
+        let before = files(&folder.0);
+        let refused = folder.run(writer.arguments);
+        assert!(refused.code != 0 && refused.err.starts_with("error: "), "{:?}: {}", writer.arguments, refused.err);
+        assert!(refused.err.contains(name), "{:?}: {}", writer.arguments, refused.err);
+        assert_eq!(files(&folder.0), before, "{:?}", writer.arguments);
+    }
+    true
+}
