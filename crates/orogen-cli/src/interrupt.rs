@@ -34,7 +34,8 @@ pub fn asked() -> bool {
 /// A failure as what it is if an interruption was its cause: `then` says what that leaves behind.
 pub fn explain(failure: Failure, then: &str) -> Failure {
     match failure {
-        Failure::Engine(error) if error.kind() == ErrorKind::Cancelled && asked() => {
+        // Encoders make plain I/O errors of what a [`Stoppable`] tells them.
+        Failure::Engine(error) if matches!(error.kind(), ErrorKind::Cancelled | ErrorKind::File) && asked() => {
             Failure::Interrupted(format!("stopped: {then}"))
         }
         other => other,

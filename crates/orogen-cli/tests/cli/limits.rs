@@ -33,12 +33,18 @@ const END: &str = "<!-- commands and limits: end -->\n";
 #[test]
 fn every_command_keeps_every_promise() {
     let mut kept: BTreeMap<&str, [bool; PROMISES.len()]> = BTreeMap::new();
+    let mut broken = Vec::new();
     for writer in WRITERS {
         let row = kept.entry(writer.arguments[0]).or_default();
         for (cell, promise) in row.iter_mut().zip(&PROMISES) {
-            *cell |= (promise.check)(writer);
+            match std::panic::catch_unwind(|| (promise.check)(writer)) {
+                Ok(applies) => *cell |= applies,
+                // All that is broken is told at once.
+                Err(_) => broken.push(format!("{}: {}", writer.arguments.join(" "), promise.name)),
+            }
         }
     }
+    assert!(broken.is_empty(), "{broken:#?}");
     let names: Vec<&str> = PROMISES.iter().map(|promise| promise.name).collect();
     let mut table = format!("| command | {} |\n|---{}|\n", names.join(" | "), "|---".repeat(names.len()));
     for (command, row) in kept {
@@ -89,7 +95,8 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 fn memory(writer: &Writer) -> bool {
     let folder = ready(writer);
     let help = folder.good(&[writer.arguments[0], "--help"]).text().to_string();
-    if !help.contains("--memory") {
+    // A graph is drawn of the recipe alone: only the files of heights that it names take memory.
+    if !help.contains("--memory") || writer.arguments[0] == "graph" {
         return false;
     }
     let before = files(&folder.0);
@@ -106,18 +113,18 @@ const LONG: &str = "size = [60000, 40000]";
 fn cancel(writer: &Writer) -> bool {
     let mut arguments = with(writer, |argument| match argument {
         "12" if writer.arguments[0] == "fit" => "10000",
-        "32" if writer.arguments[0] == "noise" => "16384",
+        "32" if writer.arguments[0] == "noise" => "1024",
         "64x36" => "4000x3000",
         "30" if writer.arguments[0] == "map" => "300",
         argument => argument,
     });
     match writer.arguments[0] {
         // Pages of fixed size, made in the blink of an eye; a build keeps what it has made, which build.rs tests.
-        "compare" | "palettes" | "build" => return false,
+        "compare" | "palettes" | "graph" | "build" => return false,
         // One way of writing stands for all.
         "export" if !arguments.contains(&"a.tif") => return false,
         "noise" if !arguments.contains(&"block.npy") => return false,
-        "noise" => arguments.iter_mut().filter(|argument| **argument == "3").for_each(|argument| *argument = "2000"),
+        "noise" => arguments.iter_mut().filter(|argument| **argument == "3").for_each(|argument| *argument = "1000"),
         _ => {}
     }
     let folder = ready(writer);
