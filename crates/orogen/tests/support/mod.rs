@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test binary uses its part")]
 
 use orogen::declare::Input;
-use orogen::field::{fbm::Fbm, perlin::Perlin};
+use orogen::field::{fbm::Fbm, perlin::Perlin, remap::Remap};
 use orogen::filter::blur::Blur;
 use orogen::node::Node;
 use orogen::value::{Spanned, Value};
@@ -57,6 +57,8 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("distance", "reach") => Value::Number(8.3 * world.cell),
             ("topographic-position", "radius") => Value::Number(4.4 * world.cell),
             ("geomorphons", "reach") => Value::Number(6.3 * world.cell),
+            // The noise rises by a metre at most, over many.
+            ("geomorphons", "flat") => Value::Number(0.2),
             ("height-above-drainage", "stream") => Value::Number(40.0 * world.cell * world.cell),
             ("viewshed", "observer") => pair(40.3 * world.cell, 31.0 * world.cell),
             ("viewshed", "radius") => Value::Number(60.0 * world.cell),
@@ -87,6 +89,12 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
         if input.name == "source" {
             recipe.add("soft", Blur { source: Input::from(&name), radius: 1.2 * world.cell });
             node.set_input(i, Input::from("soft"));
+            if spec.op == "flow-direction" {
+                // It reads codes of directions, 0 to 8.
+                let (from, to) = ([-0.5, 0.5], [0.0, 8.5]);
+                recipe.add("codes", Remap { source: Input::from("soft"), from, to, clamp: true });
+                node.set_input(i, Input::from("codes"));
+            }
         } else {
             node.set_input(i, Input::Node(name));
         }
