@@ -1,5 +1,6 @@
 """Poppler and librsvg draw map sheets: the same picture as the .png of the same sheet."""
 
+import re
 import subprocess
 
 import numpy
@@ -48,6 +49,21 @@ for name, recipe, options in [
     checks.that(f"{name}: pdfinfo finds nothing wrong", info.returncode == 0 and not info.stderr, info.stderr)
     checks.that(f"{name}: with its title", f"{name} & Höhen" in info.stdout)
     checks.that(f"{name}: on A4", "(A4)" in info.stdout)
+
+# At the resolution of print: more than 10 MB, where libxml2 gives up on elements that are too long.
+large = WORK / "large.svg"
+orogen("map", "alpine", "-o", large, "--quiet")
+text = large.read_text()
+longest = max(map(len, re.findall(r'"([^"]*)"', text)))
+print(f"large: {len(text) / 1e6:.1f} MB, longest attribute {longest / 1e6:.2f} MB")
+checks.that("large: an SVG of more than 10 MB", len(text) > 10e6)
+checks.that("large: no attribute is longer than 1 MiB", longest < 1 << 20, f"({longest})")
+done = subprocess.run(["rsvg-convert", large, "-o", WORK / "large_svg.png"], capture_output=True, text=True)
+checks.that("large: rsvg-convert draws it without --unlimited", done.returncode == 0, done.stderr)
+orogen("map", "alpine", "-o", WORK / "large.png", "--dpi", 96, "--quiet")
+mean, worst = difference(pixels(WORK / "large.png"), pixels(WORK / "large_svg.png"))
+print(f"large: the .svg differs from the .png by {mean:.2f} of 255 on average, {worst:.1f} in the worst square")
+checks.that("large: the .svg looks like the .png", mean < 4.0 and worst < 40.0)
 
 damaged = WORK / "damaged.pdf"
 damaged.write_bytes((WORK / "alpine.pdf").read_bytes()[:2000])

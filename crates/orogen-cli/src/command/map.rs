@@ -130,6 +130,9 @@ struct Without {
     /// The arrow to the north
     #[arg(long)]
     no_north: bool,
+    /// The profile that fills what a map leaves free of its --paper
+    #[arg(long)]
+    no_profile: bool,
 }
 
 /// How relief is shaded.
@@ -341,6 +344,7 @@ fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: b
         colors: !without.no_color,
         scale: !without.no_scale,
         north: !without.no_north,
+        profile: !without.no_profile,
     };
     let usual = if kind == Kind::Png && args.paper.is_none() { SCREEN } else { PRINT };
     let resolution = match (args.dpi, args.size) {

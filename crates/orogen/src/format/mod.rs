@@ -26,4 +26,5 @@ pub mod png;
 pub mod raw;
 pub mod sidecar;
 pub mod sqlite;
+pub mod svg;
 pub mod zarr;

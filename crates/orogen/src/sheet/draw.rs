@@ -1,13 +1,14 @@
 //! A map sheet: heights, and all that belongs to a map of them, on a page.
 
-use super::furniture::{COLORS, Desk, Entry, Sign, colors_block, legend_block, north_block, scale_block};
+use super::furniture::{COLORS, Desk, Entry, LEGEND_ROWS, Sign, colors_block, legend_block, north_block, scale_block};
 use super::ground::laid;
 use super::labels::{Label, Setting, Taken, gaps, place};
 use super::layout::{Block, Layout};
 use super::letters::Letters;
-use super::lines::{interval, is_thick, lines, summits, thick_interval};
+use super::lines::{Summit, interval, is_thick, lines, summits, thick_interval};
 use super::marks;
 use super::options::{Options, Page};
+use super::profile::Profile;
 use super::ramp::Ramp;
 use super::relief::paint;
 use super::scene::{INK, Item, Place, Scene, Step};
@@ -134,14 +135,22 @@ pub fn draw(heights: &Grid, options: &Options, progress: &Progress) -> Result<Sh
     let ends = [f64::from(levels.low()), f64::from(levels.high())];
     for (part, at) in parts.into_iter().zip(&layout.blocks) {
         match part {
-            Part::Colors => match &ramp {
-                Some(ramp) => desk.ramp(*at, COLORS, ramp),
-                None => desk.colors(*at, &tint, ends),
-            },
+            Part::Colors => {
+                let width = layout.column.unwrap_or(COLORS).min(COLORS);
+                match &ramp {
+                    Some(ramp) => desk.ramp(*at, width, ramp),
+                    None => desk.colors(*at, width, &tint, ends),
+                }
+            }
             Part::Scale => desk.scale(*at, scale),
             Part::North => desk.north(*at),
-            Part::Legend => desk.legend(*at, &entries),
+            Part::Legend => desk.legend(*at, &entries, layout.column.map_or(LEGEND_ROWS, |_| entries.len())),
         }
+    }
+    if let Some(profile) = layout.profile.and_then(|area| Profile::new(heights, options, area)) {
+        // On a map of another layer, the heights' colours would mean nothing.
+        let tint = ramp.is_none().then_some(&tint);
+        profile.draw(&mut desk, map, tint, layout.dpi);
     }
     if options.parts.title {
         let facts = facts(metres, ends, scale, options);
@@ -236,12 +245,13 @@ struct Ground {
     grid: Grid,
     /// Width over height.
     aspect: f64,
-    /// Width of a sample in millimetres.
-    sample: f64,
     water: Water,
     contours: Vec<Line>,
     interval: Option<f64>,
     shore: Vec<Line>,
+    summits: Vec<Summit>,
+    /// Columns and rows of the heights that it was made of.
+    samples: [usize; 2],
 }
 
 impl Ground {
@@ -290,7 +300,19 @@ impl Ground {
             (Some(sea), true) => trace::contours(&grid, &[sea])?.iter().map(|line| smooth(line, 1)).collect(),
             _ => Vec::new(),
         };
-        Ok(Ground { grid, aspect, sample, water, contours, interval: interval.filter(|_| relief > 0.0), shore })
+        let summits = match options.parts.summits {
+            // Looked for among the heights themselves: means, and the cubic between samples, have other summits.
+            true => {
+                let block = (window.width - 1).div_ceil((size[0] - 1).max(1));
+                let block_width = sample * block as f64 * (size[0] - 1) as f64 / sides[0];
+                let apart = (APART / block_width).ceil() as usize;
+                summits(heights, options.sea_level, block, apart, SUMMITS)
+            }
+            false => Vec::new(),
+        };
+        let interval = interval.filter(|_| relief > 0.0);
+        let samples = [window.width, window.height];
+        Ok(Ground { grid, aspect, water, contours, interval, shore, summits, samples })
     }
 
     /// What its lines mean.
@@ -310,14 +332,10 @@ impl Ground {
         if options.parts.lakes && !self.water.lakes.is_empty() {
             entries.push(Entry { sign: Sign::Water(LAKES, SHORE), text: "Lake".into() });
         }
-        if options.parts.summits && !self.summits(options).is_empty() {
+        if !self.summits.is_empty() {
             entries.push(Entry { sign: Sign::Summit, text: "Summit, height in m".into() });
         }
         entries
-    }
-
-    fn summits(&self, options: &Options) -> Vec<(usize, usize)> {
-        summits(&self.grid, options.sea_level, (APART / self.sample).ceil() as usize, SUMMITS)
     }
 
     /// Draws all lines on the map.
@@ -350,11 +368,12 @@ impl Ground {
             scene: Scene { size: desk.scene.size, title: String::new(), items: Vec::new() },
             letters: desk.letters,
         };
-        if options.parts.summits {
-            for (i, j) in self.summits(options) {
-                let text = grouped(f64::from(self.grid.get(i, j)), 0);
-                marks::summit(&mut over.scene, desk.letters, &mut taken, spot([i as f64, j as f64]), &text);
-            }
+        for summit in &self.summits {
+            let share = |at: usize, samples: usize| at as f32 / (samples - 1) as f32;
+            let place =
+                [left + width * share(summit.x, self.samples[0]), top + height * share(summit.y, self.samples[1])];
+            let text = grouped(f64::from(summit.height), 0);
+            marks::summit(&mut over.scene, desk.letters, &mut taken, place, &text);
         }
         let sea = options.sea_level.unwrap_or(f64::NEG_INFINITY);
         let interval = self.interval.unwrap_or(1.0);
@@ -527,13 +546,16 @@ mod tests {
         let heights = hills(120, 90);
         let all = draw(&heights, &options()).unwrap();
         assert!(all.interval.is_some_and(|interval| interval > 0.0));
+        // Paper with room for a profile.
+        let paper = || Options { page: Page::Paper([150.0, 270.0]), ..options() };
+        let all = draw(&heights, &paper()).unwrap();
         let count = |change: fn(&mut Parts)| {
-            let mut options = options();
+            let mut options = paper();
             change(&mut options.parts);
             places(&draw(&heights, &options).unwrap().scene).len()
         };
         let most = places(&all.scene).len();
-        let without: [fn(&mut Parts); 10] = [
+        let without: [fn(&mut Parts); 11] = [
             |parts| parts.title = false,
             |parts| parts.axes = false,
             |parts| parts.contours = false,
@@ -544,6 +566,7 @@ mod tests {
             |parts| parts.colors = false,
             |parts| parts.scale = false,
             |parts| parts.north = false,
+            |parts| parts.profile = false,
         ];
         for (k, change) in without.into_iter().enumerate() {
             assert_ne!(count(change), most, "part {k}");

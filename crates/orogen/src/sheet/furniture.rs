@@ -1,6 +1,6 @@
 //! What stands around a map: heading, numbers along the sides, colour bar, scale, north arrow, legend.
 
-use super::layout::{BLOCK_GAP, Block, MARGIN};
+use super::layout::{BLOCK_GAP, Block, MARGIN, ROW};
 use super::letters::Letters;
 use super::scene::{INK, Item, Place, Scene, polygon};
 use super::ticks::{Count, grouped, step, ticks};
@@ -101,8 +101,8 @@ impl Desk<'_> {
         self.scene.lines(marks, 0.2, INK, 1.0);
     }
 
-    /// A bar of the colours with their heights.
-    pub fn colors(&mut self, [left, top]: Place, tint: &Tint, [low, high]: [f64; 2]) {
+    /// A bar of the colours with their heights, so wide with its unit.
+    pub fn colors(&mut self, [left, top]: Place, width: f32, tint: &Tint, [low, high]: [f64; 2]) {
         const STEPS: usize = 600;
         let encoder = Encoder::new();
         let flat = high <= low;
@@ -111,7 +111,7 @@ impl Desk<'_> {
             let height = low + (high - low) * (k as f64 + 0.5) / STEPS as f64;
             encoder.bytes(tint.at(height as f32))
         });
-        let area = [left, top, COLORS - 10.0, 3.6];
+        let area = [left, top, width - 10.0, 3.6];
         self.scene.items.push(Item::Picture { area, width: STEPS, height: 1, pixels: pixels.collect() });
         self.scene.frame(area, 0.15, INK);
         let mut marks: Vec<Vec<Place>> = Vec::new();
@@ -172,13 +172,13 @@ impl Desk<'_> {
         self.text("N", Face::Bold, 2.9, INK, [x + 2.8, top + 2.6], Align::Start);
     }
 
-    /// What lines and marks mean: in two rows.
-    pub fn legend(&mut self, [left, top]: Place, entries: &[Entry]) {
-        let widths = columns(entries, self.letters);
+    /// What lines and marks mean: in so many rows.
+    pub fn legend(&mut self, [left, top]: Place, entries: &[Entry], rows: usize) {
+        let widths = columns(entries, self.letters, rows);
         for (k, entry) in entries.iter().enumerate() {
-            let (column, row) = (k / 2, k % 2);
+            let (column, row) = (k / rows, k % rows);
             let x = left + widths[..column].iter().sum::<f32>();
-            let y = top + 1.6 + 4.6 * row as f32;
+            let y = top + 1.6 + LINE * row as f32;
             match entry.sign {
                 Sign::Line(width, ink) => {
                     let wave = (0..=16).map(|k| k as f32 / 16.0);
@@ -224,32 +224,37 @@ pub enum Sign {
 }
 
 const SIGN: f32 = 8.0;
+/// From one line of the legend to the next.
+const LINE: f32 = 4.6;
+/// Lines of the legend where it stands in a row.
+pub const LEGEND_ROWS: usize = 2;
 /// The widths of blocks.
 pub const COLORS: f32 = 88.0;
 const SCALE: f32 = 62.0;
 const NORTH: f32 = 6.0;
 
-fn columns(entries: &[Entry], letters: &Letters) -> Vec<f32> {
+fn columns(entries: &[Entry], letters: &Letters, rows: usize) -> Vec<f32> {
     let width = |entry: &Entry| SIGN + 1.8 + letters.width(&entry.text, Face::Regular, SMALL) + 5.0;
-    entries.chunks(2).map(|pair| pair.iter().map(width).fold(0.0, f32::max)).collect()
+    entries.chunks(rows.max(1)).map(|pair| pair.iter().map(width).fold(0.0, f32::max)).collect()
 }
 
-/// How wide the block of the colours is.
+/// The block of the colours: in a column it is as wide as that.
 pub fn colors_block() -> Block {
-    Block { width: COLORS }
+    Block { widths: [COLORS, 0.0], height: ROW }
 }
 
-/// How wide the block of the scale is.
+/// The block of the scale.
 pub fn scale_block() -> Block {
-    Block { width: SCALE - BLOCK_GAP }
+    Block { widths: [SCALE - BLOCK_GAP; 2], height: ROW - 3.0 }
 }
 
-/// How wide the block of the north arrow is.
+/// The block of the north arrow.
 pub fn north_block() -> Block {
-    Block { width: NORTH + 4.0 }
+    Block { widths: [NORTH + 4.0; 2], height: ROW }
 }
 
-/// How wide the legend is.
+/// The block of the legend.
 pub fn legend_block(entries: &[Entry], letters: &Letters) -> Block {
-    Block { width: columns(entries, letters).iter().sum::<f32>().max(1.0) - 5.0 }
+    let width = |rows: usize| columns(entries, letters, rows).iter().sum::<f32>().max(1.0) - 5.0;
+    Block { widths: [width(LEGEND_ROWS), width(entries.len())], height: LINE * entries.len() as f32 + 1.0 }
 }

@@ -5,7 +5,7 @@ use crate::contour::levels::{every, is_index};
 use crate::contour::line::Line;
 use crate::contour::trace::contours;
 use crate::error::Result;
-use crate::grid::Grid;
+use crate::grid::{Grid, Window};
 
 /// Millimetres that contours on steep ground are apart, at least; a tenth of the ground is steeper.
 const CLOSEST: f64 = 0.5;
@@ -77,43 +77,75 @@ pub fn is_thick(line: &Line, interval: f64) -> bool {
     is_index(line.elevation, thick_interval(interval) / 5.0)
 }
 
-/// The highest samples within `apart` samples around them, the highest first: no more than `most`, none at the border, and each
-/// standing out of its surroundings.
-pub fn summits(heights: &Grid, sea_level: Option<f64>, apart: usize, most: usize) -> Vec<(usize, usize)> {
+/// A summit: a sample, and its height.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Summit {
+    /// Its column.
+    pub x: usize,
+    /// Its row.
+    pub y: usize,
+    /// Its height in metres.
+    pub height: f32,
+}
+
+/// The highest samples within `apart` blocks of `block` x `block` samples, the highest first: no more than `most`, none at the border, and
+/// each standing out of its surroundings.
+///
+/// A block counts as high as its highest sample, so that each summit is the highest sample there is around it.
+pub fn summits(heights: &Grid, sea_level: Option<f64>, block: usize, apart: usize, most: usize) -> Vec<Summit> {
     let sea = sea_level.unwrap_or(f64::NEG_INFINITY) as f32;
-    let (width, height) = (heights.width(), heights.height());
-    let mut found: Vec<(f32, usize, usize)> = Vec::new();
+    let blocks = blocks(heights, block.max(1));
+    let (width, height) = (blocks.width(), blocks.height());
+    let mut found: Vec<Summit> = Vec::new();
     for j in 2..height.saturating_sub(2) {
         for i in 2..width.saturating_sub(2) {
-            let here = heights.get(i, j);
-            // The nearest first: almost all fall there.
+            let Some(summit) = blocks.get(i, j) else { continue };
+            let here = summit.height;
+            // The nearest first: almost all fall there. What has no height is no summit's neighbour.
             let top = |reach: usize| {
                 let rows = j.saturating_sub(reach)..(j + reach + 1).min(height);
                 rows.into_iter().all(|y| {
-                    let row = &heights.row(y)[i.saturating_sub(reach)..(i + reach + 1).min(width)];
-                    row.iter().all(|other| *other <= here)
+                    let row = &blocks.row(y)[i.saturating_sub(reach)..(i + reach + 1).min(width)];
+                    row.iter().all(|other| other.is_some_and(|other| other.height <= here))
                 })
             };
-            let stands_out = || heights.get(i - 2, j) < here || heights.get(i + 2, j) < here;
-            if here.is_finite() && here > sea && top(1) && top(apart / 2) && stands_out() {
-                found.push((here, i, j));
+            let lower = |other: Option<Summit>| other.is_some_and(|other| other.height < here);
+            let stands_out = || lower(blocks.get(i - 2, j)) || lower(blocks.get(i + 2, j));
+            if here > sea && top(1) && top(apart / 2) && stands_out() {
+                found.push(summit);
             }
         }
     }
-    found.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.2, a.1).cmp(&(b.2, b.1))));
-    let mut kept: Vec<(usize, usize)> = Vec::new();
-    for (_, i, j) in found {
-        if kept.len() < most && kept.iter().all(|(x, y)| x.abs_diff(i).max(y.abs_diff(j)) >= apart) {
-            kept.push((i, j));
+    found.sort_by(|a, b| b.height.total_cmp(&a.height).then((a.y, a.x).cmp(&(b.y, b.x))));
+    let mut kept: Vec<Summit> = Vec::new();
+    for summit in found {
+        let far = |other: &Summit| other.x.abs_diff(summit.x).max(other.y.abs_diff(summit.y)) >= apart * block.max(1);
+        if kept.len() < most && kept.iter().all(far) {
+            kept.push(summit);
         }
     }
     kept
 }
 
+/// The highest finite sample of each block, the first in row order if there are several.
+fn blocks(heights: &Grid, block: usize) -> Grid<Option<Summit>> {
+    let window = Window::new(heights.width().div_ceil(block), heights.height().div_ceil(block), 1.0);
+    let mut blocks: Grid<Option<Summit>> = Grid::filled(window, None);
+    for y in 0..heights.height() {
+        let highest = blocks.row_mut(y / block);
+        for (x, height) in heights.row(y).iter().copied().enumerate().filter(|(_, height)| height.is_finite()) {
+            let highest = &mut highest[x / block];
+            if highest.is_none_or(|highest| height > highest.height) {
+                *highest = Some(Summit { x, y, height });
+            }
+        }
+    }
+    blocks
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::Window;
 
     fn hills(height: f32) -> Grid {
         let mut grid = Grid::filled(Window::new(200, 160, 50.0), 0.0);
@@ -144,12 +176,27 @@ mod tests {
     #[test]
     fn summits_are_the_highest_and_apart() {
         let grid = hills(1000.0);
+        let places = |sea: Option<f64>, apart: usize, most: usize| -> Vec<(usize, usize)> {
+            summits(&grid, sea, 1, apart, most).iter().map(|summit| (summit.x, summit.y)).collect()
+        };
         // The foot of the higher hill moves the lower one's summit.
-        assert_eq!(summits(&grid, None, 40, 5), [(60, 80), (149, 70)]);
-        assert_eq!(summits(&grid, None, 40, 1), [(60, 80)]);
-        assert_eq!(summits(&grid, None, 150, 5), [(60, 80)]);
-        assert!(summits(&grid, Some(2000.0), 40, 5).is_empty());
-        assert!(summits(&Grid::filled(Window::new(50, 50, 1.0), 5.0), None, 10, 5).is_empty());
+        assert_eq!(places(None, 40, 5), [(60, 80), (149, 70)]);
+        assert_eq!(places(None, 40, 1), [(60, 80)]);
+        assert_eq!(places(None, 150, 5), [(60, 80)]);
+        assert!(places(Some(2000.0), 40, 5).is_empty());
+        assert!(summits(&Grid::filled(Window::new(50, 50, 1.0), 5.0), None, 1, 10, 5).is_empty());
+    }
+
+    #[test]
+    fn a_summit_is_the_highest_sample_however_coarse_the_map() {
+        let mut grid = hills(1000.0);
+        // A spire of one sample, which no mean over its surroundings is as high as.
+        grid.row_mut(83)[63] = 1234.5;
+        for block in [1, 2, 3, 7, 10] {
+            let found = summits(&grid, None, block, 40 / block, 5);
+            assert_eq!(found[0], Summit { x: 63, y: 83, height: 1234.5 }, "{block}");
+            assert!(found.len() == 2 && found[1].height == grid.get(149, 70), "{block}: {found:?}");
+        }
     }
 
     #[test]

@@ -11,6 +11,7 @@ pub mod lines;
 pub mod marks;
 pub mod options;
 pub mod pdf;
+mod profile;
 pub mod ramp;
 pub mod raster;
 pub mod relief;

@@ -48,6 +48,8 @@ pub struct Parts {
     pub scale: bool,
     /// Where north is.
     pub north: bool,
+    /// The land cut from west to east through its highest place, where paper has room left for it.
+    pub profile: bool,
 }
 
 impl Default for Parts {
@@ -65,6 +67,7 @@ impl Default for Parts {
             colors: true,
             scale: true,
             north: true,
+            profile: true,
         }
     }
 }

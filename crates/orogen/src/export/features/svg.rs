@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use super::layer::Style;
 use crate::format::features::{Feature, FeatureLayer, Geometry, GeometryType, Value};
 use crate::format::geojson::{decimals, number};
+use crate::format::svg::{MAX_PATH, pad};
 use crate::grid::Window;
 
 /// Pixels of the longer side.
@@ -55,6 +56,9 @@ pub fn write(out: &mut dyn Write, layers: &[(FeatureLayer, Style)], window: &Win
                     writeln!(out, "<path stroke-width=\"{width:.4}\" d=\"{text}\"/>")?;
                 }
                 false => writeln!(out, "<path d=\"{text}\"/>")?,
+            }
+            if text.len() > MAX_PATH {
+                pad(out)?;
             }
         }
         writeln!(out, "</g>")?;

@@ -1,0 +1,48 @@
+//! What files of SVG have to heed so that every reader reads them, however large they are.
+//!
+//! XML readers have limits. libxml2, which librsvg reads with, refuses an attribute of more than 10 million characters, and also 10 million
+//! characters of elements among which it found no moment to free its buffer. So writers make elements of bounded length, and padding
+//! follows each long one.
+
+use std::io::{self, Write};
+
+/// Characters of a path after which the next one is begun.
+pub const MAX_PATH: usize = 1 << 16;
+
+/// Points of a line, at most; a longer line is written as several.
+const MAX_POINTS: usize = 1 << 11;
+
+/// Spaces after a long element. libxml2 frees its buffer where little of it is left to read. Elements that are longer than what it reads at once
+/// rarely meet such a moment; this many spaces always do.
+const PADDING: usize = 1 << 13;
+
+/// Writes padding: after an element longer than [`MAX_PATH`].
+///
+/// # Errors
+/// What writing brings.
+pub fn pad(out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "{:PADDING$}", "")
+}
+
+/// A line as pieces of bounded length, each beginning with the point that the last one ended with.
+pub fn pieces<T>(line: &[T]) -> impl Iterator<Item = &[T]> {
+    let last = line.len().saturating_sub(1).max(1);
+    (0..last).step_by(MAX_POINTS).map(move |from| &line[from..(from + MAX_POINTS + 1).min(line.len())])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_meet_and_leave_nothing_out() {
+        for count in [0, 1, 2, 2048, 2049, 2050, 10_000] {
+            let line: Vec<usize> = (0..count).collect();
+            let pieces: Vec<&[usize]> = pieces(&line).collect();
+            let segments: Vec<[usize; 2]> =
+                pieces.iter().flat_map(|piece| piece.windows(2).map(|pair| [pair[0], pair[1]])).collect();
+            assert_eq!(segments, line.windows(2).map(|pair| [pair[0], pair[1]]).collect::<Vec<_>>(), "{count}");
+            assert!(pieces.iter().all(|piece| piece.len() <= 2049));
+        }
+    }
+}
