@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use cpu_time::ThreadTime;
+use orogen::analysis::halo::Halo;
 use orogen::format::npy;
 use orogen::map::paint::Painter;
 use orogen::mesh::adaptive::adaptive;
@@ -101,7 +102,8 @@ fn full_grid(grid: &Grid, options: &Options) -> Result<Figure, String> {
         let shape = Shape::lattice(black_box(grid), 1).map_err(|e| e.to_string())?;
         let mut texture = Vec::new();
         let drawn = painter.write_png(&mut texture, grid, &[]);
-        let levels = [Surface { grid, shape: &shape, exaggeration: 1.0, painter: None }];
+        let halo = Halo::default();
+        let levels = [Surface { grid, halo: &halo, shape: &shape, exaggeration: 1.0, painter: None }];
         let model = Model {
             levels: &levels,
             texture: Some(&texture),

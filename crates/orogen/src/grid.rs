@@ -87,6 +87,14 @@ impl Window {
         }
     }
 
+    /// The samples that both have; empty if there are none. Both must have the same cell.
+    pub fn intersection(&self, other: &Window) -> Window {
+        debug_assert_eq!(self.cell, other.cell);
+        let (x, y) = (self.x.max(other.x), self.y.max(other.y));
+        let (right, bottom) = (self.right().min(other.right()), self.bottom().min(other.bottom()));
+        Window { x, y, width: (right - x).max(0) as usize, height: (bottom - y).max(0) as usize, cell: self.cell }
+    }
+
     /// Whether every sample of `other` is one of this window's.
     pub fn contains(&self, other: &Window) -> bool {
         self.cell == other.cell

@@ -490,6 +490,17 @@ impl World {
         Ok(())
     }
 
+    /// A window with `reach` more samples on each side, as far as the world goes.
+    pub(crate) fn surroundings(&self, window: &Window, reach: usize) -> Window {
+        let wide = window.grown(reach);
+        let wide = match self.setting.size {
+            Some(size) => wide.intersection(&world_windows(size, window.cell).0),
+            None => wide,
+        };
+        // A world without bounds ends where positions are no longer exact.
+        if self.check(&wide).is_ok() { wide } else { *window }
+    }
+
     /// Whether there is memory for a window's samples, beside what is held already.
     pub(crate) fn afford_grid(&self, window: &Window) -> Result<()> {
         self.memory.afford((window.width as u64).saturating_mul(window.height as u64).saturating_mul(4))

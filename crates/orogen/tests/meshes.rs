@@ -4,7 +4,9 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
+use std::sync::LazyLock;
 
+use orogen::analysis::halo::Halo;
 use orogen::export::options::Options;
 use orogen::export::subject::Subject;
 use orogen::export::{registry, run};
@@ -35,7 +37,8 @@ fn land(width: usize, height: usize) -> Grid {
 }
 
 fn surface<'a>(grid: &'a Grid, shape: &'a Shape) -> Surface<'a> {
-    Surface { grid, shape, exaggeration: 1.0, painter: None }
+    static ALONE: LazyLock<Halo> = LazyLock::new(Halo::default);
+    Surface { grid, halo: &ALONE, shape, exaggeration: 1.0, painter: None }
 }
 
 /// A mesh as it was read: places and normals as east, up, south.

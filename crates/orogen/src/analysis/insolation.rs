@@ -3,8 +3,9 @@
 use rayon::prelude::*;
 
 use super::clear_sky::{ClearSky, Facet, Sunlight};
+use super::halo::Halo;
 use super::shadow::Shadows;
-use super::slope::{around, gradients_between};
+use super::slope::gradients_between;
 use super::sun::Moment;
 use crate::error::Result;
 use crate::grid::Grid;
@@ -78,12 +79,13 @@ pub fn insolation(heights: &Grid, period: &Period, sky: &ClearSky, check: Check)
         .filter(|h| h.is_finite())
         .fold([f32::INFINITY, f32::NEG_INFINITY], |ends, h| [ends[0].min(*h), ends[1].max(*h)]);
     let ends = if ends[0] <= ends[1] { ends.map(f64::from) } else { [0.0, 0.0] };
+    let beyond = Halo::default();
     let shadows = Shadows::new(heights.data(), window.width, window.cell);
     for suns in period.suns(sky, ends).chunks(AT_ONCE) {
         check()?;
         let lit: Vec<Vec<bool>> = suns.par_iter().map(|(sun, _)| shadows.lit(sun.towards)).collect();
         out.data_mut().par_chunks_mut(window.width).enumerate().for_each_init(Vec::new, |wide, (j, row)| {
-            gradients_between(around(heights, j, wide), window.cell, |i, gradient| {
+            gradients_between(beyond.rows(heights, j, wide), window.cell, |i, gradient| {
                 let facet = Facet::new(f64::from(gradient.east), -f64::from(gradient.north));
                 let at = j * window.width + i;
                 let height = f64::from(heights.data()[at]);

@@ -7,6 +7,7 @@ pub mod distance;
 pub mod finite;
 pub mod fourier;
 pub mod geomorphons;
+pub mod halo;
 pub mod hillshade;
 pub mod hypsometry;
 pub mod insolation;

@@ -120,28 +120,6 @@ pub fn extended(grid: &Grid) -> Grid {
     out
 }
 
-/// Row `j` of a grid and its neighbours, each with one sample more on either side; beyond the grid the land is taken to go on in
-/// straight lines, as [`extended`] does. `wide` is where they are made.
-pub(crate) fn around<'w>(grid: &Grid, j: usize, wide: &'w mut Vec<f32>) -> [&'w [f32]; 3] {
-    let (width, last) = (grid.width() + 2, grid.height() - 1);
-    wide.resize(3 * width, 0.0);
-    let (above, rest) = wide.split_at_mut(width);
-    let (here, below) = rest.split_at_mut(width);
-    extend_row(grid.row(j), here);
-    for (there, other, out) in
-        [(j.checked_sub(1), 1.min(last), &mut *above), (Some(j + 1), last.saturating_sub(1), &mut *below)]
-    {
-        match there.filter(|&there| there <= last) {
-            Some(there) => extend_row(grid.row(there), out),
-            None => {
-                extend_row(grid.row(other), out);
-                out.iter_mut().zip(&*here).for_each(|(out, &here)| *out = beyond(here, *out));
-            }
-        }
-    }
-    [above, here, below]
-}
-
 /// `row` into the middle of `out`, which is longer by one at each end.
 pub(crate) fn extend_row(row: &[f32], out: &mut [f32]) {
     let width = row.len();
@@ -159,17 +137,6 @@ pub(crate) fn beyond(last: f32, before: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn rows_around_are_those_of_the_extended_grid() {
-        for (width, height) in [(5, 4), (1, 3), (3, 1), (2, 2), (1, 1)] {
-            let bumpy = grid(Window::new(width, height, 2.0), |x, y| (x * 1.7 + y * y * 0.3) % 5.0);
-            let (wide, mut scratch) = (extended(&bumpy), Vec::new());
-            for j in 0..height {
-                assert_eq!(around(&bumpy, j, &mut scratch), [wide.row(j), wide.row(j + 1), wide.row(j + 2)]);
-            }
-        }
-    }
 
     /// A grid of f(east, south) in metres.
     fn grid(window: Window, f: impl Fn(f64, f64) -> f64) -> Grid {

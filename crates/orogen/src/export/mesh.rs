@@ -6,6 +6,7 @@ use super::files::Files;
 use super::format::whole;
 use super::options::{OptionSpec, Options, Takes};
 use super::subject::Subject;
+use crate::analysis::halo::Halo;
 use crate::error::Result;
 use crate::format::levels::{NO_SAMPLES, extremes};
 use crate::grid::{Grid, Window};
@@ -65,6 +66,7 @@ pub struct Prepared {
     pub shapes: Vec<Shape>,
     /// What its corners or its picture are coloured with.
     pub painter: Painter,
+    halo: Halo,
     exaggeration: f32,
     max_error: Option<f64>,
     /// The curve that the heights were bent by, and their range before.
@@ -77,14 +79,14 @@ impl Prepared {
     /// Fails as the subject does, and on windows that are no mesh.
     pub fn new(subject: &mut Subject, options: &Options, levels: usize) -> io::Result<Prepared> {
         let curve = options.text(HEIGHT_CURVE.name).map(HeightCurve::parse).transpose()?;
-        let window = *subject.window();
-        let mut grid = subject.whole()?.into_iter().next().unwrap_or_else(|| Grid::filled(window, 0.0));
+        let mut halo = Halo::default();
+        let mut grid = subject.surrounded(&mut halo)?;
         let sea_level = subject.world().recipe().world.sea_level as f32;
         // A mesh is lit by whoever shows it, so the map's own light stays out.
         let painter = Painter::new(Tint::fit(&grid, sea_level), Shade::new(0.0));
         let range = extremes(NO_SAMPLES, grid.data());
         if let Some(curve) = &curve {
-            curve.bend(&mut grid);
+            curve.bend(&mut grid, &mut halo);
         }
         let curve = curve.map(|curve| (curve, range));
         let max_error = options.number(MAX_ERROR.name);
@@ -94,13 +96,14 @@ impl Prepared {
         };
         let shapes = (0..levels).map(shape).collect::<Result<Vec<Shape>>>()?;
         let exaggeration = options.number(EXAGGERATION.name).unwrap_or(1.0) as f32;
-        Ok(Prepared { grid, shapes, painter, exaggeration, max_error, curve })
+        Ok(Prepared { grid, halo, shapes, painter, exaggeration, max_error, curve })
     }
 
     /// A level of detail, its corners with colours if they are wanted.
     pub fn surface(&self, level: usize, colors: bool) -> Surface<'_> {
         Surface {
             grid: &self.grid,
+            halo: &self.halo,
             shape: &self.shapes[level],
             exaggeration: self.exaggeration,
             painter: colors.then_some(&self.painter),

@@ -9,6 +9,7 @@ use super::features::layer::VectorLayer;
 use super::features::list as vector_list;
 use super::format::Format;
 use crate::analysis::finite::FiniteCount;
+use crate::analysis::halo::Halo;
 use crate::error::{Error, ErrorKind, Result};
 use crate::format::dem::Georeference;
 use crate::format::levels::{Levels, NO_SAMPLES, extremes};
@@ -141,16 +142,16 @@ impl<'w> Subject<'w> {
         self.beside = beside;
         // Features are made of more than the window's rows, and count their memory themselves.
         if self.vectors.is_empty() {
-            self.ready = Some(self.source()?);
+            self.ready = Some(self.source(&self.window)?);
         }
         Ok(())
     }
 
-    fn source(&self) -> Result<Source<'w>> {
+    fn source(&self, window: &Window) -> Result<Source<'w>> {
         if let Some(derived) = self.derived {
-            return Ok(Box::new(Rows::new(derived, self.world, &self.window, self.beside, &self.progress)?));
+            return Ok(Box::new(Rows::new(derived, self.world, window, self.beside, &self.progress)?));
         }
-        let bands = self.world.bands(&[&self.layer], &self.window, self.beside, &self.progress)?;
+        let bands = self.world.bands(&[&self.layer], window, self.beside, &self.progress)?;
         let counted = |grids: Vec<Grid>| {
             let count =
                 grids.iter().fold(FiniteCount::default(), |count, grid| count.and(FiniteCount::of(grid.data())));
@@ -227,7 +228,7 @@ impl<'w> Subject<'w> {
     pub fn rows(&mut self, mut visit: impl FnMut(&[Grid]) -> io::Result<()>) -> io::Result<()> {
         let source = match self.ready.take() {
             Some(source) => source,
-            None => self.source()?,
+            None => self.source(&self.window)?,
         };
         (self.range, self.count) = (NO_SAMPLES, FiniteCount::default());
         for band in source {
@@ -254,6 +255,30 @@ impl<'w> Subject<'w> {
     /// How many samples were last made, and how many of them, or of the heights that they follow from, are finite.
     pub fn count(&self) -> FiniteCount {
         self.count
+    }
+
+    /// The first channel, all rows at once, and into `halo` the samples around it, as far as the world goes: what follows from a sample and its
+    /// neighbours is then the same in windows that share it. A format that calls this counts it as [`whole`](Subject::whole).
+    ///
+    /// Fails as the world does.
+    pub fn surrounded(&mut self, halo: &mut Halo) -> io::Result<Grid> {
+        self.ready = None;
+        let window = self.window;
+        let wide = self.world.surroundings(&window, 1);
+        *halo = Halo::new(&window, &wide);
+        let mut grid = Grid::filled(window, 0.0);
+        let mut count = FiniteCount::default();
+        for band in self.source(&wide)? {
+            let (band, of) = band?;
+            count = count.and(of);
+            let Some(band) = band.into_iter().next() else { continue };
+            grid.paste(&band);
+            halo.take(&window, &band);
+        }
+        // What is told of a derived layer are the heights beneath it, here with those around the window.
+        self.count = if self.derived.is_some() { count } else { FiniteCount::of(grid.data()) };
+        self.range = extremes(NO_SAMPLES, grid.data());
+        Ok(grid)
     }
 
     /// The range of the samples that were last made; flat if there were none.

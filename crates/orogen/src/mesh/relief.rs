@@ -1,5 +1,6 @@
 //! Heights bent by a curve before a mesh is made of them.
 
+use crate::analysis::halo::Halo;
 use crate::declare::Input;
 use crate::error::{Error, ErrorKind, Result};
 use crate::field::curve::Curve;
@@ -52,9 +53,10 @@ impl HeightCurve {
         }
     }
 
-    /// Bends the heights of a grid. Level ground and holes stay as they are.
-    pub fn bend(&self, grid: &mut Grid) {
+    /// Bends the heights of a grid, and those around it in the same way. Level ground and holes stay as they are.
+    pub fn bend(&self, grid: &mut Grid, halo: &mut Halo) {
         let range = extremes(NO_SAMPLES, grid.data());
+        halo.each(|heights| self.bend_within(range, heights));
         for j in 0..grid.height() {
             self.bend_within(range, grid.row_mut(j));
         }
@@ -87,12 +89,12 @@ mod tests {
     fn heights_are_bent_over_the_relief() {
         let data = vec![100.0, 150.0, 200.0, 250.0, 300.0, f32::NAN];
         let mut grid = Grid::from_data(Window::new(3, 2, 1.0), data).unwrap();
-        HeightCurve::parse("0:0, 0.5:0.25 ,1:2").unwrap().bend(&mut grid);
+        HeightCurve::parse("0:0, 0.5:0.25 ,1:2").unwrap().bend(&mut grid, &mut Halo::default());
         let row = grid.data();
         assert_eq!([row[0], row[2], row[4]], [100.0, 150.0, 500.0]);
         assert!(row[5].is_nan() && row[1] > 100.0 && row[1] < 150.0);
         let mut flat = Grid::filled(Window::new(2, 2, 1.0), 7.0);
-        HeightCurve::parse("0:1,1:0").unwrap().bend(&mut flat);
+        HeightCurve::parse("0:1,1:0").unwrap().bend(&mut flat, &mut Halo::default());
         assert_eq!(flat.data(), [7.0; 4]);
     }
 

@@ -5,7 +5,8 @@ use std::io::{self, Write};
 use rayon::prelude::*;
 
 use super::shape::Shape;
-use crate::analysis::slope::{around, gradients_between};
+use crate::analysis::halo::Halo;
+use crate::analysis::slope::gradients_between;
 use crate::grid::Grid;
 use crate::map::paint::Painter;
 
@@ -14,6 +15,8 @@ use crate::map::paint::Painter;
 pub struct Surface<'a> {
     /// The heights.
     pub grid: &'a Grid,
+    /// What lies around the grid, for the normals of its border.
+    pub halo: &'a Halo,
     /// The triangles over it.
     pub shape: &'a Shape,
     /// What heights are multiplied by.
@@ -145,7 +148,7 @@ impl Surface<'_> {
             return;
         }
         let (width, cell) = (self.grid.width(), self.grid.window().cell);
-        let rows = around(self.grid, row, &mut scratch.wide);
+        let rows = self.halo.rows(self.grid, row, &mut scratch.wide);
         if wanted.normals {
             scratch.normals.clear();
             gradients_between(rows, cell, |_, gradient| {

@@ -18,7 +18,7 @@ const COLUMN_GAP: f32 = 3.5;
 const COLUMN: [f32; 2] = [64.0, 88.0];
 /// The least width and height that a profile is drawn in, and its height over its width at most, beneath a map and beside it.
 const PROFILE: [f32; 2] = [58.0, 30.0];
-const PROFILE_ASPECT: [f32; 2] = [0.42, 0.80];
+const PROFILE_ASPECT: [f32; 2] = [0.45, 0.80];
 /// Between two blocks of a row.
 pub const BLOCK_GAP: f32 = 9.0;
 /// The narrowest page that is made to fit a map.

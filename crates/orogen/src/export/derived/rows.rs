@@ -7,7 +7,6 @@ use crate::analysis::finite::FiniteCount;
 use crate::bands::Bands;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
-use crate::plan::planner::world_windows;
 use crate::progress::Progress;
 use crate::world::{HEIGHT, World};
 
@@ -55,10 +54,7 @@ impl<'w> Rows<'w> {
         progress: &Progress,
     ) -> Result<Rows<'w>> {
         let reach = (derived.reach)(window.cell);
-        let mut wide = window.grown(reach);
-        if let Some(size) = world.recipe().world.size {
-            wide = meet(&wide, &world_windows(size, window.cell).0);
-        }
+        let wide = world.surroundings(window, reach);
         let others = (derived.layers)(world.recipe());
         let layers: Vec<&str> = [HEIGHT].into_iter().chain(others.iter().map(String::as_str)).collect();
         let channels = (derived.channels)(world.recipe()).len();
@@ -103,7 +99,7 @@ impl<'w> Rows<'w> {
             out.iter_mut().zip(&strip).for_each(|(out, strip)| out.paste(strip));
         }
         // Shades and weights are finite whatever the heights are.
-        let beneath = heights.crop(&meet(&band, heights.window()));
+        let beneath = heights.crop(&band.intersection(heights.window()));
         Ok((out, beneath.map_or_else(FiniteCount::default, |beneath| FiniteCount::of(beneath.data()))))
     }
 }
@@ -113,17 +109,10 @@ fn at_once(window: &Window) -> usize {
     (SAMPLES / window.width.max(1)).clamp(STRIP, ROWS).min(window.height.max(1))
 }
 
-/// What two windows have in common.
-fn meet(a: &Window, b: &Window) -> Window {
-    let (x, y) = (a.x.max(b.x), a.y.max(b.y));
-    let (right, bottom) = (a.right().min(b.right()), a.bottom().min(b.bottom()));
-    Window { x, y, width: (right - x).max(0) as usize, height: (bottom - y).max(0) as usize, cell: a.cell }
-}
-
 impl Source<'_> {
     /// What there is of a window, a grid a layer: all rows above it are let go.
     fn around(&mut self, window: &Window) -> Result<Vec<Grid>> {
-        let window = meet(window, &self.wide);
+        let window = window.intersection(&self.wide);
         let (top, bottom) = ((window.y - self.wide.y) as usize, (window.bottom() - self.wide.y) as usize);
         let width = self.wide.width;
         for rows in &mut self.rows {
