@@ -4,7 +4,7 @@ use super::ground::Site;
 use super::march::{Ray, Surface};
 use super::scene::{Met, Scene, Seen};
 use super::vector::Vector;
-use super::water;
+use super::water::{self, Kind};
 use crate::palette::color::Light;
 
 /// What the ground throws back on the average: what lights those parts of it that see more ground than sky.
@@ -12,6 +12,9 @@ const MEAN_ALBEDO: f32 = 0.16;
 
 /// The light table that a block is set on.
 const TABLE: Light = [0.62, 0.61, 0.59];
+
+/// Water no further from the sea's level than so many cells is the sea.
+const LEVEL: f64 = 1e-4;
 
 /// Slopes of water within a pixel vary by so much.
 const ROUGH_WATER: f32 = 0.09;
@@ -88,7 +91,9 @@ impl Scene {
         let depth = (depth * self.relief.cell() / self.relief.exaggeration()).min(1e6) as f32;
         let sun = self.sun(met.flip);
         let seen = if sun.z > 0.0 { self.sun_seen(met.place, met.flip, 0.25) } else { 0.0 };
-        let body = self.water.body(depth, cosine, sun.z.max(0.0) as f32);
+        let is_sea = !self.inside(met.place) || self.relief.sea().is_some_and(|sea| (z - sea).abs() < LEVEL);
+        let kind = if is_sea { Kind::Sea } else { Kind::Lake };
+        let body = self.water.body(kind, depth, cosine, sun.z.max(0.0) as f32);
         let mut away = met.along.mirrored(normal);
         away.z = away.z.max(0.004);
         let away = away.unit();

@@ -14,6 +14,12 @@ const DEEP: Light = [0.006, 0.024, 0.036];
 /// What lies on the bottom.
 const BOTTOM: Light = [0.20, 0.18, 0.125];
 
+/// The same of lakes: water brown with humus and green with algae, in which a white disk is lost to sight at some 4 m (1.7 over the green's number:
+/// H. H. Poole and W. R. G. Atkins, "Photo-electric measurements of submarine illumination", 1929), over mud and dark stones.
+const LAKE_TAKES: Light = [0.85, 0.42, 0.65];
+const LAKE_DEEP: Light = [0.009, 0.026, 0.030];
+const LAKE_BOTTOM: Light = [0.060, 0.056, 0.040];
+
 /// In land of cells wider than this (metres) shores are drawn as if water were clearer, or they would be thinner than a pixel.
 const FINE_CELL: f64 = 10.0;
 
@@ -23,9 +29,19 @@ const BENDS: f32 = 0.565;
 /// Wavelengths of waves in metres, the longest first, and how steep each is.
 const WAVES: [(f32, f32); 4] = [(46.0, 0.012), (19.0, 0.018), (7.0, 0.026), (2.6, 0.030)];
 
+/// Which water it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// The clear water of the sea, over sand.
+    Sea,
+    /// That of lakes.
+    Lake,
+}
+
 /// Water as it is seen in a land.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Water {
+    /// What the sea takes of light in a metre.
     takes: Light,
     cell: f32,
 }
@@ -55,12 +71,16 @@ impl Water {
 
     /// The share of light that water throws back from within, so many metres deep, seen under an angle with this cosine and lit under
     /// one with that.
-    pub fn body(&self, depth: f32, seen: f32, lit: f32) -> Light {
+    pub fn body(&self, kind: Kind, depth: f32, seen: f32, lit: f32) -> Light {
+        let (takes, deep, bottom) = match kind {
+            Kind::Sea => (self.takes, DEEP, BOTTOM),
+            Kind::Lake => (LAKE_TAKES, LAKE_DEEP, LAKE_BOTTOM),
+        };
         let slanted = |cosine: f32| 1.0 / (1.0 - BENDS * (1.0 - cosine * cosine)).max(0.1).sqrt();
         let way = depth.max(0.0) * (slanted(seen) + slanted(lit));
         std::array::from_fn(|c| {
-            let left = libm::expf(-self.takes[c] * way);
-            BOTTOM[c] * left + DEEP[c] * (1.0 - left)
+            let left = libm::expf(-takes[c] * way);
+            bottom[c] * left + deep[c] * (1.0 - left)
         })
     }
 
@@ -110,12 +130,22 @@ mod tests {
     #[test]
     fn it_darkens_and_turns_blue_with_depth() {
         let water = Water::new(5.0);
-        let [shallow, deep] = [0.3, 60.0].map(|depth| water.body(depth, 0.7, 0.7));
+        let [shallow, deep] = [0.3, 60.0].map(|depth| water.body(Kind::Sea, depth, 0.7, 0.7));
         assert!(shallow[0] > 0.1 && deep[0] < 0.01 && deep[2] > 3.0 * deep[0]);
         // Beer and Lambert: straight down and up again through a metre.
-        let metre = water.body(1.0, 1.0, 1.0)[1];
+        let metre = water.body(Kind::Sea, 1.0, 1.0, 1.0)[1];
         let left = libm::expf(-2.0 * TAKES[1]);
         assert!((metre - (BOTTOM[1] * left + DEEP[1] * (1.0 - left))).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_shallows_of_lakes_are_dark_whatever_the_cell() {
+        let bright = |light: Light| 0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2];
+        for cell in [5.0, 60.0, 300.0] {
+            let [shore, shallow, deep] =
+                [0.0, 2.0, 10.0].map(|depth| bright(Water::new(cell).body(Kind::Lake, depth, 0.4, 0.5)));
+            assert!(shallow < 1.5 * deep && shore < 3.0 * deep, "{cell}: {shore} {shallow} {deep}");
+        }
     }
 
     #[test]

@@ -241,12 +241,14 @@ fn spectrum(sheet: &mut Sheet, measures: &Measures, area: [f64; 4]) {
     }
     let frame = Frame { area, x: Axis::logarithmic(short, long), y: Axis::logarithmic(least / 2.0, most * 2.0) };
     sheet.axes(&frame, "Power spectrum", ["wavelength, m", "m^2 m^2"]);
-    let points: Vec<(f32, f32)> = measures.bands.iter().map(|band| frame.at(band.wavelength, band.power)).collect();
-    sheet.line(&points, 2.2, MARK);
     let text = |name: &str, value: Option<f64>| value.map_or(String::new(), |value| format!("{name} {value:.2}"));
     let [left, top, ..] = area;
+    // On paper of their own, so that no line of the grid runs through them; the spectrum lies over it.
+    sheet.block([left + 11.0, left + 120.0], [top + 12.0, top + 47.0], PAPER);
     sheet.text(left + 14.0, top + 24.0, 0.0, &text("exponent", measures.spectrum), small());
     sheet.text(left + 14.0, top + 42.0, 0.0, &text("Hurst", measures.hurst), small());
+    let points: Vec<(f32, f32)> = measures.bands.iter().map(|band| frame.at(band.wavelength, band.power)).collect();
+    sheet.line(&points, 2.2, MARK);
 }
 
 fn rose(sheet: &mut Sheet, measures: &Measures, [x, y]: [f64; 2], radius: f64, row: f64) {
@@ -311,17 +313,61 @@ fn table(sheet: &mut Sheet, measures: &Measures, top: f64) {
         let text = value.map_or("-".to_string(), |value| figure.text(value));
         sheet.text(left + 252.0, y, 1.0, &text, bold(15.0));
         sheet.text(left + 260.0, y, 0.0, figure.unit, small());
-        // The band of real land in the middle, as much beyond it on either side.
-        let (begin, end) = (left + 330.0, left + column);
-        let at = |place: f64| begin + (end - begin) * (0.5 + place.clamp(-2.4, 2.4) / 5.0);
-        sheet.block([at(-1.0), at(1.0)], [y - 12.0, y + 3.0], BAND);
-        sheet.line(&[(at(0.0) as f32, y as f32 - 12.0), (at(0.0) as f32, y as f32 + 3.0)], 1.2, SOFT);
+        // The band of real land in the middle, as much beyond it on either side; the numbers of its ends stand outside of all that, where no
+        // mark comes.
+        let track = track(left, column);
+        sheet.block([track.at(-1.0), track.at(1.0)], [y - 12.0, y + 3.0], BAND);
+        let middle = track.at(0.0) as f32;
+        sheet.line(&[(middle, y as f32 - 12.0), (middle, y as f32 + 3.0)], 1.2, SOFT);
         if let Some(value) = value {
-            let x = at(figure.place(value)) as f32;
+            let x = track.at(figure.place(value)) as f32;
             sheet.line(&[(x, y as f32 - 14.0), (x, y as f32 + 5.0)], 3.4, MARK);
         }
         let [low, _, high] = figure.real.map(|value| figure.text(value));
-        sheet.text(at(-1.0) - 5.0, y - 1.0, 1.0, &low, small());
-        sheet.text(at(1.0) + 5.0, y - 1.0, 0.0, &high, small());
+        sheet.text(track.begin - 8.0, y - 1.0, 1.0, &low, small());
+        sheet.text(left + column, y - 1.0, 1.0, &high, small());
+    }
+}
+
+/// Where a row of the table shows a value among those of real land.
+struct Track {
+    begin: f64,
+    end: f64,
+}
+
+/// How far beyond the band marks go, in half widths of it: what lies further stands at the end.
+const FARTHEST: f64 = 2.4;
+
+/// The track of a row from `left`, `width` wide.
+fn track(left: f64, width: f64) -> Track {
+    Track { begin: left + 390.0, end: left + width - 58.0 }
+}
+
+impl Track {
+    /// Where a value stands: -1 and 1 are the ends of the band.
+    fn at(&self, place: f64) -> f64 {
+        self.begin + (self.end - self.begin) * (0.5 + place.clamp(-FARTHEST, FARTHEST) / (2.0 * FARTHEST + 0.2))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_mark_of_the_table_stands_on_a_number() {
+        let lettering = Lettering::new().unwrap();
+        let width = |text: &str| f64::from(lettering.width(text, small()));
+        let column = (WIDTH - 2.0 * MARGIN - 50.0) / 2.0;
+        let track = track(0.0, column);
+        // Marks are 3.4 wide.
+        let marks = [-100.0, 100.0].map(|place| track.at(place));
+        assert!(marks[0] - 1.7 > track.begin - 4.0 && marks[1] + 1.7 <= track.end, "{marks:?}");
+        assert!(track.at(-1.0) > marks[0] && track.at(1.0) < marks[1]);
+        for figure in FIGURES {
+            let [low, _, high] = figure.real.map(|value| width(&figure.text(value)));
+            assert!(260.0 + width(figure.unit) + 4.0 < track.begin - 8.0 - low, "{}", figure.name);
+            assert!(track.end + 4.0 < column - high, "{}", figure.name);
+        }
     }
 }
