@@ -57,3 +57,34 @@ fn the_search_comes_nearer_and_meets_slope_and_hypsometry() {
     assert!(distance(&made) < distance(&bowl), "{} {}", distance(&made), distance(&bowl));
     assert_eq!(distance(&place), 0.0);
 }
+
+#[test]
+fn a_world_of_a_fitted_recipe_has_no_rim() {
+    let stretch = Stretch { from: [-300.0, 700.0], to: [120.0, 1400.0], bend: 0.5 };
+    let setting: Setting = [0.6, 0.55, 0.5, 0.4, 0.6, 0.6, 0.5, 0.4, 0.4];
+    for size in [[150, 150], [120, 190]] {
+        let mut borders = Vec::new();
+        for seed in 1..=6 {
+            let world = World::with_options(recipe(&setting, &stretch, size, 60.0, seed), options()).unwrap();
+            let grid = world.window("height", &Window::new(size[0], size[1], 60.0)).unwrap();
+            let step = |i: usize, j: usize| {
+                let here = grid.get(i, j);
+                f64::from((grid.get(i + 1, j) - here).hypot(grid.get(i, j + 1) - here))
+            };
+            let (mut border, mut inside) = ((0.0, 0), (0.0, 0));
+            for j in 0..size[1] - 1 {
+                for i in 0..size[0] - 1 {
+                    let from_edge = i.min(j).min(size[0] - 2 - i).min(size[1] - 2 - j);
+                    let sum = if from_edge < 3 { &mut border } else { &mut inside };
+                    if from_edge < 3 || from_edge > 12 {
+                        *sum = (sum.0 + step(i, j), sum.1 + 1);
+                    }
+                }
+            }
+            borders.push(border.0 / f64::from(border.1) / (inside.0 / f64::from(inside.1)));
+        }
+        // Solved over the world alone, the border is half as steep again as the inside, and more.
+        let mean = borders.iter().sum::<f64>() / borders.len() as f64;
+        assert!((0.8..1.2).contains(&mean), "{size:?}: {borders:?}");
+    }
+}

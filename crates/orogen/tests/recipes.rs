@@ -1,7 +1,7 @@
 //! Recipes that are wrong, and what is said about them.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
-use orogen::{ErrorKind, Recipe, World, presets};
+use orogen::{ErrorKind, Grid, Recipe, Window, World, presets};
 
 /// The first complaint as "line:column: sentence" must be at `place` and hold every word of `words`.
 fn complains(text: &str, place: &str, words: &[&str]) {
@@ -227,10 +227,47 @@ fn recipes_in_the_docs_are_recipes() {
             let block = block.split("```").next().unwrap();
             if block.contains("orogen = 1") {
                 let world = Recipe::parse(block, page).and_then(World::open).unwrap_or_else(|error| panic!("{error}"));
-                world.window("height", &orogen::Window::new(16, 16, 60.0)).unwrap_or_else(|error| panic!("{error}"));
+                world.window("height", &Window::new(16, 16, 60.0)).unwrap_or_else(|error| panic!("{error}"));
                 found += 1;
             }
         }
     }
     assert_eq!(found, 2);
+}
+
+/// Teeth and notches of a cliff: samples more than 40 m above, or below, the ground on both sides, one or two samples away; and the steps of
+/// more than 40 m that there are.
+fn teeth(grid: &Grid) -> (usize, usize, f32) {
+    let (width, height) = (grid.width() as i64, grid.height() as i64);
+    let (mut teeth, mut steps, mut most) = (0, 0, 0.0f32);
+    for j in 2..height - 2 {
+        for i in 2..width - 2 {
+            let at = |x: i64, y: i64| grid.get(x as usize, y as usize);
+            let here = at(i, j);
+            for [x, y] in [[1, 0], [0, 1]] {
+                let step = (at(i + x, j + y) - here).abs();
+                (steps, most) = (steps + usize::from(step > 40.0), most.max(step));
+                for reach in [1, 2] {
+                    let [a, b] = [here - at(i - reach * x, j - reach * y), here - at(i + reach * x, j + reach * y)];
+                    teeth += usize::from(a.min(b) > 40.0 || a.max(b) < -40.0);
+                }
+            }
+        }
+    }
+    (teeth, steps, most)
+}
+
+#[test]
+fn cliffs_of_the_preset_mesa_have_no_teeth() {
+    for seed in [4, 1] {
+        let mut recipe = presets::find("mesa").unwrap().recipe().unwrap();
+        recipe.world.seed = seed;
+        let world = World::open(recipe).unwrap();
+        let grid = world.window("height", &Window::new(700, 700, 20.0).at(150, 150)).unwrap();
+        let (teeth, steps, most) = teeth(&grid);
+        assert!(steps > 5000, "{seed}: no cliffs, {steps}");
+        // Noise alone had 1.7 to 1.9 of 100, and steps of 200 m.
+        assert!((teeth as f64) < 0.012 * steps as f64, "{seed}: {teeth} of {steps}");
+        assert!(most < 80.0, "{seed}: {most} m from one sample to the next");
+    }
 }

@@ -1,7 +1,7 @@
 //! Finding the setting of the template whose land is most like a place.
 
 use super::likeness::{Likeness, of_windows};
-use super::template::{KNOBS, Setting, Stretch, recipe};
+use super::template::{KNOBS, MARGIN, Setting, Stretch, recipe, trial};
 use crate::analysis::slope::steepness;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
@@ -14,9 +14,6 @@ use orogen_noise::Points;
 
 /// Side of the windows that are compared, in samples, where the place is large enough.
 pub const SIDE: usize = 256;
-
-/// Samples around a window in the worlds that are tried: the border of a world does not erode.
-const MARGIN: usize = 48;
 
 /// Most windows of a place.
 pub const MOST_WINDOWS: usize = 12;
@@ -298,7 +295,7 @@ fn trial_world(
 ) -> Result<(World, Window)> {
     let inner = target.side * across;
     let plain = Stretch { from: [0.0, 1.0], to: [0.0, 1.0], bend: 0.0 };
-    let recipe = recipe(setting, &plain, [inner + 2 * MARGIN; 2], target.cell, seed);
+    let recipe = trial(setting, &plain, [inner + 2 * MARGIN; 2], target.cell, seed);
     let world = World::with_options(recipe, Options { cache: None, ..options.clone() })?;
     let inside = Window::new(inner, inner, target.cell).at(MARGIN as i64, MARGIN as i64);
     Ok((world, inside))

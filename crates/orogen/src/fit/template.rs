@@ -1,6 +1,6 @@
 //! The recipe that is fitted: noise that rivers cut, shaped and scaled.
 
-use crate::field::{curve::Curve, fbm::Fbm, remap::Remap};
+use crate::field::{curve::Curve, fbm::Fbm, remap::Remap, transform::Transform};
 use crate::filter::blur::Blur;
 use crate::recipe::document::{Recipe, WorldSpec};
 use crate::solver::stream_power::StreamPower;
@@ -30,7 +30,7 @@ pub const KNOBS: [Knob; 9] = [
     knob("talus angle, deg", 15.0, 60.0, false),
     knob("how much rock differs", 0.0, 1.5, false),
     knob("creep, m^2/yr", 1e-3, 1.0, true),
-    knob("blur, cells", 0.2, 2.0, false),
+    knob("blur, cells", 0.2, 1.0, false),
 ];
 
 /// A setting of the knobs, each 0 to 1 within its range.
@@ -83,8 +83,72 @@ fn round(value: f64) -> f64 {
     (value * digits).round() / digits
 }
 
-/// The recipe of a setting, in a world of so many cells. Its node `soft` is the land before it is stretched.
+/// Where the rivers of a world are solved: over all of it, or in a wider view of the land of which the world is the middle, at the same
+/// resolution. A solver ends at the world's edge, where the land stays as it was: a rim.
+#[derive(Debug, Clone, Copy)]
+struct View {
+    /// What lengths are multiplied by, so that the wider view fits into the world.
+    scale: f64,
+    /// Metres that are seen beyond the world in the west and in the north.
+    around: [f64; 2],
+    /// From one sample that rivers are solved on to the next, in the world.
+    cell: f64,
+}
+
+impl View {
+    /// The view with at least `margin` cells on each side.
+    fn new(size: [usize; 2], cell: f64, margin: usize) -> View {
+        let fewest = size[0].min(size[1]).max(1) as f64;
+        let scale = fewest / (fewest + 2.0 * margin as f64);
+        // Whole cells: the samples of the view are those of the world, and none is made of its neighbours.
+        let around = size.map(|samples| (samples as f64 * (1.0 / scale - 1.0) / 2.0).round() * cell);
+        View { scale, around, cell: cell * scale }
+    }
+
+    /// A source as the view sees it.
+    fn wider(&self, source: &str) -> Transform {
+        Transform {
+            source: source.into(),
+            scale: self.scale,
+            offset: self.around.map(|metres| -metres),
+            ..Transform::default()
+        }
+    }
+
+    /// The middle of what was solved in the view.
+    fn middle(&self, source: &str) -> Transform {
+        let offset = self.around.map(|metres| metres * self.scale);
+        Transform { source: source.into(), scale: 1.0 / self.scale, offset, ..Transform::default() }
+    }
+
+    /// The law that does in the view what another does in the world: areas are smaller there, slopes steeper.
+    fn law(&self, law: StreamPower) -> StreamPower {
+        let s = self.scale;
+        let talus = libm::atan(libm::tan(law.talus_angle.to_radians()) / s).to_degrees();
+        StreamPower {
+            erodibility: law.erodibility * libm::pow(s, law.slope_exponent - 2.0 * law.area_exponent),
+            talus_angle: talus,
+            creep: law.creep * s * s,
+            cell: self.cell,
+            ..law
+        }
+    }
+}
+
+/// The recipe of a setting, in a world of so many cells, up to whose edges rivers have cut. Its node `soft` is the land before it is stretched.
 pub fn recipe(setting: &Setting, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64) -> Recipe {
+    written(setting, stretch, size, cell, seed, Some(View::new(size, cell, MARGIN)))
+}
+
+/// The same solved over the world alone, which is quicker: its land is like that of [`recipe`] from [`MARGIN`] samples inwards.
+pub(super) fn trial(setting: &Setting, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64) -> Recipe {
+    written(setting, stretch, size, cell, seed, None)
+}
+
+/// Samples along the border of a solved world whose land shows that it ends.
+pub(super) const MARGIN: usize = 48;
+
+fn written(setting: &Setting, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64, view: Option<View>) -> Recipe {
     let value = |k: usize| round(value(setting, k));
     let wavelength = round(value(0) * cell);
     let size = size.map(|samples| samples as f64 * cell);
@@ -102,20 +166,35 @@ pub fn recipe(setting: &Setting, stretch: &Stretch, size: [usize; 2], cell: f64,
     recipe.add("softness", Curve { source: "rock".into(), points: [-1.0, -0.5, 0.0, 0.5, 1.0].map(share).to_vec() });
     recipe.add("lift", noise(3, wavelength, 4));
     recipe.add("rise", Remap { source: "lift".into(), from: [-1.0, 1.0], to: [0.2, 1.8], ..Remap::default() });
-    recipe.add(
-        "cut",
-        StreamPower {
-            source: "ground".into(),
-            softness: "softness".into(),
-            rise: "rise".into(),
-            erodibility: value(3),
-            uplift: value(4),
-            talus_angle: value(5),
-            creep: value(7),
-            sea: false,
-            ..StreamPower::default()
-        },
-    );
+    let law = StreamPower {
+        source: "ground".into(),
+        softness: "softness".into(),
+        rise: "rise".into(),
+        erodibility: value(3),
+        uplift: value(4),
+        talus_angle: value(5),
+        creep: value(7),
+        sea: false,
+        ..StreamPower::default()
+    };
+    match view {
+        Some(view) => {
+            for source in ["ground", "softness", "rise"] {
+                recipe.add(&format!("{source}_around"), view.wider(source));
+            }
+            let law = StreamPower {
+                source: "ground_around".into(),
+                softness: "softness_around".into(),
+                rise: "rise_around".into(),
+                ..view.law(law)
+            };
+            recipe.add("cut_around", law);
+            recipe.add("cut", view.middle("cut_around"));
+        }
+        None => {
+            recipe.add("cut", law);
+        }
+    }
     recipe.add("soft", Blur { source: "cut".into(), radius: round(value(8) * cell) });
     recipe.add("land", stretch.curve());
     recipe.output("height", "land");
