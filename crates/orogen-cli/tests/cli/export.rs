@@ -1,6 +1,8 @@
 //! `orogen export`.
 
 use crate::harness::{Folder, Outcome, npy, png};
+use orogen::export::derived::layer::{Made, Nature};
+use orogen::export::derived::list as derived;
 use std::io::Read;
 use std::process::Stdio;
 
@@ -230,7 +232,7 @@ fn weights_add_up_to_255_over_all_pictures() {
     let folder = Folder::with_small();
     folder.good(&["export", "small.toml", "-o", "a.png", "--layer", "splat", "-q"]);
     folder.good(&["export", "small.toml", "-o", "b.png", "--layer", "splat", "--weights", "layers", "-q"]);
-    let names = ["grass", "scree", "rock", "snow", "sand", "bed"];
+    let names = ["grass", "sand", "scree", "rock", "snow", "bed"];
     let (first, second) = (png(&folder.read("a.png")).data, png(&folder.read("a_2.png")).data);
     let layers: Vec<Vec<u8>> = names.iter().map(|name| png(&folder.read(&format!("b_{name}.png"))).data).collect();
     for (k, (first, second)) in first.chunks_exact(4).zip(second.chunks_exact(4)).enumerate() {
@@ -409,7 +411,8 @@ fn what_cannot_be_asked_for_is_usage() {
         (&["-o", "a.png", "--encoding", "terrarium", "--range", "1,2"], "leave out --range"),
         (&["-o", "a.hgt"], "these are 64 x 48: the nearest is --cell 0.4 --window 0,0,1201,1201"),
         (&["-o", "a.npy", "--layer", "hieght"], "did you mean `height`?"),
-        (&["-o", "a.npy", "--layer", "rivers"], "`height` and `noise`"),
+        (&["-o", "a.npy", "--layer", "qqqqqq"], "`height` and `noise`"),
+        (&["-o", "a.npy", "--layer", "rivers"], "`rivers` is made of vector features, which .npy does not hold"),
         (&["-o", "a.npy", "--window", "60,0,10,10"], "not inside the world"),
         (&["-o", "a.npy", "--window", "-1,0,10,10"], "not inside the world"),
         (&["-o", "a.npy", "--window", "0,0,10"], "X,Y,W,H"),
@@ -464,7 +467,11 @@ fn contours_are_lines_of_the_heights_asked_for() {
     ] {
         folder.bad(&[&["export", "small.toml", "-o", "c.geojson"][..], &given].concat(), 2, expect);
     }
-    folder.bad(&["export", "small.toml", "-o", "c.npy", "--interval", "5"], 2, "those that know it: .geojson and .svg");
+    folder.bad(
+        &["export", "small.toml", "-o", "c.npy", "--interval", "5"],
+        2,
+        "those that know it: .fgb, .geojson, .gpkg and .svg",
+    );
     assert!(!folder.path("c.geojson").exists());
 }
 
@@ -484,12 +491,12 @@ fn layers_that_follow_from_the_heights_have_options_of_their_own() {
         npy(&folder.read("layer.npy"))
     };
     // Every one is made, with what it cannot do without.
-    let help = folder.good(&["export", "--help"]);
-    let (_, list) = help.text().split_once("Layers that follow from the heights:").unwrap();
-    let names: Vec<&str> = list.lines().filter_map(|line| line.split_whitespace().next()).collect();
-    assert!(names.len() >= 24, "{names:?}");
-    for name in names.iter().filter(|name| !["normal", "splat"].contains(name)) {
-        let needed: &[&str] = if *name == "viewshed" { &["--observer", "300,200"] } else { &[] };
+    let numbers = derived::all().iter().filter(|layer| match &layer.made {
+        Made::Rows(rows) => rows.nature == Nature::Numbers,
+        Made::Nodes(_) => true,
+    });
+    for name in numbers.map(|layer| layer.name) {
+        let needed: &[&str] = if name == "viewshed" { &["--observer", "300,200"] } else { &[] };
         let made = export(name, needed);
         assert_eq!((made.width(), made.height()), (64, 48), "{name}");
     }

@@ -68,7 +68,8 @@ fn rows(side: usize) -> Vec<Vec<String>> {
             Made::Rows(rows) if rows.nature != Nature::Numbers => "png",
             _ => "tif",
         };
-        rows.push(format!("export land.toml -o layer.{kind} --layer {} -q", layer.name));
+        let needed = if layer.name == "viewshed" { "--observer 3000,2000" } else { "" };
+        rows.push(format!("export land.toml -o layer.{kind} --layer {} {needed} -q", layer.name));
     }
     for target in targets::all() {
         let fits = target.sides.iter().filter(|samples| **samples <= side).max();

@@ -20,6 +20,8 @@ pub struct Drawing {
     pub layers: Vec<(FeatureLayer, Style)>,
     map: Option<Georeference>,
     cell: f64,
+    /// What there is to say of the contours of a layer of samples.
+    contours: Option<String>,
 }
 
 impl Drawing {
@@ -29,9 +31,11 @@ impl Drawing {
     pub fn of(subject: &mut Subject, options: &Options) -> io::Result<Drawing> {
         let (map, cell) = (subject.map(), subject.window().cell);
         let asked = subject.vectors().to_vec();
+        let mut words = None;
         let layers = match asked.as_slice() {
             [] => {
                 let found = contours::of(subject, options)?;
+                words = Some(found.words(subject.unit()));
                 vec![(vectors::contours::features(&found), vectors::contours::LAYER.style)]
             }
             asked => {
@@ -45,7 +49,7 @@ impl Drawing {
                 asked.iter().map(make).collect::<Result<Vec<_>>>()?
             }
         };
-        Ok(Drawing { layers, map, cell })
+        Ok(Drawing { layers, map, cell, contours: words })
     }
 
     /// Turns metres of the world into map coordinates.
@@ -79,6 +83,9 @@ impl Drawing {
 
     /// How much there is, in words.
     pub fn words(&self) -> String {
+        if let Some(words) = &self.contours {
+            return words.clone();
+        }
         let counts: Vec<String> = (self.layers.iter())
             .map(|(layer, _)| match layer.features.len() {
                 1 => format!("1 feature of {}", layer.name),
