@@ -221,7 +221,9 @@ if __name__ == "__main__":
             shutil.copy(source, path)
             path.chmod(0o644)
         else:
-            path = export(source, "heights.tif", "--window", "200,300,320,300", "-q")
+            # GRASS works in a coordinate system that it knows.
+            map_options = ("--crs", "EPSG:32632", "--origin", "500000,5000000")
+            path = export(source, "heights.tif", "--window", "200,300,320,300", *map_options, "-q")
         for layer, (value, most) in measure(source, Place(path)).items():
             checks.that(f"{source}: {layer}", value <= most, f"{value:.5f}, at most {most}")
             if named:

@@ -504,7 +504,8 @@ fn layers_that_follow_from_the_heights_have_options_of_their_own() {
     let (june, winter) = (export("insolation", &["--day", "172"]), export("insolation", &["--season", "winter"]));
     assert!(june.data().iter().zip(winter.data()).all(|(june, winter)| june > winter));
     let south = export("insolation", &["--season", "winter", "--latitude", "-45"]);
-    assert!(south.data().iter().zip(june.data()).all(|(south, june)| south < june));
+    // Not everywhere: a steep slope to the north gets more of a low northern sun than of a high southern one.
+    assert!(south.data().iter().sum::<f32>() < june.data().iter().sum::<f32>());
     let few = export("height-above-drainage", &["--stream", "1e9"]);
     let many = export("height-above-drainage", &["--stream", "500"]);
     assert!(few.data().iter().sum::<f32>() > 2.0 * many.data().iter().sum::<f32>());
