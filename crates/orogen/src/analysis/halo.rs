@@ -67,22 +67,36 @@ impl Halo {
         let (here, below) = rest.split_at_mut(width);
         self.row(grid, j, here);
         let north = match (j.checked_sub(1), &self.north) {
-            (Some(there), _) => Some(self.row(grid, there, above)),
-            (None, north) => north.as_ref().map(|north| above.copy_from_slice(north)),
+            (Some(there), _) => {
+                self.row(grid, there, above);
+                true
+            }
+            (None, Some(north)) => {
+                above.copy_from_slice(north);
+                true
+            }
+            (None, None) => false,
         };
         let south = match (j == last, &self.south) {
-            (false, _) => Some(self.row(grid, j + 1, below)),
-            (true, south) => south.as_ref().map(|south| below.copy_from_slice(south)),
+            (false, _) => {
+                self.row(grid, j + 1, below);
+                true
+            }
+            (true, Some(south)) => {
+                below.copy_from_slice(south);
+                true
+            }
+            (true, None) => false,
         };
         // Past an end of the world, on in a line from the other side; a single row is level.
         let run_on = |out: &mut [f32], other: &[f32]| {
             out.iter_mut().zip(&*here).zip(other).for_each(|((out, here), other)| *out = beyond(*here, *other));
         };
         match (north, south) {
-            (Some(()), Some(())) => {}
-            (Some(()), None) => run_on(below, above),
-            (None, Some(())) => run_on(above, below),
-            (None, None) => {
+            (true, true) => {}
+            (true, false) => run_on(below, above),
+            (false, true) => run_on(above, below),
+            (false, false) => {
                 above.copy_from_slice(here);
                 below.copy_from_slice(here);
             }

@@ -216,9 +216,9 @@ pub(crate) mod samples {
                 },
                 values: vec![
                     Value::Integer(k as i64 + 1),
-                    if k % 5 == 0 { Value::Real(f64::NAN) } else { Value::Real(k as f64 * 1.5) },
-                    Value::Boolean(k % 2 == 0),
-                    if k % 3 == 0 { Value::Null } else { Value::Text("sea") },
+                    if k.is_multiple_of(5) { Value::Real(f64::NAN) } else { Value::Real(k as f64 * 1.5) },
+                    Value::Boolean(k.is_multiple_of(2)),
+                    if k.is_multiple_of(3) { Value::Null } else { Value::Text("sea") },
                 ],
             }
         };

@@ -221,7 +221,7 @@ mod tests {
     #[test]
     fn paper_is_filled_and_nothing_lies_over_another() {
         for page in [[210.0, 297.0], [297.0, 210.0], [297.0, 420.0], [420.0, 297.0], [215.9, 279.4], [300.0, 200.0]] {
-            for aspect in [0.65, 1.0, 1.0f64.hypot(1.0)] {
+            for aspect in [0.65, 1.0, std::f64::consts::SQRT_2] {
                 let layout = Layout::new(aspect, &blocks(), &on(page, true));
                 let boxes = boxes(&layout);
                 let within = |k: usize| page[k] as f32 - MARGIN + 0.1;

@@ -251,7 +251,7 @@ mod tests {
     fn no_element_is_too_long_for_a_reader() {
         // Noise does not compress.
         let [width, height] = [1100, 700];
-        let pixels = (0..3 * width * height as u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+        let pixels = (0..3 * width * height).map(|k: u32| (k.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
         let picture = Item::Picture { area: [0.0, 0.0, 110.0, 70.0], width: 1100, height: 700, pixels };
         let wave = |k: usize| (0..400).map(|i| [i as f32 * 0.37, (k * i % 97) as f32 * 0.123]).collect();
         let lines = Item::Lines { lines: (0..90).map(wave).collect(), width: 0.1, ink: [0; 3], cover: 0.5 };
