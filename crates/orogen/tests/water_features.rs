@@ -1,4 +1,6 @@
 //! Water as vector features: rivers that agree with the recipe's own drainage, on presets and seeds.
+// Clippy knows test functions, but not that all of this file is for them.
+#![allow(clippy::unwrap_used)]
 
 use orogen::export::features::ground::Ground;
 use orogen::export::features::list;
