@@ -69,14 +69,15 @@ fn a_world_of_a_fitted_recipe_has_no_rim() {
             let grid = world.window("height", &Window::new(size[0], size[1], 60.0)).unwrap();
             let step = |i: usize, j: usize| {
                 let here = grid.get(i, j);
-                f64::from((grid.get(i + 1, j) - here).hypot(grid.get(i, j + 1) - here))
+                let [east, south] = [grid.get(i + 1, j) - here, grid.get(i, j + 1) - here].map(f64::from);
+                (east * east + south * south).sqrt()
             };
             let (mut border, mut inside) = ((0.0, 0), (0.0, 0));
             for j in 0..size[1] - 1 {
                 for i in 0..size[0] - 1 {
                     let from_edge = i.min(j).min(size[0] - 2 - i).min(size[1] - 2 - j);
                     let sum = if from_edge < 3 { &mut border } else { &mut inside };
-                    if from_edge < 3 || from_edge > 12 {
+                    if !(3..=12).contains(&from_edge) {
                         *sum = (sum.0 + step(i, j), sum.1 + 1);
                     }
                 }

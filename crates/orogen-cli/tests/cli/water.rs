@@ -11,7 +11,7 @@ fn water_goes_into_formats_of_features() {
     let told = said(&["-o", "w.gpkg", "--layer", all]);
     assert!(told.contains("features of rivers") && told.contains("features of contours"), "{told}");
     let bytes = folder.read("w.gpkg");
-    assert!(bytes.starts_with(b"SQLite format 3\0") && &bytes[68..72] == b"GPKG" && bytes.len() % 4096 == 0);
+    assert!(bytes.starts_with(b"SQLite format 3\0") && &bytes[68..72] == b"GPKG" && bytes.len().is_multiple_of(4096));
     said(&["-o", "again.gpkg", "--layer", all, "--threads", "1"]);
     assert!(bytes == folder.read("again.gpkg"));
     said(&["-o", "w.fgb", "--layer", "rivers"]);
