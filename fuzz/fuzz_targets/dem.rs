@@ -2,6 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
+use orogen::format::dem::Request;
 use orogen::format::import;
 use orogen::format::sidecar::Sidecar;
 use std::io::Cursor;
@@ -13,10 +14,12 @@ fuzz_target!(|bytes: &[u8]| {
         [b'I', b'I', ..] | [b'M', b'M', ..] => &["tif"],
         [0x93, b'N', ..] => &["npy"],
         [0x89, b'P', ..] => &["png"],
+        [0x76, 0x2f, ..] => &["exr"],
         _ => &["asc", "hgt", "r16", "r32"],
     };
     for extension in extensions {
-        if let Ok(dem) = import::parse(&mut Cursor::new(bytes), "it", extension, sidecar.clone(), 1 << 22) {
+        let request = Request { band: Some(1), allowed: 1 << 22 };
+        if let Ok(dem) = import::parse(&mut Cursor::new(bytes), "it", extension, sidecar.clone(), request) {
             assert_eq!(dem.heights.len(), dem.width * dem.height);
         }
     }

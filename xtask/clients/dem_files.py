@@ -1,5 +1,6 @@
 """Files of heights as other programs write them: one formula in every kind that orogen reads, and some that it must refuse."""
 
+import shutil
 from pathlib import Path
 
 import numpy
@@ -32,6 +33,15 @@ def write(path, dtype, nodata=None, crs="EPSG:32632", transform=None, add=0.0, b
     return path
 
 
+def several_bands(path, dtype, **options):
+    """Three bands: the formula, the formula and 1000, and the formula turned about."""
+    bands = [heights(), heights() + 1000, heights()[::-1, ::-1]]
+    profile = {"driver": "GTiff", "width": WIDTH, "height": HEIGHT, "count": 3, "dtype": dtype, "crs": "EPSG:32632"}
+    with rasterio.open(path, "w", transform=from_origin(500000, 5200000, 30, 30), **profile, **options) as file:
+        for band, data in enumerate(bands):
+            file.write(data.astype(dtype), band + 1)
+
+
 TILES = {"tiled": True, "blockxsize": 16, "blockysize": 16}
 
 
@@ -56,6 +66,16 @@ def geotiffs(folder):
         ("u32-strips-packbits-big-endian", "uint32", 0, {"compress": "packbits", "ENDIANNESS": "BIG"}),
         ("i64-strips", "int64", 0, {}),
         ("u64-tiles-deflate", "uint64", 0, {**TILES, "compress": "deflate"}),
+        ("f32-tiles-zstd-p3", "float32", 0.25, {**TILES, "compress": "zstd", "predictor": 3}),
+        ("i16-strips-zstd-p2-big-endian", "int16", 0, {"compress": "zstd", "predictor": 2, "ENDIANNESS": "BIG"}),
+        ("f32-tiles-lzma", "float32", 0.25, {**TILES, "compress": "lzma"}),
+        ("i16-strips-lzma-p2", "int16", 0, {"compress": "lzma", "predictor": 2}),
+        ("f32-tiles-lerc", "float32", 0.25, {**TILES, "compress": "lerc", "MAX_Z_ERROR": 0}),
+        ("f64-strips-lerc-deflate", "float64", 0.125, {"compress": "lerc_deflate", "MAX_Z_ERROR": 0}),
+        ("i16-tiles-lerc-zstd", "int16", 0, {**TILES, "compress": "lerc_zstd", "MAX_Z_ERROR": 0}),
+        ("u8-tiles-lerc", "uint8", 0, {**TILES, "compress": "lerc", "MAX_Z_ERROR": 0}),
+        ("i32-strips-lerc", "int32", 0, {"compress": "lerc", "MAX_Z_ERROR": 0}),
+        ("u16-strips-lerc-big-endian", "uint16", 0, {"compress": "lerc", "MAX_Z_ERROR": 0, "ENDIANNESS": "BIG"}),
     ]
     for name, dtype, add, options in kinds:
         unsigned = dtype.startswith("u")
@@ -70,8 +90,14 @@ def odd_ones(folder):
     write(folder / "oblong.tif", "float32", transform=from_origin(500000, 5200000, 20, 30))
     write(folder / "south-up.tif", "float32", transform=rasterio.Affine(30, 0, 500000, 0, 30, 5200000))
     write(folder / "turned.tif", "float32", transform=rasterio.Affine(30, 5, 500000, 5, -30, 5200000))
-    write(folder / "two-bands.tif", "float32", bands=2)
-    write(folder / "zstd.tif", "float32", compress="zstd")
+    several_bands(folder / "bands.tif", "float32")
+    several_bands(folder / "bands-pixels-p3.tif", "float32", interleave="pixel", compress="deflate", predictor=3, **TILES)
+    several_bands(folder / "bands-pixels-p2.tif", "int16", interleave="pixel", compress="lzw", predictor=2)
+    several_bands(folder / "bands-apart.tif", "int16", interleave="band", compress="zstd", predictor=2, **TILES)
+    several_bands(folder / "bands-lerc.tif", "float32", interleave="pixel", compress="lerc", MAX_Z_ERROR=0)
+    # Every sample is within half a metre, and some are noise to any packer.
+    write(folder / "lossy-lerc.tif", "float32", add=0.25, compress="lerc", MAX_Z_ERROR=0.5, **TILES)
+    write(folder / "webp.tif", "uint8", compress="webp", WEBP_LOSSLESS=True, bands=3)
     with rasterio.open(folder / "sparse.tif", "w", driver="GTiff", width=64, height=48, count=1, dtype="float32", nodata=-1,
                        transform=from_origin(0, 0, 30, 30), SPARSE_OK=True, **TILES) as file:
         file.write(numpy.full((16, 16), 7, "float32"), 1, window=rasterio.windows.Window(16, 16, 16, 16))
@@ -100,8 +126,46 @@ def others(folder):
     (folder / "floats.toml").write_text(f"width = {WIDTH}\nheight = {HEIGHT}\ncell = 30\nbyte_order = 'big'\n")
     for beside in folder.glob("*.aux.xml"):
         beside.unlink()
-    (folder / "arc.prj").unlink(missing_ok=True)
+    (folder / "arc.prj").rename(folder / "placed.prj")
+    (folder / "placed.asc").write_bytes((folder / "arc.asc").read_bytes())
+    # A picture with a world file and a system, and another with GDAL's own notes.
+    with rasterio.open(folder / "notes.png", "w", driver="PNG", width=WIDTH, height=HEIGHT, count=1, dtype="uint16",
+                       crs="EPSG:32632", transform=from_origin(500000, 5200000, 30, 30)) as file:
+        file.write(picture, 1)
+    shutil.copy(folder / "notes.png", folder / "world.png")
+    (folder / "world.pgw").write_text("30\n0\n0\n-30\n500015\n5199985\n")
+    shutil.copy(folder / "placed.prj", folder / "world.prj")
+    for name in ["notes", "world"]:
+        (folder / f"{name}.toml").write_text(f"low = 8\nhigh = {8 + 65535 / 600}\n")
     source.unlink()
+
+
+def mosaics(folder):
+    """The formula in tiles that overlap, one of them missing, as a folder and as a virtual raster."""
+    tiles = folder / "tiles"
+    tiles.mkdir(exist_ok=True)
+    data = (heights() + 0.25).astype("float32")
+    pieces = {"a": (0, 0, 20, 12), "b": (19, 0, 18, 12), "c": (0, 12, 20, 11)}
+    for name, (x, y, w, h) in pieces.items():
+        profile = {"driver": "GTiff", "width": w, "height": h, "count": 1, "dtype": "float32", "crs": "EPSG:32632"}
+        place = from_origin(500000 + 30 * x, 5200000 - 30 * y, 30, 30)
+        with rasterio.open(tiles / f"{name}.tif", "w", transform=place, compress="deflate", **profile) as file:
+            file.write(data[y:y + h, x:x + w], 1)
+    sources = "".join(
+        f"""    <SimpleSource>
+      <SourceFilename relativeToVRT="1">tiles/{name}.tif</SourceFilename>
+      <SourceBand>1</SourceBand>
+      <SrcRect xOff="0" yOff="0" xSize="{w}" ySize="{h}"/>
+      <DstRect xOff="{x}" yOff="{y}" xSize="{w}" ySize="{h}"/>
+    </SimpleSource>
+""" for name, (x, y, w, h) in pieces.items())
+    (folder / "tiles.vrt").write_text(f"""<VRTDataset rasterXSize="{WIDTH}" rasterYSize="{HEIGHT}">
+  <SRS>{(folder / "placed.prj").read_text().strip().replace('"', "&quot;")}</SRS>
+  <GeoTransform>500000, 30, 0, 5200000, 0, -30</GeoTransform>
+  <VRTRasterBand dataType="Float32" band="1">
+{sources}  </VRTRasterBand>
+</VRTDataset>
+""")
 
 
 def everything(folder):
@@ -110,6 +174,7 @@ def everything(folder):
     made = list(geotiffs(folder))
     odd_ones(folder)
     others(folder)
+    mosaics(folder)
     return made
 
 

@@ -75,7 +75,12 @@ const CLIENTS: &[Client] = &[
     Client { name: "rasterio", apt: &[], pip: &[NUMPY, RASTERIO, "rio-cogeo==7.0.4"], npm: &[] },
     Client { name: "xarray", apt: &[], pip: &[NUMPY, "xarray==2026.9.0", "zarr==3.1.6"], npm: &[] },
     Client { name: "tiles", apt: &[], pip: &[NUMPY, PILLOW], npm: &[] },
-    Client { name: "dems", apt: &[], pip: &[NUMPY, RASTERIO], npm: &[] },
+    Client {
+        name: "dems",
+        apt: &[],
+        pip: &[NUMPY, RASTERIO, "zarr==3.1.6", "numcodecs==0.16.6", "pyproj==3.7.2", "OpenEXR==3.5.3"],
+        npm: &[],
+    },
     Client {
         name: "meshes",
         apt: &[("node", "nodejs"), ("npm", "npm"), ("admesh", "admesh")],

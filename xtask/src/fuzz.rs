@@ -13,7 +13,7 @@ said, from the files in fuzz/corpus/TARGET. New inputs go into target/fuzz/found
 fuzz/artifacts. Needs a C++ compiler for libFuzzer; cargo-fuzz is not needed, and works too.
 ";
 
-const TARGETS: [&str; 2] = ["dem", "recipe"];
+const TARGETS: [&str; 3] = ["dem", "place", "recipe"];
 
 /// What makes a program tell libFuzzer where it has been (the flags of cargo-fuzz).
 const FLAGS: &str = "--cfg fuzzing -Zsanitizer=address -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \

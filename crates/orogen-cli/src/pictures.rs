@@ -4,12 +4,13 @@ use std::io::Write;
 use std::path::Path;
 
 use orogen::analysis::summary::{self, Summary};
-use orogen::export::notes;
+use orogen::export::{notes, place};
 use orogen::file::{self, Output, OutputPolicy, Staged, mark};
+use orogen::format::dem::Georeference;
 use orogen::format::levels::Levels;
 use orogen::format::png;
 use orogen::map::paint::Painter;
-use orogen::{Grid, Recipe, Result};
+use orogen::{Grid, Recipe, Result, Window};
 use serde::Serialize;
 
 use crate::interrupt::Stoppable;
@@ -41,6 +42,15 @@ pub struct Report {
     pub seconds: f64,
     /// SHA-256 of the heights as f32 little-endian, row-major.
     pub sha256: String,
+    /// How columns and rows become coordinates, in GDAL's order, of a world on a map.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub geotransform: Option<[f64; 6]>,
+    /// The EPSG code of its coordinate system.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crs: Option<String>,
+    /// Its coordinate system as well-known text.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wkt: Option<String>,
 }
 
 impl Report {
@@ -82,11 +92,28 @@ pub fn write(outputs: &[Output], recipe: &Recipe, grid: &Grid, seconds: impl FnO
         || summary::summary(grid.data(), recipe.world.sea_level),
     );
     let (map, greys) = (pictures.0?, pictures.1?);
+    let places = places(&outputs[..3], recipe, grid.window())?;
     let text = stage(3, &|out| out.write_all(mark::marked(&(again(recipe, grid) + &recipe.to_toml())).as_bytes()))?;
     let report = report(recipe, grid, summary, seconds());
     let json = stage(4, &|out| out.write_all(report.json().as_bytes()))?;
-    file::commit(greys.into_iter().chain([map, text, json]).collect())?;
+    file::commit(places.into_iter().chain(greys).chain([map, text, json]).collect())?;
     Ok(report)
+}
+
+/// What tells where the pictures lie, of a world on a map: beside each a world file, a `.prj` and GDAL's notes.
+fn places(pictures: &[Output], recipe: &Recipe, window: &Window) -> Result<Vec<Staged>> {
+    let Some(map) = recipe.georeference() else { return Ok(Vec::new()) };
+    let mut staged = Vec::new();
+    for picture in pictures {
+        let path = picture.path();
+        let (companions, _) =
+            place::companions(path, &map, window, Some(false)).map_err(|cause| file::explain("write", path, &cause))?;
+        for companion in companions {
+            let output = picture.policy().output(companion.path)?;
+            staged.push(file::stage(&output, |out| out.write_all(&companion.bytes))?);
+        }
+    }
+    Ok(staged)
 }
 
 /// The comment above the recipe: how to look at its world the same way again.
@@ -105,6 +132,7 @@ fn again(recipe: &Recipe, grid: &Grid) -> String {
 }
 
 fn report(recipe: &Recipe, grid: &Grid, summary: Summary, seconds: f64) -> Report {
+    let map = recipe.georeference();
     Report {
         made_by: format!("Orogen {}", env!("CARGO_PKG_VERSION")),
         seed: recipe.world.seed,
@@ -118,5 +146,8 @@ fn report(recipe: &Recipe, grid: &Grid, summary: Summary, seconds: f64) -> Repor
         land_share: summary.land_share,
         seconds: (seconds * 1000.0).round() / 1000.0,
         sha256: summary.sha256,
+        geotransform: map.as_ref().map(|map| map.affine(grid.window(), false).geotransform()),
+        crs: map.as_ref().and_then(Georeference::epsg).map(|code| format!("EPSG:{code}")),
+        wkt: map.as_ref().and_then(|map| map.wkt().ok()),
     }
 }

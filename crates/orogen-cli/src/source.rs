@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use orogen::dem::ground::{Ground, USUAL_MEMORY};
-use orogen::format::import;
+use orogen::dem::open;
 use orogen::recipe::document::LONGEST_TEXT;
 use orogen::recipe::presets::{self, Preset};
 use orogen::{Budget, Error, ErrorKind, Recipe, nearest};
@@ -50,7 +50,7 @@ impl Source {
                 Ok(Source::File(argument.to_path_buf()))
             }
             Some(preset) => Ok(Source::Preset(preset)),
-            None if import::is_dem(argument) => Ok(Source::Dem(argument.to_path_buf())),
+            None if open::is_dem(argument) => Ok(Source::Dem(argument.to_path_buf())),
             None if argument.exists() || looks_like_a_path(argument) => Ok(Source::File(argument.to_path_buf())),
             None => Err(Failure::Usage(unknown(argument))),
         }

@@ -2,7 +2,7 @@
 //! that they ask for. None of it but the seed changes the world, only the samples taken of it.
 
 use clap::Args;
-use orogen::format::crs::Crs;
+use orogen::format::crs::registry::Crs;
 use orogen::format::dem::Georeference;
 use orogen::words::number;
 use orogen::{Recipe, Window, World};

@@ -4,8 +4,11 @@
 mod support;
 
 use orogen::dem::ground::Ground;
+use orogen::dem::open;
 use orogen::field::dem::{Dem as Node, Shows};
-use orogen::format::dem::{Dem, GeoKeys, Unit};
+use orogen::format::crs::keys::{self, GeoKeys};
+use orogen::format::crs::unit::Unit;
+use orogen::format::dem::{Dem, Request};
 use orogen::format::geotiff::options::Options as Layout;
 use orogen::format::geotiff::{reader, writer};
 use orogen::format::import;
@@ -73,7 +76,7 @@ fn every_kind_of_geotiff_is_read() {
         );
         seen += 1;
     }
-    assert_eq!(seen, 18);
+    assert_eq!(seen, 28);
 }
 
 #[test]
@@ -91,6 +94,93 @@ fn other_formats_are_read() {
 }
 
 #[test]
+fn a_band_of_several_is_chosen() {
+    let names = ["bands.tif", "bands-pixels-p3.tif", "bands-pixels-p2.tif", "bands-apart.tif", "bands-lerc.tif"];
+    for name in names {
+        let read = |band| import::read(&corpus().join(name), Request { band, allowed: 1 << 20 });
+        same(name, &read(Some(1)).unwrap(), 0.0, 0.0, false);
+        same(name, &read(Some(2)).unwrap(), 1000.0, 0.0, false);
+        assert_eq!(read(Some(3)).unwrap().heights[0], formula(36, 22), "{name}");
+        let why = read(None).unwrap_err().to_string();
+        assert!(why.contains("it has 3 bands") && why.contains("`band = 1`"), "{why}");
+        assert!(read(Some(4)).unwrap_err().to_string().contains("no band 4"));
+        assert!(read(Some(0)).unwrap_err().to_string().contains("no band 0"));
+    }
+    let why = import::read(&corpus().join("arc.asc"), Request { band: Some(2), allowed: 1 << 20 }).unwrap_err();
+    assert!(why.to_string().contains("one band, and no band 2"), "{why}");
+    same("lossy-lerc.tif", &read("lossy-lerc.tif"), 0.25, 0.5, false);
+    // In a recipe, and behind a colon.
+    let of_node = world(Node { band: 2, ..node("bands.tif") }, None);
+    assert_eq!(of_node.height(30.0, 60.0).unwrap(), 1000.0 + formula(1, 2));
+    let ground = Ground::read(&corpus().join("bands-lerc.tif:2"), None, 1 << 20).unwrap();
+    assert_eq!(ground.grid.get(1, 2), 1000.0 + formula(1, 2));
+}
+
+#[test]
+fn what_stands_beside_a_file_tells_its_place() {
+    for name in ["placed.asc", "world.png", "notes.png"] {
+        let dem = read(name);
+        let place = dem.place.unwrap();
+        assert_eq!((place.origin, place.step), ([500015.0, 5199985.0], [30.0; 2]), "{name}");
+        assert_eq!(keys::epsg(&place.keys.unwrap()), Some(32632), "{name}");
+        assert!(dem.notes.is_empty());
+    }
+    // The same numbers are metres without a system, and say so where one is there that is not understood.
+    let folder = std::env::temp_dir().join(format!("orogen-dems-beside-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::copy(corpus().join("arc.asc"), folder.join("a.asc")).unwrap();
+    std::fs::write(folder.join("a.prj"), "LOCAL_CS[\"mine\"]").unwrap();
+    let dem = import::read(&folder.join("a.asc"), 1 << 20).unwrap();
+    assert_eq!(dem.place.unwrap().keys, None);
+    assert!(
+        dem.notes[0].contains("its coordinate system is not known") && dem.notes[0].contains("LOCAL_CS"),
+        "{:?}",
+        dem.notes
+    );
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn tiles_are_one_place() {
+    for name in ["tiles", "tiles.vrt"] {
+        let dem = open::read(&corpus().join(name), (1 << 20).into()).unwrap();
+        assert_eq!((dem.width, dem.height), (37, 23), "{name}");
+        for (k, height) in dem.heights.iter().enumerate() {
+            let (i, j) = (k % 37, k / 37);
+            match i < 20 || j < 12 {
+                true => assert_eq!(*height, formula(i, j) + 0.25, "{name} at ({i}, {j})"),
+                false => assert!(height.is_nan(), "{name}: no tile lies at ({i}, {j})"),
+            }
+        }
+        let place = dem.place.unwrap();
+        assert_eq!((place.origin, keys::epsg(&place.keys.unwrap())), ([500015.0, 5199985.0], Some(32632)), "{name}");
+        // The whole takes 3404 bytes and the largest tile 960.
+        assert!(open::read(&corpus().join(name), 4364.into()).is_ok(), "{name}");
+        let why = open::read(&corpus().join(name), 4300.into()).unwrap_err().to_string();
+        assert!(why.contains("is allowed"), "{name}: {why}");
+        let why = open::read(&corpus().join(name), 3000.into()).unwrap_err().to_string();
+        assert!(why.contains("37 x 23 samples"), "{name}: {why}");
+        assert!(open::is_dem(&corpus().join(name)));
+    }
+    let folder = std::env::temp_dir().join(format!("orogen-dems-tiles-{}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    assert!(!open::is_dem(&folder));
+    let with = |name: &str| {
+        std::fs::copy(corpus().join(name), folder.join(name)).unwrap();
+        let read = open::read(&folder, (1 << 20).into());
+        std::fs::remove_file(folder.join(name)).unwrap();
+        read.unwrap_err().to_string()
+    };
+    std::fs::copy(corpus().join("f32-strips.tif"), folder.join("a.tif")).unwrap();
+    assert!(with("degrees.tif").contains("a.tif and degrees.tif are in different coordinate systems"));
+    assert!(with("oblong.tif").contains("have different cells, 30 x 30 and 20 x 30"));
+    std::fs::copy(corpus().join("array.npy"), folder.join("b.tif")).unwrap();
+    assert!(with("sparse.tif").contains("b.tif: it is not a TIFF"));
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
 fn files_that_lie_otherwise_are_understood_or_refused() {
     // GDAL has tied the sample itself here, not its pixel's corner: the place is the same.
     assert_eq!(read("point.tif").place.unwrap().origin, [500015.0, 5199985.0]);
@@ -98,8 +188,10 @@ fn files_that_lie_otherwise_are_understood_or_refused() {
     assert_eq!((south_up.heights[36], south_up.heights[22 * 37]), (formula(36, 22), formula(0, 0)));
     assert_eq!(south_up.place.unwrap().origin, [500015.0, 5200000.0 + 22.5 * 30.0]);
     assert!(refused("turned.tif").contains("turned against east"));
-    assert!(refused("two-bands.tif").contains("it has 2 bands"));
-    assert!(refused("zstd.tif").contains("packed by Zstandard"));
+    assert!(refused("webp.tif").contains("it has 3 bands"));
+    let webp = Request { band: Some(1), allowed: 1 << 20 };
+    let why = import::read(&corpus().join("webp.tif"), webp).unwrap_err().to_string();
+    assert!(why.contains("packed by WebP"), "{why}");
     assert!(refused("all-nodata.tif").contains("37 x 23 samples are missing"));
     let sparse = read("sparse.tif");
     assert_eq!((sparse.width, sparse.height, sparse.missing()), (64, 48, 64 * 48 - 256));
@@ -273,6 +365,7 @@ fn damaged_files_are_heights_or_sentences() {
     let mut files: Vec<PathBuf> = std::fs::read_dir(corpus()).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
     let (mut read, mut refused) = (0, 0);
+    let request = Request { band: Some(1), allowed: 1 << 20 };
     for (k, path) in files.iter().filter(|path| import::is_dem(path)).enumerate() {
         let whole = std::fs::read(path).unwrap();
         let extension = path.extension().unwrap().to_str().unwrap();
@@ -283,7 +376,7 @@ fn damaged_files_are_heights_or_sentences() {
             damage(&mut bytes, &mut random);
             let mut result = None;
             let taken = allocation_counter::measure(|| {
-                result = Some(import::parse(&mut Cursor::new(&bytes), "it", extension, sidecar.clone(), 1 << 20));
+                result = Some(import::parse(&mut Cursor::new(&bytes), "it", extension, sidecar.clone(), request));
             });
             assert!(taken.bytes_max < 12 << 20, "{} round {round} takes {} bytes", path.display(), taken.bytes_max);
             match result.unwrap() {
@@ -299,7 +392,7 @@ fn damaged_files_are_heights_or_sentences() {
         }
         // Cut anywhere: never heights, unless only what nobody reads is gone.
         for n in (0..whole.len()).step_by(7) {
-            if let Ok(dem) = import::parse(&mut Cursor::new(&whole[..n]), "it", extension, sidecar.clone(), 1 << 20) {
+            if let Ok(dem) = import::parse(&mut Cursor::new(&whole[..n]), "it", extension, sidecar.clone(), request) {
                 assert_eq!(dem.heights.len(), dem.width * dem.height, "{} cut at {n}", path.display());
             }
         }

@@ -11,6 +11,7 @@ use super::samples::square;
 use super::shelf::Shelf;
 use super::target::{Disk, Target};
 use crate::error::{Error, ErrorKind, Result};
+use crate::format::dem::Georeference;
 use crate::format::zarr::blosc;
 use crate::format::zarr::metadata::{self, Array, Number};
 use crate::grid::{Grid, Window};
@@ -54,6 +55,15 @@ impl Zarr {
         if !unit.is_empty() {
             attributes["units"] = json!(unit);
         }
+        // Where GDAL looks for the system, and where xarray's friends do.
+        if let Some(map) = &self.identity.map {
+            if let Some(code) = map.epsg() {
+                attributes["_CRS"] = json!({ "url": format!("http://www.opengis.net/def/crs/EPSG/0/{code}") });
+            }
+            if let Ok(wkt) = map.wkt() {
+                attributes["crs_wkt"] = json!(wkt);
+            }
+        }
         metadata::array(&Array {
             shape: &[height, width],
             chunk: &[side, side],
@@ -71,18 +81,30 @@ struct Coordinate {
     attributes: Value,
 }
 
-fn coordinates(window: &Window) -> [Coordinate; 2] {
-    let east = json!({
-        "units": "m", "long_name": "metres east of the origin", "standard_name": "projection_x_coordinate", "axis": "X",
-    });
-    let north = json!({
-        "units": "m", "long_name": "metres north of the origin", "standard_name": "projection_y_coordinate", "axis": "Y",
-    });
+fn coordinates(window: &Window, map: Option<&Georeference>) -> [Coordinate; 2] {
+    let side = |unit: &str, long: &str, standard: &str, axis: &str| json!({ "units": unit, "long_name": long, "standard_name": standard, "axis": axis });
     // Added to 0, a south of 0 is no -0.
-    let northings = window.southings().into_iter().map(|south| 0.0 - south).collect();
+    let (eastings, northings) = (window.eastings(), window.southings().into_iter().map(|south| 0.0 - south));
+    let Some(map) = map else {
+        let east = side("m", "metres east of the origin", "projection_x_coordinate", "X");
+        let north = side("m", "metres north of the origin", "projection_y_coordinate", "Y");
+        return [
+            Coordinate { name: "x", values: eastings, attributes: east },
+            Coordinate { name: "y", values: northings.collect(), attributes: north },
+        ];
+    };
+    let (east, north) = match map.is_degrees() {
+        true => {
+            (side("degrees_east", "longitude", "longitude", "X"), side("degrees_north", "latitude", "latitude", "Y"))
+        }
+        false => (
+            side("m", "easting", "projection_x_coordinate", "X"),
+            side("m", "northing", "projection_y_coordinate", "Y"),
+        ),
+    };
     [
-        Coordinate { name: "x", values: window.eastings(), attributes: east },
-        Coordinate { name: "y", values: northings, attributes: north },
+        Coordinate { name: "x", values: eastings.iter().map(|x| map.at(*x, 0.0)[0]).collect(), attributes: east },
+        Coordinate { name: "y", values: northings.map(|north| map.at(0.0, -north)[1]).collect(), attributes: north },
     ]
 }
 
@@ -118,7 +140,7 @@ impl Target for Zarr {
             Ok::<(), Error>(())
         };
         let mut arrays = Vec::new();
-        for coordinate in coordinates(&self.identity.window) {
+        for coordinate in coordinates(&self.identity.window, self.identity.map.as_ref()) {
             let folder = Path::new(coordinate.name);
             let chunk = coordinate.values.len().min(COORDINATES);
             for (n, values) in coordinate.values.chunks(chunk).enumerate() {
@@ -154,7 +176,7 @@ impl Target for Zarr {
 
     fn extras(&self) -> Vec<PathBuf> {
         let mut paths = vec![PathBuf::from("zarr.json")];
-        for coordinate in coordinates(&self.identity.window) {
+        for coordinate in coordinates(&self.identity.window, self.identity.map.as_ref()) {
             let chunks = coordinate.values.len().div_ceil(COORDINATES);
             paths.extend((0..chunks).map(|n| Path::new(coordinate.name).join(format!("c/{n}"))));
             paths.push(Path::new(coordinate.name).join("zarr.json"));

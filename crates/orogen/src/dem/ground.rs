@@ -5,13 +5,16 @@ use std::path::Path;
 use sha2::{Digest, Sha256};
 
 use super::fill::fill;
+use super::open;
 use super::square::{Layout, steps};
 use crate::error::Result;
-use crate::format::dem::{Dem, Georeference, Unit, afford, afford_beside, refused};
+use crate::format::crs::keys::{self, USER_DEFINED};
+use crate::format::crs::unit::Unit;
+use crate::format::dem::{Dem, Georeference, Request, afford, afford_beside, refused};
 use crate::format::import;
 use crate::format::sidecar::Sidecar;
 use crate::grid::Grid;
-use crate::open;
+use crate::open::regular;
 
 /// Most bytes of heights where nobody says.
 pub const USUAL_MEMORY: u64 = 4 << 30;
@@ -34,16 +37,16 @@ pub struct Ground {
 }
 
 impl Ground {
-    /// Reads a file whose extension tells its format: holes are filled ([`fill`]), degrees and oblong cells become square metres
+    /// Reads what a path names ([`open::read`]): holes are filled ([`fill`]), degrees and oblong cells become square metres
     /// ([`Layout`]). `cell` is the distance between samples in metres, where the file's own is not to be used or it has none; heights take no more
-    /// than `allowed` bytes.
+    /// than is allowed.
     ///
     /// # Errors
     /// If the file cannot be read, is too large, or nobody tells how far its samples stand apart.
-    pub fn read(path: &Path, cell: Option<f64>, allowed: u64) -> Result<Ground> {
-        let name = path.display().to_string();
-        let dem = import::read(path, allowed)?;
-        Ground::of(dem, cell, allowed).map_err(|why| refused(&name, why))
+    pub fn read(path: &Path, cell: Option<f64>, request: impl Into<Request>) -> Result<Ground> {
+        let (name, request) = (path.display().to_string(), request.into());
+        let dem = open::read(path, request)?;
+        Ground::of(dem, cell, request.allowed).map_err(|why| refused(&name, why))
     }
 
     /// Reads a grey picture: 0 for black, 1 for white, pixels a metre apart, in no more than `allowed` bytes.
@@ -55,7 +58,7 @@ impl Ground {
         if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
             return Err(refused(&name, "pictures are read from .png; heights of other formats by the op `dem`"));
         }
-        let mut file = open::regular(path, "read")?;
+        let mut file = regular(path, "read")?;
         let greys = Sidecar { low: Some(0.0), high: Some(1.0), cell: Some(1.0), ..Sidecar::default() };
         let dem = import::parse(&mut file, &name, "png", Some(greys), allowed)?;
         Ground::of(dem, None, allowed).map_err(|why| refused(&name, why))
@@ -83,7 +86,7 @@ impl Ground {
         let holes = if dem.missing() > 0 { samples as u64 / 3 * 4 } else { 0 };
         let laid = if layout.is_square() { 0 } else { 4 * (layout.size[0] * layout.size[1]) as u64 };
         afford_beside(samples, holes.max(laid), allowed)?;
-        let mut notes = Vec::new();
+        let mut notes = std::mem::take(&mut dem.notes);
         let missing = fill(&mut dem.heights, dem.width, dem.height);
         if missing > 0 {
             let share = 100.0 * missing as f64 / samples as f64;
@@ -100,7 +103,8 @@ impl Ground {
         let georeference = dem.place.as_ref().map(|place| Georeference {
             origin: place.origin,
             per_metre: [place.step[0] / steps[0], place.step[1] / steps[1]],
-            keys: place.keys.clone(),
+            // Degrees stay degrees where nothing tells their datum.
+            keys: place.keys.clone().or((place.unit == Unit::Degrees).then(|| keys::of_epsg(USER_DEFINED, true))),
         });
         let grid = layout.apply(dem).ok_or("it has another number of samples than it says")?;
         let hash = hash(&grid);

@@ -41,7 +41,7 @@ fn from_utm(east: f64, north: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::format::dem::GeoKeys;
+    use crate::format::crs::keys::GeoKeys;
 
     fn map(origin: [f64; 2], per_metre: f64, model: u16, epsg: u16) -> Georeference {
         let key = if model == 2 { 2048 } else { 3072 };

@@ -4,4 +4,6 @@ pub mod fill;
 pub mod ground;
 pub mod held;
 pub mod latitude;
+pub mod mosaic;
+pub mod open;
 pub mod square;

@@ -1,6 +1,7 @@
 //! From degrees and oblong cells to square metres.
 
-use crate::format::dem::{Dem, Place, Unit};
+use crate::format::crs::unit::Unit;
+use crate::format::dem::{Dem, Place};
 use crate::grid::{Grid, Window};
 use crate::layer::LayerKind;
 use crate::resample;
@@ -23,6 +24,7 @@ pub fn metres_of_degrees(latitude: f64) -> [f64; 2] {
 pub fn steps(place: &Place, rows: usize) -> [f64; 2] {
     match place.unit {
         Unit::Metres(unit) => place.step.map(|step| step * unit),
+        Unit::Degrees if let Some(cell) = place.cell => [cell; 2],
         Unit::Degrees => {
             let middle = place.origin[1] - 0.5 * place.step[1] * (rows as f64 - 1.0);
             let [east, south] = metres_of_degrees(middle);
@@ -94,7 +96,7 @@ mod tests {
     #[test]
     fn oblong_cells_become_square_and_a_plane_stays_a_plane() {
         let heights = (0..21 * 11).map(|k| 3.0 * (k % 21) as f32 - 5.0 * (k / 21) as f32).collect();
-        let dem = Dem { width: 21, height: 11, heights, place: None };
+        let dem = Dem { width: 21, height: 11, heights, place: None, notes: Vec::new() };
         let layout = Layout::new([21, 11], [20.0, 30.0]);
         assert_eq!((layout.size, layout.cell), ([21, 16], 20.0));
         let grid = layout.apply(dem).unwrap();

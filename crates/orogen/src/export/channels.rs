@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::files::Files;
 use super::format::refuse;
 use super::options::{OptionSpec, Options, Takes};
+use super::place;
 use super::sidecar::{self, Held};
 use super::spread;
 use super::subject::Subject;
@@ -60,7 +61,8 @@ pub fn write_normals(subject: &mut Subject, options: &Options, files: &mut Files
             })
         })
     })?;
-    Ok(format!("red east, green {green}, blue up"))
+    let told = place::write(files, subject, options, Some(false))?;
+    Ok(format!("red east, green {green}, blue up{told}"))
 }
 
 /// Writes colors as sRGB of 8 bits.
@@ -136,6 +138,7 @@ pub fn write_weights(subject: &mut Subject, options: &Options, files: &mut Files
             true => files.write(body)?,
             false => files.write_beside(|_| to.clone(), body)?,
         }
+        place::write_for(files, &to, subject, options, Some(from_south))?;
         held.channels.push((to, channels));
     }
     let told = sidecar::write(files, subject, options, &held)?;

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use crate::file::{self, Output, Staged};
+use crate::file::{self, Existing, Output, Staged};
 use crate::progress::Progress;
 use crate::spool::Spool;
 
@@ -37,6 +37,11 @@ impl<'a> Files<'a> {
             Sink::File(output) => Some(output.path()),
             Sink::Stream(_) => None,
         }
+    }
+
+    /// Whether files of any kind may be replaced.
+    pub fn replaces_all(&self) -> bool {
+        matches!(&self.sink, Sink::File(output) if output.policy().existing() == Existing::Replace)
     }
 
     /// A place for bytes that have to wait, on the disk that the file will be on.

@@ -2,12 +2,15 @@
 
 use std::io;
 
+use serde_json::{Value, json};
+
 use super::files::Files;
 use super::format::whole;
 use super::options::{OptionSpec, Options, Takes};
 use super::subject::Subject;
 use crate::analysis::halo::Halo;
 use crate::error::Result;
+use crate::format::dem::Georeference;
 use crate::format::levels::{NO_SAMPLES, extremes};
 use crate::grid::{Grid, Window};
 use crate::map::paint::Painter;
@@ -71,6 +74,8 @@ pub struct Prepared {
     max_error: Option<f64>,
     /// The curve that the heights were bent by, and their range before.
     curve: Option<(HeightCurve, [f32; 2])>,
+    /// How metres lie on a map, where the recipe holds a real place.
+    map: Option<Georeference>,
 }
 
 impl Prepared {
@@ -96,7 +101,7 @@ impl Prepared {
         };
         let shapes = (0..levels).map(shape).collect::<Result<Vec<Shape>>>()?;
         let exaggeration = options.number(EXAGGERATION.name).unwrap_or(1.0) as f32;
-        Ok(Prepared { grid, halo, shapes, painter, exaggeration, max_error, curve })
+        Ok(Prepared { grid, halo, shapes, painter, exaggeration, max_error, curve, map: subject.map() })
     }
 
     /// A level of detail, its corners with colours if they are wanted.
@@ -142,7 +147,35 @@ impl Prepared {
             window.east(0),
             window.south(0)
         );
-        vec![concat!("Orogen ", env!("CARGO_PKG_VERSION")).into(), format!("metres; {axes}; {place}")]
+        let mut comments =
+            vec![concat!("Orogen ", env!("CARGO_PKG_VERSION")).into(), format!("metres; {axes}; {place}")];
+        if let Some(map) = &self.map {
+            let [east, north] = map.at(window.east(0), window.south(0));
+            let system = match (map.epsg(), map.wkt()) {
+                (Some(code), _) => format!("EPSG:{code}"),
+                (None, Ok(wkt)) => wkt,
+                (None, Err(why)) => format!("a coordinate system that is not told: {why}"),
+            };
+            comments.push(format!("the origin on the map: east {east}, north {north}, in {system}"));
+            let [across, up] = map.per_metre;
+            if [across, up] != [1.0; 2] {
+                comments.push(format!("the map's units in a metre: {across} east, {up} north"));
+            }
+        }
+        comments
+    }
+
+    /// Where the origin lies on the map of a real place: what a file of keys and values tells of it.
+    pub fn extras(&self) -> Vec<(String, Value)> {
+        let Some(map) = &self.map else { return Vec::new() };
+        let window = self.grid.window();
+        let mut extras = vec![
+            ("origin".to_string(), json!(map.at(window.east(0), window.south(0)))),
+            ("map_units_per_metre".to_string(), json!(map.per_metre)),
+        ];
+        extras.extend(map.epsg().map(|code| ("crs".to_string(), json!(format!("EPSG:{code}")))));
+        extras.extend(map.wkt().ok().map(|wkt| ("wkt".to_string(), json!(wkt))));
+        extras
     }
 
     /// How much there is, in words.

@@ -31,6 +31,7 @@ pub mod mesh_cover;
 pub mod mesh_water;
 pub mod notes;
 pub mod options;
+pub mod place;
 pub mod registry;
 pub mod run;
 pub mod sidecar;

@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::files::Files;
 use super::options::{OptionSpec, Options, Takes};
 use super::subject::Subject;
+use crate::format::dem::Georeference;
 use crate::format::levels::Levels;
 use crate::format::sidecar::own;
 
@@ -16,7 +17,7 @@ use crate::format::sidecar::own;
 pub const NO_SIDECAR: OptionSpec = OptionSpec {
     name: "no-sidecar",
     value: "",
-    about: "Write no NAME.json, which tells size, cell, range, seed and the like, beside the file",
+    about: "Write nothing beside the file: no NAME.json, which tells size, cell, range, seed and the like, no .prj and no world file, which tell where it lies",
     takes: Takes::Nothing,
 };
 
@@ -69,6 +70,14 @@ struct Text<'a> {
     seed: u64,
     east: f64,
     south: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    geotransform: Option<[f64; 6]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    crs: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    wkt: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    crs_missing: Option<String>,
     layer_sha256: String,
     #[serde(skip_serializing_if = "str::is_empty")]
     about: &'a str,
@@ -88,6 +97,8 @@ pub fn write(files: &mut Files, subject: &Subject, options: &Options, held: &Hel
     let place = place(&path, &name(&path));
     let (window, world) = (subject.window(), subject.world().recipe());
     let range = subject.levels();
+    let map = subject.map();
+    let wkt = map.as_ref().map(Georeference::wkt);
     let text = Text {
         made_by: format!("Orogen {}", env!("CARGO_PKG_VERSION")),
         file: name(&path),
@@ -108,12 +119,32 @@ pub fn write(files: &mut Files, subject: &Subject, options: &Options, held: &Hel
         seed: world.world.seed,
         east: window.east(0),
         south: window.south(0),
+        geotransform: map.as_ref().map(|map| map.affine(window, held.from_south).geotransform()),
+        crs: map.as_ref().and_then(Georeference::epsg).map(|code| format!("EPSG:{code}")),
+        wkt: wkt.clone().and_then(Result::ok),
+        crs_missing: wkt.and_then(Result::err),
         layer_sha256: subject.key().iter().map(|byte| format!("{byte:02x}")).collect(),
         about: &world.about,
     };
     let json = serde_json::to_string_pretty(&text).map_err(io::Error::other)?;
     files.write_beside(|_| place.clone(), |out| writeln!(out, "{json}"))?;
     Ok(format!("; {} tells how to read it", name(&place)))
+}
+
+/// Writes it and all that tells the place, of a format whose files tell everything but where they lie: only for a world that lies on a map.
+///
+/// Fails as [`write`] and [`place::write`](super::place::write).
+pub fn write_on_map(
+    files: &mut Files,
+    subject: &Subject,
+    options: &Options,
+    sample: &'static str,
+) -> io::Result<String> {
+    if subject.map().is_none() {
+        return Ok(String::new());
+    }
+    let told = write(files, subject, options, &Held { sample, ..Held::default() })?;
+    Ok(told + &super::place::write(files, subject, options, Some(false))?)
 }
 
 /// Where it goes: NAME.json if that is free or this file's.

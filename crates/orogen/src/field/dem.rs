@@ -20,9 +20,9 @@ choice! {
 op! {
     /// The heights of a real place: a digital elevation model from a file, as a field that any recipe can go on from.
     ///
-    /// Read are GeoTIFF (.tif), ESRI ASCII grids (.asc), SRTM tiles (.hgt), NumPy arrays (.npy), 16-bit grey pictures (.png) and headerless
-    /// samples (.r16, .r32), the last four with the measures that they lack beside them in a file NAME.json or NAME.toml (`width`, `height`,
-    /// `cell`, `low`, `high`, `byte_order`, `nodata`). What is in the file, not its name, decides which solutions of earlier runs are still
+    /// Read are GeoTIFF (.tif), ESRI ASCII grids (.asc), SRTM tiles (.hgt), virtual rasters (.vrt), Zarr arrays, folders of tiles (.tif, .hgt or .asc),
+    /// OpenEXR (.exr), NumPy arrays (.npy), 16-bit grey pictures (.png) and headerless samples (.r16, .r32), the last five with the measures that they
+    /// lack beside them: in a file NAME.json or NAME.toml (`width`, `height`, `cell`, `low`, `high`, `byte_order`, `nodata`), a world file and a .prj. What is in the file, not its name, decides which solutions of earlier runs are still
     /// good. It is held in memory.
     ///
     /// The file's first sample, its north-west corner, stands at `at`. Between its samples the interpolating cubic is read (Catmull
@@ -33,6 +33,8 @@ op! {
     params {
         /// The file; a relative path counts from the folder of the recipe.
         path: Imported = Imported::default();
+        /// The band of a file of several, from 1; 0 is the only one.
+        band: u32 = 0, range 0.0 to 65535.0;
         /// What is shown: the heights, or where there are any.
         shows: Shows = Shows::Height;
         /// Where the file's north-west corner stands, east and south.
@@ -47,7 +49,7 @@ op! {
         fade: f64 = 0.0, unit "m", range 0.0 to 1e9;
     }
     check |dem| match dem.path.is_empty() {
-        true => Err(("path", "`path` names no file: write the path of a .tif, .asc, .hgt, .npy, .png, .r16 or .r32".to_string())),
+        true => Err(("path", "`path` names no file: write the path of a .tif, .asc, .hgt, .vrt, .exr, .npy, .png, .r16 or .r32, of a folder of tiles or of a Zarr array".to_string())),
         false => Ok(()),
     };
 }

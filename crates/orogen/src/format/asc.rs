@@ -1,12 +1,12 @@
 //! ESRI's ASCII grid, `.asc`: a head of keys and numbers, then the heights as text, row after row from the north.
 //!
 //! Read: `ncols`, `nrows`, `xllcorner` or `xllcenter`, `yllcorner` or `yllcenter`, `cellsize` (or GDAL's `dx` and `dy`),
-//! `nodata_value`, in any case and order. The format does not tell its unit: coordinates within -180 to 180 and -90 to 90 with cells
-//! under 0.2 count as degrees, all others as metres. Written: corners, metres.
+//! `nodata_value`, in any case and order. The format does not tell its unit: without a `.prj` beside it, it is [guessed](Unit::guess).
 
 use std::io::{self, BufRead, Write};
 
-use super::dem::{Dem, Georeference, Input, Place, Unit, afford, refused};
+use super::crs::unit::Unit;
+use super::dem::{Dem, Georeference, Input, Place, afford, refused};
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 
@@ -73,8 +73,18 @@ struct Head {
     nodata: Option<f64>,
 }
 
-fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String> {
+/// Columns, rows and place of a grid; its samples are not looked at.
+///
+/// # Errors
+/// If it is no ASCII grid.
+pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Place>)> {
     let mut words = Words { input: &mut io::BufReader::new(input), word: Vec::new() };
+    let (head, [columns, rows], _) = read_head(&mut words).map_err(|why| refused(name, why))?;
+    Ok(([columns as usize, rows as usize], head.place(rows)))
+}
+
+/// The head, the size that it tells, and the first word behind it.
+fn read_head(words: &mut Words) -> std::result::Result<(Head, [u64; 2], Option<String>), String> {
     let mut head = Head::default();
     // The head ends with the first word that is a number where a key is due.
     let mut first = words.next()?;
@@ -90,6 +100,12 @@ fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String>
     let (Some(columns), Some(rows)) = (head.columns, head.rows) else {
         return Err("it is not an ASCII grid: its head does not tell ncols and nrows".into());
     };
+    Ok((head, [columns, rows], first))
+}
+
+fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String> {
+    let mut words = Words { input: &mut io::BufReader::new(input), word: Vec::new() };
+    let (head, [columns, rows], first) = read_head(&mut words)?;
     let count = afford(columns, rows, allowed)?;
     let mut heights: Vec<f32> = Vec::new();
     let mut next = first;
@@ -146,9 +162,8 @@ impl Head {
         let ([Some(dx), Some(dy)], Some(west), Some(south)) = (self.step, self.west, self.south) else { return None };
         let middle = |(at, is_middle): (f64, bool), step: f64| if is_middle { at } else { at + 0.5 * step };
         let (east, bottom) = (middle(west, dx), middle(south, dy));
-        let degrees = dx.max(dy) < 0.2 && east.abs() <= 180.0 && bottom.abs() <= 90.0;
-        let unit = if degrees { Unit::Degrees } else { Unit::Metres(1.0) };
-        Some(Place { origin: [east, bottom + (rows as f64 - 1.0) * dy], step: [dx, dy], unit, keys: None })
+        let unit = Unit::guess([east, bottom], [dx, dy]);
+        Some(Place { origin: [east, bottom + (rows as f64 - 1.0) * dy], step: [dx, dy], unit, cell: None, keys: None })
     }
 }
 

@@ -2,7 +2,10 @@
 
 use std::io::{Read, Seek};
 
-use super::crs::Crs;
+use super::affine::Affine;
+use super::crs::keys::{self, GeoKeys};
+use super::crs::registry::Crs;
+use super::crs::unit::Unit;
 use crate::error::{Error, ErrorKind};
 use crate::grid::Window;
 use crate::words::bytes;
@@ -12,6 +15,39 @@ use serde::{Deserialize, Serialize};
 pub trait Input: Read + Seek {}
 
 impl<T: Read + Seek> Input for T {}
+
+/// What is asked of a reader.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Request {
+    /// The band to read, from 1; `None` is the only one.
+    pub band: Option<u32>,
+    /// Most bytes of the heights.
+    pub allowed: u64,
+}
+
+impl From<u64> for Request {
+    fn from(allowed: u64) -> Request {
+        Request { band: None, allowed }
+    }
+}
+
+impl Request {
+    /// Which of so many bands is read, from 0.
+    ///
+    /// # Errors
+    /// A sentence if it has no such band, or several and none was chosen.
+    pub fn choose(&self, bands: usize) -> Result<usize, String> {
+        match self.band {
+            Some(band) if band >= 1 && band as usize <= bands => Ok(band as usize - 1),
+            Some(band) if bands == 1 => Err(format!("it has one band, and no band {band}")),
+            Some(band) => Err(format!("it has {bands} bands, and no band {band}")),
+            None if bands == 1 => Ok(0),
+            None => Err(format!(
+                "it has {bands} bands, and heights are one: choose it by `band = 1` in the node, or by FILE:1 on the command line"
+            )),
+        }
+    }
+}
 
 /// Heights of a real place.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +60,8 @@ pub struct Dem {
     pub heights: Vec<f32>,
     /// Where they stand, if the file says so.
     pub place: Option<Place>,
+    /// What was done to it and what could not be read, in sentences.
+    pub notes: Vec<String>,
 }
 
 /// Where samples stand on a map.
@@ -35,28 +73,10 @@ pub struct Place {
     pub step: [f64; 2],
     /// What origin and steps are measured in.
     pub unit: Unit,
-    /// What a GeoTIFF says of its coordinates; kept on the way out.
+    /// Metres between samples either way, where something beside a file in degrees says so.
+    pub cell: Option<f64>,
+    /// The coordinate system as a GeoTIFF tells it; kept on the way out.
     pub keys: Option<GeoKeys>,
-}
-
-/// What coordinates are measured in.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Unit {
-    /// So many metres.
-    Metres(f64),
-    /// Degrees of longitude and latitude.
-    Degrees,
-}
-
-/// GeoTIFF's own directory (OGC 19-008r4, 7.1.2): which coordinate system its numbers are in.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct GeoKeys {
-    /// Tag 34735, its four numbers of head included.
-    pub directory: Vec<u16>,
-    /// Tag 34736.
-    pub doubles: Vec<f64>,
-    /// Tag 34737.
-    pub text: String,
 }
 
 /// How a lattice lies on a map.
@@ -83,22 +103,12 @@ impl Georeference {
 
     /// The EPSG code of its coordinate system, if its keys tell one.
     pub fn epsg(&self) -> Option<u16> {
-        let directory = &self.keys.as_ref()?.directory;
-        let key = |wanted: u16| {
-            let found = directory.chunks_exact(4).skip(1).find(|key| key[0] == wanted && key[1] == 0);
-            // 32767 is GeoTIFF's "user-defined".
-            found.map(|key| key[3]).filter(|code| !matches!(*code, 0 | 32767))
-        };
-        // Model 2 is a geographic system, 1 a projected one.
-        if key(1024) == Some(2) { key(2048) } else { key(3072) }
+        keys::epsg(self.keys.as_ref()?)
     }
 
     /// Whether its keys tell a coordinate system of the Earth: not none, and not local ones.
     pub fn is_on_map(&self) -> bool {
-        let model = |keys: &GeoKeys| {
-            keys.directory.chunks_exact(4).skip(1).any(|key| key[0] == 1024 && matches!(key[3], 1 | 2))
-        };
-        self.keys.as_ref().is_some_and(model)
+        self.keys.as_ref().is_some_and(keys::is_named)
     }
 
     /// Whether its units are so long that they can only be degrees, whatever its keys tell.
@@ -116,8 +126,28 @@ impl Georeference {
 
     /// Whether its coordinates are degrees of longitude and latitude.
     pub fn is_degrees(&self) -> bool {
-        let model = |keys: &GeoKeys| keys.directory.chunks_exact(4).skip(1).any(|key| key[0] == 1024 && key[3] == 2);
-        self.keys.as_ref().is_some_and(model)
+        self.keys.as_ref().is_some_and(keys::is_degrees)
+    }
+
+    /// How the columns and rows of a window become coordinates; its rows from the south if the file's are.
+    pub fn affine(&self, window: &Window, from_south: bool) -> Affine {
+        let ([east, north], [across, down]) = self.of(window);
+        let south = north - down * (window.height.max(1) - 1) as f64;
+        match from_south {
+            true => Affine([across, 0.0, east, 0.0, down, south]),
+            false => Affine([across, 0.0, east, 0.0, -down, north]),
+        }
+    }
+
+    /// The coordinate system as well-known text, as `.prj` files hold it.
+    ///
+    /// # Errors
+    /// A sentence that says what could not be expressed.
+    pub fn wkt(&self) -> Result<String, String> {
+        match &self.keys {
+            Some(keys) => keys::to_wkt(keys),
+            None => Err("the input does not tell it".into()),
+        }
     }
 
     /// How the first sample of a window lies, and the steps between its samples, in the map's unit.
@@ -145,7 +175,7 @@ impl Dem {
             }
         }
         match found {
-            true => Ok(Dem { width, height, heights, place }),
+            true => Ok(Dem { width, height, heights, place, notes: Vec::new() }),
             false => Err(format!("all of its {width} x {height} samples are missing: it holds no height")),
         }
     }
@@ -198,6 +228,15 @@ pub fn afford_beside(count: usize, beside: u64, allowed: u64) -> Result<(), Stri
             bytes(allowed)
         )),
         false => Ok(()),
+    }
+}
+
+/// Samples row after row from the other end, in place.
+pub fn turn_rows(samples: &mut [f32], width: usize) {
+    let rows = samples.len().checked_div(width).unwrap_or(0);
+    for j in 0..rows / 2 {
+        let (upper, lower) = samples.split_at_mut((rows - 1 - j) * width);
+        upper[j * width..(j + 1) * width].swap_with_slice(&mut lower[..width]);
     }
 }
 

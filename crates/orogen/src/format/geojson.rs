@@ -121,7 +121,8 @@ const POWERS: [f64; 16] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e1
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::format::dem::{GeoKeys, Georeference};
+    use crate::format::crs::keys::GeoKeys;
+    use crate::format::dem::Georeference;
     use crate::format::features::{Feature, GeometryType, samples};
     use serde_json::{Value as Json, json};
 

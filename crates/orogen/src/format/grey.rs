@@ -54,8 +54,8 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, allowed: u64) -> std::result::
     if heights.len() != count {
         return Err("it ends within its rows".into());
     }
-    let heights = sidecar.from_north(heights, width as usize)?;
-    Dem::new([width as usize, height as usize], heights, sidecar.place(height))
+    let heights = sidecar.north_first(heights, width as usize)?;
+    Dem::new([width as usize, height as usize], heights, sidecar.place(height as usize)?)
 }
 
 #[cfg(test)]

@@ -2,11 +2,13 @@
 //! corner.
 //!
 //! 1201 x 1201 samples (3 arc seconds), 3601 x 3601 (1) or 1801 x 3601 (2 and 1, the far north) stand *on* the degree's edges, and
-//! neighbouring files share theirs. -32768 is no height.
+//! neighbouring files share theirs, in degrees of WGS 84. -32768 is no height.
 
 use std::io::{Read, Write};
 
-use super::dem::{Dem, Input, Place, Unit, afford, length, refused};
+use super::crs::keys;
+use super::crs::unit::Unit;
+use super::dem::{Dem, Input, Place, afford, length, refused};
 use crate::error::Result;
 
 const VOID: i16 = -32768;
@@ -37,13 +39,38 @@ pub fn read(input: &mut dyn Input, name: &str, allowed: u64) -> Result<Dem> {
     open(input, name, allowed).map_err(|why| refused(name, why))
 }
 
-fn open(input: &mut dyn Input, name: &str, allowed: u64) -> std::result::Result<Dem, String> {
+/// Columns, rows and place of a tile; its samples are not looked at.
+///
+/// # Errors
+/// If it has none of the sizes.
+pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Place>)> {
+    let size = size(input).map_err(|why| refused(name, why))?;
+    Ok((size, place(name, size)))
+}
+
+fn size(input: &mut dyn Input) -> std::result::Result<[usize; 2], String> {
     let bytes = length(input)?;
-    let Some([columns, rows]) = SIZES.into_iter().find(|[columns, rows]| (2 * columns * rows) as u64 == bytes) else {
-        return Err(format!(
+    SIZES.into_iter().find(|[columns, rows]| (2 * columns * rows) as u64 == bytes).ok_or_else(|| {
+        format!(
             "an .hgt has 1201 x 1201 samples of two bytes (2884802 bytes) or 3601 x 3601 (25934402); this has {bytes} bytes"
-        ));
-    };
+        )
+    })
+}
+
+/// Where a tile of that name lies.
+fn place(name: &str, [columns, rows]: [usize; 2]) -> Option<Place> {
+    corner(name).map(|[south, west]| Place {
+        origin: [west, south + 1.0],
+        step: [1.0 / (columns - 1) as f64, 1.0 / (rows - 1) as f64],
+        unit: Unit::Degrees,
+        cell: None,
+        keys: Some(keys::of_epsg(4326, true)),
+    })
+}
+
+fn open(input: &mut dyn Input, name: &str, allowed: u64) -> std::result::Result<Dem, String> {
+    let [columns, rows] = size(input)?;
+    let bytes = (2 * columns * rows) as u64;
     let count = afford(columns as u64, rows as u64, allowed)?;
     let mut raw = Vec::with_capacity(2 * count);
     input.take(bytes).read_to_end(&mut raw).map_err(|cause| cause.to_string())?;
@@ -55,13 +82,7 @@ fn open(input: &mut dyn Input, name: &str, allowed: u64) -> std::result::Result<
     if heights.len() != count {
         return Err("it ends within its samples".into());
     }
-    let place = corner(name).map(|[south, west]| Place {
-        origin: [west, south + 1.0],
-        step: [1.0 / (columns - 1) as f64, 1.0 / (rows - 1) as f64],
-        unit: Unit::Degrees,
-        keys: None,
-    });
-    Dem::new([columns, rows], heights, place)
+    Dem::new([columns, rows], heights, place(name, [columns, rows]))
 }
 
 /// Latitude and longitude of the south-west corner, from a name such as N46E007.hgt or s09w077.SRTMGL1.hgt.

@@ -2,15 +2,18 @@
 
 use std::path::Path;
 
-use super::dem::{Dem, Input, Place, Unit, refused};
+use super::dem::{Dem, Input, Place, Request, refused};
 use super::raw::Sample;
 use super::sidecar::Sidecar;
-use super::{asc, geotiff, grey, hgt, npy, raw};
+use super::{asc, exr_reader, geotiff, grey, hgt, npy, raw};
 use crate::error::Result;
 use crate::open;
 
 /// The extensions of files that heights are read from.
-pub const EXTENSIONS: [&str; 8] = ["tif", "tiff", "asc", "hgt", "png", "r16", "r32", "npy"];
+pub const EXTENSIONS: [&str; 9] = ["tif", "tiff", "asc", "hgt", "png", "r16", "r32", "npy", "exr"];
+
+/// The extensions of files that may hold several bands.
+const SEVERAL_BANDS: [&str; 3] = ["tif", "tiff", "exr"];
 
 /// Whether a file's name says that it holds heights.
 pub fn is_dem(path: &Path) -> bool {
@@ -21,19 +24,42 @@ fn extension(path: &Path) -> Option<String> {
     Some(path.extension()?.to_str()?.to_ascii_lowercase())
 }
 
-/// Reads the heights of a file whose extension tells its format, in no more than `allowed` bytes for the heights themselves.
+/// Whether a file's size and place can be read without its heights, as a tile's must.
+pub fn has_head(path: &Path) -> bool {
+    extension(path).is_some_and(|extension| matches!(extension.as_str(), "tif" | "tiff" | "asc" | "hgt"))
+}
+
+/// Columns, rows and place of a file that [has a head](has_head).
+///
+/// # Errors
+/// If it cannot be read.
+pub fn head(path: &Path) -> Result<([usize; 2], Option<Place>)> {
+    let name = path.display().to_string();
+    let mut file = open::regular(path, "read")?;
+    let (size, mut place) = match extension(path).unwrap_or_default().as_str() {
+        "asc" => asc::head(&mut file, &name)?,
+        "hgt" => hgt::head(&mut file, &name)?,
+        _ => geotiff::reader::head(&mut file, &name)?,
+    };
+    if let (Some(place), Some(told)) = (&mut place, Sidecar::beside(path)?) {
+        told.complete(place);
+    }
+    Ok((size, place))
+}
+
+/// Reads the heights of a file whose extension tells its format: a band of it, in no more than so many bytes for the heights themselves.
 ///
 /// # Errors
 /// If there is no such format, or the file cannot be read, or is too large.
-pub fn read(path: &Path, allowed: u64) -> Result<Dem> {
+pub fn read(path: &Path, request: impl Into<Request>) -> Result<Dem> {
     let name = path.display().to_string();
     if !is_dem(path) {
-        let known = "known are .tif, .asc, .hgt, .png, .r16, .r32 and .npy";
+        let known = "known are .tif, .asc, .hgt, .png, .r16, .r32, .npy, .exr and .vrt, and folders of .tif, .hgt or .asc or of Zarr";
         return Err(refused(&name, format!("its extension does not tell a format of heights; {known}")));
     }
     let mut file = open::regular(path, "read")?;
     let sidecar = Sidecar::beside(path)?;
-    parse(&mut file, &name, &extension(path).unwrap_or_default(), sidecar, allowed)
+    parse(&mut file, &name, &extension(path).unwrap_or_default(), sidecar, request)
 }
 
 /// The same of bytes at hand: `extension` tells the format.
@@ -45,27 +71,41 @@ pub fn parse(
     name: &str,
     extension: &str,
     sidecar: Option<Sidecar>,
-    allowed: u64,
+    request: impl Into<Request>,
 ) -> Result<Dem> {
-    let told = sidecar.clone().unwrap_or_default();
-    match extension {
-        "tif" | "tiff" => geotiff::reader::read(input, name, allowed),
-        "asc" => asc::read(input, name, allowed),
-        "hgt" => hgt::read(input, name, allowed),
-        "png" => grey::read(input, name, &told, allowed),
-        "r16" => raw::read(input, name, Sample::U16, &told, allowed),
-        "r32" => raw::read(input, name, Sample::F32, &told, allowed),
+    let request = request.into();
+    let Request { allowed, .. } = request;
+    let told = sidecar.unwrap_or_default();
+    if !SEVERAL_BANDS.contains(&extension) {
+        request.choose(1).map_err(|why| refused(name, why))?;
+    }
+    let mut dem = match extension {
+        "tif" | "tiff" => geotiff::reader::read(input, name, request)?,
+        "asc" => asc::read(input, name, allowed)?,
+        "hgt" => hgt::read(input, name, allowed)?,
+        "png" => grey::read(input, name, &told, allowed)?,
+        "r16" => raw::read(input, name, Sample::U16, &told, allowed)?,
+        "r32" => raw::read(input, name, Sample::F32, &told, allowed)?,
+        "exr" => exr_reader::read(input, name, &told, request)?,
         "npy" => {
             let grid = npy::read_within(input, name, told.cell.unwrap_or(1.0), allowed)?;
-            let (width, height) = (grid.width(), grid.height());
-            let place = told.cell.map(|cell| Place {
-                origin: [0.0, cell * (height as f64 - 1.0)],
-                step: [cell; 2],
-                unit: Unit::Metres(1.0),
-                keys: None,
-            });
-            Dem::new([width, height], grid.into_data(), place).map_err(|why| refused(name, why))
+            let size = [grid.width(), grid.height()];
+            let read = told.north_first(grid.into_data(), size[0]);
+            read.and_then(|heights| Dem::new(size, heights, told.place(size[1])?)).map_err(|why| refused(name, why))?
         }
-        other => Err(refused(name, format!("the format .{other} is not read"))),
+        other => return Err(refused(name, format!("the format .{other} is not read"))),
+    };
+    // A GeoTIFF without tags of place, with a world file.
+    if dem.place.is_none() && told.geotransform.is_some() {
+        let heights = std::mem::take(&mut dem.heights);
+        dem.heights = told.north_first(heights, dem.width).map_err(|why| refused(name, why))?;
+        dem.place = told.place(dem.height).map_err(|why| refused(name, why))?;
     }
+    if let Some(place) = &mut dem.place {
+        told.complete(place);
+        if place.keys.is_none() {
+            dem.notes.extend(told.notes);
+        }
+    }
+    Ok(dem)
 }

@@ -1,12 +1,15 @@
 //! File formats, one a file. Writers stream into any [`Write`](std::io::Write) and hold a few rows at a time; readers of heights
 //! ([`import`]) never believe a file further than its bytes go.
 
+pub mod affine;
 pub mod asc;
+pub mod aux_xml;
 pub mod crs;
 mod deflate;
 pub mod dem;
 pub mod encoding;
 pub mod exr;
+pub mod exr_reader;
 pub mod features;
 pub mod fgb;
 pub mod flatbuffer;
@@ -18,6 +21,7 @@ pub mod grey;
 pub mod half;
 pub mod hgt;
 pub mod import;
+pub mod lerc;
 pub mod levels;
 pub mod npy;
 pub mod packed_tree;
@@ -27,4 +31,6 @@ pub mod raw;
 pub mod sidecar;
 pub mod sqlite;
 pub mod svg;
+pub mod vrt;
+pub mod world_file;
 pub mod zarr;

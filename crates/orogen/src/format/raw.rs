@@ -97,8 +97,8 @@ fn open(input: &mut dyn Input, sample: Sample, sidecar: &Sidecar, allowed: u64) 
             }
         }
     }
-    let heights = sidecar.from_north(heights, width as usize)?;
-    Dem::new([width as usize, height as usize], heights, sidecar.place(height))
+    let heights = sidecar.north_first(heights, width as usize)?;
+    Dem::new([width as usize, height as usize], heights, sidecar.place(height as usize)?)
 }
 
 #[cfg(test)]

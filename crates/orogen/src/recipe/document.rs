@@ -3,11 +3,13 @@
 use crate::declare::Input;
 use crate::dem::ground::Ground;
 use crate::dem::held::Imported;
+use crate::dem::open;
 use crate::dem::square::metres_of_degrees;
 use crate::error::{Complaint, Error, ErrorKind, Result};
 use crate::field::dem::Dem;
-use crate::format::crs::Crs;
-use crate::format::dem::{Georeference, Unit};
+use crate::format::crs::registry::Crs;
+use crate::format::crs::unit::Unit;
+use crate::format::dem::{Georeference, Request};
 use crate::node::Node;
 use crate::op::{Op, Setting};
 use crate::palette::histogram;
@@ -179,11 +181,13 @@ impl Recipe {
         nodes.chain(self.surfaces.iter_mut().filter_map(Surface::picture_mut)).for_each(|file| file.lies_in(folder));
     }
 
-    /// The files that its nodes and surfaces name.
+    /// The files that its nodes and surfaces name, and those that these are put together of.
     pub fn files(&self) -> Vec<PathBuf> {
         let mut nodes: Vec<Node> = self.nodes.iter().map(|named| named.node.clone()).collect();
         let files = nodes.iter_mut().flat_map(Node::files).filter(|file| !file.is_empty()).map(|file| file.path());
-        files.chain(self.surfaces.iter().filter_map(Surface::picture).map(Imported::path)).collect()
+        let files: Vec<PathBuf> =
+            files.chain(self.surfaces.iter().filter_map(Surface::picture).map(Imported::path)).collect();
+        files.iter().flat_map(|path| open::files(path)).collect()
     }
 
     /// Reads the files that its nodes name, each once and not again where it was read, so that together their heights take no more than `allowed` bytes.
@@ -192,15 +196,19 @@ impl Recipe {
     /// If one cannot be read: with the node that names it, and its place if the recipe was read from a text.
     pub fn load(&mut self, allowed: u64) -> Result<()> {
         // One file may be heights to one node and a picture to another.
-        let mut known: BTreeMap<(PathBuf, bool), Arc<Ground>> = BTreeMap::new();
+        let mut known: BTreeMap<(PathBuf, bool, Option<u32>), Arc<Ground>> = BTreeMap::new();
         self.held = 0;
         for NamedNode { name, node, .. } in &mut self.nodes {
+            let band = match node {
+                Node::Dem(dem) if dem.band > 0 => Some(dem.band),
+                _ => None,
+            };
             for file in node.files() {
-                let path = (file.path(), file.is_picture());
+                let path = (file.path(), file.is_picture(), band);
                 let left = allowed.saturating_sub(self.held);
                 let read = || match path.1 {
                     true => Ground::picture(&path.0, left),
-                    false => Ground::read(&path.0, None, left),
+                    false => Ground::read(&path.0, None, Request { band, allowed: left }),
                 };
                 let ground = match file.ground().or(known.get(&path)) {
                     Some(ground) => Arc::clone(ground),
@@ -287,12 +295,13 @@ impl Recipe {
         let window = *ground.grid.window();
         let size = [window.width, window.height].map(|samples| samples as f64 * window.cell);
         let mut recipe = Recipe::new(WorldSpec { size: Some(size), cell: window.cell, ..WorldSpec::default() });
+        let (path, band) = open::split(path);
         let mut file = Imported::from(path.to_string_lossy().as_ref());
         file.lies_in(Path::new(""));
         file.hold(Arc::clone(ground));
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         recipe.about = format!("The place in {name}");
-        recipe.add("place", Dem { path: file, ..Dem::default() }).output("height", "place");
+        recipe.add("place", Dem { path: file, band: band.unwrap_or(0), ..Dem::default() }).output("height", "place");
         recipe
     }
 

@@ -5,6 +5,7 @@ use std::io;
 use crate::export::files::Files;
 use crate::export::format::{Format, aside, whole};
 use crate::export::options::{OptionSpec, Options, Takes};
+use crate::export::sidecar::{self, NO_SIDECAR};
 use crate::export::subject::Subject;
 use crate::format::exr::{Picture, Sample, Writer};
 use crate::grid::Window;
@@ -15,7 +16,7 @@ pub static FORMAT: Format = Format {
     name: "exr",
     aliases: &[],
     about: "OpenEXR of f32 in the layer's own unit (metres for heights), one channel Y, ZIP",
-    options: &[HALF, RGB],
+    options: &[HALF, RGB, NO_SIDECAR],
     channels: MAX_SURFACES,
     features: false,
     memory,
@@ -72,7 +73,8 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
         Sample::Half => format!(", the highest to steps of {}", half_step(levels.low().abs().max(levels.high().abs()))),
         Sample::Float => String::new(),
     };
-    Ok(format!("{} to {}{rounded}", levels.low(), levels.high()))
+    let told = sidecar::write_on_map(files, subject, options, if sample == Sample::Half { "f16" } else { "f32" })?;
+    Ok(format!("{} to {}{rounded}{told}", levels.low(), levels.high()))
 }
 
 /// From a half of this size to the next.

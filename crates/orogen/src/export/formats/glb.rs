@@ -57,6 +57,7 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
         ("rows".to_string(), json!(window.height)),
     ]
     .into_iter()
+    .chain(mesh.extras())
     .collect();
     let [texture, material] = [&texture, &material].map(|picture| (!picture.is_empty()).then_some(picture.as_slice()));
     let water = mesh_water::of(subject, &mesh, options, beside(subject.window(), options))?;

@@ -6,6 +6,7 @@ use crate::export::files::Files;
 use crate::export::format::{Format, refuse};
 use crate::export::options::Options;
 use crate::export::subject::Subject;
+use crate::format::dem::Georeference;
 use crate::format::hgt::{self, SIZES};
 use crate::grid::Window;
 
@@ -42,8 +43,23 @@ fn write(subject: &mut Subject, _: &Options, files: &mut Files) -> io::Result<St
     files.write(|out| subject.rows(|band| hgt::write(out, band[0].data())))?;
     let levels = subject.levels();
     let place = match hgt::corner(&name) {
+        Some(corner) if subject.map().is_some_and(|map| !lies_at(&map, &window, corner)) => {
+            "its name tells a place where it does not lie, and readers will believe it".to_string()
+        }
         Some([south, west]) => format!("its south-west corner at {south} north, {west} east"),
         None => "no place: a name such as N46E007.hgt tells readers its south-west corner".to_string(),
     };
     Ok(format!("{} to {}, rounded to whole metres; {place}", levels.low(), levels.high()))
+}
+
+/// Whether a window of a map is the tile of one degree with that south-west corner.
+fn lies_at(map: &Georeference, window: &Window, [south, west]: [f64; 2]) -> bool {
+    let [across, _, east, _, down, north] = map.affine(window, false).0;
+    let step = [1.0 / (window.width - 1) as f64, 1.0 / (window.height - 1) as f64];
+    let near = |a: f64, b: f64, step: f64| (a - b).abs() < 0.1 * step;
+    let ends = [(west, east), (west + 1.0, east + across / step[0])];
+    map.is_degrees()
+        && ends.iter().all(|(wanted, is)| near(*wanted, *is, step[0]))
+        && near(south + 1.0, north, step[1])
+        && near(south, north + down / step[1], step[1])
 }

@@ -5,6 +5,7 @@ use std::io;
 use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::options::Options;
+use crate::export::sidecar::{self, NO_SIDECAR};
 use crate::export::subject::Subject;
 use crate::format::npy;
 
@@ -13,14 +14,14 @@ pub static FORMAT: Format = Format {
     name: "npy",
     aliases: &[],
     about: "NumPy array of f32, the layer's own unit (metres for heights); several channels as the last axis",
-    options: &[],
+    options: &[NO_SIDECAR],
     channels: 8,
     features: false,
     memory: |_, _| 0,
     write,
 };
 
-fn write(subject: &mut Subject, _: &Options, files: &mut Files) -> io::Result<String> {
+fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
     let window = *subject.window();
     files.write(|out| {
         if subject.channels() == 1 {
@@ -37,5 +38,6 @@ fn write(subject: &mut Subject, _: &Options, files: &mut Files) -> io::Result<St
         })
     })?;
     let levels = subject.levels();
-    Ok(format!("{} to {}", levels.low(), levels.high()))
+    let told = sidecar::write_on_map(files, subject, options, "f32")?;
+    Ok(format!("{} to {}{told}", levels.low(), levels.high()))
 }

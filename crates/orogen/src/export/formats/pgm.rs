@@ -6,6 +6,7 @@ use crate::export::files::Files;
 use crate::export::format::{Format, aside, whole};
 use crate::export::notes;
 use crate::export::options::Options;
+use crate::export::place;
 use crate::export::sidecar::{self, Held, NO_SIDECAR};
 use crate::export::spread::{self, BITS, FIRST_ROW, RANGE, Spread};
 use crate::export::subject::Subject;
@@ -35,6 +36,7 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
     let (sample, byte_order) = if most == 255 { ("u8", None) } else { ("u16", Some("big")) };
     let held =
         Held { sample, byte_order, levels: Some(levels), from_south: spread::from_south(options), ..Held::default() };
-    let told = sidecar::write(files, subject, options, &held)?;
+    let told = sidecar::write(files, subject, options, &held)?
+        + &place::write(files, subject, options, Some(held.from_south))?;
     Ok(spread::words(&levels, most) + &told)
 }

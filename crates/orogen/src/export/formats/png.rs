@@ -8,6 +8,7 @@ use crate::export::files::Files;
 use crate::export::format::{Format, aside, refuse, whole};
 use crate::export::notes;
 use crate::export::options::{OptionSpec, Options, Takes};
+use crate::export::place;
 use crate::export::sidecar::{self, Held, NO_SIDECAR};
 use crate::export::spread::{self, BITS, FIRST_ROW, RANGE, Spread};
 use crate::export::subject::Subject;
@@ -77,7 +78,8 @@ fn write_grey(subject: &mut Subject, options: &Options, files: &mut Files) -> io
     let (sample, byte_order) = if most == 255 { ("u8", None) } else { ("u16", Some("big")) };
     let held =
         Held { sample, byte_order, levels: Some(levels), from_south: spread::from_south(options), ..Held::default() };
-    let told = sidecar::write(files, subject, options, &held)?;
+    let told = sidecar::write(files, subject, options, &held)?
+        + &place::write(files, subject, options, Some(held.from_south))?;
     Ok(spread::words(&levels, most) + &told)
 }
 
@@ -111,7 +113,8 @@ fn write_encoded(
         from_south: spread::from_south(options),
         ..Held::default()
     };
-    let told = sidecar::write(files, subject, options, &held)?;
+    let told = sidecar::write(files, subject, options, &held)?
+        + &place::write(files, subject, options, Some(held.from_south))?;
     let levels = subject.levels();
     Ok(format!("{} to {} as {} colours{told}", levels.low(), levels.high(), encoding.name()))
 }

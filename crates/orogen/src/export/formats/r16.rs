@@ -5,6 +5,7 @@ use std::io;
 use crate::export::files::Files;
 use crate::export::format::{Format, aside, whole};
 use crate::export::options::Options;
+use crate::export::place;
 use crate::export::sidecar::{self, Held, NO_SIDECAR};
 use crate::export::spread::{self, FIRST_ROW, RANGE, Spread};
 use crate::export::subject::Subject;
@@ -28,6 +29,7 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
     files.write(|out| spread.rows(|samples| raw::write_u16(out, samples, &levels)))?;
     let from_south = spread::from_south(options);
     let held = Held { sample: "u16", byte_order: Some("little"), levels: Some(levels), from_south, ..Held::default() };
-    let told = sidecar::write(files, subject, options, &held)?;
+    let told = sidecar::write(files, subject, options, &held)?
+        + &place::write(files, subject, options, Some(held.from_south))?;
     Ok(spread::words(&levels, u16::MAX) + &told)
 }

@@ -5,6 +5,7 @@ use std::io;
 use crate::export::files::Files;
 use crate::export::format::{Format, aside, whole};
 use crate::export::options::Options;
+use crate::export::place;
 use crate::export::sidecar::{self, Held, NO_SIDECAR};
 use crate::export::spread::{self, FIRST_ROW, Spread};
 use crate::export::subject::Subject;
@@ -27,7 +28,8 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
     files.write(|out| spread.rows(|samples| raw::write_f32(out, samples)))?;
     let from_south = spread::from_south(options);
     let held = Held { sample: "f32", byte_order: Some("little"), levels: None, from_south, ..Held::default() };
-    let told = sidecar::write(files, subject, options, &held)?;
+    let told = sidecar::write(files, subject, options, &held)?
+        + &place::write(files, subject, options, Some(held.from_south))?;
     let levels = subject.levels();
     Ok(format!("{} to {}{told}", levels.low(), levels.high()))
 }

@@ -1,6 +1,7 @@
 //! Everything of the file but the samples: header, ghost area, a directory for each level.
 
-use crate::format::dem::{GeoKeys, Georeference};
+use crate::format::crs::keys::GeoKeys;
+use crate::format::dem::Georeference;
 use crate::grid::Window;
 
 /// What readers may count on. The space at its end leaves room for whoever edits the file to turn the NO into YES.

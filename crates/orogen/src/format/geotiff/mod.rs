@@ -29,7 +29,7 @@ mod place;
 pub(crate) mod pyramid;
 pub mod reader;
 pub(crate) mod tile;
-mod unpack;
+pub(crate) mod unpack;
 pub mod writer;
 
 #[cfg(test)]

@@ -1,7 +1,10 @@
 //! Where a GeoTIFF's samples stand.
 
 use super::entries::Tiff;
-use crate::format::dem::{GeoKeys, Place, Unit};
+use crate::format::affine::Affine;
+use crate::format::crs::keys::{self, GeoKeys, length_unit, short};
+use crate::format::crs::unit::Unit;
+use crate::format::dem::Place;
 
 /// Where the samples stand, whether rows come from the south, and how many metres a unit of height is. A raster without tags of
 /// place has none; one without GeoKeys, or projected in a unit that they do not tell, counts in metres.
@@ -25,22 +28,15 @@ pub fn find(tiff: &mut Tiff, height: usize) -> Result<Found, String> {
         (_, Some([sx, sy, ..]), Some([i, j, _, x, y, ..])) => [*sx, 0.0, x - i * sx, 0.0, -sy, y + j * sy],
         _ => return Ok(Found { place: None, from_south: false, metres_high }),
     };
-    if ![a, b, c, d, e, f].iter().all(|number| number.is_finite()) || a <= 0.0 || e == 0.0 {
-        return Err("its tags of place are no numbers that a map can have".into());
-    }
-    if b.abs() > 1e-9 * a.abs() || d.abs() > 1e-9 * e.abs() {
-        return Err("its rows are turned against east; lay it north up first, such as by gdalwarp".into());
-    }
     // The tags speak of pixels' corners, unless key 1025 says that pixels are points: then of the samples themselves.
     let half = match keys.as_ref().and_then(|keys| short(keys, 1025)) {
         Some(2) => 0.0,
         _ => 0.5,
     };
-    let from_south = e > 0.0;
-    let first = if from_south { height as f64 - 1.0 + half } else { half };
-    let unit = unit(keys.as_ref());
-    let place = Place { origin: [c + a * half, f + e * first], step: [a, e.abs()], unit, keys };
-    Ok(Found { place: Some(place), from_south, metres_high })
+    let lattice = Affine([a, b, c + half * (a + b), d, e, f + half * (d + e)]).lattice(height)?;
+    let unit = keys.as_ref().map_or(Unit::Metres(1.0), keys::unit);
+    let place = Place { origin: lattice.origin, step: lattice.step, unit, cell: None, keys };
+    Ok(Found { place: Some(place), from_south: lattice.from_south, metres_high })
 }
 
 fn keys(tiff: &mut Tiff) -> Result<Option<GeoKeys>, String> {
@@ -48,28 +44,4 @@ fn keys(tiff: &mut Tiff) -> Result<Option<GeoKeys>, String> {
     let directory = directory.iter().map(|number| *number as u16).collect();
     let (doubles, text) = (tiff.doubles(34736)?.unwrap_or_default(), tiff.text(34737)?.unwrap_or_default());
     Ok(Some(GeoKeys { directory, doubles, text }))
-}
-
-/// A key whose value is one short number.
-pub fn short(keys: &GeoKeys, wanted: u16) -> Option<u16> {
-    keys.directory.chunks_exact(4).skip(1).find(|key| key[0] == wanted && key[1] == 0).map(|key| key[3])
-}
-
-fn unit(keys: Option<&GeoKeys>) -> Unit {
-    let Some(keys) = keys else { return Unit::Metres(1.0) };
-    match short(keys, 1024) {
-        Some(2) => Unit::Degrees,
-        _ => Unit::Metres(short(keys, 3076).and_then(length_unit).unwrap_or(1.0)),
-    }
-}
-
-/// Metres in a unit of length, by its EPSG code.
-fn length_unit(code: u16) -> Option<f64> {
-    match code {
-        9001 => Some(1.0),
-        9002 => Some(0.3048),
-        9003 => Some(1200.0 / 3937.0),
-        9036 => Some(1000.0),
-        _ => None,
-    }
 }

@@ -1,21 +1,41 @@
 //! Reading the heights of a GeoTIFF that any program wrote.
 //!
-//! Read: classic TIFF and BigTIFF of both byte orders; one band of whole numbers (8, 16, 32, 64 bits, signed or not) or floats (32,
-//! 64); strips and tiles; none, LZW, deflate and PackBits; predictors 1, 2 and 3; GDAL's nodata; a band's scale and offset in
-//! GDAL's metadata; blocks that are left out. Never believed further than the file's bytes go.
+//! Read: classic TIFF and BigTIFF of both byte orders; one band, of several that are interleaved or apart, of whole numbers (8, 16, 32, 64 bits, signed
+//! or not) or floats (32, 64); strips and tiles; none, LZW, deflate, PackBits, Zstandard, LZMA and LERC (with deflate and Zstandard); predictors 1,
+//! 2 and 3; GDAL's nodata; a band's scale and offset in GDAL's metadata; blocks that are left out. Never believed further than the file's bytes go.
 
 use super::entries::Tiff;
 use super::place;
-use super::unpack::{Layout, MOST_GROWTH, unpack};
+use super::unpack::{Layout, Packing};
 use crate::error::Result;
-use crate::format::dem::{Dem, Input, afford, afford_beside, refused};
+use crate::format::dem::{Dem, Input, Place, Request, afford, afford_beside, refused, turn_rows};
 
-/// Reads a GeoTIFF whose heights take no more than `allowed` bytes. `name` is what errors call it.
+/// Reads a band of a GeoTIFF. `name` is what errors call it.
 ///
 /// # Errors
-/// If it is no TIFF, is damaged, holds something else than one band of heights, or is too large.
-pub fn read(input: &mut dyn Input, name: &str, allowed: u64) -> Result<Dem> {
-    open(input, allowed).map_err(|why| refused(name, why))
+/// If it is no TIFF, is damaged, holds something else than heights, or is too large.
+pub fn read(input: &mut dyn Input, name: &str, request: impl Into<Request>) -> Result<Dem> {
+    open(input, request.into()).map_err(|why| refused(name, why))
+}
+
+/// Columns, rows and place of a GeoTIFF; its samples are not looked at.
+///
+/// # Errors
+/// If it is no TIFF, or its directory is damaged.
+pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Place>)> {
+    let read = |input| {
+        let tiff = &mut Tiff::open(input)?;
+        let size = [side(tiff, 256, "width")?, side(tiff, 257, "height")?];
+        let [width, height] = size.map(usize::try_from);
+        let (Ok(width), Ok(height)) = (width, height) else { return Err("its size is no size".to_string()) };
+        Ok(([width, height], place::find(tiff, height)?.place))
+    };
+    read(input).map_err(|why| refused(name, why))
+}
+
+/// A side's samples.
+fn side(tiff: &mut Tiff, tag: u16, what: &str) -> std::result::Result<u64, String> {
+    tiff.one(tag)?.ok_or_else(|| format!("its directory does not tell its {what}"))
 }
 
 /// What the samples' bits mean.
@@ -38,39 +58,49 @@ struct Blocks {
 struct Samples {
     kind: Kind,
     layout: Layout,
+    packing: Packing,
+    /// The band that is read, from 0, of those that lie together in a block.
+    band: usize,
+    /// The first block of the band.
+    plane: usize,
     nodata: Option<f64>,
     scale: f64,
     offset: f64,
 }
 
-fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String> {
+fn open(input: &mut dyn Input, request: Request) -> std::result::Result<Dem, String> {
     let tiff = &mut Tiff::open(input)?;
-    let lacks = |what: &str| format!("its directory does not tell its {what}");
-    let width = tiff.one(256)?.ok_or_else(|| lacks("width"))?;
-    let height = tiff.one(257)?.ok_or_else(|| lacks("height"))?;
-    let count = afford(width, height, allowed)?;
-    let samples = samples(tiff)?;
-    let compression = tiff.one(259)?.unwrap_or(1);
+    let (width, height) = (side(tiff, 256, "width")?, side(tiff, 257, "height")?);
+    let count = afford(width, height, request.allowed)?;
+    let mut samples = samples(tiff, request)?;
     let blocks = blocks(tiff, [width, height])?;
     let across = width.div_ceil(blocks.width);
-    let full = blocks.width * samples.layout.size as u64;
+    samples.plane *= (across * height.div_ceil(blocks.height)) as usize;
+    let full = blocks.width.saturating_mul((samples.layout.size * samples.layout.bands) as u64);
+    // No block is larger than what is allowed and the tiles around a small raster.
+    let largest = request.allowed.saturating_mul(2 * samples.layout.bands as u64).saturating_add(4 << 20);
     let mut heights: Vec<f32> = Vec::new();
     let mut bits = Vec::new();
     for (row, top) in (0..height).step_by(blocks.height as usize).enumerate() {
         let rows = blocks.height.min(height - top);
         for column in 0..across {
-            let k = row * across as usize + column as usize;
+            let k = samples.plane + row * across as usize + column as usize;
             let (Some(&at), Some(&packed)) = (blocks.offsets.get(k), blocks.lengths.get(k)) else {
                 return Err(format!("it tells of {} blocks and has more", blocks.offsets.len()));
             };
-            let length = full * if blocks.tiled { blocks.height } else { rows };
-            if packed > 0 && at > 0 && length > packed.saturating_mul(MOST_GROWTH) {
+            let lines = if blocks.tiled { blocks.height } else { rows };
+            let length = full.saturating_mul(lines);
+            let there = packed > 0 && at > 0;
+            if there && length > packed.saturating_mul(samples.packing.max_growth()).min(largest) {
                 return Err(format!("a block of {packed} bytes is said to hold {length}: it is damaged"));
             }
-            afford_beside(count, length.saturating_add(packed), allowed)?;
-            let mut bytes = match packed == 0 || at == 0 {
-                true => Vec::new(),
-                false => unpack(compression, tiff.bytes(at, packed, "samples")?, length as usize)?,
+            afford_beside(count, length.saturating_add(packed), request.allowed)?;
+            let mut bytes = match there {
+                false => Vec::new(),
+                true => {
+                    let size = [blocks.width as usize, lines as usize];
+                    samples.packing.unpack(tiff.bytes(at, packed, "samples")?, length as usize, size)?
+                }
             };
             if column == 0 {
                 // Room for this row of blocks only: a file that lies about its size ends before it has cost much.
@@ -83,7 +113,8 @@ fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String>
             for (j, line) in bytes.chunks_exact_mut(full as usize).take(rows as usize).enumerate() {
                 samples.layout.row(line, &mut bits);
                 let begin = ((top + j as u64) * width + left) as usize;
-                for (height, bits) in heights[begin..begin + inside].iter_mut().zip(&bits) {
+                let own = bits.iter().skip(samples.band).step_by(samples.layout.bands);
+                for (height, bits) in heights[begin..begin + inside].iter_mut().zip(own) {
                     *height = samples.height(*bits);
                 }
             }
@@ -91,11 +122,7 @@ fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String>
     }
     let found = place::find(tiff, height as usize)?;
     if found.from_south {
-        let width = width as usize;
-        for j in 0..height as usize / 2 {
-            let (upper, lower) = heights.split_at_mut((height as usize - 1 - j) * width);
-            upper[j * width..(j + 1) * width].swap_with_slice(&mut lower[..width]);
-        }
+        turn_rows(&mut heights, width as usize);
     }
     if found.metres_high != 1.0 {
         heights.iter_mut().for_each(|h| *h = (f64::from(*h) * found.metres_high) as f32);
@@ -103,13 +130,22 @@ fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String>
     Dem::new([width as usize, height as usize], heights, found.place)
 }
 
-fn samples(tiff: &mut Tiff) -> std::result::Result<Samples, String> {
+/// The most bands that a file may have.
+const MAX_BANDS: u64 = 4096;
+
+fn samples(tiff: &mut Tiff, request: Request) -> std::result::Result<Samples, String> {
     let bands = tiff.one(277)?.unwrap_or(1);
-    if bands != 1 {
-        return Err(format!("it has {bands} bands; heights have one: choose it, such as by gdal_translate -b 1"));
+    if !(1..=MAX_BANDS).contains(&bands) {
+        return Err(format!("it has {bands} bands; 1 to {MAX_BANDS} are read"));
     }
-    let bits = tiff.one(258)?.unwrap_or(1);
-    let kind = match tiff.one(339)?.unwrap_or(1) {
+    let band = request.choose(bands as usize)?;
+    let all_bits = tiff.wholes(258)?.unwrap_or_else(|| vec![1]);
+    let bits = all_bits.first().copied().unwrap_or(1);
+    if all_bits.iter().any(|other| *other != bits) {
+        return Err("its bands have samples of different sizes".into());
+    }
+    let formats = tiff.wholes(339)?.unwrap_or_default();
+    let kind = match formats.get(band).or(formats.first()).copied().unwrap_or(1) {
         1 => Kind::Unsigned,
         2 => Kind::Signed,
         3 => Kind::Float,
@@ -131,17 +167,39 @@ fn samples(tiff: &mut Tiff) -> std::result::Result<Samples, String> {
         return Err(format!("it has the predictor {predictor}, which such samples cannot have"));
     }
     let nodata = tiff.text(42113)?.and_then(|text| text.trim().parse().ok());
-    let metadata = tiff.text(42112)?.unwrap_or_default();
-    let number = |role: &str| {
-        let (_, rest) = metadata.split_once(&format!("role=\"{role}\">"))?;
-        rest.split('<').next()?.trim().parse::<f64>().ok().filter(|number| number.is_finite())
+    let [scale, offset] = scale_and_offset(&tiff.text(42112)?.unwrap_or_default(), band);
+    // Bands that lie apart have blocks of their own, one band after the other.
+    let apart = tiff.one(284)?.unwrap_or(1) == 2;
+    let (together, size) = (if apart { 1 } else { bands as usize }, bits as usize / 8);
+    let packing = Packing {
+        method: tiff.one(259)?.unwrap_or(1),
+        outer: tiff.wholes(50674)?.and_then(|numbers| numbers.get(1).copied()).unwrap_or(0),
+        bands: together,
+        size,
     };
     Ok(Samples {
         kind,
-        layout: Layout { size: bits as usize / 8, big_endian: tiff.big_endian, predictor },
+        // LERC's numbers, too: libtiff packs a file's samples with their bytes in the file's order, whatever they mean then.
+        layout: Layout { size, big_endian: tiff.big_endian, predictor, bands: together },
+        packing,
+        band: if apart { 0 } else { band },
+        plane: if apart { band } else { 0 },
         nodata,
-        scale: number("scale").unwrap_or(1.0),
-        offset: number("offset").unwrap_or(0.0),
+        scale,
+        offset,
+    })
+}
+
+/// A band's scale and offset in GDAL's metadata.
+fn scale_and_offset(metadata: &str, band: usize) -> [f64; 2] {
+    let document = roxmltree::Document::parse(metadata).ok();
+    ["scale", "offset"].map(|role| {
+        let items = document.iter().flat_map(|document| document.root_element().children());
+        let own = |node: &roxmltree::Node| {
+            node.attribute("role") == Some(role) && node.attribute("sample").map_or(Ok(0), str::parse) == Ok(band)
+        };
+        let number = items.filter(own).find_map(|node| node.text()?.trim().parse::<f64>().ok());
+        number.filter(|number| number.is_finite()).unwrap_or(if role == "scale" { 1.0 } else { 0.0 })
     })
 }
 
@@ -164,6 +222,7 @@ fn blocks(tiff: &mut Tiff, [width, height]: [u64; 2]) -> std::result::Result<Blo
     let (Some(offsets), Some(lengths)) = (offsets, lengths) else {
         return Err("its directory does not tell where its samples lie".into());
     };
+    // Of bands that lie apart there are more.
     let needed = width.div_ceil(block_width).saturating_mul(height.div_ceil(block_height));
     if (offsets.len() as u64) < needed || (lengths.len() as u64) < needed {
         let there = offsets.len().min(lengths.len());

@@ -1,36 +1,112 @@
 //! From a strip's or tile's packed bytes to its samples' bytes.
 
+use std::io::Read;
+
+use lzma_rust2::XzReader;
 use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
+use ruzstd::decoding::{BlockDecodingStrategy, FrameDecoder};
 
-/// How much longer what was packed can be than its bytes, whichever way it was packed: LZW's longest run of a 12-bit code.
-pub const MOST_GROWTH: u64 = 4096;
+use crate::format::lerc;
 
-/// Unpacks exactly `length` bytes; what a file packs beyond them is refused, not read.
-pub fn unpack(compression: u64, packed: Vec<u8>, length: usize) -> Result<Vec<u8>, String> {
-    let out = match compression {
-        1 => packed,
-        5 => lzw(&packed, length)?,
-        8 | 32946 => decompress_to_vec_zlib_with_limit(&packed, length)
-            .map_err(|fault| format!("a block packed by deflate is damaged ({fault})"))?,
-        32773 => pack_bits(&packed, length),
-        50000 => return Err(other("Zstandard")),
-        50001 => return Err(other("WebP")),
-        6 | 7 => return Err(other("JPEG")),
-        34887 => return Err(other("LERC")),
-        34925 => return Err(other("LZMA")),
-        method => return Err(other(&format!("method {method}"))),
-    };
-    match out.len() >= length {
-        true => Ok(out),
-        false => Err(format!("a block holds {} bytes where {length} are due", out.len())),
+/// Compression 34887.
+const LERC: u64 = 34887;
+
+/// How the blocks of a file are packed.
+#[derive(Debug, Clone, Copy)]
+pub struct Packing {
+    /// TIFF's tag 259.
+    pub method: u64,
+    /// What LERC's blobs are packed by: the second number of tag 50674. 0 none, 1 deflate, 2 Zstandard.
+    pub outer: u64,
+    /// Samples of a pixel in a block.
+    pub bands: usize,
+    /// Bytes of a sample.
+    pub size: usize,
+}
+
+impl Packing {
+    /// How much longer what was packed can be than its bytes: what a method can make of them at the very most.
+    pub fn max_growth(&self) -> u64 {
+        match self.method {
+            // LZW's longest run of a 12-bit code; deflate has 1032.
+            1 | 5 | 8 | 32946 | 32773 => 4096,
+            // A block of one byte repeated: 4 bytes for 128 KiB.
+            50000 => 1 << 15,
+            // LZMA's longest run is 273 bytes, whose bits cost almost nothing.
+            34925 => 1 << 15,
+            // A block of one value has no more than a head.
+            _ => u64::MAX,
+        }
+    }
+
+    /// Unpacks exactly `length` bytes, `size` pixels; what a file packs beyond them is refused, not read.
+    pub fn unpack(&self, packed: Vec<u8>, length: usize, size: [usize; 2]) -> Result<Vec<u8>, String> {
+        let out = match self.method {
+            1 => packed,
+            5 => lzw(&packed, length)?,
+            8 | 32946 => inflate(&packed, length)?,
+            32773 => pack_bits(&packed, length),
+            50000 => zstandard(&packed, length)?,
+            34925 => lzma(&packed, length)?,
+            LERC => {
+                // A blob is at most its samples, a mask and a head.
+                let most = length + length / 8 + 4096;
+                let blob = match self.outer {
+                    0 => packed,
+                    1 => inflate(&packed, most)?,
+                    2 => zstandard(&packed, most)?,
+                    other => return Err(format!("its LERC is packed by the unknown method {other}")),
+                };
+                lerc::unpack(&blob, size, self.bands, self.size)?
+            }
+            50001 => return Err(other("WebP")),
+            6 | 7 => return Err(other("JPEG")),
+            method => return Err(other(&format!("method {method}"))),
+        };
+        match out.len() >= length {
+            true => Ok(out),
+            false => Err(format!("a block holds {} bytes where {length} are due", out.len())),
+        }
     }
 }
 
 fn other(method: &str) -> String {
     format!(
-        "it is packed by {method}; known are none, LZW, deflate and PackBits: pack it again, such as by gdal_translate -co \
-         COMPRESS=DEFLATE"
+        "it is packed by {method}; known are none, LZW, deflate, PackBits, Zstandard, LZMA and LERC: pack it again, such as by \
+         gdal_translate -co COMPRESS=DEFLATE"
     )
+}
+
+fn inflate(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
+    decompress_to_vec_zlib_with_limit(packed, most)
+        .map_err(|fault| format!("a block packed by deflate is damaged ({fault})"))
+}
+
+/// Zstandard (RFC 8878), of one frame.
+pub fn zstandard(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
+    let damaged = |fault: &dyn std::fmt::Display| format!("a block packed by Zstandard is damaged ({fault})");
+    let mut decoder = FrameDecoder::new();
+    // Levels up to 22 look back 128 MiB; the memory taken grows with what there is.
+    decoder.set_max_window_size(1 << 27);
+    let mut input = packed;
+    decoder.init(&mut input).map_err(|fault| damaged(&fault))?;
+    let done = decoder
+        .decode_blocks(&mut input, BlockDecodingStrategy::UptoBytes(most + 1))
+        .map_err(|fault| damaged(&fault))?;
+    if !done {
+        return Err(format!("a block packed by Zstandard holds more than the {most} bytes that are due"));
+    }
+    let out = decoder.collect().unwrap_or_default();
+    if out.len() > most { Err(damaged(&"it is too long")) } else { Ok(out) }
+}
+
+/// LZMA2 in the container of xz, as libtiff writes it.
+fn lzma(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
+    let mut out = Vec::new();
+    // The dictionary grows with what there is; presets have 64 MiB at most.
+    let read = XzReader::new_mem_limit(packed, false, 128 << 10).take(most as u64).read_to_end(&mut out);
+    read.map_err(|fault| format!("a block packed by LZMA is damaged ({fault})"))?;
+    Ok(out)
 }
 
 /// TIFF 6.0's LZW: codes of 9 to 12 bits, highest bit first, one wider a code early. Stops when it has `most` bytes.
@@ -123,6 +199,8 @@ pub struct Layout {
     pub big_endian: bool,
     /// TIFF's tag 317: 1 none, 2 differences of whole numbers, 3 of floats' bytes.
     pub predictor: u64,
+    /// Samples of a pixel, which lie together.
+    pub bands: usize,
 }
 
 impl Layout {
@@ -131,8 +209,8 @@ impl Layout {
         let count = bytes.len() / self.size;
         out.clear();
         if self.predictor == 3 {
-            for k in 1..bytes.len() {
-                bytes[k] = bytes[k].wrapping_add(bytes[k - 1]);
+            for k in self.bands..bytes.len() {
+                bytes[k] = bytes[k].wrapping_add(bytes[k - self.bands]);
             }
             // All samples' highest bytes, then all their next ones, whatever the order of the file.
             let sample =
@@ -147,8 +225,8 @@ impl Layout {
         out.extend(bytes.chunks_exact(self.size).map(whole));
         if self.predictor == 2 {
             let mask = u64::MAX >> (64 - 8 * self.size);
-            for i in 1..out.len() {
-                out[i] = out[i].wrapping_add(out[i - 1]) & mask;
+            for i in self.bands..out.len() {
+                out[i] = out[i].wrapping_add(out[i - self.bands]) & mask;
             }
         }
     }
@@ -173,14 +251,16 @@ mod tests {
             .map(|b| u8::from_str_radix(std::str::from_utf8(b).unwrap(), 2).unwrap())
             .collect();
         assert_eq!(lzw(&packed, 9).unwrap(), [7, 7, 7, 8, 8, 7, 7, 6, 6]);
-        assert_eq!(unpack(5, packed[..4].to_vec(), 9).unwrap_err(), "a block holds 3 bytes where 9 are due");
+        let lzw_packed = Packing { method: 5, outer: 0, bands: 1, size: 1 };
+        let why = lzw_packed.unpack(packed[..4].to_vec(), 9, [9, 1]).unwrap_err();
+        assert_eq!(why, "a block holds 3 bytes where 9 are due");
         assert!(lzw(&[0xff, 0xff, 0xff, 0xff], 9).unwrap_err().contains("damaged"));
     }
 
     #[test]
     fn pack_bits_of_apples_note() {
         let packed = [0xFE, 0xAA, 0x02, 0x80, 0x00, 0x2A, 0xFD, 0xAA, 0x03, 0x80, 0x00, 0x2A, 0x22, 0xF7, 0xAA];
-        let out = unpack(32773, packed.to_vec(), 24).unwrap();
+        let out = pack_bits(&packed, 24);
         assert_eq!(&out[..10], [0xAA, 0xAA, 0xAA, 0x80, 0x00, 0x2A, 0xAA, 0xAA, 0xAA, 0xAA]);
         assert_eq!(out.len(), 24);
     }
@@ -188,20 +268,24 @@ mod tests {
     #[test]
     fn predictors() {
         let mut out = Vec::new();
-        Layout { size: 2, big_endian: true, predictor: 2 }.row(&mut [1, 0, 0, 2, 0xff, 0xff], &mut out);
+        Layout { size: 2, big_endian: true, predictor: 2, bands: 1 }.row(&mut [1, 0, 0, 2, 0xff, 0xff], &mut out);
         assert_eq!(out, [256, 258, 257]);
+        // Two bands: each is predicted by itself.
+        Layout { size: 1, big_endian: false, predictor: 2, bands: 2 }.row(&mut [1, 10, 2, 20, 3, 30], &mut out);
+        assert_eq!(out, [1, 10, 3, 30, 6, 60]);
         // Two floats, 1.0 and 2.0: planes 3f 40, 80 00, 00 00, 00 00, then differences.
         let planes = [0x3fu8, 0x40, 0x80, 0, 0, 0, 0, 0];
         let mut bytes: Vec<u8> =
             (0..8).map(|k| if k == 0 { planes[0] } else { planes[k].wrapping_sub(planes[k - 1]) }).collect();
-        Layout { size: 4, big_endian: false, predictor: 3 }.row(&mut bytes, &mut out);
+        Layout { size: 4, big_endian: false, predictor: 3, bands: 1 }.row(&mut bytes, &mut out);
         assert_eq!(out, [u64::from(1f32.to_bits()), u64::from(2f32.to_bits())]);
     }
 
     #[test]
     fn other_methods_are_named() {
-        for (method, name) in [(50000, "Zstandard"), (7, "JPEG"), (99, "method 99")] {
-            assert!(unpack(method, vec![1], 1).unwrap_err().contains(name));
+        for (method, name) in [(50000, "Zstandard"), (34925, "LZMA"), (34887, "LERC"), (7, "JPEG"), (99, "method 99")] {
+            let packing = Packing { method, outer: 0, bands: 1, size: 1 };
+            assert!(packing.unpack(vec![1], 1, [1, 1]).unwrap_err().contains(name));
         }
     }
 }

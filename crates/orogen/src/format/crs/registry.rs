@@ -2,12 +2,13 @@
 
 use std::str::FromStr;
 
-use super::dem::{GeoKeys, Unit};
+use super::keys::GeoKeys;
+use super::unit::Unit;
 
 /// A coordinate reference system of the EPSG registry: a projected one, or a geographic one in degrees.
 ///
 /// ```
-/// use orogen::format::crs::Crs;
+/// use orogen::format::crs::registry::Crs;
 ///
 /// let crs: Crs = "EPSG:32632".parse()?;
 /// assert_eq!((crs.code(), crs.name()), (32632, "WGS 84 / UTM zone 32N"));

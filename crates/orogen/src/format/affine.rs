@@ -1,0 +1,64 @@
+//! How columns and rows of a raster become east and north.
+
+/// East = a column + b row + c, north = d column + e row + f, of the samples themselves: of pixels' middles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Affine(pub [f64; 6]);
+
+/// The samples of a raster that lies straight on its map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lattice {
+    /// East and north of the sample in the north-west.
+    pub origin: [f64; 2],
+    /// From a column to the next one east, and from a row to the next one south: both above 0.
+    pub step: [f64; 2],
+    /// Whether the file's first row is the southernmost.
+    pub from_south: bool,
+}
+
+impl Affine {
+    /// From six numbers in GDAL's order, which speak of pixels' corners: west, step east, 0, north, 0, step (negative where rows go south).
+    pub fn of_geotransform([c, a, b, f, d, e]: [f64; 6]) -> Affine {
+        Affine([a, b, c + 0.5 * (a + b), d, e, f + 0.5 * (d + e)])
+    }
+
+    /// In GDAL's order, of pixels' corners.
+    pub fn geotransform(&self) -> [f64; 6] {
+        let [a, b, c, d, e, f] = self.0;
+        [c - 0.5 * (a + b), a, b, f - 0.5 * (d + e), d, e]
+    }
+
+    /// How a raster of so many rows lies.
+    ///
+    /// # Errors
+    /// A sentence if it is turned or mirrored, or the numbers are no place.
+    pub fn lattice(&self, rows: usize) -> Result<Lattice, String> {
+        let [a, b, c, d, e, f] = self.0;
+        if !self.0.iter().all(|number| number.is_finite()) || a <= 0.0 || e == 0.0 {
+            return Err("what it says of its place is not a lattice that a map can have".into());
+        }
+        if b.abs() > 1e-9 * a.abs() || d.abs() > 1e-9 * e.abs() {
+            return Err("its rows are turned against east; lay it north up first, such as by gdalwarp".into());
+        }
+        let from_south = e > 0.0;
+        let north = if from_south { f + e * (rows as f64 - 1.0) } else { f };
+        Ok(Lattice { origin: [c, north], step: [a, e.abs()], from_south })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn corners_and_middles() {
+        let affine = Affine::of_geotransform([100.0, 10.0, 0.0, 500.0, 0.0, -20.0]);
+        assert_eq!(affine.0, [10.0, 0.0, 105.0, 0.0, -20.0, 490.0]);
+        assert_eq!(affine.geotransform(), [100.0, 10.0, 0.0, 500.0, 0.0, -20.0]);
+        let lattice = affine.lattice(4).unwrap();
+        assert_eq!(lattice, Lattice { origin: [105.0, 490.0], step: [10.0, 20.0], from_south: false });
+        let turned = Affine([10.0, 0.0, 105.0, 0.0, 20.0, 490.0]).lattice(4).unwrap();
+        assert_eq!((turned.origin, turned.from_south), ([105.0, 550.0], true));
+        assert!(Affine([10.0, 1.0, 0.0, 0.0, -10.0, 0.0]).lattice(4).unwrap_err().contains("turned"));
+        assert!(Affine([-10.0, 0.0, 0.0, 0.0, -10.0, 0.0]).lattice(4).is_err());
+    }
+}

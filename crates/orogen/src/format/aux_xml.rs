@@ -1,0 +1,67 @@
+//! GDAL's notes beside a raster, `NAME.EXT.aux.xml` (PAM): of them, the coordinate system and the place. It is where GDAL looks for the system of a picture.
+
+use std::io::{self, Write};
+
+use roxmltree::Document;
+
+use super::affine::Affine;
+
+/// The longest file read.
+pub const MAX_LENGTH: u64 = 1 << 20;
+
+/// What it tells.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Notes {
+    /// How columns and rows become coordinates.
+    pub affine: Option<Affine>,
+    /// The coordinate system as well-known text, or as a code such as EPSG:32632.
+    pub system: Option<String>,
+}
+
+/// Writes it: a place and its system as well-known text.
+///
+/// Fails as `out` does.
+pub fn write(out: &mut dyn Write, affine: &Affine, wkt: &str) -> io::Result<()> {
+    let numbers = affine.geotransform().map(|number| format!("{number:?}")).join(", ");
+    let wkt = wkt.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    writeln!(out, "<PAMDataset>\n  <SRS>{wkt}</SRS>\n  <GeoTransform>{numbers}</GeoTransform>\n</PAMDataset>")
+}
+
+/// Reads it.
+///
+/// # Errors
+/// A sentence if it is no XML.
+pub fn parse(text: &str) -> Result<Notes, String> {
+    let document = Document::parse(text).map_err(|fault| format!("it is no sound XML ({fault})"))?;
+    let root = document.root_element();
+    let child = |name: &str| root.children().find(|node| node.has_tag_name(name)).and_then(|node| node.text());
+    let affine = child("GeoTransform").and_then(numbers).map(Affine::of_geotransform);
+    let system = child("SRS").map(str::trim).filter(|text| !text.is_empty()).map(String::from);
+    Ok(Notes { affine, system })
+}
+
+/// Six numbers with commas between them.
+pub fn numbers(text: &str) -> Option<[f64; 6]> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
+    numbers?.try_into().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn place_and_system_are_found() {
+        let text = "<PAMDataset>\n <SRS dataAxisToSRSAxisMapping=\"1,2\">PROJCS[&quot;a&quot;]</SRS>\n\
+                    <GeoTransform>  5.0e+05, 3.0e+01, 0, 5.2e+06, 0, -3.0e+01</GeoTransform><Metadata/></PAMDataset>";
+        let notes = parse(text).unwrap();
+        assert_eq!(notes.system.as_deref(), Some("PROJCS[\"a\"]"));
+        assert_eq!(notes.affine.unwrap().0, [30.0, 0.0, 500_015.0, 0.0, -30.0, 5_199_985.0]);
+        let mut bytes = Vec::new();
+        write(&mut bytes, &notes.affine.unwrap(), "PROJCS[\"<a&b>\"]").unwrap();
+        let again = parse(&String::from_utf8(bytes).unwrap()).unwrap();
+        assert_eq!((again.affine, again.system.as_deref()), (notes.affine, Some("PROJCS[\"<a&b>\"]")));
+        assert_eq!(parse("<PAMDataset/>"), Ok(Notes::default()));
+        assert!(parse("<PAMDataset>").unwrap_err().contains("no sound XML"));
+    }
+}

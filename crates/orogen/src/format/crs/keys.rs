@@ -1,0 +1,289 @@
+//! The keys of GeoTIFF (OGC 19-008r4) from well-known text, and back.
+
+use super::system::{Method, System};
+use super::unit::Unit;
+use super::wkt::Node;
+use super::{arc_info, epsg};
+use serde::{Deserialize, Serialize};
+
+/// GeoTIFF's own directory (OGC 19-008r4, 7.1.2): which coordinate system its numbers are in.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct GeoKeys {
+    /// Tag 34735, its four numbers of head included.
+    pub directory: Vec<u16>,
+    /// Tag 34736.
+    pub doubles: Vec<f64>,
+    /// Tag 34737.
+    pub text: String,
+}
+
+/// What ESRI's programs and GDAL write before a text that no other key can tell.
+const ESRI_TEXT: &str = "ESRI PE String = ";
+
+const MODEL: u16 = 1024;
+const CITATION: u16 = 1026;
+const GEOGRAPHIC: u16 = 2048;
+const PROJECTED: u16 = 3072;
+const PROJECTED_CITATION: u16 = 3073;
+const LINEAR_UNIT: u16 = 3076;
+/// GeoTIFF's code for what no code tells.
+pub const USER_DEFINED: u16 = 32767;
+const TEXTS: u16 = 34737;
+const DOUBLES: u16 = 34736;
+
+/// A key whose value is one short number.
+pub fn short(keys: &GeoKeys, wanted: u16) -> Option<u16> {
+    keys.directory.chunks_exact(4).skip(1).find(|key| key[0] == wanted && key[1] == 0).map(|key| key[3])
+}
+
+/// A key whose value is a text.
+fn text(keys: &GeoKeys, wanted: u16) -> Option<&str> {
+    let key = keys.directory.chunks_exact(4).skip(1).find(|key| key[0] == wanted && key[1] == TEXTS)?;
+    let (from, length) = (usize::from(key[3]), usize::from(key[2]));
+    Some(keys.text.get(from..(from + length).min(keys.text.len()))?.trim_end_matches(['|', '\0']))
+}
+
+/// A key whose value is a number.
+fn double(keys: &GeoKeys, wanted: u16) -> Option<f64> {
+    let key = keys.directory.chunks_exact(4).skip(1).find(|key| key[0] == wanted && key[1] == DOUBLES)?;
+    keys.doubles.get(usize::from(key[3])).copied()
+}
+
+/// Metres in a unit of length, by its EPSG code.
+pub fn length_unit(code: u16) -> Option<f64> {
+    match code {
+        9001 => Some(1.0),
+        9002 => Some(0.3048),
+        9003 => Some(1200.0 / 3937.0),
+        9036 => Some(1000.0),
+        _ => None,
+    }
+}
+
+/// Whether coordinates are degrees of longitude and latitude.
+pub fn is_degrees(keys: &GeoKeys) -> bool {
+    short(keys, MODEL) == Some(2)
+}
+
+/// Whether keys tell a coordinate system of the Earth: not local metres, not degrees of an unknown datum.
+pub fn is_named(keys: &GeoKeys) -> bool {
+    match short(keys, MODEL) {
+        Some(1) => true,
+        Some(2) => epsg(keys).is_some() || !keys.text.is_empty() || !keys.doubles.is_empty(),
+        _ => false,
+    }
+}
+
+/// What coordinates are measured in.
+pub fn unit(keys: &GeoKeys) -> Unit {
+    if is_degrees(keys) { Unit::Degrees } else { Unit::Metres(metres(keys)) }
+}
+
+/// Metres of the unit of projected coordinates; 1 where the keys do not tell.
+pub fn metres(keys: &GeoKeys) -> f64 {
+    let told = || Some(Node::parse(esri_text(keys)?).ok()?.metres());
+    short(keys, LINEAR_UNIT).and_then(length_unit).or_else(told).unwrap_or(1.0)
+}
+
+/// The EPSG code of the system, if the keys tell one.
+pub fn epsg(keys: &GeoKeys) -> Option<u16> {
+    let key = |wanted: u16| short(keys, wanted).filter(|code| !matches!(*code, 0 | USER_DEFINED));
+    // Model 2 is a geographic system, 1 a projected one.
+    if is_degrees(keys) { key(GEOGRAPHIC) } else { key(PROJECTED) }
+}
+
+/// The keys of an EPSG code.
+pub fn of_epsg(code: u16, geographic: bool) -> GeoKeys {
+    let directory = match geographic {
+        true => vec![1, 1, 0, 2, MODEL, 0, 1, 2, GEOGRAPHIC, 0, 1, code],
+        false => vec![1, 1, 0, 2, MODEL, 0, 1, 1, PROJECTED, 0, 1, code],
+    };
+    GeoKeys { directory, ..GeoKeys::default() }
+}
+
+/// The keys of the text of a `.prj`: its EPSG code where it has one or is a known system, else the text itself.
+///
+/// # Errors
+/// A sentence if it is no text of a coordinate system on Earth.
+pub fn of_wkt(wkt: &str) -> Result<GeoKeys, String> {
+    let wkt = wkt.trim_start_matches('\u{feff}').trim();
+    if let Some(code) = arc_info::epsg(wkt) {
+        return Ok(of_epsg(code, epsg::geographic(code).is_some()));
+    }
+    let node = Node::parse(wkt)?;
+    let geographic = node.is_geographic();
+    if !geographic && !node.is_projected() {
+        return Err(format!("its {} is neither a projected nor a geographic coordinate system", node.keyword));
+    }
+    let metres = node.metres();
+    if let Some(code) = node.epsg() {
+        let mut keys = of_epsg(code, geographic);
+        if !geographic && metres != 1.0 {
+            push_unit(&mut keys, metres);
+        }
+        return Ok(keys);
+    }
+    let text = format!("{ESRI_TEXT}{wkt}|");
+    // A bar would end the text, and nothing but ASCII is a text of GeoTIFF.
+    if wkt.contains('|') || !wkt.is_ascii() {
+        return Err("its well-known text holds letters that a coordinate system has not".into());
+    }
+    let length = text.len() as u16;
+    let directory = match geographic {
+        true => vec![1, 1, 0, 3, MODEL, 0, 1, 2, CITATION, TEXTS, length, 0, GEOGRAPHIC, 0, 1, USER_DEFINED],
+        false => vec![1, 1, 0, 3, MODEL, 0, 1, 1, PROJECTED, 0, 1, USER_DEFINED, PROJECTED_CITATION, TEXTS, length, 0],
+    };
+    let mut keys = GeoKeys { directory, doubles: Vec::new(), text };
+    if !geographic {
+        push_unit(&mut keys, metres);
+    }
+    Ok(keys)
+}
+
+/// The keys of a well-known text, or of a code such as `EPSG:32632`, also in a URL or URN that ends with it.
+///
+/// # Errors
+/// A sentence if it is neither.
+pub fn of_text(text: &str) -> Result<GeoKeys, String> {
+    let text = text.trim();
+    let code = text.rsplit([':', '/']).next().and_then(|code| code.parse().ok());
+    match code.filter(|_| text.len() < 100 && text.to_ascii_uppercase().contains("EPSG")) {
+        Some(code) => match crs_definitions::from_code(code) {
+            Some(definition) => of_wkt(definition.wkt),
+            None => Err(format!("the registry has no EPSG:{code}")),
+        },
+        None => of_wkt(text),
+    }
+}
+
+/// Adds the unit of length; keys are sorted, and this is the last.
+fn push_unit(keys: &mut GeoKeys, metres: f64) {
+    let code = [9001u16, 9002, 9003, 9036]
+        .into_iter()
+        .find(|code| length_unit(*code).is_some_and(|unit| (unit - metres).abs() < 1e-9));
+    if let Some(code) = code {
+        keys.directory.extend([LINEAR_UNIT, 0, 1, code]);
+        keys.directory[3] += 1;
+    }
+}
+
+/// The text that these keys carry as ESRI's programs do.
+fn esri_text(keys: &GeoKeys) -> Option<&str> {
+    let mut texts = [PROJECTED_CITATION, CITATION, 2049].into_iter().filter_map(|key| text(keys, key));
+    texts.find_map(|text| Some(text.split_once(ESRI_TEXT)?.1))
+}
+
+/// The well-known text of keys, for a `.prj` file.
+///
+/// # Errors
+/// A sentence that says what could not be expressed.
+pub fn to_wkt(keys: &GeoKeys) -> Result<String, String> {
+    if let Some(code) = epsg(keys) {
+        return match epsg::find(code) {
+            Some(system) => Ok(system.to_wkt()),
+            // In OGC's terms, which all but ESRI's own programs take for as good.
+            None => match crs_definitions::from_code(code) {
+                Some(definition) => Ok(definition.wkt.to_string()),
+                None => Err(format!("the registry has no EPSG:{code}")),
+            },
+        };
+    }
+    if let Some(text) = esri_text(keys) {
+        return Ok(text.to_string());
+    }
+    match user_defined(keys) {
+        Some(system) => Ok(system.to_wkt()),
+        None if short(keys, MODEL) == Some(USER_DEFINED) => {
+            Err("it is in local metres, not on a map of the Earth".into())
+        }
+        None if is_degrees(keys) => Err("the input does not tell the datum of its degrees".into()),
+        None => Err(match text(keys, PROJECTED_CITATION).or_else(|| text(keys, CITATION)) {
+            Some(name) => format!("\"{}\" is defined by keys that are not understood", name.escape_debug()),
+            None => "it is defined by keys that are not understood".into(),
+        }),
+    }
+}
+
+/// A projection that the keys define by themselves, on a known datum.
+fn user_defined(keys: &GeoKeys) -> Option<System> {
+    if short(keys, MODEL) != Some(1) {
+        return None;
+    }
+    let geographic = epsg::geographic(short(keys, GEOGRAPHIC)?)?;
+    let first = |wanted: &[u16]| wanted.iter().find_map(|key| double(keys, *key));
+    let (east, north) = (first(&[3082, 3086, 3090]).unwrap_or(0.0), first(&[3083, 3087, 3091]).unwrap_or(0.0));
+    let (longitude, latitude) =
+        (first(&[3080, 3084, 3088, 3095]).unwrap_or(0.0), first(&[3081, 3085, 3089]).unwrap_or(0.0));
+    let scale = first(&[3092, 3093]).unwrap_or(1.0);
+    let (method, rest) = match short(keys, 3075)? {
+        1 => (Method::TransverseMercator, vec![scale, latitude]),
+        8 => (Method::Lambert, vec![double(keys, 3078)?, double(keys, 3079)?, latitude]),
+        9 => (Method::LambertOne, vec![latitude, scale, latitude]),
+        10 => (Method::AzimuthalEqualArea, vec![latitude]),
+        11 => (Method::Albers, vec![double(keys, 3078)?, double(keys, 3079)?, latitude]),
+        // The latitude is that of the true scale, unless it is the pole itself.
+        15 if latitude.abs() == 90.0 => (Method::Stereographic, vec![scale, latitude]),
+        15 if latitude > 0.0 && scale == 1.0 => (Method::NorthPole, vec![latitude]),
+        15 if latitude < 0.0 && scale == 1.0 => (Method::SouthPole, vec![latitude]),
+        _ => return None,
+    };
+    // ESRI's name would be a lie; the citation is what the file itself calls it.
+    let name = text(keys, PROJECTED_CITATION).or_else(|| text(keys, CITATION)).unwrap_or("Unknown");
+    let name: String = name.chars().filter(|c| c.is_ascii_graphic() && !"\"[]|".contains(*c) || *c == ' ').collect();
+    let unit = short(keys, LINEAR_UNIT).map_or(Some(1.0), length_unit)?;
+    let parameters = [vec![east, north, longitude], rest].concat();
+    Some(System { name: name.trim().replace(' ', "_"), geographic, projection: Some((method, parameters)), unit })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_become_texts_and_texts_codes() {
+        for (code, geographic) in [(32632, false), (4326, true), (3857, false), (2154, false), (3031, false)] {
+            let keys = of_epsg(code, geographic);
+            let text = to_wkt(&keys).unwrap();
+            assert_eq!(of_wkt(&text), Ok(keys.clone()), "{text}");
+            assert_eq!((epsg(&keys), is_degrees(&keys)), (Some(code), geographic));
+        }
+        // A system that is not among the known ones comes from the registry, in feet.
+        let feet = of_text("EPSG:2927").unwrap();
+        assert_eq!((epsg(&feet), short(&feet, LINEAR_UNIT)), (Some(2927), Some(9003)));
+        let text = to_wkt(&feet).unwrap();
+        assert!(
+            text.starts_with("PROJCS[\"NAD83(HARN) / Washington South (ftUS)\"") && of_wkt(&text) == Ok(feet),
+            "{text}"
+        );
+        assert!(to_wkt(&of_epsg(1, false)).unwrap_err().contains("EPSG:1"));
+    }
+
+    #[test]
+    fn unknown_texts_are_kept_as_they_are() {
+        let text = "PROJCS[\"Mine\",GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],\
+                    PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]],PROJECTION[\"Sinusoidal\"],\
+                    PARAMETER[\"False_Easting\",1.5],UNIT[\"Foot\",0.3048]]";
+        let keys = of_wkt(&format!("\u{feff}{text}\r\n")).unwrap();
+        assert_eq!((to_wkt(&keys).as_deref(), epsg(&keys), metres(&keys)), (Ok(text), None, 0.3048));
+        assert_eq!(usize::from(keys.directory[3]) * 4 + 4, keys.directory.len());
+        assert!(of_wkt("LOCAL_CS[\"here\"]").unwrap_err().contains("LOCAL_CS"));
+    }
+
+    #[test]
+    fn projections_that_keys_define_are_written() {
+        // Albers on NAD83, each parameter a double.
+        let parameters = [(3078u16, 29.5), (3079, 45.5), (3080, -96.0), (3081, 23.0), (3082, 10.0), (3083, 20.0)];
+        let mut directory =
+            vec![1, 1, 0, 0, MODEL, 0, 1, 1, GEOGRAPHIC, 0, 1, 4269, PROJECTED, 0, 1, USER_DEFINED, 3075, 0, 1, 11];
+        parameters.iter().enumerate().for_each(|(k, (key, _))| directory.extend([*key, DOUBLES, 1, k as u16]));
+        directory[3] = (directory.len() / 4 - 1) as u16;
+        let keys =
+            GeoKeys { directory, doubles: parameters.iter().map(|(_, value)| *value).collect(), text: String::new() };
+        let text = to_wkt(&keys).unwrap();
+        assert!(
+            text.starts_with("PROJCS[\"Unknown\",GEOGCS[\"GCS_North_American_1983\"")
+                && text.contains("PROJECTION[\"Albers\"]")
+        );
+        assert!(text.contains("\"False_Easting\",10.0]") && text.contains("\"Standard_Parallel_2\",45.5]"), "{text}");
+    }
+}

@@ -1,0 +1,145 @@
+//! A coordinate reference system by its parameters.
+
+use std::fmt::Write;
+
+/// A geographic system, longitude and latitude in degrees from Greenwich.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Geographic {
+    /// Its EPSG code.
+    pub code: u16,
+    /// What ESRI calls it.
+    pub name: &'static str,
+    /// What ESRI calls its datum.
+    pub datum: &'static str,
+    /// What EPSG, and so the WKT of OGC, calls its datum.
+    pub datum_ogc: &'static str,
+    /// The name of its ellipsoid.
+    pub spheroid: &'static str,
+    /// The semi-major axis, in metres.
+    pub radius: f64,
+    /// The inverse flattening.
+    pub flattening: f64,
+}
+
+/// A map projection, as ESRI names it and its parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Transverse Mercator.
+    TransverseMercator,
+    /// The same by its name in Germany and China.
+    GaussKruger,
+    /// Lambert's conformal conic projection with two standard parallels.
+    Lambert,
+    /// The same with one standard parallel and a scale.
+    LambertOne,
+    /// Albers' equal-area conic projection.
+    Albers,
+    /// Lambert's azimuthal equal-area projection.
+    AzimuthalEqualArea,
+    /// Mercator with a standard parallel.
+    Mercator,
+    /// Web Mercator.
+    WebMercator,
+    /// Polar stereographic with a scale at the pole (variant A).
+    Stereographic,
+    /// Polar stereographic with a standard parallel in the north (variant B).
+    NorthPole,
+    /// Polar stereographic with a standard parallel in the south (variant B).
+    SouthPole,
+    /// Oblique stereographic.
+    DoubleStereographic,
+    /// Hotine's oblique Mercator with its centre on the initial line (variant B).
+    ObliqueMercator,
+}
+
+impl Method {
+    /// What ESRI calls it, and its parameters in the order of [`System::parameters`].
+    pub fn terms(self) -> (&'static str, &'static [&'static str]) {
+        const CENTRE: [&str; 3] = ["False_Easting", "False_Northing", "Central_Meridian"];
+        const SCALED: &[&str] = &[CENTRE[0], CENTRE[1], CENTRE[2], "Scale_Factor", "Latitude_Of_Origin"];
+        const CONIC: &[&str] =
+            &[CENTRE[0], CENTRE[1], CENTRE[2], "Standard_Parallel_1", "Standard_Parallel_2", "Latitude_Of_Origin"];
+        const PARALLEL: &[&str] = &[CENTRE[0], CENTRE[1], CENTRE[2], "Standard_Parallel_1"];
+        match self {
+            Method::TransverseMercator => ("Transverse_Mercator", SCALED),
+            Method::GaussKruger => ("Gauss_Kruger", SCALED),
+            Method::Lambert => ("Lambert_Conformal_Conic", CONIC),
+            Method::LambertOne => (
+                "Lambert_Conformal_Conic",
+                &[CENTRE[0], CENTRE[1], CENTRE[2], "Standard_Parallel_1", "Scale_Factor", "Latitude_Of_Origin"],
+            ),
+            Method::Albers => ("Albers", CONIC),
+            Method::AzimuthalEqualArea => {
+                ("Lambert_Azimuthal_Equal_Area", &[CENTRE[0], CENTRE[1], CENTRE[2], "Latitude_Of_Origin"])
+            }
+            Method::Mercator => ("Mercator", PARALLEL),
+            Method::WebMercator => (
+                "Mercator_Auxiliary_Sphere",
+                &[CENTRE[0], CENTRE[1], CENTRE[2], "Standard_Parallel_1", "Auxiliary_Sphere_Type"],
+            ),
+            Method::Stereographic => ("Stereographic", SCALED),
+            Method::NorthPole => ("Stereographic_North_Pole", PARALLEL),
+            Method::SouthPole => ("Stereographic_South_Pole", PARALLEL),
+            Method::DoubleStereographic => ("Double_Stereographic", SCALED),
+            Method::ObliqueMercator => (
+                "Hotine_Oblique_Mercator_Azimuth_Center",
+                &[CENTRE[0], CENTRE[1], "Scale_Factor", "Azimuth", "Longitude_Of_Center", "Latitude_Of_Center"],
+            ),
+        }
+    }
+}
+
+/// A projected system, or a geographic one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct System {
+    /// What ESRI calls it; of a geographic one, its own name.
+    pub name: String,
+    /// What the degrees are measured on.
+    pub geographic: Geographic,
+    /// The projection with its parameters, degrees and the system's unit of length; none of a geographic system.
+    pub projection: Option<(Method, Vec<f64>)>,
+    /// Metres of the unit of length.
+    pub unit: f64,
+}
+
+/// How many degrees a radian has, as ESRI writes it.
+const RADIANS: &str = "0.0174532925199433";
+
+impl System {
+    /// The parameters of its projection; none of a geographic system.
+    pub fn parameters(&self) -> &[f64] {
+        self.projection.as_ref().map_or(&[], |(_, parameters)| parameters)
+    }
+
+    /// As the text of a `.prj` file: WKT 1 in ESRI's terms, on one line.
+    pub fn to_wkt(&self) -> String {
+        let Geographic { name, datum, spheroid, radius, flattening, .. } = self.geographic;
+        let degrees = format!(
+            "GEOGCS[\"{name}\",DATUM[\"{datum}\",SPHEROID[\"{spheroid}\",{},{}]],PRIMEM[\"Greenwich\",0.0],\
+             UNIT[\"Degree\",{RADIANS}]]",
+            decimal(radius),
+            decimal(flattening)
+        );
+        let Some((method, parameters)) = &self.projection else { return degrees };
+        let (projection, names) = method.terms();
+        let mut text = format!("PROJCS[\"{}\",{degrees},PROJECTION[\"{projection}\"]", self.name);
+        for (name, value) in names.iter().zip(parameters) {
+            // Writing to a string does not fail.
+            let _ = write!(text, ",PARAMETER[\"{name}\",{}]", decimal(*value));
+        }
+        let unit = match self.unit {
+            1.0 => "Meter",
+            0.3048 => "Foot",
+            unit if (unit - 1200.0 / 3937.0).abs() < 1e-12 => "Foot_US",
+            _ => "Unit",
+        };
+        let _ = write!(text, ",UNIT[\"{unit}\",{}]]", decimal(self.unit));
+        text
+    }
+}
+
+/// A number that has a point.
+fn decimal(number: f64) -> String {
+    let text = number.to_string();
+    if text.contains('.') { text } else { text + ".0" }
+}
