@@ -85,6 +85,14 @@ pub fn count(n: usize, thing: &str) -> String {
     }
 }
 
+/// A part of a whole in per cent, to two digits after the point: "12.50 %", "less than 0.01 %".
+pub fn percent(part: u64, whole: u64) -> String {
+    match 100.0 * part as f64 / whole as f64 {
+        little if part > 0 && little < 0.01 => "less than 0.01 %".to_string(),
+        share => format!("{share:.2} %"),
+    }
+}
+
 /// A number as people read it, to six digits or to the unit: "2666.67", "0.3125", "1e308".
 pub fn number(value: f64) -> String {
     // Formatting rounds to the nearest and reads back exactly.
@@ -272,6 +280,7 @@ mod tests {
     #[test]
     fn counts_and_numbers() {
         assert_eq!([0, 1, 2].map(|n| count(n, "tile")), ["0 tiles", "1 tile", "2 tiles"]);
+        assert_eq!([0, 1, 1250].map(|n| percent(n, 100_000)), ["0.00 %", "less than 0.01 %", "1.25 %"]);
         for (value, expect) in [
             (8000.0 / 3.0, "2666.67"),
             (0.1 + 0.2, "0.3"),

@@ -1,6 +1,7 @@
 //! How many samples are numbers that mean something: what is NaN or infinite is counted, told, and left out of every summary.
 
 use crate::error::{Error, ErrorKind};
+use crate::words::percent;
 
 /// Samples, and how many of them are finite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -40,10 +41,9 @@ impl FiniteCount {
                 ),
             )),
             missing => {
-                let share = 100.0 * missing as f64 / samples as f64;
-                let share = if share < 0.01 { "less than 0.01".to_string() } else { format!("{share:.2}") };
+                let share = percent(missing, samples);
                 Ok(Some(format!(
-                    "{missing} of {samples} samples of {what} ({share} %) are NaN or infinite; summaries and colours are those of the others"
+                    "{missing} of {samples} samples of {what} ({share}) are NaN or infinite; summaries and colours are those of the others"
                 )))
             }
         }

@@ -15,6 +15,7 @@ use crate::format::import;
 use crate::format::sidecar::Sidecar;
 use crate::grid::Grid;
 use crate::open::regular;
+use crate::words::{count, percent};
 
 /// Most bytes of heights where nobody says.
 pub const USUAL_MEMORY: u64 = 4 << 30;
@@ -89,8 +90,8 @@ impl Ground {
         let mut notes = std::mem::take(&mut dem.notes);
         let missing = fill(&mut dem.heights, dem.width, dem.height);
         if missing > 0 {
-            let share = 100.0 * missing as f64 / samples as f64;
-            notes.push(format!("{missing} samples ({share:.2} %) have no height and were filled from around them"));
+            let (holes, share) = (count(missing, "sample"), percent(missing as u64, samples as u64));
+            notes.push(format!("filled {holes} without height ({share}) from the heights around"));
         }
         let degrees = dem.place.as_ref().is_some_and(|place| place.unit == Unit::Degrees) && cell.is_none();
         if !layout.is_square() {

@@ -4,10 +4,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::files::Files;
-use super::format::refuse;
 use super::options::Options;
 use super::sidecar::NO_SIDECAR;
 use super::subject::Subject;
+use crate::error::{Error, ErrorKind};
 use crate::format::dem::Georeference;
 use crate::format::{aux_xml, sidecar, world_file};
 use crate::grid::Window;
@@ -49,12 +49,13 @@ pub fn write_for(
             && !path.exists()
             && open::bytes(&to, "read", LONGEST).is_ok_and(|old| old.is_none_or(|old| old != bytes))
         {
-            return refuse(format!(
-                "{} is there and tells another place, and {} would be read with it: write to another name, or say --{} or --force",
-                to.display(),
+            let sentence = format!(
+                "cannot write {}: {} is there and gives another location, with which it would be read; write to another name, or say --{} or --force",
                 path.display(),
+                to.display(),
                 NO_SIDECAR.name
-            ));
+            );
+            return Err(Error::new(ErrorKind::File, sentence).into());
         }
         written.push(to.file_name().unwrap_or_default().to_string_lossy().into_owned());
         files.write_beside(|_| to, |out| out.write_all(&bytes))?;
