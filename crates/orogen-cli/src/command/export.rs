@@ -7,7 +7,6 @@ use orogen::World;
 use orogen::export::derived::list;
 use orogen::export::format::Format;
 use orogen::export::run::Written;
-use orogen::export::subject::Subject;
 use orogen::export::targets::frame::{Asked, Frame};
 use orogen::export::targets::target::Target;
 use orogen::export::{mesh_cover, registry, run as exporting, targets};
@@ -153,7 +152,7 @@ fn export(args: &Args) -> Result<(), Failure> {
     let window = args.samples.window(&world)?;
     let sink = Sink::new(&args.out, &policy)?;
     let (bar, progress) = Bar::new(args.quiet);
-    let subject = Subject::in_format(format, &world, &args.layer, window, &progress)?;
+    let subject = exporting::subject(format, &world, &args.layer, window, &progress)?;
     let Written { words, count } = match &sink {
         Sink::Stdout => sink.write(|out| exporting::to_stream(format, subject, &options, out))?,
         // With what stands beside it.

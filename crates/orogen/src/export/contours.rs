@@ -1,43 +1,16 @@
 //! Contours of what is exported, as every format of lines takes them.
 
-use std::io;
-
-use super::format::whole;
-use super::options::{OptionSpec, Options, Takes};
-use super::subject::Subject;
+use super::contour_options::{INTERVAL, LEVELS, SMOOTH, parse};
+use super::memory::whole;
+use super::options::Options;
 use crate::contour::chaikin::smooth;
-use crate::contour::levels::{every, given, round_interval};
+use crate::contour::levels::{every, round_interval};
 use crate::contour::line::Line;
 use crate::contour::trace;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
 use crate::format::levels::Levels;
 use crate::grid::{Grid, Window};
 use crate::words::{count, number};
-
-/// `--interval`.
-pub const INTERVAL: OptionSpec = OptionSpec {
-    name: "interval",
-    value: "M",
-    about: "Metres from one contour to the next [default: a round number that makes 10 to 25]",
-    takes: Takes::Number(1e-6, 1e6),
-};
-
-/// `--levels`.
-pub const LEVELS: OptionSpec = OptionSpec {
-    name: "levels",
-    value: "A,B,...",
-    about: "Heights of contours, instead of an interval",
-    takes: Takes::Text,
-};
-
-/// `--smooth`.
-pub const SMOOTH: OptionSpec = OptionSpec {
-    name: "smooth",
-    value: "N",
-    about: "How often the corners of lines are cut, each time doubling their points, and rivers are evened out \
-            [default: 0 for contours, 1 for shores and watersheds, 3 for rivers]",
-    takes: Takes::Whole(0, 6),
-};
 
 /// Most contours, where nobody says.
 const MOST: usize = 25;
@@ -53,26 +26,6 @@ pub struct Contours {
 /// Bytes beside the rows: the grid, and crossings, of which rough ground has about as many as samples.
 pub fn memory(window: &Window, _: &Options) -> u64 {
     whole(window).saturating_mul(8)
-}
-
-/// The contours that are asked for.
-///
-/// Fails as the subject does, or if the levels cannot be read.
-pub fn of(subject: &mut Subject, options: &Options) -> io::Result<Contours> {
-    check(options)?;
-    Ok(on(&subject.whole()?.swap_remove(0), options)?)
-}
-
-/// Whether the options that say which contours are wanted go together, and can be read.
-///
-/// # Errors
-/// If not.
-pub fn check(options: &Options) -> Result<()> {
-    if options.has(INTERVAL.name) && options.has(LEVELS.name) {
-        let sentence = "--interval and --levels contradict each other: give one of them";
-        return Err(Error::new(ErrorKind::Request, sentence));
-    }
-    options.text(LEVELS.name).map_or(Ok(()), |text| parse(text).map(drop))
 }
 
 /// The contours of a grid.
@@ -96,17 +49,6 @@ pub fn on(grid: &Grid, options: &Options) -> Result<Contours> {
     let rounds = options.whole(SMOOTH.name).unwrap_or(0) as usize;
     let lines = if rounds > 0 { lines.iter().map(|line| smooth(line, rounds)).collect() } else { lines };
     Ok(Contours { lines, interval })
-}
-
-fn parse(text: &str) -> Result<Vec<f64>> {
-    let numbers = text.split(',').map(|part| {
-        part.trim().parse::<f64>().map_err(|_| {
-            let sentence =
-                format!("`{part}` in --levels is no height; they are numbers with commas, such as 0,250.5,500");
-            Error::new(ErrorKind::Request, sentence)
-        })
-    });
-    given(&numbers.collect::<Result<Vec<f64>>>()?)
 }
 
 impl Contours {

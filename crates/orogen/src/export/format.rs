@@ -7,7 +7,6 @@ use super::options::{OptionSpec, Options};
 use super::subject::Subject;
 use crate::error::{Error, ErrorKind};
 use crate::grid::Window;
-use crate::spool;
 
 /// A format of files, declared in a file of its own in `formats/`.
 pub struct Format {
@@ -48,14 +47,4 @@ impl Format {
 /// A request that a format cannot meet, in a sentence.
 pub fn refuse<T>(sentence: String) -> io::Result<T> {
     Err(Error::new(ErrorKind::Request, sentence).into())
-}
-
-/// Bytes of all samples of a window, as a format takes that needs them all at once.
-pub fn whole(window: &Window) -> u64 {
-    (window.width as u64).saturating_mul(window.height as u64).saturating_mul(4)
-}
-
-/// Bytes of memory that putting `bytes` aside takes.
-pub fn aside(bytes: u64) -> u64 {
-    bytes.min(spool::IN_MEMORY as u64)
 }

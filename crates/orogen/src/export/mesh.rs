@@ -5,7 +5,7 @@ use std::io;
 use serde_json::{Value, json};
 
 use super::files::Files;
-use super::format::whole;
+use super::memory::whole;
 use super::options::{OptionSpec, Options, Takes};
 use super::subject::Subject;
 use crate::analysis::halo::Halo;

@@ -20,12 +20,14 @@
 //! ```
 
 pub mod channels;
+pub mod contour_options;
 pub mod contours;
 pub mod derived;
 pub mod features;
 pub mod files;
 pub mod format;
 pub mod formats;
+pub mod memory;
 pub mod mesh;
 pub mod mesh_cover;
 pub mod mesh_water;

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use super::files::Files;
 use super::options::Options;
-use super::sidecar::NO_SIDECAR;
+use super::sidecar::{self, Held, NO_SIDECAR};
 use super::subject::Subject;
 use crate::error::{Error, ErrorKind};
 use crate::format::dem::Georeference;
-use crate::format::{aux_xml, sidecar, world_file};
+use crate::format::{aux_xml, world_file};
 use crate::grid::Window;
 use crate::open;
 
@@ -23,6 +23,22 @@ const LONGEST: u64 = 1 << 20;
 pub fn write(files: &mut Files, subject: &Subject, options: &Options, from_south: Option<bool>) -> io::Result<String> {
     let Some(path) = files.path().map(Path::to_path_buf) else { return Ok(String::new()) };
     write_for(files, &path, subject, options, from_south)
+}
+
+/// Writes NAME.json and the location, of a format whose files tell everything but where they lie: only for a world that lies on a map.
+///
+/// Fails as [`write`] and [`sidecar::write`].
+pub fn write_on_map(
+    files: &mut Files,
+    subject: &Subject,
+    options: &Options,
+    sample: &'static str,
+) -> io::Result<String> {
+    if subject.map().is_none() {
+        return Ok(String::new());
+    }
+    let told = sidecar::write(files, subject, options, &Held { sample, ..Held::default() })?;
+    Ok(told + &write(files, subject, options, Some(false))?)
 }
 
 /// As [`write`], of one of several files.
@@ -103,7 +119,7 @@ pub fn companions(
             let mut bytes = Vec::new();
             aux_xml::write(&mut bytes, &affine, wkt)?;
             // It is this file's alone, and GDAL writes it anew without asking.
-            all.push(Companion { path: sidecar::aux_xml(path), bytes, shared: false });
+            all.push(Companion { path: crate::format::sidecar::aux_xml(path), bytes, shared: false });
         }
     }
     match wkt {

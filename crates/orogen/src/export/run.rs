@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use super::features;
 use super::files::Files;
 use super::format::Format;
 use super::options::Options;
@@ -10,6 +11,9 @@ use super::subject::Subject;
 use crate::analysis::finite::FiniteCount;
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::{self, Output};
+use crate::grid::Window;
+use crate::progress::Progress;
+use crate::world::World;
 
 /// What was written.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +22,37 @@ pub struct Written {
     pub words: String,
     /// How many samples there are.
     pub count: FiniteCount,
+}
+
+/// What a format is asked to hold: layers of vector features, if it holds such and all of `layers` (names with commas between them) are; else the layer
+/// of that name, as [`Subject::new`].
+///
+/// # Errors
+/// As [`Subject::new`], and if the layers are vector features and the format holds none.
+pub fn subject<'w>(
+    format: &Format,
+    world: &'w World,
+    layers: &str,
+    window: Window,
+    progress: &Progress,
+) -> Result<Subject<'w>> {
+    match features::list::listed(layers) {
+        Some(vectors) if format.features => Subject::of_features(world, vectors, window, progress),
+        Some(vectors) if vectors.len() > 1 || world.unit(layers).is_err() => {
+            let holds: Vec<String> = registry::all()
+                .iter()
+                .filter(|format| format.features)
+                .map(|format| format!(".{}", format.name))
+                .collect();
+            let sentence = format!(
+                "`{layers}` is made of vector features, which .{} does not hold; those that do: {}",
+                format.name,
+                holds.join(", ")
+            );
+            Err(Error::new(ErrorKind::Request, sentence))
+        }
+        _ => Subject::new(world, layers, window, progress),
+    }
 }
 
 /// Exports to a file, and what stands beside it: all of it or nothing.

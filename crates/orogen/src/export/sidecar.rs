@@ -131,22 +131,6 @@ pub fn write(files: &mut Files, subject: &Subject, options: &Options, held: &Hel
     Ok(format!("; {} tells how to read it", name(&place)))
 }
 
-/// Writes it and all that tells the place, of a format whose files tell everything but where they lie: only for a world that lies on a map.
-///
-/// Fails as [`write`] and [`place::write`](super::place::write).
-pub fn write_on_map(
-    files: &mut Files,
-    subject: &Subject,
-    options: &Options,
-    sample: &'static str,
-) -> io::Result<String> {
-    if subject.map().is_none() {
-        return Ok(String::new());
-    }
-    let told = write(files, subject, options, &Held { sample, ..Held::default() })?;
-    Ok(told + &super::place::write(files, subject, options, Some(false))?)
-}
-
 /// Where it goes: NAME.json if that is free or this file's.
 fn place(path: &Path, name: &str) -> PathBuf {
     let short = path.with_extension("json");

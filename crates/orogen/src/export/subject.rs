@@ -7,7 +7,6 @@ use super::derived::list;
 use super::derived::rows::Rows;
 use super::features::layer::VectorLayer;
 use super::features::list as vector_list;
-use super::format::Format;
 use crate::analysis::finite::FiniteCount;
 use crate::analysis::halo::Halo;
 use crate::error::{Error, ErrorKind, Result};
@@ -88,40 +87,20 @@ impl<'w> Subject<'w> {
         })
     }
 
-    /// What a format is asked to hold: layers of vector features, if it holds such and all of `layers` (names with commas between them) are; else the layer
-    /// of that name, as [`Subject::new`].
+    /// Layers of vector features over a window, in place of samples.
     ///
     /// # Errors
-    /// As [`Subject::new`].
-    pub fn in_format(
-        format: &Format,
+    /// As [`Subject::new`], of the heights.
+    pub fn of_features(
         world: &'w World,
-        layers: &str,
+        vectors: Vec<&'static VectorLayer>,
         window: Window,
-        progress: &'w Progress,
+        progress: &Progress,
     ) -> Result<Subject<'w>> {
-        match vector_list::listed(layers) {
-            Some(vectors) if format.features => {
-                let mut subject = Subject::new(world, HEIGHT, window, progress)?;
-                subject.layer = vectors.iter().map(|layer| layer.name).collect::<Vec<_>>().join(", ");
-                subject.vectors = vectors;
-                Ok(subject)
-            }
-            Some(vectors) if vectors.len() > 1 || world.unit(layers).is_err() => {
-                let holds: Vec<String> = super::registry::all()
-                    .iter()
-                    .filter(|format| format.features)
-                    .map(|format| format!(".{}", format.name))
-                    .collect();
-                let sentence = format!(
-                    "`{layers}` is made of vector features, which .{} does not hold; those that do: {}",
-                    format.name,
-                    holds.join(", ")
-                );
-                Err(Error::new(ErrorKind::Request, sentence))
-            }
-            _ => Subject::new(world, layers, window, progress),
-        }
+        let mut subject = Subject::new(world, HEIGHT, window, progress)?;
+        subject.layer = vectors.iter().map(|layer| layer.name).collect::<Vec<_>>().join(", ");
+        subject.vectors = vectors;
+        Ok(subject)
     }
 
     /// Says how many samples features were made of, where these do not come as rows.

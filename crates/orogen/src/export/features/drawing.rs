@@ -7,7 +7,8 @@ use super::layer::{Style, VectorLayer};
 use super::options::FeatureOptions;
 use crate::analysis::finite::FiniteCount;
 use crate::error::{Error, ErrorKind, Result};
-use crate::export::contours;
+use crate::export::contour_options;
+use crate::export::contours::{self, Contours};
 use crate::export::options::Options;
 use crate::export::subject::Subject;
 use crate::export::vectors;
@@ -24,6 +25,14 @@ pub struct Drawing {
     contours: Option<String>,
 }
 
+/// The contours of a subject's samples.
+///
+/// Fails as the subject does, or if the levels cannot be read.
+pub fn contours(subject: &mut Subject, options: &Options) -> io::Result<Contours> {
+    contour_options::check(options)?;
+    Ok(contours::on(&subject.whole()?.swap_remove(0), options)?)
+}
+
 impl Drawing {
     /// What a subject's layers are as features, in metres east and south of the world's origin.
     ///
@@ -34,7 +43,7 @@ impl Drawing {
         let mut words = None;
         let layers = match asked.as_slice() {
             [] => {
-                let found = contours::of(subject, options)?;
+                let found = contours(subject, options)?;
                 words = Some(found.words(subject.unit()));
                 vec![(vectors::contours::features(&found), vectors::contours::LAYER.style)]
             }

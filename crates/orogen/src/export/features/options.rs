@@ -1,7 +1,7 @@
 //! What may be asked of vector features, and what the recipe says of its water.
 
 use crate::error::Result;
-use crate::export::contours;
+use crate::export::contour_options;
 use crate::export::options::{OptionSpec, Options, Takes};
 use crate::hydrology::rivers::Channel;
 use crate::node::Node;
@@ -40,11 +40,18 @@ pub const PROMINENCE: OptionSpec = OptionSpec {
 };
 
 /// The options of formats that hold vector features.
-pub const OPTIONS: &[OptionSpec] =
-    &[contours::INTERVAL, contours::LEVELS, contours::SMOOTH, RIVER_AREA, LAKE_AREA, RUNOFF, PROMINENCE];
+pub const OPTIONS: &[OptionSpec] = &[
+    contour_options::INTERVAL,
+    contour_options::LEVELS,
+    contour_options::SMOOTH,
+    RIVER_AREA,
+    LAKE_AREA,
+    RUNOFF,
+    PROMINENCE,
+];
 
 /// The names of those that change the water.
-pub const WATER: &[&str] = &[RIVER_AREA.name, LAKE_AREA.name, RUNOFF.name, contours::SMOOTH.name];
+pub const WATER: &[&str] = &[RIVER_AREA.name, LAKE_AREA.name, RUNOFF.name, contour_options::SMOOTH.name];
 
 /// How often rivers are evened out and the corners of shores and watersheds are cut, where nobody says.
 const ROUNDS: [usize; 2] = [3, 1];
@@ -72,7 +79,7 @@ impl<'a> FeatureOptions<'a> {
     /// # Errors
     /// If options contradict each other.
     pub fn new(given: &'a Options, recipe: &Recipe) -> Result<FeatureOptions<'a>> {
-        contours::check(given)?;
+        contour_options::check(given)?;
         let mut options = FeatureOptions {
             given,
             river: (1e6, FEWEST),
@@ -115,6 +122,6 @@ impl<'a> FeatureOptions<'a> {
 
     /// How often rivers are evened out, and the corners of areas are cut.
     pub fn rounds(&self) -> [usize; 2] {
-        self.given.whole(contours::SMOOTH.name).map_or(ROUNDS, |rounds| [rounds as usize; 2])
+        self.given.whole(contour_options::SMOOTH.name).map_or(ROUNDS, |rounds| [rounds as usize; 2])
     }
 }

@@ -3,9 +3,11 @@
 use std::io;
 
 use crate::export::files::Files;
-use crate::export::format::{Format, aside, whole};
+use crate::export::format::Format;
+use crate::export::memory::{aside, whole};
 use crate::export::options::{OptionSpec, Options, Takes};
-use crate::export::sidecar::{self, NO_SIDECAR};
+use crate::export::place;
+use crate::export::sidecar::NO_SIDECAR;
 use crate::export::subject::Subject;
 use crate::format::exr::{Picture, Sample, Writer};
 use crate::grid::Window;
@@ -73,7 +75,7 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
         Sample::Half => format!(", the highest to steps of {}", half_step(levels.low().abs().max(levels.high().abs()))),
         Sample::Float => String::new(),
     };
-    let told = sidecar::write_on_map(files, subject, options, if sample == Sample::Half { "f16" } else { "f32" })?;
+    let told = place::write_on_map(files, subject, options, if sample == Sample::Half { "f16" } else { "f32" })?;
     Ok(format!("{} to {}{rounded}{told}", levels.low(), levels.high()))
 }
 

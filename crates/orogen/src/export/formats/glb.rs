@@ -5,7 +5,8 @@ use std::io;
 use serde_json::{Map, json};
 
 use crate::export::files::Files;
-use crate::export::format::{Format, whole};
+use crate::export::format::Format;
+use crate::export::memory::whole;
 use crate::export::mesh::{COLOR, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, color, memory};
 use crate::export::mesh_cover::{self, SURFACES};
 use crate::export::mesh_water::{self, WATER, memory as water_memory};

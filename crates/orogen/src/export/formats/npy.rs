@@ -5,7 +5,8 @@ use std::io;
 use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::options::Options;
-use crate::export::sidecar::{self, NO_SIDECAR};
+use crate::export::place;
+use crate::export::sidecar::NO_SIDECAR;
 use crate::export::subject::Subject;
 use crate::format::npy;
 
@@ -38,6 +39,6 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
         })
     })?;
     let levels = subject.levels();
-    let told = sidecar::write_on_map(files, subject, options, "f32")?;
+    let told = place::write_on_map(files, subject, options, "f32")?;
     Ok(format!("{} to {}{told}", levels.low(), levels.high()))
 }

@@ -3,7 +3,8 @@
 use std::io;
 
 use crate::export::files::Files;
-use crate::export::format::{Format, aside, whole};
+use crate::export::format::Format;
+use crate::export::memory::{aside, whole};
 use crate::export::options::Options;
 use crate::export::place;
 use crate::export::sidecar::{self, Held, NO_SIDECAR};

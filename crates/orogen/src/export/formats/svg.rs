@@ -4,7 +4,7 @@ use std::io;
 
 use crate::contour::svg;
 use crate::export::contours;
-use crate::export::features::drawing::Drawing;
+use crate::export::features::drawing::{self, Drawing};
 use crate::export::features::options::OPTIONS;
 use crate::export::features::svg as drawn;
 use crate::export::files::Files;
@@ -31,7 +31,7 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
         files.write(|out| drawn::write(out, &drawing.layers, &window))?;
         return Ok(drawing.words());
     }
-    let found = contours::of(subject, options)?;
+    let found = drawing::contours(subject, options)?;
     files.write(|out| svg::write(out, &found.lines, &window, found.interval))?;
     Ok(found.words(subject.unit()))
 }

@@ -1,7 +1,7 @@
 //! The coast.
 
 use crate::error::Result;
-use crate::export::contours;
+use crate::export::contour_options;
 use crate::export::features::ground::Ground;
 use crate::export::features::layer::{Style, VectorLayer};
 use crate::export::features::options::FeatureOptions;
@@ -11,7 +11,7 @@ use crate::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry,
 pub static LAYER: VectorLayer = VectorLayer {
     name: "coast",
     about: "the coast of the sea, land to its left",
-    options: &[contours::SMOOTH.name],
+    options: &[contour_options::SMOOTH.name],
     style: Style { stroke: "#1f4e79", width: 1.0, by: None, fill: "none" },
     make,
 };

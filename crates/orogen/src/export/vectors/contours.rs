@@ -2,6 +2,7 @@
 
 use crate::contour::levels::is_index;
 use crate::error::Result;
+use crate::export::contour_options;
 use crate::export::contours::{self, Contours};
 use crate::export::features::ground::Ground;
 use crate::export::features::layer::{Style, VectorLayer};
@@ -12,7 +13,7 @@ use crate::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry,
 pub static LAYER: VectorLayer = VectorLayer {
     name: "contours",
     about: "contour lines of the heights, higher ground to their left",
-    options: &[contours::INTERVAL.name, contours::LEVELS.name, contours::SMOOTH.name],
+    options: &[contour_options::INTERVAL.name, contour_options::LEVELS.name, contour_options::SMOOTH.name],
     style: Style { stroke: "#8a5a2b", width: 0.4, by: None, fill: "none" },
     make,
 };

@@ -1,0 +1,57 @@
+//! Which contours are wanted: the options of all formats of lines.
+
+use super::options::{OptionSpec, Options, Takes};
+use crate::contour::levels::given;
+use crate::error::{Error, ErrorKind, Result};
+
+/// `--interval`.
+pub const INTERVAL: OptionSpec = OptionSpec {
+    name: "interval",
+    value: "M",
+    about: "Metres from one contour to the next [default: a round number that makes 10 to 25]",
+    takes: Takes::Number(1e-6, 1e6),
+};
+
+/// `--levels`.
+pub const LEVELS: OptionSpec = OptionSpec {
+    name: "levels",
+    value: "A,B,...",
+    about: "Heights of contours, instead of an interval",
+    takes: Takes::Text,
+};
+
+/// `--smooth`.
+pub const SMOOTH: OptionSpec = OptionSpec {
+    name: "smooth",
+    value: "N",
+    about: "How often the corners of lines are cut, each time doubling their points, and rivers are evened out \
+            [default: 0 for contours, 1 for shores and watersheds, 3 for rivers]",
+    takes: Takes::Whole(0, 6),
+};
+
+/// Whether the options that say which contours are wanted go together, and can be read.
+///
+/// # Errors
+/// If not.
+pub fn check(options: &Options) -> Result<()> {
+    if options.has(INTERVAL.name) && options.has(LEVELS.name) {
+        let sentence = "--interval and --levels contradict each other: give one of them";
+        return Err(Error::new(ErrorKind::Request, sentence));
+    }
+    options.text(LEVELS.name).map_or(Ok(()), |text| parse(text).map(drop))
+}
+
+/// The levels of a text.
+///
+/// # Errors
+/// If a part is no number, or they are too many.
+pub fn parse(text: &str) -> Result<Vec<f64>> {
+    let numbers = text.split(',').map(|part| {
+        part.trim().parse::<f64>().map_err(|_| {
+            let sentence =
+                format!("`{part}` in --levels is no height; they are numbers with commas, such as 0,250.5,500");
+            Error::new(ErrorKind::Request, sentence)
+        })
+    });
+    given(&numbers.collect::<Result<Vec<f64>>>()?)
+}
