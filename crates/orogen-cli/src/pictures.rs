@@ -105,13 +105,7 @@ fn places(pictures: &[Output], recipe: &Recipe, window: &Window) -> Result<Vec<S
     let Some(map) = recipe.georeference() else { return Ok(Vec::new()) };
     let mut staged = Vec::new();
     for picture in pictures {
-        let path = picture.path();
-        let (companions, _) =
-            place::companions(path, &map, window, Some(false)).map_err(|cause| file::explain("write", path, &cause))?;
-        for companion in companions {
-            let output = picture.policy().output(companion.path)?;
-            staged.push(file::stage(&output, |out| out.write_all(&companion.bytes))?);
-        }
+        staged.extend(place::stage(picture, &map, map.affine(window, false))?);
     }
     Ok(staged)
 }

@@ -4,11 +4,13 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use orogen::export::derived::list;
+use orogen::export::place;
 use orogen::export::subject::Subject;
+use orogen::format::affine::Affine;
 use orogen::layer::LayerKind;
 use orogen::palette::named;
 use orogen::palette::palette::Palette;
-use orogen::sheet::draw::{draw, lines_at};
+use orogen::sheet::draw::{Sheet, draw, lines_at};
 use orogen::sheet::options::{Layer, Options, Page, Parts, Resolution, Scale};
 use orogen::sheet::relief::Shading;
 use orogen::sheet::{pdf, raster, vector};
@@ -75,6 +77,9 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..=30000), conflicts_with = "dpi",
           allow_negative_numbers = true)]
     size: Option<u32>,
+    /// Write nothing beside a .png: no world file, no .prj and no .aux.xml, by which GIS programs lay it on its map
+    #[arg(long)]
+    no_sidecar: bool,
     #[command(flatten)]
     view: View,
     #[command(flatten)]
@@ -251,7 +256,14 @@ fn map(args: &Args) -> Result<(), Failure> {
             if options.title.chars().all(|letter| letter <= '\u{ff}' && !letter.is_control()) {
                 notes.push(("Title", &options.title));
             }
+            let beside = match (&sink, &options.map) {
+                (Sink::File(output), Some(map)) if !args.no_sidecar => {
+                    place::stage(output, map, on_page(&map.affine(&window, false), &window, &sheet))?
+                }
+                _ => Vec::new(),
+            };
             sink.write(|out| page.write_png(out, &notes))?;
+            file::commit(beside)?;
         }
         Kind::Svg => sink.write(|out| vector::write(out, &sheet.scene))?,
         Kind::Pdf => sink.write(|out| pdf::write(out, &sheet.scene))?,
@@ -279,6 +291,13 @@ fn map(args: &Args) -> Result<(), Failure> {
         number(window.cell)
     );
     sink.tell(args.quiet, &words)
+}
+
+/// Where the pixels of a page lie whose ground lies so.
+fn on_page(samples: &Affine, window: &Window, sheet: &Sheet) -> Affine {
+    let [left, top, width, height] = sheet.ground.map(|millimetres| f64::from(millimetres) * sheet.dpi / 25.4);
+    let scale = [(window.width - 1) as f64 / width, (window.height - 1) as f64 / height];
+    samples.resampled(scale, [(0.5 - left) * scale[0], (0.5 - top) * scale[1]])
 }
 
 /// `--range` as two values, which only a layer has.

@@ -102,6 +102,31 @@ fn what_is_generated_lies_on_its_map() {
 }
 
 #[test]
+fn a_map_sheet_lies_on_its_map() {
+    let folder = Folder::new();
+    let source = corpus("f32-strips.tif");
+    let bare = ["--no-title", "--no-axes", "--no-color", "--no-legend", "--no-scale", "--no-north"];
+    folder.good(&[&["map", &source, "-o", "a.png", "-q", "--size", "740"], &bare[..]].concat());
+    assert_eq!(folder.names(""), ["a.pgw", "a.png", "a.png.aux.xml", "a.prj"]);
+    let numbers: Vec<f64> = folder.text("a.pgw").lines().map(|line| line.parse().unwrap()).collect();
+    let [across, 0.0, 0.0, down, east, north] = numbers[..] else { panic!("{numbers:?}") };
+    // The first and the last sample stand at the margins, which are as wide on either side.
+    let size = image_size(&folder.read("a.png"));
+    let middle = [east + across * (size[0] - 1.0) / 2.0, north + down * (size[1] - 1.0) / 2.0];
+    assert!((middle[0] - (500_015.0 + 18.0 * 30.0)).abs() < across, "{middle:?}");
+    assert!((middle[1] - (5_199_985.0 - 11.0 * 30.0)).abs() < -down, "{middle:?}");
+    assert!((across / -down - 1.0).abs() < 0.02 && across < 30.0, "{numbers:?}");
+    folder.good(&["map", &source, "-o", "b.png", "-q", "--size", "300", "--no-sidecar"]);
+    folder.good(&["map", &source, "-o", "c.svg", "-q", "--size", "300"]);
+    assert_eq!(folder.names("")[4..], ["b.png", "c.svg"]);
+}
+
+/// Columns and rows that a PNG tells.
+fn image_size(bytes: &[u8]) -> [f64; 2] {
+    [16, 20].map(|at| f64::from(u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap())))
+}
+
+#[test]
 fn bands_tiles_and_meshes() {
     let folder = Folder::new();
     folder.bad(&["export", &corpus("bands.tif"), "-o", "a.npy"], 1, "it has 3 bands");

@@ -7,10 +7,11 @@ use super::files::Files;
 use super::options::Options;
 use super::sidecar::{self, Held, NO_SIDECAR};
 use super::subject::Subject;
-use crate::error::{Error, ErrorKind};
+use crate::error::{Error, ErrorKind, Result};
+use crate::file::{self, Existing, Output, Staged};
+use crate::format::affine::Affine;
 use crate::format::dem::Georeference;
 use crate::format::{aux_xml, world_file};
-use crate::grid::Window;
 use crate::open;
 
 /// More bytes than any file that tells a place has.
@@ -55,23 +56,12 @@ pub fn write_for(
     if options.has(NO_SIDECAR.name) || files.path().is_some_and(|path| path.exists() && !path.is_file()) {
         return Ok(String::new());
     }
-    let (all, lacking) = companions(path, &map, subject.window(), from_south)?;
+    let affine = from_south.map(|from_south| map.affine(subject.window(), from_south));
+    let (all, lacking) = companions(path, &map, affine)?;
     let mut written = Vec::new();
     for Companion { path: to, bytes, shared } in all {
-        // It tells the place of every file NAME, whatever its ending: of one that is there and is not written anew, too.
-        let kept = shared && !files.replaces_all();
-        if kept
-            && to.exists()
-            && !path.exists()
-            && open::bytes(&to, "read", LONGEST).is_ok_and(|old| old.is_none_or(|old| old != bytes))
-        {
-            let sentence = format!(
-                "cannot write {}: {} is there and gives another location, with which it would be read; write to another name, or say --{} or --force",
-                path.display(),
-                to.display(),
-                NO_SIDECAR.name
-            );
-            return Err(Error::new(ErrorKind::File, sentence).into());
+        if shared && !files.replaces_all() {
+            check(path, &to, &bytes)?;
         }
         written.push(to.file_name().unwrap_or_default().to_string_lossy().into_owned());
         files.write_beside(|_| to, |out| out.write_all(&bytes))?;
@@ -87,30 +77,57 @@ pub fn write_for(
     })
 }
 
-/// A file that tells where another one lies.
-pub struct Companion {
-    /// Where it belongs.
-    pub path: PathBuf,
-    /// What is in it.
-    pub bytes: Vec<u8>,
-    /// Whether it speaks for every file of that name, whatever its ending.
-    pub shared: bool,
+/// A world file and a `.prj` speak of every file NAME, whatever its ending: of one that is there and is not written anew, too.
+///
+/// Fails if one is there that gives another location than what is written.
+fn check(path: &Path, beside: &Path, bytes: &[u8]) -> Result<()> {
+    let differs = || open::bytes(beside, "read", LONGEST).is_ok_and(|old| old.is_none_or(|old| old != bytes));
+    if !beside.exists() || path.exists() || !differs() {
+        return Ok(());
+    }
+    let sentence = format!(
+        "cannot write {}: {} is there and gives another location, with which it would be read; write to another name, or say --{} or --force",
+        path.display(),
+        beside.display(),
+        NO_SIDECAR.name
+    );
+    Err(Error::new(ErrorKind::File, sentence))
 }
 
-/// What stands beside a raster of a window: a world file where `from_south` says which row is its first, a `.prj`, and beside the pictures that it opens
-/// GDAL's own notes. Also, why the coordinate system could not be told.
+/// Writes what stands beside a picture whose pixels lie on a map, all but putting it in its place.
+///
+/// # Errors
+/// If a file cannot be written, or one is there that gives another location.
+pub fn stage(output: &Output, map: &Georeference, affine: Affine) -> Result<Vec<Staged>> {
+    let path = output.path();
+    let (all, _) = companions(path, map, Some(affine)).map_err(|cause| file::explain("write", path, &cause))?;
+    let stage = |Companion { path: to, bytes, shared }: Companion| {
+        if shared && output.policy().existing() != Existing::Replace {
+            check(path, &to, &bytes)?;
+        }
+        file::stage(&output.policy().output(to)?, |out| out.write_all(&bytes))
+    };
+    all.into_iter().map(stage).collect()
+}
+
+/// A file that tells where another one lies.
+struct Companion {
+    /// Where it belongs.
+    path: PathBuf,
+    /// What is in it.
+    bytes: Vec<u8>,
+    /// Whether it speaks for every file of that name, whatever its ending.
+    shared: bool,
+}
+
+/// What stands beside a raster: a world file where its file does not hold an `affine` itself, a `.prj`, and beside the pictures that it opens GDAL's own
+/// notes. Also, why the coordinate system could not be told.
 ///
 /// Fails never: what is written goes to memory.
-pub fn companions(
-    path: &Path,
-    map: &Georeference,
-    window: &Window,
-    from_south: Option<bool>,
-) -> io::Result<(Vec<Companion>, Option<String>)> {
+fn companions(path: &Path, map: &Georeference, affine: Option<Affine>) -> io::Result<(Vec<Companion>, Option<String>)> {
     let wkt = map.wkt();
     let mut all = Vec::new();
-    if let Some(from_south) = from_south {
-        let affine = map.affine(window, from_south);
+    if let Some(affine) = affine {
         let mut bytes = Vec::new();
         world_file::write(&mut bytes, &affine)?;
         all.push(Companion { path: world_file::beside(path), bytes, shared: true });

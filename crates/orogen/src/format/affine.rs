@@ -27,6 +27,13 @@ impl Affine {
         [c - 0.5 * (a + b), a, b, f - 0.5 * (d + e), d, e]
     }
 
+    /// Of another raster, whose column is read at `scale[0] * column + offset[0]` of this one, and its row likewise.
+    pub fn resampled(&self, scale: [f64; 2], offset: [f64; 2]) -> Affine {
+        let [a, b, c, d, e, f] = self.0;
+        let ([x, y], [dx, dy]) = (scale, offset);
+        Affine([a * x, b * y, a * dx + b * dy + c, d * x, e * y, d * dx + e * dy + f])
+    }
+
     /// How a raster of so many rows lies.
     ///
     /// # Errors
@@ -56,6 +63,8 @@ mod tests {
         assert_eq!(affine.geotransform(), [100.0, 10.0, 0.0, 500.0, 0.0, -20.0]);
         let lattice = affine.lattice(4).unwrap();
         assert_eq!(lattice, Lattice { origin: [105.0, 490.0], step: [10.0, 20.0], from_south: false });
+        let half = affine.resampled([0.5, 0.5], [-0.25, 1.0]);
+        assert_eq!(half.0, [5.0, 0.0, 102.5, 0.0, -10.0, 470.0]);
         let turned = Affine([10.0, 0.0, 105.0, 0.0, 20.0, 490.0]).lattice(4).unwrap();
         assert_eq!((turned.origin, turned.from_south), ([105.0, 550.0], true));
         assert!(Affine([10.0, 1.0, 0.0, 0.0, -10.0, 0.0]).lattice(4).unwrap_err().contains("turned"));

@@ -35,6 +35,8 @@ pub struct Sheet {
     pub interval: Option<f64>,
     /// Pixels an inch, for [`raster::draw`](super::raster::draw).
     pub dpi: f64,
+    /// Left, top, width and height of the ground on the page, in millimetres, from the middles of its first samples to those of its last.
+    pub ground: [f32; 4],
 }
 
 /// How wide a sample is that lines are drawn from, in millimetres, and the most of them along a side.
@@ -159,7 +161,13 @@ pub fn draw(heights: &Grid, options: &Options, progress: &Progress) -> Result<Sh
         desk.heading(&options.title, if options.about.is_empty() { [&facts, ""] } else { about });
     }
     let scene = desk.scene;
-    Ok(Sheet { scene, lacking: letters.lacking().to_vec(), interval: ground.interval, dpi: layout.dpi })
+    Ok(Sheet {
+        scene,
+        lacking: letters.lacking().to_vec(),
+        interval: ground.interval,
+        dpi: layout.dpi,
+        ground: layout.map,
+    })
 }
 
 enum Part {
