@@ -100,7 +100,7 @@ pub fn write(outputs: &[Output], recipe: &Recipe, grid: &Grid, seconds: impl FnO
     Ok(report)
 }
 
-/// What tells where the pictures lie, of a world on a map: beside each a world file, a `.prj` and GDAL's notes.
+/// The georeferencing of the pictures, if the world has one: beside each a world file, a `.prj` and GDAL's `.aux.xml`.
 fn places(pictures: &[Output], recipe: &Recipe, window: &Window) -> Result<Vec<Staged>> {
     let Some(map) = recipe.georeference() else { return Ok(Vec::new()) };
     let mut staged = Vec::new();

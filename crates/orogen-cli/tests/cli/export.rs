@@ -131,9 +131,9 @@ fn formats_with_a_sidecar_come_back_as_heights() {
 fn a_sidecar_takes_nobodys_place() {
     let folder = Folder::with_small();
     let recipe = folder.good(&["export", "small.toml", "-o", "b.r16"]);
-    assert!(recipe.text().contains("; b.json tells how to read it"), "{}", recipe.text());
+    assert!(recipe.text().contains("; b.json describes it"), "{}", recipe.text());
     let told = folder.good(&["export", "small.toml", "-o", "b.png", "--bits", "8", "--range", "-500,500"]);
-    assert!(told.text().contains("; b.png.json tells how to read it"), "{}", told.text());
+    assert!(told.text().contains("; b.png.json describes it"), "{}", told.text());
     folder.good(&["export", "b.png", "-o", "back.npy", "-q"]);
     folder.good(&["export", "small.toml", "-o", "all.npy", "-q"]);
     assert!(off(&folder, "all.npy", "back.npy") <= 1.97, "each file is read by its own sidecar");

@@ -26,7 +26,7 @@ fn every_format_says_where_it_lies() {
         let mut names = folder.names("");
         names.retain(|other| other.starts_with(&name[..1]) && other != name);
         assert_eq!(names, beside, "{name}");
-        assert!(said.text().contains("where it lies"), "{name}: {}", said.text());
+        assert!(said.text().contains("georeferenced by"), "{name}: {}", said.text());
         let stem = &name[..1];
         assert!(folder.text(&format!("{stem}.prj")).starts_with("PROJCS[\"WGS_1984_UTM_Zone_32N\",GEOGCS["));
         if beside.iter().any(|name| name.ends_with(".json")) {

@@ -16,7 +16,7 @@ const MAX_FILES: usize = 20_000;
 /// How far a tile's samples may lie beside those of the others, in cells.
 const BESIDE: f64 = 0.05;
 
-/// A part of a file, and where it lies.
+/// A part of a file, and its position in the whole.
 struct Part {
     path: PathBuf,
     band: Option<u32>,
@@ -63,7 +63,7 @@ pub fn folder(folder: &Path, request: Request) -> Result<Dem> {
         .map(|path| {
             let (size, place) = import::head(&path)?;
             let place = place.ok_or_else(|| {
-                refused(&path.display().to_string(), "it does not tell where it lies, and a tile has to")
+                refused(&path.display().to_string(), "it has no georeferencing, which a tile needs")
             })?;
             Ok((path, size, place))
         })

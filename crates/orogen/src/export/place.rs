@@ -1,4 +1,4 @@
-//! Where a raster lies on its map, beside formats that cannot say so: a world file and a `.prj`, and GDAL's own notes beside those pictures that it opens.
+//! Georeferencing beside formats that have none of their own: a world file and a `.prj`, and for pictures that GDAL opens also its `.aux.xml`.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -17,8 +17,8 @@ use crate::open;
 /// More bytes than any file that tells a place has.
 const LONGEST: u64 = 1 << 20;
 
-/// Writes both beside the file that was asked for, or the `.prj` alone where the format tells its place itself; returns the words that tell of it.
-/// Nothing is written of a world that lies on no map, beside a stream, and with `--no-sidecar`.
+/// Writes both beside the output, or the `.prj` alone where the format has coordinates of its own (`from_south` is `None`). Returns the end of the closing sentence.
+/// Nothing is written for a world without georeferencing, for a stream, and with `--no-sidecar`.
 ///
 /// Fails as the files do, and if a file of that name lies there that tells another place.
 pub fn write(files: &mut Files, subject: &Subject, options: &Options, from_south: Option<bool>) -> io::Result<String> {
@@ -66,14 +66,14 @@ pub fn write_for(
         written.push(to.file_name().unwrap_or_default().to_string_lossy().into_owned());
         files.write_beside(|_| to, |out| out.write_all(&bytes))?;
     }
-    let where_it_lies = match written.as_slice() {
+    let words = match written.as_slice() {
         [] => String::new(),
-        [one] => format!("; {one} tells where it lies"),
-        [init @ .., last] => format!("; {} and {last} tell where it lies", init.join(", ")),
+        [one] => format!("; georeferenced by {one}"),
+        [init @ .., last] => format!("; georeferenced by {} and {last}", init.join(", ")),
     };
     Ok(match lacking {
-        Some(why) => format!("{where_it_lies}; its coordinate system is not told: {why}"),
-        None => where_it_lies,
+        Some(why) => format!("{words}; without its coordinate system: {why}"),
+        None => words,
     })
 }
 
@@ -110,7 +110,7 @@ pub fn stage(output: &Output, map: &Georeference, affine: Affine) -> Result<Vec<
     all.into_iter().map(stage).collect()
 }
 
-/// A file that tells where another one lies.
+/// A file with the georeferencing of another.
 struct Companion {
     /// Where it belongs.
     path: PathBuf,

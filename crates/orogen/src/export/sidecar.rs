@@ -17,7 +17,7 @@ use crate::format::sidecar::own;
 pub const NO_SIDECAR: OptionSpec = OptionSpec {
     name: "no-sidecar",
     value: "",
-    about: "Write nothing beside the file: no NAME.json, which tells size, cell, range, seed and the like, no .prj and no world file, which tell where it lies",
+    about: "Write nothing beside the file: no NAME.json, which tells size, cell, range, seed and the like, no .prj, no world file and no .aux.xml with its georeferencing",
     takes: Takes::Nothing,
 };
 
@@ -128,7 +128,7 @@ pub fn write(files: &mut Files, subject: &Subject, options: &Options, held: &Hel
     };
     let json = serde_json::to_string_pretty(&text).map_err(io::Error::other)?;
     files.write_beside(|_| place.clone(), |out| writeln!(out, "{json}"))?;
-    Ok(format!("; {} tells how to read it", name(&place)))
+    Ok(format!("; {} describes it", name(&place)))
 }
 
 /// Where it goes: NAME.json if that is free or this file's.
