@@ -7,6 +7,7 @@ import subprocess
 import numpy
 import pyogrio
 import rasterio
+import rasterio.warp
 import shapely
 from orogen import ROOT, WORK, Checks, export
 
@@ -202,6 +203,18 @@ for layer in LAYERS:
     for path in [WORK / "island.gpkg", WORK / f"island_{layer}.fgb"]:
         found = pyogrio.raw.read(path, layer=layer, bbox=box)[2]
         checks.that(f"{layer}: {path.suffix} finds what lies in a box", len(found) >= expect > 0, f"({len(found)}, {expect})")
+
+# A coordinate system without an EPSG code is the same in every format: a point of it lies at the same longitude and latitude.
+CUSTOM = rasterio.CRS.from_proj4("+proj=laea +lat_0=47.25 +lon_0=11.5 +x_0=1000 +y_0=2000 +datum=WGS84")
+place = WORK / "custom.tif"
+with rasterio.open(place, "w", crs=CUSTOM, transform=rasterio.transform.from_origin(4000, 9000, 30, 30), **profile) as out:
+    out.write(heights, 1)
+expect = rasterio.warp.transform(CUSTOM, "EPSG:4326", [4000], [9000])
+for ending in ["gpkg", "fgb", "geojson", "tif"]:
+    path = export(place, f"custom_out.{ending}", *(["--layer", "summits"] if ending != "tif" else []))
+    crs = rasterio.open(path).crs if ending == "tif" else rasterio.CRS.from_user_input(read(path)[2]["crs"])
+    found = rasterio.warp.transform(crs, "EPSG:4326", [4000], [9000])
+    checks.near(f"a system without a code in .{ending}", max(abs(a[0] - b[0]) for a, b in zip(found, expect)), 0.0, 1e-9)
 
 # A file that is cut short is refused, and one in which a river rises is found out.
 whole = (WORK / "island.gpkg").read_bytes()

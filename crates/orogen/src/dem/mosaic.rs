@@ -62,9 +62,8 @@ pub fn folder(folder: &Path, request: Request) -> Result<Dem> {
         .into_iter()
         .map(|path| {
             let (size, place) = import::head(&path)?;
-            let place = place.ok_or_else(|| {
-                refused(&path.display().to_string(), "it has no georeferencing, which a tile needs")
-            })?;
+            let place = place
+                .ok_or_else(|| refused(&path.display().to_string(), "it has no georeferencing, which a tile needs"))?;
             Ok((path, size, place))
         })
         .collect::<Result<_>>()?;

@@ -102,6 +102,35 @@ pub enum Crs<'a> {
     Map(&'a Georeference),
 }
 
+/// What a file says of a coordinate system.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Definition {
+    /// Its EPSG code, and its well-known text where that can be written.
+    Epsg(u16, Option<String>),
+    /// Well-known text of a system without a code.
+    Wkt(String),
+    /// Coordinates of an unknown system, in degrees or not.
+    Unknown {
+        /// Whether they are longitude and latitude.
+        degrees: bool,
+    },
+}
+
+impl Crs<'_> {
+    /// What files say of it.
+    pub fn definition(&self) -> Definition {
+        let map = match self {
+            Crs::Local => return Definition::Wkt(LOCAL_WKT.to_string()),
+            Crs::Map(map) => map,
+        };
+        match (map.epsg(), map.wkt().ok()) {
+            (Some(code), wkt) => Definition::Epsg(code, wkt),
+            (None, Some(wkt)) => Definition::Wkt(wkt),
+            (None, None) => Definition::Unknown { degrees: map.is_degrees() },
+        }
+    }
+}
+
 impl Value {
     /// A whole number where there is one.
     pub fn id(number: Option<u32>) -> Value {

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::features::{Crs, Feature, FeatureLayer, FieldType, Geometry, GeometryType, LOCAL_NAME, LOCAL_WKT, Value};
+use super::features::{Crs, Definition, Feature, FeatureLayer, FieldType, Geometry, GeometryType, LOCAL_NAME, Value};
 use super::flatbuffer::{Builder, Offset, Slot};
 use super::packed_tree::{Bounds, hilbert_order, levels};
 
@@ -70,19 +70,20 @@ fn head(layer: &FeatureLayer, count: usize, crs: Crs) -> Vec<u8> {
         })
         .collect();
     let columns = builder.references(&columns);
-    let crs = match crs {
-        Crs::Local => {
-            let (name, wkt) = (builder.text(LOCAL_NAME), builder.text(LOCAL_WKT));
-            let slots = [Slot::Absent, Slot::Absent, Slot::Reference(name), Slot::Absent, Slot::Reference(wkt)];
-            Slot::Reference(builder.table(&slots))
+    let crs = match crs.definition() {
+        Definition::Epsg(code, _) => {
+            let organization = builder.text("EPSG");
+            Slot::Reference(builder.table(&[Slot::Reference(organization), Slot::Int(i32::from(code))]))
         }
-        Crs::Map(map) => match map.epsg() {
-            Some(code) => {
-                let organization = builder.text("EPSG");
-                Slot::Reference(builder.table(&[Slot::Reference(organization), Slot::Int(i32::from(code))]))
-            }
-            None => Slot::Absent,
-        },
+        Definition::Wkt(wkt) => {
+            let name = match crs {
+                Crs::Local => Slot::Reference(builder.text(LOCAL_NAME)),
+                Crs::Map(_) => Slot::Absent,
+            };
+            let wkt = Slot::Reference(builder.text(&wkt));
+            Slot::Reference(builder.table(&[Slot::Absent, Slot::Absent, name, Slot::Absent, wkt]))
+        }
+        Definition::Unknown { .. } => Slot::Absent,
     };
     let envelope = match layer.bounds() {
         Some(bounds) => Slot::Reference(builder.numbers(bounds.into_iter())),

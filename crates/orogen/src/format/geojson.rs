@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use super::features::{Crs, FeatureLayer, Geometry, LOCAL_WKT, Value};
+use super::features::{Crs, Definition, FeatureLayer, Geometry, Value};
 
 /// Writes a layer as a collection of features, one a line. `step` is the distance between samples in the unit of the coordinates, which are rounded to
 /// a thousandth of it or finer; heights are rounded to millimetres.
@@ -14,10 +14,11 @@ use super::features::{Crs, FeatureLayer, Geometry, LOCAL_WKT, Value};
 /// Fails as `out` does.
 pub fn write(out: &mut dyn Write, layer: &FeatureLayer, crs: Crs, step: f64) -> io::Result<()> {
     write!(out, "{{\"type\":\"FeatureCollection\",\"name\":\"{}\",", layer.name)?;
-    let system = match crs {
-        Crs::Local => Some(LOCAL_WKT.replace('"', "\\\"")),
-        // WGS 84, which is what RFC 7946 takes for granted; or a map whose system is not known.
-        Crs::Map(map) => map.epsg().filter(|code| *code != 4326).map(|code| format!("urn:ogc:def:crs:EPSG::{code}")),
+    let system = match crs.definition() {
+        // WGS 84 is the system of RFC 7946 itself.
+        Definition::Epsg(4326, _) | Definition::Unknown { .. } => None,
+        Definition::Epsg(code, _) => Some(format!("urn:ogc:def:crs:EPSG::{code}")),
+        Definition::Wkt(wkt) => Some(wkt.replace('\\', "\\\\").replace('"', "\\\"")),
     };
     if let Some(system) = system {
         write!(out, "\"crs\":{{\"type\":\"name\",\"properties\":{{\"name\":\"{system}\"}}}},")?;

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::features::{Crs, FeatureLayer, FieldType, Geometry, GeometryType, LOCAL_WKT, Value};
+use super::features::{Crs, Definition, FeatureLayer, FieldType, Geometry, GeometryType, LOCAL_WKT, Value};
 use super::packed_tree::{Bounds, hilbert_order, levels};
 use super::sqlite::{Column, Database};
 
@@ -21,6 +21,9 @@ const NODE_CELL: usize = 24;
 const LOCAL: i64 = -1;
 const GEOGRAPHIC: i64 = 0;
 
+/// The number of a system without an EPSG code; the codes end below.
+const CUSTOM: i64 = 100_000;
+
 const WGS_84: &str = concat!(
     r#"GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563,AUTHORITY["EPSG","7030"]],AUTHORITY["EPSG","6326"]],"#,
     r#"PRIMEM["Greenwich",0,AUTHORITY["EPSG","8901"]],UNIT["degree",0.0174532925199433,AUTHORITY["EPSG","9122"]],AUTHORITY["EPSG","4326"]]"#
@@ -33,8 +36,9 @@ pub fn write<'a>(out: &mut dyn Write, layers: impl Iterator<Item = &'a FeatureLa
     let layers: Vec<&FeatureLayer> = layers.collect();
     let layers = layers.as_slice();
     let mut database = Database::new();
-    let srs = srs_id(crs);
-    spatial_ref_sys(&mut database, srs)?;
+    let definition = crs.definition();
+    let srs = srs_id(crs, &definition);
+    spatial_ref_sys(&mut database, srs, &definition)?;
     contents(&mut database, layers, srs)?;
     geometry_columns(&mut database, layers, srs)?;
     extensions(&mut database, layers)?;
@@ -51,18 +55,17 @@ pub fn write<'a>(out: &mut dyn Write, layers: impl Iterator<Item = &'a FeatureLa
 }
 
 /// The number of a coordinate system.
-fn srs_id(crs: Crs) -> i64 {
-    match crs {
-        Crs::Local => LOCAL,
-        Crs::Map(map) => match map.epsg() {
-            Some(code) => i64::from(code),
-            None if map.is_degrees() => GEOGRAPHIC,
-            None => LOCAL,
-        },
+fn srs_id(crs: Crs, definition: &Definition) -> i64 {
+    match definition {
+        Definition::Epsg(code, _) => i64::from(*code),
+        Definition::Wkt(_) if crs == Crs::Local => LOCAL,
+        Definition::Wkt(_) => CUSTOM,
+        Definition::Unknown { degrees: true } => GEOGRAPHIC,
+        Definition::Unknown { degrees: false } => LOCAL,
     }
 }
 
-fn spatial_ref_sys(database: &mut Database, srs: i64) -> io::Result<()> {
+fn spatial_ref_sys(database: &mut Database, srs: i64, definition: &Definition) -> io::Result<()> {
     let row = |name, id, organization, definition, about| {
         let columns = vec![
             Column::Text(name),
@@ -87,8 +90,14 @@ fn spatial_ref_sys(database: &mut Database, srs: i64) -> io::Result<()> {
         row("WGS 84 geodetic", 4326, "EPSG", WGS_84, "longitude and latitude on the WGS 84 ellipsoid, in degrees"),
     ];
     if !matches!(srs, LOCAL | GEOGRAPHIC | 4326) {
-        // Readers look an EPSG code up rather than read its definition.
-        rows.push(row(&name, srs, "EPSG", "undefined", "as the EPSG registry defines it"));
+        rows.push(match definition {
+            Definition::Wkt(wkt) => {
+                row("Coordinate system of the input", srs, "NONE", wkt, "a system without EPSG code")
+            }
+            // Readers look a code up rather than read its definition.
+            Definition::Epsg(_, Some(wkt)) => row(&name, srs, "EPSG", wkt, "as the EPSG registry defines it"),
+            _ => row(&name, srs, "EPSG", "undefined", "as the EPSG registry defines it"),
+        });
     }
     rows.sort_by_key(|(id, _)| *id);
     let sql = "CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT NOT NULL, srs_id INTEGER NOT NULL PRIMARY KEY, organization TEXT NOT NULL, \
