@@ -191,14 +191,14 @@ fn files_that_lie_otherwise_are_understood_or_refused() {
     assert!(refused("webp.tif").contains("it has 3 bands"));
     let webp = Request { band: Some(1), allowed: 1 << 20 };
     let why = import::read(&corpus().join("webp.tif"), webp).unwrap_err().to_string();
-    assert!(why.contains("packed by WebP"), "{why}");
+    assert!(why.contains("compressed with WebP"), "{why}");
     assert!(refused("all-nodata.tif").contains("37 x 23 samples are missing"));
     let sparse = read("sparse.tif");
     assert_eq!((sparse.width, sparse.height, sparse.missing()), (64, 48, 64 * 48 - 256));
     assert_eq!(sparse.heights[20 * 64 + 20], 7.0);
     assert_eq!(read("scaled.tif").heights[3], 100.0 + formula(3, 0) / 2.0);
     let why = import::read(&corpus().join("raw.toml"), 1 << 20).unwrap_err().to_string();
-    assert!(why.contains("does not tell a format of heights; known are .tif"), "{why}");
+    assert!(why.contains("is not that of a height format; known are .tif"), "{why}");
     let why = import::read(&corpus().join("f32-strips.tif"), 3000).unwrap_err().to_string();
     assert!(why.contains("37 x 23 samples, whose heights take 3.3 KiB, and 2.9 KiB is allowed"), "{why}");
 }

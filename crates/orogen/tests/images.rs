@@ -75,7 +75,7 @@ fn what_is_no_picture_is_named() {
     };
     said("mask.png");
     std::fs::write(folder.0.join("mask.png"), b"GIF89a no picture of ours").unwrap();
-    said("no sound PNG");
+    said("not a valid PNG");
     let text = "orogen = 1\n[nodes.mask]\nop = \"image\"\npath = \"mask.tif\"\n[outputs]\nheight = \"mask\"\n";
     let error = Recipe::parse(text, "r.toml").and_then(World::open).err().unwrap().to_string();
     assert!(error.contains("pictures are read from .png"), "{error}");

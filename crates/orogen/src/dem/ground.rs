@@ -74,7 +74,7 @@ impl Ground {
             (Some(cell), _) => [cell; 2],
             (None, Some(place)) => steps(place, dem.height),
             (None, None) => {
-                return Err("it does not tell how far its samples stand apart: say so as `cell`, in metres".into());
+                return Err("its sample spacing is unknown: give it as `cell`, in metres".into());
             }
         };
         if !steps.iter().all(|step| (1e-3..=1e6).contains(step)) {

@@ -53,10 +53,7 @@ pub fn folder(folder: &Path, request: Request) -> Result<Dem> {
     let name = folder.display().to_string();
     let tiles = tiles(folder)?;
     if tiles.len() > MAX_FILES {
-        return Err(refused(
-            &name,
-            format!("it holds {} tiles, and {MAX_FILES} are put together at most", tiles.len()),
-        ));
+        return Err(refused(&name, format!("it holds {} tiles, and at most {MAX_FILES} are supported", tiles.len())));
     }
     let heads: Vec<(PathBuf, [usize; 2], Place)> = tiles
         .into_iter()
@@ -96,12 +93,12 @@ fn layout(tiles: &[(PathBuf, [usize; 2], Place)]) -> std::result::Result<Layout,
         let pair = format!("{} and {}", called(first), called(path));
         if system(place) != system(own) || place.unit != own.unit {
             return Err(format!(
-                "{pair} are in different coordinate systems: bring them into one, such as by gdalwarp"
+                "{pair} are in different coordinate systems: bring them into one, for example with gdalwarp"
             ));
         }
         if (0..2).any(|k| (place.step[k] - own.step[k]).abs() > 1e-6 * own.step[k]) {
             return Err(format!(
-                "{pair} have different cells, {} x {} and {} x {}: bring them to one, such as by gdalwarp",
+                "{pair} have different cells, {} x {} and {} x {}: bring them to one, for example with gdalwarp",
                 own.step[0], own.step[1], place.step[0], place.step[1]
             ));
         }
@@ -113,7 +110,7 @@ fn layout(tiles: &[(PathBuf, [usize; 2], Place)]) -> std::result::Result<Layout,
         let at = [(place.origin[0] - west) / own.step[0], (north - place.origin[1]) / own.step[1]];
         if at.iter().any(|at| (at - at.round()).abs() > BESIDE || *at > 1e9) {
             return Err(format!(
-                "{} lies between the samples of the others: lay them on one lattice, such as by gdalwarp -tap",
+                "{} lies between the samples of the others: lay them on one lattice, for example with gdalwarp -tap",
                 called(path)
             ));
         }
@@ -137,7 +134,7 @@ pub fn virtual_raster(path: &Path, request: Request) -> Result<Dem> {
     let Virtual { size, mut bands, .. } = read;
     let sources = bands.swap_remove(band);
     if sources.len() > MAX_FILES {
-        return Err(refuse(format!("it has {} sources, and {MAX_FILES} are put together at most", sources.len())));
+        return Err(refuse(format!("it has {} sources, and at most {MAX_FILES} are supported", sources.len())));
     }
     let parts: Vec<Part> = sources
         .into_iter()
@@ -169,7 +166,7 @@ fn lies_at(path: &Path, source: &vrt::Source) -> PathBuf {
     }
 }
 
-/// The files that a virtual raster is put together of; none if it cannot be read.
+/// The files that a virtual raster is composed of; none if it cannot be read.
 pub fn sources(path: &Path) -> Vec<PathBuf> {
     let bands = parsed(path).map_or(Vec::new(), |read| read.bands);
     bands.iter().flatten().map(|source| lies_at(path, source)).collect()
@@ -180,7 +177,7 @@ fn place(read: &Virtual) -> std::result::Result<Option<Place>, String> {
     let Some(affine) = read.affine else { return Ok(None) };
     let lattice = Affine::lattice(&affine, read.size[1] as usize)?;
     if lattice.from_south {
-        return Err("its rows go north; lay it north up first, such as by gdalwarp".into());
+        return Err("its rows go north; lay it north up first, for example with gdalwarp".into());
     }
     let keys = match read.system.as_deref() {
         None => None,

@@ -44,7 +44,7 @@ impl Affine {
             return Err("what it says of its place is not a lattice that a map can have".into());
         }
         if b.abs() > 1e-9 * a.abs() || d.abs() > 1e-9 * e.abs() {
-            return Err("its rows are turned against east; lay it north up first, such as by gdalwarp".into());
+            return Err("its rows are turned against east; lay it north up first, for example with gdalwarp".into());
         }
         let from_south = e > 0.0;
         let north = if from_south { f + e * (rows as f64 - 1.0) } else { f };

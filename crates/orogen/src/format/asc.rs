@@ -98,7 +98,7 @@ fn read_head(words: &mut Words) -> std::result::Result<(Head, [u64; 2], Option<S
         first = words.next()?;
     }
     let (Some(columns), Some(rows)) = (head.columns, head.rows) else {
-        return Err("it is not an ASCII grid: its head does not tell ncols and nrows".into());
+        return Err("it is not an ASCII grid: its header has no ncols and nrows".into());
     };
     Ok((head, [columns, rows], first))
 }
@@ -240,7 +240,7 @@ mod tests {
     #[test]
     fn damaged_grids_are_sentences() {
         for (text, expect) in [
-            ("", "does not tell ncols"),
+            ("", "has no ncols"),
             ("ncols 2\nnrows", "ends after `nrows`"),
             ("ncols 2\nnrows 2\n1 2 3", "ends after 3 heights: its head promises 2 x 2"),
             ("ncols 2\nnrows 2\n1 2 3 4 5", "goes on with `5`"),

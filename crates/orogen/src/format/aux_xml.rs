@@ -32,7 +32,7 @@ pub fn write(out: &mut dyn Write, affine: &Affine, wkt: &str) -> io::Result<()> 
 /// # Errors
 /// A sentence if it is no XML.
 pub fn parse(text: &str) -> Result<Notes, String> {
-    let document = Document::parse(text).map_err(|fault| format!("it is no sound XML ({fault})"))?;
+    let document = Document::parse(text).map_err(|fault| format!("it is not valid XML ({fault})"))?;
     let root = document.root_element();
     let child = |name: &str| root.children().find(|node| node.has_tag_name(name)).and_then(|node| node.text());
     let affine = child("GeoTransform").and_then(numbers).map(Affine::of_geotransform);
@@ -62,6 +62,6 @@ mod tests {
         let again = parse(&String::from_utf8(bytes).unwrap()).unwrap();
         assert_eq!((again.affine, again.system.as_deref()), (notes.affine, Some("PROJCS[\"<a&b>\"]")));
         assert_eq!(parse("<PAMDataset/>"), Ok(Notes::default()));
-        assert!(parse("<PAMDataset>").unwrap_err().contains("no sound XML"));
+        assert!(parse("<PAMDataset>").unwrap_err().contains("not valid XML"));
     }
 }

@@ -146,7 +146,7 @@ impl Georeference {
     pub fn wkt(&self) -> Result<String, String> {
         match &self.keys {
             Some(keys) => keys::to_wkt(keys),
-            None => Err("the input does not tell it".into()),
+            None => Err("the input has none".into()),
         }
     }
 

@@ -1,6 +1,6 @@
 //! OpenEXR: channels of floats as they are, in real units.
 //!
-//! "OpenEXR File Layout" (openexr.com), version 2 without tiles or parts: scan lines from the top, in blocks of 16 rows packed by ZIP (bytes parted in
+//! "OpenEXR File Layout" (openexr.com), version 2 without tiles or parts: scan lines from the top, in blocks of 16 rows compressed with ZIP (bytes parted in
 //! two halves, differences, zlib), in increasing order. Readers in engines know exactly this kind. Channels lie in the order of their names, as the
 //! format wants it; one alone is called `Y`, which is grey.
 //!

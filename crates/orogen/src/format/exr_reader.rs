@@ -1,4 +1,4 @@
-//! Reading heights from OpenEXR pictures: scan lines of one part, not packed or packed by RLE, ZIPS or ZIP.
+//! Reading heights from OpenEXR pictures: scan lines of one part, not compressed, or with RLE, ZIPS or ZIP.
 //!
 //! "OpenEXR File Layout" (openexr.com). Heights are one channel: the only one; else `Y`, `height` or `Z`; else, where R, G and B are one, R; or the one that is
 //! chosen, counted in the order of their names. Samples are metres as they are.
@@ -149,7 +149,7 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, request: Request) -> std::resu
 }
 
 fn other(method: &str) -> String {
-    format!("its samples are packed by {method}; known are none, RLE, ZIPS and ZIP: save it as ZIP")
+    format!("its samples are compressed with {method}; known are none, RLE, ZIPS and ZIP: save it as ZIP")
 }
 
 fn seek(input: &mut dyn Input, at: u64) -> std::result::Result<(), String> {

@@ -21,7 +21,7 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, allowed: u64) -> std::result::
         DecodingError::LimitsExceeded => {
             "it takes more memory than a picture of its size should: it is damaged".to_string()
         }
-        other => format!("it is no sound PNG ({other})"),
+        other => format!("it is not a valid PNG ({other})"),
     };
     let limit = usize::try_from(allowed).unwrap_or(usize::MAX);
     let mut decoder = Decoder::new_with_limits(BufReader::new(input), Limits { bytes: limit });

@@ -55,7 +55,7 @@ pub fn read(path: &Path, request: impl Into<Request>) -> Result<Dem> {
     let name = path.display().to_string();
     if !is_dem(path) {
         let known = "known are .tif, .asc, .hgt, .png, .r16, .r32, .npy, .exr and .vrt, and folders of .tif, .hgt or .asc or of Zarr";
-        return Err(refused(&name, format!("its extension does not tell a format of heights; {known}")));
+        return Err(refused(&name, format!("its extension is not that of a height format; {known}")));
     }
     let mut file = open::regular(path, "read")?;
     let sidecar = Sidecar::beside(path)?;
@@ -93,7 +93,7 @@ pub fn parse(
             let read = told.north_first(grid.into_data(), size[0]);
             read.and_then(|heights| Dem::new(size, heights, told.place(size[1])?)).map_err(|why| refused(name, why))?
         }
-        other => return Err(refused(name, format!("the format .{other} is not read"))),
+        other => return Err(refused(name, format!("the format .{other} is not supported"))),
     };
     // A GeoTIFF without tags of place, with a world file.
     if dem.place.is_none() && told.geotransform.is_some() {

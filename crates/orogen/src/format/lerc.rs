@@ -18,7 +18,7 @@ const MAX_CODES: usize = 1 << 15;
 /// masked are NaN, or 0 where samples are whole numbers.
 ///
 /// # Errors
-/// A sentence if it is damaged, of another size, or packed in a way that is not read.
+/// A sentence if it is damaged, of another size, or packed in a way that is not supported.
 pub fn unpack(packed: &[u8], [width, height]: [usize; 2], bands: usize, size: usize) -> Result<Vec<u8>, String> {
     let mut input = Input { bytes: packed };
     let head = Head::read(&mut input, packed)?;
@@ -26,7 +26,7 @@ pub fn unpack(packed: &[u8], [width, height]: [usize; 2], bands: usize, size: us
     // The last strip of a file may be packed as long as it is.
     if columns != width || rows > height || head.bands != bands || SIZES[head.kind] != size {
         return Err(format!(
-            "a block packed by LERC holds {columns} x {rows} pixels of {} bands of {} bytes, where {width} x {height} of {bands} of {size} are due",
+            "a block compressed with LERC holds {columns} x {rows} pixels of {} bands of {} bytes, instead of {width} x {height} of {bands} of {size}",
             head.bands, SIZES[head.kind]
         ));
     }
@@ -38,7 +38,7 @@ pub fn unpack(packed: &[u8], [width, height]: [usize; 2], bands: usize, size: us
 }
 
 fn damaged() -> String {
-    "a block packed by LERC is damaged".into()
+    "a block compressed with LERC is damaged".into()
 }
 
 /// Bytes that are read from the front.
@@ -103,11 +103,11 @@ struct Head {
 impl Head {
     fn read(input: &mut Input, packed: &[u8]) -> Result<Head, String> {
         if input.take(6)? != b"Lerc2 " {
-            return Err("a block is packed by another LERC than Lerc2".into());
+            return Err("a block is compressed with another LERC than Lerc2".into());
         }
         let version = input.int()?;
         if !(3..=6).contains(&version) {
-            return Err(format!("a block is packed by version {version} of LERC; 3 to 6 are known"));
+            return Err(format!("a block is compressed with version {version} of LERC; 3 to 6 are known"));
         }
         let checksum = input.whole(4)?;
         let before = packed.len() - input.bytes.len();
@@ -302,7 +302,7 @@ impl Values {
                 0 => {}
                 1 if of_bytes => return self.huffman(input, true),
                 2 if of_bytes && version >= 4 => return self.huffman(input, false),
-                _ => return Err("a block is packed by a kind of LERC that is not read".into()),
+                _ => return Err("a block is compressed with a kind of LERC that is not supported".into()),
             }
         }
         let Head { rows, columns, side, .. } = self.head;
@@ -335,7 +335,7 @@ impl Values {
             return Err(damaged());
         }
         if version >= 5 && flag & 4 != 0 {
-            return Err("a block is packed by LERC as differences between bands, which is not read".into());
+            return Err("a block is compressed with LERC as differences between bands, which is not supported".into());
         }
         let valid: Vec<usize> = pixels.iter().copied().filter(|pixel| self.is_valid(*pixel)).collect();
         match flag & 3 {

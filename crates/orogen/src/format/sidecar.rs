@@ -219,7 +219,7 @@ pub fn own(path: &Path) -> PathBuf {
 
 /// The sentence for a file that does not tell enough.
 pub fn needs(what: &str) -> String {
-    format!("it does not tell {what}: write them into a file of the same name that ends in .json or .toml, beside it")
+    format!("it does not say {what}: give them in a file of the same name that ends in .json or .toml")
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! GDAL's virtual rasters, `.vrt`: a raster put together of parts of others. Read are simple sources that keep their samples.
+//! GDAL's virtual rasters, `.vrt`: a raster composed of parts of others. Read are simple sources that keep their samples.
 
 use roxmltree::{Document, Node};
 
@@ -45,7 +45,7 @@ pub struct Source {
 /// # Errors
 /// A sentence if it is no virtual raster, or changes the samples of its sources.
 pub fn parse(text: &str) -> Result<Virtual, String> {
-    let document = Document::parse(text).map_err(|fault| format!("it is no sound XML ({fault})"))?;
+    let document = Document::parse(text).map_err(|fault| format!("it is not valid XML ({fault})"))?;
     let root = document.root_element();
     if !root.has_tag_name("VRTDataset") {
         return Err("it is no virtual raster: its root is not VRTDataset".into());
@@ -53,9 +53,8 @@ pub fn parse(text: &str) -> Result<Virtual, String> {
     if let Some(kind) = root.attribute("subClass") {
         return Err(format!("it is a {kind}, which computes its samples: make a GeoTIFF of it by gdal_translate"));
     }
-    let side = |name: &str| {
-        root.attribute(name).and_then(|text| text.trim().parse().ok()).ok_or(format!("it does not tell its {name}"))
-    };
+    let side =
+        |name: &str| root.attribute(name).and_then(|text| text.trim().parse().ok()).ok_or(format!("it has no {name}"));
     let child = |name: &str| root.children().find(|node| node.has_tag_name(name)).and_then(|node| node.text());
     let bands = root.children().filter(|node| node.has_tag_name("VRTRasterBand")).map(sources);
     Ok(Virtual {
@@ -66,7 +65,7 @@ pub fn parse(text: &str) -> Result<Virtual, String> {
     })
 }
 
-/// What a band is put together of.
+/// What a band is composed of.
 fn sources(band: Node) -> Result<Vec<Source>, String> {
     if let Some(kind) = band.attribute("subClass") {
         return Err(format!("it has a {kind}, which computes its samples: make a GeoTIFF of it by gdal_translate"));
@@ -173,6 +172,6 @@ mod tests {
         assert!(with("<KernelFilteredSource/>").unwrap_err().contains("KernelFilteredSource"));
         assert!(with("<SimpleSource/>").unwrap_err().contains("names no file"));
         assert!(parse("<a/>").unwrap_err().contains("no virtual raster"));
-        assert!(parse("II*").unwrap_err().contains("no sound XML"));
+        assert!(parse("II*").unwrap_err().contains("not valid XML"));
     }
 }

@@ -181,7 +181,7 @@ impl Recipe {
         nodes.chain(self.surfaces.iter_mut().filter_map(Surface::picture_mut)).for_each(|file| file.lies_in(folder));
     }
 
-    /// The files that its nodes and surfaces name, and those that these are put together of.
+    /// The files that its nodes and surfaces name, and those that these are composed of.
     pub fn files(&self) -> Vec<PathBuf> {
         let mut nodes: Vec<Node> = self.nodes.iter().map(|named| named.node.clone()).collect();
         let files = nodes.iter_mut().flat_map(Node::files).filter(|file| !file.is_empty()).map(|file| file.path());
@@ -267,7 +267,7 @@ impl Recipe {
             }
             (Some(place), Some(crs), None) if place.is_on_map() && place.epsg() != Some(crs.code()) => format!(
                 "the file of heights is in {}, and `crs` is EPSG:{}; heights are not reprojected: leave out `crs`, or reproject the \
-                 file first, such as by gdalwarp",
+                 file first, for example with gdalwarp",
                 place.epsg().map_or("a CRS without an EPSG code".into(), |code| format!("EPSG:{code}")),
                 crs.code()
             ),

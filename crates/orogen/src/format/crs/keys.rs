@@ -196,7 +196,7 @@ pub fn to_wkt(keys: &GeoKeys) -> Result<String, String> {
         None if short(keys, MODEL) == Some(USER_DEFINED) => {
             Err("it is in local metres, not on a map of the Earth".into())
         }
-        None if is_degrees(keys) => Err("the input does not tell the datum of its degrees".into()),
+        None if is_degrees(keys) => Err("the input has no datum".into()),
         None => Err(match text(keys, PROJECTED_CITATION).or_else(|| text(keys, CITATION)) {
             Some(name) => format!("\"{}\" is defined by keys that are not understood", name.escape_debug()),
             None => "it is defined by keys that are not understood".into(),

@@ -140,7 +140,7 @@ fn fields(description: &Description, level: &Level, offsets: &[u64], k: usize, f
         Field::longs(254, &[u32::from(k > 0)]),
         Field::longs(256, &[width]),
         Field::longs(257, &[height]),
-        // One sample a pixel, of 32 bits, packed by deflate, black the lowest.
+        // One sample a pixel, of 32 bits, compressed with deflate, black the lowest.
         Field::shorts(258, &[32]),
         Field::shorts(259, &[8]),
         Field::shorts(262, &[1]),

@@ -1,7 +1,7 @@
 //! GeoTIFF, laid out for the cloud (COG): the samples as they are, with coarser overviews, readable in parts.
 //!
 //! TIFF 6.0 with Adobe's Technical Note 3 (the predictor of floats), BigTIFF where a file passes 4 GiB, OGC GeoTIFF 1.1 (OGC
-//! 19-008r4), OGC COG 1.0 (OGC 21-026). Written: one band of f32, little-endian, in tiles packed by deflate with predictor 3.
+//! 19-008r4), OGC COG 1.0 (OGC 21-026). Written: one band of f32, little-endian, in tiles compressed with deflate with predictor 3.
 //!
 //! **Order.** A ghost area that tells readers what to count on, then every directory from the full raster to the coarsest
 //! overview, then the samples from the coarsest overview to the full raster. So a reader that wants a preview gets it from the

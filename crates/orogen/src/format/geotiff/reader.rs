@@ -35,7 +35,7 @@ pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Pla
 
 /// A side's samples.
 fn side(tiff: &mut Tiff, tag: u16, what: &str) -> std::result::Result<u64, String> {
-    tiff.one(tag)?.ok_or_else(|| format!("its directory does not tell its {what}"))
+    tiff.one(tag)?.ok_or_else(|| format!("its directory has no {what}"))
 }
 
 /// What the samples' bits mean.
@@ -213,14 +213,14 @@ fn blocks(tiff: &mut Tiff, [width, height]: [u64; 2]) -> std::result::Result<Blo
         }
     };
     let [Some(block_width), Some(block_height)] = sizes else {
-        return Err("its directory does not tell the size of its tiles".into());
+        return Err("its directory has no tile size".into());
     };
     // Tiles are multiples of 16; 2^16 a side is far beyond any.
     if block_width == 0 || block_height == 0 || tiled && block_width.max(block_height) > 1 << 16 {
         return Err(format!("its blocks are said to have {block_width} x {block_height} samples: it is damaged"));
     }
     let (Some(offsets), Some(lengths)) = (offsets, lengths) else {
-        return Err("its directory does not tell where its samples lie".into());
+        return Err("its directory has no offsets of strips or tiles".into());
     };
     // Of bands that lie apart there are more.
     let needed = width.div_ceil(block_width).saturating_mul(height.div_ceil(block_height));

@@ -16,7 +16,7 @@ const LERC: u64 = 34887;
 pub struct Packing {
     /// TIFF's tag 259.
     pub method: u64,
-    /// What LERC's blobs are packed by: the second number of tag 50674. 0 none, 1 deflate, 2 Zstandard.
+    /// What LERC's blobs are compressed with: the second number of tag 50674. 0 none, 1 deflate, 2 Zstandard.
     pub outer: u64,
     /// Samples of a pixel in a block.
     pub bands: usize,
@@ -55,7 +55,7 @@ impl Packing {
                     0 => packed,
                     1 => inflate(&packed, most)?,
                     2 => zstandard(&packed, most)?,
-                    other => return Err(format!("its LERC is packed by the unknown method {other}")),
+                    other => return Err(format!("its LERC is compressed with the unknown method {other}")),
                 };
                 lerc::unpack(&blob, size, self.bands, self.size)?
             }
@@ -65,26 +65,26 @@ impl Packing {
         };
         match out.len() >= length {
             true => Ok(out),
-            false => Err(format!("a block holds {} bytes where {length} are due", out.len())),
+            false => Err(format!("a block holds {} bytes instead of {length}", out.len())),
         }
     }
 }
 
 fn other(method: &str) -> String {
     format!(
-        "it is packed by {method}; known are none, LZW, deflate, PackBits, Zstandard, LZMA and LERC: pack it again, such as by \
+        "it is compressed with {method}; known are none, LZW, deflate, PackBits, Zstandard, LZMA and LERC: compress it again, for example with \
          gdal_translate -co COMPRESS=DEFLATE"
     )
 }
 
 fn inflate(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     decompress_to_vec_zlib_with_limit(packed, most)
-        .map_err(|fault| format!("a block packed by deflate is damaged ({fault})"))
+        .map_err(|fault| format!("a block compressed with deflate is damaged ({fault})"))
 }
 
 /// Zstandard (RFC 8878), of one frame.
 pub fn zstandard(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
-    let damaged = |fault: &dyn std::fmt::Display| format!("a block packed by Zstandard is damaged ({fault})");
+    let damaged = |fault: &dyn std::fmt::Display| format!("a block compressed with Zstandard is damaged ({fault})");
     let mut decoder = FrameDecoder::new();
     // Levels up to 22 look back 128 MiB; the memory taken grows with what there is.
     decoder.set_max_window_size(1 << 27);
@@ -94,7 +94,7 @@ pub fn zstandard(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
         .decode_blocks(&mut input, BlockDecodingStrategy::UptoBytes(most + 1))
         .map_err(|fault| damaged(&fault))?;
     if !done {
-        return Err(format!("a block packed by Zstandard holds more than the {most} bytes that are due"));
+        return Err(format!("a block compressed with Zstandard holds more than the expected {most} bytes"));
     }
     let out = decoder.collect().unwrap_or_default();
     if out.len() > most { Err(damaged(&"it is too long")) } else { Ok(out) }
@@ -105,7 +105,7 @@ fn lzma(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     let mut out = Vec::new();
     // The dictionary grows with what there is; presets have 64 MiB at most.
     let read = XzReader::new_mem_limit(packed, false, 128 << 10).take(most as u64).read_to_end(&mut out);
-    read.map_err(|fault| format!("a block packed by LZMA is damaged ({fault})"))?;
+    read.map_err(|fault| format!("a block compressed with LZMA is damaged ({fault})"))?;
     Ok(out)
 }
 
@@ -151,7 +151,7 @@ fn lzw(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
             out.push(code as u8);
             1
         } else {
-            let damaged = || "a block packed by LZW is damaged".to_string();
+            let damaged = || "a block compressed with LZW is damaged".to_string();
             let (from, length) = code.checked_sub(FIRST).and_then(|k| table.get(k)).copied().ok_or_else(damaged)?;
             // One by one: the string may end in the byte that it begins with.
             for k in from..from + length {
@@ -253,7 +253,7 @@ mod tests {
         assert_eq!(lzw(&packed, 9).unwrap(), [7, 7, 7, 8, 8, 7, 7, 6, 6]);
         let lzw_packed = Packing { method: 5, outer: 0, bands: 1, size: 1 };
         let why = lzw_packed.unpack(packed[..4].to_vec(), 9, [9, 1]).unwrap_err();
-        assert_eq!(why, "a block holds 3 bytes where 9 are due");
+        assert_eq!(why, "a block holds 3 bytes instead of 9");
         assert!(lzw(&[0xff, 0xff, 0xff, 0xff], 9).unwrap_err().contains("damaged"));
     }
 

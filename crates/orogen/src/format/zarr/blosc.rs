@@ -1,4 +1,4 @@
-//! The codec `blosc`: bytes shuffled, then packed by zlib, in the frame of C-Blosc 1.
+//! The codec `blosc`: bytes shuffled, then compressed with zlib, in the frame of C-Blosc 1.
 //!
 //! The frame (C-Blosc `README_CHUNK_FORMAT.rst`, format version 2): sixteen bytes of header, where each block starts, then the blocks,
 //! each behind its length. Everything is one block here.

@@ -32,7 +32,7 @@ pub fn is_zarr(folder: &Path) -> bool {
 /// Reads heights.
 ///
 /// # Errors
-/// If there is no such array, or it is damaged, packed in a way that is not read, or too large.
+/// If there is no such array, or it is damaged, packed in a way that is not supported, or too large.
 pub fn read(folder: &Path, request: Request) -> Result<Dem> {
     let name = folder.display().to_string();
     open(folder, request).map_err(|fault| match fault {
@@ -98,7 +98,7 @@ fn text(path: &Path) -> std::result::Result<Option<Value>, Fault> {
     let text = open::bytes(path, "read", MAX_METADATA)?;
     let text = text.ok_or_else(|| format!("its {} is longer than {MAX_METADATA} bytes", path.display()))?;
     let value = serde_json::from_slice(&text);
-    value.map(Some).map_err(|fault| Fault::Sentence(format!("its {} is no sound JSON ({fault})", path.display())))
+    value.map(Some).map_err(|fault| Fault::Sentence(format!("its {} is not valid JSON ({fault})", path.display())))
 }
 
 /// The array of a folder, if it is one.
@@ -120,7 +120,7 @@ fn array(folder: &Path) -> std::result::Result<Option<Array>, Fault> {
 
 fn sides(value: &Value, what: &str) -> std::result::Result<Vec<u64>, String> {
     let sides = value.as_array().map(|sides| sides.iter().map(Value::as_u64).collect::<Option<Vec<u64>>>());
-    sides.flatten().filter(|sides| sides.len() <= 8).ok_or(format!("its metadata does not tell its {what}"))
+    sides.flatten().filter(|sides| sides.len() <= 8).ok_or(format!("its metadata has no {what}"))
 }
 
 fn fill(value: &Value) -> f64 {
@@ -148,7 +148,9 @@ fn version3(folder: &Path, value: &Value) -> std::result::Result<Array, String> 
         match (name, Codec::named(name)) {
             ("bytes", _) => big_endian = codec["configuration"]["endian"] == "big",
             (_, Some(codec)) => codecs.insert(0, codec),
-            _ => return Err(format!("its chunks are packed by `{}`, which is not read", name.escape_debug())),
+            _ => {
+                return Err(format!("its chunks are compressed with `{}`, which is not supported", name.escape_debug()));
+            }
         }
     }
     let encoding = &value["chunk_key_encoding"];
@@ -186,17 +188,18 @@ fn version2(folder: &Path, value: &Value, attributes: Value) -> std::result::Res
         return Err("its chunks are in Fortran's order".into());
     }
     if value["filters"].as_array().is_some_and(|filters| !filters.is_empty()) {
-        return Err("its chunks went through filters, which are not read".into());
+        return Err("its chunks went through filters, which are not supported".into());
     }
-    let codecs = match value["compressor"]["id"].as_str() {
-        None => Vec::new(),
-        Some(name) => {
-            vec![
-                Codec::named(name)
-                    .ok_or(format!("its chunks are packed by `{}`, which is not read", name.escape_debug()))?,
-            ]
-        }
-    };
+    let codecs =
+        match value["compressor"]["id"].as_str() {
+            None => Vec::new(),
+            Some(name) => {
+                vec![Codec::named(name).ok_or(format!(
+                    "its chunks are compressed with `{}`, which is not supported",
+                    name.escape_debug()
+                ))?]
+            }
+        };
     let names = attributes["_ARRAY_DIMENSIONS"].as_array().map(Vec::as_slice).unwrap_or_default();
     check(Array {
         folder: folder.to_path_buf(),
@@ -255,7 +258,7 @@ impl Array {
             bytes = codec.unpack(&bytes, most as usize).map_err(|why| format!("{why}: {}", path.display()))?;
         }
         if bytes.len() != due {
-            return Err(format!("{} holds {} bytes where {due} are due", path.display(), bytes.len()).into());
+            return Err(format!("{} holds {} bytes instead of {due}", path.display(), bytes.len()).into());
         }
         Ok(Some(bytes))
     }

@@ -73,7 +73,7 @@ fn lz4(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     // Memory only for what the bytes can hold: 255 for one.
     let mut out = vec![0; most.min(packed.len().saturating_mul(255))];
     let length = lz4_flex::block::decompress_into(packed, &mut out)
-        .map_err(|_| "a chunk packed by LZ4 is damaged".to_string())?;
+        .map_err(|_| "a chunk compressed with LZ4 is damaged".to_string())?;
     out.truncate(length);
     Ok(out)
 }
@@ -83,7 +83,7 @@ const MIN_PART: usize = 128;
 
 /// A frame of C-Blosc 1 (README_CHUNK_FORMAT.rst).
 fn blosc(frame: &[u8], most: usize) -> Result<Vec<u8>, String> {
-    let damaged = || "a chunk packed by Blosc is damaged".to_string();
+    let damaged = || "a chunk compressed with Blosc is damaged".to_string();
     let number = |at: usize| {
         let four = frame.get(at..at + 4)?;
         Some(u32::from_le_bytes([four[0], four[1], four[2], four[3]]) as usize)
@@ -99,14 +99,14 @@ fn blosc(frame: &[u8], most: usize) -> Result<Vec<u8>, String> {
         return Ok(frame.get(16..16 + length).ok_or_else(damaged)?.to_vec());
     }
     if flags & 4 != 0 {
-        return Err("a chunk is packed by Blosc with its bits shuffled, which is not read".into());
+        return Err("a chunk is compressed with Blosc with its bits shuffled, which is not supported".into());
     }
     let unpack = |packed: &[u8], due: usize| match flags >> 5 {
         1 => lz4(packed, due),
         3 => Codec::Zlib.unpack(packed, due),
         4 => zstandard(packed, due),
-        0 => Err("a chunk is packed by Blosc with BloscLZ, which is not read".into()),
-        _ => Err("a chunk is packed by Blosc in a way that is not read".to_string()),
+        0 => Err("a chunk is compressed with Blosc with BloscLZ, which is not supported".into()),
+        _ => Err("a chunk is compressed with Blosc in a way that is not supported".to_string()),
     };
     if block == 0 && length > 0 {
         return Err(damaged());
