@@ -1,6 +1,6 @@
 //! The keys of GeoTIFF (OGC 19-008r4) from well-known text, and back.
 
-use super::system::{Method, System};
+use super::system::{Geographic, Method, System};
 use super::unit::Unit;
 use super::wkt::Node;
 use super::{arc_info, epsg};
@@ -24,6 +24,10 @@ const MODEL: u16 = 1024;
 const CITATION: u16 = 1026;
 const GEOGRAPHIC: u16 = 2048;
 const PROJECTED: u16 = 3072;
+const DATUM: u16 = 2050;
+const SEMI_MAJOR: u16 = 2057;
+const SEMI_MINOR: u16 = 2058;
+const FLATTENING: u16 = 2059;
 const PROJECTED_CITATION: u16 = 3073;
 const LINEAR_UNIT: u16 = 3076;
 /// GeoTIFF's code for what no code tells.
@@ -204,12 +208,40 @@ pub fn to_wkt(keys: &GeoKeys) -> Result<String, String> {
     }
 }
 
-/// A projection that the keys define by themselves, on a known datum.
+/// The geographic system of keys: by its code, by that of its datum, or by its ellipsoid alone.
+fn geographic(keys: &GeoKeys) -> Option<Geographic> {
+    let coded = |key: u16| short(keys, key).filter(|code| *code != USER_DEFINED);
+    if let Some(code) = coded(GEOGRAPHIC) {
+        return epsg::geographic(code);
+    }
+    if let Some(datum) = coded(DATUM) {
+        // EPSG numbers the datum of a system by the system's code and 2000.
+        return epsg::geographic(datum.checked_sub(2000)?);
+    }
+    let radius = double(keys, SEMI_MAJOR)?;
+    let flattening = match (double(keys, FLATTENING), double(keys, SEMI_MINOR)) {
+        (Some(flattening), _) => flattening,
+        (None, Some(minor)) if minor < radius => radius / (radius - minor),
+        (None, minor) => minor.map(|_| 0.0)?,
+    };
+    let unknown = "Unknown";
+    Some(Geographic {
+        code: 0,
+        name: "GCS_Unknown",
+        datum: "D_Unknown",
+        datum_ogc: unknown,
+        spheroid: unknown,
+        radius,
+        flattening,
+    })
+}
+
+/// A projection that the keys define by themselves.
 fn user_defined(keys: &GeoKeys) -> Option<System> {
     if short(keys, MODEL) != Some(1) {
         return None;
     }
-    let geographic = epsg::geographic(short(keys, GEOGRAPHIC)?)?;
+    let geographic = geographic(keys)?;
     let first = |wanted: &[u16]| wanted.iter().find_map(|key| double(keys, *key));
     let (east, north) = (first(&[3082, 3086, 3090]).unwrap_or(0.0), first(&[3083, 3087, 3091]).unwrap_or(0.0));
     let (longitude, latitude) =
@@ -279,6 +311,21 @@ mod tests {
         directory[3] = (directory.len() / 4 - 1) as u16;
         let keys =
             GeoKeys { directory, doubles: parameters.iter().map(|(_, value)| *value).collect(), text: String::new() };
+        // The same on a datum by its code, and on an ellipsoid alone.
+        let with = |more: &[u16], doubles: &[f64]| {
+            let mut keys = keys.clone();
+            keys.directory[4 * 2 + 3] = USER_DEFINED;
+            keys.directory.extend(more);
+            keys.directory[3] = (keys.directory.len() / 4 - 1) as u16;
+            keys.doubles.extend(doubles);
+            to_wkt(&keys)
+        };
+        assert!(
+            with(&[DATUM, 0, 1, 6326], &[]).unwrap().contains("DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,")
+        );
+        let ball = with(&[SEMI_MAJOR, DOUBLES, 1, 6, SEMI_MINOR, DOUBLES, 1, 7], &[6_370_000.0; 2]).unwrap();
+        assert!(ball.contains("DATUM[\"D_Unknown\",SPHEROID[\"Unknown\",6370000.0,0.0]]"), "{ball}");
+        assert!(with(&[], &[]).is_err());
         let text = to_wkt(&keys).unwrap();
         assert!(
             text.starts_with("PROJCS[\"Unknown\",GEOGCS[\"GCS_North_American_1983\"")

@@ -149,7 +149,10 @@ fn version3(folder: &Path, value: &Value) -> std::result::Result<Array, String> 
             ("bytes", _) => big_endian = codec["configuration"]["endian"] == "big",
             (_, Some(codec)) => codecs.insert(0, codec),
             _ => {
-                return Err(format!("its chunks are compressed with `{}`, which is not supported", name.escape_debug()));
+                return Err(format!(
+                    "its chunks are compressed with `{}`, which is not supported",
+                    name.escape_debug()
+                ));
             }
         }
     }
