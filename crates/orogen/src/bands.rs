@@ -1,8 +1,11 @@
 //! A big window as bands of whole rows, as most files are written.
 
+use crate::analysis::finite::FiniteCount;
 use crate::error::{ErrorKind, Result};
 use crate::grid::{Grid, Window};
+use crate::pages::Pages;
 use crate::progress::Progress;
+use crate::raster::Raster;
 use crate::tiles::{Tiles, Tiling};
 use crate::words::count;
 use crate::world::World;
@@ -71,6 +74,24 @@ impl World {
                 Err(error) => return Err(error),
             }
         }
+    }
+}
+
+impl World {
+    /// Makes a layer over a window as a raster on disk, in little memory, and counts its finite samples. The file is gone with the raster.
+    ///
+    /// # Errors
+    /// As [`World::bands`], or if the disk takes no more.
+    pub fn raster(&self, layer: &str, window: &Window, progress: &Progress) -> Result<(Raster, FiniteCount)> {
+        let mut raster = Raster::on_disk(Pages::scratch(self.scratch(), *window)?);
+        let mut count = FiniteCount::default();
+        for band in self.bands(&[layer], window, 0, progress)? {
+            for grid in band? {
+                count = count.and(FiniteCount::of(grid.data()));
+                raster.put(&grid)?;
+            }
+        }
+        Ok((raster, count))
     }
 }
 

@@ -43,11 +43,16 @@ impl Raster {
         Ok(Raster::on_disk(pages))
     }
 
+    /// Bytes of memory that one on disk takes.
+    pub fn memory_on_disk(window: &Window) -> u64 {
+        pages::memory(window)
+    }
+
     /// Bytes of memory it takes.
     pub fn memory(&self) -> u64 {
         match &self.kept {
             Kept::Memory(grid) => grid.window().len() as u64 * 4,
-            Kept::Disk(pages) => pages::memory(pages.window()),
+            Kept::Disk(pages) => Raster::memory_on_disk(pages.window()),
         }
     }
 

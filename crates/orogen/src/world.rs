@@ -21,7 +21,7 @@ use crate::store::cache::Cache;
 use crate::store::solutions::Store;
 use crate::words::{number, suggestion};
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// How a world is worked on. None of it changes a bit of the terrain.
@@ -225,6 +225,11 @@ impl World {
     /// The memory that requests share with what the caller holds: see [`Budget::reserve`].
     pub fn budget(&self) -> &Budget {
         &self.memory
+    }
+
+    /// The folder for what does not fit in memory.
+    pub fn scratch(&self) -> &Path {
+        self.store.scratch()
     }
 
     /// Bytes that a request may need; `None` for no limit.

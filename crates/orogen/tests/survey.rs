@@ -1,6 +1,7 @@
 //! What is measured of land whose answer is known.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
+use orogen::survey::land::Land;
 use orogen::survey::measures::Measures;
 use orogen::survey::page::{Title, draw};
 use orogen::survey::real::{FIGURES, table};
@@ -67,7 +68,8 @@ fn real_ranges_are_in_order_and_every_figure_can_be_had() {
         [heights, grid(64, 1e-3, |x, y| x * y), grid(700, 5000.0, |x, y| libm::sin(x / 9000.0) * 500.0 + y / 1e4)]
     {
         let measures = Measures::of(&heights, None).unwrap();
-        let page = draw(&Title { name: "A".into(), about: "b".into() }, &heights, None, &measures).unwrap();
+        let page =
+            draw(&Title { name: "A".into(), about: "b".into() }, &Land::in_memory(&heights, None), &measures).unwrap();
         assert_eq!(page.width(), 1500);
     }
 }

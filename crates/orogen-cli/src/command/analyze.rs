@@ -2,11 +2,16 @@
 
 use std::path::PathBuf;
 
+use orogen::budget::Reservation;
+use orogen::map::canvas::Canvas;
+use orogen::plan::steps::Plan;
+use orogen::raster::Raster;
+use orogen::survey::land::Land;
 use orogen::survey::measures::Measures;
 use orogen::survey::page::{self, Title};
 use orogen::survey::real::{FIGURES, SOURCE, table};
 use orogen::words::number;
-use orogen::{Error, ErrorKind, Window};
+use orogen::{Error, ErrorKind, Progress, Window, World};
 use serde_json::{Map, Value, json};
 
 use crate::bar::Bar;
@@ -73,29 +78,37 @@ fn measure(args: &Args) -> Result<(), Failure> {
         Source::Dem(_) => None,
         _ => Some(world.recipe().world.sea_level as f32),
     };
-    // The heights are part of a plan and of what measuring takes.
-    let measuring = Measures::memory(window.len() as u64).saturating_sub(4 * window.len() as u64);
-    let page = if args.out.is_some() { page::MEMORY } else { 0 };
-    let _measuring = world.budget().reserve(measuring + page)?;
     let (bar, progress) = Bar::new(args.quiet);
     let stopped = |error: Error| interrupt::explain(error.into(), "nothing was measured");
-    let plan = world.plan(&[&args.layer], &window)?;
-    let drawing = if args.out.is_some() { DRAWING * window.len() as f64 } else { 0.0 };
-    let [making, measuring, drawing] = progress.parts([world.work(&plan), MEASURING * window.len() as f64, drawing]);
-    let mut grids = world.run(&plan, &making).map_err(stopped)?;
-    let Some(heights) = grids.pop() else { return Ok(()) };
-    finite::check(&args.layer, &heights)?;
-    let measures = Measures::of_with(&heights, sea_level, &measuring).map_err(stopped)?.ok_or_else(|| {
-        let sentence = "there is too little land to measure: it takes 64 x 64 samples, a hundredth of them above the sea, and some relief";
-        Error::new(ErrorKind::Request, sentence)
-    })?;
-    if let Some(sink) = &sink {
-        let title = Title { name: title(&args.recipe), about: about(args, &world) };
-        let page = page::draw(&title, &heights, sea_level, &measures)?;
+    let (measures, page) = match Held::of(args, &world, &window)? {
+        Held::InMemory(plan, _reserved) => {
+            let [making, measuring, drawing] =
+                progress.parts([world.work(&plan), MEASURING * window.len() as f64, args.drawing(&window)]);
+            let mut grids = world.run(&plan, &making).map_err(stopped)?;
+            let Some(heights) = grids.pop() else { return Ok(()) };
+            finite::check(&args.layer, &heights)?;
+            let measures = Measures::of_with(&heights, sea_level, &measuring).map_err(stopped)?;
+            shown(args, &world, &Land::in_memory(&heights, sea_level), measures, &drawing)?
+        }
+        Held::OnDisk(working) => {
+            let _raster = world.budget().reserve(Raster::memory_on_disk(&window))?;
+            let [making, measuring, drawing] = progress.parts([
+                MAKING * window.len() as f64,
+                MEASURING_ON_DISK * window.len() as f64,
+                args.drawing(&window),
+            ]);
+            let (heights, count) = world.raster(&args.layer, &window, &making).map_err(stopped)?;
+            finite::tell(&args.layer, count)?;
+            let _working = world.budget().reserve(working)?;
+            let measures = Measures::of_raster(&heights, sea_level, world.scratch(), world.budget(), &measuring);
+            shown(args, &world, &Land::on_disk(&heights, sea_level), measures.map_err(stopped)?, &drawing)?
+        }
+    };
+    if let Some((sink, page)) = sink.as_ref().zip(page) {
         let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
         sink.write(|out| page.write_png(out, &[("Software", &software)]))?;
     }
-    drawing.finish();
+    progress.finish();
     drop(bar);
     let text = match (args.json, args.quiet) {
         (true, _) => json(args, &window, &measures),
@@ -114,7 +127,69 @@ fn measure(args: &Args) -> Result<(), Failure> {
 const MEASURING: f64 = 700.0;
 const DRAWING: f64 = 200.0;
 
-fn about(args: &Args, world: &orogen::World) -> String {
+/// The same where heights are on disk, and making one.
+const MEASURING_ON_DISK: f64 = 2500.0;
+const MAKING: f64 = 200.0;
+
+/// Where the heights are while they are measured.
+enum Held {
+    /// In memory: how they are made, and what is reserved for measuring them.
+    InMemory(Plan, Reservation),
+    /// On disk; measuring and drawing take so many bytes.
+    OnDisk(u64),
+}
+
+impl Held {
+    /// In memory if they fit there with all that is measured at once, else on disk.
+    fn of(args: &Args, world: &World, window: &Window) -> Result<Held, Error> {
+        let page = if args.out.is_some() { page::MEMORY } else { 0 };
+        // The heights are part of a plan and of what measuring takes.
+        let measuring = Measures::memory(window.len() as u64).saturating_sub(4 * window.len() as u64);
+        if let Ok(reserved) = world.budget().reserve(measuring.saturating_add(page))
+            && let Ok(plan) = world.plan(&[&args.layer], window)
+            && world.budget().afford(world.memory_of(&plan)).is_ok()
+        {
+            return Ok(Held::InMemory(plan, reserved));
+        }
+        if u32::try_from(window.len()).is_err() {
+            let sentence =
+                "more than 2^32 samples cannot be measured at once; choose a smaller window, or a coarser cell";
+            return Err(Error::new(ErrorKind::Request, sentence));
+        }
+        // The page is drawn when all is measured.
+        let drawing = if page > 0 { page + page::rows_memory(window) } else { 0 };
+        let working = Measures::memory_on_disk(window).max(drawing);
+        world.budget().afford(working.saturating_add(Raster::memory_on_disk(window)))?;
+        Ok(Held::OnDisk(working))
+    }
+}
+
+impl Args {
+    /// The work of drawing, if something is drawn.
+    fn drawing(&self, window: &Window) -> f64 {
+        if self.out.is_some() { DRAWING * window.len() as f64 } else { 0.0 }
+    }
+}
+
+/// What was measured, and the page if one is wanted.
+fn shown(
+    args: &Args,
+    world: &World,
+    land: &Land,
+    measures: Option<Measures>,
+    progress: &Progress,
+) -> Result<(Measures, Option<Canvas>), Error> {
+    let measures = measures.ok_or_else(|| {
+        let sentence = "there is too little land to measure: it takes 64 x 64 samples, a hundredth of them above the sea, and some relief";
+        Error::new(ErrorKind::Request, sentence)
+    })?;
+    let title = Title { name: title(&args.recipe), about: about(args, world) };
+    let page = args.out.is_some().then(|| page::draw(&title, land, &measures)).transpose()?;
+    progress.finish();
+    Ok((measures, page))
+}
+
+fn about(args: &Args, world: &World) -> String {
     let spec = &world.recipe().world;
     match world.recipe().about.as_str() {
         "" => format!("{}, seed {}", args.recipe.display(), spec.seed),

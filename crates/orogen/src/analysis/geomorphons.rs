@@ -122,10 +122,13 @@ fn form_at(grid: &Grid, [i, j]: [usize; 2], look: &Look, limit: f64) -> Option<u
     Some(CODES[lower][higher])
 }
 
-/// The share of each form among the samples that have one, in the order of [`FORMS`]; zeros if none has.
-pub fn shares(forms: &Grid<u8>) -> [f64; 10] {
-    let mut counts = [0u64; 11];
+/// Counts the samples of each code, 0 first.
+pub fn count(forms: &Grid<u8>, counts: &mut [u64; 11]) {
     forms.data().iter().for_each(|form| counts[usize::from(*form).min(10)] += 1);
+}
+
+/// The share of each form among the samples that have one, in the order of [`FORMS`], of what was counted; zeros if none has.
+pub fn shares(counts: &[u64; 11]) -> [f64; 10] {
     let total: u64 = counts[1..].iter().sum();
     std::array::from_fn(|k| if total == 0 { 0.0 } else { counts[k + 1] as f64 / total as f64 })
 }
@@ -168,8 +171,10 @@ mod tests {
         grid.row_mut(10)[10] = f32::NAN;
         let forms = geomorphons(&grid, &Look::square(3, 1.0));
         assert_eq!(forms.data().iter().filter(|f| **f == 0).count(), 25);
-        assert_eq!(shares(&forms)[0], 1.0);
-        assert_eq!(shares(&Grid::filled(Window::new(2, 2, 1.0), 0)), [0.0; 10]);
+        let mut counts = [0; 11];
+        count(&forms, &mut counts);
+        assert_eq!((counts[0], shares(&counts)[0]), (25, 1.0));
+        assert_eq!(shares(&[4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]), [0.0; 10]);
         assert!(geomorphons(&grid, &Look::square(10, 1.0)).window().is_empty());
     }
 }

@@ -1,7 +1,9 @@
 //! How rough the ground is at each wavelength: its power spectrum, and its structure function.
 
 use super::fourier::power;
-use crate::grid::Grid;
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use std::ops::Range;
 
 /// The largest square that is transformed; larger grids are covered by several.
 const LARGEST: usize = 512;
@@ -25,12 +27,25 @@ pub struct Band {
 /// most 512, are laid over the grid, each less its plane of least squares and under Hann's window; their powers are averaged. Empty if
 /// the grid has fewer than 16 samples a side. NaN counts as the plane.
 pub fn spectrum(grid: &Grid) -> Vec<Band> {
-    let least = grid.width().min(grid.height());
+    let window = grid.window();
+    let rows = |rows: Range<usize>| {
+        let part = Window { y: window.y + rows.start as i64, height: rows.len(), ..*window };
+        Ok(grid.crop(&part).unwrap_or_else(|| Grid::filled(part, f32::NAN)))
+    };
+    spectrum_of_rows(window, rows).unwrap_or_default()
+}
+
+/// The same of a window of which some rows at a time can be had, at most 512.
+///
+/// # Errors
+/// Those of `rows`.
+pub fn spectrum_of_rows(window: &Window, rows: impl Fn(Range<usize>) -> Result<Grid>) -> Result<Vec<Band>> {
+    let least = window.width.min(window.height);
     if least < 16 {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let side = (1usize << least.ilog2()).min(LARGEST);
-    let cell = grid.window().cell;
+    let cell = window.cell;
     let starts = |length: usize| {
         let count = length.div_ceil(side);
         (0..count).map(move |k| if count == 1 { 0 } else { k * (length - side) / (count - 1) }).collect::<Vec<_>>()
@@ -40,9 +55,10 @@ pub fn spectrum(grid: &Grid) -> Vec<Band> {
     let energy: f64 = weights.iter().map(|w| w * w).sum::<f64>();
     let mut total = vec![0.0; side * side];
     let mut squares = 0.0;
-    for top in starts(grid.height()) {
-        for left in starts(grid.width()) {
-            let mut square = level(grid, left, top, side);
+    for top in starts(window.height) {
+        let band = rows(top..top + side)?;
+        for left in starts(window.width) {
+            let mut square = level(&band, left, 0, side);
             for (k, sample) in square.iter_mut().enumerate() {
                 *sample *= weights[k % side] * weights[k / side];
             }
@@ -69,11 +85,11 @@ pub fn spectrum(grid: &Grid) -> Vec<Band> {
         }
     }
     let length = side as f64 * cell;
-    bands
+    let mean = bands
         .into_iter()
         .filter(|(count, _, sum)| *count > 0.0 && *sum > 0.0)
-        .map(|(count, waves, sum)| Band { wavelength: length * count / waves, power: sum / count })
-        .collect()
+        .map(|(count, waves, sum)| Band { wavelength: length * count / waves, power: sum / count });
+    Ok(mean.collect())
 }
 
 /// The exponent beta of P ~ wavelength^beta (as a power of the frequency, -beta), between 4 and 64 cells. Real land has 3.2 to 4.4 at 30 to
@@ -90,35 +106,54 @@ pub fn slope(bands: &[Band], cell: f64) -> Option<f64> {
 /// Half the slope of the structure function: mean squared differences of heights over 2 to 16 cells along both axes, in logarithms. For
 /// fractional Brownian surfaces this is Hurst's exponent H. None if there is no relief.
 pub fn hurst(grid: &Grid) -> Option<f64> {
-    let (width, height) = (grid.width(), grid.height());
-    if width.min(height) <= LAGS[LAGS.len() - 1] {
-        return None;
-    }
-    let square = |a: f32, b: f32| {
-        let rise = f64::from(a) - f64::from(b);
-        rise * rise
-    };
-    let points: Vec<(f64, f64)> = LAGS
-        .iter()
-        .filter_map(|&lag| {
-            let (mut sum, mut count) = (0.0, 0u64);
-            for j in 0..height {
-                let row = grid.row(j);
-                let east = row.iter().zip(&row[lag..]);
-                let below = if j + lag < height { grid.row(j + lag) } else { &[] };
+    let mut rises = Rises::default();
+    rises.add(grid, grid.height());
+    rises.hurst(grid.window())
+}
+
+/// Squared differences of heights, for [`hurst`].
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Rises {
+    sums: [f64; LAGS.len()],
+    counts: [u64; LAGS.len()],
+}
+
+impl Rises {
+    /// Rows that [`Rises::add`] looks at below those that it takes, as far as there are any.
+    pub const BELOW: usize = LAGS[LAGS.len() - 1];
+
+    /// Takes the differences from the first `rows` rows of `band` on; those below are there to be looked at.
+    pub fn add(&mut self, band: &Grid, rows: usize) {
+        for ((lag, sum), count) in LAGS.into_iter().zip(&mut self.sums).zip(&mut self.counts) {
+            for j in 0..rows {
+                let row = band.row(j);
+                let east = row.iter().zip(row.get(lag..).unwrap_or_default());
+                let below = if j + lag < band.height() { band.row(j + lag) } else { &[] };
                 for (a, b) in east.chain(row.iter().zip(below)) {
-                    let rise = square(*a, *b);
-                    if rise.is_finite() {
-                        sum += rise;
-                        count += 1;
+                    let rise = f64::from(*a) - f64::from(*b);
+                    let square = rise * rise;
+                    if square.is_finite() {
+                        *sum += square;
+                        *count += 1;
                     }
                 }
             }
-            let mean = sum / count as f64;
-            (mean > 0.0).then(|| (libm::log(lag as f64), libm::log(mean)))
-        })
-        .collect();
-    Some(0.5 * line(&points)?)
+        }
+    }
+
+    /// The exponent of a window all of whose rows were taken.
+    pub fn hurst(&self, window: &Window) -> Option<f64> {
+        if window.width.min(window.height) <= Rises::BELOW {
+            return None;
+        }
+        let points: Vec<(f64, f64)> = (LAGS.iter().zip(self.sums).zip(self.counts))
+            .filter_map(|((lag, sum), count)| {
+                let mean = sum / count as f64;
+                (mean > 0.0).then(|| (libm::log(*lag as f64), libm::log(mean)))
+            })
+            .collect();
+        Some(0.5 * line(&points)?)
+    }
 }
 
 /// A square of the grid less its plane of least squares.
@@ -162,7 +197,6 @@ fn line(points: &[(f64, f64)]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::Window;
     use orogen_noise::{Basis, Fractal, Kind, Points};
 
     /// fBm of Hurst exponent H has octaves of gain 2^-H, a power of wavelength^(2 H + 2) and rises of distance^(2 H).

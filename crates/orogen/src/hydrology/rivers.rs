@@ -50,36 +50,65 @@ impl Channel {
 /// The network of all cells whose order, as [`orders`](super::strahler::orders) gives it, is above 0: reaches from spring or
 /// confluence to confluence or outlet, in row order of their first cells. Costs O(cells).
 pub fn network(receivers: &Receivers, orders: &Grid<u8>) -> Vec<Reach> {
-    let orders = orders.data();
-    let mut inflows = vec![0u8; orders.len()];
-    let river = |c: usize| orders[c] > 0;
-    for c in (0..orders.len()).filter(|c| river(*c)) {
-        let receiver = receivers.of(c);
-        if receiver != c {
-            inflows[receiver] += 1;
+    let mut streams = Streams::default();
+    for (cell, order) in orders.data().iter().enumerate().filter(|(_, order)| **order > 0) {
+        streams.push(cell as u32, receivers.of(cell) as u32, *order);
+    }
+    streams.network()
+}
+
+/// The cells of rivers alone, in row order.
+#[derive(Debug, Clone, Default)]
+pub struct Streams {
+    cells: Vec<u32>,
+    receivers: Vec<u32>,
+    orders: Vec<u8>,
+}
+
+/// Bytes that a cell of a river takes while [`Streams`] are made and made reaches of.
+pub const STREAM_CELL: u64 = 40;
+
+impl Streams {
+    /// Takes the next cell, what it drains to (itself if to none) and its order.
+    pub fn push(&mut self, cell: u32, receiver: u32, order: u8) {
+        self.cells.push(cell);
+        self.receivers.push(receiver);
+        self.orders.push(order);
+    }
+
+    /// The reaches, in row order of their first cells.
+    pub fn network(mut self) -> Vec<Reach> {
+        // Receivers by their place in the list; what drains to no stream ends where it is.
+        for k in 0..self.cells.len() {
+            self.receivers[k] = self.cells.binary_search(&self.receivers[k]).unwrap_or(k) as u32;
         }
+        let mut inflows = vec![0u8; self.cells.len()];
+        for (_, receiver) in self.receivers.iter().enumerate().filter(|(k, receiver)| **receiver as usize != *k) {
+            inflows[*receiver as usize] += 1;
+        }
+        // A reach begins at a spring and at a confluence.
+        let starts: Vec<usize> = (0..self.cells.len()).filter(|k| inflows[*k] != 1).collect();
+        let mut reaches = Vec::with_capacity(starts.len());
+        for start in &starts {
+            let mut cells = vec![self.cells[*start]];
+            let mut at = *start;
+            let end = loop {
+                let receiver = self.receivers[at] as usize;
+                if receiver == at {
+                    break None;
+                }
+                cells.push(self.cells[receiver]);
+                if inflows[receiver] != 1 {
+                    break Some(receiver);
+                }
+                at = receiver;
+            };
+            cells.shrink_to_fit();
+            let next = end.and_then(|end| starts.binary_search(&end).ok()).map(|k| k as u32);
+            reaches.push(Reach { cells, order: self.orders[*start], next });
+        }
+        reaches
     }
-    // A reach begins at a spring and at a confluence.
-    let starts: Vec<usize> = (0..orders.len()).filter(|c| river(*c) && inflows[*c] != 1).collect();
-    let mut reaches = Vec::with_capacity(starts.len());
-    for start in &starts {
-        let mut cells = vec![*start as u32];
-        let mut at = *start;
-        let end = loop {
-            let receiver = receivers.of(at);
-            if receiver == at {
-                break None;
-            }
-            cells.push(receiver as u32);
-            if inflows[receiver] != 1 {
-                break Some(receiver);
-            }
-            at = receiver;
-        };
-        let next = end.and_then(|end| starts.binary_search(&end).ok()).map(|k| k as u32);
-        reaches.push(Reach { cells, order: orders[*start], next });
-    }
-    reaches
 }
 
 /// Cuts the beds of rivers into ground on which no receiver is higher than its donor: by the depth their water needs. The area

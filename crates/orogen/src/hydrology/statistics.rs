@@ -14,77 +14,174 @@ const CLASSES: usize = 12;
 /// The exponent t of P(area > a) ~ a^-t (Rodriguez-Iturbe and Rinaldo 1997), from 8 cells to a hundredth of the map. Real land
 /// has 0.43 to 0.58.
 pub fn area_exponent(drained: &Accumulation) -> Option<f64> {
-    let areas = drained.area.data();
-    let bounds = spaced(8.0, areas.len() as f64 / 100.0, 14)?;
-    let points = bounds.into_iter().filter_map(|bound| {
-        let above = areas.iter().filter(|area| f64::from(**area) > bound).count();
-        (above > 0).then(|| (libm::log(bound), libm::log(above as f64 / areas.len() as f64)))
-    });
-    Some(-line(&points.collect::<Vec<_>>())?)
+    let mut counts = AreaCounts::new(drained.area.data().len());
+    counts.add(drained.area.data());
+    counts.exponent()
+}
+
+/// Cells counted by their drainage areas, for [`area_exponent`].
+#[derive(Debug, Clone)]
+pub struct AreaCounts {
+    cells: usize,
+    bounds: Vec<f64>,
+    above: Vec<usize>,
+}
+
+impl AreaCounts {
+    /// Of a map of so many cells, none counted yet.
+    pub fn new(cells: usize) -> AreaCounts {
+        let bounds = spaced(8.0, cells as f64 / 100.0, 14).unwrap_or_default();
+        AreaCounts { cells, above: vec![0; bounds.len()], bounds }
+    }
+
+    /// Counts cells by their areas in cells.
+    pub fn add(&mut self, areas: &[u32]) {
+        for (bound, above) in self.bounds.iter().zip(&mut self.above) {
+            *above += areas.iter().filter(|area| f64::from(**area) > *bound).count();
+        }
+    }
+
+    /// The exponent, when all cells are counted.
+    pub fn exponent(&self) -> Option<f64> {
+        let counted = self.bounds.iter().zip(&self.above).filter(|(_, above)| **above > 0);
+        let points = counted.map(|(bound, above)| (libm::log(*bound), libm::log(*above as f64 / self.cells as f64)));
+        Some(-line(&points.collect::<Vec<_>>())?)
+    }
 }
 
 /// The exponent h of Hack's law, L ~ A^h (Hack 1957): L is the longest way water comes to a cell, A its area, over cells that
 /// drain `threshold` cells or more. Real rivers have 0.5 to 0.6.
 pub fn hack_exponent(receivers: &Receivers, drained: &Accumulation, threshold: u32) -> Option<f64> {
-    let lengths = longest_ways(receivers, drained);
-    class_line(drained, threshold, &lengths, |members| {
-        let middle = members.len() / 2;
-        members.select_nth_unstable_by(middle, f64::total_cmp);
-        members[middle]
-    })
+    let ways = longest_ways(receivers, drained);
+    let areas = drained.area.data();
+    let mut classes = AreaClasses::new(threshold, areas.iter().copied().max()?, Average::Median)?;
+    areas.iter().zip(&ways).for_each(|(area, way)| classes.add(*area, way.length()));
+    classes.slope()
 }
 
 /// The concavity of rivers: theta of S ~ A^-theta (Flint 1974), with S the drop per metre along the way water takes over `filled`
 /// ground. Rivers in balance with uplift have m / n, 0.4 to 0.6.
 pub fn concavity(filled: &Grid, receivers: &Receivers, drained: &Accumulation, threshold: u32) -> Option<f64> {
     let cell = filled.window().cell;
-    let drop = |c: usize| {
+    let areas = drained.area.data();
+    let mut classes = AreaClasses::new(threshold, areas.iter().copied().max()?, Average::Mean)?;
+    for (c, area) in areas.iter().enumerate() {
         let receiver = receivers.of(c);
-        let way = DISTANCES[usize::from(receivers.code(c) & 7)] * cell;
-        if receiver == c { f64::NAN } else { f64::from(filled.data()[c] - filled.data()[receiver]) / way }
-    };
-    let drops: Vec<f64> = (0..filled.data().len()).map(drop).collect();
-    let mean = |members: &mut Vec<f64>| members.iter().sum::<f64>() / members.len() as f64;
-    Some(-class_line(drained, threshold, &drops, mean)?)
+        if receiver != c {
+            classes.add(*area, drop_per_metre(filled.data()[c], filled.data()[receiver], receivers.code(c), cell));
+        }
+    }
+    Some(-classes.slope()?)
 }
 
-/// How far water has come at most, in cells.
-fn longest_ways(receivers: &Receivers, drained: &Accumulation) -> Vec<f64> {
-    let mut ways = vec![0.0f64; drained.area.data().len()];
+/// How much the water's surface drops per metre from a cell to its receiver, in the direction of this code.
+pub fn drop_per_metre(height: f32, receiver: f32, code: u8, cell: f64) -> f64 {
+    f64::from(height - receiver) / (DISTANCES[usize::from(code & 7)] * cell)
+}
+
+/// A way along receivers: how many steps to a side's neighbour, and how many to a corner's. Whole numbers, so that the sum does not depend on where it
+/// began.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Way {
+    straight: u32,
+    diagonal: u32,
+}
+
+impl Way {
+    /// With a step in the direction of this code.
+    pub fn step(self, code: u8) -> Way {
+        let diagonal = u32::from(code & 1);
+        Way { straight: self.straight + 1 - diagonal, diagonal: self.diagonal + diagonal }
+    }
+
+    /// Both in a row.
+    pub fn then(self, next: Way) -> Way {
+        Way { straight: self.straight + next.straight, diagonal: self.diagonal + next.diagonal }
+    }
+
+    /// In cells.
+    pub fn length(self) -> f64 {
+        f64::from(self.straight) + f64::from(self.diagonal) * std::f64::consts::SQRT_2
+    }
+
+    /// The longer of two. No two ways of fewer than 2^20 steps are so alike in length that rounding could tell otherwise.
+    pub fn longer(self, other: Way) -> Way {
+        if other.length() > self.length() { other } else { self }
+    }
+}
+
+/// How far water has come at most to each cell.
+pub(crate) fn longest_ways(receivers: &Receivers, drained: &Accumulation) -> Vec<Way> {
+    let mut ways = vec![Way::default(); drained.area.data().len()];
     for c in drained.upstream_first() {
         let receiver = receivers.of(c);
         if receiver != c {
-            let way = ways[c] + DISTANCES[usize::from(receivers.code(c) & 7)];
-            ways[receiver] = ways[receiver].max(way);
+            ways[receiver] = ways[receiver].longer(ways[c].step(receivers.code(c)));
         }
     }
     ways
 }
 
-/// The line through classes of area, from `threshold` cells to half the largest: the middle of their logarithms, and the
-/// logarithm of what `of` makes of the members' values. Values that are not finite have no class.
-fn class_line(
-    drained: &Accumulation,
-    threshold: u32,
-    values: &[f64],
-    of: impl Fn(&mut Vec<f64>) -> f64,
-) -> Option<f64> {
-    let areas = drained.area.data();
-    let largest = areas.iter().copied().max()?;
-    let bounds = spaced(f64::from(threshold.max(1)), f64::from(largest) / 2.0, CLASSES)?;
-    let mut classes = vec![(0.0, Vec::new()); CLASSES - 1];
-    for (area, value) in areas.iter().zip(values).filter(|(_, value)| value.is_finite()) {
-        let class = bounds.partition_point(|bound| *bound <= f64::from(*area));
-        if let Some((sum, members)) = class.checked_sub(1).and_then(|k| classes.get_mut(k)) {
-            *sum += libm::log(f64::from(*area));
-            members.push(*value);
+/// What stands for the values of a class.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Average {
+    /// The middle one; of an even number, the upper of the middle two.
+    Median,
+    /// Their mean.
+    Mean,
+}
+
+/// Values of cells by classes of drainage area, from a threshold to half the largest area, and the line through the logarithms of their averages.
+#[derive(Debug, Clone)]
+pub struct AreaClasses {
+    average: Average,
+    bounds: Vec<f64>,
+    classes: Vec<Class>,
+}
+
+#[derive(Debug, Clone, Default)]
+struct Class {
+    count: usize,
+    logarithms: f64,
+    /// Of the values, if their mean is wanted.
+    sum: f64,
+    /// The values themselves, if their median is.
+    values: Vec<f64>,
+}
+
+impl AreaClasses {
+    /// None if there is no room between.
+    pub fn new(threshold: u32, largest: u32, average: Average) -> Option<AreaClasses> {
+        let bounds = spaced(f64::from(threshold.max(1)), f64::from(largest) / 2.0, CLASSES)?;
+        Some(AreaClasses { average, bounds, classes: vec![Class::default(); CLASSES - 1] })
+    }
+
+    /// Takes a cell's value; one that is not finite has no class. Sums depend on the order of cells: row by row.
+    pub fn add(&mut self, area: u32, value: f64) {
+        let class = self.bounds.partition_point(|bound| *bound <= f64::from(area));
+        let Some(class) = class.checked_sub(1).and_then(|k| self.classes.get_mut(k)).filter(|_| value.is_finite())
+        else {
+            return;
+        };
+        class.count += 1;
+        class.logarithms += libm::log(f64::from(area));
+        match self.average {
+            Average::Median => class.values.push(value),
+            Average::Mean => class.sum += value,
         }
     }
-    let points = classes.into_iter().filter(|(_, members)| members.len() >= 5).filter_map(|(sum, mut members)| {
-        let value = of(&mut members);
-        (value > 0.0).then(|| (sum / members.len() as f64, libm::log(value)))
-    });
-    line(&points.collect::<Vec<_>>())
+
+    /// The slope of the line through classes of five cells or more.
+    pub fn slope(self) -> Option<f64> {
+        let points = self.classes.into_iter().filter(|class| class.count >= 5).filter_map(|mut class| {
+            let value = match self.average {
+                Average::Median => *class.values.select_nth_unstable_by(class.count / 2, f64::total_cmp).1,
+                Average::Mean => class.sum / class.count as f64,
+            };
+            (value > 0.0).then(|| (class.logarithms / class.count as f64, libm::log(value)))
+        });
+        line(&points.collect::<Vec<_>>())
+    }
 }
 
 /// `count` numbers from `low` to `high` in equal ratios; none if there is no room between.

@@ -45,9 +45,15 @@ pub fn ls_factor(area: f64, slope: f64) -> f64 {
 /// The topographic wetness index of a whole map, with slopes by Horn's method, at the grid's border one-sided. High where much water comes to level ground.
 /// Slopes below 1 in 1000 count as that. NaN where a sample is missing.
 pub fn wetness(heights: &Grid, drained: &Accumulation) -> Grid {
-    let mut out = steepness(&extended(heights));
-    let (cell, level) = (heights.window().cell, LevelGround::default());
-    for (value, cells) in out.data_mut().iter_mut().zip(drained.area.data()) {
+    wetness_of_rows(heights, &drained.area)
+}
+
+/// The same of some rows of a map whose areas in cells are known; `around` has one row more on each side where the map has it.
+pub fn wetness_of_rows(around: &Grid, areas: &Grid<u32>) -> Grid {
+    let steep = steepness(&extended(around));
+    let mut out = steep.crop(areas.window()).unwrap_or(steep);
+    let (cell, level) = (around.window().cell, LevelGround::default());
+    for (value, cells) in out.data_mut().iter_mut().zip(areas.data()) {
         *value = wetness_index(f64::from(*cells) * cell, level.slope(*value)) as f32;
     }
     out

@@ -28,11 +28,11 @@ pub struct Layers<'a> {
 
 /// A cell at which water leaves its tile.
 #[derive(Debug, Clone, Copy)]
-struct Exit {
+pub(super) struct Exit {
     /// Its index in the tile.
-    index: u32,
+    pub index: u32,
     /// The cell of another tile that it drains to.
-    to: u64,
+    pub to: u64,
     /// Cells that drain through it.
     area: u64,
     /// The watershed it belongs to.
@@ -43,7 +43,7 @@ struct Exit {
 
 /// What water comes in at a cell of a tile's border.
 #[derive(Debug, Clone, Copy, Default)]
-struct Inflow {
+pub(super) struct Inflow {
     area: u64,
     order: u8,
     /// Whether two streams of that order come in.
@@ -62,14 +62,7 @@ impl Inflow {
 /// # Errors
 /// If the disk fails, or the work is cancelled.
 pub fn make(codes: &Raster, tiling: &Tiling, layers: Layers, progress: &Progress) -> Result<()> {
-    let mut areas = Areas { codes, tiling, progress, exits: Vec::new(), ends: Vec::new() };
-    for t in 0..tiling.count() {
-        let tile = areas.tile(t)?;
-        let (exits, ends) = tile.exits();
-        areas.exits.push(exits);
-        areas.ends.push(ends);
-    }
-    areas.pass_on();
+    let mut areas = Areas::new(codes, tiling, progress)?;
     let cell_area = tiling.whole.cell * tiling.whole.cell;
     // Outlets with a watershed of their own, by row and column of tiles.
     let mut outlets = vec![0u32; tiling.whole.height * tiling.columns()];
@@ -97,27 +90,40 @@ pub fn make(codes: &Raster, tiling: &Tiling, layers: Layers, progress: &Progress
     Ok(())
 }
 
-struct Areas<'a> {
+pub(super) struct Areas<'a> {
     codes: &'a Raster,
-    tiling: &'a Tiling,
+    pub tiling: &'a Tiling,
     progress: &'a Progress,
     /// By tile.
-    exits: Vec<Vec<Exit>>,
+    pub exits: Vec<Vec<Exit>>,
     /// By tile and cell along its border: where water that comes in there leaves.
     ends: Vec<Border<End>>,
 }
 
 /// Where water leaves a tile, or ends in it.
 #[derive(Debug, Clone, Copy)]
-enum End {
+pub(super) enum End {
     /// One of the tile's exits.
     Exit(u32),
     /// An outlet, by its index in the tile.
     Outlet(u32),
 }
 
-impl Areas<'_> {
-    fn tile(&self, t: usize) -> Result<Tile> {
+impl<'a> Areas<'a> {
+    /// With the areas of all exits.
+    pub(super) fn new(codes: &'a Raster, tiling: &'a Tiling, progress: &'a Progress) -> Result<Areas<'a>> {
+        let mut areas = Areas { codes, tiling, progress, exits: Vec::new(), ends: Vec::new() };
+        for t in 0..tiling.count() {
+            let tile = areas.tile(t)?;
+            let (exits, ends) = tile.exits();
+            areas.exits.push(exits);
+            areas.ends.push(ends);
+        }
+        areas.pass_on();
+        Ok(areas)
+    }
+
+    pub(super) fn tile(&self, t: usize) -> Result<Tile> {
         self.progress.check()?;
         self.progress.advance(1.0);
         Ok(Tile::new(&self.codes.get(&self.tiling.tile(t))?, self.tiling))
@@ -130,7 +136,7 @@ impl Areas<'_> {
     }
 
     /// The exit that water leaving by an exit comes to next.
-    fn next(&self, exit: &Exit) -> Option<(usize, usize)> {
+    pub(super) fn next(&self, exit: &Exit) -> Option<(usize, usize)> {
         let (t, index) = self.tiling.locate(exit.to);
         match self.ends[t].get(index) {
             Some(End::Exit(next)) => Some((t, next as usize)),
@@ -148,7 +154,7 @@ impl Areas<'_> {
     }
 
     /// All exits, each before those downstream.
-    fn downstream(&self) -> Vec<(usize, usize)> {
+    pub(super) fn downstream(&self) -> Vec<(usize, usize)> {
         let mut waiting: Vec<Vec<u32>> = self.exits.iter().map(|exits| vec![0; exits.len()]).collect();
         for (to, next) in self.exits.iter().flatten().filter_map(|exit| self.next(exit)) {
             waiting[to][next] += 1;
@@ -169,9 +175,21 @@ impl Areas<'_> {
     }
 
     /// What comes into a tile, by the cell's index in it.
-    fn inflows(&self, t: usize) -> Border<Inflow> {
-        let tile = self.tiling.tile(t);
-        let mut inflows = Border::filled(&tile, Inflow::default());
+    pub(super) fn inflows(&self, t: usize) -> Border<Inflow> {
+        let mut inflows = Border::filled(&self.tiling.tile(t), Inflow::default());
+        self.each_inflow(t, |index, from, k| {
+            if let Some(mut inflow) = inflows.get(index) {
+                let exit = &self.exits[from][k];
+                inflow.area += exit.area;
+                inflow.meet(exit.order);
+                inflows.set(index, inflow);
+            }
+        });
+        inflows
+    }
+
+    /// Hands on each cell's index of a tile into which water comes from another, that tile, and its exit.
+    pub(super) fn each_inflow(&self, t: usize, mut each: impl FnMut(usize, usize, usize)) {
         let (column, row) = (t % self.tiling.columns(), t / self.tiling.columns());
         for near in
             (row.max(1) - 1..=row + 1).flat_map(|row| (column.max(1) - 1..=column + 1).map(move |column| (row, column)))
@@ -180,18 +198,13 @@ impl Areas<'_> {
             if near.1 >= self.tiling.columns() || other >= self.exits.len() || other == t {
                 continue;
             }
-            for exit in &self.exits[other] {
+            for (k, exit) in self.exits[other].iter().enumerate() {
                 let (to, index) = self.tiling.locate(exit.to);
-                if to == t
-                    && let Some(mut inflow) = inflows.get(index)
-                {
-                    inflow.area += exit.area;
-                    inflow.meet(exit.order);
-                    inflows.set(index, inflow);
+                if to == t {
+                    each(index, other, k);
                 }
             }
         }
-        inflows
     }
 
     /// Gives every exit the number of the watershed that it drains to; `before` counts the outlets before each row of a tile.
@@ -224,7 +237,7 @@ impl Areas<'_> {
     }
 
     /// Finds the orders at the exits: tiles are looked at again as long as what comes in grows.
-    fn order_streams(&mut self, threshold: u64) -> Result<()> {
+    pub(super) fn order_streams(&mut self, threshold: u64) -> Result<()> {
         let mut queue = Queue::new(self.exits.len());
         (0..self.exits.len()).for_each(|t| queue.push(t));
         while let Some(t) = queue.pop() {
@@ -245,14 +258,16 @@ impl Areas<'_> {
 }
 
 /// A tile's receivers.
-struct Tile {
-    window: Window,
+pub(super) struct Tile {
+    pub window: Window,
     /// The cell of the tile that each drains to; itself at outlets and exits.
-    receivers: Vec<u32>,
+    pub receivers: Vec<u32>,
     /// The cell of another tile that an exit drains to.
     leaving: Vec<(u32, u64)>,
     /// Each before its receiver.
-    order: Vec<u32>,
+    pub order: Vec<u32>,
+    /// The directions of the receivers.
+    pub codes: Vec<u8>,
 }
 
 impl Tile {
@@ -261,7 +276,8 @@ impl Tile {
         let mut receivers: Vec<u32> = (0..window.len() as u32).collect();
         let mut leaving = Vec::new();
         let mut waiting = vec![0u8; window.len()];
-        for (c, code) in codes.data().iter().map(|code| *code as u8).enumerate().filter(|(_, code)| *code != NONE) {
+        let codes: Vec<u8> = codes.data().iter().map(|code| *code as u8).collect();
+        for (c, code) in codes.iter().copied().enumerate().filter(|(_, code)| *code != NONE) {
             let (east, south) = STEPS[usize::from(code & 7)];
             let (i, j) = ((c % window.width) as isize + east, (c / window.width) as isize + south);
             if i >= 0 && j >= 0 && i < window.width as isize && j < window.height as isize {
@@ -285,7 +301,7 @@ impl Tile {
                 cell = receiver;
             }
         }
-        Tile { window, receivers, leaving, order }
+        Tile { window, receivers, leaving, order, codes }
     }
 
     fn grid(&self, value: impl Fn(usize) -> f32) -> Grid {
@@ -294,7 +310,7 @@ impl Tile {
     }
 
     /// Adds up from the springs down; `inflows` come from other tiles.
-    fn areas(&self, inflows: &Border<Inflow>) -> Vec<u64> {
+    pub(super) fn areas(&self, inflows: &Border<Inflow>) -> Vec<u64> {
         let mut area = vec![1u64; self.window.len()];
         for index in border(&self.window) {
             area[index] += inflows.get(index).map_or(0, |inflow| inflow.area);
@@ -387,7 +403,7 @@ impl Tile {
     }
 
     /// Strahler's orders (see [`strahler`](crate::hydrology::strahler)).
-    fn orders(&self, area: &[u64], inflows: &Border<Inflow>, threshold: u64) -> Vec<u8> {
+    pub(super) fn orders(&self, area: &[u64], inflows: &Border<Inflow>, threshold: u64) -> Vec<u8> {
         let mut streams = vec![(0u8, false); self.window.len()];
         for index in border(&self.window) {
             streams[index] =

@@ -5,5 +5,6 @@ pub mod areas;
 pub mod basins;
 pub mod drainage;
 pub mod flats;
+pub mod streams;
 pub mod tiling;
 pub mod tree;

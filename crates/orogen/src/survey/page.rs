@@ -1,6 +1,7 @@
 //! The page that shows a piece of land and what was measured of it.
 
 use super::chart::{Axis, BAND, Frame, GROUND, INK, LINE, MARK, PAPER, SOFT, Sheet, WATER, bold, plain, small};
+use super::land::Land;
 use super::measures::{Measures, SLOPE_CLASS};
 use super::real::{FIGURES, SOURCE};
 use crate::analysis::geomorphons::FORMS;
@@ -19,6 +20,14 @@ use orogen_noise::Points;
 /// Bytes that drawing it takes at most, beside the heights.
 pub const MEMORY: u64 = 16 << 20;
 
+/// Bytes of the rows that are looked at at a time, of a window whose heights are on disk.
+pub fn rows_memory(window: &Window) -> u64 {
+    (window.width.max(window.height) as u64)
+        .div_ceil(PICTURE as u64)
+        .saturating_add(1)
+        .saturating_mul(4 * window.width as u64)
+}
+
 const WIDTH: f64 = 1500.0;
 const HEIGHT: f64 = 1490.0;
 const MARGIN: f64 = 54.0;
@@ -35,14 +44,14 @@ pub struct Title {
     pub about: String,
 }
 
-/// Draws the page of heights and what was measured of them. Land is what is above `sea_level`.
+/// Draws the page of land and what was measured of it.
 ///
 /// # Errors
-/// If the built-in font cannot be read.
-pub fn draw(title: &Title, heights: &Grid, sea_level: Option<f32>, measures: &Measures) -> Result<Canvas> {
+/// If the disk fails, or the built-in font cannot be read.
+pub fn draw(title: &Title, land: &Land, measures: &Measures) -> Result<Canvas> {
     let canvas = Canvas::new(WIDTH as usize, HEIGHT as usize, PAPER);
     let mut sheet = Sheet { canvas, lettering: Lettering::new()? };
-    let window = heights.window();
+    let (window, sea_level) = (land.window(), land.sea_level());
     let wide = (WIDTH - 2.0 * MARGIN) as f32;
     let fitted =
         |lettering: &Lettering, text: &str, style| words::shortened(text, wide, |text| lettering.width(text, style));
@@ -58,7 +67,7 @@ pub fn draw(title: &Title, heights: &Grid, sea_level: Option<f32>, measures: &Me
     sheet.text(MARGIN, 102.0, 0.0, &facts, plain(16.0));
     sheet.text(MARGIN, 124.0, 0.0, &about, small());
     let top = 172.0;
-    let shown = Shown::of(heights);
+    let shown = Shown::of(land)?;
     let second = MARGIN + PICTURE + GAP;
     relief(&mut sheet, &shown, sea_level, [MARGIN, top]);
     drainage(&mut sheet, &shown, sea_level, measures, [second, top]);
@@ -84,14 +93,15 @@ struct Shown {
 }
 
 impl Shown {
-    fn of(heights: &Grid) -> Shown {
-        let window = heights.window();
+    fn of(land: &Land) -> Result<Shown> {
+        let window = land.window();
         let longer = window.width.max(window.height) as f64;
         let scale = PICTURE / longer;
         let size = [window.width, window.height].map(|side| ((side as f64 * scale).round() as usize).max(1));
         let small = Window::new(size[0], size[1], window.cell / scale);
         let mut grid = Grid::filled(small, 0.0f32);
         if scale >= 1.0 {
+            let heights = land.ground(0..window.height)?;
             let own = Grid::from_data(Window::new(window.width, window.height, 1.0), heights.data().to_vec());
             // Pixels' middles, in samples.
             let at = |count: usize| (0..count).map(|k| (k as f64 + 0.5) / scale - 0.5).collect::<Vec<f64>>();
@@ -100,14 +110,15 @@ impl Shown {
                 resample::read(&own, LayerKind::Height, &Points::Lattice { xs: &xs, ys: &ys }, grid.data_mut());
             }
         } else {
+            let span = |k: usize, side: usize| {
+                let from = (k as f64 / scale) as usize;
+                from..(((k + 1) as f64 / scale) as usize).clamp(from + 1, side.max(from + 1)).min(side)
+            };
             for j in 0..size[1] {
+                let heights = land.ground(span(j, window.height))?;
                 for i in 0..size[0] {
-                    let span = |k: usize, side: usize| {
-                        let from = (k as f64 / scale) as usize;
-                        from..(((k + 1) as f64 / scale) as usize).clamp(from + 1, side.max(from + 1)).min(side)
-                    };
                     let (mut sum, mut count) = (0.0, 0.0);
-                    for y in span(j, window.height) {
+                    for y in 0..heights.height() {
                         for height in &heights.row(y)[span(i, window.width)] {
                             sum += f64::from(*height);
                             count += 1.0;
@@ -117,7 +128,7 @@ impl Shown {
                 }
             }
         }
-        Shown { grid, scale, width: window.width }
+        Ok(Shown { grid, scale, width: window.width })
     }
 
     /// Puts a picture of this size on the sheet, in the middle of its square.

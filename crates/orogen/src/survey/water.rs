@@ -1,17 +1,29 @@
 //! What the drainage of a piece of land is like.
 
-use crate::grid::Grid;
+use std::ops::Range;
+use std::path::Path;
+
+use super::land::{Land, ROWS};
+use super::mean::Mean;
+use crate::budget::Budget;
+use crate::error::Result;
+use crate::grid::{Grid, Window};
 use crate::hydrology::accumulation::accumulate;
-use crate::hydrology::direction::DISTANCES;
+use crate::hydrology::direction::{DISTANCES, neighbour, strides};
 use crate::hydrology::drainage;
 use crate::hydrology::fill;
 use crate::hydrology::outlets::Outlets;
-use crate::hydrology::receivers::Receivers;
-use crate::hydrology::rivers::{Reach, network};
-use crate::hydrology::statistics;
+use crate::hydrology::rivers::{self, Reach, STREAM_CELL, network};
+use crate::hydrology::statistics::{self, AreaClasses, AreaCounts, Average};
 use crate::hydrology::steepest::Descent;
 use crate::hydrology::strahler;
-use crate::hydrology::wetness::wetness;
+use crate::hydrology::wetness::{wetness, wetness_of_rows};
+use crate::large::drainage as large;
+use crate::large::streams::{PASSES, STRIP_SAMPLE, Streams};
+use crate::large::tiling::Tiling;
+use crate::pages::{self, Pages, SIDE};
+use crate::progress::Progress;
+use crate::raster::Raster;
 
 /// Where rivers begin: the drainage area in m^2, and the fewest cells.
 pub const SPRING: f64 = 5e5;
@@ -44,60 +56,214 @@ pub struct Water {
     pub reaches: Vec<Reach>,
 }
 
+/// Cells that a river drains at least.
+fn spring(window: &Window) -> u32 {
+    ((SPRING / (window.cell * window.cell)) as u32).max(FEWEST_CELLS)
+}
+
 /// Measures the drainage of heights in which what is no land is NaN.
-pub fn measure(heights: &Grid) -> Water {
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn measure(heights: &Grid, progress: &Progress) -> Result<Water> {
     let window = heights.window();
     let outlets = Outlets::new(heights, None);
-    let filled = fill::fill(heights, &outlets);
-    let receivers = drainage::over_surface(&filled, &outlets, Descent::Steepest);
+    let [filling, draining, counting] = progress.parts([3.0, 1.0, 1.0]);
+    let filled =
+        fill::filled(heights, &drainage::over_bed_with(heights, &outlets, Descent::Steepest, &filling)?.basins);
+    let receivers = drainage::over_surface_with(&filled, &outlets, Descent::Steepest, &draining)?;
     // Outlets are not asked for again.
     drop(outlets);
+    counting.check()?;
     let drained = accumulate(&receivers);
-    let spring = ((SPRING / (window.cell * window.cell)) as u32).max(FEWEST_CELLS);
+    counting.check()?;
+    let spring = spring(window);
     let orders = strahler::orders(&receivers, &drained, spring);
-    let (mut land, mut wet, mut deep) = (0.0, 0.0, 0.0);
-    for (height, level) in heights.data().iter().zip(filled.data()).filter(|(height, _)| height.is_finite()) {
-        land += 1.0;
-        if level > height {
-            wet += 1.0;
-            deep += f64::from(*level) - f64::from(*height);
-        }
-    }
-    let reaches = network(&receivers, &orders);
-    let streams = streams(&reaches, &receivers, window.cell);
-    let river: f64 = streams.iter().map(|(_, length)| length).sum();
-    let area = land * window.cell * window.cell;
-    let order = streams.len() as u8;
-    let counted: Vec<f64> = streams.iter().map(|(count, _)| *count).collect();
-    let lengths: Vec<f64> = streams.iter().map(|(count, length)| length / count).collect();
-    // The highest order is cut off by the map's edge: its rivers are not whole.
-    let whole = lengths.len().saturating_sub(1);
-    Water {
-        depressions: wet / f64::max(land, 1.0),
-        depression_depth: if wet > 0.0 { deep / wet } else { 0.0 },
+    let mut ground = Ground::default();
+    ground.add(heights, &filled);
+    counting.check()?;
+    let laws = Laws {
         area_exponent: statistics::area_exponent(&drained),
         hack: statistics::hack_exponent(&receivers, &drained, spring),
         concavity: statistics::concavity(&filled, &receivers, &drained, spring),
-        bifurcation: ratio(&counted).map(|ratio| 1.0 / ratio),
-        length_ratio: if order >= 3 { ratio(&lengths[..whole]) } else { None },
-        order,
-        density: if area > 0.0 { 1000.0 * river / area } else { 0.0 },
-        wetness: mean(&wetness(heights, &drained)),
-        reaches,
+    };
+    counting.check()?;
+    let mut wet = Mean::default();
+    wet.add(wetness(heights, &drained).data());
+    Ok(Water::of(window, &ground, laws, wet.mean(), network(&receivers, &orders)))
+}
+
+/// Bytes that [`measure_on_disk`] takes, rivers not counted.
+pub fn memory_on_disk(window: &Window) -> u64 {
+    let cells = window.len() as u64;
+    let side = large::side(cells) as u64;
+    let strip = side.saturating_mul(window.width as u64).saturating_mul(STRIP_SAMPLE);
+    let rows = (window.width as u64).saturating_mul((ROWS as u64 + 2) * 4 * 6);
+    large::memory(cells).saturating_add(strip).saturating_add(rows).saturating_add(3 * pages::memory(window))
+}
+
+/// The same as [`measure`] of land on disk, to the bit, tile by tile: rasters are made in `folder`, and what rivers take is reserved from `budget`.
+///
+/// # Errors
+/// If the disk fails, the rivers do not fit, or the work is cancelled.
+pub fn measure_on_disk(land: &Land, folder: &Path, budget: &Budget, progress: &Progress) -> Result<Water> {
+    let window = *land.window();
+    let raster = || Pages::scratch(folder, window).map(Raster::on_disk);
+    let [filling, draining, passing, counting, naming] = progress.parts([5.0, 3.0, PASSES, 1.5, 1.5]);
+    let mut heights = raster()?;
+    for rows in bands(0..window.height, SIDE) {
+        heights.put(&land.rows(rows)?)?;
+    }
+    let (mut codes, mut filled) = (raster()?, raster()?);
+    let tiling = Tiling::new(window, large::side(window.len() as u64));
+    large::Water { heights: &heights, sea: None, tiling, progress: &filling }.over_bed(&mut codes, &mut filled)?;
+    filling.finish();
+    large::Water { heights: &filled, sea: None, tiling, progress: &draining }.over_surface(&mut codes)?;
+    draining.finish();
+    let spring = spring(&window);
+    passing.expect(PASSES * tiling.count() as f64);
+    let streams = Streams::new(&codes, &tiling, spring, &passing)?;
+    passing.finish();
+
+    // What is counted of all cells, and how many are rivers.
+    let (mut ground, mut counts, mut wet) = (Ground::default(), AreaCounts::new(window.len()), Mean::default());
+    let (mut largest, mut rivers) = (0, 0);
+    streams.each(|strip| {
+        counting.check()?;
+        counts.add(&strip.areas);
+        largest = strip.areas.iter().copied().fold(largest, u32::max);
+        rivers += strip.orders.iter().filter(|order| **order > 0).count() as u64;
+        let top = (strip.window.y - window.y) as usize;
+        for rows in bands(top..top + strip.window.height, ROWS) {
+            let here = part(&window, &rows);
+            let cells = (rows.start - top) * window.width..(rows.end - top) * window.width;
+            let areas = Grid::from_data(here, strip.areas[cells].to_vec()).unwrap_or_else(|| Grid::filled(here, 0));
+            let around = heights.get(&part(&window, &near(&rows, window.height)))?;
+            wet.add(wetness_of_rows(&around, &areas).data());
+            let own = around.crop(&here).unwrap_or_else(|| Grid::filled(here, f32::NAN));
+            ground.add(&own, &filled.get(&here)?);
+        }
+        Ok(())
+    })?;
+    counting.finish();
+
+    let _rivers = budget.reserve(rivers * STREAM_CELL)?;
+    let mut network = rivers::Streams::default();
+    let classes = |average| AreaClasses::new(spring, largest, average);
+    let (mut hack, mut concavity) = (classes(Average::Median), classes(Average::Mean));
+    let strides = strides(window.width);
+    streams.each(|strip| {
+        naming.check()?;
+        let top = (strip.window.y - window.y) as usize;
+        for rows in bands(top..top + strip.window.height, ROWS) {
+            let around = near(&rows, window.height);
+            let filled = filled.get(&part(&window, &around))?;
+            for j in rows.clone() {
+                for i in 0..window.width {
+                    let c = (j - top) * window.width + i;
+                    let (area, code) = (strip.areas[c], strip.codes[c]);
+                    if area < spring {
+                        continue;
+                    }
+                    let cell = j * window.width + i;
+                    let receiver = strides.get(usize::from(code)).map_or(cell, |stride| neighbour(cell, *stride));
+                    let height = |cell: usize| filled.data()[cell - around.start * window.width];
+                    if let Some(hack) = &mut hack {
+                        hack.add(area, strip.ways[c].length());
+                    }
+                    if let Some(concavity) = &mut concavity
+                        && receiver != cell
+                    {
+                        let drop = statistics::drop_per_metre(height(cell), height(receiver), code, window.cell);
+                        concavity.add(area, drop);
+                    }
+                    if strip.orders[c] > 0 {
+                        network.push(cell as u32, receiver as u32, strip.orders[c]);
+                    }
+                }
+            }
+        }
+        Ok(())
+    })?;
+    let laws = Laws {
+        area_exponent: counts.exponent(),
+        hack: hack.and_then(AreaClasses::slope),
+        concavity: concavity.and_then(AreaClasses::slope).map(|slope| -slope),
+    };
+    Ok(Water::of(&window, &ground, laws, wet.mean(), network.network()))
+}
+
+/// Rows in bands of `most`.
+fn bands(rows: Range<usize>, most: usize) -> impl Iterator<Item = Range<usize>> {
+    let end = rows.end;
+    rows.step_by(most).map(move |first| first..(first + most).min(end))
+}
+
+/// Rows and those beside them, as far as there are any.
+fn near(rows: &Range<usize>, height: usize) -> Range<usize> {
+    rows.start.saturating_sub(1)..(rows.end + 1).min(height)
+}
+
+/// Some rows of a window.
+fn part(window: &Window, rows: &Range<usize>) -> Window {
+    Window { y: window.y + rows.start as i64, height: rows.len(), ..*window }
+}
+
+/// What is counted of the ground.
+#[derive(Debug, Clone, Copy, Default)]
+struct Ground {
+    land: f64,
+    wet: f64,
+    deep: f64,
+}
+
+impl Ground {
+    fn add(&mut self, heights: &Grid, filled: &Grid) {
+        for (height, level) in heights.data().iter().zip(filled.data()).filter(|(height, _)| height.is_finite()) {
+            self.land += 1.0;
+            if level > height {
+                self.wet += 1.0;
+                self.deep += f64::from(*level) - f64::from(*height);
+            }
+        }
     }
 }
 
-fn mean(grid: &Grid) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0);
-    for value in grid.data().iter().filter(|value| value.is_finite()) {
-        sum += f64::from(*value);
-        count += 1.0;
+/// Exponents of the laws of drainage.
+struct Laws {
+    area_exponent: Option<f64>,
+    hack: Option<f64>,
+    concavity: Option<f64>,
+}
+
+impl Water {
+    fn of(window: &Window, ground: &Ground, laws: Laws, wetness: f64, reaches: Vec<Reach>) -> Water {
+        let streams = streams(&reaches, window);
+        let river: f64 = streams.iter().map(|(_, length)| length).sum();
+        let area = ground.land * window.cell * window.cell;
+        let order = streams.len() as u8;
+        let counted: Vec<f64> = streams.iter().map(|(count, _)| *count).collect();
+        let lengths: Vec<f64> = streams.iter().map(|(count, length)| length / count).collect();
+        // The highest order is cut off by the map's edge: its rivers are not whole.
+        let whole = lengths.len().saturating_sub(1);
+        Water {
+            depressions: ground.wet / f64::max(ground.land, 1.0),
+            depression_depth: if ground.wet > 0.0 { ground.deep / ground.wet } else { 0.0 },
+            area_exponent: laws.area_exponent,
+            hack: laws.hack,
+            concavity: laws.concavity,
+            bifurcation: ratio(&counted).map(|ratio| 1.0 / ratio),
+            length_ratio: if order >= 3 { ratio(&lengths[..whole]) } else { None },
+            order,
+            density: if area > 0.0 { 1000.0 * river / area } else { 0.0 },
+            wetness,
+            reaches,
+        }
     }
-    sum / count
 }
 
 /// Of each order from 1, how many streams there are (reaches of one order that follow each other are one) and how many metres of them.
-fn streams(reaches: &[Reach], receivers: &Receivers, cell: f64) -> Vec<(f64, f64)> {
+fn streams(reaches: &[Reach], window: &Window) -> Vec<(f64, f64)> {
     let highest = reaches.iter().map(|reach| reach.order).max().unwrap_or(0);
     let mut streams = vec![(0.0, 0.0); usize::from(highest)];
     for reach in reaches {
@@ -109,9 +275,10 @@ fn streams(reaches: &[Reach], receivers: &Receivers, cell: f64) -> Vec<(f64, f64
         if next.is_none_or(|next| next.order != reach.order) {
             *count += 1.0;
         }
-        for c in reach.cells.iter().take(reach.cells.len().saturating_sub(1)) {
-            let code = usize::from(receivers.code(*c as usize) & 7);
-            *length += DISTANCES[code] * cell;
+        for pair in reach.cells.windows(2) {
+            let [from, to] = [pair[0], pair[1]].map(|c| (c as usize % window.width, c as usize / window.width));
+            let is_diagonal = from.0 != to.0 && from.1 != to.1;
+            *length += DISTANCES[usize::from(is_diagonal)] * window.cell;
         }
     }
     streams
@@ -136,7 +303,6 @@ fn ratio(numbers: &[f64]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::grid::Window;
 
     #[test]
     fn ratios_are_those_of_horton() {
@@ -154,7 +320,7 @@ mod tests {
             }
         }
         grid.row_mut(60)[20] -= 300.0;
-        let water = measure(&grid);
+        let water = measure(&grid, &Progress::none()).unwrap();
         assert!((water.depressions - 1.0 / 12_800.0).abs() < 1e-9, "{}", water.depressions);
         assert!(water.depression_depth > 200.0 && water.order >= 1);
         // About 155 cells of river: 15 km on 128 km^2; no flank is long enough for one of its own.
