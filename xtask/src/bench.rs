@@ -24,9 +24,9 @@ Builds the benches at full optimisation, measures one area (or each in turn) and
                          (by pip; one that does not install is left out), erosion by filters, one thread, CPU time, and two
                          threads, worlds of 512 x 512 to 4096 x 4096 cells; OROGEN_RICHDEM, OROGEN_FASTSCAPELIB and OROGEN_MATPLOTLIB name the Python that has them
                generate  every preset from the command to the last file, all cores, wall clock
-               outputs   contours beside contourpy, meshes beside pydelatin (by pip; OROGEN_CONTOURPY and OROGEN_PYDELATIN name
-                         a Python that has it) and a Cloud-Optimised GeoTIFF beside gdal_translate, CPU time; maps of 4096 x 4096 and a
-                         rendered view, wall clock
+               outputs   contours beside contourpy, meshes beside pydelatin and OpenEXR files beside its library (by pip; OROGEN_CONTOURPY,
+                         OROGEN_PYDELATIN and OROGEN_OPENEXR name a Python that has it) and a Cloud-Optimised GeoTIFF beside
+                         gdal_translate, CPU time; maps of 4096 x 4096 and a rendered view, wall clock
                world     chunks, tiles with halos, threads and whole builds of the preset `hills`; the builds (--case build) take
                          minutes and a dozen GiB of disk
   --json FILE  write the rows as JSON too; needs an AREA once there are several

@@ -1,16 +1,12 @@
 //! Contours of 20 levels beside contourpy, CPU time of one thread.
 
 use std::hint::black_box;
-use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use cpu_time::ThreadTime;
-use orogen::Grid;
 use orogen::contour::trace::contours;
-use orogen::format::npy;
-use serde_json::Value;
 
 use super::ground::ground;
+use super::python;
 use crate::measure::median;
 use crate::options::Options;
 use crate::world::figure::{Figure, Target};
@@ -39,19 +35,15 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
             })
         })
         .collect();
-    let other = match std::env::var_os(PYTHON) {
-        Some(python) => {
-            let theirs = contourpy(Path::new(&python), &ground, &levels, options.repetitions)?;
-            if theirs.points.abs_diff(points) * 1000 > points {
-                return Err(format!(
-                    "contourpy's lines have {} points, ours {points}: not the same work",
-                    theirs.points
-                ));
-            }
-            Some(("contourpy", theirs.seconds))
+    let listed: Vec<String> = levels.iter().map(f64::to_string).collect();
+    let theirs = python::run(PYTHON, "contours.py", &ground, &[listed.join(","), options.repetitions.to_string()])?;
+    if let Some(theirs) = &theirs {
+        let made = theirs.values["points"].as_u64().unwrap_or_default() as usize;
+        if made.abs_diff(points) * 1000 > points {
+            return Err(format!("contourpy's lines have {made} points, ours {points}: not the same work"));
         }
-        None => None,
-    };
+    }
+    let other = theirs.map(|theirs| ("contourpy", theirs.seconds));
     Ok(vec![Figure {
         case: format!("contours of {SIDE} x {SIDE}, {LEVELS} levels, {} lines of {points} points", lines.len()),
         ours: median(&mut times),
@@ -59,29 +51,4 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
         other,
         target: if other.is_some() { Target::FasterBy(2.0) } else { Target::None },
     }])
-}
-
-struct Theirs {
-    seconds: f64,
-    points: usize,
-}
-
-fn contourpy(python: &Path, ground: &Grid, levels: &[f64], repetitions: usize) -> Result<Theirs, String> {
-    let file = std::env::temp_dir().join(format!("orogen-bench-{}.npy", std::process::id()));
-    let written = std::fs::File::create(&file).and_then(|mut out| npy::write(&mut out, ground));
-    written.map_err(|e| format!("{}: {e}", file.display()))?;
-    let script = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("peers/contours.py");
-    let levels: Vec<String> = levels.iter().map(f64::to_string).collect();
-    let output =
-        Command::new(python).arg(script).arg(&file).arg(levels.join(",")).arg(repetitions.to_string()).output();
-    // Only what was made here is removed.
-    let _ = std::fs::remove_file(&file);
-    let output = output.map_err(|e| format!("{}: {e}", python.display()))?;
-    let told: Value = serde_json::from_slice(&output.stdout)
-        .map_err(|_| format!("contourpy measured nothing: {}", String::from_utf8_lossy(&output.stderr)))?;
-    let mut times: Vec<f64> = told["seconds"].as_array().into_iter().flatten().filter_map(Value::as_f64).collect();
-    match (times.is_empty(), told["points"].as_u64()) {
-        (false, Some(points)) => Ok(Theirs { seconds: median(&mut times), points: points as usize }),
-        _ => Err("contourpy did not tell what it made".into()),
-    }
 }

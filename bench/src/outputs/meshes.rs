@@ -1,22 +1,19 @@
 //! Meshes: few triangles beside pydelatin's, CPU time of one thread; and how long the full grid takes into a file.
 
 use std::hint::black_box;
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use cpu_time::ThreadTime;
 use orogen::analysis::halo::Halo;
-use orogen::format::npy;
 use orogen::map::paint::Painter;
 use orogen::mesh::adaptive::adaptive;
 use orogen::mesh::glb::{Model, write as write_glb};
 use orogen::mesh::shape::Shape;
 use orogen::mesh::surface::Surface;
 use orogen::{Grid, World};
-use serde_json::Value;
 
+use super::counted::Counted;
 use super::ground::ground;
+use super::python;
 use crate::measure::median;
 use crate::options::Options;
 use crate::world::figure::{Figure, Target};
@@ -56,10 +53,7 @@ fn times<T>(repetitions: usize, mut work: impl FnMut() -> Result<T, String>) -> 
 fn few_triangles(name: &str, grid: &Grid, options: &Options) -> Result<Figure, String> {
     let [low, high] = grid.data().iter().fold([f32::MAX, f32::MIN], |[l, h], v| [l.min(*v), h.max(*v)]).map(f64::from);
     let max_error = SHARE * (high - low);
-    let theirs = match std::env::var_os(PYTHON) {
-        Some(python) => Some(pydelatin(Path::new(&python), grid, max_error, options.repetitions)?),
-        None => None,
-    };
+    let theirs = pydelatin(grid, max_error, options.repetitions)?;
     // No further off than what the peer reached.
     let max_error = theirs.as_ref().map_or(max_error, |theirs| theirs.error);
     let shape = adaptive(grid, max_error).map_err(|e| e.to_string())?;
@@ -80,20 +74,6 @@ fn few_triangles(name: &str, grid: &Grid, options: &Options) -> Result<Figure, S
     Ok(Figure { case, ours: median(&mut ours), unit: "s of CPU", other, target })
 }
 
-/// Counts bytes and forgets them.
-struct Counted(u64);
-
-impl Write for Counted {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0 += black_box(bytes).len() as u64;
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
 fn full_grid(grid: &Grid, options: &Options) -> Result<Figure, String> {
     let painter = Painter::fit(grid, 0.0);
     let mut bytes = Counted(0);
@@ -103,7 +83,7 @@ fn full_grid(grid: &Grid, options: &Options) -> Result<Figure, String> {
         let mut texture = Vec::new();
         let drawn = painter.write_png(&mut texture, grid, &[]);
         let halo = Halo::default();
-        let levels = [Surface { grid, halo: &halo, shape: &shape, exaggeration: 1.0, painter: None }];
+        let levels = [Surface { grid, halo: &halo, shape: &shape, exaggeration: 1.0, painter: None, progress: None }];
         let model = Model {
             levels: &levels,
             texture: Some(&texture),
@@ -127,22 +107,12 @@ struct Theirs {
     error: f64,
 }
 
-fn pydelatin(python: &Path, grid: &Grid, max_error: f64, repetitions: usize) -> Result<Theirs, String> {
-    let file = std::env::temp_dir().join(format!("orogen-bench-mesh-{}.npy", std::process::id()));
-    let written = std::fs::File::create(&file).and_then(|mut out| npy::write(&mut out, grid));
-    written.map_err(|e| format!("{}: {e}", file.display()))?;
-    let script = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("peers/meshes.py");
-    let mut command = Command::new(python);
-    let output = command.arg(script).arg(&file).arg(max_error.to_string()).arg(repetitions.to_string()).output();
-    // Only what was made here is removed.
-    let _ = std::fs::remove_file(&file);
-    let output = output.map_err(|e| format!("{}: {e}", python.display()))?;
-    let told: Value = serde_json::from_slice(&output.stdout)
-        .map_err(|_| format!("pydelatin measured nothing: {}", String::from_utf8_lossy(&output.stderr)))?;
-    let mut seconds: Vec<f64> = told["seconds"].as_array().into_iter().flatten().filter_map(Value::as_f64).collect();
-    match (seconds.is_empty(), told["triangles"].as_u64(), told["error"].as_f64()) {
-        (false, Some(triangles), Some(error)) => {
-            Ok(Theirs { seconds: median(&mut seconds), triangles: triangles as usize, error })
+fn pydelatin(grid: &Grid, max_error: f64, repetitions: usize) -> Result<Option<Theirs>, String> {
+    let arguments = [max_error.to_string(), repetitions.to_string()];
+    let Some(told) = python::run(PYTHON, "meshes.py", grid, &arguments)? else { return Ok(None) };
+    match (told.values["triangles"].as_u64(), told.values["error"].as_f64()) {
+        (Some(triangles), Some(error)) => {
+            Ok(Some(Theirs { seconds: told.seconds, triangles: triangles as usize, error }))
         }
         _ => Err("pydelatin did not tell what it made".into()),
     }

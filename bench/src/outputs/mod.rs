@@ -2,9 +2,12 @@
 
 mod cog;
 mod contours;
+mod counted;
+mod exr;
 mod ground;
 mod maps;
 mod meshes;
+mod python;
 mod render;
 
 use serde_json::{Value, json};
@@ -19,6 +22,7 @@ type Case = (&'static str, fn(&Options) -> Result<Vec<Figure>, String>);
 const CASES: &[Case] = &[
     ("cog", cog::measure),
     ("contours", contours::measure),
+    ("exr", exr::measure),
     ("maps", maps::measure),
     ("meshes", meshes::measure),
     ("render", render::measure),

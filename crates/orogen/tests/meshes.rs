@@ -38,7 +38,7 @@ fn land(width: usize, height: usize) -> Grid {
 
 fn surface<'a>(grid: &'a Grid, shape: &'a Shape) -> Surface<'a> {
     static ALONE: LazyLock<Halo> = LazyLock::new(Halo::default);
-    Surface { grid, halo: &ALONE, shape, exaggeration: 1.0, painter: None }
+    Surface { grid, halo: &ALONE, shape, exaggeration: 1.0, painter: None, progress: None }
 }
 
 /// A mesh as it was read: places and normals as east, up, south.

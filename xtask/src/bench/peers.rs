@@ -50,6 +50,13 @@ const PEERS: &[Peer] = &[
         packages: &["numpy", "pydelatin==0.4.0"],
         pythons: &["python3", "python3.13", "python3.12", "python3.11"],
     },
+    Peer {
+        area: "outputs",
+        variable: "OROGEN_OPENEXR",
+        name: "OpenEXR",
+        packages: &["numpy", "OpenEXR==3.5.3"],
+        pythons: &["python3", "python3.13", "python3.12", "python3.11"],
+    },
 ];
 
 /// The Pythons of an area's peers that can be had, each with its variable; one that is set already is taken as it is. What cannot be

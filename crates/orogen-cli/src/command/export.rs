@@ -159,6 +159,7 @@ fn export(args: &Args) -> Result<(), Failure> {
         Sink::File(output) => exporting::to_file(format, subject, &options, output)
             .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?,
     };
+    progress.finish();
     drop(bar);
     finite::tell(&args.layer, count)?;
     let size = format!("{} x {} samples of {} m", window.width, window.height, number(window.cell));

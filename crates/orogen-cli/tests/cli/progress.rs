@@ -33,10 +33,12 @@ fn shares(folder: &Folder, arguments: &[&str]) -> Vec<f64> {
 fn every_command_reports_one_share_that_only_grows_to_the_end() {
     let folder = Folder::new();
     folder.write("rivers.toml", RIVERS);
-    let commands: [&[&str]; 10] = [
+    let commands: [&[&str]; 12] = [
         &["generate", "rivers.toml", "-o", "out"],
         &["export", "rivers.toml", "-o", "land.tif"],
         &["export", "rivers.toml", "--layer", "normal", "-o", "normal.png"],
+        &["export", "rivers.toml", "-o", "full.glb", "--lods", "2"],
+        &["export", "rivers.toml", "-o", "few.stl", "--max-error", "2"],
         &["map", "rivers.toml", "-o", "map.png"],
         &["analyze", "rivers.toml", "-o", "page.png"],
         &["render", "rivers.toml", "--size", "120", "--turntable", "3", "-o", "around.gif"],
@@ -53,6 +55,18 @@ fn every_command_reports_one_share_that_only_grows_to_the_end() {
     // Nothing where nobody asks for it.
     assert_eq!(folder.good(&["generate", "rivers.toml", "-o", "out"]).err, "");
     assert!(folder.good(&["generate", "rivers.toml", "-o", "out", "--progress", "plain"]).err.ends_with("100 %\n"));
+}
+
+#[test]
+fn the_triangles_of_a_mesh_have_their_share() {
+    let folder = Folder::new();
+    folder.write("land.toml", RIVERS.replace("height = \"terrain\"", "height = \"metres\""));
+    for few in [&[][..], &["--max-error", "0.2"]] {
+        let arguments = [&["export", "land.toml", "-o", "land.glb", "--size", "1400"], few].concat();
+        let shares = shares(&folder, &arguments);
+        // Making heights of one fractal is the least of it.
+        assert!(shares.iter().filter(|share| (0.3..0.99).contains(*share)).count() > 1, "{shares:?}");
+    }
 }
 
 #[test]

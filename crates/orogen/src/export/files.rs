@@ -91,9 +91,11 @@ impl<'a> Files<'a> {
 }
 
 /// A writer that fails once the work is not wanted any more.
-struct Stopping<'a> {
-    out: &'a mut dyn Write,
-    progress: &'a Progress,
+pub(super) struct Stopping<'a> {
+    /// Where it goes.
+    pub out: &'a mut dyn Write,
+    /// Asked before each write.
+    pub progress: &'a Progress,
 }
 
 impl Write for Stopping<'_> {

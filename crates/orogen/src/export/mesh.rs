@@ -4,7 +4,7 @@ use std::io;
 
 use serde_json::{Value, json};
 
-use super::files::Files;
+use super::files::{Files, Stopping};
 use super::memory::whole;
 use super::options::{OptionSpec, Options, Takes};
 use super::subject::Subject;
@@ -15,11 +15,12 @@ use crate::format::levels::{NO_SAMPLES, extremes};
 use crate::grid::{Grid, Window};
 use crate::map::paint::Painter;
 use crate::map::shade::Shade;
-use crate::mesh::adaptive::adaptive;
+use crate::mesh::adaptive::adaptive_with;
 use crate::mesh::relief::HeightCurve;
 use crate::mesh::shape::Shape;
 use crate::mesh::surface::Surface;
 use crate::palette::tint::Tint;
+use crate::progress::Progress;
 use crate::words::{count, number};
 
 /// `--max-error`.
@@ -54,6 +55,12 @@ pub const COLOR: OptionSpec = OptionSpec {
     takes: Takes::Word(&["texture", "vertex", "none"]),
 };
 
+/// Nanoseconds of one core that a sample takes, about: to choose the corners of few triangles, or of all, to paint it, and to write its triangles.
+const FEW_TRIANGLES: f64 = 250.0;
+const LATTICE: f64 = 3.0;
+const PAINTING: f64 = 60.0;
+const WRITING: f64 = 60.0;
+
 /// Bytes that a mesh of a window takes beside what its file is written from: the heights, and for few triangles the triangulation
 /// while it grows, if one sample in five becomes a corner.
 pub fn memory(window: &Window, options: &Options) -> u64 {
@@ -72,6 +79,9 @@ pub struct Prepared {
     halo: Halo,
     exaggeration: f32,
     max_error: Option<f64>,
+    /// The work that is left: a picture, and of each level the writing.
+    painting: Progress,
+    writing: Vec<Progress>,
     /// The curve that the heights were bent by, and their range before.
     curve: Option<(HeightCurve, [f32; 2])>,
     /// How metres lie on a map, where the recipe holds a real place.
@@ -84,6 +94,11 @@ impl Prepared {
     /// Fails as the subject does, and on windows that are no mesh.
     pub fn new(subject: &mut Subject, options: &Options, levels: usize) -> io::Result<Prepared> {
         let curve = options.text(HEIGHT_CURVE.name).map(HeightCurve::parse).transpose()?;
+        let max_error = options.number(MAX_ERROR.name);
+        let samples = subject.window().len() as f64;
+        let (shaping, writing) = if max_error.is_some() { (FEW_TRIANGLES, WRITING / 4.0) } else { (LATTICE, WRITING) };
+        let progress = subject.progress().clone();
+        progress.expect(samples * (PAINTING + levels as f64 * (shaping + writing)));
         let mut halo = Halo::default();
         let mut grid = subject.surrounded(&mut halo)?;
         let sea_level = subject.world().recipe().world.sea_level as f32;
@@ -94,14 +109,22 @@ impl Prepared {
             curve.bend(&mut grid, &mut halo);
         }
         let curve = curve.map(|curve| (curve, range));
-        let max_error = options.number(MAX_ERROR.name);
-        let shape = |level: usize| match max_error {
-            Some(max_error) => adaptive(&grid, max_error * (1u64 << level) as f64),
-            None => Shape::lattice(&grid, 1 << level),
+        let shape = |level: usize| {
+            let part = progress.part(samples * shaping);
+            part.check()?;
+            let shape = match max_error {
+                Some(max_error) => adaptive_with(&grid, max_error * (1u64 << level) as f64, &part),
+                None => Shape::lattice(&grid, 1 << level),
+            };
+            part.finish();
+            shape
         };
         let shapes = (0..levels).map(shape).collect::<Result<Vec<Shape>>>()?;
         let exaggeration = options.number(EXAGGERATION.name).unwrap_or(1.0) as f32;
-        Ok(Prepared { grid, halo, shapes, painter, exaggeration, max_error, curve, map: subject.map() })
+        let painting = progress.part(samples * PAINTING);
+        let writing = (0..levels).map(|_| progress.part(samples * writing)).collect();
+        let map = subject.map();
+        Ok(Prepared { grid, halo, shapes, painter, exaggeration, max_error, painting, writing, curve, map })
     }
 
     /// A level of detail, its corners with colours if they are wanted.
@@ -112,6 +135,7 @@ impl Prepared {
             shape: &self.shapes[level],
             exaggeration: self.exaggeration,
             painter: colors.then_some(&self.painter),
+            progress: Some(&self.writing[level]),
         }
     }
 
@@ -134,9 +158,11 @@ impl Prepared {
 
     /// The picture that it wears, as PNG: a pixel for each sample.
     ///
-    /// Fails as `out` does.
+    /// Fails as `out` does, or if the work is cancelled.
     pub fn picture(&self, out: &mut dyn io::Write) -> io::Result<()> {
-        self.painter.write_png(out, &self.grid, &[])
+        self.painter.write_png(&mut Stopping { out, progress: &self.painting }, &self.grid, &[])?;
+        self.painting.finish();
+        Ok(())
     }
 
     /// Where it lies and how its axes are, for the comments of a file.

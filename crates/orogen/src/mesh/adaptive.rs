@@ -2,11 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::shape::{Part, Shape, enough};
+use super::shape::{Packed, Part, Shape, enough};
 use super::tile::Tile;
 use super::tin::{Triangulation, triangulate};
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Grid;
+use crate::progress::Progress;
 
 /// The most cells a tile has along each side: a larger grid is cut. The coordinates within a tile must stay small enough for
 /// exact arithmetic in 64 bits, and what a tile holds should stay in cache.
@@ -22,6 +23,14 @@ const TILE: usize = 1024;
 /// # Errors
 /// The grid has fewer than two columns or rows, or samples that are not finite; `max_error` is negative or not finite.
 pub fn adaptive(grid: &Grid, max_error: f64) -> Result<Shape> {
+    adaptive_with(grid, max_error, &Progress::none())
+}
+
+/// [`adaptive`] that reports how far it has come, and can be stopped.
+///
+/// # Errors
+/// As [`adaptive`], and if the work is cancelled.
+pub fn adaptive_with(grid: &Grid, max_error: f64, progress: &Progress) -> Result<Shape> {
     enough(grid)?;
     let refuse = |why: String| Err(Error::new(ErrorKind::Request, why));
     if !(max_error >= 0.0 && max_error.is_finite()) {
@@ -40,18 +49,21 @@ pub fn adaptive(grid: &Grid, max_error: f64) -> Result<Shape> {
         .windows(2)
         .flat_map(|rows| across.windows(2).map(|columns| [[columns[0], rows[0]], [columns[1], rows[1]]]))
         .collect();
-    let parts: Vec<_> = tiles
+    progress.expect(tiles.len() as f64);
+    let parts: Result<Vec<Part>> = tiles
         .into_par_iter()
         .map(|[[left, top], [right, bottom]]| {
             let tile = Tile::of(grid, [left, top], [right - left + 1, bottom - top + 1]);
-            let Triangulation { places, triangles } = triangulate(&tile, max_error);
-            let samples = places.iter().map(|&[column, row]| [left as u32 + column as u32, top as u32 + row as u32]);
-            // From clockwise on the page, y downwards, to counter-clockwise from above. Nothing is kept that the part does not need.
-            let triangles = triangles.iter().map(|&[a, b, c]| [a, c, b]);
-            Part { samples: samples.collect(), triangles: triangles.collect() }
+            let Triangulation { places, triangles } = triangulate(&tile, max_error, progress)?;
+            // A tile has at most 1025 samples a side.
+            let samples = places.iter().map(|&[column, row]| column as u32 | (row as u32) << 16).collect();
+            // From clockwise on the page, y downwards, to counter-clockwise from above.
+            let triangles = triangles.iter().map(|&[a, b, c]| Packed::new([a, c, b])).collect();
+            progress.advance(1.0);
+            Ok(Part { corner: [left as u32, top as u32], samples, triangles })
         })
         .collect();
-    Ok(Shape::joined(parts))
+    Ok(Shape::joined(parts?))
 }
 
 /// The columns (or rows) at which so many samples are cut into tiles, evenly, with the first and the last.
@@ -165,6 +177,17 @@ mod tests {
         check(&shape, &grid);
         assert!(shape.deviation(&grid) <= 30.0);
         assert_eq!(shape, on(3));
+    }
+
+    #[test]
+    fn work_that_is_stopped_ends_soon() {
+        let grid = land(900, 900);
+        let progress = Progress::none();
+        progress.cancel();
+        let begun = std::time::Instant::now();
+        let error = adaptive_with(&grid, 0.001, &progress).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Cancelled);
+        assert!(begun.elapsed().as_millis() < 500);
     }
 
     #[test]

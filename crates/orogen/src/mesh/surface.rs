@@ -9,6 +9,7 @@ use crate::analysis::halo::Halo;
 use crate::analysis::slope::gradients_between;
 use crate::grid::Grid;
 use crate::map::paint::Painter;
+use crate::progress::Progress;
 
 /// What is written: a shape over a grid of heights in metres.
 #[derive(Clone, Copy)]
@@ -23,6 +24,8 @@ pub struct Surface<'a> {
     pub exaggeration: f32,
     /// Gives corners the colours of a map.
     pub painter: Option<&'a Painter>,
+    /// Hears of the triangles that are written, where somebody asks.
+    pub progress: Option<&'a Progress>,
 }
 
 /// One corner, in metres from the first sample of the grid.
@@ -90,6 +93,8 @@ impl Surface<'_> {
     pub fn triangles(&self, out: &mut dyn Write, emit: impl Fn([u32; 3], &mut Vec<u8>) + Sync) -> io::Result<()> {
         let pieces: Vec<usize> = (0..self.shape.pieces()).collect();
         let each = self.shape.triangles() / pieces.len().max(1);
+        let advance = |pieces: usize| self.progress.iter().for_each(|progress| progress.advance(pieces as f64));
+        self.progress.iter().for_each(|progress| progress.expect(pieces.len() as f64));
         for band in pieces.chunks((BAND / each.max(1)).clamp(8, 256)) {
             let made: Vec<Vec<u8>> = band
                 .par_iter()
@@ -100,6 +105,7 @@ impl Surface<'_> {
                 })
                 .collect();
             made.iter().try_for_each(|bytes| out.write_all(bytes))?;
+            advance(band.len());
         }
         Ok(())
     }

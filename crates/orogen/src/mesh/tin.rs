@@ -19,6 +19,8 @@ use orogen_simd::dispatch;
 use super::border::polyline;
 use super::scan::{Scan, Worst, exactly};
 use super::tile::Tile;
+use crate::error::Result;
+use crate::progress::Progress;
 
 /// In place of a twin: the edge is part of the border.
 const OUTSIDE: u32 = u32::MAX;
@@ -41,11 +43,14 @@ pub(super) struct Triangulation {
 }
 
 /// Triangulates a tile of at least 2 x 2 finite samples so that none is further than `max_error` from the surface.
-pub(super) fn triangulate(tile: &Tile, max_error: f64) -> Triangulation {
+///
+/// # Errors
+/// If the work is cancelled.
+pub(super) fn triangulate(tile: &Tile, max_error: f64, progress: &Progress) -> Result<Triangulation> {
     let mut tin = Tin::new(tile, max_error);
     tin.lay_out(max_error);
-    tin.refine();
-    Triangulation { places: tin.places, triangles: tin.corners }
+    tin.refine(progress)?;
+    Ok(Triangulation { places: tin.places, triangles: tin.corners })
 }
 
 /// How distances are measured.
@@ -156,7 +161,8 @@ impl<'a> Tin<'a> {
         self.look();
     }
 
-    fn refine(&mut self) {
+    fn refine(&mut self, progress: &Progress) -> Result<()> {
+        progress.check()?;
         let enough = self.tile.width * self.tile.height / SPARSE;
         while self.places.len() < enough
             && let Some(triangle) = self.queue.pop_above(0, self.limit, &self.worst)
@@ -165,16 +171,18 @@ impl<'a> Tin<'a> {
         }
         self.queue.cut(self.tile, &self.worst);
         for factor in SWEEPS {
-            self.sweep(factor * self.limit);
+            self.sweep(factor * self.limit, progress)?;
         }
         // A block may leave work to one that has been done.
-        while self.sweep(self.limit) {}
+        while self.sweep(self.limit, progress)? {}
+        Ok(())
     }
 
     /// Refines all blocks, one after the other, down to an error; tells whether anything was done.
-    fn sweep(&mut self, error: f32) -> bool {
+    fn sweep(&mut self, error: f32, progress: &Progress) -> Result<bool> {
         let mut busy = false;
         for block in 0..self.queue.blocks.len() {
+            progress.check()?;
             while let Some(triangle) = self.queue.pop_above(block, error, &self.worst) {
                 busy = true;
                 let off = self.worst[triangle as usize].map_or(0.0, |worst| worst.error);
@@ -183,7 +191,7 @@ impl<'a> Tin<'a> {
                 }
             }
         }
-        busy
+        Ok(busy)
     }
 
     /// Makes the furthest sample of a triangle a corner.
