@@ -57,6 +57,62 @@ def ground(places, kind):
     return numpy.stack([x, z, -y] if kind == "z up" else [x, y, z], axis=1)
 
 
+def height_at(heights, east, south):
+    """The ground between samples, in cells: the lower and the higher of the two ways in which a square may be cut into triangles."""
+    i = numpy.clip(numpy.floor(east).astype(int), 0, heights.shape[1] - 2)
+    j = numpy.clip(numpy.floor(south).astype(int), 0, heights.shape[0] - 2)
+    u, v = east - i, south - j
+    nw, ne, sw, se = (heights[j + down, i + right].astype("f8") for down in (0, 1) for right in (0, 1))
+    falling = numpy.where(u > v, nw + (ne - nw) * u + (se - ne) * v, nw + (se - sw) * u + (sw - nw) * v)
+    rising = numpy.where(u + v < 1, nw + (ne - nw) * u + (sw - nw) * v, se + (sw - se) * (1 - u) + (ne - se) * (1 - v))
+    return numpy.minimum(falling, rising), numpy.maximum(falling, rising)
+
+
+def check_water(path, cell, expected, whole):
+    """Rivers lie on the ground, lakes and the sea are level and where the ground is lower; everything faces up."""
+    name = path.name
+    scene = trimesh.load_scene(path, process=False)
+    parts = {node: scene.geometry[scene.graph[node][1]] for node in scene.graph.nodes_geometry}
+    checks.equal(f"{name}: its nodes", set(parts), {"terrain", *expected})
+    terrain = parts["terrain"].vertices
+    columns = int(numpy.rint(terrain[:, 0].max() / cell)) + 1
+    heights = terrain[:, 1].reshape(-1, columns)
+    for part in expected:
+        mesh = parts[part]
+        places, faces = mesh.vertices, mesh.faces
+        a, b, c = (places[faces[:, k]] for k in range(3))
+        normal = numpy.cross(b - a, c - a)
+        checks.that(f"{name}: triangles of {part} face up", bool((normal[:, 1] > 0).all()), f"({(normal[:, 1] <= 0).sum()} do not)")
+        used = numpy.unique(faces)
+        length = numpy.linalg.norm(mesh.vertex_normals, axis=1)
+        checks.that(f"{name}: normals of {part}", bool(numpy.abs(length - 1).max() < 1e-3 and (mesh.vertex_normals[used, 1] > 0).all()))
+        checks.equal(f"{name}: {part} are translucent", mesh.visual.material.alphaMode, "BLEND")
+        middle = places[faces].mean(axis=1)
+        low, high = height_at(heights, middle[:, 0] / cell, middle[:, 2] / cell)
+        if part == "rivers":
+            low, high = height_at(heights, places[:, 0] / cell, places[:, 2] / cell)
+            checks.that(f"{name}: corners of rivers lie on the ground", bool((places[:, 1] >= high - 1e-3).all()), f"({(places[:, 1] - high).min()})")
+            under = (middle[:, 1] < height_at(heights, middle[:, 0] / cell, middle[:, 2] / cell)[0]).mean()
+            checks.that(f"{name}: and between them", under < 1e-3, f"({under:.2%} are below)")
+            left, right = places[0::3], places[2::3]
+            width = numpy.hypot(*(left - right)[:, [0, 2]].T)
+            checks.that(f"{name}: rivers are narrow streams to broad rivers", 0.1 < numpy.median(width) < 50, f"({numpy.median(width)} m)")
+        else:
+            checks.that(f"{name}: {part} are level", bool((numpy.ptp(places[faces][:, :, 1], axis=1) == 0).all()))
+            lit = (places[faces][:, :, 1].max(axis=1) > low).mean()
+            checks.that(f"{name}: {part} cover lower ground", lit > (0.9 if part == "sea" else 0.5), f"({lit:.2%})")
+    if whole is not None:
+        # Of the squares between samples of which every corner is below the sea, all are covered, and none that has none.
+        mesh = parts["sea"]
+        covered = numpy.zeros((heights.shape[0] - 1, heights.shape[1] - 1), bool)
+        box = numpy.rint(mesh.vertices.reshape(-1, 4, 3)[:, :, [0, 2]] / cell).astype(int)
+        for (west, north), (east, south) in zip(box.min(axis=1), box.max(axis=1)):
+            covered[north:south, west:east] = True
+        wet = heights <= whole
+        corners = wet[:-1, :-1].astype(int) + wet[1:, :-1] + wet[:-1, 1:] + wet[1:, 1:]
+        checks.that(f"{name}: the sea covers the squares that it touches, and no others", bool((covered == (corners > 0)).all()))
+
+
 def check_places(name, places, heights, cell=CELL):
     """Every place is a sample of the grid, its height equal to the last bit; returns which samples are there."""
     column = numpy.rint(places[:, 0] / cell).astype(int)
@@ -156,6 +212,22 @@ kinds = {
 paths = [export("alpine", f"alpine-{kind}.glb", *ALPINE, *options) for kind, options in kinds.items()]
 paths += [WORK / "bump-full.glb", WORK / "bump-adaptive.glb", export("alpine", "alpine-large.glb", "--window", "0,0,300,300")]
 for report in validate(*paths):
+    name = report["file"].rsplit("/")[-1]
+    checks.equal(f"{name}: errors and warnings", (report["numErrors"], report["numWarnings"]), (0, 0))
+    if report["numErrors"] or report["numWarnings"]:
+        print(json.dumps(report["messages"], indent=1))
+# Rivers, lakes and the sea lie on the ground.
+wet = {
+    "alpine": (120.0, ["rivers", "lakes"], None, ("--size", "512")),
+    "island": (40.0, ["rivers", "lakes", "sea"], 0.0, ("--size", "512")),
+}
+for recipe, (cell, expected, sea, options) in wet.items():
+    check_water(export(recipe, f"{recipe}-water.glb", "--water", *options), cell, expected, sea)
+watery = [WORK / f"{recipe}-water.glb" for recipe in wet]
+bends = ("--exaggeration", "2.5", "--height-curve", "0:0,0.5:0.2,1:1")
+watery += [export("alpine", f"alpine-water-{kind}.glb", "--water", *ALPINE, *options) for kind, options in
+           {"adaptive": ADAPTIVE, "lods": ("--lods", "3"), "exaggerated": bends, "vertex": ("--color", "vertex")}.items()]
+for report in validate(*watery):
     name = report["file"].rsplit("/")[-1]
     checks.equal(f"{name}: errors and warnings", (report["numErrors"], report["numWarnings"]), (0, 0))
     if report["numErrors"] or report["numWarnings"]:

@@ -104,17 +104,19 @@ step = 30 / 111_195
 with rasterio.open(DEGREES, "w", crs="EPSG:4326", transform=rasterio.transform.from_origin(11, 1, step, step), **profile) as out:
     out.write(heights, 1)
 
+# The last is the least share of banks that rise above their river. No water has eroded the two that have the lowest: their streams run down slopes of noise that no
+# valley has formed in, and cells straight down the steepest descent, not evened out, have as low banks (0.77 of them rise on the island, 0.78 by the lines).
 CASES = [
-    ("alpine", "alpine", ["--cell", "120"], None),
-    ("alpine_part", "alpine", ["--window", "150,210,300,260"], None),
-    ("island", "island", [], None),
-    ("archipelago", "archipelago", ["--seed", "9"], None),
-    ("fjords", "fjords", ["--seed", "3"], None),
-    ("utm", UTM, ["--river-area", "300000"], "EPSG:32633"),
-    ("degrees", DEGREES, ["--river-area", "300000"], "EPSG:4326"),
+    ("alpine", "alpine", ["--cell", "120"], None, 0.95),
+    ("alpine_part", "alpine", ["--window", "150,210,300,260"], None, 0.95),
+    ("island", "island", [], None, 0.75),
+    ("archipelago", "archipelago", ["--seed", "9"], None, 0.8),
+    ("fjords", "fjords", ["--seed", "3"], None, 0.9),
+    ("utm", UTM, ["--river-area", "300000"], "EPSG:32633", 0.9),
+    ("degrees", DEGREES, ["--river-area", "300000"], "EPSG:4326", 0.9),
 ]
 
-for name, recipe, options, crs in CASES:
+for name, recipe, options, crs, banks in CASES:
     path = export(recipe, f"{name}.gpkg", "--layer", ",".join(LAYERS), *options)
     tiff = export(recipe, f"{name}_height.tif", *options[: 2 if "--river-area" not in options else 0])
     done = subprocess.run(["ogrinfo", "-al", "-so", path], capture_output=True, text=True)
@@ -175,7 +177,7 @@ for name, recipe, options, crs in CASES:
             here, left, right = (ground[b, a] for a, b in zip(i, j))
             sides += 2
             lower += int(here <= left) + int(here <= right)
-    checks.that(f"{name}: rivers lie in valleys", sides > 0 and lower / sides > 0.75, f"({lower} of {sides})")
+    checks.that(f"{name}: rivers lie in valleys", sides > 0 and lower / sides > banks, f"({lower} of {sides})")
     print(f"{name}: {', '.join(f'{len(data[layer][1])} {layer}' for layer in LAYERS)}; {shores} mouths at shores, {lower / max(sides, 1):.3f} of banks higher")
 
 # All formats hold the same.

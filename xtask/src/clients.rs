@@ -40,14 +40,13 @@ Builds `orogen` for release, installs what is missing and runs every client, or 
   maps      Poppler and librsvg draw map sheets: the picture of the .png
   formats   OpenEXR, GDAL, rasterio, Pillow and Godot read exported heights of every format, none mirrored, turned or moved
   relief    gdaldem shades and measures the ground: hillshade, slope and aspect
+  layers    GRASS, WhiteboxTools and gdaldem make the layers that follow from heights: wetness, HAND, insolation, viewshed, landforms ...
   fuzz      libFuzzer feeds the readers of foreign files, half a minute each
   taplo     taplo checks every recipe against the JSON Schema, and refuses broken ones
 
 Only where they are named; Blender is large and needs Python 3.11:
 
   blender   Blender imports meshes: as large as the ground, summit and light where they belong
-  layers    GRASS and gdaldem make the layers that follow from heights: wetness, insolation, viewshed, landforms ...; one of 24 figures,
-            flow-distance on canyon, is 1.12 % instead of 1 % so far
 
 `build` and `install` go first whatever is named. Elsewhere than on Debian, or not as root, it says what to install.
 ";
@@ -110,7 +109,7 @@ const CLIENTS: &[Client] = &[
     Client {
         name: "layers",
         apt: &[("gdaldem", "gdal-bin"), ("grass", "grass-core")],
-        pip: &[NUMPY, RASTERIO],
+        pip: &[NUMPY, RASTERIO, "whitebox-workflows==2.0.6"],
         npm: &[],
     },
     Client { name: "fuzz", apt: &[("g++", "g++")], pip: &[], npm: &[] },
@@ -161,19 +160,17 @@ const STEPS: &[&Step] = &[
         run: || script("formats"),
     },
     &Step { name: "relief", about: "gdaldem shades the ground as orogen does", run: || script("relief") },
+    &Step {
+        name: "layers",
+        about: "GRASS, WhiteboxTools and gdaldem make the layers that follow from heights",
+        run: || script("layers"),
+    },
     &Step { name: "fuzz", about: "libFuzzer on the readers of foreign files", run: fuzz },
     &Step { name: "taplo", about: "taplo checks the recipes against the schema", run: || script("taplo") },
 ];
 
 /// What is done only where it is named.
-const ASKED: &[&Step] = &[
-    &Step { name: "blender", about: "Blender imports meshes", run: blender::check },
-    &Step {
-        name: "layers",
-        about: "GRASS makes the layers that follow from heights as orogen does",
-        run: || script("layers"),
-    },
-];
+const ASKED: &[&Step] = &[&Step { name: "blender", about: "Blender imports meshes", run: blender::check }];
 
 /// Long enough to see that nothing near the committed files breaks a reader; `cargo xtask fuzz` runs for longer.
 fn fuzz() -> Result {

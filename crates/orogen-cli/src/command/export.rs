@@ -65,8 +65,30 @@ pub struct Args {
 /// The layers that follow from the heights, for the help.
 fn layers() -> String {
     let widest = list::all().iter().map(|layer| layer.name.len()).max().unwrap_or_default();
-    let lines = list::all().iter().map(|layer| format!("  {:widest$}  {}", layer.name, layer.about));
+    let lines = list::all().iter().map(|layer| {
+        let about = wrapped(layer.about, HELP_WIDTH - widest - 4).join(&format!("\n{:1$}", "", widest + 4));
+        format!("  {:widest$}  {about}", layer.name)
+    });
     format!("Layers that follow from the heights:\n{}", lines.collect::<Vec<_>>().join("\n"))
+}
+
+/// Columns of a help text whose lines hang below each other: those of the narrowest usual terminal.
+const HELP_WIDTH: usize = 80;
+
+/// The lines of a text that breaks between words.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_string()),
+        }
+    }
+    lines
 }
 
 /// The names of engines.

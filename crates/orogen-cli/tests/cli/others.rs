@@ -76,6 +76,22 @@ fn completions_for_every_shell() {
 }
 
 #[test]
+fn the_layers_in_the_help_hang_below_each_other() {
+    let help = Folder::new().good(&["export", "--help"]).text().to_string();
+    let (_, layers) = help.split_once("Layers that follow from the heights:\n").unwrap();
+    let column = layers.lines().next().unwrap().find("steepness").unwrap();
+    assert!(layers.lines().count() > 30, "{layers}");
+    for line in layers.lines() {
+        assert!(line.chars().count() <= 80 && line.is_char_boundary(column), "{line}");
+        let (name, about) = line.split_at(column);
+        assert!(
+            name.ends_with("  ") && name.starts_with("  ") && !about.starts_with(' ') && !about.is_empty(),
+            "{line}"
+        );
+    }
+}
+
+#[test]
 fn help_and_version_end_well_and_nothing_is_usage() {
     let folder = Folder::new();
     assert!(folder.good(&["--help"]).text().contains("generate"));

@@ -94,18 +94,20 @@ fn form_at(grid: &Grid, [i, j]: [usize; 2], look: &Look, limit: f64) -> Option<u
     let here = f64::from(grid.get(i, j));
     let (mut lower, mut higher) = (0usize, 0usize);
     for (east, south) in STEPS {
-        let length = ((east * east + south * south) as f64).sqrt() * grid.window().cell;
+        // Rise per step: of equal slopes the quotients are the same number, so that those up and down cancel where heights are whole metres.
         let (mut up, mut down) = (f64::NEG_INFINITY, f64::INFINITY);
         let farthest = if east * south == 0 { look.straight } else { look.diagonal };
         for step in 1..=farthest as isize {
             let there = grid.get(i.wrapping_add_signed(east * step), j.wrapping_add_signed(south * step));
-            let slope = (f64::from(there) - here) / (length * step as f64);
+            let slope = (f64::from(there) - here) / step as f64;
             if !slope.is_finite() {
                 return None;
             }
             up = up.max(slope);
             down = down.min(slope);
         }
+        let length = ((east * east + south * south) as f64).sqrt() * grid.window().cell;
+        (up, down) = (up / length, down / length);
         let sum = up + down;
         let tells = match look.level {
             // With the highest line of sight at angle b and the lowest at d, nadir less zenith is b + d; its tangent is sum / rest.
@@ -163,6 +165,24 @@ mod tests {
         assert_eq!(form_of(|x, y| x - 0.5 * y.abs()), "spur");
         assert_eq!(form_of(|x, y| x + 0.5 * y.abs()), "hollow");
         assert_eq!(form_of(|x, _| 0.005 * x), "flat", "within a degree");
+    }
+
+    #[test]
+    fn equal_slopes_up_and_down_are_level_at_any_cell() {
+        for cell in [0.1, 30.0, 50.000_946_969_697, 92.6] {
+            let mut grid = Grid::filled(Window::new(15, 15, cell), 40.0);
+            for j in 0..15usize {
+                for i in 0..15usize {
+                    // Down by 1 in one step, up by 3 in three and by 7 in seven.
+                    let ring = i.abs_diff(7).max(j.abs_diff(7));
+                    grid.row_mut(j)[i] += [0.0, -1.0, 0.0, 3.0, 0.0, 0.0, 0.0, 7.0][ring];
+                }
+            }
+            for level in [Level::BySteepest, Level::ByDifference] {
+                let look = Look { level, ..Look::square(7, 0.1) };
+                assert_eq!(FORMS[usize::from(geomorphons(&grid, &look).get(0, 0)) - 1], "flat", "{cell} {level:?}");
+            }
+        }
     }
 
     #[test]

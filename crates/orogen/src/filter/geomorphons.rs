@@ -20,7 +20,7 @@ op! {
     ///
     /// Along each direction the highest and the lowest line of sight within `reach` are compared. Between cells of different size forms agree best at the same
     /// `reach`. Time grows with the reach.
-    pub struct Geomorphons = "geomorphons", filter, revision 1;
+    pub struct Geomorphons = "geomorphons", filter, revision 2;
     inputs {
         /// The heights.
         source: required,

@@ -87,9 +87,9 @@ pub fn write(out: &mut dyn Write, model: &Model) -> io::Result<()> {
     }
     for water in model.water {
         let mut bytes = Vec::new();
-        for corner in &water.corners {
+        for (corner, normal) in water.corners.iter().zip(water.normals()) {
             push(corner, &mut bytes);
-            push(&[0.0, 1.0, 0.0], &mut bytes);
+            push(&normal, &mut bytes);
         }
         out.write_all(&bytes)?;
         bytes.clear();

@@ -61,7 +61,12 @@ impl WaterMesh {
             let (here, next) = (first + 3 * k, first + 3 * k + 3);
             for side in 0..2 {
                 let [a, b, c, d] = [here + side, here + side + 1, next + side, next + side + 1];
-                self.triangles.extend([[a, b, c], [b, d, c]]);
+                for triangle in [[a, b, c], [b, d, c]] {
+                    // Beyond the border of the ground none is left of it.
+                    if self.area(triangle) > 0.0 {
+                        self.triangles.push(triangle);
+                    }
+                }
             }
         }
     }
@@ -97,6 +102,31 @@ impl WaterMesh {
                 }
             }
         }
+    }
+
+    /// Twice the area of a triangle seen from above.
+    fn area(&self, triangle: [u32; 3]) -> f32 {
+        let [a, b, c] = triangle.map(|corner| self.corners[corner as usize]);
+        (b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2])
+    }
+
+    /// The upward unit normal of each corner: the mean of the triangles around it, weighted by their areas.
+    pub fn normals(&self) -> Vec<[f32; 3]> {
+        let mut sums = vec![[0.0f64; 3]; self.corners.len()];
+        for triangle in &self.triangles {
+            let [a, b, c] = triangle.map(|corner| self.corners[corner as usize].map(f64::from));
+            let [u, v]: [[f64; 3]; 2] = [b, c].map(|end| std::array::from_fn(|k| end[k] - a[k]));
+            let cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+            for corner in triangle {
+                sums[*corner as usize].iter_mut().zip(cross).for_each(|(sum, part)| *sum += part);
+            }
+        }
+        let unit = |sum: [f64; 3]| {
+            let length = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();
+            // A corner without a triangle, where a ribbon ends beyond the ground.
+            if length > 0.0 { sum.map(|part| (part / length) as f32) } else { [0.0, 1.0, 0.0] }
+        };
+        sums.into_iter().map(unit).collect()
     }
 
     /// Multiplies heights.
@@ -144,12 +174,6 @@ mod tests {
     use super::*;
     use crate::grid::Window;
 
-    /// Twice the area of a triangle seen from above: above 0 if it is counter-clockwise there.
-    fn turn(mesh: &WaterMesh, triangle: [u32; 3]) -> f32 {
-        let [a, b, c] = triangle.map(|corner| mesh.corners[corner as usize]);
-        (b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2])
-    }
-
     #[test]
     fn a_ribbon_is_as_wide_as_its_river_and_never_below_the_ground() {
         let mut ground = Grid::filled(Window::new(30, 20, 10.0), 0.0);
@@ -162,7 +186,7 @@ mod tests {
         let mut mesh = WaterMesh::new("rivers", [0.0; 4]);
         mesh.lay(&Ribbon { points, widths: [4.0, 8.0] }, &ground, 0.1);
         assert_eq!((mesh.corners.len(), mesh.triangles.len()), (3 * 51, 4 * 50));
-        assert!(mesh.triangles.iter().all(|triangle| turn(&mesh, *triangle) > 0.0));
+        assert!(mesh.triangles.iter().all(|triangle| mesh.area(*triangle) > 0.0));
         for (section, width) in [(0usize, 4.0f32), (50, 8.0)] {
             let [left, _, right] = [0, 1, 2].map(|k| mesh.corners[3 * section + k]);
             assert!(((left[2] - right[2]).abs() - width).abs() < 1e-3 && left[2] < right[2], "{left:?} {right:?}");
@@ -171,6 +195,20 @@ mod tests {
             let under = height(&ground, [f64::from(*east) / 10.0, f64::from(*south) / 10.0]);
             assert!(f64::from(*high) >= under + 0.099);
         }
+        // Its normals lean downstream, as steeply as it falls: by 1 in 10.
+        let middle = mesh.normals()[3 * 25 + 1];
+        assert!((middle[0] / middle[1] - 0.1).abs() < 0.01 && middle[2].abs() < 0.01, "{middle:?}");
+    }
+
+    #[test]
+    fn a_ribbon_along_the_border_has_no_triangles_beyond_it() {
+        let ground = Grid::filled(Window::new(9, 9, 10.0), 5.0);
+        let mut mesh = WaterMesh::new("rivers", [0.0; 4]);
+        let points = (0..9).map(|i| [f64::from(i), 0.0, 5.0]).collect();
+        mesh.lay(&Ribbon { points, widths: [4.0, 4.0] }, &ground, 0.1);
+        assert!(mesh.triangles.iter().all(|triangle| mesh.area(*triangle) > 0.0));
+        assert_eq!(mesh.triangles.len(), 2 * 16, "the half on the ground");
+        assert!(mesh.normals().iter().all(|normal| *normal == [0.0, 1.0, 0.0]));
     }
 
     #[test]
@@ -181,10 +219,11 @@ mod tests {
         }
         let mut mesh = WaterMesh::new("lakes", [0.0; 4]);
         mesh.cover(&ground, |i, j| (ground.get(i, j) < 8.0).then_some(8.0));
-        let area: f32 = mesh.triangles.iter().map(|triangle| turn(&mesh, *triangle) / 2.0).sum();
+        let area: f32 = mesh.triangles.iter().map(|triangle| mesh.area(*triangle) / 2.0).sum();
         // Three rows of four squares, each row one strip.
         assert_eq!((area, mesh.triangles.len()), (12.0 * 25.0, 6));
         assert!(mesh.corners.iter().all(|corner| corner[1] == 8.0));
+        assert!(mesh.normals().iter().all(|normal| *normal == [0.0, 1.0, 0.0]));
         mesh.exaggerate(2.0);
         assert!(mesh.corners.iter().all(|corner| corner[1] == 16.0));
         let mut none = WaterMesh::new("sea", [0.0; 4]);

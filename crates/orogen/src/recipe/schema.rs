@@ -152,7 +152,7 @@ fn node_schema() -> Json {
     let nodes = Node::all();
     let ops: Vec<Json> = nodes
         .iter()
-        .map(|node| json!({ "if": { "properties": { "op": { "const": node.spec().op } } }, "then": op_schema(node) }))
+        .map(|node| json!({ "if": { "properties": { "op": op_name(node.spec().op) } }, "then": op_schema(node) }))
         .collect();
     let mut keys: BTreeMap<&str, Vec<(&str, String)>> = BTreeMap::new();
     for spec in nodes.iter().map(Node::spec) {
@@ -163,10 +163,23 @@ fn node_schema() -> Json {
     }
     let mut properties: Map<String, Json> =
         keys.into_iter().map(|(key, docs)| (key.to_string(), json!({ "description": joined(&docs) }))).collect();
-    let names: Vec<&str> = nodes.iter().map(|node| node.spec().op).collect();
+    let names: Vec<String> = nodes.iter().flat_map(|node| spellings(node.spec().op)).collect();
     properties.insert("op".into(), json!({ "enum": names, "description": "What the node does." }));
     properties.insert("mask".into(), mask_schema());
     json!({ "type": "object", "required": ["op"], "properties": properties, "allOf": ops })
+}
+
+/// A name in each of the spellings that recipes may use, its own first.
+fn spellings(name: &str) -> Vec<String> {
+    [name.to_string()].into_iter().chain(respelled(name)).collect()
+}
+
+/// The name of an op, in any of its spellings.
+fn op_name(op: &str) -> Json {
+    match spellings(op).as_slice() {
+        [one] => json!({ "const": one }),
+        several => json!({ "enum": several }),
+    }
 }
 
 /// What a key means: once if it means the same in all ops, else op by op.
@@ -194,7 +207,9 @@ fn op_schema(node: &Node) -> Json {
             about.push_str(&format!("\n`{}`: {}", layer.name, short(layer.doc)));
         }
     }
-    properties.insert("op".into(), json!({ "const": spec.op, "description": about }));
+    let mut op = op_name(spec.op);
+    op["description"] = json!(about);
+    properties.insert("op".into(), op);
     for input in spec.inputs {
         properties.insert(
             input.name.into(),
@@ -203,11 +218,7 @@ fn op_schema(node: &Node) -> Json {
     }
     for (i, param) in spec.params.iter().enumerate() {
         let schema = param_schema(param, Some(&node.param(i)));
-        // Read as well, under the other of its spellings.
-        if let Some(other) = respelled(param.name) {
-            properties.insert(other, schema.clone());
-        }
-        properties.insert(param.name.into(), schema);
+        properties.extend(spellings(param.name).into_iter().map(|name| (name, schema.clone())));
     }
     properties.insert("mask".into(), mask_schema());
     let required: Vec<&str> =
@@ -268,5 +279,54 @@ fn plain(value: &Value) -> Json {
             Json::Object(entries.iter().map(|(key, item)| (key.value.clone(), plain(&item.value))).collect())
         }
         Value::Other(_) => Json::Null,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recipe::document::Recipe;
+
+    /// The schemas of the nodes that the schema takes for this op.
+    fn taken<'a>(schema: &'a Json, op: &str) -> Vec<&'a Json> {
+        let named =
+            |name: &Json| name["const"] == op || name["enum"].as_array().is_some_and(|all| all.contains(&json!(op)));
+        let node = &schema["definitions"]["node"];
+        assert!(named(&node["properties"]["op"]), "`{op}` is not in the list of ops");
+        let cases = node["allOf"].as_array().unwrap().iter();
+        let cases: Vec<&Json> =
+            cases.filter(|case| named(&case["if"]["properties"]["op"])).map(|case| &case["then"]).collect();
+        assert!(cases.iter().all(|then| named(&then["properties"]["op"])), "{op}");
+        cases
+    }
+
+    #[test]
+    fn the_schema_takes_every_op_and_key_that_recipes_may_name() {
+        let schema = json_schema();
+        let complaint = |line: &str| match Recipe::parse(
+            &format!("orogen = 1\n[nodes.n]\n{line}\n[outputs]\nheight = \"n\"\n"),
+            "test.toml",
+        ) {
+            Ok(_) => String::new(),
+            Err(error) => error.to_string(),
+        };
+        assert!(complaint("op = \"normalizes\"").contains("unknown op"), "the test can fail");
+        assert!(complaint("op = \"fbm\"\ncolor = 1").contains("unknown key"), "the test can fail");
+        let mut respellings = 0;
+        for node in Node::all() {
+            let spec = node.spec();
+            for op in spellings(spec.op) {
+                assert!(!complaint(&format!("op = \"{op}\"")).contains("unknown op"), "{op}");
+                let cases = taken(&schema, &op);
+                assert_eq!(cases.len(), 1, "{op}");
+                let inputs = spec.inputs.iter().map(|input| input.name);
+                for key in inputs.chain(spec.params.iter().map(|param| param.name)).flat_map(spellings) {
+                    let read = !complaint(&format!("op = \"{op}\"\n{key} = 1")).contains("unknown key");
+                    assert_eq!(read, !cases[0]["properties"][&key].is_null(), "{op}.{key}");
+                }
+                respellings += usize::from(op != spec.op);
+            }
+        }
+        assert!(respellings > 0, "an op with two spellings was tried");
     }
 }
