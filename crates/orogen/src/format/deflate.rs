@@ -8,6 +8,9 @@
 //!
 //! Bytes of which little is noise (whole metres, masks, labels, level ground) hold what repeats at other distances, too: those are left to a packer that looks for it.
 
+mod matches;
+
+use matches::Matches;
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
 /// How hard the general packer tries. Its higher levels take up to eight times as long to save a hundredth.
@@ -37,7 +40,7 @@ pub fn pack(rows: &[u8], side: usize) -> Vec<u8> {
         return compress_to_vec_zlib(rows, LEVEL);
     }
     let is_repeated = |at: usize| at >= 4 && planes[at] == planes[at - 4];
-    let mut packer = Packer { out: vec![0x78, 0x01], bits: 0, count: 0, tokens: Vec::with_capacity(BLOCK) };
+    let mut packer = Packer::new();
     let mut at = 0;
     while at < planes.len() {
         if is_repeated(at) {
@@ -58,6 +61,33 @@ pub fn pack(rows: &[u8], side: usize) -> Vec<u8> {
         }
     }
     packer.finish(rows)
+}
+
+/// Packs bytes in which planes are mixed as a zlib stream, in pieces of `side` (OpenEXR). Most of it looks like noise, but where one of the planes is none,
+/// sequences come again: pieces are coded by these where that saves enough, else stored.
+pub fn pack_mixed(bytes: &[u8], side: usize) -> Vec<u8> {
+    let logarithms = Logarithms::new(side);
+    // A sample of the pieces tells.
+    let noise: Vec<bool> = bytes.chunks(side).step_by(4).map(|piece| logarithms.is_noise(piece)).collect();
+    if 4 * noise.iter().filter(|noise| **noise).count() < noise.len() {
+        return compress_to_vec_zlib(bytes, LEVEL);
+    }
+    let (mut packer, mut matches, mut misses) = (Packer::new(), Matches::new(), 0);
+    for k in 0..bytes.len().div_ceil(side) {
+        let piece = k * side..((k + 1) * side).min(bytes.len());
+        // Where nothing comes again, only some pieces are tried.
+        let is_tried = misses < 2 || k % 4 == 0;
+        if is_tried && matches.code(bytes, piece.clone(), &mut packer) {
+            misses = 0;
+        } else {
+            misses += 1;
+            packer.store(&bytes[piece]);
+        }
+        if packer.tokens.len() > BLOCK - side {
+            packer.block();
+        }
+    }
+    packer.finish(bytes)
 }
 
 /// n log2 n of all counts that a plane can have.
@@ -100,6 +130,11 @@ struct Packer {
 }
 
 impl Packer {
+    /// A stream of nothing but its head.
+    fn new() -> Packer {
+        Packer { out: vec![0x78, 0x01], bits: 0, count: 0, tokens: Vec::with_capacity(BLOCK) }
+    }
+
     /// The bytes of a plane, those that repeat as runs.
     fn runs(&mut self, plane: &[u8]) {
         let mut at = 0;
@@ -434,7 +469,9 @@ mod tests {
                 let rows: Vec<u8> = (0..40).flat_map(|row| (0..4).flat_map(move |p| plane(row, p))).collect();
                 for cut in [1, side / 2, side + 3] {
                     let rows = &rows[..rows.len() - cut];
-                    assert!(decompress_to_vec_zlib(&pack(rows, side)).unwrap() == rows, "{kind} of {side} less {cut}");
+                    for packed in [pack(rows, side), pack_mixed(rows, side)] {
+                        assert!(decompress_to_vec_zlib(&packed).unwrap() == rows, "{kind} of {side} less {cut}");
+                    }
                 }
                 let packed = pack(&rows, side);
                 assert!(decompress_to_vec_zlib(&packed).unwrap() == rows, "{kind} of {side}");
@@ -505,5 +542,17 @@ mod tests {
             assert_eq!(distance_code(back), (symbol, extra, bits), "{back}");
         }
         assert_eq!(adler(b"Wikipedia"), 0x11e6_0398);
+    }
+
+    #[test]
+    fn a_plane_that_changes_slowly_is_found_among_noise() {
+        // As OpenEXR lays the two upper bytes of a height: one that hardly changes, one that goes up and down by a few, and their differences.
+        let upper = |k: usize| if k % 2 == 0 { 67 } else { (k / 2 * 5 + usize::from(hashed(k / 2) & 3)) as u8 };
+        let bytes: Vec<u8> = (1..100_000).map(|k| upper(k).wrapping_sub(upper(k - 1)).wrapping_add(128)).collect();
+        let packed = pack_mixed(&bytes, 4096);
+        assert!(decompress_to_vec_zlib(&packed).unwrap() == bytes);
+        assert!(10 * packed.len() < 9 * bytes.len(), "{} of {}", packed.len(), bytes.len());
+        let noise: Vec<u8> = (0..100_000).map(hashed).collect();
+        assert!(pack_mixed(&noise, 4096).len() < noise.len() + 1000);
     }
 }

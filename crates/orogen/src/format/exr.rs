@@ -16,7 +16,7 @@ use crate::spool::Spool;
 /// Rows of a block.
 const ROWS: usize = 16;
 
-/// Bytes that are looked at together: heights' halves are noise or are not.
+/// Bytes that are packed in one way.
 const PLANE: usize = 4096;
 
 /// What a sample is.
@@ -230,7 +230,7 @@ fn pack(bytes: &[u8]) -> Vec<u8> {
     let mut differences = Vec::with_capacity(parted.len());
     differences.extend(parted.first());
     differences.extend(parted.windows(2).map(|pair| pair[1].wrapping_sub(pair[0]).wrapping_add(128)));
-    let packed = deflate::pack(&differences, PLANE);
+    let packed = deflate::pack_mixed(&differences, PLANE);
     if packed.len() < bytes.len() { packed } else { bytes.to_vec() }
 }
 

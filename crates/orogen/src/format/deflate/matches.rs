@@ -1,0 +1,75 @@
+//! Sequences that come again within 32 KiB, for bytes whose counts alone save nothing: of each place only the last that began with the same three bytes
+//! is looked at.
+
+use super::{Packer, Token};
+
+/// The longest of deflate, and how far back it sees.
+const LONGEST: usize = 258;
+const WINDOW: usize = 32768;
+
+/// Bits of a hash.
+const HASH: u32 = 15;
+
+/// Bits of a match beside those that tell how far back it is, about.
+const MATCH: usize = 7;
+
+/// Where sequences of three bytes were last seen.
+pub(super) struct Matches {
+    /// By hash: the place after theirs; 0 for none.
+    seen: Vec<u32>,
+    tokens: Vec<Token>,
+}
+
+impl Matches {
+    /// Nothing was seen yet.
+    pub fn new() -> Matches {
+        Matches { seen: vec![0; 1 << HASH], tokens: Vec::new() }
+    }
+
+    /// Codes a piece of `bytes` if that saves a twentieth; tells whether it did. What it codes may lie in any block: `bytes` are all that is packed.
+    pub fn code(&mut self, bytes: &[u8], piece: std::ops::Range<usize>, packer: &mut Packer) -> bool {
+        self.tokens.clear();
+        let (mut at, mut bits) = (piece.start, 0);
+        while at < piece.end {
+            let Some((length, back)) = self.latest(bytes, at, piece.end) else {
+                self.tokens.push(Token::Byte(bytes[at]));
+                at += 1;
+                bits += 8;
+                continue;
+            };
+            self.tokens.push(Token::Run { length: length as u16, back: back as u16 });
+            at += length;
+            bits += MATCH + back.ilog2() as usize;
+        }
+        let saves = 20 * bits < 19 * 8 * piece.len();
+        if saves {
+            packer.tokens.append(&mut self.tokens);
+        }
+        saves
+    }
+
+    /// The length of the match with what was last seen that began like this, and how far back it is. This is seen now.
+    #[inline(always)]
+    fn latest(&mut self, bytes: &[u8], at: usize, end: usize) -> Option<(usize, usize)> {
+        let four = u32::from_le_bytes(*bytes.get(at..)?.first_chunk::<4>()?);
+        let hash = ((four << 8).wrapping_mul(0x9E37_79B1) >> (32 - HASH)) as usize;
+        let before = std::mem::replace(&mut self.seen[hash], at as u32 + 1).checked_sub(1)? as usize;
+        let back = at - before;
+        // No longer than the piece: the next one may be stored.
+        let most = LONGEST.min(end - at);
+        if back > WINDOW || most < 3 {
+            return None;
+        }
+        // The first byte is the lowest: how many are the same.
+        let other = u32::from_le_bytes(*bytes.get(before..)?.first_chunk::<4>()?);
+        let differ = four ^ other;
+        match differ.trailing_zeros() {
+            0..24 => None,
+            24..32 => Some((3, back)),
+            _ => {
+                let (one, other) = (&bytes[before..before + most], &bytes[at..at + most]);
+                Some((one.iter().zip(other).take_while(|(one, other)| one == other).count(), back))
+            }
+        }
+    }
+}
