@@ -207,10 +207,10 @@ checks.that("bump-adaptive.obj: texture coordinates are the middles of pixels", 
 # Every kind of .glb passes the validator without an error or a warning.
 kinds = {
     "texture": (), "vertex": ("--color", "vertex"), "none": ("--color", "none"), "lods": ("--lods", "4"),
-    "adaptive-lods": ("--lods", "3", *ADAPTIVE), "exaggerated": ("--exaggeration", "2.5", "--height-curve", "0:0,0.5:0.2,1:1"),
+    "adaptive-lods": ("--lods", "3", *ADAPTIVE), "surfaces": ("--surfaces", "--lods", "3"), "exaggerated": ("--exaggeration", "2.5", "--height-curve", "0:0,0.5:0.2,1:1"),
 }
 paths = [export("alpine", f"alpine-{kind}.glb", *ALPINE, *options) for kind, options in kinds.items()]
-paths += [WORK / "bump-full.glb", WORK / "bump-adaptive.glb", export("alpine", "alpine-large.glb", "--window", "0,0,300,300")]
+paths += [export(BUMP, "bump-normals.glb", "--surfaces", *ADAPTIVE), WORK / "bump-full.glb", WORK / "bump-adaptive.glb", export("alpine", "alpine-large.glb", "--window", "0,0,300,300")]
 for report in validate(*paths):
     name = report["file"].rsplit("/")[-1]
     checks.equal(f"{name}: errors and warnings", (report["numErrors"], report["numWarnings"]), (0, 0))
@@ -234,6 +234,39 @@ for report in validate(*watery):
         print(json.dumps(report["messages"], indent=1))
 place = load(WORK / "alpine-vertex.glb")[1][:3, 3]
 checks.equal("alpine: the node stands where the window begins", [float(x) for x in place], [200 * 60.0, 0.0, 300 * 60.0])
+
+# The normal map of few triangles, read as a viewer does, gives the normals of all samples: those of the full grid.
+few, all_of_it = (load(WORK / f"bump-{kind}.glb")[0] for kind in ("normals", "full"))
+texels = numpy.asarray(few.visual.material.normalTexture).astype("f8") / 127.5 - 1.0
+checks.equal("bump-normals.glb: its normal map has a pixel for each sample", texels.shape, (*heights.shape, 3))
+corner_normals = few.vertex_normals.astype("f8")
+true_normals = numpy.zeros((*heights.shape, 3))
+at = numpy.rint(all_of_it.vertices[:, [2, 0]] / CELL).astype(int)
+true_normals[at[:, 0], at[:, 1]] = all_of_it.vertex_normals
+
+
+def unit(vectors):
+    return vectors / numpy.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+tangents = unit(numpy.stack([corner_normals[:, 1], -corner_normals[:, 0], 0 * corner_normals[:, 0]], axis=1))
+worst = plain = 1.0
+for corners in few.faces:
+    (x0, y0), (x1, y1), (x2, y2) = numpy.rint(few.vertices[corners][:, [0, 2]] / CELL).astype(int)
+    xs, ys = (axis.ravel() for axis in numpy.meshgrid(numpy.arange(min(x0, x1, x2), max(x0, x1, x2) + 1),
+                                                      numpy.arange(min(y0, y1, y2), max(y0, y1, y2) + 1)))
+    area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
+    v = ((xs - x0) * (y2 - y0) - (ys - y0) * (x2 - x0)) / area
+    w = ((x1 - x0) * (ys - y0) - (y1 - y0) * (xs - x0)) / area
+    within = (v >= 0) & (w >= 0) & (v + w <= 1)
+    xs, ys, shares = xs[within], ys[within], numpy.stack([1 - v - w, v, w], axis=1)[within]
+    n, t = corner_normals[corners], tangents[corners]
+    frame = [unit(shares @ axis) for axis in (t, numpy.cross(n, t), n)]
+    shown = unit(sum(texels[ys, xs, k, None] * frame[k] for k in range(3)))
+    worst = min(worst, float((shown * true_normals[ys, xs]).sum(axis=1).min()))
+    plain = min(plain, float((frame[2] * true_normals[ys, xs]).sum(axis=1).min()))
+checks.that("bump-normals.glb: normals as a viewer makes them are those of all samples", worst > 0.9995, f"(cosine {worst})")
+checks.that("bump-normals.glb: without its normal map they are not", plain < 0.999, f"(cosine {plain})")
 
 # The validator is shown to fail: an index beyond the corners, and a file cut short.
 whole = (WORK / "bump-full.glb").read_bytes()

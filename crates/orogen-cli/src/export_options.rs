@@ -21,7 +21,7 @@ pub trait Declares {
 pub struct Formats;
 
 impl Declares for Formats {
-    const HEADING: &'static str = "Options of formats";
+    const HEADING: &'static str = "Format options [formats that take them]";
 
     fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
         let names = |(spec, formats): (_, Vec<&orogen::export::format::Format>)| {
@@ -36,7 +36,7 @@ impl Declares for Formats {
 pub struct Layers;
 
 impl Declares for Layers {
-    const HEADING: &'static str = "Options of layers";
+    const HEADING: &'static str = "Layer options [layers that take them]";
 
     fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
         list::options()

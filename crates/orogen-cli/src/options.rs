@@ -11,20 +11,21 @@ use crate::size::Bytes;
 
 /// What the work may use.
 #[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Limits and cache")]
 pub struct Limits {
     /// Threads to work with, at most as many as there are cores [default: all there are]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
-    /// Most memory that the program may take, such as 512MiB or 2GiB [default: half of what is free]
+    /// Memory limit of the whole process, such as 512MiB or 2GiB [default: half of what is free]
     #[arg(long, value_name = "BYTES")]
     pub memory: Option<Bytes>,
     /// Folder in which slow solutions are kept for later runs [default: $OROGEN_CACHE, else the system's folder for caches]
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
-    /// Most bytes to keep there; the longest unused go first [default: 10GiB]
+    /// Size limit of that folder; the least recently used solutions are removed first [default: 10GiB]
     #[arg(long, value_name = "BYTES")]
     pub cache_limit: Option<Bytes>,
-    /// Neither look for solutions of earlier runs nor keep any
+    /// Do not read or write that folder
     #[arg(long, conflicts_with_all = ["cache", "cache_limit"])]
     pub no_cache: bool,
 }

@@ -6,6 +6,7 @@ use orogen::file::{Existing, OutputPolicy};
 
 /// The options.
 #[derive(Debug, Clone, Copy, clap::Args)]
+#[command(next_help_heading = "Output")]
 pub struct Replace {
     /// Replace a file of any kind, not only one of the kind that is written
     #[arg(long)]

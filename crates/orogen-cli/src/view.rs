@@ -14,7 +14,7 @@ use crate::size::{Size, cell};
 
 /// Which samples of which world.
 #[derive(Debug, Clone, Default, Args)]
-#[command(next_help_heading = "Which samples of which world")]
+#[command(next_help_heading = "World and window")]
 pub struct View {
     /// Seed of the world, instead of the recipe's; several, such as 1,2,3 or 1..9, make an output each, named by its seed
     /// (NAME-7.png, or wherever the name has {seed})
@@ -23,27 +23,27 @@ pub struct View {
     /// Metres from one sample to the next [default: the world's cell]
     #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
     pub cell: Option<f64>,
-    /// Part of the world: first column and row and how many, at the cell asked for; or in metres, as 0m,500m,2km,2km
+    /// Part of the world: its first column and row, its width and height, in samples at the cell asked for; or in metres, such as 0m,500m,2km,2km
     #[arg(long, value_name = "X,Y,W,H", conflicts_with_all = ["bounds", "projwin"], allow_hyphen_values = true)]
     pub window: Option<Rectangle>,
     /// Part of the world in the coordinates of its map, or of a world without one in metres east and north of its north-west corner
     /// (what lies south of it is negative)
     #[arg(long, value_name = "W,S,E,N", conflicts_with = "projwin", allow_hyphen_values = true)]
     pub bounds: Option<Bounds>,
-    /// The same by its corners, as gdal_translate takes it
+    /// The same by its upper left and lower right corner, as gdal_translate takes it
     #[arg(long, value_names = ["ULX", "ULY", "LRX", "LRY"], num_args = 4, allow_negative_numbers = true)]
     pub projwin: Option<Vec<f64>>,
-    /// Coordinate reference system that the world lies in, such as EPSG:32632, for GeoTIFFs and other files with coordinates
+    /// Coordinate reference system of the world, such as EPSG:32632, for GeoTIFFs and other files with coordinates
     #[arg(long, value_name = "EPSG:N")]
     pub crs: Option<Crs>,
-    /// Place of the world's north-west corner in that system: east and north, or longitude and latitude
+    /// Position of the world's north-west corner in that system: easting and northing, or longitude and latitude
     #[arg(long, value_name = "E,N", value_parser = place, allow_hyphen_values = true)]
     pub origin: Option<[f64; 2]>,
 }
 
 /// The same where samples may also be counted.
 #[derive(Debug, Clone, Default, Args)]
-#[command(next_help_heading = "Which samples of which world")]
+#[command(next_help_heading = "World and window")]
 pub struct SizedView {
     /// What it is a size of.
     #[command(flatten)]

@@ -216,8 +216,11 @@ fn shapes(grid: &Grid) -> Vec<Shape> {
 
 fn glb_bytes(levels: &[Surface], texture: Option<&[u8]>) -> Vec<u8> {
     let mut bytes = Vec::new();
-    glb::write(&mut bytes, &Model { levels, texture, material: None, water: &[], extras: serde_json::Map::new() })
-        .unwrap();
+    glb::write(
+        &mut bytes,
+        &Model { levels, texture, material: None, normal_maps: &[], water: &[], extras: serde_json::Map::new() },
+    )
+    .unwrap();
     bytes
 }
 
@@ -279,6 +282,51 @@ fn levels_of_detail_and_pictures_are_in_one_file() {
     let start = view["byteOffset"].as_u64().unwrap() as usize;
     assert_eq!(&glb.binary[start..start + picture.len()], picture);
     assert_eq!(view["byteLength"], picture.len());
+}
+
+#[test]
+fn a_level_with_a_normal_map_has_tangents_and_a_material_of_its_own() {
+    let grid = land(64, 48);
+    let painter = Painter::fit(&grid, 0.0);
+    let mut picture = Vec::new();
+    painter.write_png(&mut picture, &grid, &[]).unwrap();
+    let shapes: Vec<Shape> = [1, 4, 8].iter().map(|step| Shape::lattice(&grid, *step).unwrap()).collect();
+    for colors in [false, true] {
+        let painter = colors.then_some(&painter);
+        let levels: Vec<Surface> = shapes.iter().map(|shape| Surface { painter, ..surface(&grid, shape) }).collect();
+        let mut bytes = Vec::new();
+        let model = Model {
+            levels: &levels,
+            texture: Some(&picture),
+            material: Some(&picture),
+            normal_maps: &[None, Some(picture.clone()), Some(picture.clone())],
+            water: &[],
+            extras: serde_json::Map::new(),
+        };
+        glb::write(&mut bytes, &model).unwrap();
+        let glb = Glb::read(&bytes);
+        for (level, shape) in shapes.iter().enumerate() {
+            check(&glb.mesh(level), &grid, shape);
+            let primitive = &glb.json["meshes"][level]["primitives"][0];
+            let material = &glb.json["materials"][primitive["material"].as_u64().unwrap() as usize];
+            assert_eq!(material["pbrMetallicRoughness"]["baseColorTexture"]["index"], 0);
+            assert_eq!(material["occlusionTexture"]["index"], 1);
+            if level == 0 {
+                assert!(material.get("normalTexture").is_none() && primitive["attributes"].get("TANGENT").is_none());
+                continue;
+            }
+            assert_eq!(material["normalTexture"]["index"], level + 1);
+            let float = |bytes: &[u8], at: usize| f32::from_le_bytes(bytes[4 * at..4 * at + 4].try_into().unwrap());
+            let normals = glb.elements(&primitive["attributes"]["NORMAL"], 12);
+            let tangents = glb.elements(&primitive["attributes"]["TANGENT"], 16);
+            assert_eq!(tangents.len(), shape.corners());
+            for (normal, tangent) in normals.iter().zip(&tangents) {
+                let dot = |a: &[u8], b: &[u8]| (0..3).map(|k| float(a, k) * float(b, k)).sum::<f32>();
+                assert!((dot(tangent, tangent) - 1.0).abs() < 1e-5 && dot(normal, tangent).abs() < 1e-5);
+                assert!(float(tangent, 0) > 0.0 && float(tangent, 2) == 0.0 && float(tangent, 3) == 1.0);
+            }
+        }
+    }
 }
 
 #[test]
@@ -411,6 +459,7 @@ fn a_writer_that_fails_is_an_error_wherever_it_fails() {
                     levels: &levels,
                     texture: Some(&[1, 2, 3]),
                     material: None,
+                    normal_maps: &[],
                     water: &[],
                     extras: serde_json::Map::new(),
                 },

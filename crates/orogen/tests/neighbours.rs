@@ -1,167 +1,149 @@
-//! Exports of windows that share a row or a column agree there to the bit.
+//! Windows that share a row or a column of samples agree along it: colors and textures of meshes, normals of an engine's tiles.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
-use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
+use orogen::export::derived::list;
+use orogen::export::mesh_cover::{self, SURFACES};
+use orogen::export::mesh_tint::COLOR_RANGE;
 use orogen::export::options::Options;
 use orogen::export::subject::Subject;
-use orogen::export::{registry, run};
+use orogen::export::targets::frame::{Asked, Frame};
+use orogen::export::{registry, run, targets};
+use orogen::file::OutputPolicy;
 use orogen::{Progress, Recipe, Window, World};
 
-/// Hills between 0 and some hundred metres, eroded by a filter.
-fn world(size: &str) -> World {
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("orogen-neighbours-{name}-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn recipe(size: &str) -> Recipe {
     let text = format!(
-        "orogen = 1\n[world]\nseed = 5\n{size}\ncell = 20\n[nodes.hills]\nop = \"fbm\"\nwavelength = 700\n[nodes.land]\nop = \"remap\"\n\
-         source = \"hills\"\nfrom = [-1, 1]\nto = [-300, 700]\n[nodes.worn]\nop = \"thermal\"\nsource = \"land\"\niterations = 8\n\
-         [outputs]\nheight = \"worn\"\n"
+        "orogen = 1\n[world]\n{size}\ncell = 10\n[nodes.a]\nop = \"fbm\"\nwavelength = 700\n[nodes.b]\nop = \"remap\"\nsource = \"a\"\n\
+         to = [-200, 2900]\n[outputs]\nheight = \"b\"\n"
     );
-    World::open(Recipe::parse(&text, "test").unwrap()).unwrap()
+    Recipe::parse(&text, "test").unwrap()
 }
 
-fn exported(world: &World, format: &str, layer: &str, window: Window, given: &[[&str; 2]]) -> Vec<u8> {
-    let progress = Progress::none();
-    let subject = Subject::new(world, layer, window, &progress).unwrap();
+/// Width, bytes a pixel and bytes of a PNG.
+fn png(path: &Path) -> (usize, usize, Vec<u8>) {
+    let bytes = std::fs::read(path).unwrap();
+    pixels(&bytes)
+}
+
+fn pixels(bytes: &[u8]) -> (usize, usize, Vec<u8>) {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+    let mut data = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut data).unwrap();
+    (info.width as usize, info.color_type.samples() * info.bit_depth as usize / 8, data)
+}
+
+fn column((width, size, data): &(usize, usize, Vec<u8>), at: usize) -> Vec<u8> {
+    data.chunks_exact(width * size).flat_map(|row| row[at * size..(at + 1) * size].to_vec()).collect()
+}
+
+fn row((width, size, data): &(usize, usize, Vec<u8>), at: usize) -> Vec<u8> {
+    data[at * width * size..(at + 1) * width * size].to_vec()
+}
+
+/// The colors of a .ply file's corners, its samples row after row.
+fn ply_colors(path: &Path) -> Vec<[u8; 3]> {
+    let bytes = std::fs::read(path).unwrap();
+    let end = b"end_header\n";
+    let at = bytes.windows(end.len()).position(|window| window == end).unwrap() + end.len();
+    let head = String::from_utf8_lossy(&bytes[..at]).into_owned();
+    let count = head.lines().find_map(|line| line.strip_prefix("element vertex ")).unwrap().parse().unwrap();
+    let properties = head.lines().take_while(|line| !line.starts_with("element face"));
+    let (mut size, mut red) = (0, 0);
+    for property in properties.filter_map(|line| line.strip_prefix("property ")) {
+        if property.ends_with(" red") {
+            red = size;
+        }
+        size += if property.starts_with("uchar") { 1 } else { 4 };
+    }
+    bytes[at..].chunks_exact(size).take(count).map(|corner| corner[red..red + 3].try_into().unwrap()).collect()
+}
+
+#[test]
+fn colors_of_meshes() {
+    let folder = folder("colors");
+    for (size, range) in [("size = [2400, 1600]", None), ("", None), ("size = [2400, 1600]", Some("0,900"))] {
+        let world = World::open(recipe(size)).unwrap();
+        let mut options = Options::default();
+        range.iter().for_each(|range| options.give(&COLOR_RANGE, range).unwrap());
+        let colors = [0, 60].map(|x| {
+            let path = folder.join(format!("{x}.ply"));
+            let progress = Progress::none();
+            let subject = Subject::new(&world, "height", Window::new(61, 40, 10.0).at(x, 20), &progress).unwrap();
+            let output = OutputPolicy::default().output(&path).unwrap();
+            run::to_file(registry::named("ply").unwrap(), subject, &options, &output).unwrap();
+            ply_colors(&path)
+        });
+        let sides = [(&colors[0], 60), (&colors[1], 0)]
+            .map(|(colors, at)| colors.chunks_exact(61).map(|row| row[at]).collect::<Vec<[u8; 3]>>());
+        assert_eq!(sides[0].len(), 40);
+        assert_eq!(sides[0], sides[1], "{size} {range:?}");
+        assert!(colors[0].iter().any(|color| *color != colors[0][0]), "{size} {range:?}");
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn textures_of_surfaces() {
     let mut options = Options::default();
-    let format = registry::named(format).unwrap();
-    for [name, value] in given {
-        options.give(format.options.iter().find(|spec| spec.name == *name).unwrap(), value).unwrap();
-    }
-    let mut bytes = Vec::new();
-    run::to_stream(format, subject, &options, &mut bytes).unwrap();
-    bytes
-}
-
-/// Corners of a mesh by their place in the world in samples: height and normal (east, up, south), as bits.
-type Corners = BTreeMap<[i64; 2], [u32; 4]>;
-
-fn corners(format: &str, bytes: &[u8], window: &Window) -> Corners {
-    let mut found = Corners::new();
-    let mut keep = |[east, height, south]: [f32; 3], normal: [f32; 3]| {
-        let at = |metres: f32, first: i64| (f64::from(metres) / window.cell).round() as i64 + first;
-        let bits = [height, normal[0], normal[1], normal[2]].map(|part| (part + 0.0).to_bits());
-        found.insert([at(east, window.x), at(south, window.y)], bits);
-    };
-    let floats = |bytes: &[u8]| -> Vec<f32> {
-        bytes.chunks_exact(4).map(|four| f32::from_le_bytes(four.try_into().unwrap())).collect()
-    };
-    match format {
-        "obj" => {
-            let text = String::from_utf8(bytes.to_vec()).unwrap();
-            let all = |tag: &str| -> Vec<[f32; 3]> {
-                let lines = text.lines().filter_map(|line| line.strip_prefix(tag));
-                lines
-                    .map(|line| {
-                        let parts: Vec<f32> = line.split(' ').map(|part| part.parse().unwrap()).collect();
-                        [parts[0], parts[1], parts[2]]
-                    })
-                    .collect()
-            };
-            all("v ").into_iter().zip(all("vn ")).for_each(|(place, normal)| keep(place, normal));
-        }
-        "ply" => {
-            let end = bytes.windows(11).position(|part| part == b"end_header\n").unwrap() + 11;
-            let header = std::str::from_utf8(&bytes[..end]).unwrap();
-            let count =
-                header.split("element vertex ").nth(1).unwrap().lines().next().unwrap().parse::<usize>().unwrap();
-            // x east, y north, z up, the normal likewise, and three bytes of colour.
-            for corner in bytes[end..end + 27 * count].chunks_exact(27) {
-                let [x, y, z, nx, ny, nz] = floats(&corner[..24]).try_into().unwrap();
-                keep([x, z, -y], [nx, nz, -ny]);
-            }
-        }
-        _ => {
-            let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
-            let json: serde_json::Value = serde_json::from_slice(&bytes[20..20 + length]).unwrap();
-            let count = json["accessors"][0]["count"].as_u64().unwrap() as usize;
-            let binary = &bytes[28 + length..];
-            for corner in binary[..32 * count].chunks_exact(32) {
-                let [x, y, z, nx, ny, nz] = floats(&corner[..24]).try_into().unwrap();
-                keep([x, y, z], [nx, ny, nz]);
-            }
-        }
-    }
-    found
-}
-
-/// Two windows of a world that share a row, and two that share a column.
-fn neighbours() -> [[Window; 2]; 2] {
-    let window = Window::new(41, 31, 20.0);
-    [[window.at(3, 0), window.at(3, 30)], [window.at(0, 7), window.at(40, 7)]]
-}
-
-#[test]
-fn meshes_of_neighbours_have_the_same_normals_where_they_meet() {
-    for size in ["size = [2000, 2000]", ""] {
-        let world = world(size);
-        for windows in neighbours() {
-            for format in ["obj", "ply", "glb"] {
-                for given in [vec![], vec![["max-error", "2"]]] {
-                    let [a, b] = windows
-                        .map(|window| corners(format, &exported(&world, format, "height", window, &given), &window));
-                    let shared: Vec<&[i64; 2]> = a.keys().filter(|place| b.contains_key(*place)).collect();
-                    let least = if given.is_empty() { 31 } else { 4 };
-                    assert!(shared.len() >= least, "{format}: {} shared", shared.len());
-                    for place in &shared {
-                        assert_eq!(a[*place], b[*place], "{format} {given:?} {place:?} {size}");
-                    }
-                    // Where they meet neither has a corner that the other lacks.
-                    let [row, column] = [windows[1].y, windows[1].x];
-                    let vertical = windows[0].x != windows[1].x;
-                    let on_border = |place: &&[i64; 2]| if vertical { place[0] == column } else { place[1] == row };
-                    assert_eq!(a.keys().filter(on_border).count(), b.keys().filter(on_border).count());
-                }
-            }
-        }
+    options.give(&SURFACES, "").unwrap();
+    let mut recipe = recipe("size = [2400, 1600]");
+    mesh_cover::prepare(&mut recipe, &options);
+    let world = World::open(recipe).unwrap();
+    let progress = Progress::none();
+    let pictures = [0, 60].map(|x| {
+        let subject = Subject::new(&world, "height", Window::new(61, 40, 10.0).at(x, 20), &progress).unwrap();
+        mesh_cover::of(&subject, &options, true).unwrap().unwrap()
+    });
+    for of in [
+        |pictures: &mesh_cover::Pictures| pictures.base.clone(),
+        |pictures: &mesh_cover::Pictures| pictures.material.clone(),
+    ] {
+        let [west, east] = pictures.each_ref().map(|picture| pixels(&of(picture)));
+        assert_eq!(column(&west, 60), column(&east, 0));
+        assert_ne!(column(&west, 59), column(&east, 0));
     }
 }
 
 #[test]
-fn a_mesh_has_the_normals_of_its_map() {
-    let world = world("size = [2000, 2000]");
-    let window = Window::new(25, 20, 20.0).at(30, 40);
-    let mesh = corners("glb", &exported(&world, "glb", "height", window, &[]), &window);
-    let map = exported(&world, "npy", "normal", window, &[]);
-    let floats = &map[map.len() - 25 * 20 * 12..];
-    for (k, part) in floats.chunks_exact(12).enumerate() {
-        let place = [window.x + (k % 25) as i64, window.y + (k / 25) as i64];
-        let [east, north, up]: [f32; 3] =
-            std::array::from_fn(|c| f32::from_le_bytes(part[4 * c..4 * c + 4].try_into().unwrap()));
-        let [_, x, y, z] = mesh[&place].map(f32::from_bits);
-        for (a, b) in [(east, x), (up, y), (-north, z)] {
-            assert!((a - b).abs() < 1e-6, "{place:?}: {a} {b}");
-        }
-    }
-}
-
-#[test]
-fn contours_of_neighbours_meet() {
-    let world = world("");
-    for [first, second] in neighbours() {
-        let given = [["interval", "25"]];
-        let ends = |window: &Window, on: &dyn Fn([f64; 2]) -> bool| -> Vec<[u64; 3]> {
-            let bytes = exported(&world, "geojson", "height", *window, &given);
-            let json: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
-            let mut ends: Vec<[u64; 3]> = Vec::new();
-            for feature in json["features"].as_array().unwrap() {
-                let elevation = feature["properties"]["elevation"].as_f64().unwrap();
-                let line = feature["geometry"]["coordinates"].as_array().unwrap();
-                for end in [line.first().unwrap(), line.last().unwrap()] {
-                    let [x, y] = [0, 1].map(|k| end[k].as_f64().unwrap());
-                    if on([x, y]) {
-                        ends.push([elevation, x, y].map(f64::to_bits));
-                    }
-                }
-            }
-            ends.sort_unstable();
-            ends.dedup();
-            ends
+fn layers_of_engine_tiles() {
+    let folder = folder("tiles");
+    for layer in ["normal", "splat", "albedo", "roughness", "occlusion", "slope", "curvature"] {
+        let mut recipe = recipe("size = [2400, 2400]");
+        list::prepare(&mut recipe, layer, &Options::default()).unwrap();
+        let world = World::open(recipe).unwrap();
+        let target = targets::list::named("unity").unwrap();
+        let asked = Asked { side: Some(65), tiles: Some([2, 2]), ..Asked::default() };
+        let frame = Frame::new(target, &world, &asked).unwrap();
+        let output = OutputPolicy::default().output(folder.join(format!("{layer}.png"))).unwrap();
+        let png_format = registry::named("png").unwrap();
+        let made = targets::run::export(target, png_format, &frame, &world, layer, &Progress::none(), &output).unwrap();
+        assert_eq!(made.files.len(), 4, "{layer}");
+        // Unity numbers rows from the south, and its pictures begin in the north.
+        let tile = |column: usize, south: usize| {
+            let path = target.tile.unwrap()(column, 1 - south, 2);
+            let file = made.files.iter().find(|file| file.to_string_lossy().contains(&path)).unwrap();
+            png(file)
         };
-        // A world's own metres count north in GeoJSON.
-        let (x, y) = (second.east(0), second.south(0));
-        let vertical = first.x != second.x;
-        let on = move |place: [f64; 2]| if vertical { place[0] == x } else { place[1].abs() == y };
-        let [a, b] = [ends(&first, &on), ends(&second, &on)];
-        assert!(a.len() > 3 && a == b, "{vertical}: {} and {}", a.len(), b.len());
+        let [north_west, north_east, south_west] = [tile(0, 1), tile(1, 1), tile(0, 0)];
+        let side = north_west.0;
+        if layer == "splat" {
+            // Weights have a pixel for each cell, so tiles share none.
+            assert_eq!(side, 64);
+            continue;
+        }
+        assert_eq!(side, 65, "{layer}");
+        assert_eq!(column(&north_west, 64), column(&north_east, 0), "{layer}");
+        assert_ne!(column(&north_west, 63), column(&north_east, 0), "{layer}");
+        assert_eq!(row(&north_west, 64), row(&south_west, 0), "{layer}");
     }
+    std::fs::remove_dir_all(&folder).unwrap();
 }

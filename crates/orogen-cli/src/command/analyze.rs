@@ -46,7 +46,7 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     /// Show neither progress nor the table
-    #[arg(short, long)]
+    #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
 

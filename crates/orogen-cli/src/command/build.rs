@@ -48,7 +48,7 @@ pub struct Args {
     #[command(flatten)]
     limits: Limits,
     /// Show neither needs, nor progress, nor the closing words
-    #[arg(short, long)]
+    #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
 

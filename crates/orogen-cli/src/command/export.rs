@@ -27,34 +27,34 @@ use crate::{finite, interrupt, say};
 
 /// What it takes.
 #[derive(Debug, Clone, clap::Args)]
-#[command(after_long_help = layers(), after_help = "`orogen export --help` lists the layers that follow from the heights.")]
+#[command(after_long_help = layers(), after_help = "`orogen export --help` lists the layers derived from the heights.")]
 pub struct Args {
     /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
-    /// File to write, its extension one of the formats; `-` is standard output
+    /// File to write; its extension says the format; - is standard output
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
     /// Format, if the file's extension does not say [default: npy]
-    #[arg(long, value_parser = Named)]
+    #[arg(long, value_parser = NameOf::format())]
     format: Option<&'static str>,
-    /// Layer to write: an output, `node.layer`, or what follows from the heights, listed below
+    /// Layer to write: an output, `node.layer`, or a layer derived from the heights, listed below
     #[arg(long, value_name = "L", default_value = orogen::world::HEIGHT)]
     layer: String,
     #[command(flatten)]
     samples: SizedView,
-    /// Engine to write for, of which --size counts the samples of a side, of each tile if there are several [default: the most that the
-    /// world has]; sets size, format, scale, rows and tiles, and says what to type into its import dialogue
-    #[arg(long, value_name = "ENGINE", value_parser = Engines, conflicts_with = "format")]
+    /// Engine to write for: sets format, scale, order of rows and sizes, and prints what to enter in its import dialog. --size counts the samples
+    /// of a side, of each tile if there are several [default: as many as the world has]
+    #[arg(long, help_heading = "Engines", value_name = "ENGINE", value_parser = NameOf::engine(), conflicts_with = "format")]
     target: Option<&'static str>,
-    /// Tiles for the engine, east and south, that share their edges
-    #[arg(long, value_name = "NxM", requires = "target")]
+    /// Number of tiles for the engine, east and south; neighbours share the samples along their common edge
+    #[arg(long, help_heading = "Engines", value_name = "NxM", requires = "target")]
     tiles: Option<Size>,
     #[command(flatten)]
     replace: Replace,
     #[command(flatten)]
     limits: Limits,
-    /// Show neither progress nor the closing words
-    #[arg(short, long)]
+    /// Print no progress and no summary
+    #[arg(short, long, help_heading = "Output")]
     quiet: bool,
     #[command(flatten)]
     options: FormatOptions,
@@ -69,7 +69,7 @@ fn layers() -> String {
         let about = wrapped(layer.about, HELP_WIDTH - widest - 4).join(&format!("\n{:1$}", "", widest + 4));
         format!("  {:widest$}  {about}", layer.name)
     });
-    format!("Layers that follow from the heights:\n{}", lines.collect::<Vec<_>>().join("\n"))
+    format!("Layers derived from the heights:\n{}", lines.collect::<Vec<_>>().join("\n"))
 }
 
 /// Columns of a help text whose lines hang below each other: those of the narrowest usual terminal.
@@ -91,11 +91,35 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// The names of engines.
+/// A value that is the name of one of a list of things, with a line of help for each.
 #[derive(Clone)]
-struct Engines;
+struct NameOf {
+    all: Vec<PossibleValue>,
+    /// The name that the library declares, of a name or another spelling of it.
+    declared: fn(&str) -> Option<&'static str>,
+}
 
-impl clap::builder::TypedValueParser for Engines {
+impl NameOf {
+    /// The formats.
+    fn format() -> NameOf {
+        let value = |format: &&Format| PossibleValue::new(format.name).help(format.about).aliases(format.aliases);
+        NameOf {
+            all: registry::all().iter().map(value).collect(),
+            declared: |name| registry::named(name).map(|format| format.name),
+        }
+    }
+
+    /// The engines.
+    fn engine() -> NameOf {
+        let value = |target: &&Target| PossibleValue::new(target.name).help(target.about);
+        NameOf {
+            all: targets::list::all().iter().map(value).collect(),
+            declared: |name| targets::list::named(name).map(|target| target.name),
+        }
+    }
+}
+
+impl clap::builder::TypedValueParser for NameOf {
     type Value = &'static str;
 
     fn parse_ref(
@@ -104,47 +128,14 @@ impl clap::builder::TypedValueParser for Engines {
         arg: Option<&clap::Arg>,
         value: &std::ffi::OsStr,
     ) -> Result<&'static str, clap::Error> {
-        let known = clap::builder::PossibleValuesParser::new(engines());
+        let known = clap::builder::PossibleValuesParser::new(self.all.clone());
         let name = known.parse_ref(command, arg, value)?;
-        Ok(targets::list::named(&name).map_or("unreal", |target| target.name))
+        (self.declared)(&name).ok_or_else(|| clap::Error::new(clap::error::ErrorKind::InvalidValue).with_cmd(command))
     }
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
-        Some(Box::new(engines().into_iter()))
+        Some(Box::new(self.all.iter().cloned()))
     }
-}
-
-fn engines() -> Vec<PossibleValue> {
-    targets::list::all().iter().map(|target| PossibleValue::new(target.name).help(target.about)).collect()
-}
-
-/// The names of formats.
-#[derive(Clone)]
-struct Named;
-
-impl clap::builder::TypedValueParser for Named {
-    type Value = &'static str;
-
-    fn parse_ref(
-        &self,
-        command: &clap::Command,
-        arg: Option<&clap::Arg>,
-        value: &std::ffi::OsStr,
-    ) -> Result<&'static str, clap::Error> {
-        let known = clap::builder::PossibleValuesParser::new(possible());
-        let name = known.parse_ref(command, arg, value)?;
-        // A name that is possible has a format.
-        Ok(registry::named(&name).map_or("npy", |format| format.name))
-    }
-
-    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
-        Some(Box::new(possible().into_iter()))
-    }
-}
-
-fn possible() -> Vec<PossibleValue> {
-    let formats = registry::all().iter();
-    formats.map(|format| PossibleValue::new(format.name).help(format.about).aliases(format.aliases)).collect()
 }
 
 /// Writes the layer.

@@ -50,7 +50,7 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     /// Show neither progress nor the report
-    #[arg(short, long)]
+    #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
 
@@ -86,7 +86,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let found = search(&target, &effort, &options, &searching).map_err(stopped)?;
     searching.finish();
     let name = args.place.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let about = format!("Invented land like {name}: fitted by its figures, nothing of it is in here");
+    let about = format!("Synthetic terrain with the statistics of {name}; it holds none of its heights");
     let recipe = found.recipe(&target, args.seed, &about);
     let mut lands = [windows(&place.grid, &target), Vec::new(), Vec::new()];
     // Judged by worlds that the search has not seen.

@@ -33,8 +33,8 @@ pub struct Args {
     replace: Replace,
     #[command(flatten)]
     limits: Limits,
-    /// Show neither progress nor the closing words
-    #[arg(short, long)]
+    /// Print no progress and no summary
+    #[arg(short, long, help_heading = "Output")]
     quiet: bool,
     /// Print the summary as JSON instead of in words
     #[arg(long)]

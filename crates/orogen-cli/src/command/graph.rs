@@ -37,7 +37,7 @@ pub struct Args {
     #[command(flatten)]
     replace: Replace,
     /// Leave out the closing words
-    #[arg(short, long)]
+    #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
 

@@ -50,8 +50,8 @@ pub struct Args {
     replace: Replace,
     #[command(flatten)]
     limits: Limits,
-    /// Show neither progress nor the closing words
-    #[arg(short, long)]
+    /// Print no progress and no summary
+    #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
 

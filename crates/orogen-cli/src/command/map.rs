@@ -5,13 +5,15 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use orogen::export::derived::list;
 use orogen::export::place;
+use orogen::export::sheet_cover;
 use orogen::export::subject::Subject;
 use orogen::format::affine::Affine;
 use orogen::layer::LayerKind;
 use orogen::palette::named;
 use orogen::palette::palette::Palette;
-use orogen::sheet::draw::{Sheet, draw, lines_at};
-use orogen::sheet::options::{Layer, Options, Page, Parts, Resolution, Scale};
+use orogen::sheet::draw::{Sheet, draw};
+use orogen::sheet::linework::lines_at;
+use orogen::sheet::options::{Coloring, Layer, Options, Page, Parts, Resolution, Scale};
 use orogen::sheet::relief::Shading;
 use orogen::sheet::{pdf, raster, vector};
 use orogen::words::number;
@@ -42,38 +44,41 @@ pub struct Args {
     /// Format, if the file's extension does not say [default: png]
     #[arg(long)]
     format: Option<Kind>,
-    /// Layer that colours the map in place of the heights: an output, `node.layer`, or what follows from the heights, as for `export`
+    /// Layer that the colours show: an output, `node.layer`, or a layer derived from the heights (`orogen export --help` lists them)
     #[arg(long, value_name = "L", default_value = HEIGHT)]
     layer: String,
+    /// What the colours show: a layer by a palette, or the surfaces of the ground
+    #[arg(long, value_name = "WHAT", default_value = "palette", aliases = ["colors", "colour", "colours"])]
+    color: ColorOf,
     /// How the layer's values become colours [default: log for amounts of water, labels for numbered areas, else linear]
     #[arg(long, value_name = "HOW")]
     ramp: Option<Ramp>,
-    /// Values at the ends of the layer's palette [default: the lowest and the highest]
+    /// Values at the ends of the palette, the same for several maps [default: the lowest and the highest of this one]
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
     range: Option<Numbers>,
     /// Colours: the name of a palette (`orogen palettes` lists them) or a file (.cpt, .gpl, .toml, or gdaldem's) [default: hypsometric;
     /// of a layer one of its name, else viridis]
     #[arg(long, value_name = "NAME|FILE")]
     palette: Option<PathBuf>,
-    /// How relief is shaded
+    /// How the relief is shaded
     #[arg(long, value_name = "HOW", default_value = "multi")]
     shade: Shade,
-    /// Metres from one contour to the next [default: what suits the ground and the scale]
+    /// Contour interval in metres [default: a round number that suits the relief and the scale]
     #[arg(long, value_name = "M", value_parser = positive, allow_negative_numbers = true)]
     contours: Option<f64>,
-    /// Heading [default: the recipe's name]
+    /// Title [default: the recipe's name]
     #[arg(long, value_name = "TEXT")]
     title: Option<String>,
-    /// Page to fill: a3, a4, a5, letter, legal or WxHmm [default: as large as the map needs]
+    /// Paper size: a0 to a5, letter, legal or WxHmm [default: as large as the map needs]
     #[arg(long, value_name = "PAPER")]
     paper: Option<Paper>,
-    /// Lay the paper on its side
+    /// Landscape orientation of the paper
     #[arg(long, requires = "paper")]
     landscape: bool,
-    /// Pixels an inch: of a .png, and of the relief within a .svg or .pdf
+    /// Pixels per inch of a .png, and of the relief in a .svg or .pdf [default: 220; of a .png without --paper 150]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=1200), allow_negative_numbers = true)]
     dpi: Option<u16>,
-    /// Pixels of the longer side: of a .png, and of the page that the relief within a .svg or .pdf is made for
+    /// Pixels along the page's longer side, in place of --dpi
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..=30000), conflicts_with = "dpi",
           allow_negative_numbers = true)]
     size: Option<u32>,
@@ -90,8 +95,8 @@ pub struct Args {
     layer_options: LayerOptions,
     #[command(flatten)]
     limits: Limits,
-    /// Show neither progress nor the closing words
-    #[arg(short, long)]
+    /// Print no progress and no summary
+    #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
 
@@ -99,16 +104,16 @@ pub struct Args {
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Parts to leave out")]
 struct Without {
-    /// The heading and what is said beneath it
+    /// The title and the lines below it
     #[arg(long)]
     no_title: bool,
-    /// The numbers along the sides
+    /// The coordinates along the sides
     #[arg(long)]
     no_axes: bool,
-    /// The contours and their heights
+    /// The contours and their labels
     #[arg(long)]
     no_contours: bool,
-    /// The heights along contours
+    /// The labels of the contours
     #[arg(long)]
     no_labels: bool,
     /// The summits and their heights
@@ -117,25 +122,25 @@ struct Without {
     /// The rivers
     #[arg(long)]
     no_rivers: bool,
-    /// The lakes, of which a file of heights has none
+    /// The lakes (maps of a file of heights have none)
     #[arg(long)]
     no_lakes: bool,
     /// The shading of the relief, as --shade none
     #[arg(long, conflicts_with = "shade")]
     no_shade: bool,
-    /// What lines and marks mean
+    /// The legend
     #[arg(long)]
     no_legend: bool,
-    /// The bar of colours
+    /// The color bar, or the list of surfaces
     #[arg(long, aliases = ["no-colors", "no-colour", "no-colours"])]
     no_color: bool,
     /// The scale bar
     #[arg(long)]
     no_scale: bool,
-    /// The arrow to the north
+    /// The north arrow
     #[arg(long)]
     no_north: bool,
-    /// The profile that fills what a map leaves free of its --paper
+    /// The profiles in the free space of --paper
     #[arg(long)]
     no_profile: bool,
 }
@@ -143,14 +148,23 @@ struct Without {
 /// How relief is shaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Shade {
-    /// By one light from the north-west
+    /// Hillshade of one light from the north-west
     Single,
-    /// By three lights
+    /// Hillshade of three lights
     Multi,
-    /// By three lights, lowlands soft and hazy, summits crisp
+    /// Three lights, lowlands soft and hazy, summits crisp
     Swiss,
-    /// Not at all
+    /// None
     None,
+}
+
+/// What the colours show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ColorOf {
+    /// The heights or the --layer, by a palette
+    Palette,
+    /// The recipe's surfaces, or the standard ones: grass, sand, scree, rock, snow, river beds
+    Surfaces,
 }
 
 /// How values become colours.
@@ -160,7 +174,7 @@ enum Ramp {
     Linear,
     /// By their logarithms, for amounts over orders of magnitude
     Log,
-    /// Each number a colour of its own
+    /// A colour of its own for each number
     Labels,
 }
 
@@ -169,7 +183,7 @@ enum Ramp {
 enum Kind {
     /// A picture
     Png,
-    /// A drawing for browsers
+    /// A vector drawing
     Svg,
     /// A page to print
     Pdf,
@@ -214,30 +228,43 @@ fn map(args: &Args) -> Result<(), Failure> {
         }
     };
     let range = range(args)?;
+    let is_covered = args.color == ColorOf::Surfaces;
+    if is_covered && (args.layer != HEIGHT || args.palette.is_some() || range.is_some()) {
+        return Err(Failure::Usage("--color surfaces takes no --layer, --palette or --range".into()));
+    }
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();
     let mut recipe = source.read(&budget)?;
     args.view.apply(&mut recipe);
     let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)).protecting(&args.palette))?;
     list::prepare(&mut recipe, &args.layer, &args.layer_options.read()?)?;
+    if is_covered {
+        sheet_cover::prepare(&mut recipe);
+    }
     let world = args.limits.open(recipe, &budget)?;
     let window = args.view.window(&world)?;
     let is_place = matches!(source, Source::Dem(_));
-    let mut options = options(args, kind, palette, &world, is_place);
+    let mut options =
+        Options { range: range.filter(|_| args.layer == HEIGHT), ..options(args, kind, palette, &world, is_place) };
     let _drawing = world.budget().reserve(drawing(&options, &window, args)?)?;
     let (bar, progress) = Bar::new(args.quiet);
     let stopped = |error: orogen::Error| interrupt::explain(error.into(), "nothing was written");
     let plan = world.plan(&[HEIGHT], &window)?;
     let work = world.work(&plan);
-    let layered = if args.layer == HEIGHT { 0.0 } else { work };
+    let layered = if args.layer == HEIGHT && !is_covered { 0.0 } else { work };
     let [making, layering, drawing, writing] =
         progress.parts([work, layered, DRAWING * window.len() as f64, WRITING * pixels(&options)]);
     let mut grids = world.run(&plan, &making).map_err(stopped)?;
     let Some(heights) = grids.pop() else { return Ok(()) };
     finite::check(HEIGHT, &heights)?;
+    let explained = |failure: Failure| interrupt::explain(failure, "nothing was written");
     if args.layer != HEIGHT {
-        let made = layer(args, &world, &window, range, &layering);
-        options.layer = Some(made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?);
+        options.coloring = Coloring::Layer(layer(args, &world, &window, range, &layering).map_err(explained)?);
+    }
+    if is_covered {
+        let made = sheet_cover::of(&world, &heights, options.sea_level, &layering)
+            .map_err(|cause| explained(file::explain("make the surfaces of", &args.out, &cause).into()))?;
+        options.coloring = Coloring::Surfaces(made);
     }
     let sheet = draw(&heights, &options, &drawing).map_err(stopped)?;
     drawing.finish();
@@ -282,7 +309,11 @@ fn map(args: &Args) -> Result<(), Failure> {
         _ => format!("{width:.0} x {height:.0} mm"),
     };
     let contours = sheet.interval.map_or(String::new(), |interval| format!(", contours {} m apart", number(interval)));
-    let layer = if args.layer == HEIGHT { String::new() } else { format!("{}, ", args.layer) };
+    let layer = match (args.color, args.layer.as_str()) {
+        (ColorOf::Surfaces, _) => "surfaces, ".to_string(),
+        (ColorOf::Palette, HEIGHT) => String::new(),
+        (ColorOf::Palette, layer) => format!("{layer}, "),
+    };
     let words = format!(
         "{}: {layer}{size}, {} x {} samples of {} m{contours}\n",
         args.out.display(),
@@ -300,10 +331,10 @@ fn on_page(samples: &Affine, window: &Window, sheet: &Sheet) -> Affine {
     samples.resampled(scale, [(0.5 - left) * scale[0], (0.5 - top) * scale[1]])
 }
 
-/// `--range` as two values, which only a layer has.
+/// `--range` as two values.
 fn range(args: &Args) -> Result<Option<[f32; 2]>, Failure> {
-    if args.layer == HEIGHT && (args.range.is_some() || args.ramp.is_some()) {
-        return Err(Failure::Usage("--range and --ramp are for another --layer than height".into()));
+    if args.layer == HEIGHT && args.ramp.is_some() {
+        return Err(Failure::Usage("--ramp is for another --layer than height".into()));
     }
     match args.range.as_ref().map(|range| range.0.as_slice()) {
         None => Ok(None),
@@ -393,7 +424,8 @@ fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: b
         resolution,
         // A file of heights tells nothing of a sea: all of it is land.
         sea_level: (!is_place).then_some(recipe.world.sea_level),
-        layer: None,
+        coloring: Coloring::Heights,
+        range: None,
         map: recipe.georeference(),
     }
 }
@@ -429,5 +461,10 @@ fn drawing(options: &Options, window: &Window, args: &Args) -> Result<u64, Failu
     let page = f64::max(64.0 * lines * lines, 20.0 * side * side + 16.0 * lines * lines);
     // The heights are part of the world's plan; another layer is held beside them, twice while it is made.
     let layer = if args.layer == HEIGHT { 0.0 } else { 8.0 * window.len() as f64 };
-    Ok((page + layer) as u64)
+    // The albedo of the surfaces is also held at the pixels of the page.
+    let cover = match args.color {
+        ColorOf::Palette => 0.0,
+        ColorOf::Surfaces => sheet_cover::memory(window) as f64 + 12.0 * side * side,
+    };
+    Ok((page + layer + cover) as u64)
 }

@@ -98,8 +98,8 @@ pub struct Args {
     memory: Option<Bytes>,
     #[command(flatten)]
     replace: Replace,
-    /// Show neither progress nor the closing words
-    #[arg(short, long)]
+    /// Print no progress and no summary
+    #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
 

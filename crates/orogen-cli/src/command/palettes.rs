@@ -21,7 +21,7 @@ pub struct Args {
     #[command(flatten)]
     replace: Replace,
     /// Leave out the list
-    #[arg(short, long)]
+    #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
 

@@ -49,7 +49,7 @@ pub struct Args {
     /// above the horizon, metres), or with --look X,Y,HEIGHT in the world's metres [default: 200,24 and as far as shows all]
     #[arg(long, value_name = "A,E[,D]|X,Y,H", allow_hyphen_values = true)]
     camera: Option<Numbers>,
-    /// The place that is in the middle of the picture, metres east and south; then --camera is a place, too
+    /// Point that the camera looks at, metres east and south; --camera is then a position, too
     #[arg(long, value_name = "X,Y", requires = "camera", allow_hyphen_values = true)]
     look: Option<Numbers>,
     /// Angle of view along the picture's longer side, in degrees
@@ -58,7 +58,7 @@ pub struct Args {
     /// The sun: AZIMUTH,ELEVATION, degrees clockwise from north and above the horizon [default: 265,27]
     #[arg(long, value_name = "A,E", conflicts_with = "time", allow_hyphen_values = true)]
     sun: Option<Numbers>,
-    /// The sun as it stands at this time of the day, by the sun (it is highest at 12:00)
+    /// Position of the sun at this solar time (highest at 12:00), in place of --sun
     #[arg(long, value_name = "HH:MM", value_parser = clock)]
     time: Option<f64>,
     /// Latitude for --time, in degrees, south negative [default: 45]
@@ -71,23 +71,23 @@ pub struct Args {
     /// How thick the haze is: 0 is none, 1 a clear day, more is more
     #[arg(long, value_name = "N", value_parser = not_negative, default_value = "1", allow_negative_numbers = true)]
     haze: f64,
-    /// How many times heights count
+    /// Vertical exaggeration
     #[arg(long, value_name = "N", value_parser = positive, default_value = "1", allow_negative_numbers = true)]
     exaggeration: f64,
-    /// What is shown where the land ends [default: haze where most of the edge lies in the sea, else cut]
+    /// What is shown beyond the edge of the land [default: haze where most of the edge lies in the sea, else cut]
     #[arg(long)]
     edge: Option<Ends>,
-    /// How the ground is coloured
+    /// Colours of the ground
     #[arg(long, aliases = ["colors", "colour", "colours"], value_enum, default_value_t = Dress::Natural)]
     color: Dress,
-    /// Height from which snow lies, in metres [default: three fifths up the relief, none on low land]
+    /// Height above which snow lies, in metres [default: three fifths up the relief, none on low land]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     snow_line: Option<f64>,
-    /// In how many places of each pixel light is gathered
+    /// Samples per pixel, against jagged edges
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), default_value = "5",
           allow_negative_numbers = true)]
     samples: u32,
-    /// Go around the land in so many frames: a .png that moves (APNG), a .gif, or files of their own
+    /// Orbit the camera around the land in N frames: an animated .png (APNG), a .gif, or a file for each frame
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=3600), conflicts_with = "look",
           allow_negative_numbers = true)]
     turntable: Option<u32>,
@@ -103,8 +103,8 @@ pub struct Args {
     replace: Replace,
     #[command(flatten)]
     limits: Limits,
-    /// Show neither progress nor the closing words
-    #[arg(short, long)]
+    /// Print no progress and no summary
+    #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
 

@@ -106,7 +106,9 @@ fn any_layer_colours_a_map() {
         (&["--layer", "normal"], "`normal` has 3 channels"),
         (&["--layer", "slope", "--range", "5"], "--range is LOW,HIGH"),
         (&["--layer", "slope", "--range", "9,5"], "the lower value first"),
-        (&["--range", "0,5"], "for another --layer than height"),
+        (&["--color", "surfaces", "--layer", "slope"], "takes no --layer, --palette or --range"),
+        (&["--color", "surfaces", "--palette", "viridis"], "takes no --layer, --palette or --range"),
+        (&["--color", "surfaces", "--range", "0,5"], "takes no --layer, --palette or --range"),
         (&["--ramp", "log"], "for another --layer than height"),
         (&["--layer", "noise", "--ramp", "log", "--range", "-1,1"], "a logarithmic ramp begins above 0"),
         (&["--layer", "slope", "--palette", "hypsometric"], "made for heights"),
@@ -125,4 +127,36 @@ fn a_size_is_for_every_kind_of_file() {
     for out in ["a.svg", "a.pdf"] {
         assert!(size(out, "2000") > size(out, "400") + 100_000, "{out}");
     }
+}
+
+#[test]
+fn surfaces_color_a_map() {
+    let folder = Folder::with_small();
+    let own = crate::harness::SMALL.to_string()
+        + "\n[[surface]]\nname = \"lava\"\ncolor = \"#c03010\"\n[[surface]]\nname = \"ash\"\ncolor = \"#303030\"\nslope = [0, 20]\n";
+    folder.write("own.toml", own);
+    folder.good(&["map", "small.toml", "-o", "heights.png", "--size", "400", "-q"]);
+    let mut seen = vec![folder.read("heights.png")];
+    for recipe in ["small.toml", "own.toml"] {
+        let told = folder.good(&["map", recipe, "-o", "a.png", "--size", "400", "--colour", "surfaces"]);
+        assert!(told.text().starts_with("a.png: surfaces, "), "{}", told.text());
+        assert!(!seen.contains(&folder.read("a.png")), "{recipe}");
+        seen.push(folder.read("a.png"));
+        folder.good(&["map", recipe, "-o", "b.png", "--size", "400", "--color", "surfaces", "--threads", "1", "-q"]);
+        assert_eq!(folder.read("a.png"), folder.read("b.png"), "{recipe}");
+    }
+    for out in ["a.svg", "a.pdf"] {
+        folder.good(&["map", "own.toml", "-o", out, "--size", "400", "--color", "surfaces", "--paper", "a4", "-q"]);
+    }
+}
+
+#[test]
+fn a_range_colors_maps_alike() {
+    let folder = Folder::with_small();
+    let map = |options: &[&str]| {
+        folder.good(&[&["map", "small.toml", "-o", "a.png", "--size", "300", "-q"][..], options].concat());
+        folder.read("a.png")
+    };
+    assert_ne!(map(&[]), map(&["--range", "-500,4000"]));
+    assert_ne!(map(&["--palette", "viridis"]), map(&["--palette", "viridis", "--range", "-500,4000"]));
 }

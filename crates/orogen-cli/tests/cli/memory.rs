@@ -53,6 +53,8 @@ fn rows(side: usize) -> Vec<Vec<String>> {
         format!("compare --size {} -q", (side / 8).max(120)),
     ];
     rows.extend(["png", "svg", "pdf"].map(|kind| format!("map land.toml -o map.{kind} -q")));
+    rows.push("map land.toml --color surfaces -o ground.png -q".into());
+    rows.push("export land.toml --surfaces --max-error 20 -o ground.glb -q".into());
     // Few pixels, but as many samples to draw lines from.
     rows.push("map land.toml --dpi 40 -o small.png -q".into());
     // SRTM's sizes are its own.

@@ -78,7 +78,7 @@ fn completions_for_every_shell() {
 #[test]
 fn the_layers_in_the_help_hang_below_each_other() {
     let help = Folder::new().good(&["export", "--help"]).text().to_string();
-    let (_, layers) = help.split_once("Layers that follow from the heights:\n").unwrap();
+    let (_, layers) = help.split_once("Layers derived from the heights:\n").unwrap();
     let column = layers.lines().next().unwrap().find("steepness").unwrap();
     assert!(layers.lines().count() > 30, "{layers}");
     for line in layers.lines() {

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::files::{Files, Stopping};
 use super::memory::whole;
+use super::mesh_tint;
 use super::options::{OptionSpec, Options, Takes};
 use super::subject::Subject;
 use crate::analysis::halo::Halo;
@@ -19,7 +20,6 @@ use crate::mesh::adaptive::adaptive_with;
 use crate::mesh::relief::HeightCurve;
 use crate::mesh::shape::Shape;
 use crate::mesh::surface::Surface;
-use crate::palette::tint::Tint;
 use crate::progress::Progress;
 use crate::words::{count, number};
 
@@ -27,7 +27,7 @@ use crate::words::{count, number};
 pub const MAX_ERROR: OptionSpec = OptionSpec {
     name: "max-error",
     value: "M",
-    about: "Few triangles: no sample further than so many metres above or below them [default: two for each cell of the grid]",
+    about: "Adaptive mesh: no sample is further than M metres above or below its triangles [default: a full grid, two triangles per cell]",
     takes: Takes::Number(0.0, 1e9),
 };
 
@@ -35,7 +35,7 @@ pub const MAX_ERROR: OptionSpec = OptionSpec {
 pub const EXAGGERATION: OptionSpec = OptionSpec {
     name: "exaggeration",
     value: "F",
-    about: "What heights are multiplied by [default: 1]",
+    about: "Vertical exaggeration, a factor [default: 1]",
     takes: Takes::Number(0.001, 1000.0),
 };
 
@@ -101,9 +101,8 @@ impl Prepared {
         progress.expect(samples * (PAINTING + levels as f64 * (shaping + writing)));
         let mut halo = Halo::default();
         let mut grid = subject.surrounded(&mut halo)?;
-        let sea_level = subject.world().recipe().world.sea_level as f32;
         // A mesh is lit by whoever shows it, so the map's own light stays out.
-        let painter = Painter::new(Tint::fit(&grid, sea_level), Shade::new(0.0));
+        let painter = Painter::new(mesh_tint::of(subject, options)?, Shade::new(0.0));
         let range = extremes(NO_SAMPLES, grid.data());
         if let Some(curve) = &curve {
             curve.bend(&mut grid, &mut halo);

@@ -11,6 +11,8 @@ use super::options::{OptionSpec, Options, Takes};
 use super::subject::Subject;
 use crate::format::png::{self, Picture, Pixel};
 use crate::grid::{Grid, Window};
+use crate::mesh::normal_map;
+use crate::mesh::surface::Surface;
 use crate::palette::color::Encoder;
 use crate::recipe::document::Recipe;
 use crate::recipe::surface::expand::expand;
@@ -19,7 +21,7 @@ use crate::recipe::surface::expand::expand;
 pub const SURFACES: OptionSpec = OptionSpec {
     name: "surfaces",
     value: "",
-    about: "Color by the recipe's surfaces, or the standard ones, in place of the map's colors; in glb with roughness and occlusion",
+    about: "Color by the recipe's surfaces, or the standard ones, in place of the map's colors; in glb with roughness, occlusion, and normal maps of meshes with few triangles",
     takes: Takes::Nothing,
 };
 
@@ -33,8 +35,9 @@ pub fn prepare(recipe: &mut Recipe, options: &Options) {
 /// Bytes that the pictures take beside the mesh.
 pub fn memory(window: &Window, options: &Options) -> u64 {
     let samples = (window.width as u64).saturating_mul(window.height as u64);
-    // Albedo, roughness and occlusion as f32, and two pictures of three bytes a sample as they are packed.
-    if options.has(SURFACES.name) { samples.saturating_mul(26) } else { 0 }
+    // Albedo, roughness and occlusion as f32, and two pictures of three bytes a sample as they are packed; then normals as f32, and the packed normal maps.
+    let levels = options.whole("lods").unwrap_or(1);
+    if options.has(SURFACES.name) { samples.saturating_mul(26 + 3 * levels) } else { 0 }
 }
 
 /// PNG pictures with a pixel for each sample.
@@ -82,6 +85,18 @@ pub fn of(subject: &Subject, options: &Options, packed: bool) -> io::Result<Opti
         })?;
     }
     Ok(Some(Pictures { base, material }))
+}
+
+/// The normal map of a level as PNG.
+///
+/// Fails if the picture cannot be packed.
+pub fn normal_map(level: &Surface) -> io::Result<Vec<u8>> {
+    let (width, height) = (level.grid.width(), level.grid.height());
+    let texels = normal_map::bake(level);
+    let notes = [("Software", concat!("Orogen ", env!("CARGO_PKG_VERSION")))];
+    packed_rows(&Picture { width, height, pixel: Pixel::Data8, notes: &notes }, |row, bytes| {
+        bytes.copy_from_slice(&texels[3 * width * row..][..3 * width]);
+    })
 }
 
 /// A derived layer over the subject's window.

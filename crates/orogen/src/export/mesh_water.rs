@@ -17,7 +17,7 @@ use crate::world::HEIGHT;
 pub const WATER: OptionSpec = OptionSpec {
     name: "water",
     value: "",
-    about: "Rivers as ribbons as wide as they are, lakes and the sea as level surfaces: nodes of their own, translucent",
+    about: "Rivers as ribbons, lakes and the sea as level surfaces: translucent meshes in nodes of their own",
     takes: Takes::Nothing,
 };
 

@@ -126,8 +126,10 @@ fn keep(subject: &mut Subject, files: &Files) -> io::Result<Spool> {
     Ok(spool)
 }
 
-/// The range that a layer's samples have by themselves.
-fn natural(subject: &Subject, most: u16) -> io::Result<Levels> {
+/// The range that a layer's samples have by themselves, of a subject whose rows were made.
+///
+/// Fails if labels pass the largest level `most`.
+pub fn natural(subject: &Subject, most: u16) -> io::Result<Levels> {
     let levels = subject.levels();
     match subject.kind() {
         LayerKind::Label if levels.low() < 0.0 || levels.high() > f32::from(most) => refuse(format!(

@@ -43,8 +43,16 @@ impl Painter {
             let height = here[i + 1];
             let color = self.tint.at(height);
             let shade = self.shade.on(gradient);
-            let strength = if self.tint.is_sea(height) { UNDER_WATER } else { 1.0 };
-            let lit = std::array::from_fn(|c| color[c] * (1.0 + (shade[c] - 1.0) * strength));
+            let strength = match height.is_finite() {
+                true if self.tint.is_sea(height) => UNDER_WATER,
+                true => 1.0,
+                false => 0.0,
+            };
+            // What is not finite is not shaded; its gradient may be NaN.
+            let lit = match strength {
+                0.0 => color,
+                _ => std::array::from_fn(|c| color[c] * (1.0 + (shade[c] - 1.0) * strength)),
+            };
             out[3 * i..3 * i + 3].copy_from_slice(&self.encoder.bytes(lit));
         });
     }
@@ -95,6 +103,7 @@ mod tests {
     use super::*;
     use crate::analysis::slope::extended;
     use crate::grid::Window;
+    use crate::palette::palette::NO_DATA;
 
     fn hill(width: usize, height: usize) -> Grid {
         let window = Window::new(width, height, 30.0);
@@ -146,12 +155,19 @@ mod tests {
     }
 
     #[test]
-    fn holes_do_not_spoil_a_map() {
+    fn holes_are_grey_and_do_not_spoil_a_map() {
         let mut grid = hill(20, 20);
-        grid.row_mut(3)[4] = f32::NAN;
-        grid.row_mut(0)[0] = f32::INFINITY;
-        let mut bytes = Vec::new();
-        Painter::fit(&grid, 0.0).write_png(&mut bytes, &grid, &[]).unwrap();
-        assert_eq!(decode(&bytes).len(), 1200);
+        let holes = [(0, 0, f32::INFINITY), (4, 3, f32::NAN), (9, 9, f32::NEG_INFINITY)];
+        for (i, j, value) in holes {
+            grid.row_mut(j)[i] = value;
+        }
+        for sea_level in [0.0, 500.0] {
+            let mut bytes = Vec::new();
+            Painter::fit(&grid, sea_level).write_png(&mut bytes, &grid, &[]).unwrap();
+            let bytes = decode(&bytes);
+            let is_grey: Vec<bool> = bytes.chunks_exact(3).map(|pixel| *pixel == NO_DATA).collect();
+            let expect: Vec<bool> = (0..400).map(|at| holes.iter().any(|hole| hole.0 + 20 * hole.1 == at)).collect();
+            assert_eq!(is_grey, expect, "sea level {sea_level}");
+        }
     }
 }

@@ -2,13 +2,14 @@
 //!
 //! The Khronos Group's specification, 2.0.1. Metres; X east, Y up, Z south, the first sample of the grid at the node's origin;
 //! the node stands where the grid begins in its world. Corners come interleaved: place, normal, texture coordinate and, where
-//! wanted, colour (linear, four u16). Indices take two bytes as long as they fit. Levels of detail follow MSFT_lod: a reader that
+//! wanted, colour (linear, four u16) and tangent (eastward along the ground). Indices take two bytes as long as they fit. Levels of detail follow MSFT_lod: a reader that
 //! does not know it shows the first level.
 
 use std::io::{self, Write};
 
 use serde_json::{Map, Value, json};
 
+use super::normal_map::tangent;
 use super::surface::{Corner, Surface, Wanted, push};
 use super::water::WaterMesh;
 use crate::error::{Error, ErrorKind};
@@ -21,6 +22,8 @@ pub struct Model<'a> {
     pub texture: Option<&'a [u8]>,
     /// A PNG picture of the grid that goes with the texture: occlusion in red, roughness in green, metalness in blue.
     pub material: Option<&'a [u8]>,
+    /// For each level a PNG [normal map](super::normal_map), where it has one; empty where none has.
+    pub normal_maps: &'a [Option<Vec<u8>>],
     /// Water on it: a node and a translucent material each.
     pub water: &'a [WaterMesh],
     /// What is told of it beside its corners, for readers that look: keys and values.
@@ -63,12 +66,18 @@ pub fn write(out: &mut dyn Write, model: &Model) -> io::Result<()> {
     out.write_all(&json)?;
     words(out, &[document.length as u32, BIN])?;
     let light: Vec<u16> = (0..=255).map(linear).collect();
-    for level in model.levels {
+    for (nth, level) in model.levels.iter().enumerate() {
+        let tangents = normal_map(model, nth).is_some();
         level.corners(out, Wanted { normals: true, colors }, |corner, bytes| {
             vertex(corner, bytes);
             if colors {
                 let [r, g, b] = corner.color.map(|part| light[usize::from(part)]);
                 [r, g, b, u16::MAX].iter().for_each(|part| bytes.extend_from_slice(&part.to_le_bytes()));
+            }
+            if tangents {
+                push(&tangent(corner.normal), bytes);
+                // The bitangent is the cross product as it is: north.
+                push(&[1.0], bytes);
             }
         })?;
         match narrow(level) {
@@ -99,9 +108,20 @@ pub fn write(out: &mut dyn Write, model: &Model) -> io::Result<()> {
     Ok(())
 }
 
-/// The pictures of the ground's material, in the order of the file.
+/// The pictures of the ground's materials, in the order of the file.
 fn pictures<'a>(model: &Model<'a>) -> impl Iterator<Item = &'a [u8]> {
-    model.texture.into_iter().flat_map(|texture| [Some(texture), model.material]).flatten()
+    let base = model.texture.into_iter().flat_map(|texture| [Some(texture), model.material]).flatten();
+    base.chain(model.normal_maps.iter().flatten().map(Vec::as_slice))
+}
+
+/// The normal map of a level.
+fn normal_map<'a>(model: &Model<'a>, level: usize) -> Option<&'a [u8]> {
+    model.normal_maps.get(level)?.as_deref()
+}
+
+/// Bytes of a corner, with a color or with a tangent.
+fn stride(colors: bool, tangents: bool) -> u32 {
+    32 + if colors { 8 } else { 0 } + if tangents { 16 } else { 0 }
 }
 
 fn vertex(corner: &Corner, bytes: &mut Vec<u8>) {
@@ -146,6 +166,18 @@ impl Document {
     fn new(model: &Model, colors: bool) -> Document {
         let (mut views, mut accessors, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
         let mut length: u64 = 0;
+        // Levels without a normal map share a material, the others have one each.
+        let shared = usize::from((0..model.levels.len()).any(|level| normal_map(model, level).is_none()));
+        let mut more = shared;
+        let worn: Vec<usize> = (0..model.levels.len())
+            .map(|level| match normal_map(model, level) {
+                None => 0,
+                Some(_) => {
+                    more += 1;
+                    more - 1
+                }
+            })
+            .collect();
         let mut view = |bytes: u64, mut view: Value| {
             view["buffer"] = json!(0);
             view["byteOffset"] = json!(length);
@@ -154,9 +186,10 @@ impl Document {
             views.push(view);
             views.len() - 1
         };
-        for level in model.levels {
+        for (nth, level) in model.levels.iter().enumerate() {
             let corners = level.shape.corners();
-            let stride = if colors { 40 } else { 32 };
+            let tangents = normal_map(model, nth).is_some();
+            let stride = u64::from(stride(colors, tangents));
             let corner_view = view(corners as u64 * stride, json!({"byteStride": stride, "target": ARRAY_BUFFER}));
             let index_view = view(indices(level), json!({"target": ELEMENT_ARRAY_BUFFER}));
             // As f64: the shortest digits of an f32 are not its value.
@@ -175,9 +208,13 @@ impl Document {
                 attributes["COLOR_0"] = json!(accessors.len());
                 accessors.push(color);
             }
+            if tangents {
+                attributes["TANGENT"] = json!(accessors.len());
+                accessors.push(attribute(self::stride(colors, false), "VEC4"));
+            }
             let kind = if narrow(level) { U16 } else { U32 };
             let count = 3 * level.shape.triangles();
-            let primitive = json!({"attributes": attributes, "indices": accessors.len(), "material": 0});
+            let primitive = json!({"attributes": attributes, "indices": accessors.len(), "material": worn[nth]});
             accessors.push(json!({"bufferView": index_view, "componentType": kind, "count": count, "type": "SCALAR"}));
             meshes.push(json!({"primitives": [primitive]}));
         }
@@ -188,8 +225,10 @@ impl Document {
             .map(|picture| json!({"bufferView": view(picture.len() as u64, json!({})), "mimeType": "image/png"}))
             .collect();
         if !images.is_empty() {
-            material["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 0});
-            if images.len() > 1 {
+            if model.texture.is_some() {
+                material["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 0});
+            }
+            if model.texture.and(model.material).is_some() {
                 material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = json!({"index": 1});
                 material["pbrMetallicRoughness"]["metallicFactor"] = json!(1.0);
                 material["occlusionTexture"] = json!({"index": 1});
@@ -200,7 +239,16 @@ impl Document {
             json["samplers"] = json!([{"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}]);
             json["textures"] = json!(textures);
         }
-        let mut materials = vec![material];
+        let mut materials = vec![material.clone(); shared];
+        let base = usize::from(model.texture.is_some()) + usize::from(model.texture.and(model.material).is_some());
+        for (nth, level) in (0..model.levels.len()).filter(|level| normal_map(model, *level).is_some()).enumerate() {
+            let mut material = material.clone();
+            if level > 0 {
+                material["name"] = json!(format!("terrain LOD{level}"));
+            }
+            material["normalTexture"] = json!({"index": base + nth});
+            materials.push(material);
+        }
         for water in model.water {
             let corners = water.corners.len();
             let stride = 24;

@@ -18,6 +18,7 @@
 pub mod adaptive;
 mod border;
 pub mod glb;
+pub mod normal_map;
 pub mod obj;
 pub mod ply;
 pub mod relief;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::shape::Shape;
 use crate::analysis::halo::Halo;
-use crate::analysis::slope::gradients_between;
+use crate::analysis::slope::{Gradient, gradients_between};
 use crate::grid::Grid;
 use crate::map::paint::Painter;
 use crate::progress::Progress;
@@ -147,6 +147,27 @@ impl Surface<'_> {
         }
     }
 
+    /// The unit normal of the surface as it is drawn: east, up, south.
+    fn normal(&self, gradient: Gradient) -> [f32; 3] {
+        let [east, south] = [-gradient.east * self.exaggeration, gradient.north * self.exaggeration];
+        let length = (east * east + south * south + 1.0).sqrt();
+        match length.is_finite() {
+            true => [east / length, 1.0 / length, south / length],
+            false => [0.0, 1.0, 0.0],
+        }
+    }
+
+    /// The unit normals of all samples, row after row.
+    pub(super) fn normals(&self) -> Vec<[f32; 3]> {
+        let (width, cell) = (self.grid.width(), self.grid.window().cell);
+        let mut normals = vec![[0.0; 3]; width * self.grid.height()];
+        normals.par_chunks_exact_mut(width).enumerate().for_each_init(Vec::new, |wide, (row, out)| {
+            let rows = self.halo.rows(self.grid, row, wide);
+            gradients_between(rows, cell, |i, gradient| out[i] = self.normal(gradient));
+        });
+        normals
+    }
+
     /// Makes the normals and colours of a whole row.
     fn prepare(&self, row: usize, wanted: Wanted, scratch: &mut Scratch) {
         let painter = self.painter.filter(|_| wanted.colors);
@@ -157,14 +178,7 @@ impl Surface<'_> {
         let rows = self.halo.rows(self.grid, row, &mut scratch.wide);
         if wanted.normals {
             scratch.normals.clear();
-            gradients_between(rows, cell, |_, gradient| {
-                let [east, south] = [-gradient.east * self.exaggeration, gradient.north * self.exaggeration];
-                let length = (east * east + south * south + 1.0).sqrt();
-                scratch.normals.push(match length.is_finite() {
-                    true => [east / length, 1.0 / length, south / length],
-                    false => [0.0, 1.0, 0.0],
-                });
-            });
+            gradients_between(rows, cell, |_, gradient| scratch.normals.push(self.normal(gradient)));
         }
         if let Some(painter) = painter {
             scratch.colors.resize(3 * width, 0);

@@ -1,6 +1,7 @@
 //! The colours of a printed atlas, fitted to the relief.
 
-use super::color::{Light, Rgb};
+use super::color::{Light, Rgb, decode};
+use super::palette::NO_DATA;
 use super::ramp::Ramp;
 use crate::format::levels::Levels;
 use crate::grid::Grid;
@@ -102,9 +103,11 @@ impl Atlas {
         height <= self.sea_level
     }
 
-    /// The colour of a height; of NaN, the lowest land's.
+    /// The color of a height; [`NO_DATA`] if it is not finite.
     pub fn at(&self, height: f32) -> Light {
-        if self.is_sea(height) {
+        if !height.is_finite() {
+            NO_DATA.map(decode)
+        } else if self.is_sea(height) {
             // Shelves are wide and shallow: the square root shows them.
             let depth = ((self.sea_level - height) * self.sea_scale).max(0.0).sqrt();
             self.sea.at(depth)

@@ -1,10 +1,7 @@
 //! A palette laid over heights.
 
 use super::color::{Light, Rgb, decode, linear, mix, oklab};
-use super::palette::{Mix, Palette, Position};
-
-/// What a place without height looks like, if the palette does not say.
-const MISSING: Rgb = [222, 222, 222];
+use super::palette::{Mix, NO_DATA, Palette, Position};
 
 /// Entries of a table for the narrowest stretch between two stops, and the fewest and most of a table.
 const PER_STRETCH: f64 = 48.0;
@@ -55,7 +52,7 @@ impl Fitted {
         stops.retain(|(at, _)| at.is_finite());
         // Kinds of positions may be mixed in one file; the sort keeps the order of those at one place.
         stops.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let missing = palette.missing.unwrap_or(MISSING).map(decode);
+        let missing = palette.missing.unwrap_or(NO_DATA).map(decode);
         let mut pieces: Vec<Piece> = Vec::new();
         if let Some(below) = palette.below {
             pieces.push(flat(f32::NEG_INFINITY, below));
@@ -85,17 +82,16 @@ impl Fitted {
             pieces.push(flat((last.0 as f32).next_up(), above));
         }
         if pieces.is_empty() {
-            pieces.push(flat(f32::NEG_INFINITY, palette.missing.unwrap_or(MISSING)));
+            pieces.push(flat(f32::NEG_INFINITY, palette.missing.unwrap_or(NO_DATA)));
         }
         Fitted { pieces, missing }
     }
 
-    /// The colour of a height.
+    /// The color of a height; the palette's color of missing samples if it is not finite.
     pub fn at(&self, height: f32) -> Light {
-        if height.is_nan() {
+        if !height.is_finite() {
             return self.missing;
         }
-        let height = height.clamp(f32::MIN, f32::MAX);
         let piece = self.pieces.partition_point(|piece| piece.from <= height).saturating_sub(1);
         self.pieces.get(piece).map_or(self.missing, |piece| piece.at(height))
     }

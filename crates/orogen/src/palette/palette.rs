@@ -2,6 +2,9 @@
 
 use super::color::Rgb;
 
+/// The color of a sample without a finite value, if the palette does not say: a light, neutral grey.
+pub const NO_DATA: Rgb = [222, 222, 222];
+
 /// Where a colour stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Position {
@@ -47,7 +50,7 @@ pub struct Palette {
     pub below: Option<Rgb>,
     /// Above the last stop.
     pub above: Option<Rgb>,
-    /// Where there is no height; without one, a light grey.
+    /// Where a sample is not finite; without one, [`NO_DATA`].
     pub missing: Option<Rgb>,
     /// Whether it is the atlas tint, whose colours reach further up the more relief there is.
     pub follows_relief: bool,

@@ -40,16 +40,24 @@ impl Tint {
             return Tint::fit(grid, sea_level);
         }
         let levels = Levels::of(grid);
-        let fitted = Fitted::new(palette, levels.low(), levels.high(), sea_level);
+        Tint::between(palette, [levels.low(), levels.high()], sea_level)
+    }
+
+    /// The colors of a palette between two heights, whatever lies between them: the same for every window of a world.
+    pub fn between(palette: &Palette, [low, high]: [f32; 2], sea_level: f32) -> Tint {
+        if palette.follows_relief {
+            return Tint::hypsometric(low, high, sea_level);
+        }
+        let fitted = Fitted::new(palette, low, high, sea_level);
         Tint { colors: Colors::Fitted(fitted), sea_level, sea: palette.has_sea() }
     }
 
     /// Whether a height is under water.
     pub fn is_sea(&self, height: f32) -> bool {
-        self.sea && height <= self.sea_level
+        self.sea && height.is_finite() && height <= self.sea_level
     }
 
-    /// The colour of a height; of NaN, what the palette says, or the atlas's lowest land's.
+    /// The color of a height; if it is not finite, the palette's color of missing samples.
     pub fn at(&self, height: f32) -> Light {
         match &self.colors {
             Colors::Atlas(atlas) => atlas.at(height),
@@ -62,7 +70,34 @@ impl Tint {
 mod tests {
     use super::*;
     use crate::grid::Window;
+    use crate::palette::color::decode;
     use crate::palette::named;
+    use crate::palette::palette::NO_DATA;
+
+    #[test]
+    fn samples_that_are_not_finite_have_one_color_that_is_not_on_the_palette() {
+        let grid = Grid::from_data(Window::new(3, 1, 1.0), vec![-100.0, 0.0, 3000.0]).unwrap();
+        let grey = NO_DATA.map(decode);
+        for named in named::all() {
+            let palette = named.palette();
+            let tint = Tint::of(&palette, &grid, 0.0);
+            for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+                assert_eq!(tint.at(value), palette.missing.map_or(grey, |color| color.map(decode)), "{}", palette.name);
+                assert!(!tint.is_sea(value), "{}", palette.name);
+            }
+        }
+    }
+
+    #[test]
+    fn a_range_gives_every_window_the_same_colors() {
+        let high = Grid::from_data(Window::new(2, 1, 1.0), vec![900.0, 1000.0]).unwrap();
+        for name in ["hypsometric", "viridis"] {
+            let palette = named::find(name).unwrap().palette();
+            let (fixed, fitted) = (Tint::between(&palette, [0.0, 2000.0], -1.0), Tint::of(&palette, &high, -1.0));
+            assert!(fixed.at(1000.0) != fitted.at(1000.0), "{name}");
+            assert_eq!(fixed.at(2000.0), fixed.at(9e9), "{name}");
+        }
+    }
 
     #[test]
     fn water_is_known_where_the_palette_knows_it() {

@@ -300,7 +300,7 @@ impl Recipe {
         file.lies_in(Path::new(""));
         file.hold(Arc::clone(ground));
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-        recipe.about = format!("The place in {name}");
+        recipe.about = format!("Heights of {name}");
         recipe.add("place", Dem { path: file, band: band.unwrap_or(0), ..Dem::default() }).output("height", "place");
         recipe
     }

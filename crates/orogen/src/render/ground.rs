@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use super::grain::Grain;
 use super::relief::{Land, Relief};
 use crate::grid::Grid;
-use crate::palette::color::Light;
-use crate::palette::palette::Palette;
+use crate::palette::color::{Light, decode};
+use crate::palette::palette::{NO_DATA, Palette};
 use crate::palette::tint::Tint;
 
 /// How the ground is coloured.
@@ -64,6 +64,8 @@ pub(super) struct Ground {
     shape: Vec<[f32; 4]>,
     /// Albedo and roughness of every sample; empty where surfaces are not shown.
     cover: Vec<[f32; 4]>,
+    /// Whether each sample had no finite height; empty if all had one.
+    missing: Vec<bool>,
     columns: usize,
     rows: usize,
     cell: f32,
@@ -79,6 +81,12 @@ const SNOW_RELIEF: f64 = 1500.0;
 /// How far up its relief a land's snow begins, and its trees end.
 const SNOW_SHARE: f64 = 0.60;
 const TREE_SHARE: f64 = 0.40;
+
+/// A map's colors are scaled by this: paper is brighter than any ground, and in the sun it would be all white.
+const PAPER: f32 = 0.55;
+
+/// The same of ground without a height: a middle grey, darker than snow.
+const MISSING: f32 = 0.3;
 
 impl Ground {
     /// The ground of a land. The map's tint goes by `palette`; snow begins at `snow_line`, in metres, or where it suits the relief.
@@ -99,6 +107,7 @@ impl Ground {
             },
             shape: shape(land, relief),
             cover: covered(cover, columns * rows),
+            missing: missing(land.heights),
             columns,
             rows,
             cell: relief.cell() as f32,
@@ -142,15 +151,25 @@ impl Ground {
         self.grain.at(site.x * scale, site.y * scale, kind).value * seen
     }
 
+    /// Whether the sample nearest to a place has no finite height.
+    fn is_missing(&self, site: &Site) -> bool {
+        let nearest = |at: f64, count: usize| (at.max(0.0).round() as usize).min(count - 1);
+        !self.missing.is_empty()
+            && self.missing[nearest(site.y, self.rows) * self.columns + nearest(site.x, self.columns)]
+    }
+
     /// What the ground is at a place.
     pub fn look(&self, site: &Site) -> Look {
         let shape = self.shape_at(site.x, site.y);
+        if self.is_missing(site) {
+            let slope = [shape[0], shape[1]].map(|part| part * self.exaggeration);
+            return Look { albedo: NO_DATA.map(|part| decode(part) * MISSING), slope };
+        }
         let (albedo, rough) = match self.colors {
             Colors::Natural => self.natural(site, shape),
             Colors::Desert => self.desert(site, shape),
             Colors::Surfaces => self.covered(site),
-            // Paper is brighter than any ground: in the sun it would be all white.
-            Colors::Map => (self.tint.at(site.height).map(|c| c * 0.55), 0.0),
+            Colors::Map => (self.tint.at(site.height).map(|c| c * PAPER), 0.0),
             Colors::Clay => ([0.30, 0.265, 0.235], 0.0),
         };
         let mut slope = [shape[0], shape[1]];
@@ -320,6 +339,14 @@ fn mix(from: Light, to: Light, share: f32) -> Light {
     std::array::from_fn(|c| from[c] + (to[c] - from[c]) * share)
 }
 
+/// Which samples have no finite height; empty if all have one.
+fn missing(heights: &Grid) -> Vec<bool> {
+    match heights.data().par_iter().all(|height| height.is_finite()) {
+        true => Vec::new(),
+        false => heights.data().iter().map(|height| !height.is_finite()).collect(),
+    }
+}
+
 /// Albedo and roughness of every sample; clay where there are none.
 fn covered(cover: Option<[&Grid; 4]>, samples: usize) -> Vec<[f32; 4]> {
     match cover {
@@ -369,6 +396,26 @@ mod tests {
         let heights = Grid::from_data(window, data).unwrap();
         let land = Land { heights: &heights, surface: None, flow: None, sea_level: None };
         Ground::new(&land, &Relief::new(&land, 1.0).unwrap(), &Dress { colors, palette: None, cover: None, snow_line })
+    }
+
+    #[test]
+    fn ground_without_a_height_is_grey_in_every_coloring() {
+        let window = Window::new(9, 9, 30.0);
+        let mut data: Vec<f32> = (0..window.len()).map(|at| 4000.0 - 10.0 * at as f32).collect();
+        data[4 * 9 + 4] = f32::NAN;
+        let heights = Grid::from_data(window, data).unwrap();
+        let layer = Grid::filled(window, 0.3);
+        let land = Land { heights: &heights, surface: None, flow: None, sea_level: None };
+        let relief = Relief::new(&land, 1.0).unwrap();
+        for colors in [Colors::Natural, Colors::Desert, Colors::Surfaces, Colors::Map, Colors::Clay] {
+            let dress = Dress { colors, palette: None, cover: Some([&layer; 4]), snow_line: None };
+            let ground = Ground::new(&land, &relief, &dress);
+            let albedo = |x: f64, y: f64| ground.look(&Site { x, y, height: 3600.0, footprint: 1e6 }).albedo;
+            let [red, green, blue] = albedo(4.3, 3.7);
+            assert!(red == green && green == blue && (0.15..0.3).contains(&red), "{colors:?}: {red} {green} {blue}");
+            let [red, green, blue] = albedo(5.6, 4.0);
+            assert!((red, green) != (green, blue) || colors == Colors::Surfaces, "{colors:?}: {red} {green} {blue}");
+        }
     }
 
     fn site(height: f32) -> Site {

@@ -5,7 +5,7 @@ use super::letters::Letters;
 use super::scene::{INK, Item, Place, Scene, polygon};
 use super::ticks::{Count, grouped, step, ticks};
 use crate::map::text::Face;
-use crate::palette::color::{Encoder, Rgb};
+use crate::palette::color::{Encoder, Rgb, decode, linear, mix, oklab};
 use crate::palette::tint::Tint;
 use crate::words;
 
@@ -196,6 +196,12 @@ impl Desk<'_> {
                     self.scene.area(polygon(&ring), fill, 1.0);
                     self.scene.lines(vec![ring], 0.2, shore, 1.0);
                 }
+                Sign::Swatch(ref colors) => {
+                    let area = [x, y - 1.5, SIGN, 3.0];
+                    let pixels = swatch(colors);
+                    self.scene.items.push(Item::Picture { area, width: pixels.len() / 3, height: 1, pixels });
+                    self.scene.frame(area, 0.15, INK);
+                }
                 Sign::Summit => self.scene.area(super::marks::triangle([x + SIGN / 2.0, y]), INK, 1.0),
             }
             self.small(&entry.text, [x + SIGN + 1.8, y + 0.95], Align::Start);
@@ -213,7 +219,7 @@ pub struct Entry {
 }
 
 /// What the legend shows.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Sign {
     /// A line of some width.
     Line(f32, Rgb),
@@ -221,6 +227,21 @@ pub enum Sign {
     Water(Rgb, Rgb),
     /// A summit.
     Summit,
+    /// A patch of a color, or of several along a gradient.
+    Swatch(Vec<Rgb>),
+}
+
+/// The pixels of a swatch, from the first of its colors to the last.
+fn swatch(colors: &[Rgb]) -> Vec<u8> {
+    const PIXELS: usize = 64;
+    let encoder = Encoder::new();
+    let last = colors.len().saturating_sub(1);
+    let light = |k: usize| colors.get(k.min(last)).map_or([0.5; 3], |color| color.map(decode));
+    let pixel = |k: usize| {
+        let at = k as f32 / (PIXELS - 1) as f32 * last as f32;
+        encoder.bytes(linear(mix(oklab(light(at as usize)), oklab(light(at as usize + 1)), at.fract())))
+    };
+    (0..PIXELS).flat_map(pixel).collect()
 }
 
 const SIGN: f32 = 8.0;

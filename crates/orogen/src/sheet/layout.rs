@@ -18,7 +18,7 @@ const COLUMN_GAP: f32 = 3.5;
 const COLUMN: [f32; 2] = [64.0, 88.0];
 /// The least width and height that a profile is drawn in, and its height over its width at most, beneath a map and beside it.
 const PROFILE: [f32; 2] = [58.0, 30.0];
-const PROFILE_ASPECT: [f32; 2] = [0.45, 0.80];
+const PROFILE_ASPECT: [f32; 2] = [0.45, 0.60];
 /// Between two blocks of a row.
 pub const BLOCK_GAP: f32 = 9.0;
 /// The narrowest page that is made to fit a map.
@@ -46,8 +46,8 @@ pub struct Layout {
     pub blocks: Vec<[f32; 2]>,
     /// The width of the column that the blocks stand in; none if they stand in rows beneath the map.
     pub column: Option<f32>,
-    /// Left, top, width and height of what is left for a profile of the land, with its numbers.
-    pub profile: Option<[f32; 4]>,
+    /// Left, top, width and height of what is left for profiles of the land, with their numbers; two where one would be out of proportion.
+    pub profiles: Vec<[f32; 4]>,
 }
 
 /// A map with its blocks, before it is put in its place.
@@ -110,7 +110,7 @@ impl Layout {
         let x = MARGIN + left + (page[0] - beside - taken - size[0]).max(0.0) / 2.0;
         let size = size.map(|side| snapped(side).max(pixel));
         let map = [snapped(x), snapped(MARGIN + head + top), size[0], size[1]];
-        let mut layout = Layout { page, dpi, map, blocks: Vec::new(), column, profile: None };
+        let mut layout = Layout { page, dpi, map, blocks: Vec::new(), column, profiles: Vec::new() };
         let under = map[1] + map[3] + bottom;
         let wanted = options.parts.profile && matches!(options.page, Page::Paper(_));
         let fits = |[x, y, width, height]: [f32; 4]| {
@@ -125,24 +125,31 @@ impl Layout {
                     layout.blocks.push([x, y]);
                     y += block.height + COLUMN_GAP;
                 }
-                // Its foot stands level with the map's.
-                layout.profile = fits([x, y + FOOT_GAP, column, under - y - FOOT_GAP]);
-                if let Some([_, y, _, height]) = &mut layout.profile {
-                    *y = under - *height;
+                let free = under - y - FOOT_GAP;
+                let half = (free - FOOT_GAP) / 2.0;
+                let areas = match fits([x, y, column, half]) {
+                    Some(_) => vec![fits([x, y + FOOT_GAP, column, half]); 2],
+                    None => vec![fits([x, y + FOOT_GAP, column, free])],
+                };
+                // The last one's foot stands level with the map's.
+                let mut foot = under;
+                for [x, _, width, height] in areas.into_iter().flatten() {
+                    foot -= height;
+                    layout.profiles.insert(0, [x, foot, width, height]);
+                    foot -= FOOT_GAP;
                 }
             }
             None => {
                 let free = page[1] - MARGIN - foot(blocks, page[0] - 2.0 * MARGIN) - under - FOOT_GAP;
-                layout.profile = fits([map[0] - left, under + FOOT_GAP, map[2] + left + right, free]);
                 let mut at = [MARGIN, under + FOOT_GAP];
-                if layout.profile.is_none() {
-                    at[1] += free.clamp(0.0, 2.0 * FOOT_GAP);
-                }
-                if let Some([_, _, _, height]) = layout.profile {
-                    // What is left of the page even so opens the gaps.
-                    let apart = ((free - height) / 2.0).min(2.0 * FOOT_GAP);
-                    layout.profile.iter_mut().for_each(|profile| profile[1] += apart);
-                    at[1] += height + 2.0 * apart + FOOT_GAP;
+                match fits([map[0] - left, under + FOOT_GAP, map[2] + left + right, free]) {
+                    None => at[1] += free.clamp(0.0, 2.0 * FOOT_GAP),
+                    Some([x, y, width, height]) => {
+                        // What is left of the page even so opens the gaps.
+                        let apart = ((free - height) / 2.0).min(2.0 * FOOT_GAP);
+                        layout.profiles.push([x, y + apart, width, height]);
+                        at[1] += height + 2.0 * apart + FOOT_GAP;
+                    }
                 }
                 for block in blocks {
                     if at[0] > MARGIN && at[0] + block.widths[0] > page[0] - MARGIN {
@@ -176,7 +183,7 @@ fn stack(blocks: &[Block]) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::options::Parts;
+    use super::super::options::{Coloring, Parts};
     use super::super::relief::Shading;
     use super::*;
     use crate::palette::named;
@@ -192,7 +199,8 @@ mod tests {
             page: Page::Paper(page),
             resolution: Resolution::Inch(150.0),
             sea_level: None,
-            layer: None,
+            coloring: Coloring::Heights,
+            range: None,
             map: None,
         }
     }
@@ -214,7 +222,7 @@ mod tests {
             };
             boxes.push([*x, *y, x + width, y + height]);
         }
-        boxes.extend(layout.profile.map(|[x, y, w, h]| [x, y, x + w, y + h]));
+        boxes.extend(layout.profiles.iter().map(|[x, y, w, h]| [*x, *y, x + w, y + h]));
         boxes
     }
 
@@ -250,7 +258,7 @@ mod tests {
         for aspect in [0.4, 1.0, 2.5] {
             let [with, without] = [true, false].map(|is| Layout::new(aspect, &blocks(), &on([210.0, 297.0], is)));
             assert_eq!(with.map, without.map);
-            assert!(without.profile.is_none());
+            assert!(without.profiles.is_empty());
         }
     }
 }

@@ -4,12 +4,15 @@
 pub mod draw;
 pub mod furniture;
 pub mod ground;
+pub mod inks;
 pub mod labels;
 pub mod layout;
 pub mod letters;
 pub mod lines;
+pub mod linework;
 pub mod marks;
 pub mod options;
+mod overlay;
 pub mod pdf;
 mod profile;
 pub mod ramp;
@@ -19,3 +22,6 @@ pub mod scene;
 pub mod ticks;
 pub mod vector;
 pub mod water;
+
+#[cfg(test)]
+mod tests;

@@ -3,6 +3,7 @@
 use super::relief::Shading;
 use crate::format::dem::Georeference;
 use crate::grid::Grid;
+use crate::palette::color::Rgb;
 use crate::palette::palette::Palette;
 
 /// How large a page is.
@@ -98,6 +99,38 @@ pub struct Layer {
     pub range: Option<[f32; 2]>,
 }
 
+/// A surface as it appears on a sheet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceEntry {
+    /// What it is called.
+    pub name: String,
+    /// Its colors, sRGB: one, or several along a gradient.
+    pub colors: Vec<Rgb>,
+    /// The share of the land that it covers, 0 to 1.
+    pub share: f64,
+}
+
+/// The recipe's surfaces, whose albedo colors the sheet in place of the heights.
+#[derive(Debug, Clone)]
+pub struct SurfaceCover {
+    /// Red, green and blue as linear light, over the very window of the heights.
+    pub albedo: [Grid; 3],
+    /// The surfaces in the legend.
+    pub entries: Vec<SurfaceEntry>,
+}
+
+/// What the colors of a sheet show.
+#[derive(Debug, Clone, Default)]
+pub enum Coloring {
+    /// The heights.
+    #[default]
+    Heights,
+    /// Another layer.
+    Layer(Layer),
+    /// What covers the ground.
+    Surfaces(SurfaceCover),
+}
+
 /// What a sheet is to show, and how.
 #[derive(Debug, Clone)]
 pub struct Options {
@@ -119,8 +152,10 @@ pub struct Options {
     pub resolution: Resolution,
     /// The sea's surface in metres; without, all is land.
     pub sea_level: Option<f64>,
-    /// What colours it in place of the heights, which still shade it.
-    pub layer: Option<Layer>,
+    /// What its colors show. The heights shade it in any case.
+    pub coloring: Coloring,
+    /// The heights at the ends of the palette, the same for several sheets; without, the lowest and the highest of this one.
+    pub range: Option<[f32; 2]>,
     /// How the ground lies on a map of the Earth, if it does.
     pub map: Option<Georeference>,
 }

@@ -85,10 +85,10 @@ impl Ramp {
         Ok(Ramp { fitted, scale: layer.scale, ends, name: name.clone(), unit, divide })
     }
 
-    /// The colour of a value; of NaN, what the palette says.
+    /// The color of a value; if it is not finite, the palette's color of missing samples.
     pub fn at(&self, value: f32) -> Light {
         match self.scale {
-            _ if value.is_nan() => self.fitted.at(value),
+            _ if !value.is_finite() => self.fitted.at(value),
             Scale::Linear => self.fitted.at(value),
             Scale::Log => self.fitted.at(libm::log10(f64::from(value).max(self.ends[0])) as f32),
             Scale::Labels => label(value),
@@ -155,9 +155,9 @@ impl Ramp {
     }
 }
 
-/// A colour for a number: neighbours differ. What is no number, and 0, which is what lies in none, are grey.
+/// A color for a number: neighbours differ. 0, which belongs to no area, is grey.
 fn label(value: f32) -> Light {
-    if value == 0.0 || !value.is_finite() {
+    if value == 0.0 {
         return [0.6; 3];
     }
     // Steps of the golden ratio leave the largest gaps between hues.

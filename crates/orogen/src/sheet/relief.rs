@@ -38,17 +38,42 @@ const HAZE: f32 = 0.16;
 const AIR: Light = [0.62, 0.72, 0.84];
 const SOFT: usize = 7;
 
-/// The relief of heights in pixels, as sRGB bytes: in their tint, or in the colours of a layer over the same window.
+/// What the relief is coloured by.
+#[derive(Clone, Copy)]
+pub enum Paint<'a> {
+    /// The tint of the heights.
+    Tint,
+    /// The values of a layer over the same window, by its ramp.
+    Layer(&'a Grid, &'a Ramp),
+    /// Red, green and blue as linear light over the same window; the sea in the tint of its depths.
+    Albedo(&'a [Grid; 3]),
+}
+
+/// The same at the middles of pixels.
+enum Painted<'a> {
+    Tint,
+    Layer(Grid, &'a Ramp),
+    Albedo([Grid; 3]),
+}
+
+/// How much brighter than its albedo the ground is printed: paper is seen in less light than land.
+const PRINTED: f32 = 1.8;
+
+/// The relief of heights in pixels, as sRGB bytes.
 pub fn paint(
     heights: &Grid,
-    layer: Option<(&Grid, &Ramp)>,
+    colors: Paint,
     pixels: [usize; 2],
     tint: &Tint,
     shading: Shading,
     sea_level: f32,
 ) -> Vec<u8> {
     let grid = at_pixels(heights, pixels);
-    let layer = layer.map(|(values, ramp)| (ramp.at_pixels(values, pixels), ramp));
+    let colors = match colors {
+        Paint::Tint => Painted::Tint,
+        Paint::Layer(values, ramp) => Painted::Layer(ramp.at_pixels(values, pixels), ramp),
+        Paint::Albedo(parts) => Painted::Albedo(parts.each_ref().map(|part| at_pixels(part, pixels))),
+    };
     let [width, height] = pixels;
     let encoder = Encoder::new();
     let lights = if shading == Shading::Single { Lights::One } else { Lights::Three };
@@ -71,18 +96,22 @@ pub fn paint(
         let here = wide.row(j + 1);
         gradients_between([wide.row(j), here, wide.row(j + 2)], cell, |i, gradient| {
             let height = here[i + 1];
-            let mut color = match &layer {
-                Some((values, ramp)) => ramp.at(values.get(i, j)),
-                None => tint.at(height),
+            let sea = tint.is_sea(height);
+            let mut color = match &colors {
+                Painted::Layer(values, ramp) => ramp.at(values.get(i, j)),
+                Painted::Albedo(parts) if height.is_finite() && !sea => {
+                    parts.each_ref().map(|part| (part.get(i, j) * PRINTED).clamp(0.0, 1.0))
+                }
+                _ => tint.at(height),
             };
-            let strength = match layer {
-                Some(_) => ON_LAYER,
-                None if tint.is_sea(height) => UNDER_WATER,
-                None => 1.0,
+            let strength = match colors {
+                Painted::Layer(..) => ON_LAYER,
+                _ if sea => UNDER_WATER,
+                _ => 1.0,
             };
             let up = ((height - low) / (high - low)).clamp(0.0, 1.0);
             let factor = match (shading, softly.get(i)) {
-                _ if height.is_nan() => [1.0; 3],
+                _ if !height.is_finite() => [1.0; 3],
                 (Shading::None, _) => [1.0; 3],
                 (Shading::Swiss, Some(soft)) => {
                     let air = HAZE * (1.0 - up) * (1.0 - up) * strength;
@@ -136,7 +165,7 @@ mod tests {
     fn each_shading_shows_the_relief_in_its_way() {
         let grid = ridges();
         let tint = Tint::hypsometric(0.0, 1400.0, -1.0);
-        let paint = |shading| paint(&grid, None, [120, 120], &tint, shading, -1.0);
+        let paint = |shading| paint(&grid, Paint::Tint, [120, 120], &tint, shading, -1.0);
         let green = |bytes: &[u8], i: usize, j: usize| i32::from(bytes[3 * (j * 120 + i) + 1]);
         let [none, single, multi, swiss] = [Shading::None, Shading::Single, Shading::Multi, Shading::Swiss].map(paint);
         // The flanks of the ridge that runs along the light are lit alike, those of the other are not.
@@ -152,11 +181,27 @@ mod tests {
     }
 
     #[test]
+    fn an_albedo_colors_the_land_and_not_the_sea_nor_holes() {
+        let mut grid = Grid::filled(Window::new(40, 20, 30.0), 5.0);
+        grid.data_mut().chunks_exact_mut(40).for_each(|row| row[..20].fill(-50.0));
+        grid.row_mut(10)[30] = f32::NAN;
+        let albedo = [0.05, 0.2, 0.01].map(|part| Grid::filled(*grid.window(), part));
+        let tint = Tint::hypsometric(-100.0, 100.0, 0.0);
+        let paint = |colors| paint(&grid, colors, [40, 20], &tint, Shading::None, 0.0);
+        let (plain, covered) = (paint(Paint::Tint), paint(Paint::Albedo(&albedo)));
+        let pixel = |bytes: &[u8], i: usize| [0, 1, 2].map(|part| bytes[3 * (10 * 40 + i) + part]);
+        assert_eq!(pixel(&plain, 5), pixel(&covered, 5));
+        assert_eq!(pixel(&covered, 30), [222; 3]);
+        let expect = Encoder::new().bytes([0.05, 0.2, 0.01].map(|part| part * PRINTED));
+        assert_eq!(pixel(&covered, 36), expect);
+    }
+
+    #[test]
     fn holes_and_flats_are_painted() {
         let mut grid = Grid::filled(Window::new(30, 20, 30.0), 5.0);
         grid.row_mut(10)[10..20].fill(f32::NAN);
         for shading in [Shading::None, Shading::Single, Shading::Multi, Shading::Swiss] {
-            assert_eq!(paint(&grid, None, [60, 40], &Tint::fit(&grid, 0.0), shading, 0.0).len(), 3 * 60 * 40);
+            assert_eq!(paint(&grid, Paint::Tint, [60, 40], &Tint::fit(&grid, 0.0), shading, 0.0).len(), 3 * 60 * 40);
         }
     }
 }

@@ -13,6 +13,7 @@ use crate::layer::LayerKind;
 use crate::map::canvas::Canvas;
 use crate::map::paint::Painter;
 use crate::map::text::Lettering;
+use crate::palette::palette::NO_DATA;
 use crate::resample;
 use crate::words;
 use orogen_noise::Points;
@@ -186,7 +187,10 @@ fn drainage(sheet: &mut Sheet, shown: &Shown, sea_level: Option<f32>, measures: 
     let sea = sea_level.unwrap_or(f32::NEG_INFINITY);
     let [left, top] = shown.put(sheet, corner, |i, j| {
         let height = shown.grid.get(i, j);
-        if height <= sea || height.is_nan() {
+        if !height.is_finite() {
+            return NO_DATA;
+        }
+        if height <= sea {
             return [205, 220, 234];
         }
         let grey = 128.0 + 122.0 * f64::from(shade.get(i, j).clamp(0.0, 1.0));
@@ -203,8 +207,10 @@ fn drainage(sheet: &mut Sheet, shown: &Shown, sea_level: Option<f32>, measures: 
         sheet.line(&points, 0.55 + 2.3 * (order - 1.0) / highest.max(2.0), WATER);
     }
     sheet.text(corner[0], corner[1] - 12.0, 0.0, "Drainage", bold(16.0));
-    let text =
-        format!("{} orders, {:.2} km of river on a square kilometre", measures.water.order, measures.water.density);
+    let text = format!(
+        "Strahler orders 1 to {}, {:.2} km of river per km\u{b2}",
+        measures.water.order, measures.water.density
+    );
     sheet.text(corner[0], shown.below(corner[1]) + 18.0, 0.0, &text, small());
 }
 
@@ -248,10 +254,10 @@ fn spectrum(sheet: &mut Sheet, measures: &Measures, area: [f64; 4]) {
     };
     let ((short, long), (least, most)) = (span(&mut { waves }), span(&mut { powers }));
     if !(least > 0.0 && most > least && long > short) {
-        return sheet.text(area[0], area[1] - 12.0, 0.0, "Power spectrum: too small a piece", bold(16.0));
+        return sheet.text(area[0], area[1] - 12.0, 0.0, "Power spectrum: too few samples", bold(16.0));
     }
     let frame = Frame { area, x: Axis::logarithmic(short, long), y: Axis::logarithmic(least / 2.0, most * 2.0) };
-    sheet.axes(&frame, "Power spectrum", ["wavelength, m", "m^2 m^2"]);
+    sheet.axes(&frame, "Power spectrum", ["wavelength, m", "m\u{b2} \u{b7} m\u{b2}"]);
     let text = |name: &str, value: Option<f64>| value.map_or(String::new(), |value| format!("{name} {value:.2}"));
     let [left, top, ..] = area;
     // On paper of their own, so that no line of the grid runs through them; the spectrum lies over it.
@@ -292,13 +298,13 @@ fn rose(sheet: &mut Sheet, measures: &Measures, [x, y]: [f64; 2], radius: f64, r
         x,
         y + radius + 34.0,
         0.5,
-        &format!("to the ring: {:.1} % of the slopes in 10 degrees", 100.0 * most),
+        &format!("outer ring: {:.1} % of the slopes in 10\u{b0}", 100.0 * most),
         small(),
     );
 }
 
 fn forms(sheet: &mut Sheet, measures: &Measures, [left, top, width]: [f64; 3]) {
-    sheet.text(left, top - 12.0, 0.0, "Forms of the ground (geomorphons)", bold(16.0));
+    sheet.text(left, top - 12.0, 0.0, "Landforms (geomorphons)", bold(16.0));
     let most = measures.forms.iter().copied().fold(1e-9, f64::max);
     for (k, (name, share)) in FORMS.iter().zip(&measures.forms).enumerate() {
         let y = top + 6.0 + 23.5 * k as f64;
@@ -310,8 +316,8 @@ fn forms(sheet: &mut Sheet, measures: &Measures, [left, top, width]: [f64; 3]) {
 }
 
 fn table(sheet: &mut Sheet, measures: &Measures, top: f64) {
-    sheet.text(MARGIN, top, 0.0, "Beside real land", bold(16.0));
-    let note = format!("the band holds eight tenths of {SOURCE}");
+    sheet.text(MARGIN, top, 0.0, "Compared with real land", bold(16.0));
+    let note = format!("the band: from 10 % to 90 % of {SOURCE}");
     sheet.text(WIDTH - MARGIN, top, 1.0, &note, small());
     let rows = FIGURES.len().div_ceil(2);
     let column = (WIDTH - 2.0 * MARGIN - 50.0) / 2.0;

@@ -54,7 +54,7 @@ pub static FIGURES: &[Figure] = figures![
     "concavity", "concavity of rivers", "", 3, [0.275, 0.49, 0.647], |m| m.water.concavity?;
     "bifurcation", "bifurcation ratio", "", 2, [3.87, 4.34, 5.65], |m| m.water.bifurcation?;
     "length_ratio", "stream length ratio", "", 2, [1.63, 2.12, 2.65], |m| m.water.length_ratio?;
-    "drainage_density", "drainage density", "km/km^2", 2, [0.788, 0.883, 0.971], |m| m.water.density;
+    "drainage_density", "drainage density", "km/km\u{b2}", 2, [0.788, 0.883, 0.971], |m| m.water.density;
     "wetness", "mean wetness index", "", 2, [5.87, 7.02, 8.36], |m| m.water.wetness;
     "valleys", "valleys", "%", 1, [9.65, 11.5, 15.4], |m| 100.0 * m.forms[8];
     "ridges", "ridges", "%", 1, [7.69, 9.04, 16.0], |m| 100.0 * m.forms[2];

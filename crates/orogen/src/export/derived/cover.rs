@@ -2,7 +2,8 @@
 
 use super::layer::Around;
 use crate::grid::{Grid, Window};
-use crate::palette::color::Light;
+use crate::palette::color::{Light, decode};
+use crate::palette::palette::NO_DATA;
 use crate::recipe::document::Recipe;
 use crate::recipe::surface::document::Expanded;
 
@@ -90,7 +91,7 @@ impl<'a> Cover<'a> {
         out
     }
 
-    /// The color as linear light: red, green and blue.
+    /// The color as linear light: red, green and blue; the grey of missing samples where there is no height.
     pub fn albedo(&self, window: &Window) -> Vec<Grid> {
         let mut out = vec![Grid::filled(*window, 0.0); 3];
         self.each(window, |[i, j], at, weights| {
@@ -99,6 +100,9 @@ impl<'a> Cover<'a> {
                 let position = laid.position.map_or(0.0, |position| position.get(at[0], at[1]));
                 let color = ramp(&laid.expanded.colors, position);
                 light.iter_mut().zip(color).for_each(|(light, part)| *light += weight * part);
+            }
+            if !self.around.heights.get(at[0], at[1]).is_finite() {
+                light = NO_DATA.map(decode);
             }
             out.iter_mut().zip(light).for_each(|(out, part)| out.row_mut(j)[i] = part);
         });

@@ -15,7 +15,7 @@ use crate::format::fgb;
 pub static FORMAT: Format = Format {
     name: "fgb",
     aliases: &[],
-    about: "contour lines or vector features, one layer with its index: FlatGeobuf",
+    about: "Contour lines or vector features, one layer with its index: FlatGeobuf",
     options: OPTIONS,
     channels: 1,
     features: true,

@@ -15,7 +15,7 @@ use crate::format::geojson;
 pub static FORMAT: Format = Format {
     name: "geojson",
     aliases: &[],
-    about: "contour lines or vector features, in local metres, or where a real place lies",
+    about: "Contour lines or vector features, in local metres, or in the coordinates of a real place",
     options: OPTIONS,
     channels: 1,
     features: true,

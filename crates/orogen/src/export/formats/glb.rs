@@ -9,6 +9,7 @@ use crate::export::format::Format;
 use crate::export::memory::whole;
 use crate::export::mesh::{COLOR, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, color, memory};
 use crate::export::mesh_cover::{self, SURFACES};
+use crate::export::mesh_tint::COLOR_RANGE;
 use crate::export::mesh_water::{self, WATER, memory as water_memory};
 use crate::export::options::{OptionSpec, Options, Takes};
 use crate::export::subject::Subject;
@@ -28,7 +29,7 @@ pub static FORMAT: Format = Format {
     name: "glb",
     aliases: &[],
     about: "glTF 2.0 mesh in one file: metres, Y up, normals, texture",
-    options: &[MAX_ERROR, LODS, COLOR, EXAGGERATION, HEIGHT_CURVE, WATER, SURFACES],
+    options: &[MAX_ERROR, LODS, COLOR, COLOR_RANGE, EXAGGERATION, HEIGHT_CURVE, WATER, SURFACES],
     channels: 1,
     features: false,
     // And the picture, which has to be packed before its size can be told.
@@ -46,8 +47,16 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
     let levels: Vec<Surface> = (0..mesh.shapes.len()).map(|level| mesh.surface(level, color == "vertex")).collect();
     let mut texture = Vec::new();
     let mut material = Vec::new();
+    let mut normal_maps = Vec::new();
     match mesh_cover::of(subject, options, true)? {
-        Some(pictures) => (texture, material) = (pictures.base, pictures.material),
+        Some(pictures) => {
+            (texture, material) = (pictures.base, pictures.material);
+            for (nth, level) in levels.iter().enumerate() {
+                // A mesh of all samples has their normals at its corners.
+                let is_full = nth == 0 && mesh.max_error().is_none();
+                normal_maps.push(if is_full { None } else { Some(mesh_cover::normal_map(level)?) });
+            }
+        }
         None if color == "texture" => mesh.picture(&mut texture)?,
         None => {}
     }
@@ -62,7 +71,12 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
     .collect();
     let [texture, material] = [&texture, &material].map(|picture| (!picture.is_empty()).then_some(picture.as_slice()));
     let water = mesh_water::of(subject, &mesh, options, beside(subject.window(), options))?;
-    files.write(|out| write_model(out, &Model { levels: &levels, texture, material, water: &water, extras }))?;
+    files.write(|out| {
+        write_model(
+            out,
+            &Model { levels: &levels, texture, material, normal_maps: &normal_maps, water: &water, extras },
+        )
+    })?;
     let also: String = water.iter().map(|water| format!(", {}", water.name)).collect();
     Ok(mesh.words() + &also)
 }

@@ -7,6 +7,7 @@ use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::mesh::{COLOR, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, color, memory};
 use crate::export::mesh_cover::{self, SURFACES};
+use crate::export::mesh_tint::COLOR_RANGE;
 use crate::export::options::Options;
 use crate::export::subject::Subject;
 use crate::mesh::obj;
@@ -16,7 +17,7 @@ pub static FORMAT: Format = Format {
     name: "obj",
     aliases: &[],
     about: "Wavefront mesh, text: metres, y up, normals; NAME.mtl and NAME-texture.png beside it",
-    options: &[MAX_ERROR, COLOR, EXAGGERATION, HEIGHT_CURVE, SURFACES],
+    options: &[MAX_ERROR, COLOR, COLOR_RANGE, EXAGGERATION, HEIGHT_CURVE, SURFACES],
     channels: 1,
     features: false,
     memory,

@@ -6,6 +6,7 @@ use crate::error::{Error, ErrorKind};
 use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::mesh::{COLOR, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, color, memory};
+use crate::export::mesh_tint::COLOR_RANGE;
 use crate::export::options::Options;
 use crate::export::subject::Subject;
 use crate::mesh::ply;
@@ -15,7 +16,7 @@ pub static FORMAT: Format = Format {
     name: "ply",
     aliases: &[],
     about: "Stanford polygon mesh, binary: metres, z up, normals, colours or texture coordinates",
-    options: &[MAX_ERROR, COLOR, EXAGGERATION, HEIGHT_CURVE],
+    options: &[MAX_ERROR, COLOR, COLOR_RANGE, EXAGGERATION, HEIGHT_CURVE],
     channels: 1,
     features: false,
     memory,

@@ -16,7 +16,7 @@ use crate::export::subject::Subject;
 pub static FORMAT: Format = Format {
     name: "svg",
     aliases: &[],
-    about: "contour lines or vector features as a drawing, its unit the metre",
+    about: "Contour lines or vector features as a vector drawing in metres",
     options: OPTIONS,
     channels: 1,
     features: true,

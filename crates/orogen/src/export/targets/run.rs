@@ -12,7 +12,7 @@ use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::options::Options;
 use crate::export::run;
-use crate::export::spread::BITS;
+use crate::export::spread::{self, BITS, RANGE};
 use crate::export::subject::Subject;
 use crate::file::{self, Output};
 use crate::grid::Window;
@@ -49,12 +49,12 @@ pub fn export(
 ) -> Result<Exported> {
     let path = output.path();
     let mut options = Options::default();
-    // All heights are made twice: for their range, and tile by tile.
-    let [ranging, writing] = progress.parts([if layer == HEIGHT { 1.0 } else { 0.0 }, 1.0]);
+    // Plain numbers are made twice: for their range, and tile by tile.
+    let nature = Subject::new(world, layer, frame.window, progress)?.nature();
+    let [ranging, writing] = progress.parts([if nature == Nature::Numbers { 1.0 } else { 0.0 }, 1.0]);
     writing.expect((frame.tiles[0] * frame.tiles[1]) as f64);
     let subject = |window: Window, progress: &Progress| Subject::new(world, layer, window, progress);
     let mut all = subject(frame.window, &ranging)?;
-    let nature = all.nature();
     let known: &[&str] = if layer == HEIGHT { target.formats } else { &["png"] };
     if !known.contains(&format.name) {
         let list: Vec<String> = known.iter().map(|name| format!(".{name}")).collect();
@@ -77,15 +77,23 @@ pub fn export(
     let mut less = 0;
     match nature {
         // One scale for all tiles: the whole range is known before the first is written.
-        Nature::Numbers if layer == HEIGHT => {
+        Nature::Numbers => {
             // What no tile can be written in is refused before the range is looked for.
             all.prepare((format.memory)(&frame.tile(0, 0), &options))?;
             all.rows(|_| Ok(())).map_err(|cause| file::explain("make", path, &cause))?;
-            let levels = all.levels();
-            (target.heights)(&levels, &mut options)?;
-            import = (target.import)(frame.side, frame.window.cell, &levels);
+            if layer == HEIGHT {
+                let levels = all.levels();
+                (target.heights)(&levels, &mut options)?;
+                import = (target.import)(frame.side, frame.window.cell, &levels);
+            } else {
+                options.give(&BITS, "8")?;
+                let levels = spread::natural(&all, spread::most(&options))
+                    .map_err(|cause| file::explain("write", path, &cause))?;
+                if !levels.is_flat() {
+                    options.give(&RANGE, &format!("{},{}", levels.low(), levels.high()))?;
+                }
+            }
         }
-        Nature::Numbers => options.give(&BITS, "8")?,
         Nature::Normal => options.give(&NORMAL, target.normal)?,
         Nature::Color => {}
         Nature::Weights => {

@@ -1,0 +1,60 @@
+//! The map's tint for the colors of a mesh: the same for every window of a world.
+
+use std::io;
+
+use super::options::{OptionSpec, Options, Takes};
+use super::subject::Subject;
+use crate::error::Result;
+use crate::grid::{Grid, Window};
+use crate::palette::tint::Tint;
+use crate::world::World;
+
+/// `--color-range`.
+pub const COLOR_RANGE: OptionSpec = OptionSpec {
+    name: "color-range",
+    value: "LOW,HIGH",
+    about: "Heights at the ends of the map's colors [default: about the lowest and the highest of the world, the same for all its windows]",
+    takes: Takes::Range,
+};
+
+/// How many samples the longer side of a world is looked at with.
+const OVERVIEW: usize = 256;
+
+/// A world without bounds is looked at over so many cells, around its origin.
+const CELLS: f64 = 4096.0;
+
+/// The tint that the options ask for: of a range of heights, else fitted to an overview of the whole world.
+///
+/// Fails as the subject does.
+pub fn of(subject: &Subject, options: &Options) -> io::Result<Tint> {
+    let world = subject.world();
+    let sea_level = world.recipe().world.sea_level as f32;
+    match options.range(COLOR_RANGE.name) {
+        Some([low, high]) => Ok(Tint::hypsometric(low as f32, high as f32, sea_level)),
+        None => Ok(Tint::fit(&overview(subject)?, sea_level)),
+    }
+}
+
+/// The layer over all of the world, or over the middle of one without bounds.
+fn overview(subject: &Subject) -> io::Result<Grid> {
+    let window = window(subject.world())?;
+    let progress = subject.progress().part(0.0);
+    let mut overview = Grid::filled(window, f32::NAN);
+    Subject::new(subject.world(), subject.layer(), window, &progress)?.rows(|band| {
+        overview.paste(&band[0]);
+        Ok(())
+    })?;
+    Ok(overview)
+}
+
+fn window(world: &World) -> Result<Window> {
+    let spec = &world.recipe().world;
+    match spec.size {
+        // No finer than the world itself.
+        Some([width, height]) => world.across(OVERVIEW.min((width.max(height) / spec.cell).round().max(1.0) as usize)),
+        None => {
+            let half = OVERVIEW as i64 / 2;
+            Ok(Window::new(OVERVIEW, OVERVIEW, CELLS / OVERVIEW as f64 * spec.cell).at(-half, -half))
+        }
+    }
+}
