@@ -183,8 +183,8 @@ fn stack(blocks: &[Block]) -> f32 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::options::Shading;
     use super::super::options::{Coloring, Parts};
-    use super::super::relief::Shading;
     use super::*;
     use crate::palette::named;
 

@@ -1,10 +1,24 @@
 //! What a sheet is to show.
 
-use super::relief::Shading;
 use crate::format::dem::Georeference;
 use crate::grid::Grid;
 use crate::palette::color::Rgb;
 use crate::palette::palette::Palette;
+
+/// How relief is shaded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Shading {
+    /// Not at all.
+    None,
+    /// By one light from the north-west.
+    Single,
+    /// By three lights, which show ridges that run along the first.
+    #[default]
+    Multi,
+    /// As on Swiss maps: three lights, lowlands soft and in haze, summits crisp and warm in the light (after E. Imhof,
+    /// "Kartographische Geländedarstellung", 1965).
+    Swiss,
+}
 
 /// How large a page is.
 #[derive(Debug, Clone, Copy, PartialEq)]

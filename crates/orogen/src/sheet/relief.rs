@@ -3,27 +3,13 @@
 use rayon::prelude::*;
 
 use super::ground::{at_pixels, laid};
+use super::options::Shading;
 use super::ramp::Ramp;
 use crate::analysis::slope::{Gradient, extended, gradients_between};
 use crate::grid::Grid;
 use crate::map::shade::{Lights, Shade};
 use crate::palette::color::{Encoder, Light};
 use crate::palette::tint::Tint;
-
-/// How relief is shaded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Shading {
-    /// Not at all.
-    None,
-    /// By one light from the north-west.
-    Single,
-    /// By three lights, which show ridges that run along the first.
-    #[default]
-    Multi,
-    /// As on Swiss maps: three lights, lowlands soft and in haze, summits crisp and warm in the light (after E. Imhof,
-    /// "Kartographische Geländedarstellung", 1965).
-    Swiss,
-}
 
 /// How much of the land's shading the sea floor gets: water lies over it.
 const UNDER_WATER: f32 = 0.35;

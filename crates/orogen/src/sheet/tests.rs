@@ -1,8 +1,8 @@
 //! Whole sheets: all on the page, parts left out, the same on any number of threads.
 
 use super::draw::{self, Sheet};
+use super::options::Shading;
 use super::options::{Coloring, Options, Page, Parts, Resolution, SurfaceCover, SurfaceEntry};
-use super::relief::Shading;
 use super::scene::{Item, Place, Scene, Step};
 use super::{pdf, raster, vector};
 use crate::error::Result;
