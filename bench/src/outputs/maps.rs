@@ -7,9 +7,8 @@ use orogen::Grid;
 use orogen::map::paint::Painter;
 use orogen::palette::named;
 use orogen::sheet::draw::draw;
-use orogen::sheet::options::{Options as Sheet, Page, Parts, Resolution};
+use orogen::sheet::options::{Coloring, Options as Sheet, Page, Parts, Resolution, Shading};
 use orogen::sheet::raster;
-use orogen::sheet::relief::Shading;
 
 use super::ground::ground;
 use crate::measure::median;
@@ -64,7 +63,8 @@ fn sheet() -> Sheet {
         page: Page::Fitted(240.0),
         resolution: Resolution::Inch(150.0),
         sea_level: Some(0.0),
-        layer: None,
+        coloring: Coloring::Heights,
+        range: None,
         map: None,
     }
 }

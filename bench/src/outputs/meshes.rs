@@ -87,6 +87,7 @@ fn full_grid(grid: &Grid, options: &Options) -> Result<Figure, String> {
         let model = Model {
             levels: &levels,
             texture: Some(&texture),
+            normal_maps: &[],
             material: None,
             water: &[],
             extras: serde_json::Map::new(),

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock, Mutex};
 
 use orogen::analysis::halo::Halo;
 use orogen::export::options::Options;
@@ -484,14 +484,23 @@ fn world() -> World {
 }
 
 fn export(world: &World, window: Window, path: &std::path::Path, given: &[(&str, &str)]) -> Result<String, String> {
+    export_with(world, window, path, given, &Progress::none())
+}
+
+fn export_with(
+    world: &World,
+    window: Window,
+    path: &std::path::Path,
+    given: &[(&str, &str)],
+    progress: &Progress,
+) -> Result<String, String> {
     let format = registry::of_path(path).map_err(|error| error.to_string())?;
     let mut options = Options::default();
     for (name, text) in given {
         let spec = format.options.iter().find(|spec| spec.name == *name).unwrap();
         options.give(spec, text).map_err(|error| error.to_string())?;
     }
-    let progress = Progress::none();
-    let subject = Subject::new(world, "height", window, &progress).map_err(|error| error.to_string())?;
+    let subject = Subject::new(world, "height", window, progress).map_err(|error| error.to_string())?;
     let output = OutputPolicy::default().output(path).map_err(|error| error.to_string())?;
     run::to_file(format, subject, &options, &output).map(|written| written.words).map_err(|error| error.to_string())
 }
@@ -552,6 +561,23 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
     }
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 8);
     std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn triangles_have_their_share_of_the_progress() {
+    let world = world();
+    let path = std::env::temp_dir().join(format!("orogen-mesh-progress-{}.glb", std::process::id()));
+    for given in [&[][..], &[("max-error", "0.5")]] {
+        let shares = Arc::new(Mutex::new(Vec::new()));
+        let heard = Arc::clone(&shares);
+        let progress = Progress::new(move |share| heard.lock().unwrap().push(share));
+        export_with(&world, Window::new(200, 160, 25.0), &path, given, &progress).unwrap();
+        let shares = shares.lock().unwrap();
+        assert!(shares.windows(2).all(|pair| pair[0] < pair[1]), "{shares:?}");
+        // Making heights of one fractal is the least of it.
+        assert!(shares.iter().any(|share| (0.3..0.99).contains(share)), "{shares:?}");
+    }
+    std::fs::remove_file(&path).unwrap();
 }
 
 #[test]

@@ -58,18 +58,6 @@ fn every_command_reports_one_share_that_only_grows_to_the_end() {
 }
 
 #[test]
-fn the_triangles_of_a_mesh_have_their_share() {
-    let folder = Folder::new();
-    folder.write("land.toml", RIVERS.replace("height = \"terrain\"", "height = \"metres\""));
-    for few in [&[][..], &["--max-error", "0.2"]] {
-        let arguments = [&["export", "land.toml", "-o", "land.glb", "--size", "1400"], few].concat();
-        let shares = shares(&folder, &arguments);
-        // Making heights of one fractal is the least of it.
-        assert!(shares.iter().filter(|share| (0.3..0.99).contains(*share)).count() > 1, "{shares:?}");
-    }
-}
-
-#[test]
 fn arrays_that_no_disk_holds_are_refused_before_they_are_begun() {
     let folder = Folder::new();
     folder.bad(&["noise", "perlin", "--volume", "100000000", "--size", "4096", "-o", "block.npy"], 1, "of disk where");
