@@ -547,7 +547,8 @@ mod tests {
     #[test]
     fn a_plane_that_changes_slowly_is_found_among_noise() {
         // As OpenEXR lays the two upper bytes of a height: one that hardly changes, one that goes up and down by a few, and their differences.
-        let upper = |k: usize| if k.is_multiple_of(2) { 67 } else { (k / 2 * 5 + usize::from(hashed(k / 2) & 3)) as u8 };
+        let upper =
+            |k: usize| if k.is_multiple_of(2) { 67 } else { (k / 2 * 5 + usize::from(hashed(k / 2) & 3)) as u8 };
         let bytes: Vec<u8> = (1..100_000).map(|k| upper(k).wrapping_sub(upper(k - 1)).wrapping_add(128)).collect();
         let packed = pack_mixed(&bytes, 4096);
         assert!(decompress_to_vec_zlib(&packed).unwrap() == bytes);
