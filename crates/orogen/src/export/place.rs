@@ -28,7 +28,7 @@ pub fn write(files: &mut Files, subject: &Subject, options: &Options, from_south
 
 /// Writes NAME.json and the location, of a format whose files tell everything but where they lie: only for a world that lies on a map.
 ///
-/// Fails as [`write`] and [`sidecar::write`].
+/// Fails as [`write()`] and [`sidecar::write`].
 pub fn write_on_map(
     files: &mut Files,
     subject: &Subject,
@@ -42,9 +42,9 @@ pub fn write_on_map(
     Ok(told + &write(files, subject, options, Some(false))?)
 }
 
-/// As [`write`], of one of several files.
+/// As [`write()`], of one of several files.
 ///
-/// Fails as [`write`].
+/// Fails as [`write()`].
 pub fn write_for(
     files: &mut Files,
     path: &Path,
