@@ -179,7 +179,7 @@ impl Prepared {
             let system = match (map.epsg(), map.wkt()) {
                 (Some(code), _) => format!("EPSG:{code}"),
                 (None, Ok(wkt)) => wkt,
-                (None, Err(why)) => format!("a coordinate system that is not told: {why}"),
+                (None, Err(why)) => format!("an unknown coordinate system: {why}"),
             };
             comments.push(format!("the origin on the map: east {east}, north {north}, in {system}"));
             let [across, up] = map.per_metre;

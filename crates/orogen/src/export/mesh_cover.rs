@@ -92,7 +92,7 @@ pub fn of(subject: &Subject, options: &Options, packed: bool) -> io::Result<Opti
 /// Fails if the picture cannot be packed.
 pub fn normal_map(level: &Surface) -> io::Result<Vec<u8>> {
     let (width, height) = (level.grid.width(), level.grid.height());
-    let texels = normal_map::bake(level);
+    let texels = normal_map::bake(level)?;
     let notes = [("Software", concat!("Orogen ", env!("CARGO_PKG_VERSION")))];
     packed_rows(&Picture { width, height, pixel: Pixel::Data8, notes: &notes }, |row, bytes| {
         bytes.copy_from_slice(&texels[3 * width * row..][..3 * width]);

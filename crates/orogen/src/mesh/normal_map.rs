@@ -4,6 +4,8 @@
 //! interpolated over the triangle and normalized, and B is the interpolated cross product of the two. T points east, B north.
 
 use super::surface::Surface;
+use crate::error::Result;
+use crate::progress::Progress;
 
 /// A texel that leaves the normal as it is.
 const FLAT: [u8; 3] = [128, 128, 255];
@@ -15,11 +17,15 @@ pub fn tangent([east, up, _]: [f32; 3]) -> [f32; 3] {
 }
 
 /// The normal map of a surface: the normals of all its samples as seen from the triangles over them, three bytes each, row after row.
-pub fn bake(surface: &Surface) -> Vec<u8> {
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn bake(surface: &Surface) -> Result<Vec<u8>> {
     let (grid, shape) = (surface.grid, surface.shape);
     let (width, normals) = (grid.width(), surface.normals());
     let mut texels: Vec<u8> = FLAT.repeat(normals.len());
     for piece in 0..shape.pieces() {
+        surface.progress.map_or(Ok(()), Progress::check)?;
         shape.piece(grid, piece, |triangle| {
             let corners = triangle.map(|corner| shape.sample(corner));
             let frames = corners.map(|[i, j]| frame(normals[j * width + i]));
@@ -34,7 +40,7 @@ pub fn bake(surface: &Surface) -> Vec<u8> {
             });
         });
     }
-    texels
+    Ok(texels)
 }
 
 /// Tangent, bitangent and normal at a corner.
@@ -116,7 +122,16 @@ mod tests {
     fn a_mesh_of_all_samples_needs_no_normal_map() {
         let (grid, halo) = (waves(), Halo::default());
         let shape = Shape::lattice(&grid, 1).unwrap();
-        assert!(bake(&surface(&grid, &halo, &shape)).chunks_exact(3).all(|texel| *texel == FLAT));
+        assert!(bake(&surface(&grid, &halo, &shape)).unwrap().chunks_exact(3).all(|texel| *texel == FLAT));
+    }
+
+    #[test]
+    fn it_stops_when_cancelled() {
+        let (grid, halo) = (waves(), Halo::default());
+        let (shape, progress) = (Shape::lattice(&grid, 4).unwrap(), Progress::none());
+        progress.cancel();
+        let surface = Surface { progress: Some(&progress), ..surface(&grid, &halo, &shape) };
+        assert!(bake(&surface).is_err());
     }
 
     #[test]
@@ -137,7 +152,7 @@ mod tests {
         let (grid, halo) = (waves(), Halo::default());
         for shape in [Shape::lattice(&grid, 4).unwrap(), adaptive(&grid, 6.0).unwrap()] {
             let surface = surface(&grid, &halo, &shape);
-            let (texels, normals) = (bake(&surface), surface.normals());
+            let (texels, normals) = (bake(&surface).unwrap(), surface.normals());
             let mut seen = vec![false; normals.len()];
             let mut plain = 0.0f32;
             for piece in 0..shape.pieces() {

@@ -47,15 +47,19 @@ impl Solver for HeightAboveDrainage {
         context.progress.check()?;
         let window = *heights.window();
         let outlets = Outlets::new(&heights, self.sea.then_some(context.setting.sea_level as f32));
-        let drained = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+        let [routing, counting, following, nearing] = context.progress.parts([4.0, 1.0, 1.0, 2.0]);
+        let drained = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, &routing)?;
         let filled = fill::filled(&heights, &drained.basins);
         drop(heights);
         let receivers = drained.receivers;
         context.progress.check()?;
         let areas = accumulate(&receivers);
+        counting.finish();
+        context.progress.check()?;
         let threshold = (self.stream / (window.cell * window.cell)).ceil().clamp(1.0, f64::from(u32::MAX)) as u32;
         let found = above_drainage(filled, &receivers, &areas, threshold);
         let layers = [sources.keep(found.height)?, sources.keep(found.distance)?];
+        following.finish();
         context.progress.check()?;
         let mut streams = Grid::filled(window, 0.0f32);
         for (stream, area) in streams.data_mut().iter_mut().zip(areas.area.data()) {
@@ -68,6 +72,7 @@ impl Solver for HeightAboveDrainage {
         for samples in distance.data_mut() {
             *samples = (f64::from(*samples).min(diagonal) * window.cell) as f32;
         }
+        nearing.finish();
         Ok(Solution { layers: layers.into_iter().chain([sources.keep(distance)?]).collect(), scalars: Vec::new() })
     }
 
