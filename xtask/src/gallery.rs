@@ -3,9 +3,11 @@
 use crate::failure::{Failure, Result, on_file};
 use crate::shell;
 
+mod base64;
 mod hillshades;
 mod noises;
 mod views;
+mod water;
 
 pub const ABOUT: &str = "make the pictures in docs/images and in the noises' docs anew";
 
@@ -13,7 +15,7 @@ pub const HELP: &str = "
 Usage: cargo xtask gallery
 
 Makes docs/images/ anew: one relief map of each preset, the views of docs/render.md and the README's first picture, a
-map sheet, all palettes, the page that shows the noises side by side, and the chunks around a viewer. Then docs/gallery.md: every preset as a
+map sheet, water as vectors, all palettes, the page that shows the noises side by side, and the chunks around a viewer. Then docs/gallery.md: every preset as a
 map of the whole and as the bare shaded relief of a part, sample for pixel, in which the eye finds what colours hide. Then
 crates/orogen-noise/docs/gallery.md: the pictures that the
 documentation of orogen-noise opens with, which are in that file themselves, so that they show wherever it is read.
@@ -46,6 +48,7 @@ pub fn run(args: &[String]) -> Result {
         println!("{}", shell::relative(&to));
     }
     views::write(&images)?;
+    water::write(&images, &work)?;
     hillshades::write(&presets, &images)?;
     let page = images.join("compare.png");
     let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- compare --quiet -o");
