@@ -1,4 +1,4 @@
-//! Every reader of heights: any bytes are heights or a sentence.
+//! Every reader of heights: any bytes are heights or a message.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

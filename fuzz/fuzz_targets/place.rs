@@ -1,4 +1,4 @@
-//! What stands beside heights and tells their place: any text is understood or refused with a sentence.
+//! What stands beside heights and tells their place: any text is understood or refused with a message.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

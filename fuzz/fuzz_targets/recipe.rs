@@ -1,4 +1,4 @@
-//! Recipes: any text is a recipe or complaints.
+//! Recipes: any text is a recipe or diagnostics.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

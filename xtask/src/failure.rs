@@ -1,6 +1,6 @@
 //! How a chore ends when it does not end well.
 
-/// What went wrong, as a sentence for the person at the terminal.
+/// What went wrong, as a message for the person at the terminal.
 #[derive(Debug)]
 pub enum Failure {
     /// The command line was wrong: exit code 2.
@@ -20,7 +20,7 @@ impl Failure {
         Self::Usage(format!("error: {}", message.into()))
     }
 
-    /// The sentence alone.
+    /// The message alone.
     pub fn message(&self) -> &str {
         let (Self::Usage(message) | Self::Failed(message)) = self;
         message

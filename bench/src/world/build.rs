@@ -20,7 +20,7 @@ const MIDDLE: usize = 8_192;
 
 /// What a build may use, and what it may be found to hold, code and all.
 const MEMORY: &str = "1GiB";
-const MOST_GIB: f64 = 1.2;
+const MAX_GIB: f64 = 1.2;
 
 /// How much dearer a sample of the large build may be.
 const DEARER: f64 = 1.15;
@@ -76,7 +76,7 @@ impl Bench {
         let whole = self.best(extension, large, 1, &[])?;
         let what = format!("build {large} x {large} to {name} under {MEMORY}");
         let gib = whole.memory as f64 / f64::from(1 << 30);
-        add(format!("{what}, memory at most"), gib, "GiB", None, Target::AtMost(MOST_GIB));
+        add(format!("{what}, memory at most"), gib, "GiB", None, Target::AtMost(MAX_GIB));
         let compared = Some(("4096 x 4096", per_sample(small, SMALL)));
         add(
             format!("{what}, ratio at most"),

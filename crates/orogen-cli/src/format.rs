@@ -30,7 +30,7 @@ impl Format {
         extension.eq_ignore_ascii_case(self.name())
     }
 
-    /// The one of `formats` that the extension of `path` tells, or a sentence that says why it tells none.
+    /// The one of `formats` that the extension of `path` tells, or a message that says why it tells none.
     pub fn of(path: &Path, formats: &[Format]) -> Result<Format, String> {
         let Some(extension) = path.extension() else {
             return Err(format!("{} has no extension to tell its format; known are {}", path.display(), list(formats)));

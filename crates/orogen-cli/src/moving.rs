@@ -23,7 +23,7 @@ pub enum Target {
 
 impl Target {
     /// What a file's name tells: `.png` and `.gif` are animations, `view-%03d.png` is a file for each frame, and standard output gets an
-    /// APNG; or a sentence that says why it tells nothing.
+    /// APNG; or a message that says why it tells nothing.
     pub fn of(out: &Path) -> Result<Target, String> {
         if is_stdout(out) {
             return Ok(Target::Apng);
@@ -145,7 +145,7 @@ mod tests {
         ] {
             assert_eq!(Target::of(Path::new(name)), Ok(expect), "{name}");
         }
-        for (name, sentence) in [
+        for (name, message) in [
             ("a", "no extension"),
             ("a.mp4", ".mp4"),
             ("a%.png", "no number's place"),
@@ -155,7 +155,7 @@ mod tests {
             ("a%03d.gif", ".gif"),
         ] {
             let error = Target::of(Path::new(name)).unwrap_err();
-            assert!(error.contains(sentence), "{name}: {error}");
+            assert!(error.contains(message), "{name}: {error}");
         }
     }
 }

@@ -3,23 +3,23 @@
 use std::fmt::Write as _;
 use std::io::{self, IsTerminal};
 
-use orogen::error::{Complaint, Location};
+use orogen::error::{Diagnostic, Location};
 use orogen::words;
 
 use crate::failure::Failure;
 use crate::say;
 
-/// Tells of a failure: every complaint, with its place in the text it is about.
+/// Tells of a failure: every diagnostic, with its place in the text it is about.
 pub fn report(failure: &Failure) {
     let paint = Paint(colours());
     match failure {
-        Failure::Usage(sentence) => say::error(&paint.complaint(sentence, None)),
+        Failure::Usage(message) => say::error(&paint.diagnostic(message, None)),
         Failure::Engine(error) => {
-            for Complaint { sentence, place } in error.complaints() {
-                say::error(&paint.complaint(sentence, place.as_ref()));
+            for Diagnostic { message, place } in error.diagnostics() {
+                say::error(&paint.diagnostic(message, place.as_ref()));
             }
         }
-        Failure::Interrupted(sentence) => say::error(&printable(sentence)),
+        Failure::Interrupted(message) => say::error(&printable(message)),
         Failure::Told | Failure::BrokenPipe => {}
     }
 }
@@ -31,10 +31,10 @@ fn colours() -> bool {
     io::stderr().is_terminal() && !declined && !dumb
 }
 
-/// The longest part of a line that is shown around a complaint.
+/// The longest part of a line that is shown around a diagnostic.
 const SHOWN: usize = 100;
 
-/// Writes complaints, with colour or without.
+/// Writes diagnostics, with colour or without.
 struct Paint(bool);
 
 impl Paint {
@@ -42,13 +42,13 @@ impl Paint {
         if self.0 { format!("\x1b[1;31m{text}\x1b[0m") } else { text.to_string() }
     }
 
-    /// `error: file:line:column: sentence`, then the line itself with its part underlined.
-    fn complaint(&self, sentence: &str, place: Option<&Location>) -> String {
+    /// `error: file:line:column: message`, then the line itself with its part underlined.
+    fn diagnostic(&self, message: &str, place: Option<&Location>) -> String {
         let mut text = format!("{} ", self.red("error:"));
         if let Some(Location { file, line, column, .. }) = place {
             let _ = write!(text, "{}:{line}:{column}: ", printable(file));
         }
-        text.push_str(&printable(sentence));
+        text.push_str(&printable(message));
         if let Some(place) = place.filter(|place| !place.text.trim().is_empty()) {
             text.push('\n');
             text.push_str(&self.excerpt(place));
@@ -87,10 +87,10 @@ fn is_harmful(c: char) -> bool {
     c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// The longest sentence that is shown whole. Beyond it, it quotes something that nobody wants to read to its end.
+/// The longest message that is shown whole. Beyond it, it quotes something that nobody wants to read to its end.
 const SENTENCE: usize = 2000;
 
-/// A sentence that quotes a file or an argument, without what could command the terminal, and cut in its middle if it is endless.
+/// A message that quotes a file or an argument, without what could command the terminal, and cut in its middle if it is endless.
 fn printable(text: &str) -> String {
     let text = &words::readable(text.to_string());
     let count = text.chars().count();
@@ -112,7 +112,7 @@ mod tests {
     }
 
     fn check(place: &Location, expect: &str) {
-        assert_eq!(Paint(false).complaint("wrong.", Some(place)), expect);
+        assert_eq!(Paint(false).diagnostic("wrong.", Some(place)), expect);
     }
 
     #[test]
@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn long_lines_are_cut_around_the_place() {
         let long = format!("{}BAD{}", "a".repeat(5000), "b".repeat(5000));
-        let text = Paint(false).complaint("wrong.", Some(&place(5001, 3, &long)));
+        let text = Paint(false).diagnostic("wrong.", Some(&place(5001, 3, &long)));
         let lines: Vec<&str> = text.lines().collect();
         assert!(lines[1].len() < 120 && lines[1].starts_with(" 12 | ...aaa") && lines[1].ends_with("bbb..."));
         assert_eq!(lines[1].find("BAD"), lines[2].find("^^^"));
@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn nothing_in_a_file_commands_the_terminal() {
-        let text = Paint(false).complaint("bad \x1b[31m key", Some(&place(1, 2, "\x1b]0;title\x07 = 1")));
+        let text = Paint(false).diagnostic("bad \x1b[31m key", Some(&place(1, 2, "\x1b]0;title\x07 = 1")));
         assert!(!text.contains('\x1b') && !text.contains('\x07'), "{text:?}");
     }
 }

@@ -4,7 +4,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use orogen::dem::ground::{Ground, USUAL_MEMORY};
+use orogen::dem::ground::{DEFAULT_MEMORY, Ground};
 use orogen::dem::open;
 use orogen::recipe::document::LONGEST_TEXT;
 use orogen::recipe::presets::{self, Preset};
@@ -72,7 +72,7 @@ impl Source {
             Source::Preset(preset) => preset.recipe()?,
             Source::Stdin => piped()?,
             Source::Dem(path) => {
-                let ground = Ground::read(path, None, budget.left().unwrap_or(USUAL_MEMORY))?;
+                let ground = Ground::read(path, None, budget.left().unwrap_or(DEFAULT_MEMORY))?;
                 ground.notes.iter().for_each(|note| say::error(&format!("note: {}: {note}", path.display())));
                 Recipe::of_place(path, &Arc::new(ground))
             }
@@ -111,7 +111,7 @@ pub fn title(argument: &Path) -> String {
     }
 }
 
-/// The preset called `name`, or the sentence that says what there is.
+/// The preset called `name`, or the message that says what there is.
 pub fn preset(name: &str) -> Result<&'static Preset, Failure> {
     presets::find(name).ok_or_else(|| Failure::Usage(format!("there is no preset `{name}`; {}", hint(name))))
 }

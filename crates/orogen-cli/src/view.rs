@@ -106,8 +106,8 @@ impl View {
     /// the edges of a GeoTIFF's pixels hold the same pixels as gdal_translate takes.
     pub fn part(&self, world: &World, size: Option<Size>, cell: f64) -> Result<Option<Window>, Failure> {
         if size.is_some() && self.cell.is_some() {
-            let sentence = "--size and --cell both say how far apart samples are; leave out one of them";
-            return Err(Failure::Usage(sentence.into()));
+            let message = "--size and --cell both say how far apart samples are; leave out one of them";
+            return Err(Failure::Usage(message.into()));
         }
         let bounds = match (&self.projwin, self.bounds) {
             (Some(corners), _) => Some(Bounds::of_corners(corners).map_err(Failure::Usage)?),
@@ -234,7 +234,7 @@ mod tests {
     fn look(size: &str, view: &SizedView) -> Result<Window, String> {
         match view.window(&world(size)) {
             Ok(window) => Ok(window),
-            Err(Failure::Usage(sentence)) => Err(sentence),
+            Err(Failure::Usage(message)) => Err(message),
             Err(Failure::Engine(error)) => Err(error.to_string()),
             Err(other) => panic!("{other:?}"),
         }

@@ -74,9 +74,8 @@ impl Budget {
     pub fn refusal(&self, what: &str, needed: u64, instead: &str) -> Error {
         let all = needed.saturating_add(self.reserved.load(Ordering::Relaxed));
         let limit = self.limit.unwrap_or(u64::MAX);
-        let sentence =
-            format!("{what} needs up to {} of memory and {} is allowed: {instead}", bytes(all), bytes(limit));
-        Error::new(ErrorKind::Memory, sentence)
+        let message = format!("{what} needs up to {} of memory and {} is allowed: {instead}", bytes(all), bytes(limit));
+        Error::new(ErrorKind::Memory, message)
     }
 }
 

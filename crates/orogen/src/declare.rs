@@ -221,7 +221,7 @@ impl Param for u32 {
     const SHAPE: Shape = Shape::Integer;
     fn read(value: &Value) -> Option<u32> {
         match value {
-            // What does not fit is out of every declared range too: saturate, so that the range is what the sentence names.
+            // What does not fit is out of every declared range too: saturate, so that the range is what the message names.
             Value::Integer(integer) => Some(u32::try_from(*integer).unwrap_or(u32::MAX)),
             _ => None,
         }
@@ -298,7 +298,7 @@ impl Param for Vec<[f64; 2]> {
 }
 
 impl ParamSpec {
-    /// What the parameter must be, for a sentence: "a number from 0 to 1".
+    /// What the parameter must be, for a message: "a number from 0 to 1".
     pub fn expected(&self) -> String {
         let unit = match self.unit {
             "" => String::new(),
@@ -334,14 +334,14 @@ pub fn read_param<T: Param>(spec: &ParamSpec, value: &Value) -> Result<T, String
     match T::read(value) {
         Some(param) if param.within(spec.range) => Ok(param),
         _ => {
-            let mut sentence = format!("`{}` must be {}, not {}", spec.name, spec.expected(), value.describe());
+            let mut message = format!("`{}` must be {}, not {}", spec.name, spec.expected(), value.describe());
             if let (Shape::Choice(choices), Value::Text(text)) = (spec.shape, value) {
                 let names: Vec<&str> = choices().iter().map(|(name, _)| *name).collect();
                 if let Some(near) = crate::words::nearest(text, names) {
-                    sentence.push_str(&format!("; did you mean \"{near}\"?"));
+                    message.push_str(&format!("; did you mean \"{near}\"?"));
                 }
             }
-            Err(sentence)
+            Err(message)
         }
     }
 }
@@ -362,7 +362,7 @@ pub trait Declared {
     fn param_key(&self, i: usize) -> Value;
     /// The files that parameters name.
     fn files(&mut self) -> Vec<&mut Imported>;
-    /// What a single parameter cannot see: a sentence if parameters contradict each other, with the key it is about.
+    /// What a single parameter cannot see: a message if parameters contradict each other, with the key it is about.
     fn consistent(&self) -> Result<(), (&'static str, String)>;
 }
 
@@ -436,11 +436,11 @@ macro_rules! op {
 
         impl $name {
             /// The octaves as the noise library sums them.
-            fn fractal(&self, setting: &$crate::op::Setting, kind: orogen_noise::Kind) -> orogen_noise::Fractal {
+            fn fractal(&self, world_params: &$crate::op::WorldParams, kind: orogen_noise::Kind) -> orogen_noise::Fractal {
                 orogen_noise::Fractal {
                     basis: self.basis,
                     kind,
-                    seed: setting.seed_of(self.seed),
+                    seed: world_params.seed_of(self.seed),
                     wavelength: self.wavelength,
                     octaves: self.octaves,
                     lacunarity: self.lacunarity,
@@ -457,7 +457,7 @@ macro_rules! op {
             $(#[doc = $pdoc:literal])+
             $param:ident: $pty:ty = $default:expr $(, unit $unit:literal)? $(, range $low:literal to $high:expr)?;
         )* })?
-        $(layers { $( $(#[doc = $ldoc:literal])+ $layer:ident: $between:ident $(, unit $lunit:literal)?; )+ })?
+        $(layers { $( $(#[doc = $ldoc:literal])+ $layer:ident: $interpolation:ident $(, unit $lunit:literal)?; )+ })?
         $(check $check:expr;)?
     ) => {
         $(#[doc = $doc])+
@@ -502,7 +502,7 @@ macro_rules! op {
                     name: stringify!($layer),
                     doc: concat!($($ldoc, "\n"),+),
                     unit: concat!($($lunit)?),
-                    between: op!(@between $between),
+                    interpolation: op!(@interpolation $interpolation),
                 }, )+ )?];
                 static SPEC: $crate::declare::Spec = $crate::declare::Spec {
                     op: $op,
@@ -573,10 +573,10 @@ macro_rules! op {
     (@required optional) => { false };
     (@range) => { [f64::NEG_INFINITY, f64::INFINITY] };
     (@range $low:literal, $high:expr) => { [$low as f64, $high as f64] };
-    (@between height) => { $crate::layer::Between::As($crate::layer::LayerKind::Height) };
-    (@between label) => { $crate::layer::Between::As($crate::layer::LayerKind::Label) };
-    (@between flow) => { $crate::layer::Between::As($crate::layer::LayerKind::Flow) };
-    (@between source) => { $crate::layer::Between::AsSource };
+    (@interpolation height) => { $crate::layer::Interpolation::As($crate::layer::LayerKind::Height) };
+    (@interpolation label) => { $crate::layer::Interpolation::As($crate::layer::LayerKind::Label) };
+    (@interpolation flow) => { $crate::layer::Interpolation::As($crate::layer::LayerKind::Flow) };
+    (@interpolation source) => { $crate::layer::Interpolation::AsSource };
     (@locality field) => { $crate::declare::Locality::Field };
     (@locality filter) => { $crate::declare::Locality::Filter };
     (@locality solver) => { $crate::declare::Locality::Solver };

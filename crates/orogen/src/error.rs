@@ -1,4 +1,4 @@
-//! The one error type: a kind for programs, a sentence for people.
+//! The one error type: a kind for programs, a message for people.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use crate::words::readable;
 /// What every fallible call of the crate returns.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// What went wrong, for programs that want to tell cases apart. The sentence for people is the error's `Display`.
+/// What went wrong, for programs that want to tell cases apart. The message for people is the error's `Display`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ErrorKind {
@@ -23,21 +23,21 @@ pub enum ErrorKind {
     Cancelled,
 }
 
-/// An error: one or more sentences that say what is wrong, where, and what to do instead.
+/// An error: one or more messages that say what is wrong, where, and what to do instead.
 ///
 /// The type is opaque so that new causes do not break callers; [`Error::kind`] tells the cases that a program may want to
 /// handle apart.
 #[derive(Debug, Clone)]
 pub struct Error {
     kind: ErrorKind,
-    complaints: Vec<Complaint>,
+    diagnostics: Vec<Diagnostic>,
 }
 
 /// One thing that is wrong, with its place in a text where there is one.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Complaint {
-    /// What is wrong and what to do instead, a full sentence without its place.
-    pub sentence: String,
+pub struct Diagnostic {
+    /// What is wrong and what to do instead, a full message without its place.
+    pub message: String,
     /// Where in a recipe, if it is there.
     pub place: Option<Location>,
 }
@@ -58,18 +58,18 @@ pub struct Location {
 }
 
 impl Error {
-    /// An error of one sentence without a place.
-    pub fn new(kind: ErrorKind, sentence: impl Into<String>) -> Error {
-        Error::from_complaints(kind, vec![Complaint { sentence: sentence.into(), place: None }])
+    /// An error of one message without a place.
+    pub fn new(kind: ErrorKind, message: impl Into<String>) -> Error {
+        Error::from_diagnostics(kind, vec![Diagnostic { message: message.into(), place: None }])
     }
 
-    /// An error of several complaints, in the order of the text they come from. Names and numbers in them that nobody could read are
+    /// An error of several diagnostics, in the order of the text they come from. Names and numbers in them that nobody could read are
     /// [shortened](crate::words::readable).
-    pub fn from_complaints(kind: ErrorKind, mut complaints: Vec<Complaint>) -> Error {
-        for complaint in &mut complaints {
-            complaint.sentence = readable(std::mem::take(&mut complaint.sentence));
+    pub fn from_diagnostics(kind: ErrorKind, mut diagnostics: Vec<Diagnostic>) -> Error {
+        for diagnostic in &mut diagnostics {
+            diagnostic.message = readable(std::mem::take(&mut diagnostic.message));
         }
-        Error { kind, complaints }
+        Error { kind, diagnostics }
     }
 
     /// A file that could not be read or written: names the file, what was tried and the system's reason.
@@ -83,8 +83,8 @@ impl Error {
     }
 
     /// Everything that is wrong, one by one.
-    pub fn complaints(&self) -> &[Complaint] {
-        &self.complaints
+    pub fn diagnostics(&self) -> &[Diagnostic] {
+        &self.diagnostics
     }
 }
 
@@ -99,14 +99,14 @@ fn reason(cause: &std::io::Error) -> String {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, complaint) in self.complaints.iter().enumerate() {
+        for (i, diagnostic) in self.diagnostics.iter().enumerate() {
             if i > 0 {
                 f.write_str("\n")?;
             }
-            if let Some(place) = &complaint.place {
+            if let Some(place) = &diagnostic.place {
                 write!(f, "{}:{}:{}: ", place.file, place.line, place.column)?;
             }
-            f.write_str(&complaint.sentence)?;
+            f.write_str(&diagnostic.message)?;
         }
         Ok(())
     }

@@ -36,7 +36,7 @@ impl LayerKind {
 
 /// How a declaration says its layer is read between samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Between {
+pub enum Interpolation {
     /// As this kind.
     As(LayerKind),
     /// As what the op's first input shows.
@@ -53,9 +53,13 @@ pub struct Layer {
     /// Its unit, or empty.
     pub unit: &'static str,
     /// How it is read between samples.
-    pub between: Between,
+    pub interpolation: Interpolation,
 }
 
 /// What an op makes that declares no layers.
-pub const ONE_LAYER: &[Layer] =
-    &[Layer { name: "height", doc: "What the node makes.", unit: "", between: Between::As(LayerKind::Height) }];
+pub const ONE_LAYER: &[Layer] = &[Layer {
+    name: "height",
+    doc: "What the node makes.",
+    unit: "",
+    interpolation: Interpolation::As(LayerKind::Height),
+}];

@@ -99,7 +99,7 @@ impl Node {
         self.declared_mut().files()
     }
 
-    /// A sentence and its key if parameters contradict each other.
+    /// A message and its key if parameters contradict each other.
     pub fn consistent(&self) -> Result<(), (&'static str, String)> {
         self.declared().consistent()
     }

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 /// What the world tells every op.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Setting {
+pub struct WorldParams {
     /// The world's seed.
     pub seed: u64,
     /// The world's extent in metres, east and south; `None` if it has no bounds.
@@ -23,7 +23,7 @@ pub struct Setting {
     pub sea_level: f64,
 }
 
-impl Setting {
+impl WorldParams {
     /// A node's seed within this world: two numbers hashed to one, so that worlds and nodes with neighbouring seeds have
     /// nothing in common (splitmix64's finaliser, Steele, Lea and Flood 2014, over both).
     pub fn seed_of(&self, node_seed: u64) -> u64 {
@@ -38,14 +38,14 @@ impl Setting {
 }
 
 /// A node's inputs evaluated at the points asked for: one block of samples each.
-pub struct Slots<'a> {
+pub struct Inputs<'a> {
     slots: &'a [Option<&'a [f32]>],
 }
 
-impl<'a> Slots<'a> {
+impl<'a> Inputs<'a> {
     /// Over the inputs in the order of their declaration.
-    pub fn new(slots: &'a [Option<&'a [f32]>]) -> Slots<'a> {
-        Slots { slots }
+    pub fn new(slots: &'a [Option<&'a [f32]>]) -> Inputs<'a> {
+        Inputs { slots }
     }
 
     /// Input `i` where it is given.
@@ -63,16 +63,16 @@ impl<'a> Slots<'a> {
 /// times.
 pub trait Field: Send + Sync {
     /// Makes one value a point.
-    fn eval(&self, at: &Points, inputs: &Slots, setting: &Setting, out: &mut [f32]);
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]);
 
     /// Where a field's source is read elsewhere than at the position asked for. Such a field's [`Field::eval`] is never
     /// called: the engine moves the points and evaluates the source there.
-    fn moves(&self) -> Option<Moves> {
+    fn coord_map(&self) -> Option<CoordMap> {
         None
     }
 
     /// Whether the field also reads a source around the position asked for, to know its slope.
-    fn slopes(&self) -> Option<Slopes> {
+    fn stencil(&self) -> Option<Stencil> {
         None
     }
 
@@ -109,14 +109,14 @@ const IN_ROWS: f64 = 0.15;
 /// east, the west, the south and the north. The engine makes the four places and evaluates the source there, so a field's slope
 /// is known at any point, and nothing is made of neighbouring samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slopes {
+pub struct Stencil {
     /// Index of the input.
     pub source: usize,
     /// Metres from the position to each of the four.
     pub step: f64,
 }
 
-impl Slopes {
+impl Stencil {
     /// The maps to the four places: east, west, south, north.
     pub fn maps(&self) -> [Affine; 4] {
         [[self.step, 0.0], [-self.step, 0.0], [0.0, self.step], [0.0, -self.step]].map(|offset| Affine {
@@ -129,7 +129,7 @@ impl Slopes {
 
 /// How a field moves the points at which its source is read.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Moves {
+pub enum CoordMap {
     /// By two inputs times `strength` metres; each displacement is clamped to -reach ..= reach.
     Displaced {
         /// Index of the input that is read elsewhere.
@@ -183,7 +183,7 @@ impl Affine {
 /// What a filter or solver is given beside its inputs.
 pub struct Context<'a> {
     /// The world's facts.
-    pub setting: &'a Setting,
+    pub world_params: &'a WorldParams,
     /// Where to report how far the work has come, and to ask whether it is still wanted.
     pub progress: &'a Progress,
     /// Who wants to know what a solver that goes step by step would end with earlier.
@@ -292,7 +292,7 @@ pub struct Reading<'a> {
     /// Where.
     pub at: &'a Points<'a>,
     /// The solver's inputs at those points, if it reads them.
-    pub inputs: &'a Slots<'a>,
+    pub inputs: &'a Inputs<'a>,
 }
 
 /// A solver looks at the whole bounded world, once, at a cell of its own.

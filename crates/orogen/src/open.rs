@@ -55,12 +55,12 @@ mod tests {
         assert_eq!(bytes(&path, "read", 4).unwrap(), None);
         assert!(regular(&path, "read").is_ok());
         fs::remove_file(&path).unwrap();
-        let sentence = |path: &str| bytes(Path::new(path), "read the palette", 5).unwrap_err().to_string();
-        assert!(sentence(&path.to_string_lossy()).starts_with("cannot read the palette "));
+        let message = |path: &str| bytes(Path::new(path), "read the palette", 5).unwrap_err().to_string();
+        assert!(message(&path.to_string_lossy()).starts_with("cannot read the palette "));
         let folder = std::env::temp_dir();
-        assert!(sentence(&folder.to_string_lossy()).ends_with("it is a folder"));
+        assert!(message(&folder.to_string_lossy()).ends_with("it is a folder"));
         if cfg!(unix) {
-            assert!(sentence("/dev/zero").contains("/dev/zero: it is a pipe or a device"));
+            assert!(message("/dev/zero").contains("/dev/zero: it is a pipe or a device"));
             assert!(regular(Path::new("/dev/zero"), "read").is_err());
         }
     }

@@ -16,11 +16,11 @@ pub const SIDE: usize = 256;
 pub const BYTES: usize = SIDE * SIDE * 4;
 
 /// Most pages kept in memory.
-const MOST_KEPT: usize = 16;
+const MAX_KEPT: usize = 16;
 
 /// Bytes of memory that a grid in a file takes.
 pub fn memory(window: &Window) -> u64 {
-    (count(window).min(MOST_KEPT) * BYTES + count(window) * size_of::<Option<u32>>()) as u64
+    (count(window).min(MAX_KEPT) * BYTES + count(window) * size_of::<Option<u32>>()) as u64
 }
 
 /// Bytes that a grid over a window takes in a file.
@@ -42,7 +42,7 @@ pub fn checksum(bytes: &[u8]) -> u32 {
 #[derive(Debug)]
 pub struct PageFile {
     file: Mutex<File>,
-    /// What it is called in a sentence.
+    /// What it is called in a message.
     path: PathBuf,
     /// Its name, where it could not be taken away at once.
     _name: Option<Temporary>,
@@ -145,8 +145,8 @@ impl Pages {
         read.map_err(|cause| Error::file("read what was put aside in", &self.file.path, &cause))?;
         if checksum(&bytes) != sum {
             let path = self.file.path.display();
-            let sentence = format!("what was put aside in {path} has been damaged since; start again");
-            return Err(Error::new(ErrorKind::File, sentence));
+            let message = format!("what was put aside in {path} has been damaged since; start again");
+            return Err(Error::new(ErrorKind::File, message));
         }
         Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
     }
@@ -155,7 +155,7 @@ impl Pages {
         let mut kept = lock(&self.kept);
         let turn = kept.turn;
         kept.pages.insert(index, (turn, Arc::clone(page)));
-        while kept.pages.len() > MOST_KEPT {
+        while kept.pages.len() > MAX_KEPT {
             let oldest = kept.pages.iter().min_by_key(|(index, (read, _))| (*read, **index)).map(|(index, _)| *index);
             match oldest {
                 Some(oldest) => kept.pages.remove(&oldest),

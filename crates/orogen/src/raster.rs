@@ -89,8 +89,8 @@ impl Raster {
     /// If it does not, or the disk fails.
     pub fn get(&self, window: &Window) -> Result<Grid> {
         if !self.window().contains(window) {
-            let sentence = format!("{window:?} is not part of the raster over {:?}", self.window());
-            return Err(Error::new(ErrorKind::Request, sentence));
+            let message = format!("{window:?} is not part of the raster over {:?}", self.window());
+            return Err(Error::new(ErrorKind::Request, message));
         }
         match &self.kept {
             Kept::Memory(grid) => Ok(grid.crop(window).unwrap_or_else(|| Grid::filled(*window, f32::NAN))),

@@ -1,7 +1,7 @@
 //! One layer of a world, prepared for being asked often.
 
-use crate::engine::alone::Ready;
-use crate::engine::machine::Buffers;
+use crate::engine::inline::PreparedProgram;
+use crate::engine::interpreter::Buffers;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::progress::Progress;
@@ -43,7 +43,7 @@ pub struct Sampler<W: Borrow<World>> {
     world: W,
     layer: String,
     /// What answers for every point and window, if one program does.
-    everywhere: Option<Ready>,
+    everywhere: Option<PreparedProgram>,
     patches: Mutex<Vec<Patch>>,
     /// Buffers that no thread is using.
     idle: Mutex<Vec<Buffers>>,
@@ -55,7 +55,7 @@ pub struct Sampler<W: Borrow<World>> {
 struct Patch {
     /// Its column and row.
     at: [i64; 2],
-    ready: Arc<Ready>,
+    ready: Arc<PreparedProgram>,
 }
 
 /// A patch is so many of the world's cells wide.
@@ -111,9 +111,9 @@ impl<W: Borrow<World>> Sampler<W> {
     /// If a point is not finite or is outside of the world, or the lengths differ.
     pub fn points(&self, x: &[f64], y: &[f64], out: &mut [f32]) -> Result<()> {
         if x.len() != y.len() || x.len() != out.len() {
-            let sentence =
+            let message =
                 format!("{} eastings, {} southings and room for {} values do not pair", x.len(), y.len(), out.len());
-            return Err(Error::new(ErrorKind::Request, sentence));
+            return Err(Error::new(ErrorKind::Request, message));
         }
         x.iter().zip(y).try_for_each(|(x, y)| self.world().check_point(*x, *y))?;
         if let Some(ready) = &self.everywhere {
@@ -155,18 +155,18 @@ impl<W: Borrow<World>> Sampler<W> {
     pub fn fill(&self, window: &Window, out: &mut [f32]) -> Result<()> {
         self.world().check(window)?;
         if out.len() != window.len() {
-            let sentence = format!(
+            let message = format!(
                 "a window of {} x {} samples does not fit a buffer of {}: it needs {}",
                 window.width,
                 window.height,
                 out.len(),
                 window.len()
             );
-            return Err(Error::new(ErrorKind::Request, sentence));
+            return Err(Error::new(ErrorKind::Request, message));
         }
         match &self.everywhere {
             Some(ready) => {
-                self.with_buffers(|buffers| self.world().engine(&self.silence).fill_alone(ready, window, buffers, out))
+                self.with_buffers(|buffers| self.world().engine(&self.silence).fill_inline(ready, window, buffers, out))
             }
             None => {
                 out.copy_from_slice(self.world().window(&self.layer, window)?.data());
@@ -175,8 +175,8 @@ impl<W: Borrow<World>> Sampler<W> {
         }
     }
 
-    fn ask(&self, ready: &Ready, x: &[f64], y: &[f64], out: &mut [f32]) -> Result<()> {
-        self.with_buffers(|buffers| self.world().engine(&self.silence).points_alone(ready, (x, y), buffers, out))
+    fn ask(&self, ready: &PreparedProgram, x: &[f64], y: &[f64], out: &mut [f32]) -> Result<()> {
+        self.with_buffers(|buffers| self.world().engine(&self.silence).points_inline(ready, (x, y), buffers, out))
     }
 
     /// Lends buffers that no other thread is using.
@@ -193,7 +193,7 @@ impl<W: Borrow<World>> Sampler<W> {
     }
 
     /// A patch, kept or made now; the least recently asked for gives way.
-    fn patch(&self, at: [i64; 2]) -> Result<Arc<Ready>> {
+    fn patch(&self, at: [i64; 2]) -> Result<Arc<PreparedProgram>> {
         let mut patches = lock(&self.patches);
         if let Some(place) = patches.iter().position(|patch| patch.at == at) {
             let patch = patches.remove(place);

@@ -122,8 +122,8 @@ impl World {
             ));
         }
         if tiling.overlap > tiling.side {
-            let sentence = format!("tiles of {} samples cannot overlap by {}", tiling.side, tiling.overlap);
-            return Err(Error::new(ErrorKind::Request, sentence));
+            let message = format!("tiles of {} samples cannot overlap by {}", tiling.side, tiling.overlap);
+            return Err(Error::new(ErrorKind::Request, message));
         }
         self.check(window)?;
         let mut tiles = Tiles {

@@ -41,7 +41,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// The value as a sentence names it: "the string `abc`", "a table".
+    /// The value as a message names it: "the string `abc`", "a table".
     pub fn describe(&self) -> String {
         match self {
             Value::Flag(flag) => format!("{flag}"),

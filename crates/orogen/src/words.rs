@@ -1,4 +1,4 @@
-//! Words for people: the nearest spelling, and lists in sentences.
+//! Words for people: the nearest spelling, and lists in messages.
 
 /// The candidate that a misspelt `word` most likely meant, if one is near enough: at most a third of its letters off
 /// (insertions, deletions, substitutions and swaps of neighbours each count one), upper and lower case alike.
@@ -51,7 +51,7 @@ pub fn suggestion<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str> 
     }
 }
 
-/// Words in a sentence: "`a`, `b` and `c`"; long lists are cut with their count.
+/// Words in a message: "`a`, `b` and `c`"; long lists are cut with their count.
 pub fn list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     const SHOWN: usize = 100;
     let words: Vec<String> = words.into_iter().map(|word| format!("`{word}`")).collect();
@@ -106,20 +106,20 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// The longest name that a sentence quotes whole, in characters.
+/// The longest name that a message quotes whole, in characters.
 const LONGEST_NAME: usize = 80;
 
-/// The longest run of digits that a sentence shows: more than any number that is meant has.
+/// The longest run of digits that a message shows: more than any number that is meant has.
 const LONGEST_NUMBER: usize = 24;
 
-/// A sentence without what nobody reads: names between backticks are cut in their middle if they are longer than 80 characters, and numbers of
+/// A message without what nobody reads: names between backticks are cut in their middle if they are longer than 80 characters, and numbers of
 /// more than 24 digits are written with an exponent.
-pub fn readable(sentence: String) -> String {
-    if sentence.len() <= LONGEST_NUMBER {
-        return sentence;
+pub fn readable(message: String) -> String {
+    if message.len() <= LONGEST_NUMBER {
+        return message;
     }
-    let mut out = String::with_capacity(sentence.len().min(4096));
-    let mut parts = sentence.split('`').peekable();
+    let mut out = String::with_capacity(message.len().min(4096));
+    let mut parts = message.split('`').peekable();
     let mut quoted = false;
     while let Some(part) = parts.next() {
         // A backtick without its partner quotes nothing.
@@ -246,7 +246,7 @@ mod tests {
 
     #[test]
     fn sentences_stay_readable() {
-        for (sentence, expect) in [
+        for (message, expect) in [
             ("short".to_string(), "short".to_string()),
             (format!("not {}, but 2.5", 1e308), "not 1e308, but 2.5".to_string()),
             (format!("not {}.", 1e-308), "not 1e-308.".to_string()),
@@ -263,8 +263,8 @@ mod tests {
             ),
             (format!("one ` and {}", "y ".repeat(100)), String::new()),
         ] {
-            let expect = if expect.is_empty() { sentence.clone() } else { expect };
-            assert_eq!(readable(sentence), expect);
+            let expect = if expect.is_empty() { message.clone() } else { expect };
+            assert_eq!(readable(message), expect);
         }
     }
 

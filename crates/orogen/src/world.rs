@@ -1,13 +1,13 @@
 //! The front door: a recipe opened, asked for windows and points.
 
 use crate::budget::Budget;
-use crate::dem::ground::USUAL_MEMORY;
-use crate::engine::alone::Ready;
+use crate::dem::ground::DEFAULT_MEMORY;
+use crate::engine::inline::PreparedProgram;
 use crate::engine::run::Engine;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::layer::LayerKind;
-use crate::op::{Setting, Solution, StepObserver};
+use crate::op::{Solution, StepObserver, WorldParams};
 use crate::plan::cost;
 use crate::plan::explain::explain;
 use crate::plan::key::{Key, keys, link_key};
@@ -16,7 +16,7 @@ use crate::plan::planner::{Planner, world_windows};
 use crate::plan::steps::Plan;
 use crate::progress::Progress;
 use crate::recipe::document::Recipe;
-use crate::recipe::graph::{Graph, Link, MOST_SAMPLES, Target};
+use crate::recipe::graph::{Graph, LayerRef, Link, MAX_SAMPLES};
 use crate::store::cache::Cache;
 use crate::store::solutions::Store;
 use crate::words::{number, suggestion};
@@ -64,7 +64,7 @@ pub struct Options {
 pub struct World {
     recipe: Recipe,
     graph: Graph,
-    setting: Setting,
+    world_params: WorldParams,
     store: Store,
     pool: Arc<rayon::ThreadPool>,
     memory: Budget,
@@ -79,7 +79,7 @@ impl World {
     /// Opens a recipe.
     ///
     /// # Errors
-    /// If the recipe is not valid: every complaint at once.
+    /// If the recipe is not valid: every diagnostic at once.
     pub fn open(recipe: Recipe) -> Result<World> {
         World::with_options(recipe, Options::default())
     }
@@ -90,20 +90,20 @@ impl World {
     /// If the recipe is not valid, a file that it names cannot be read, or no threads can be started.
     pub fn with_options(mut recipe: Recipe, options: Options) -> Result<World> {
         let graph = Graph::resolve(&recipe).map_err(Graph::error)?;
-        recipe.load(options.memory.left().unwrap_or(USUAL_MEMORY))?;
+        recipe.load(options.memory.left().unwrap_or(DEFAULT_MEMORY))?;
         if recipe.outputs().next().is_none() {
-            let sentence = "the recipe has no outputs: name at least one, such as `height`";
-            return Err(Error::new(ErrorKind::Recipe, sentence));
+            let message = "the recipe has no outputs: name at least one, such as `height`";
+            return Err(Error::new(ErrorKind::Recipe, message));
         }
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(options.threads.unwrap_or(0))
             .build()
             .map_err(|cause| Error::new(ErrorKind::Request, format!("cannot start the threads asked for: {cause}")))?;
-        let setting = recipe.world.setting();
+        let world_params = recipe.world.world_params();
         Ok(World {
             recipe,
             graph,
-            setting,
+            world_params,
             store: Store::new(options.cache, options.scratch),
             pool: Arc::new(pool),
             memory: options.memory,
@@ -119,7 +119,7 @@ impl World {
     pub(crate) fn variant(&self, recipe: Recipe, solved: Vec<(Key, Arc<Solution>)>) -> Result<World> {
         let graph = Graph::resolve(&recipe).map_err(Graph::error)?;
         Ok(World {
-            setting: recipe.world.setting(),
+            world_params: recipe.world.world_params(),
             recipe,
             graph,
             store: Store::holding(solved, self.store.scratch().clone()),
@@ -136,8 +136,8 @@ impl World {
 
     /// A plan that does no more than solve nodes and what they read.
     pub(crate) fn plan_to_solve(&self, nodes: &[usize]) -> Result<Plan> {
-        let links: Vec<Link> = nodes.iter().map(|&node| Link::Node(Target { node, layer: 0 })).collect();
-        self.planned(&links, Window::new(1, 1, self.setting.cell), false)
+        let links: Vec<Link> = nodes.iter().map(|&node| Link::Node(LayerRef { node, layer: 0 })).collect();
+        self.planned(&links, Window::new(1, 1, self.world_params.cell), false)
     }
 
     /// Runs a plan while somebody observes the steps of a node's solver.
@@ -176,18 +176,18 @@ impl World {
         let samples = size.map(|length| (length / cell).round());
         let fault = |why: &str, other: &str| {
             let [width, height] = size;
-            let sentence = format!(
+            let message = format!(
                 "the world of {} x {} m has {why} at a cell of {} m; ask for a {other} cell",
                 number(width),
                 number(height),
                 number(cell)
             );
-            Err(Error::new(ErrorKind::Request, sentence))
+            Err(Error::new(ErrorKind::Request, message))
         };
         if !samples.iter().all(|samples| *samples >= 1.0) {
             return fault("no sample to show", "smaller");
         }
-        if samples.iter().any(|samples| *samples > MOST_SAMPLES) {
+        if samples.iter().any(|samples| *samples > MAX_SAMPLES) {
             return fault("more than 2^31 samples along a side", "larger");
         }
         Ok(Window::new(samples[0] as usize, samples[1] as usize, cell))
@@ -208,8 +208,8 @@ impl World {
     }
 
     fn bounds(&self) -> Result<[f64; 2]> {
-        let sentence = "this world has no bounds: say which window of it is wanted";
-        self.setting.size.ok_or_else(|| Error::new(ErrorKind::Request, sentence))
+        let message = "this world has no bounds: say which window of it is wanted";
+        self.world_params.size.ok_or_else(|| Error::new(ErrorKind::Request, message))
     }
 
     /// A plan for layers over a window.
@@ -367,7 +367,7 @@ impl World {
     /// If there is no such layer, coordinates are not finite or not in pairs, or a point is outside of the world.
     pub fn points(&self, layer: &str, x: &[f64], y: &[f64]) -> Result<Vec<f32>> {
         let target = self.target(layer)?;
-        let fault = |sentence: String| Error::new(ErrorKind::Request, sentence);
+        let fault = |message: String| Error::new(ErrorKind::Request, message);
         if x.len() != y.len() {
             return Err(fault(format!("{} eastings do not pair with {} southings", x.len(), y.len())));
         }
@@ -396,11 +396,11 @@ impl World {
 
     /// Whether a point is one of this world.
     pub(crate) fn check_point(&self, x: f64, y: f64) -> Result<()> {
-        let fault = |sentence: String| Err(Error::new(ErrorKind::Request, sentence));
+        let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
         if !(x.is_finite() && y.is_finite()) {
             return fault(format!("({x}, {y}) is no position: coordinates must be finite"));
         }
-        match self.setting.size {
+        match self.world_params.size {
             Some([w, h]) if !((0.0..=w).contains(&x) && (0.0..=h).contains(&y)) => {
                 fault(format!("({x}, {y}) is outside the world, which reaches from (0, 0) to ({w}, {h}) metres"))
             }
@@ -409,7 +409,7 @@ impl World {
     }
 
     /// A plan for points of a layer within `around`, and all that it needs made.
-    pub(crate) fn ready(&self, layer: &str, around: Window) -> Result<Ready> {
+    pub(crate) fn ready(&self, layer: &str, around: Window) -> Result<PreparedProgram> {
         let plan = self.planned(&[self.target(layer)?], around, true)?;
         self.afford(&plan)?;
         let ready = self.pool.install(|| self.engine(&Progress::none()).ready(&plan))?;
@@ -418,7 +418,7 @@ impl World {
 
     /// The samples at the world's cell around points, as far as the interpolating cubic reads.
     pub(crate) fn around(&self, x: &[f64], y: &[f64]) -> Window {
-        let cell = self.setting.cell;
+        let cell = self.world_params.cell;
         let span = |values: &[f64]| {
             let low = values.iter().copied().fold(f64::INFINITY, f64::min);
             let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -434,7 +434,7 @@ impl World {
         Engine {
             recipe: &self.recipe,
             graph: &self.graph,
-            setting: &self.setting,
+            world_params: &self.world_params,
             store: &self.store,
             progress,
             observer: None,
@@ -447,17 +447,17 @@ impl World {
             return Ok(self.graph.outputs[index]);
         }
         Graph::find(&self.recipe, layer).map(Link::Node).map_err(|why| {
-            let sentence = match layer.contains('.') {
+            let message = match layer.contains('.') {
                 true => format!("there is no layer `{layer}`: {why}"),
                 false => format!("the recipe has no layer `{layer}`; {}", suggestion(layer, self.recipe.outputs())),
             };
-            Error::new(ErrorKind::Request, sentence)
+            Error::new(ErrorKind::Request, message)
         })
     }
 
     /// Whether the world has this window.
     pub(crate) fn check(&self, window: &Window) -> Result<()> {
-        let fault = |sentence: String| Err(Error::new(ErrorKind::Request, sentence));
+        let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
         if !(window.cell.is_finite() && window.cell >= 1e-6) {
             return fault(format!(
                 "a cell of {} m is not possible: it must be a number of at least 0.000001",
@@ -476,7 +476,7 @@ impl World {
                 "the window lies beyond 2^53 samples from the origin, farther than positions are exact".to_string(),
             );
         }
-        if let Some(size) = self.setting.size {
+        if let Some(size) = self.world_params.size {
             let (world, _) = world_windows(size, window.cell);
             if !world.contains(window) {
                 return fault(format!(
@@ -498,7 +498,7 @@ impl World {
     /// A window with `reach` more samples on each side, as far as the world goes.
     pub(crate) fn surroundings(&self, window: &Window, reach: usize) -> Window {
         let wide = window.grown(reach);
-        let wide = match self.setting.size {
+        let wide = match self.world_params.size {
             Some(size) => wide.intersection(&world_windows(size, window.cell).0),
             None => wide,
         };

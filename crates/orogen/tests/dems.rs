@@ -357,7 +357,7 @@ fn damage(bytes: &mut Vec<u8>, random: &mut Random) {
     }
 }
 
-/// Any bytes at all: heights or a sentence, without a panic and without more memory than was allowed. With `OROGEN_LONG` a hundred times as
+/// Any bytes at all: heights or a message, without a panic and without more memory than was allowed. With `OROGEN_LONG` a hundred times as
 /// many.
 #[test]
 fn damaged_files_are_heights_or_sentences() {

@@ -3,15 +3,15 @@
 
 use orogen::fit::likeness::{Likeness, of_windows};
 use orogen::fit::search::{Effort, Target, search};
-use orogen::fit::template::{KNOBS, Setting, Stretch, recipe};
+use orogen::fit::template::{PARAMS, ParamValues, Stretch, recipe};
 use orogen::{Grid, Options, Progress, Window, World};
 
 fn options() -> Options {
     Options { threads: Some(2), ..Options::default() }
 }
 
-fn land(setting: &Setting, stretch: &Stretch, seed: u64) -> Grid {
-    let world = World::with_options(recipe(setting, stretch, [80, 80], 60.0, seed), options()).unwrap();
+fn land(values: &ParamValues, stretch: &Stretch, seed: u64) -> Grid {
+    let world = World::with_options(recipe(values, stretch, [80, 80], 60.0, seed), options()).unwrap();
     world.window("height", &Window::new(80, 80, 60.0)).unwrap()
 }
 
@@ -19,8 +19,8 @@ fn land(setting: &Setting, stretch: &Stretch, seed: u64) -> Grid {
 fn every_setting_is_a_valid_recipe() {
     let stretch = Stretch { from: [-300.0, 700.0], to: [120.0, 900.0], bend: -1.5 };
     for share in [0.0, 0.3, 1.0] {
-        let setting = [share; KNOBS.len()];
-        let recipe = recipe(&setting, &stretch, [96, 80], 30.0, 7);
+        let values = [share; PARAMS.len()];
+        let recipe = recipe(&values, &stretch, [96, 80], 30.0, 7);
         let again = orogen::Recipe::parse(&recipe.to_toml(), "fitted").unwrap();
         assert_eq!(recipe, again);
         let land = World::with_options(again, options()).unwrap().window("height", &Window::new(96, 80, 30.0)).unwrap();
@@ -30,8 +30,8 @@ fn every_setting_is_a_valid_recipe() {
 
 #[test]
 fn the_search_comes_nearer_and_meets_slope_and_hypsometry() {
-    // A place that the template can make: another seed of one of its settings.
-    let hidden: Setting = [0.6, 0.55, 0.5, 0.4, 0.6, 0.6, 0.5, 0.4, 0.4];
+    // A place that the template can make: another seed of one of its candidates.
+    let hidden: ParamValues = [0.6, 0.55, 0.5, 0.4, 0.6, 0.6, 0.5, 0.4, 0.4];
     let stretch = Stretch { from: [-400.0, 600.0], to: [200.0, 1400.0], bend: 0.8 };
     let place = land(&hidden, &stretch, 99);
     let target = Target::of(&place).unwrap();
@@ -40,7 +40,7 @@ fn the_search_comes_nearer_and_meets_slope_and_hypsometry() {
     };
     let (first, better) = (at(1, 0), at(12, 6));
     assert!(better.distance <= first.distance, "{} {}", better.distance, first.distance);
-    assert_eq!(at(3, 2).setting, at(3, 2).setting);
+    assert_eq!(at(3, 2).values, at(3, 2).values);
     // Worlds of other seeds: nearer than land with the same relief and no valleys.
     let distance = |grid: &Grid| {
         let windows = of_windows(grid, target.side, 4);
@@ -61,11 +61,11 @@ fn the_search_comes_nearer_and_meets_slope_and_hypsometry() {
 #[test]
 fn a_world_of_a_fitted_recipe_has_no_rim() {
     let stretch = Stretch { from: [-300.0, 700.0], to: [120.0, 1400.0], bend: 0.5 };
-    let setting: Setting = [0.6, 0.55, 0.5, 0.4, 0.6, 0.6, 0.5, 0.4, 0.4];
+    let values: ParamValues = [0.6, 0.55, 0.5, 0.4, 0.6, 0.6, 0.5, 0.4, 0.4];
     for size in [[150, 150], [120, 190]] {
         let mut borders = Vec::new();
         for seed in 1..=6 {
-            let world = World::with_options(recipe(&setting, &stretch, size, 60.0, seed), options()).unwrap();
+            let world = World::with_options(recipe(&values, &stretch, size, 60.0, seed), options()).unwrap();
             let grid = world.window("height", &Window::new(size[0], size[1], 60.0)).unwrap();
             let step = |i: usize, j: usize| {
                 let here = grid.get(i, j);

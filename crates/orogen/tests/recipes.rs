@@ -3,7 +3,7 @@
 
 use orogen::{ErrorKind, Grid, Recipe, Window, World, presets};
 
-/// The first complaint as "line:column: sentence" must be at `place` and hold every word of `words`.
+/// The first diagnostic as "line:column: message" must be at `place` and hold every word of `words`.
 fn complains(text: &str, place: &str, words: &[&str]) {
     let error = match Recipe::parse(text, "r.toml").and_then(World::open) {
         Ok(_) => panic!("this was accepted: {}", text.chars().take(300).collect::<String>()),
@@ -133,9 +133,9 @@ fn depth_and_size_have_bounds() {
 fn all_complaints_come_at_once() {
     let text = format!("orogen = 1\n[world]\nsede = 1\n[nodes.a]\nop = \"fbm\"\noctavs = 3\ngain = 7\n{OUT}");
     let error = Recipe::parse(&text, "r.toml").unwrap_err();
-    let places: Vec<usize> = error.complaints().iter().map(|c| c.place.as_ref().unwrap().line).collect();
+    let places: Vec<usize> = error.diagnostics().iter().map(|c| c.place.as_ref().unwrap().line).collect();
     assert_eq!(places, [3, 6, 7], "{error}");
-    let place = error.complaints()[1].place.as_ref().unwrap();
+    let place = error.diagnostics()[1].place.as_ref().unwrap();
     assert_eq!((place.column, place.length, place.text.as_str()), (1, 6, "octavs = 3"));
 }
 
@@ -144,7 +144,7 @@ fn columns_count_characters_not_bytes() {
     let text =
         "orogen = 1\nabout = \"Höhenzüge — 山\"\n[nodes.a]\nop = \"fbm\" # Größe\n[outputs]\nheight = { \"ü\" = 1 }\n";
     let error = Recipe::parse(text, "r").unwrap_err();
-    assert_eq!(error.complaints()[0].place.as_ref().unwrap().column, 10, "{error}");
+    assert_eq!(error.diagnostics()[0].place.as_ref().unwrap().column, 10, "{error}");
 }
 
 #[test]
@@ -170,7 +170,7 @@ fn what_is_written_reads_back() {
     assert!(presets::find(presets::DEFAULT).is_some());
 }
 
-/// Recipes broken at random end in a recipe or in sentences, never in a panic: every cut, flipped and doubled byte.
+/// Recipes broken at random end in a recipe or in messages, never in a panic: every cut, flipped and doubled byte.
 #[test]
 fn broken_texts_never_panic() {
     let mut seed = 0x9E37_79B9_7F4A_7C15u64;

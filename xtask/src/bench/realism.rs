@@ -135,7 +135,7 @@ fn cells(name: &str, score: &Score) -> Vec<String> {
     ]
 }
 
-/// A sentence for each target missed.
+/// A message for each target missed.
 fn misses(case: &Case, score: &Score) -> Vec<String> {
     let targets = &case.targets;
     let most = [

@@ -152,9 +152,9 @@ impl Held {
             return Ok(Held::InMemory(plan, reserved));
         }
         if u32::try_from(window.len()).is_err() {
-            let sentence =
+            let message =
                 "more than 2^32 samples cannot be measured at once; choose a smaller window, or a coarser cell";
-            return Err(Error::new(ErrorKind::Request, sentence));
+            return Err(Error::new(ErrorKind::Request, message));
         }
         // The page is drawn when all is measured.
         let drawing = if page > 0 { page + page::rows_memory(window) } else { 0 };
@@ -180,8 +180,8 @@ fn shown(
     progress: &Progress,
 ) -> Result<(Measures, Option<Canvas>), Error> {
     let measures = measures.ok_or_else(|| {
-        let sentence = "there is too little land to measure: it takes 64 x 64 samples, a hundredth of them above the sea, and some relief";
-        Error::new(ErrorKind::Request, sentence)
+        let message = "there is too little land to measure: it takes 64 x 64 samples, a hundredth of them above the sea, and some relief";
+        Error::new(ErrorKind::Request, message)
     })?;
     let title = Title { name: title(&args.recipe), about: about(args, world) };
     let page = args.out.is_some().then(|| page::draw(&title, land, &measures)).transpose()?;

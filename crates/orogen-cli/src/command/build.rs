@@ -78,8 +78,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 fn build(args: &Args) -> Result<(), Failure> {
     if is_stdout(&args.out) {
-        let sentence = "a build goes on where it was interrupted, which standard output cannot; name a file, or use `orogen export`";
-        return Err(Failure::Usage(sentence.into()));
+        let message = "a build goes on where it was interrupted, which standard output cannot; name a file, or use `orogen export`";
+        return Err(Failure::Usage(message.into()));
     }
     let begun = Instant::now();
     let form = form(args)?;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use orogen::error::Complaint;
+use orogen::error::Diagnostic;
 use orogen::words::count;
 use orogen::{Options, World};
 use serde_json::{Value, json};
@@ -82,8 +82,8 @@ fn described(recipe: &Path, found: &Result<World, Failure>) -> Value {
         }),
         Err(failure) => {
             let errors: Vec<Value> = match failure {
-                Failure::Engine(error) => error.complaints().iter().map(fault).collect(),
-                Failure::Usage(sentence) | Failure::Interrupted(sentence) => vec![json!({ "message": sentence })],
+                Failure::Engine(error) => error.diagnostics().iter().map(fault).collect(),
+                Failure::Usage(message) | Failure::Interrupted(message) => vec![json!({ "message": message })],
                 Failure::Told | Failure::BrokenPipe => Vec::new(),
             };
             json!({ "recipe": name, "valid": false, "errors": errors })
@@ -92,11 +92,11 @@ fn described(recipe: &Path, found: &Result<World, Failure>) -> Value {
 }
 
 /// A fault with its place: line and column from 1, and how many characters are meant.
-fn fault(Complaint { sentence, place }: &Complaint) -> Value {
+fn fault(Diagnostic { message, place }: &Diagnostic) -> Value {
     match place {
-        None => json!({ "message": sentence }),
+        None => json!({ "message": message }),
         Some(place) => json!({
-            "message": sentence,
+            "message": message,
             "file": place.file,
             "line": place.line,
             "column": place.column,

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use orogen::dem::ground::{Ground, USUAL_MEMORY};
+use orogen::dem::ground::{DEFAULT_MEMORY, Ground};
 use orogen::file::mark;
 use orogen::fit::likeness::{self, Likeness};
-use orogen::fit::search::{Effort, MOST_WINDOWS, SIDE, Target, search};
+use orogen::fit::search::{Effort, MAX_WINDOWS, SIDE, Target, search};
 use orogen::recipe::presets;
 use orogen::survey::measures::Measures;
 use orogen::survey::real::FIGURES;
@@ -64,7 +64,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let sink = Sink::new(&args.out, &args.replace.policy([&args.place]))?;
     let budget = args.limits.budget();
-    let place = Ground::read(&args.place, None, budget.left().unwrap_or(USUAL_MEMORY))?;
+    let place = Ground::read(&args.place, None, budget.left().unwrap_or(DEFAULT_MEMORY))?;
     // The place, and what a window takes while it is measured.
     budget.reserve(place.memory() + MEASURED * (SIDE * SIDE) as u64)?.keep();
     if !args.quiet {
@@ -144,7 +144,7 @@ fn land(
 
 /// The measures of windows of a land, those left out that cannot be measured.
 fn windows(land: &Grid, target: &Target) -> Vec<Measures> {
-    let windows = likeness::windows(land.window(), target.side, MOST_WINDOWS);
+    let windows = likeness::windows(land.window(), target.side, MAX_WINDOWS);
     windows.into_iter().filter_map(|window| Measures::of(&land.crop(&window)?, None)).collect()
 }
 

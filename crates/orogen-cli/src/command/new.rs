@@ -28,8 +28,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let path = path(args)?;
     if path.symlink_metadata().is_ok() {
-        let sentence = format!("{} already exists and is left as it is; choose another name", path.display());
-        return Err(Error::new(ErrorKind::File, sentence).into());
+        let message = format!("{} already exists and is left as it is; choose another name", path.display());
+        return Err(Error::new(ErrorKind::File, message).into());
     }
     let output = OutputPolicy::new(Existing::Keep).output(&path)?;
     file::write_whole(&output, |out| out.write_all(preset.text.as_bytes()))?;

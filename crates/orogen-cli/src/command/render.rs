@@ -152,8 +152,8 @@ fn render(args: &Args) -> Result<(), Failure> {
         None if is_stdout(&args.out) => Target::Apng,
         None if args.out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) => Target::Apng,
         None => {
-            let sentence = format!("a view is one picture; name a file that ends in .png, not {}", args.out.display());
-            return Err(Failure::Usage(sentence + ", or ask for frames by --turntable"));
+            let message = format!("a view is one picture; name a file that ends in .png, not {}", args.out.display());
+            return Err(Failure::Usage(message + ", or ask for frames by --turntable"));
         }
     };
     let [width, height] = size(args)?;
@@ -204,7 +204,7 @@ fn size(args: &Args) -> Result<[usize; 2], Failure> {
 
 /// How it is to look.
 fn style<'a>(args: &Args, palette: Option<&'a Palette>) -> Result<Style<'a>, Failure> {
-    let usage = |sentence: String| Err(Failure::Usage(sentence));
+    let usage = |message: String| Err(Failure::Usage(message));
     if !(1.0..=150.0).contains(&args.fov) {
         return usage(format!("--fov is {}; an angle of view goes from 1 to 150 degrees", args.fov));
     }
@@ -241,7 +241,7 @@ fn style<'a>(args: &Args, palette: Option<&'a Palette>) -> Result<Style<'a>, Fai
 
 /// Where the sun stands.
 fn sun(args: &Args) -> Result<[f64; 2], Failure> {
-    let usage = |sentence: String| Err(Failure::Usage(sentence));
+    let usage = |message: String| Err(Failure::Usage(message));
     if let Some(hour) = args.time {
         let latitude = args.latitude.unwrap_or(45.0);
         if !(-90.0..=90.0).contains(&latitude) {
@@ -283,7 +283,7 @@ fn hours(hour: f64) -> String {
 
 /// From where it is taken.
 fn shot(args: &Args) -> Result<Shot, Failure> {
-    let usage = |sentence: String| Err(Failure::Usage(sentence));
+    let usage = |message: String| Err(Failure::Usage(message));
     let camera = args.camera.as_ref().map(|camera| camera.0.as_slice());
     if let Some(Numbers(look)) = &args.look {
         return match (camera, look.as_slice()) {

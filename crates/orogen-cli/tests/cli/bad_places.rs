@@ -1,4 +1,4 @@
-//! Places that cannot be written to, or not all the way: a sentence, and nothing half-written.
+//! Places that cannot be written to, or not all the way: a message, and nothing half-written.
 
 use crate::harness::Folder;
 

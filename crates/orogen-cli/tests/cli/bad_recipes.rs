@@ -1,4 +1,4 @@
-//! Recipes that cannot be made: each ends in a sentence at its place, and writes nothing.
+//! Recipes that cannot be made: each ends in a message at its place, and writes nothing.
 
 use crate::harness::Folder;
 
@@ -16,7 +16,7 @@ fn check_as(name: &str, content: impl AsRef<[u8]>, expect: &str) {
     for command in [&["generate", name][..], &["export", name, "-o", "x.npy"], &["explain", name]] {
         let begun = std::time::Instant::now();
         let outcome = folder.bad(command, 1, expect);
-        assert!(outcome.err.len() < 20_000, "{} bytes of complaints", outcome.err.len());
+        assert!(outcome.err.len() < 20_000, "{} bytes of diagnostics", outcome.err.len());
         assert!(begun.elapsed().as_secs() < 60, "{expect} took {:?}", begun.elapsed());
         assert_eq!(folder.names(""), [name]);
     }

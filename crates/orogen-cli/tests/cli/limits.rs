@@ -91,7 +91,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// A command that may take 64 KiB refuses with a sentence that says so, and writes nothing. What it takes of larger limits is measured in memory.rs.
+/// A command that may take 64 KiB refuses with a message that says so, and writes nothing. What it takes of larger limits is measured in memory.rs.
 fn memory(writer: &Writer) -> bool {
     let folder = ready(writer);
     let help = folder.good(&[writer.arguments[0], "--help"]).text().to_string();
@@ -195,7 +195,7 @@ fn stdin(writer: &Writer) -> bool {
     true
 }
 
-/// What is no recipe is refused with a sentence, and nothing is written.
+/// What is no recipe is refused with a message, and nothing is written.
 fn bad_input(writer: &Writer) -> bool {
     let Some(name) = writer.arguments[1..]
         .iter()

@@ -60,7 +60,7 @@ fn an_underground_camera_is_lifted_with_a_note() {
 #[test]
 fn what_cannot_be_is_a_sentence_and_leaves_nothing() {
     let folder = Folder::with_small();
-    for (wrong, sentence) in [
+    for (wrong, message) in [
         (&["-o", "a.jpg"][..], "ends in .png"),
         (&["--camera", "1"], "AZIMUTH,ELEVATION[,DISTANCE]"),
         (&["--camera", "1,2,3,4"], "AZIMUTH,ELEVATION[,DISTANCE]"),
@@ -88,7 +88,7 @@ fn what_cannot_be_is_a_sentence_and_leaves_nothing() {
             false => with(wrong),
         };
         let outcome = folder.run(&arguments);
-        assert!(outcome.code != 0 && outcome.err.contains(sentence), "{wrong:?}: {}", outcome.err);
+        assert!(outcome.code != 0 && outcome.err.contains(message), "{wrong:?}: {}", outcome.err);
     }
     folder.bad(&with(&["-o", "none/a.png"]), 1, "cannot write into none");
     assert_eq!(folder.names(""), ["small.toml"]);

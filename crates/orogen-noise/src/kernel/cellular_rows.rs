@@ -17,7 +17,7 @@ const WIDTH: usize = 256;
 /// Cells a strip may span and still have its points kept.
 const SPAN: usize = WIDTH + 48;
 /// The most lanes of any level.
-const MOST_LANES: usize = 16;
+const MAX_LANES: usize = 16;
 
 /// The points of the cells along three lines of the lattice (times three depths), and the columns over them.
 #[repr(C, align(64))]
@@ -113,7 +113,7 @@ impl Body for Columns<'_> {
         let Columns { job, strip, xs } = self;
         strip.held = [None; 3];
         let Some(&last) = xs.last() else { return };
-        let mut lanes = [0.0; MOST_LANES];
+        let mut lanes = [0.0; MAX_LANES];
         let (mut origin, mut reach, mut farthest) = (0.0, simd.u32(0), 0);
         for v in 0..xs.len().div_ceil(S::LANES).min(WIDTH / S::LANES) {
             let at = v * S::LANES;
@@ -127,7 +127,7 @@ impl Body for Columns<'_> {
             cell.whole.store(&mut strip.wholes[at..]);
             // Exact while small; what is not turns into a huge number and fails the tests below.
             let place = (cell.whole - simd.f64(origin)).narrow().to_i32();
-            let mut places = [0; MOST_LANES];
+            let mut places = [0; MAX_LANES];
             place.store(&mut places);
             let index = place - simd.u32(places[0]);
             index.store(&mut strip.index[at..]);
@@ -143,7 +143,7 @@ impl Body for Columns<'_> {
         }
         // One cell more on either side.
         strip.cells = (farthest as usize + S::LANES + 2).next_multiple_of(S::LANES).min(SPAN);
-        const COUNT: [f64; MOST_LANES] =
+        const COUNT: [f64; MAX_LANES] =
             [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
         let lattice = Hashed::new(simd, job.octave);
         for p in (0..strip.cells).step_by(S::LANES) {
@@ -174,7 +174,7 @@ impl<const DIMS: usize, const PLAIN: bool> Body for Row<'_, DIMS, PLAIN> {
         let field = Field { lattice: Hashed::new(simd, job.octave), cellular };
         let y = Cell::split(simd, job.octave, 1, clamp(simd, simd.f64(y), job.limit));
         let z = Cell::split(simd, job.octave, 2, clamp(simd, simd.f64(job.z), job.limit));
-        let mut lanes = [0.0; MOST_LANES];
+        let mut lanes = [0.0; MAX_LANES];
         y.whole.store(&mut lanes);
         let mut thirds = [0; 3];
         for line in 0..3 {

@@ -21,7 +21,7 @@ const WIDTH: usize = 256;
 /// Cubes a strip may span and still have their keys kept.
 const SPAN: usize = WIDTH + 48;
 /// The most lanes of any level.
-const MOST_LANES: usize = 16;
+const MAX_LANES: usize = 16;
 
 /// One octave over a strip of columns.
 #[repr(C, align(64))]
@@ -110,7 +110,7 @@ impl<const DIMS: usize> Body for Columns<'_, DIMS> {
         let Columns { octave, limit, strip, xs } = self;
         strip.held = [None; 4];
         let Some(&last) = xs.last() else { return };
-        let mut lanes = [0.0; MOST_LANES];
+        let mut lanes = [0.0; MAX_LANES];
         let (mut reach, mut farthest) = ([simd.u32(0); 2], [0; 2]);
         for v in 0..xs.len().div_ceil(S::LANES).min(WIDTH / S::LANES) {
             let at = v * S::LANES;
@@ -125,7 +125,7 @@ impl<const DIMS: usize> Body for Columns<'_, DIMS> {
                 }
                 // Exact while small; what is not (or lies before the first) turns into a huge number and fails the test below.
                 let place = (whole - simd.f64(strip.origin[which])).narrow().to_i32();
-                let mut places = [0; MOST_LANES];
+                let mut places = [0; MAX_LANES];
                 place.store(&mut places);
                 let index = place - simd.u32(places[0]);
                 index.store(&mut strip.index[which][at..]);
@@ -199,7 +199,7 @@ fn hold<S: Simd, C: Corners, const DIMS: usize>(
     row: &[Slanted<S>; 4],
     skew: S::F64,
 ) {
-    const COUNT: [f64; MOST_LANES] =
+    const COUNT: [f64; MAX_LANES] =
         [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
     for axis in 0..DIMS {
         let which = usize::from(axis > 0);
@@ -207,7 +207,7 @@ fn hold<S: Simd, C: Corners, const DIMS: usize>(
         if axis > 0 {
             number = number + row[axis].whole;
         }
-        let mut lanes = [0.0; MOST_LANES];
+        let mut lanes = [0.0; MAX_LANES];
         number.store(&mut lanes);
         if strip.held[axis] == Some(lanes[0]) {
             continue;

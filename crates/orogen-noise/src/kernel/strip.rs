@@ -13,7 +13,7 @@ pub(crate) const WIDTH: usize = 256;
 /// Lattice points a strip may span and still be hashed once each.
 const SPAN: usize = WIDTH + 32;
 /// The most lanes of any level.
-pub(crate) const MOST_LANES: usize = 16;
+pub(crate) const MAX_LANES: usize = 16;
 
 /// One octave over the strip. Each array begins on a cache line: a register that straddles two costs twice.
 #[repr(C, align(64))]
@@ -22,7 +22,7 @@ pub(crate) struct StripOctave {
     /// do not push each other out of the cache.
     lines: [[[f32; WIDTH]; 2]; 8],
     /// Rows: coefficients of value, slope along x (and z and w), slope across; four places each.
-    pub coefficients: [[[f32; MOST_LANES]; 4]; 3],
+    pub coefficients: [[[f32; MAX_LANES]; 4]; 3],
     /// Fractions and fades per column: (1 - u) t, u (t - 1), 1 - u, u, then the slopes of the first two and of u.
     weights: [[f32; WIDTH]; 7],
     /// Dense: each column's lattice point, counted from its register's first.
@@ -30,9 +30,9 @@ pub(crate) struct StripOctave {
     /// Dense: the keys of the lattice points. Else: of each column's cell and the next.
     keys: [[u32; SPAN]; 2],
     /// Rows: the keys of the lattice lines above and below each.
-    line_keys: [[u32; MOST_LANES]; 2],
+    line_keys: [[u32; MAX_LANES]; 2],
     /// Rows: the row of cells of each.
-    cells: [u64; MOST_LANES],
+    cells: [u64; MAX_LANES],
     /// Dense: each register's first lattice point, counted from the strip's first.
     first: [u32; WIDTH / 4],
     /// Dense: how many lattice points there are.
@@ -57,9 +57,9 @@ impl StripOctave {
             lines: [[[0.0; WIDTH]; 2]; 8],
             upper: 0,
             held: None,
-            cells: [0; MOST_LANES],
-            line_keys: [[0; MOST_LANES]; 2],
-            coefficients: [[[0.0; MOST_LANES]; 4]; 3],
+            cells: [0; MAX_LANES],
+            line_keys: [[0; MAX_LANES]; 2],
+            coefficients: [[[0.0; MAX_LANES]; 4]; 3],
         }
     }
 
@@ -170,7 +170,7 @@ impl<S: Simd> Visit<S> for Columns<'_> {
         strip.held = None;
         let Some(&last) = xs.last() else { return };
         let registers = job.registers::<S>();
-        let mut lanes = [0.0; MOST_LANES];
+        let mut lanes = [0.0; MAX_LANES];
         job.split(simd, octave, simd.load_f64_partial(xs, last), 0).whole.store(&mut lanes);
         let origin = lanes[0];
 
@@ -187,7 +187,7 @@ impl<S: Simd> Visit<S> for Columns<'_> {
             // Cells from the strip's first. Exact while small; what is not (or lies before the first) turns into a huge
             // number and fails the tests below.
             let place = (cell.whole - simd.f64(origin)).narrow().to_i32();
-            let mut places = [0; MOST_LANES];
+            let mut places = [0; MAX_LANES];
             place.store(&mut places);
             let index = place - simd.u32(places[0]);
             index.store(&mut strip.index[at::<S>(v)..]);
@@ -200,7 +200,7 @@ impl<S: Simd> Visit<S> for Columns<'_> {
 
         if strip.dense {
             strip.points = (farthest as usize + S::LANES + 1).next_multiple_of(S::LANES).min(SPAN);
-            const COUNT: [f64; MOST_LANES] =
+            const COUNT: [f64; MAX_LANES] =
                 [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
             for p in (0..strip.points).step_by(S::LANES) {
                 let cell = Cell::at(simd, simd.f64(origin + p as f64) + simd.load_f64(&COUNT));
@@ -246,7 +246,7 @@ impl<S: Simd> Visit<S> for Rows<'_> {
         let [above, below] = basis.keys(simd, 1, &cell);
         above.store(&mut strip.line_keys[0]);
         below.store(&mut strip.line_keys[1]);
-        let (mut low, mut high) = ([0; MOST_LANES], [0; MOST_LANES]);
+        let (mut low, mut high) = ([0; MAX_LANES], [0; MAX_LANES]);
         cell.low.store(&mut low);
         cell.high.store(&mut high);
         for ((cell, low), high) in strip.cells.iter_mut().zip(low).zip(high) {

@@ -181,7 +181,7 @@ impl<'a> Build<'a> {
             }
             (_, read) => read?,
         };
-        let refuse = |sentence: String| Err(Error::new(ErrorKind::File, sentence));
+        let refuse = |message: String| Err(Error::new(ErrorKind::File, message));
         let out = self.site.out().display();
         match (start, story) {
             (Start::Fresh, Some(Story { finished: Some(_), .. })) => {

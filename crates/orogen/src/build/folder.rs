@@ -41,11 +41,11 @@ impl Folder {
     /// If no tile can have such a side.
     pub fn new(identity: &Identity, samples: Samples, about: &str, sea_level: f64) -> Result<Folder> {
         if !(2..=LARGEST).contains(&identity.tile) {
-            let sentence = format!(
+            let message = format!(
                 "tiles that share their edges have 2 to {LARGEST} samples a side, not {}: 513 and 1025 are usual",
                 identity.tile
             );
-            return Err(Error::new(ErrorKind::Request, sentence));
+            return Err(Error::new(ErrorKind::Request, message));
         }
         let tiling = Tiling { overlap: 1, ..Tiling::of(identity.tile - 1) };
         Ok(Folder { identity: identity.clone(), samples, about: about.to_string(), sea_level, tiling })

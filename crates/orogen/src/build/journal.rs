@@ -61,11 +61,11 @@ impl Story {
         };
         let mut lines = bytes.split(|byte| *byte == b'\n').map(parse);
         let Some(Some(Line::Begun(identity))) = lines.next() else {
-            let sentence = format!(
+            let message = format!(
                 "{} is damaged where it says what is being built; nothing can go on from it: --force begins anew",
                 path.display()
             );
-            return Err(Error::new(ErrorKind::File, sentence));
+            return Err(Error::new(ErrorKind::File, message));
         };
         let mut story = Story::begun(identity);
         for line in lines.flatten() {

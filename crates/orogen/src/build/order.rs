@@ -113,7 +113,7 @@ impl Order {
     /// # Errors
     /// If there is no layer, one twice, one whose name no file can have, or more than the form can hold.
     pub fn check(&self) -> Result<()> {
-        let refuse = |sentence: String| Err(Error::new(ErrorKind::Request, sentence));
+        let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
         if self.layers.is_empty() {
             return refuse("a build of no layer makes nothing: name at least one".into());
         }

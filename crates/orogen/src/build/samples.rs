@@ -27,8 +27,8 @@ pub fn read(shelf: &Shelf, place: &Place, count: usize) -> Result<Vec<f32>> {
 /// What there is to say of a file that is not as it was written.
 pub fn changed(shelf: &Shelf, place: &Place) -> Error {
     let path = shelf.path(place);
-    let sentence = format!("{} is not as it was written: resume the build to make it again", path.display());
-    Error::new(ErrorKind::File, sentence)
+    let message = format!("{} is not as it was written: resume the build to make it again", path.display());
+    Error::new(ErrorKind::File, message)
 }
 
 /// A grid's samples row by row in a square of `side`, what lies beyond the grid filled by `beyond`.

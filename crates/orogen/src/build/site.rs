@@ -143,13 +143,13 @@ impl Site {
             Err(cause) => return Err(Error::file("make the folder", &self.beside, &cause)),
         };
         if let Some(foreign) = self.foreign_beside() {
-            let sentence = format!(
+            let message = format!(
                 "{} holds {}, which no build has made, and a build of {} works in that folder: move it away, or name another place",
                 self.beside.display(),
                 foreign.to_string_lossy(),
                 self.out.display()
             );
-            return Err(Error::new(ErrorKind::File, sentence));
+            return Err(Error::new(ErrorKind::File, message));
         }
         let path = self.beside.join(LOCK);
         let failed = |cause: io::Error| Error::file("lock", &path, &cause);
@@ -192,7 +192,7 @@ impl Site {
     pub fn clear(&self, known: bool, old: &BTreeSet<PathBuf>, new: &BTreeSet<PathBuf>) -> Result<Vec<PathBuf>> {
         let mut foreign = Vec::new();
         if !self.file && self.is_taken() {
-            let refuse = |sentence: String| Err(Error::new(ErrorKind::File, sentence));
+            let refuse = |message: String| Err(Error::new(ErrorKind::File, message));
             if !known && !MARKS.iter().any(|mark| self.out.join(mark).is_file()) {
                 return refuse(format!(
                     "{} holds files that no build has made, and --force does not remove those: empty it, or name another place",

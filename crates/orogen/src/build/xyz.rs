@@ -63,7 +63,7 @@ impl Tree {
     /// # Errors
     /// If tiles are not of 256 or 512 pixels, or the window does not lie on the map.
     pub fn new(identity: &Identity, about: &str, encoding: Encoding) -> Result<Tree> {
-        let refuse = |sentence: String| Err(Error::new(ErrorKind::Request, sentence));
+        let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
         let (window, tile) = (identity.window, identity.tile);
         if !matches!(tile, 256 | 512) {
             return refuse(format!("the tiles of an XYZ tree have 256 or 512 samples a side, not {tile}"));

@@ -37,8 +37,8 @@ impl Zarr {
     /// If no chunk can have such a side.
     pub fn new(identity: &Identity, about: &str) -> Result<Zarr> {
         if !(1..=LARGEST).contains(&identity.tile) {
-            let sentence = format!("the tiles of a .zarr have 1 to {LARGEST} samples a side, not {}", identity.tile);
-            return Err(Error::new(ErrorKind::Request, sentence));
+            let message = format!("the tiles of a .zarr have 1 to {LARGEST} samples a side, not {}", identity.tile);
+            return Err(Error::new(ErrorKind::Request, message));
         }
         let tiling = Tiling::of(identity.tile);
         Ok(Zarr { identity: identity.clone(), about: about.to_string(), tiling })

@@ -41,7 +41,7 @@ impl Default for Rings {
 }
 
 /// The most chunks that the coarsest level may have along the way from one end of the range to the other.
-const MOST_ACROSS: f64 = 256.0;
+const MAX_ACROSS: f64 = 256.0;
 
 impl Rings {
     /// Whether these are rings at all.
@@ -49,7 +49,7 @@ impl Rings {
     /// # Errors
     /// Says which number cannot be, and what can.
     pub fn check(&self) -> Result<()> {
-        let fault = |sentence: String| Err(Error::new(ErrorKind::Request, sentence));
+        let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
         if !(2..=4096).contains(&self.cells) || self.cells % 2 == 1 {
             return fault(format!("chunks of {} cells are not possible: an even number from 2 to 4096 is", self.cells));
         }
@@ -76,10 +76,10 @@ impl Rings {
             return fault(format!("a range of {} m is not possible: it must be a number above 0", self.range));
         }
         let across = 2.0 * self.range / self.side(self.levels - 1);
-        match across <= MOST_ACROSS {
+        match across <= MAX_ACROSS {
             true => Ok(()),
             false => fault(format!(
-                "a range of {} m is {across:.0} of the coarsest chunks across and {MOST_ACROSS} are possible: use more levels, or \
+                "a range of {} m is {across:.0} of the coarsest chunks across and {MAX_ACROSS} are possible: use more levels, or \
                  see less far",
                 self.range
             )),

@@ -133,14 +133,14 @@ impl Chunks {
         // Samples have exact positions up to 2^53; the ground in sight must lie before that.
         let farthest = (1u64 << 52) as f64 * self.rings.cell;
         if !(x.abs() <= farthest && y.abs() <= farthest) {
-            let sentence = match x.is_finite() && y.is_finite() {
+            let message = match x.is_finite() && y.is_finite() {
                 false => format!("({x}, {y}) is no position: coordinates must be finite"),
                 true => format!(
                     "({x}, {y}) lies beyond 2^52 cells of {} m from the origin, farther than positions are exact",
                     self.rings.cell
                 ),
             };
-            return Err(Error::new(ErrorKind::Request, sentence));
+            return Err(Error::new(ErrorKind::Request, message));
         }
         let viewer = [x, y];
         self.see(viewer);

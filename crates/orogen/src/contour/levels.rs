@@ -10,7 +10,7 @@ pub const MOST: usize = 65_000;
 /// # Errors
 /// If the interval is not above 0, or there would be more than [`MOST`].
 pub fn every(interval: f64, low: f64, high: f64) -> Result<Vec<f64>> {
-    let fault = |sentence: String| Err(Error::new(ErrorKind::Request, sentence));
+    let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
     if !(interval > 0.0 && interval.is_finite()) {
         return fault(format!("contours {interval} m apart are none: an interval is more than 0 metres"));
     }
@@ -33,7 +33,7 @@ pub fn every(interval: f64, low: f64, high: f64) -> Result<Vec<f64>> {
 /// # Errors
 /// If one is no number, or there are more than [`MOST`].
 pub fn given(levels: &[f64]) -> Result<Vec<f64>> {
-    let fault = |sentence: String| Err(Error::new(ErrorKind::Request, sentence));
+    let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
     if let Some(level) = levels.iter().find(|level| !level.is_finite()) {
         return fault(format!("{level} is no height that a contour can have"));
     }

@@ -61,10 +61,10 @@ fn pieces(height: usize, rows: usize) -> Vec<Range<usize>> {
 fn joined(bands: Vec<Band>) -> Result<Band> {
     let total: usize = bands.iter().map(|band| band.own).sum();
     if total >= NONE as usize {
-        let sentence = format!(
+        let message = format!(
             "the contours would have {total} points, more than 4 294 967 294: take fewer levels or a larger cell"
         );
-        return Err(Error::new(ErrorKind::Request, sentence));
+        return Err(Error::new(ErrorKind::Request, message));
     }
     let mut whole = Band { own: total, ..Band::default() };
     whole.points.reserve_exact(total);

@@ -18,7 +18,7 @@ use crate::open::regular;
 use crate::words::{count, percent};
 
 /// Most bytes of heights where nobody says.
-pub const USUAL_MEMORY: u64 = 4 << 30;
+pub const DEFAULT_MEMORY: u64 = 4 << 30;
 
 /// Heights of a real place on a lattice of square metres, without holes.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,7 +31,7 @@ pub struct Ground {
     pub samples: usize,
     /// Where it lies on a map, if the file says so.
     pub georeference: Option<Georeference>,
-    /// What was done to it, in sentences.
+    /// What was done to it, in messages.
     pub notes: Vec<String>,
     /// SHA-256 of size, cell and heights.
     pub hash: [u8; 32],
@@ -68,7 +68,7 @@ impl Ground {
     /// Of a DEM at hand, as [`Ground::read`] does.
     ///
     /// # Errors
-    /// As [`Ground::read`], as a sentence.
+    /// As [`Ground::read`], as a message.
     pub fn of(mut dem: Dem, cell: Option<f64>, allowed: u64) -> std::result::Result<Ground, String> {
         let steps = match (cell, &dem.place) {
             (Some(cell), _) => [cell; 2],

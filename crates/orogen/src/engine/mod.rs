@@ -1,7 +1,7 @@
 //! The engine: runs plans.
 
-pub mod alone;
-pub mod machine;
+pub mod inline;
+pub mod interpreter;
 pub mod run;
 mod solve;
 mod tiles;

@@ -1,9 +1,9 @@
 //! Runs a plan's steps.
 
-use super::machine::{Bindings, Machine};
+use super::interpreter::{Bindings, Interpreter};
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
-use crate::op::{Context, Field, Op, Setting, Solution, Solver, StepObserver};
+use crate::op::{Context, Field, Op, Solution, Solver, StepObserver, WorldParams};
 use crate::plan::cost;
 use crate::plan::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use crate::plan::steps::{Plan, Step};
@@ -19,7 +19,7 @@ use std::sync::Arc;
 pub struct Engine<'a> {
     pub recipe: &'a Recipe,
     pub graph: &'a Graph,
-    pub setting: &'a Setting,
+    pub world_params: &'a WorldParams,
     pub store: &'a Store,
     pub progress: &'a Progress,
     /// Who observes the steps of which node's solver. That node is solved even if its solution is stored.
@@ -124,14 +124,14 @@ impl<'a> Engine<'a> {
     ) -> Result<Vec<Vec<f32>>> {
         let fields = |node| self.field(node);
         let solvers = |node| self.solver(node, solutions);
-        let bindings = Bindings { setting: self.setting, fields: &fields, solvers: &solvers, grids };
+        let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids };
         const POINTS: usize = BLOCK_WIDTH * BLOCK_HEIGHT;
         let mut values = vec![Vec::with_capacity(x.len()); program.outputs.len()];
-        let mut machine = Machine::new(program);
+        let mut interpreter = Interpreter::new(program);
         for (x, y) in x.chunks(POINTS).zip(y.chunks(POINTS)) {
-            machine.run_points(x, y, &bindings)?;
+            interpreter.run_points(x, y, &bindings)?;
             for (i, values) in values.iter_mut().enumerate() {
-                values.extend_from_slice(machine.output(i));
+                values.extend_from_slice(interpreter.output(i));
             }
         }
         Ok(values)
@@ -152,7 +152,7 @@ impl<'a> Engine<'a> {
         }
         let fields = |node| self.field(node);
         let solvers = |node| self.solver(node, solutions);
-        let bindings = Bindings { setting: self.setting, fields: &fields, solvers: &solvers, grids };
+        let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids };
         // Enough bands for every thread to have some, none so thin that rows of noise lattice are made over and over.
         let rows = window.height.div_ceil(2 * rayon::current_num_threads()).clamp(8, BLOCK_HEIGHT);
         progress.expect(window.height as f64);
@@ -163,8 +163,8 @@ impl<'a> Engine<'a> {
             }
         }
         bands.into_par_iter().enumerate().try_for_each_init(
-            || Machine::new(program),
-            |machine, (band, mut out)| {
+            || Interpreter::new(program),
+            |interpreter, (band, mut out)| {
                 progress.check()?;
                 let top = band * rows;
                 let height = rows.min(window.height - top);
@@ -176,9 +176,9 @@ impl<'a> Engine<'a> {
                         height,
                         cell: window.cell,
                     };
-                    machine.run_block(&block, &bindings)?;
+                    interpreter.run_block(&block, &bindings)?;
                     for (i, out) in out.iter_mut().enumerate() {
-                        let made = machine.output(i).chunks(block.width);
+                        let made = interpreter.output(i).chunks(block.width);
                         for (row, made) in out.chunks_mut(window.width).zip(made) {
                             row[left..left + block.width].copy_from_slice(made);
                         }
@@ -210,7 +210,7 @@ impl<'a> Engine<'a> {
             .zip(&cropped)
             .map(|(input, cropped)| cropped.as_ref().or_else(|| input.and_then(|slot| grids[slot].as_ref())))
             .collect();
-        let context = Context { setting: self.setting, progress, observer: None };
+        let context = Context { world_params: self.world_params, progress, observer: None };
         let mut made: Vec<Option<Grid>> =
             out.iter().map(|wanted| wanted.map(|_| Grid::filled(*window, 0.0f32))).collect();
         filter.apply(&given, window, &mut made, &context)?;

@@ -78,6 +78,6 @@ impl Engine<'_> {
         };
         let tiles = Tiles { links: &self.graph.links[order.node], order, make: &make, scratch: self.store.scratch() };
         let observer = self.observer.and_then(|(node, observer)| (node == order.node).then_some(observer));
-        solver.solve(&tiles, &Context { setting: self.setting, progress: &own, observer })
+        solver.solve(&tiles, &Context { world_params: self.world_params, progress: &own, observer })
     }
 }

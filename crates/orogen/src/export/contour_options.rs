@@ -35,8 +35,8 @@ pub const SMOOTH: OptionSpec = OptionSpec {
 /// If not.
 pub fn check(options: &Options) -> Result<()> {
     if options.has(INTERVAL.name) && options.has(LEVELS.name) {
-        let sentence = "--interval and --levels contradict each other: give one of them";
-        return Err(Error::new(ErrorKind::Request, sentence));
+        let message = "--interval and --levels contradict each other: give one of them";
+        return Err(Error::new(ErrorKind::Request, message));
     }
     options.text(LEVELS.name).map_or(Ok(()), |text| parse(text).map(drop))
 }
@@ -48,9 +48,9 @@ pub fn check(options: &Options) -> Result<()> {
 pub fn parse(text: &str) -> Result<Vec<f64>> {
     let numbers = text.split(',').map(|part| {
         part.trim().parse::<f64>().map_err(|_| {
-            let sentence =
+            let message =
                 format!("`{part}` in --levels is no height; they are numbers with commas, such as 0,250.5,500");
-            Error::new(ErrorKind::Request, sentence)
+            Error::new(ErrorKind::Request, message)
         })
     });
     given(&numbers.collect::<Result<Vec<f64>>>()?)

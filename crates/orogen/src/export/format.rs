@@ -25,7 +25,7 @@ pub struct Format {
     /// Bytes that writing such a window holds beside the rows at hand. A format that asks for the [whole](Subject::whole) counts it
     /// here.
     pub memory: fn(&Window, &Options) -> u64,
-    /// Writes it, and says what its samples stand for, or how much there is of what it makes of them: the end of the sentence
+    /// Writes it, and says what its samples stand for, or how much there is of what it makes of them: the end of the message
     /// "height, 64 x 48 samples of 10 m, ...".
     ///
     /// Fails as the subject and the files do.
@@ -44,7 +44,7 @@ impl Format {
     }
 }
 
-/// A request that a format cannot meet, in a sentence.
-pub fn refuse<T>(sentence: String) -> io::Result<T> {
-    Err(Error::new(ErrorKind::Request, sentence).into())
+/// A request that a format cannot meet, in a message.
+pub fn refuse<T>(message: String) -> io::Result<T> {
+    Err(Error::new(ErrorKind::Request, message).into())
 }

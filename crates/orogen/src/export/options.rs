@@ -100,8 +100,8 @@ impl Options {
     /// If it is no value that the option has.
     pub fn give(&mut self, spec: &OptionSpec, text: &str) -> Result<()> {
         let value = spec.parse(text).map_err(|why| {
-            let sentence = format!("`{}` is no value of --{}: {why}", text.escape_debug(), spec.name);
-            Error::new(ErrorKind::Request, sentence)
+            let message = format!("`{}` is no value of --{}: {why}", text.escape_debug(), spec.name);
+            Error::new(ErrorKind::Request, message)
         })?;
         self.given.insert(spec.name, value);
         Ok(())

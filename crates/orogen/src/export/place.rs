@@ -17,7 +17,7 @@ use crate::open;
 /// More bytes than any file that tells a place has.
 const LONGEST: u64 = 1 << 20;
 
-/// Writes both beside the output, or the `.prj` alone where the format has coordinates of its own (`from_south` is `None`). Returns the end of the closing sentence.
+/// Writes both beside the output, or the `.prj` alone where the format has coordinates of its own (`from_south` is `None`). Returns the end of the closing message.
 /// Nothing is written for a world without georeferencing, for a stream, and with `--no-sidecar`.
 ///
 /// Fails as the files do, and if a file of that name lies there that tells another place.
@@ -85,13 +85,13 @@ fn check(path: &Path, beside: &Path, bytes: &[u8]) -> Result<()> {
     if !beside.exists() || path.exists() || !differs() {
         return Ok(());
     }
-    let sentence = format!(
+    let message = format!(
         "cannot write {}: {} is there and gives another location, with which it would be read; write to another name, or say --{} or --force",
         path.display(),
         beside.display(),
         NO_SIDECAR.name
     );
-    Err(Error::new(ErrorKind::File, sentence))
+    Err(Error::new(ErrorKind::File, message))
 }
 
 /// Writes what stands beside a picture whose pixels lie on a map, all but putting it in its place.

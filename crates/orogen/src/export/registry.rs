@@ -23,9 +23,9 @@ pub fn named(name: &str) -> Option<&'static Format> {
 /// The format that a path's extension tells.
 ///
 /// # Errors
-/// If it has none, or one that no format has: the sentence names the nearest, or all there are.
+/// If it has none, or one that no format has: the message names the nearest, or all there are.
 pub fn of_path(path: &Path) -> Result<&'static Format> {
-    let refuse = |sentence: String| Err(Error::new(ErrorKind::Request, sentence));
+    let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
     let Some(extension) = path.extension() else {
         return refuse(format!("{} has no extension to tell its format; known are {}", path.display(), known(ALL)));
     };
@@ -60,12 +60,12 @@ pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static Format>)> {
 /// Whether a format knows all options that were given.
 ///
 /// # Errors
-/// If not: the sentence names the formats that do.
+/// If not: the message names the formats that do.
 pub fn check(format: &Format, given: &Options) -> Result<()> {
     let Some(name) = given.names().find(|name| !format.knows(name)) else { return Ok(()) };
     let who: Vec<&Format> = ALL.iter().copied().filter(|format| format.knows(name)).collect();
-    let sentence = format!("--{name} is no option of the format {}; those that know it: {}", format.name, known(&who));
-    Err(Error::new(ErrorKind::Request, sentence))
+    let message = format!("--{name} is no option of the format {}; those that know it: {}", format.name, known(&who));
+    Err(Error::new(ErrorKind::Request, message))
 }
 
 /// ".npy, .png and .tif".

@@ -44,12 +44,12 @@ pub fn subject<'w>(
                 .filter(|format| format.features)
                 .map(|format| format!(".{}", format.name))
                 .collect();
-            let sentence = format!(
+            let message = format!(
                 "`{layers}` is made of vector features, which .{} does not hold; those that do: {}",
                 format.name,
                 holds.join(", ")
             );
-            Err(Error::new(ErrorKind::Request, sentence))
+            Err(Error::new(ErrorKind::Request, message))
         }
         _ => Subject::new(world, layers, window, progress),
     }
@@ -125,7 +125,7 @@ fn prepare(format: &Format, subject: &mut Subject, options: &Options) -> Result<
             .filter(|other| other.channels >= subject.channels())
             .map(|other| other.name)
             .collect();
-        let sentence = format!(
+        let message = format!(
             "`{}` has {} channels and the format {} holds {}; those that hold it: {}",
             subject.layer(),
             subject.channels(),
@@ -133,7 +133,7 @@ fn prepare(format: &Format, subject: &mut Subject, options: &Options) -> Result<
             format.channels,
             several.join(", ")
         );
-        return Err(Error::new(ErrorKind::Request, sentence));
+        return Err(Error::new(ErrorKind::Request, message));
     }
     subject.prepare((format.memory)(subject.window(), options))
 }

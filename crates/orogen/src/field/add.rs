@@ -1,6 +1,6 @@
 //! Sum of two.
 
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
@@ -15,7 +15,7 @@ op! {
 }
 
 impl Field for Add {
-    fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
         for ((sample, a), b) in out.iter_mut().zip(inputs.required(0)).zip(inputs.required(1)) {
             *sample = a + b;
         }

@@ -1,7 +1,7 @@
 //! Billowing fractal noise.
 
 use super::basis::{cost, fill};
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
 op! {
@@ -11,8 +11,8 @@ op! {
 }
 
 impl Field for Billow {
-    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
-        let noise = self.fractal(setting, Kind::Billow);
+    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        let noise = self.fractal(world_params, Kind::Billow);
         fill(out, |out| noise.fill(at, out));
     }
 

@@ -1,6 +1,6 @@
 //! Cutting values off.
 
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
@@ -23,7 +23,7 @@ op! {
 }
 
 impl Field for Clamp {
-    fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
         let (low, high) = (self.low as f32, self.high as f32);
         for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
             *sample = source.clamp(low, high);

@@ -1,7 +1,7 @@
 //! Perlin noise as the textbooks have it.
 
 use super::basis::fill;
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 choice! {
@@ -40,8 +40,8 @@ op! {
 }
 
 impl Field for Classic {
-    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
-        let seed = if setting.seed == 0 && self.seed == 0 { 0 } else { setting.seed_of(self.seed) };
+    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        let seed = if world_params.seed == 0 && self.seed == 0 { 0 } else { world_params.seed_of(self.seed) };
         let noise = orogen_noise::Classic { seed, wavelength: self.wavelength, variant: self.variant.noise() };
         fill(out, |out| noise.fill(at, out));
     }

@@ -1,6 +1,6 @@
 //! The same number everywhere.
 
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
@@ -13,7 +13,7 @@ op! {
 }
 
 impl Field for Constant {
-    fn eval(&self, _: &Points, _: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, _: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
         out.fill(self.value as f32);
     }
 }

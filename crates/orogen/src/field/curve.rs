@@ -1,6 +1,6 @@
 //! A monotone curve through control points.
 
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
@@ -92,7 +92,7 @@ impl Curve {
 }
 
 impl Field for Curve {
-    fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
         let count = self.points.len();
         let mut few = [Knot::default(); FEW];
         let mut many = Vec::new();
@@ -136,10 +136,10 @@ mod tests {
     fn run(points: &[[f64; 2]], xs: &[f32]) -> Vec<f32> {
         let curve = Curve { source: Input::None, points: points.to_vec() };
         let mut out = vec![0.0; xs.len()];
-        let setting = Setting { seed: 0, size: None, cell: 1.0, sea_level: 0.0 };
+        let world_params = WorldParams { seed: 0, size: None, cell: 1.0, sea_level: 0.0 };
         let here = vec![0.0; xs.len()];
         let slots = [Some(xs)];
-        curve.eval(&Points::Scattered { x: &here, y: &here }, &Slots::new(&slots), &setting, &mut out);
+        curve.eval(&Points::Scattered { x: &here, y: &here }, &Inputs::new(&slots), &world_params, &mut out);
         out
     }
 

@@ -3,7 +3,7 @@
 use crate::dem::held::Imported;
 use crate::format::dem::Georeference;
 use crate::layer::LayerKind;
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use crate::resample::{self, NOWHERE};
 use orogen_noise::Points;
 
@@ -68,7 +68,7 @@ impl Dem {
 }
 
 impl Field for Dem {
-    fn eval(&self, at: &Points, _: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
         // A world is not opened without its files; a plan that runs without a world has nothing to show.
         let Some(ground) = self.path.ground() else { return out.fill(f32::NAN) };
         let [left, top] = self.at;

@@ -1,7 +1,7 @@
 //! Falling off towards the world's edges.
 
 use super::positions::{each, smoothstep};
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 choice! {
@@ -28,8 +28,8 @@ op! {
 }
 
 impl Field for Edge {
-    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
-        let Some([w, h]) = setting.size else {
+    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        let Some([w, h]) = world_params.size else {
             out.fill(1.0);
             return;
         };

@@ -1,7 +1,7 @@
 //! Fractional Brownian motion.
 
 use super::basis::{cost, fill};
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
 op! {
@@ -14,8 +14,8 @@ op! {
 }
 
 impl Field for Fbm {
-    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
-        let noise = self.fractal(setting, Kind::Fbm);
+    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        let noise = self.fractal(world_params, Kind::Fbm);
         fill(out, |out| noise.fill(at, out));
     }
 

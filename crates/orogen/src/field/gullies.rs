@@ -1,7 +1,7 @@
 //! Gullies down the slopes of any field.
 
 use super::basis::fill;
-use crate::op::{Field, Setting, Slopes, Slots};
+use crate::op::{Field, Inputs, Stencil, WorldParams};
 use orogen_noise::{Phacelle, Points};
 
 op! {
@@ -57,7 +57,7 @@ op! {
 }
 
 impl Field for Gullies {
-    fn eval(&self, at: &Points, inputs: &Slots, setting: &Setting, out: &mut [f32]) {
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         out.copy_from_slice(inputs.required(0));
         let around = [2, 3, 4, 5].map(|i| inputs.required(i));
         let mut start = 0;
@@ -66,7 +66,7 @@ impl Field for Gullies {
             start = range.end;
             let [east, west, south, north] = around.map(|source| &source[range.clone()]);
             let fade = inputs.get(1).map(|fade| &fade[range.clone()]);
-            self.cut(points, [east, west, south, north], fade, setting, &mut out[range]);
+            self.cut(points, [east, west, south, north], fade, world_params, &mut out[range]);
         };
         match *at {
             Points::Lattice { xs, ys } => {
@@ -92,8 +92,8 @@ impl Field for Gullies {
         }
     }
 
-    fn slopes(&self) -> Option<Slopes> {
-        Some(Slopes { source: 0, step: self.step })
+    fn stencil(&self) -> Option<Stencil> {
+        Some(Stencil { source: 0, step: self.step })
     }
 
     fn cost(&self) -> f64 {
@@ -111,7 +111,7 @@ impl Gullies {
         points: &Points,
         [east, west, south, north]: [&[f32]; 4],
         fade: Option<&[f32]>,
-        setting: &Setting,
+        world_params: &WorldParams,
         heights: &mut [f32],
     ) {
         let count = heights.len();
@@ -128,7 +128,7 @@ impl Gullies {
             target[k] = fade.map_or(0.0, |fade| fade[k].clamp(-1.0, 1.0));
         }
         let (weight, detail, sharpness) = (self.weight as f32, self.detail as f32, self.sharpness as f32);
-        let seed = setting.seed_of(self.seed);
+        let seed = world_params.seed_of(self.seed);
         let (mut wavelength, mut depth) = (self.wavelength, self.strength * self.wavelength);
         let (mut cosine, mut sine) = ([0.0f32; CHUNK], [0.0f32; CHUNK]);
         for octave in 0..self.octaves {
@@ -178,7 +178,7 @@ fn soft(t: f32) -> f32 {
 mod tests {
     use super::*;
 
-    const SETTING: Setting = Setting { seed: 1, size: None, cell: 1.0, sea_level: 0.0 };
+    const SETTING: WorldParams = WorldParams { seed: 1, size: None, cell: 1.0, sea_level: 0.0 };
 
     /// Gullies in a plane that rises by `rise` a metre towards the east, at points 10 m apart, `side` a side; the plane taken away.
     fn in_a_plane(gullies: &Gullies, rise: f32, side: usize, fade: Option<f32>) -> Vec<f32> {
@@ -191,7 +191,7 @@ mod tests {
         let slots =
             [Some(&here[..]), fade.as_deref(), Some(&east[..]), Some(&west[..]), Some(&here[..]), Some(&here[..])];
         let mut out = vec![0.0; side * side];
-        gullies.eval(&Points::Lattice { xs: &axis, ys: &axis }, &Slots::new(&slots), &SETTING, &mut out);
+        gullies.eval(&Points::Lattice { xs: &axis, ys: &axis }, &Inputs::new(&slots), &SETTING, &mut out);
         out.iter().zip(&here).map(|(made, plane)| made - plane).collect()
     }
 
@@ -242,7 +242,7 @@ mod tests {
         let slots = [slots[0], None, slots[1], slots[2], slots[3], slots[4]];
         let made = |points: &Points| {
             let mut out = [0.0; 6];
-            gullies.eval(points, &Slots::new(&slots), &SETTING, &mut out);
+            gullies.eval(points, &Inputs::new(&slots), &SETTING, &mut out);
             out
         };
         let lattice = made(&Points::Lattice { xs: &xs, ys: &ys });

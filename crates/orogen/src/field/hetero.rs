@@ -1,7 +1,7 @@
 //! Musgrave's heterogeneous terrain.
 
 use super::basis::{cost, fill};
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
 op! {
@@ -18,8 +18,8 @@ op! {
 }
 
 impl Field for Hetero {
-    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
-        let noise = self.fractal(setting, Kind::Hetero { offset: self.offset });
+    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        let noise = self.fractal(world_params, Kind::Hetero { offset: self.offset });
         fill(out, |out| noise.fill(at, out));
     }
 

@@ -3,7 +3,7 @@
 use super::positions::each;
 use crate::dem::held::Picture;
 use crate::layer::LayerKind;
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use crate::resample;
 use orogen_noise::Points;
 
@@ -31,7 +31,7 @@ op! {
 }
 
 impl Field for Image {
-    fn eval(&self, at: &Points, _: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
         // A world is not opened without its files; a plan that runs without a world has nothing to show.
         let Some(picture) = self.path.0.ground() else { return out.fill(self.outside as f32) };
         let columns = (picture.grid.width() as f64 - 1.0).max(1.0);

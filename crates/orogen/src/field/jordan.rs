@@ -1,7 +1,7 @@
 //! Jordan turbulence.
 
 use super::basis::{cost, fill};
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
 op! {
@@ -21,8 +21,8 @@ op! {
 }
 
 impl Field for Jordan {
-    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
-        let noise = self.fractal(setting, Kind::Jordan { warp: self.warp, damp: self.damp });
+    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        let noise = self.fractal(world_params, Kind::Jordan { warp: self.warp, damp: self.damp });
         fill(out, |out| noise.fill(at, out));
     }
 

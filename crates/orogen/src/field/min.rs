@@ -1,7 +1,7 @@
 //! The smaller of two, with a rounded seam if asked.
 
 use super::seam::rounded;
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
@@ -23,7 +23,7 @@ op! {
 }
 
 impl Field for Min {
-    fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
         rounded(out, inputs.required(0), inputs.required(1), self.smooth as f32, 1.0);
     }
 }

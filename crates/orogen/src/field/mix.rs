@@ -1,6 +1,6 @@
 //! From one to another.
 
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
@@ -19,7 +19,7 @@ op! {
 }
 
 impl Field for Mix {
-    fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
         let (a, b, amount) = (inputs.required(0), inputs.required(1), inputs.required(2));
         for (((sample, a), b), amount) in out.iter_mut().zip(a).zip(b).zip(amount) {
             *sample = a + (b - a) * amount.clamp(0.0, 1.0);

@@ -1,7 +1,7 @@
 //! OpenSimplex2 noise.
 
 use super::basis::{cost, fill};
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Basis, Points};
 
 choice! {
@@ -39,9 +39,9 @@ op! {
 }
 
 impl Field for OpenSimplex2 {
-    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = orogen_noise::OpenSimplex2 {
-            seed: setting.seed_of(self.seed),
+            seed: world_params.seed_of(self.seed),
             wavelength: self.wavelength,
             smoothness: match self.smoothness {
                 Smoothness::Fast => orogen_noise::Smoothness::Fast,

@@ -1,7 +1,7 @@
 //! Perlin noise.
 
 use super::basis::fill;
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
@@ -16,8 +16,8 @@ op! {
 }
 
 impl Field for Perlin {
-    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
-        let noise = orogen_noise::Perlin { seed: setting.seed_of(self.seed), wavelength: self.wavelength };
+    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        let noise = orogen_noise::Perlin { seed: world_params.seed_of(self.seed), wavelength: self.wavelength };
         fill(out, |out| noise.fill(at, out));
     }
 

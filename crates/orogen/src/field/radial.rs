@@ -1,7 +1,7 @@
 //! A round hill: the simplest island.
 
 use super::positions::{each, smoothstep};
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
@@ -24,7 +24,7 @@ op! {
 }
 
 impl Field for Radial {
-    fn eval(&self, at: &Points, _: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
         let [x0, y0] = self.center;
         let span = self.radius - self.inner;
         each(at, out, |x, y| {

@@ -1,7 +1,7 @@
 //! A plane that rises in one direction.
 
 use super::positions::each;
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
@@ -36,7 +36,7 @@ pub(super) fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
 }
 
 impl Field for Ramp {
-    fn eval(&self, at: &Points, _: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
         // North is up and y grows south: azimuth 0 rises towards -y.
         let (sin, cos) = sin_cos_degrees(self.azimuth);
         let [x0, y0] = self.origin;

@@ -1,6 +1,6 @@
 //! One range stretched to another.
 
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
@@ -25,7 +25,7 @@ op! {
 }
 
 impl Field for Remap {
-    fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
         let scale = ((self.to[1] - self.to[0]) / (self.from[1] - self.from[0])) as f32;
         let (from, to) = (self.from[0] as f32, self.to[0] as f32);
         let (low, high) = match self.clamp {

@@ -1,7 +1,7 @@
 //! Ridged fractal noise.
 
 use super::basis::{cost, fill};
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
 op! {
@@ -11,8 +11,8 @@ op! {
 }
 
 impl Field for Ridged {
-    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
-        let noise = self.fractal(setting, Kind::Ridged);
+    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        let noise = self.fractal(world_params, Kind::Ridged);
         fill(out, |out| noise.fill(at, out));
     }
 

@@ -1,7 +1,7 @@
 //! A mask by drainage area.
 
 use crate::analysis::selection::Selection;
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
@@ -27,7 +27,7 @@ op! {
 }
 
 impl Field for SelectFlow {
-    fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
         let selection = Selection::new(self.range.map(libm::log10), self.falloff);
         for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
             // No area at all lies below every other.

@@ -1,7 +1,7 @@
 //! A mask by height.
 
 use crate::analysis::selection::Selection;
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
@@ -26,7 +26,7 @@ op! {
 }
 
 impl Field for SelectHeight {
-    fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
         let selection = Selection::new(self.range, self.falloff);
         for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
             *sample = selection.of(*source);

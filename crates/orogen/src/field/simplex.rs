@@ -1,7 +1,7 @@
 //! Simplex noise.
 
 use super::basis::{cost, fill};
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Basis, Points};
 
 op! {
@@ -19,8 +19,8 @@ op! {
 }
 
 impl Field for Simplex {
-    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
-        let noise = orogen_noise::Simplex { seed: setting.seed_of(self.seed), wavelength: self.wavelength };
+    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        let noise = orogen_noise::Simplex { seed: world_params.seed_of(self.seed), wavelength: self.wavelength };
         fill(out, |out| noise.fill(at, out));
     }
 

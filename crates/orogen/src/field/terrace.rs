@@ -1,6 +1,6 @@
 //! Steps: mesas and rice fields.
 
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
@@ -24,7 +24,7 @@ op! {
 }
 
 impl Field for Terrace {
-    fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
         let (step, offset) = (self.step as f32, self.offset as f32);
         let riser = ((1.0 - self.sharpness) as f32).max(1e-3);
         for (sample, source) in out.iter_mut().zip(inputs.required(0)) {

@@ -1,7 +1,7 @@
 //! Looking elsewhere on the infinite map.
 
 use super::ramp::sin_cos_degrees;
-use crate::op::{Affine, Field, Moves, Setting, Slots};
+use crate::op::{Affine, CoordMap, Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
@@ -24,13 +24,13 @@ op! {
 }
 
 impl Field for Transform {
-    fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
         out.copy_from_slice(inputs.required(0));
     }
 
-    fn moves(&self) -> Option<Moves> {
+    fn coord_map(&self) -> Option<CoordMap> {
         let (sin, cos) = sin_cos_degrees(self.angle);
-        Some(Moves::Mapped {
+        Some(CoordMap::Mapped {
             source: 0,
             map: Affine { turn: [cos, -sin], scale: 1.0 / self.scale, offset: self.offset },
         })

@@ -1,7 +1,7 @@
 //! Value noise.
 
 use super::basis::fill;
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 choice! {
@@ -40,9 +40,9 @@ op! {
 }
 
 impl Field for Value {
-    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = orogen_noise::Value {
-            seed: setting.seed_of(self.seed),
+            seed: world_params.seed_of(self.seed),
             wavelength: self.wavelength,
             fade: self.fade.noise(),
         };

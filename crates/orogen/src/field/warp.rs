@@ -1,6 +1,6 @@
 //! Domain warp: the source read elsewhere.
 
-use crate::op::{Field, Moves, Setting, Slots};
+use crate::op::{CoordMap, Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
@@ -24,11 +24,11 @@ op! {
 }
 
 impl Field for Warp {
-    fn eval(&self, _: &Points, inputs: &Slots, _: &Setting, out: &mut [f32]) {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
         out.copy_from_slice(inputs.required(0));
     }
 
-    fn moves(&self) -> Option<Moves> {
-        Some(Moves::Displaced { source: 0, east: 1, south: 2, strength: self.strength, reach: self.strength })
+    fn coord_map(&self) -> Option<CoordMap> {
+        Some(CoordMap::Displaced { source: 0, east: 1, south: 2, strength: self.strength, reach: self.strength })
     }
 }

@@ -1,7 +1,7 @@
 //! Gradient-weighted fractal noise.
 
 use super::basis::{cost, fill};
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
 choice! {
@@ -46,8 +46,8 @@ op! {
 }
 
 impl Field for WeightedFbm {
-    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
-        let noise = self.fractal(setting, Kind::Weighted { k: self.k, falloff: self.falloff.noise() });
+    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        let noise = self.fractal(world_params, Kind::Weighted { k: self.k, falloff: self.falloff.noise() });
         fill(out, |out| noise.fill(at, out));
     }
 

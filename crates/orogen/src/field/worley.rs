@@ -1,7 +1,7 @@
 //! Worley's cellular noise.
 
 use super::basis::fill;
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 choice! {
@@ -79,9 +79,9 @@ op! {
 }
 
 impl Field for Worley {
-    fn eval(&self, at: &Points, _: &Slots, setting: &Setting, out: &mut [f32]) {
+    fn eval(&self, at: &Points, _: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let noise = orogen_noise::Worley {
-            seed: setting.seed_of(self.seed),
+            seed: world_params.seed_of(self.seed),
             wavelength: self.wavelength,
             distance: self.distance.noise(),
             feature: self.feature.noise(),

@@ -21,7 +21,7 @@ impl From<Error> for io::Error {
 
 /// Writes the file at `output` with what `body` writes: all of it, or nothing.
 ///
-/// `body` may fail with an I/O error, which comes back as a sentence naming the file, or with an [`Error`] of its own (through
+/// `body` may fail with an I/O error, which comes back as a message naming the file, or with an [`Error`] of its own (through
 /// `?` or `into`), which comes back as it is.
 ///
 /// ```

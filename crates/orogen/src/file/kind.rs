@@ -14,7 +14,7 @@ const LONGEST_RECIPE: u64 = 16 << 20;
 
 /// A kind of file that is told by its content.
 struct Kind {
-    /// In a sentence: "it holds a PDF document".
+    /// In a message: "it holds a PDF document".
     name: &'static str,
     /// Extensions of files of this kind.
     extensions: &'static [&'static str],
@@ -142,7 +142,7 @@ impl Found {
         }
     }
 
-    /// In a sentence.
+    /// In a message.
     pub fn name(self) -> &'static str {
         match self {
             Found::Empty => "nothing",

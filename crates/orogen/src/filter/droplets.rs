@@ -71,7 +71,7 @@ impl Filter for Droplets {
         if window.is_empty() {
             return Ok(());
         }
-        *out = self.law(context.setting.seed_of(self.seed)).run(source, context.progress)?;
+        *out = self.law(context.world_params.seed_of(self.seed)).run(source, context.progress)?;
         Ok(())
     }
 

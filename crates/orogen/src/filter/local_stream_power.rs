@@ -110,7 +110,7 @@ impl LocalStreamPower {
             uplift: self.uplift / 1000.0,
             deposition: self.deposition,
             creep: self.creep,
-            sea_level: self.sea.then_some(context.setting.sea_level as f32),
+            sea_level: self.sea.then_some(context.world_params.sea_level as f32),
         }
     }
 }

@@ -1,11 +1,11 @@
-//! Finding the setting of the template whose land is most like a place.
+//! Finding the values of the template whose land is most like a place.
 
 use super::likeness::{Likeness, of_windows};
-use super::template::{KNOBS, MARGIN, Setting, Stretch, recipe, trial};
+use super::template::{MARGIN, PARAMS, ParamValues, Stretch, recipe, trial};
 use crate::analysis::slope::steepness;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
-use crate::op::{self, Field, Slots};
+use crate::op::{self, Field, Inputs};
 use crate::progress::Progress;
 use crate::recipe::document::Recipe;
 use crate::survey::measures::Measures;
@@ -16,7 +16,7 @@ use orogen_noise::Points;
 pub const SIDE: usize = 256;
 
 /// Most windows of a place.
-pub const MOST_WINDOWS: usize = 12;
+pub const MAX_WINDOWS: usize = 12;
 
 /// A place to be like.
 #[derive(Debug, Clone)]
@@ -46,14 +46,14 @@ impl Target {
     pub fn of(place: &Grid) -> Result<Target> {
         let window = place.window();
         let side = window.width.min(window.height).min(SIDE);
-        let likenesses = of_windows(place, side.max(1), MOST_WINDOWS);
-        let measures: Vec<Measures> = super::likeness::windows(window, side.max(1), MOST_WINDOWS)
+        let likenesses = of_windows(place, side.max(1), MAX_WINDOWS);
+        let measures: Vec<Measures> = super::likeness::windows(window, side.max(1), MAX_WINDOWS)
             .into_iter()
             .filter_map(|window| Measures::of(&place.crop(&window)?, None))
             .collect();
         if measures.is_empty() {
-            let sentence = "the place is too small or too flat to be like: it takes 64 x 64 samples and some relief";
-            return Err(Error::new(ErrorKind::Request, sentence));
+            let message = "the place is too small or too flat to be like: it takes 64 x 64 samples and some relief";
+            return Err(Error::new(ErrorKind::Request, message));
         }
         let middle = Likeness::middle(&likenesses);
         let median = |of: fn(&Measures) -> f64| {
@@ -94,26 +94,26 @@ pub struct Effort {
 /// What was found.
 #[derive(Debug, Clone)]
 pub struct Found {
-    /// The knobs.
-    pub setting: Setting,
+    /// The parameters.
+    pub values: ParamValues,
     /// How its land is stretched.
     pub stretch: Stretch,
     /// The mean distance of the worlds that it was chosen by.
     pub distance: f64,
-    /// How many settings were tried.
+    /// How many candidates were tried.
     pub tried: usize,
 }
 
 impl Found {
     /// The recipe in a world as large as the place.
     pub fn recipe(&self, target: &Target, seed: u64, about: &str) -> Recipe {
-        let mut recipe = recipe(&self.setting, &self.stretch, target.size, target.cell, seed);
+        let mut recipe = recipe(&self.values, &self.stretch, target.size, target.cell, seed);
         recipe.about = about.to_string();
         recipe
     }
 }
 
-/// How many settings are looked at again in the end, in worlds of how many other seeds.
+/// How many candidates are looked at again in the end, in worlds of how many other seeds.
 const FINALISTS: usize = 6;
 const OTHER_WORLDS: u64 = 2;
 
@@ -123,7 +123,7 @@ const WIDEST: usize = 2;
 /// The distance of what is no land at all.
 const FARTHEST: f64 = 100.0;
 
-/// Searches: settings at random, the best improved by Nelder and Mead's simplex (1965); then those that came nearest are tried in worlds
+/// Searches: candidates at random, the best improved by Nelder and Mead's simplex (1965); then those that came nearest are tried in worlds
 /// of other seeds, since one world may be near by luck. The same effort finds the same.
 ///
 /// # Errors
@@ -132,15 +132,15 @@ pub fn search(target: &Target, effort: &Effort, options: &Options, progress: &Pr
     progress.expect(effort.windows(target));
     let mut trial = Trial { target, effort, options, progress, tried: 0, nearest: Vec::new() };
     let mut chance = Chance(effort.seed);
-    let mut tried: Vec<(f64, Setting)> = Vec::new();
+    let mut tried: Vec<(f64, ParamValues)> = Vec::new();
     for k in 0..effort.random.max(1) {
         // The first is the middle of all ranges.
-        let setting = std::array::from_fn(|_| if k == 0 { 0.5 } else { chance.share() });
-        tried.push((trial.distance(&setting)?, setting));
+        let values = std::array::from_fn(|_| if k == 0 { 0.5 } else { chance.share() });
+        tried.push((trial.distance(&values)?, values));
     }
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let corners = (KNOBS.len() + 1).min(tried.len());
-    let mut simplex: Vec<(f64, Setting)> = tried[..corners].to_vec();
+    let corners = (PARAMS.len() + 1).min(tried.len());
+    let mut simplex: Vec<(f64, ParamValues)> = tried[..corners].to_vec();
     // Around the best: the others of the first simplex are drawn towards it.
     let best = simplex[0].1;
     for (distance, corner) in simplex.iter_mut().skip(1) {
@@ -151,12 +151,12 @@ pub fn search(target: &Target, effort: &Effort, options: &Options, progress: &Pr
     while trial.tried < end && simplex.len() > 2 {
         simplex.sort_by(|a, b| a.0.total_cmp(&b.0));
         let last = simplex.len() - 1;
-        let middle: Setting =
+        let middle: ParamValues =
             std::array::from_fn(|k| simplex[..last].iter().map(|(_, s)| s[k]).sum::<f64>() / last as f64);
         let worst = simplex[last];
-        let mut attempt = |share: f64| -> Result<(f64, Setting)> {
-            let setting = along(&middle, &worst.1, share);
-            Ok((trial.distance(&setting)?, setting))
+        let mut attempt = |share: f64| -> Result<(f64, ParamValues)> {
+            let values = along(&middle, &worst.1, share);
+            Ok((trial.distance(&values)?, values))
         };
         let reflected = attempt(-1.0)?;
         let better = if reflected.0 < simplex[0].0 {
@@ -182,8 +182,8 @@ pub fn search(target: &Target, effort: &Effort, options: &Options, progress: &Pr
     trial.choose()
 }
 
-/// From one setting towards another, within their ranges.
-fn along(from: &Setting, to: &Setting, share: f64) -> Setting {
+/// From one values towards another, within their ranges.
+fn along(from: &ParamValues, to: &ParamValues, share: f64) -> ParamValues {
     std::array::from_fn(|k| (from[k] + share * (to[k] - from[k])).clamp(0.0, 1.0))
 }
 
@@ -193,26 +193,26 @@ struct Trial<'a> {
     options: &'a Options,
     progress: &'a Progress,
     tried: usize,
-    /// The [`FINALISTS`] nearest settings so far, the nearest first.
-    nearest: Vec<(f64, Setting)>,
+    /// The [`FINALISTS`] nearest candidates so far, the nearest first.
+    nearest: Vec<(f64, ParamValues)>,
 }
 
 impl Trial<'_> {
-    /// How far a setting's land is from the target.
-    fn distance(&mut self, setting: &Setting) -> Result<f64> {
+    /// How far a values's land is from the target.
+    fn distance(&mut self, values: &ParamValues) -> Result<f64> {
         self.tried += 1;
-        let (_, distance) = self.look(setting, self.effort.seed, 1)?;
+        let (_, distance) = self.look(values, self.effort.seed, 1)?;
         let at = self.nearest.partition_point(|(nearer, _)| *nearer <= distance);
-        self.nearest.insert(at, (distance, *setting));
+        self.nearest.insert(at, (distance, *values));
         self.nearest.truncate(FINALISTS);
         Ok(distance)
     }
 
     /// How the land of one world, `across` windows wide, is stretched, and how far its windows are in the mean; what makes no land is
     /// farthest.
-    fn look(&self, setting: &Setting, seed: u64, across: usize) -> Result<(Stretch, f64)> {
+    fn look(&self, values: &ParamValues, seed: u64, across: usize) -> Result<(Stretch, f64)> {
         let part = self.progress.part((across * across) as f64);
-        let (stretch, windows) = self.make(setting, seed, across, &part)?;
+        let (stretch, windows) = self.make(values, seed, across, &part)?;
         self.progress.check()?;
         let far = |land: &Grid| {
             Measures::of(land, None).map_or(FARTHEST, |made| Likeness::of(&made).distance(&self.target.middle))
@@ -220,14 +220,14 @@ impl Trial<'_> {
         Ok((stretch, windows.iter().map(far).sum::<f64>() / windows.len().max(1) as f64))
     }
 
-    /// Of the nearest settings the one whose worlds are nearest in the mean, stretched as they are in the mean.
+    /// Of the nearest candidates the one whose worlds are nearest in the mean, stretched as they are in the mean.
     fn choose(mut self) -> Result<Found> {
         // Land is another in the midst of a larger world: more of it lies far from where rivers end.
         let across = self.target.across();
         let mut best: Option<Found> = None;
-        for (_, setting) in std::mem::take(&mut self.nearest) {
+        for (_, values) in std::mem::take(&mut self.nearest) {
             let seeds = self.effort.seed..=self.effort.seed.saturating_add(OTHER_WORLDS);
-            let worlds: Result<Vec<(Stretch, f64)>> = seeds.map(|seed| self.look(&setting, seed, across)).collect();
+            let worlds: Result<Vec<(Stretch, f64)>> = seeds.map(|seed| self.look(&values, seed, across)).collect();
             let worlds = worlds?;
             self.tried += worlds.len() - 1;
             let mean = |of: fn(&(Stretch, f64)) -> f64| worlds.iter().map(of).sum::<f64>() / worlds.len() as f64;
@@ -238,19 +238,25 @@ impl Trial<'_> {
             };
             let distance = mean(|world| world.1);
             if best.as_ref().is_none_or(|best| distance < best.distance) {
-                best = Some(Found { setting, stretch, distance, tried: 0 });
+                best = Some(Found { values, stretch, distance, tried: 0 });
             }
         }
-        let best = best.ok_or_else(|| Error::new(ErrorKind::Request, "no setting was tried"))?;
+        let best = best.ok_or_else(|| Error::new(ErrorKind::Request, "no values was tried"))?;
         Ok(Found { tried: self.tried, ..best })
     }
 
-    /// The windows of a world of a setting, stretched so that the middle ones of their hypsometric integrals and mean slopes are the
+    /// The windows of a world of a values, stretched so that the middle ones of their hypsometric integrals and mean slopes are the
     /// target's.
-    fn make(&self, setting: &Setting, seed: u64, across: usize, progress: &Progress) -> Result<(Stretch, Vec<Grid>)> {
+    fn make(
+        &self,
+        values: &ParamValues,
+        seed: u64,
+        across: usize,
+        progress: &Progress,
+    ) -> Result<(Stretch, Vec<Grid>)> {
         let Target { side, cell, lowest, .. } = *self.target;
         let plain = Stretch { from: [0.0, 1.0], to: [0.0, 1.0], bend: 0.0 };
-        let (world, inside) = trial_world(self.target, setting, seed, across, self.options)?;
+        let (world, inside) = trial_world(self.target, values, seed, across, self.options)?;
         let mut grids = world.grids(&["soft"], &inside, progress)?;
         let soft = grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "the world has no middle"))?;
         let from = [quantile(&soft, 0.001), quantile(&soft, 0.999)];
@@ -261,10 +267,10 @@ impl Trial<'_> {
         let made = |to: [f64; 2], bend: f64| {
             let stretch = Stretch { from, to, bend };
             let nowhere = Points::Scattered { x: &[], y: &[] };
-            let setting = op::Setting { seed: 0, size: None, cell, sea_level: 0.0 };
+            let world_params = op::WorldParams { seed: 0, size: None, cell, sea_level: 0.0 };
             let bent = |soft: &Grid| {
                 let mut out = Grid::filled(*soft.window(), 0.0f32);
-                stretch.curve().eval(&nowhere, &Slots::new(&[Some(soft.data())]), &setting, out.data_mut());
+                stretch.curve().eval(&nowhere, &Inputs::new(&[Some(soft.data())]), &world_params, out.data_mut());
                 out
             };
             (stretch, windows.iter().map(bent).collect::<Vec<Grid>>())
@@ -285,17 +291,17 @@ impl Trial<'_> {
     }
 }
 
-/// A world of a setting, `across` windows wide, and its samples that are looked at.
+/// A world of a values, `across` windows wide, and its samples that are looked at.
 fn trial_world(
     target: &Target,
-    setting: &Setting,
+    values: &ParamValues,
     seed: u64,
     across: usize,
     options: &Options,
 ) -> Result<(World, Window)> {
     let inner = target.side * across;
     let plain = Stretch { from: [0.0, 1.0], to: [0.0, 1.0], bend: 0.0 };
-    let recipe = trial(setting, &plain, [inner + 2 * MARGIN; 2], target.cell, seed);
+    let recipe = trial(values, &plain, [inner + 2 * MARGIN; 2], target.cell, seed);
     let world = World::with_options(recipe, Options { cache: None, ..options.clone() })?;
     let inside = Window::new(inner, inner, target.cell).at(MARGIN as i64, MARGIN as i64);
     Ok((world, inside))
@@ -304,7 +310,7 @@ fn trial_world(
 impl Effort {
     /// Windows that a search makes, about.
     fn windows(&self, target: &Target) -> f64 {
-        let first = self.random.max(1) + KNOBS.len() + self.improving;
+        let first = self.random.max(1) + PARAMS.len() + self.improving;
         let last = FINALISTS * (OTHER_WORLDS as usize + 1) * target.across() * target.across();
         (first + last) as f64
     }
@@ -314,7 +320,7 @@ impl Effort {
     /// # Errors
     /// As [`search`].
     pub fn work(&self, target: &Target, options: &Options) -> Result<f64> {
-        let (world, inside) = trial_world(target, &[0.5; KNOBS.len()], self.seed, 1, options)?;
+        let (world, inside) = trial_world(target, &[0.5; PARAMS.len()], self.seed, 1, options)?;
         let plan = world.plan(&["soft"], &inside)?;
         Ok(self.windows(target) * (world.work(&plan) + MEASURING * inside.len() as f64))
     }

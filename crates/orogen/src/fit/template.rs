@@ -7,7 +7,7 @@ use crate::solver::stream_power::StreamPower;
 
 /// A number that is searched for.
 #[derive(Debug, Clone, Copy)]
-pub struct Knob {
+pub struct Param {
     /// What it is.
     pub name: &'static str,
     /// Its ends.
@@ -16,30 +16,30 @@ pub struct Knob {
     pub logarithmic: bool,
 }
 
-const fn knob(name: &'static str, low: f64, high: f64, logarithmic: bool) -> Knob {
-    Knob { name, range: [low, high], logarithmic }
+const fn param(name: &'static str, low: f64, high: f64, logarithmic: bool) -> Param {
+    Param { name, range: [low, high], logarithmic }
 }
 
 /// All of them. Lengths are in cells, so that one search fits places of any cell.
-pub const KNOBS: [Knob; 9] = [
-    knob("wavelength of the first land, cells", 24.0, 600.0, true),
-    knob("its gain", 0.3, 0.65, false),
-    knob("its amplitude, m", 20.0, 3000.0, true),
-    knob("erodibility", 5e-6, 2e-4, true),
-    knob("uplift, mm/yr", 0.01, 0.3, true),
-    knob("talus angle, deg", 15.0, 60.0, false),
-    knob("how much rock differs", 0.0, 1.5, false),
-    knob("creep, m^2/yr", 1e-3, 1.0, true),
-    knob("blur, cells", 0.2, 1.0, false),
+pub const PARAMS: [Param; 9] = [
+    param("wavelength of the first land, cells", 24.0, 600.0, true),
+    param("its gain", 0.3, 0.65, false),
+    param("its amplitude, m", 20.0, 3000.0, true),
+    param("erodibility", 5e-6, 2e-4, true),
+    param("uplift, mm/yr", 0.01, 0.3, true),
+    param("talus angle, deg", 15.0, 60.0, false),
+    param("how much rock differs", 0.0, 1.5, false),
+    param("creep, m^2/yr", 1e-3, 1.0, true),
+    param("blur, cells", 0.2, 1.0, false),
 ];
 
-/// A setting of the knobs, each 0 to 1 within its range.
-pub type Setting = [f64; KNOBS.len()];
+/// Values of the parameters, each 0 to 1 within its range.
+pub type ParamValues = [f64; PARAMS.len()];
 
-/// Where a knob stands.
-pub fn value(setting: &Setting, k: usize) -> f64 {
-    let Knob { range: [low, high], logarithmic, .. } = KNOBS[k];
-    let share = setting[k].clamp(0.0, 1.0);
+/// The value of a parameter in its own unit.
+pub fn value(values: &ParamValues, k: usize) -> f64 {
+    let Param { range: [low, high], logarithmic, .. } = PARAMS[k];
+    let share = values[k].clamp(0.0, 1.0);
     match logarithmic {
         true => low * libm::exp(share * libm::log(high / low)),
         false => low + share * (high - low),
@@ -135,21 +135,28 @@ impl View {
     }
 }
 
-/// The recipe of a setting, in a world of so many cells, up to whose edges rivers have cut. Its node `soft` is the land before it is stretched.
-pub fn recipe(setting: &Setting, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64) -> Recipe {
-    written(setting, stretch, size, cell, seed, Some(View::new(size, cell, MARGIN)))
+/// The recipe of a values, in a world of so many cells, up to whose edges rivers have cut. Its node `soft` is the land before it is stretched.
+pub fn recipe(values: &ParamValues, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64) -> Recipe {
+    written(values, stretch, size, cell, seed, Some(View::new(size, cell, MARGIN)))
 }
 
 /// The same solved over the world alone, which is quicker: its land is like that of [`recipe`] from [`MARGIN`] samples inwards.
-pub(super) fn trial(setting: &Setting, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64) -> Recipe {
-    written(setting, stretch, size, cell, seed, None)
+pub(super) fn trial(values: &ParamValues, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64) -> Recipe {
+    written(values, stretch, size, cell, seed, None)
 }
 
 /// Samples along the border of a solved world whose land shows that it ends.
 pub(super) const MARGIN: usize = 48;
 
-fn written(setting: &Setting, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64, view: Option<View>) -> Recipe {
-    let value = |k: usize| round(value(setting, k));
+fn written(
+    values: &ParamValues,
+    stretch: &Stretch,
+    size: [usize; 2],
+    cell: f64,
+    seed: u64,
+    view: Option<View>,
+) -> Recipe {
+    let value = |k: usize| round(value(values, k));
     let wavelength = round(value(0) * cell);
     let size = size.map(|samples| samples as f64 * cell);
     let mut recipe = Recipe::new(WorldSpec { seed, size: Some(size), cell, ..WorldSpec::default() });

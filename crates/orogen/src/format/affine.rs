@@ -37,7 +37,7 @@ impl Affine {
     /// How a raster of so many rows lies.
     ///
     /// # Errors
-    /// A sentence if it is turned or mirrored, or the numbers are no place.
+    /// A message if it is turned or mirrored, or the numbers are no place.
     pub fn lattice(&self, rows: usize) -> Result<Lattice, String> {
         let [a, b, c, d, e, f] = self.0;
         if !self.0.iter().all(|number| number.is_finite()) || a <= 0.0 || e == 0.0 {

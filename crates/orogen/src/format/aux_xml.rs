@@ -30,7 +30,7 @@ pub fn write(out: &mut dyn Write, affine: &Affine, wkt: &str) -> io::Result<()> 
 /// Reads it.
 ///
 /// # Errors
-/// A sentence if it is no XML.
+/// A message if it is no XML.
 pub fn parse(text: &str) -> Result<Notes, String> {
     let document = Document::parse(text).map_err(|fault| format!("it is not valid XML ({fault})"))?;
     let root = document.root_element();

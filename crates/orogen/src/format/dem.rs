@@ -35,7 +35,7 @@ impl Request {
     /// Which of so many bands is read, from 0.
     ///
     /// # Errors
-    /// A sentence if it has no such band, or several and none was chosen.
+    /// A message if it has no such band, or several and none was chosen.
     pub fn choose(&self, bands: usize) -> Result<usize, String> {
         match self.band {
             Some(band) if band >= 1 && band as usize <= bands => Ok(band as usize - 1),
@@ -60,7 +60,7 @@ pub struct Dem {
     pub heights: Vec<f32>,
     /// Where they stand, if the file says so.
     pub place: Option<Place>,
-    /// What was done to it and what could not be read, in sentences.
+    /// What was done to it and what could not be read, in messages.
     pub notes: Vec<String>,
 }
 
@@ -142,7 +142,7 @@ impl Georeference {
     /// The coordinate system as well-known text, as `.prj` files hold it.
     ///
     /// # Errors
-    /// A sentence that says what could not be expressed.
+    /// A message that says what could not be expressed.
     pub fn wkt(&self) -> Result<String, String> {
         match &self.keys {
             Some(keys) => keys::to_wkt(keys),
@@ -186,7 +186,7 @@ impl Dem {
     }
 }
 
-/// What is refused, in one sentence that names the file.
+/// What is refused, in one message that names the file.
 pub fn refused(name: &str, why: impl AsRef<str>) -> Error {
     Error::new(ErrorKind::File, format!("cannot read {name}: {}", why.as_ref()))
 }
@@ -194,7 +194,7 @@ pub fn refused(name: &str, why: impl AsRef<str>) -> Error {
 /// Checks that heights of this size can be held in `allowed` bytes, before any is.
 ///
 /// # Errors
-/// A sentence with both figures.
+/// A message with both figures.
 pub fn afford(width: u64, height: u64, allowed: u64) -> Result<usize, String> {
     if width == 0 || height == 0 {
         return Err(format!("it says that it has {width} x {height} samples: there are none"));
@@ -217,7 +217,7 @@ const BUFFER: u64 = 4 << 20;
 /// Checks that `beside` bytes more, which a reader holds while it unpacks them, can be held with `count` heights in `allowed` bytes.
 ///
 /// # Errors
-/// A sentence with both figures.
+/// A message with both figures.
 pub fn afford_beside(count: usize, beside: u64, allowed: u64) -> Result<(), String> {
     let needed = (count as u64).saturating_mul(4).saturating_add(beside);
     match beside > BUFFER && needed > allowed {

@@ -83,7 +83,7 @@ pub struct Feature {
 pub struct FeatureLayer {
     /// Its name.
     pub name: &'static str,
-    /// One sentence about it.
+    /// One message about it.
     pub about: &'static str,
     /// The type of its geometries.
     pub geometry: GeometryType,

@@ -18,7 +18,7 @@ const MAX_CODES: usize = 1 << 15;
 /// masked are NaN, or 0 where samples are whole numbers.
 ///
 /// # Errors
-/// A sentence if it is damaged, of another size, or packed in a way that is not supported.
+/// A message if it is damaged, of another size, or packed in a way that is not supported.
 pub fn unpack(packed: &[u8], [width, height]: [usize; 2], bands: usize, size: usize) -> Result<Vec<u8>, String> {
     let mut input = Input { bytes: packed };
     let head = Head::read(&mut input, packed)?;

@@ -54,7 +54,7 @@ pub struct Sidecar {
     /// What the files beside tell of the coordinate system of a format that tells its place itself.
     #[serde(skip)]
     pub keys: Option<GeoKeys>,
-    /// What beside the file could not be understood, in sentences.
+    /// What beside the file could not be understood, in messages.
     #[serde(skip)]
     pub notes: Vec<String>,
 }
@@ -100,7 +100,7 @@ impl Sidecar {
     /// From a text of TOML or JSON.
     ///
     /// # Errors
-    /// A sentence.
+    /// A message.
     pub fn parse(text: &str, toml: bool) -> std::result::Result<Sidecar, String> {
         let read: std::result::Result<Sidecar, String> = match toml {
             true => toml::from_str(text).map_err(|fault| fault.message().to_string()),
@@ -164,7 +164,7 @@ impl Sidecar {
     /// Where the samples of so many rows stand: on their map; else, of which only the cell is known, from the origin.
     ///
     /// # Errors
-    /// A sentence if what it says of a map cannot be.
+    /// A message if what it says of a map cannot be.
     pub fn place(&self, rows: usize) -> std::result::Result<Option<Place>, String> {
         let Some(numbers) = self.geotransform else {
             let Some(cell) = self.cell else { return Ok(None) };
@@ -217,7 +217,7 @@ pub fn own(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// The sentence for a file that does not tell enough.
+/// The message for a file that does not tell enough.
 pub fn needs(what: &str) -> String {
     format!("it does not say {what}: give them in a file of the same name that ends in .json or .toml")
 }

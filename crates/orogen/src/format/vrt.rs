@@ -43,7 +43,7 @@ pub struct Source {
 /// Reads it.
 ///
 /// # Errors
-/// A sentence if it is no virtual raster, or changes the samples of its sources.
+/// A message if it is no virtual raster, or changes the samples of its sources.
 pub fn parse(text: &str) -> Result<Virtual, String> {
     let document = Document::parse(text).map_err(|fault| format!("it is not valid XML ({fault})"))?;
     let root = document.root_element();

@@ -20,7 +20,7 @@ pub fn write(out: &mut dyn Write, affine: &Affine) -> io::Result<()> {
 /// Reads it.
 ///
 /// # Errors
-/// A sentence if it does not hold six numbers.
+/// A message if it does not hold six numbers.
 pub fn parse(text: &str) -> Result<Affine, String> {
     let numbers: Option<Vec<f64>> = text.split_whitespace().map(|word| word.replace(',', ".").parse().ok()).collect();
     match numbers.as_deref() {

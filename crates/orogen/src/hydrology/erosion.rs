@@ -110,7 +110,7 @@ impl<'a> ErosionRun<'a> {
         let years = years / f64::from(steps.max(1));
         // Other ways in each step: over the steps a slope's water spreads as wide as it would in nature.
         let descent = match (&self.points, scattered) {
-            (Some(points), _) => Descent::Between(points),
+            (Some(points), _) => Descent::Interpolation(points),
             (None, Some(seed)) => Descent::Scattered(seed.wrapping_add(self.done)),
             (None, None) => Descent::Steepest,
         };

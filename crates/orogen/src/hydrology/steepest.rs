@@ -17,7 +17,7 @@ pub enum Descent<'a> {
     /// on the average goes where the slope does. D8 takes the same one all the way and draws straight parallel lines.
     Scattered(u32),
     /// The one to which it falls most steeply between points off the lattice.
-    Between(&'a Points),
+    Interpolation(&'a Points),
 }
 
 /// The neighbour to which each cell drains. Outlets, and cells without a lower neighbour, have none. Between equals a hash of
@@ -42,7 +42,7 @@ pub fn receivers(heights: &Grid, outlets: &Outlets, descent: Descent) -> Receive
             }
             let rows = [heights.row(j - 1), heights.row(j), heights.row(j + 1)];
             match descent {
-                Descent::Between(points) => steepest_between(rows, points.around(j), codes),
+                Descent::Interpolation(points) => steepest_between(rows, points.around(j), codes),
                 _ => steepest_sets(rows, diagonals, codes),
             }
             for (i, (code, outlet)) in codes.iter_mut().zip(outlets.mask().row(j)).enumerate() {

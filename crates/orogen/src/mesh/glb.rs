@@ -53,12 +53,12 @@ pub fn write(out: &mut dyn Write, model: &Model) -> io::Result<()> {
     let json = padded(document.json.to_string().into_bytes(), b' ');
     let length = 12 + 8 + json.len() as u64 + 8 + document.length;
     if length > u64::from(u32::MAX) {
-        let sentence = format!(
+        let message = format!(
             "a .glb file holds at most 4 GiB, and this mesh would take {}: make it adaptive (--max-error), or ask for a smaller \
              window or a larger cell",
             crate::words::bytes(length)
         );
-        return Err(Error::new(ErrorKind::Request, sentence).into());
+        return Err(Error::new(ErrorKind::Request, message).into());
     }
     let words =
         |out: &mut dyn Write, words: &[u32]| words.iter().try_for_each(|word| out.write_all(&word.to_le_bytes()));

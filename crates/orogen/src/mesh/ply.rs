@@ -15,11 +15,11 @@ use crate::error::{Error, ErrorKind};
 pub fn write(out: &mut dyn Write, surface: &Surface, comments: &[String]) -> io::Result<()> {
     let [corners, triangles] = [surface.shape.corners(), surface.shape.triangles()];
     if corners > i32::MAX as usize || triangles > i32::MAX as usize {
-        let sentence = format!(
+        let message = format!(
             "a .ply file numbers at most 2147483647 corners and triangles, and this mesh has {triangles} triangles: make it \
              adaptive (--max-error), or ask for a smaller window or a larger cell"
         );
-        return Err(Error::new(ErrorKind::Request, sentence).into());
+        return Err(Error::new(ErrorKind::Request, message).into());
     }
     let colors = surface.painter.is_some();
     writeln!(out, "ply\nformat binary_little_endian 1.0")?;

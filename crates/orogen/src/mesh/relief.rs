@@ -6,7 +6,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::field::curve::Curve;
 use crate::format::levels::{NO_SAMPLES, extremes};
 use crate::grid::Grid;
-use crate::op::{Field, Setting, Slots};
+use crate::op::{Field, Inputs, WorldParams};
 use crate::recipe::document::WorldSpec;
 use orogen_noise::Points;
 
@@ -24,12 +24,12 @@ impl HeightCurve {
     /// If it is not two or more pairs of numbers with ascending first ones.
     pub fn parse(text: &str) -> Result<HeightCurve> {
         let refuse = |why: String| {
-            let sentence = format!(
+            let message = format!(
                 "`{}` is no curve of heights: {why}; it is two or more points such as 0:0,0.5:0.2,1:1, from the lowest (0) to the \
                  highest (1)",
                 text.escape_debug()
             );
-            Err(Error::new(ErrorKind::Request, sentence))
+            Err(Error::new(ErrorKind::Request, message))
         };
         let mut points: Vec<[f64; 2]> = Vec::new();
         for pair in text.split(',') {
@@ -70,10 +70,15 @@ impl HeightCurve {
             return;
         }
         let curve = Curve { source: Input::None, points: self.points.clone() };
-        let setting: Setting = WorldSpec::default().setting();
+        let world_params: WorldParams = WorldSpec::default().world_params();
         let shares: Vec<f32> = heights.iter().map(|height| ((f64::from(*height) - low) / relief) as f32).collect();
         let places = [];
-        curve.eval(&Points::Scattered { x: &places, y: &places }, &Slots::new(&[Some(&shares)]), &setting, heights);
+        curve.eval(
+            &Points::Scattered { x: &places, y: &places },
+            &Inputs::new(&[Some(&shares)]),
+            &world_params,
+            heights,
+        );
         for share in heights {
             *share = (low + f64::from(*share) * relief) as f32;
         }

@@ -27,21 +27,21 @@ pub fn write(out: &mut dyn Write, surface: &Surface, print: &Print) -> io::Resul
     let grid = surface.grid;
     let holes = grid.data().iter().filter(|height| !height.is_finite()).count();
     if holes > 0 {
-        let sentence = format!(
+        let message = format!(
             "{holes} of {} samples are missing, and a solid with holes cannot be printed: choose a window or a layer without any",
             grid.data().len()
         );
-        return Err(Error::new(ErrorKind::Request, sentence).into());
+        return Err(Error::new(ErrorKind::Request, message).into());
     }
     let solid = Solid::new(surface, print);
     let border = border(surface);
     let triangles = surface.shape.triangles() as u64 + 3 * border.len() as u64;
     let count = u32::try_from(triangles).map_err(|_| {
-        let sentence = format!(
+        let message = format!(
             "an .stl file counts at most 4294967295 triangles, and this solid has {triangles}: make it adaptive (--max-error), or \
              ask for a smaller window or a larger cell"
         );
-        Error::new(ErrorKind::Request, sentence)
+        Error::new(ErrorKind::Request, message)
     })?;
     let mut header = [b' '; 80];
     let name = concat!("Orogen ", env!("CARGO_PKG_VERSION"), ", millimetres, z up");

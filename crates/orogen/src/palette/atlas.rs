@@ -50,7 +50,7 @@ pub const SEA: [(f32, Rgb); 6] = [
 
 /// Where on its relief half of the land should lie below, and how far colours are bent at most to get there.
 const MIDDLE: f32 = 0.40;
-const MOST_BENT: f32 = 1.4;
+const MAX_BENT: f32 = 1.4;
 
 /// How many samples are looked at to find the middle of the land.
 const PROBES: usize = 1 << 16;
@@ -77,7 +77,7 @@ impl Atlas {
                 if share.is_finite() { share.clamp(0.01, 0.99) } else { MIDDLE }
             }
         };
-        Atlas::bent(low, high, sea_level, (libm::logf(MIDDLE) / libm::logf(share)).clamp(1.0, MOST_BENT))
+        Atlas::bent(low, high, sea_level, (libm::logf(MIDDLE) / libm::logf(share)).clamp(1.0, MAX_BENT))
     }
 
     /// The land's colours by `share of the relief ^ power`.

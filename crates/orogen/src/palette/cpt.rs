@@ -22,7 +22,7 @@ enum Model {
 /// `RANGE`, or, if it tells none, from the lowest height to the highest; one with a `HINGE` keeps that at sea level.
 ///
 /// # Errors
-/// With the line that cannot be read, as a sentence.
+/// With the line that cannot be read, as a message.
 pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     let mut palette = Palette { name: name.to_string(), mix: Mix::Rgb, ..Palette::default() };
     let (mut model, mut range, mut hinge) = (Model::Rgb, None, false);
@@ -103,9 +103,9 @@ fn slice(words: &[&str], model: Model) -> Result<[(f64, Rgb); 2], String> {
         words => words,
     };
     if words.len() < 4 || words.len() % 2 == 1 {
-        let sentence =
+        let message =
             "a line has a height and its colour, then a higher one and its colour; lists of categories are not read";
-        return Err(sentence.into());
+        return Err(message.into());
     }
     let (start, end) = words.split_at(words.len() / 2);
     let stop = |words: &[&str]| {

@@ -10,7 +10,7 @@ use super::palette::{Mix, Palette, Position, Stop};
 /// Reads such a file.
 ///
 /// # Errors
-/// With the line that cannot be read, as a sentence.
+/// With the line that cannot be read, as a message.
 pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     let mut palette = Palette { name: name.to_string(), mix: Mix::Rgb, ..Palette::default() };
     for (number, line) in text.lines().enumerate().map(|(k, line)| (k + 1, line)) {

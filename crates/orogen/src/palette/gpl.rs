@@ -6,7 +6,7 @@ use super::palette::{Palette, Position, Stop};
 /// Reads such a file.
 ///
 /// # Errors
-/// With the line that cannot be read, as a sentence.
+/// With the line that cannot be read, as a message.
 pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     let mut lines = text.lines().enumerate().map(|(k, line)| (k + 1, line.trim()));
     if lines.next().is_none_or(|(_, first)| first.trim_start_matches('\u{feff}') != "GIMP Palette") {

@@ -29,7 +29,7 @@ pub fn read(path: &Path, count: usize) -> Result<Vec<Light>> {
 /// The same of a picture at hand.
 ///
 /// # Errors
-/// What is wrong with it, as a sentence.
+/// What is wrong with it, as a message.
 pub fn parse(input: impl BufRead + Seek, count: usize) -> std::result::Result<Vec<Light>, String> {
     let mut decoder = ::png::Decoder::new(input);
     decoder.set_transformations(::png::Transformations::EXPAND | ::png::Transformations::STRIP_16);

@@ -29,7 +29,7 @@ struct File {
 /// Reads such a file.
 ///
 /// # Errors
-/// With what is wrong, as a sentence.
+/// With what is wrong, as a message.
 pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     let file: File = toml::from_str(text).map_err(|cause| cause.to_string().trim_end().replace('\n', " "))?;
     let unit = file.unit.as_deref().unwrap_or("m");

@@ -1,45 +1,45 @@
 //! From nodes to a program: the part of the graph that can be evaluated point by point, flattened.
 //!
-//! A node is evaluated *at a place*: the block itself, or where warps and transforms lead from there. Each (layer, place) pair
+//! A node is evaluated *at a coordinate set*: the block itself, or where warps and transforms lead from there. Each (layer, coords) pair
 //! becomes one instruction, however often it is read. Work is kept on an explicit stack, so a chain of any length is
 //! flattened without recursion.
 
-use super::program::{Instruction, Place, Program, Register};
+use super::program::{CoordSet, Instruction, Program, Register};
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Window;
 use crate::layer::LayerKind;
-use crate::op::{Moves, Op, Slopes};
+use crate::op::{CoordMap, Op, Stencil};
 use crate::recipe::document::Recipe;
-use crate::recipe::graph::{Graph, Link, Target};
+use crate::recipe::graph::{Graph, LayerRef, Link};
 use std::collections::{HashMap, HashSet};
 
 /// Most instructions a program may have. Only warps within warps multiply them.
-const MOST_INSTRUCTIONS: usize = 1 << 20;
+const MAX_INSTRUCTIONS: usize = 1 << 20;
 
 /// A grid that an earlier step must make: a node's layer over a window.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Demand {
+pub struct GridRequest {
     /// The layer.
-    pub target: Target,
+    pub target: LayerRef,
     /// What the filter itself made, before its mask; otherwise the node's result.
     pub raw: bool,
     /// The samples needed.
     pub window: Window,
 }
 
-/// A program before grids have numbers: `Instruction::Grid` counts the demands.
+/// A program before grids have numbers: `Instruction::Grid` counts the requests.
 pub struct Draft {
     pub program: Program,
-    pub demands: Vec<Demand>,
+    pub requests: Vec<GridRequest>,
     /// Fields and solvers evaluated at the block itself.
     pub evaluated: Vec<usize>,
 }
 
 enum Work {
-    Visit(Target, Place),
-    Enter(Target, Place),
-    Surround(Target, Place),
-    Emit(Target, Place),
+    Visit(LayerRef, CoordSet),
+    Enter(LayerRef, CoordSet),
+    Surround(LayerRef, CoordSet),
+    Emit(LayerRef, CoordSet),
 }
 
 pub struct Compiler<'a> {
@@ -51,14 +51,14 @@ pub struct Compiler<'a> {
     own: Option<usize>,
     instructions: Vec<Instruction>,
     values: usize,
-    made: HashMap<(Target, Place), Register>,
+    made: HashMap<(LayerRef, CoordSet), Register>,
     constants: HashMap<u32, Register>,
-    /// The samples around each place, on the lattice that filters are made on.
+    /// The samples around each coordinate set, on the lattice that filters are made on.
     windows: Vec<Window>,
-    entered: HashMap<(usize, Place), Place>,
-    /// The first of the four places around a place, by the bits of how far they are from it.
-    surrounded: HashMap<(u64, Place), Place>,
-    demands: Vec<Demand>,
+    entered: HashMap<(usize, CoordSet), CoordSet>,
+    /// The first of the four coordinate sets around a coordinate set, by the bits of how far they are from it.
+    surrounded: HashMap<(u64, CoordSet), CoordSet>,
+    requests: Vec<GridRequest>,
     evaluated: Vec<usize>,
 }
 
@@ -84,7 +84,7 @@ impl<'a> Compiler<'a> {
             windows: vec![window],
             entered: HashMap::new(),
             surrounded: HashMap::new(),
-            demands: Vec::new(),
+            requests: Vec::new(),
             evaluated: Vec::new(),
         };
         let mut outputs = Vec::with_capacity(targets.len());
@@ -94,57 +94,57 @@ impl<'a> Compiler<'a> {
             }
             outputs.push(compiler.value(link, 0));
         }
-        let places = compiler.windows.len();
-        let program = Program::allocate(compiler.instructions, compiler.values, places, outputs);
-        Ok(Draft { program, demands: compiler.demands, evaluated: compiler.evaluated })
+        let coord_sets = compiler.windows.len();
+        let program = Program::allocate(compiler.instructions, compiler.values, coord_sets, outputs);
+        Ok(Draft { program, requests: compiler.requests, evaluated: compiler.evaluated })
     }
 
-    fn run(&mut self, target: Target) -> Result<()> {
+    fn run(&mut self, target: LayerRef) -> Result<()> {
         let mut stack = vec![Work::Visit(target, 0)];
         while let Some(work) = stack.pop() {
-            if self.instructions.len() > MOST_INSTRUCTIONS {
-                let sentence = format!(
-                    "this recipe would take more than {MOST_INSTRUCTIONS} evaluations a sample: each warp makes its whole source \
-                     anew at its own place, and gullies at five, so warps of warps multiply; bake some of them"
+            if self.instructions.len() > MAX_INSTRUCTIONS {
+                let message = format!(
+                    "this recipe would take more than {MAX_INSTRUCTIONS} evaluations a sample: each warp makes its whole source \
+                     at positions of its own, and gullies at five, so warps of warps multiply; bake some of them"
                 );
-                return Err(Error::new(ErrorKind::Recipe, sentence));
+                return Err(Error::new(ErrorKind::Recipe, message));
             }
             match work {
-                Work::Visit(target, place) => self.visit(target, place, &mut stack),
-                Work::Enter(target, place) => self.enter(target, place, &mut stack),
-                Work::Surround(target, place) => self.surround(target, place, &mut stack),
-                Work::Emit(target, place) => self.emit(target, place),
+                Work::Visit(target, coords) => self.visit(target, coords, &mut stack),
+                Work::Enter(target, coords) => self.enter(target, coords, &mut stack),
+                Work::Surround(target, coords) => self.surround(target, coords, &mut stack),
+                Work::Emit(target, coords) => self.emit(target, coords),
             }
         }
         Ok(())
     }
 
     /// Whether the node's result is a grid already when asked for here.
-    fn is_kept(&self, node: usize, place: Place) -> bool {
-        place == 0 && self.own != Some(node) && self.kept.contains(&node)
+    fn is_kept(&self, node: usize, coords: CoordSet) -> bool {
+        coords == 0 && self.own != Some(node) && self.kept.contains(&node)
     }
 
-    fn visit(&mut self, target: Target, place: Place, stack: &mut Vec<Work>) {
-        if self.made.contains_key(&(target, place)) {
+    fn visit(&mut self, target: LayerRef, coords: CoordSet, stack: &mut Vec<Work>) {
+        if self.made.contains_key(&(target, coords)) {
             return;
         }
-        stack.push(Work::Emit(target, place));
-        if self.is_kept(target.node, place) {
+        stack.push(Work::Emit(target, coords));
+        if self.is_kept(target.node, coords) {
             return;
         }
         let node = target.node;
         let links = &self.graph.links[node];
         let mut here: Vec<Link> = Vec::new();
         match self.recipe.nodes()[node].node.op() {
-            Op::Field(field) => match field.moves() {
-                Some(Moves::Displaced { east, south, .. }) => {
-                    stack.push(Work::Enter(target, place));
+            Op::Field(field) => match field.coord_map() {
+                Some(CoordMap::Displaced { east, south, .. }) => {
+                    stack.push(Work::Enter(target, coords));
                     here.extend([links[east], links[south]]);
                 }
-                Some(Moves::Mapped { .. }) => stack.push(Work::Enter(target, place)),
+                Some(CoordMap::Mapped { .. }) => stack.push(Work::Enter(target, coords)),
                 None => {
-                    if field.slopes().is_some() {
-                        stack.push(Work::Surround(target, place));
+                    if field.stencil().is_some() {
+                        stack.push(Work::Surround(target, coords));
                     }
                     here.extend(links);
                 }
@@ -159,41 +159,48 @@ impl<'a> Compiler<'a> {
         // Last pushed is first visited: inputs in the order of their declaration.
         for link in here.iter().rev() {
             if let Link::Node(source) = link {
-                stack.push(Work::Visit(*source, place));
+                stack.push(Work::Visit(*source, coords));
             }
         }
     }
 
     /// What shows where a node's mask is 0: its first input. Layers but the first have no counterpart there.
-    fn masked_source(&self, target: Target) -> Option<Link> {
+    fn masked_source(&self, target: LayerRef) -> Option<Link> {
         self.graph.links[target.node].first().copied().filter(|link| target.layer == 0 && *link != Link::None)
     }
 
-    /// Makes the place that a moving field reads its source at.
-    fn enter(&mut self, target: Target, place: Place, stack: &mut Vec<Work>) {
+    /// Makes the coordinate set that a moving field reads its source at.
+    fn enter(&mut self, target: LayerRef, coords: CoordSet, stack: &mut Vec<Work>) {
         let Op::Field(field) = self.recipe.nodes()[target.node].node.op() else { return };
-        let Some(moves) = field.moves() else { return };
+        let Some(map) = field.coord_map() else { return };
         let links = &self.graph.links[target.node];
-        let source = match moves {
-            Moves::Displaced { source, .. } | Moves::Mapped { source, .. } => source,
+        let source = match map {
+            CoordMap::Displaced { source, .. } | CoordMap::Mapped { source, .. } => source,
         };
-        let to = match self.entered.get(&(target.node, place)) {
+        let to = match self.entered.get(&(target.node, coords)) {
             Some(to) => *to,
             None => {
                 let to = self.windows.len();
-                let around = self.windows[place];
-                match moves {
-                    Moves::Displaced { east, south, strength, reach, .. } => {
-                        let (east, south) = (self.value(&links[east], place), self.value(&links[south], place));
+                let around = self.windows[coords];
+                match map {
+                    CoordMap::Displaced { east, south, strength, reach, .. } => {
+                        let (east, south) = (self.value(&links[east], coords), self.value(&links[south], coords));
                         self.windows.push(around.grown((reach / around.cell).ceil() as usize + MARGIN));
-                        self.instructions.push(Instruction::Displace { from: place, east, south, strength, reach, to });
+                        self.instructions.push(Instruction::Displace {
+                            from: coords,
+                            east,
+                            south,
+                            strength,
+                            reach,
+                            to,
+                        });
                     }
-                    Moves::Mapped { map, .. } => {
+                    CoordMap::Mapped { map, .. } => {
                         self.windows.push(mapped(&around, &map));
-                        self.instructions.push(Instruction::Map { from: place, map, to });
+                        self.instructions.push(Instruction::Map { from: coords, map, to });
                     }
                 }
-                self.entered.insert((target.node, place), to);
+                self.entered.insert((target.node, coords), to);
                 to
             }
         };
@@ -202,96 +209,96 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Makes the four places around one that a field with slopes reads its source at.
-    fn surround(&mut self, target: Target, place: Place, stack: &mut Vec<Work>) {
-        let Some((slopes, around)) = self.slopes(target.node, place) else { return };
-        if let Link::Node(source) = self.graph.links[target.node][slopes.source] {
+    /// Makes the four coordinate sets around one that a field with slopes reads its source at.
+    fn surround(&mut self, target: LayerRef, coords: CoordSet, stack: &mut Vec<Work>) {
+        let Some((stencil, around)) = self.stencil(target.node, coords) else { return };
+        if let Link::Node(source) = self.graph.links[target.node][stencil.source] {
             stack.extend(around.map(|to| Work::Visit(source, to)));
         }
     }
 
-    /// What a field with slopes reads around a place, and the four places there.
-    fn slopes(&mut self, node: usize, place: Place) -> Option<(Slopes, [Place; 4])> {
+    /// What a field with slopes reads around a coordinate set, and the four coordinate sets there.
+    fn stencil(&mut self, node: usize, coords: CoordSet) -> Option<(Stencil, [CoordSet; 4])> {
         let Op::Field(field) = self.recipe.nodes()[node].node.op() else { return None };
-        let slopes = field.slopes()?;
-        let key = (slopes.step.to_bits(), place);
+        let stencil = field.stencil()?;
+        let key = (stencil.step.to_bits(), coords);
         let first = match self.surrounded.get(&key) {
             Some(first) => *first,
             None => {
                 let first = self.windows.len();
-                for map in slopes.maps() {
-                    self.instructions.push(Instruction::Map { from: place, map, to: self.windows.len() });
-                    self.windows.push(mapped(&self.windows[place], &map));
+                for map in stencil.maps() {
+                    self.instructions.push(Instruction::Map { from: coords, map, to: self.windows.len() });
+                    self.windows.push(mapped(&self.windows[coords], &map));
                 }
                 self.surrounded.insert(key, first);
                 first
             }
         };
-        Some((slopes, [0, 1, 2, 3].map(|k| first + k)))
+        Some((stencil, [0, 1, 2, 3].map(|k| first + k)))
     }
 
-    fn emit(&mut self, target: Target, place: Place) {
-        if self.made.contains_key(&(target, place)) {
+    fn emit(&mut self, target: LayerRef, coords: CoordSet) {
+        if self.made.contains_key(&(target, coords)) {
             return;
         }
         let node = target.node;
         let kind = self.graph.layer_kind(self.recipe, target);
-        if self.is_kept(node, place) {
-            let out = self.demand(target, false, place, kind);
-            self.made.insert((target, place), out);
+        if self.is_kept(node, coords) {
+            let out = self.request(target, false, coords, kind);
+            self.made.insert((target, coords), out);
             return;
         }
         let links = self.graph.links[node].clone();
         let result = match self.recipe.nodes()[node].node.op() {
-            Op::Field(field) => match field.moves() {
-                Some(Moves::Displaced { source, .. } | Moves::Mapped { source, .. }) => {
-                    let to = self.entered.get(&(node, place)).copied().unwrap_or(place);
+            Op::Field(field) => match field.coord_map() {
+                Some(CoordMap::Displaced { source, .. } | CoordMap::Mapped { source, .. }) => {
+                    let to = self.entered.get(&(node, coords)).copied().unwrap_or(coords);
                     self.value(&links[source], to)
                 }
                 None => {
-                    self.note(node, place);
-                    let mut inputs = self.values(&links, place);
-                    if let Some((slopes, around)) = self.slopes(node, place) {
-                        inputs.extend(around.map(|to| Some(self.value(&links[slopes.source], to))));
+                    self.note(node, coords);
+                    let mut inputs = self.values(&links, coords);
+                    if let Some((stencil, around)) = self.stencil(node, coords) {
+                        inputs.extend(around.map(|to| Some(self.value(&links[stencil.source], to))));
                     }
                     let out = self.fresh();
-                    self.instructions.push(Instruction::Field { node, place, inputs, out });
+                    self.instructions.push(Instruction::Field { node, coords, inputs, out });
                     out
                 }
             },
             Op::Solver(solver) => {
-                self.note(node, place);
-                let inputs = if solver.reads_inputs() { self.values(&links, place) } else { Vec::new() };
+                self.note(node, coords);
+                let inputs = if solver.reads_inputs() { self.values(&links, coords) } else { Vec::new() };
                 let out = self.fresh();
-                self.instructions.push(Instruction::Solved { node, layer: target.layer, kind, place, inputs, out });
+                self.instructions.push(Instruction::Solved { node, layer: target.layer, kind, coords, inputs, out });
                 out
             }
-            Op::Filter(_) => self.demand(target, true, place, kind),
+            Op::Filter(_) => self.request(target, true, coords, kind),
         };
         let mask = self.graph.masks[node];
         let value = if mask == Link::None {
             result
         } else {
-            let source = self.masked_source(target).map(|link| self.value(&link, place));
-            let mask = self.value(&mask, place);
+            let source = self.masked_source(target).map(|link| self.value(&link, coords));
+            let mask = self.value(&mask, coords);
             let out = self.fresh();
             self.instructions.push(Instruction::Mask { source, result, mask, out });
             out
         };
-        self.made.insert((target, place), value);
+        self.made.insert((target, coords), value);
     }
 
-    fn demand(&mut self, target: Target, raw: bool, place: Place, kind: LayerKind) -> Register {
-        let grid = self.demands.len();
-        self.demands.push(Demand { target, raw, window: self.windows[place] });
+    fn request(&mut self, target: LayerRef, raw: bool, coords: CoordSet, kind: LayerKind) -> Register {
+        let grid = self.requests.len();
+        self.requests.push(GridRequest { target, raw, window: self.windows[coords] });
         let out = self.fresh();
-        self.instructions.push(Instruction::Grid { grid, kind, place, out });
+        self.instructions.push(Instruction::Grid { grid, kind, coords, out });
         out
     }
 
     /// Remembers what is evaluated at the block itself: what several programs do so may be better kept.
-    fn note(&mut self, node: usize, place: Place) {
-        if place == 0 {
+    fn note(&mut self, node: usize, coords: CoordSet) {
+        if coords == 0 {
             self.evaluated.push(node);
         }
     }
@@ -301,14 +308,14 @@ impl<'a> Compiler<'a> {
         self.values - 1
     }
 
-    fn values(&mut self, links: &[Link], place: Place) -> Vec<Option<Register>> {
-        links.iter().map(|link| (*link != Link::None).then(|| self.value(link, place))).collect()
+    fn values(&mut self, links: &[Link], coords: CoordSet) -> Vec<Option<Register>> {
+        links.iter().map(|link| (*link != Link::None).then(|| self.value(link, coords))).collect()
     }
 
-    /// The register of what a link gives at a place where it has been visited.
-    fn value(&mut self, link: &Link, place: Place) -> Register {
+    /// The register of what a link gives at a coordinate set where it has been visited.
+    fn value(&mut self, link: &Link, coords: CoordSet) -> Register {
         let constant = match link {
-            Link::Node(target) => match self.made.get(&(*target, place)) {
+            Link::Node(target) => match self.made.get(&(*target, coords)) {
                 Some(register) => return *register,
                 None => 0.0,
             },

@@ -45,23 +45,23 @@ pub fn needed(plan: &Plan, recipe: &Recipe) -> f64 {
 
 /// Nanoseconds a sample.
 fn program_cost(program: &Program, scattered: bool, recipe: &Recipe) -> f64 {
-    let mut moved = vec![false; program.places.max(1)];
+    let mut moved = vec![false; program.coord_sets.max(1)];
     moved[0] = scattered;
     let mut sum = STORED * program.outputs.len() as f64;
     for instruction in &program.instructions {
         sum += match instruction {
             Instruction::Constant { .. } => 0.05,
-            Instruction::Field { node, place, inputs, .. } => match recipe.nodes()[*node].node.op() {
-                Op::Field(field) if inputs.is_empty() && !moved[*place] => field.cost_in_rows(),
+            Instruction::Field { node, coords, inputs, .. } => match recipe.nodes()[*node].node.op() {
+                Op::Field(field) if inputs.is_empty() && !moved[*coords] => field.cost_in_rows(),
                 Op::Field(field) => field.cost(),
                 _ => 0.0,
             },
-            Instruction::Solved { node, place, .. } => match recipe.nodes()[*node].node.op() {
+            Instruction::Solved { node, coords, .. } => match recipe.nodes()[*node].node.op() {
                 Op::Solver(solver) if solver.rasters() == 0 => COPIED,
-                _ if moved[*place] => BETWEEN,
+                _ if moved[*coords] => BETWEEN,
                 _ => BETWEEN / 4.0,
             },
-            Instruction::Grid { place: 0, .. } if !scattered => COPIED,
+            Instruction::Grid { coords: 0, .. } if !scattered => COPIED,
             Instruction::Grid { .. } => BETWEEN,
             Instruction::Mask { .. } => MASKED,
             Instruction::Displace { to, .. } => {

@@ -22,12 +22,12 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
         let named = &recipe.nodes()[index];
         let spec = named.node.spec();
         let reach = match named.node.op() {
-            Op::Field(field) => match field.moves() {
-                Some(crate::op::Moves::Displaced { reach, .. }) => format!("within {} m", number(reach)),
-                Some(crate::op::Moves::Mapped { .. }) => "elsewhere".to_string(),
-                None => match field.slopes() {
-                    Some(slopes) => format!("within {} m", number(slopes.step)),
-                    None => "its place".to_string(),
+            Op::Field(field) => match field.coord_map() {
+                Some(crate::op::CoordMap::Displaced { reach, .. }) => format!("within {} m", number(reach)),
+                Some(crate::op::CoordMap::Mapped { .. }) => "elsewhere".to_string(),
+                None => match field.stencil() {
+                    Some(stencil) => format!("within {} m", number(stencil.step)),
+                    None => "one position".to_string(),
                 },
             },
             Op::Filter(filter) => format!("halo of {}", count(filter.halo(cell), "sample")),
@@ -71,7 +71,7 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
                 writeln!(
                     text,
                     "  fill {} with {}: {} over {}",
-                    place(window),
+                    extent(window),
                     made.join(", "),
                     count(program.instructions.len(), "instruction"),
                     count(program.registers, "register")
@@ -82,7 +82,7 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
                 let wanted: Vec<&str> =
                     layers.iter().zip(out).filter(|(_, out)| out.is_some()).map(|(layer, _)| layer.name).collect();
                 let which = if layers.len() > 1 { format!(" ({})", wanted.join(", ")) } else { String::new() };
-                writeln!(text, "  apply `{}`{which} to {}, halo {halo}", name(*node), place(window))
+                writeln!(text, "  apply `{}`{which} to {}, halo {halo}", name(*node), extent(window))
             }
         };
     }
@@ -112,7 +112,7 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
     text
 }
 
-fn place(window: &Window) -> String {
+fn extent(window: &Window) -> String {
     format!("{} x {} at ({}, {})", window.width, window.height, window.x, window.y)
 }
 
@@ -137,12 +137,12 @@ fn duration(nanoseconds: f64) -> Option<String> {
     })
 }
 
-/// The first sentence, cut at a word where it is too long for a line.
+/// The first message, cut at a word where it is too long for a line.
 fn brief(doc: &str) -> String {
     const LONGEST: usize = 60;
-    let sentence = doc.split(". ").next().unwrap_or_default().trim_end_matches('.');
+    let message = doc.split(". ").next().unwrap_or_default().trim_end_matches('.');
     let mut line = String::new();
-    for word in sentence.split(' ') {
+    for word in message.split(' ') {
         if line.chars().count() + word.chars().count() > LONGEST {
             return line.trim_end_matches([',', ':', ';', ' ']).to_string() + " ...";
         }

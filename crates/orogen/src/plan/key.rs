@@ -1,7 +1,7 @@
 //! Content keys: what a node's result depends on, and nothing else.
 
 use crate::declare::Spec;
-use crate::op::Setting;
+use crate::op::WorldParams;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, Link};
 use sha2::{Digest, Sha256};
@@ -11,7 +11,7 @@ pub type Key = [u8; 32];
 
 /// The key of every node, by index.
 pub fn keys(recipe: &Recipe, graph: &Graph) -> Vec<Key> {
-    let world = world_key(&recipe.world.setting());
+    let world = world_key(&recipe.world.world_params());
     let mut keys: Vec<Key> = vec![[0; 32]; recipe.nodes().len()];
     for &index in &graph.order {
         let node = &recipe.nodes()[index].node;
@@ -57,10 +57,12 @@ fn put_link(hash: &mut Sha256, link: &Link, keys: &[Key]) {
     }
 }
 
-fn world_key(setting: &Setting) -> Key {
+fn world_key(world_params: &WorldParams) -> Key {
     let mut hash = Sha256::new();
-    hash.update(setting.seed.to_le_bytes());
-    for number in setting.size.unwrap_or([f64::INFINITY; 2]).into_iter().chain([setting.cell, setting.sea_level]) {
+    hash.update(world_params.seed.to_le_bytes());
+    for number in
+        world_params.size.unwrap_or([f64::INFINITY; 2]).into_iter().chain([world_params.cell, world_params.sea_level])
+    {
         hash.update(number.to_bits().to_le_bytes());
     }
     hash.finalize().into()

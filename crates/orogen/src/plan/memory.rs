@@ -12,11 +12,11 @@ pub fn grid_bytes(window: &Window) -> u64 {
     (window.width as u64).saturating_mul(window.height as u64).saturating_mul(4)
 }
 
-/// Registers and places of one thread.
+/// Registers and coordinate sets of one thread.
 fn block_bytes(program: &Program) -> u64 {
     let block = (BLOCK_WIDTH * BLOCK_HEIGHT) as u64;
-    // A place may hold two f64 a sample.
-    block * 4 * program.registers as u64 + block * 16 * program.places as u64
+    // A coordinate set may hold two f64 a sample.
+    block * 4 * program.registers as u64 + block * 16 * program.coord_sets as u64
 }
 
 /// The most that grids take together at any step.

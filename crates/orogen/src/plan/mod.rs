@@ -3,8 +3,8 @@
 mod compile;
 pub(crate) mod cost;
 pub mod explain;
+mod grid_merge;
 pub mod key;
-mod materials;
 pub mod memory;
 pub mod planner;
 pub mod program;

@@ -1,17 +1,17 @@
 //! From a recipe and a window to a plan.
 
-use super::compile::{Compiler, Demand, Draft};
+use super::compile::{Compiler, Draft, GridRequest};
 use super::cost;
+use super::grid_merge::clusters;
 use super::key::{Key, keys};
-use super::materials::clusters;
 use super::memory;
 use super::program::{Instruction, Program};
 use super::steps::{GridSlot, Plan, Solve, Step};
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Window;
-use crate::op::{Op, Setting};
+use crate::op::{Op, WorldParams};
 use crate::recipe::document::Recipe;
-use crate::recipe::graph::{Graph, Link, Target};
+use crate::recipe::graph::{Graph, LayerRef, Link};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 /// What solvers' tiles may measure, the best first: large enough that halos cost little, small enough for any memory.
@@ -36,7 +36,7 @@ pub fn world_windows(size: [f64; 2], cell: f64) -> (Window, Window) {
 pub struct Planner<'a> {
     recipe: &'a Recipe,
     graph: &'a Graph,
-    setting: Setting,
+    world_params: WorldParams,
     keys: Vec<Key>,
     /// Samples along a side of the tiles that solvers' sources are made in.
     side: usize,
@@ -50,7 +50,7 @@ impl<'a> Planner<'a> {
         Planner {
             recipe,
             graph,
-            setting: recipe.world.setting(),
+            world_params: recipe.world.world_params(),
             keys: keys(recipe, graph),
             side: TILES[0],
             threads: 1,
@@ -120,8 +120,8 @@ impl<'a> Planner<'a> {
         let Op::Solver(solver) = self.recipe.nodes()[node].node.op() else {
             return Err(Error::new(ErrorKind::Recipe, "a node that is no solver was to be solved"));
         };
-        let cell = solver.cell(self.setting.cell);
-        let (world, padded) = world_windows(self.setting.size.unwrap_or([cell, cell]), cell);
+        let cell = solver.cell(self.world_params.cell);
+        let (world, padded) = world_windows(self.world_params.size.unwrap_or([cell, cell]), cell);
         let window = Window { width: padded.width.min(self.side), height: padded.height.min(self.side), ..padded };
         let share = padded.width as f64 * padded.height as f64 / window.len().max(1) as f64;
         let (mut tile, mut reads, mut samples) = (0, BTreeSet::new(), 0);
@@ -155,7 +155,7 @@ impl<'a> Planner<'a> {
     /// The solvers read and those that their sources read, sources first.
     fn solves(&self, read: BTreeSet<usize>) -> Result<Vec<Solve>> {
         let mut rank = vec![0usize; self.recipe.nodes().len()];
-        self.graph.order.iter().enumerate().for_each(|(place, &node)| rank[node] = place);
+        self.graph.order.iter().enumerate().for_each(|(position, &node)| rank[node] = position);
         let mut solves: BTreeMap<usize, Solve> = BTreeMap::new();
         let mut waiting: Vec<usize> = read.into_iter().collect();
         while let Some(node) = waiting.pop() {
@@ -170,15 +170,15 @@ impl<'a> Planner<'a> {
     }
 }
 
-/// Steps in the making, last first: what a step demands is known before the step that makes it is.
+/// Steps in the making, last first: what a step requests is known before the step that makes it is.
 struct Attempt<'a> {
     planner: &'a Planner<'a>,
     kept: HashSet<usize>,
     scattered: bool,
-    demands: Vec<Demand>,
+    requests: Vec<GridRequest>,
     /// Demands by the node they ask for.
     by_node: HashMap<usize, Vec<usize>>,
-    /// The grid that serves each demand.
+    /// The grid that serves each request.
     served: Vec<usize>,
     grids: Vec<(Window, usize)>,
     steps: Vec<DraftStep>,
@@ -189,9 +189,9 @@ struct Attempt<'a> {
 }
 
 enum DraftStep {
-    /// A program whose grids are demands from `first` on.
+    /// A program whose grids are requests from `first` on.
     Fill { program: Program, first: usize, window: Window, out: Vec<usize> },
-    /// A filter whose inputs are demands.
+    /// A filter whose inputs are requests.
     Apply { node: usize, inputs: Vec<Option<usize>>, window: Window, halo: usize, out: Vec<Option<usize>> },
 }
 
@@ -201,7 +201,7 @@ impl<'a> Attempt<'a> {
             planner,
             kept,
             scattered,
-            demands: Vec::new(),
+            requests: Vec::new(),
             by_node: HashMap::new(),
             served: Vec::new(),
             grids: Vec::new(),
@@ -237,9 +237,9 @@ impl<'a> Attempt<'a> {
     }
 
     fn fill(&mut self, draft: Draft, window: Window, out: Vec<usize>) {
-        let first = self.demands.len();
-        for demand in draft.demands {
-            self.demand(demand);
+        let first = self.requests.len();
+        for request in draft.requests {
+            self.request(request);
         }
         for node in draft.evaluated {
             *self.evaluated.entry(node).or_default() += 1;
@@ -247,19 +247,19 @@ impl<'a> Attempt<'a> {
         self.steps.push(DraftStep::Fill { program: draft.program, first, window, out });
     }
 
-    fn demand(&mut self, demand: Demand) -> usize {
-        self.demands.push(demand);
+    fn request(&mut self, request: GridRequest) -> usize {
+        self.requests.push(request);
         self.served.push(usize::MAX);
-        let index = self.demands.len() - 1;
-        self.by_node.entry(demand.target.node).or_default().push(index);
+        let index = self.requests.len() - 1;
+        self.by_node.entry(request.target.node).or_default().push(index);
         index
     }
 
     /// What asks for a node's result: each layer by a program of its own.
     fn make_results(&mut self, node: usize) -> Result<()> {
         let mut layers: Vec<usize> = Vec::new();
-        for &i in self.by_node.get(&node).into_iter().flatten().filter(|&&i| !self.demands[i].raw) {
-            layers.push(self.demands[i].target.layer);
+        for &i in self.by_node.get(&node).into_iter().flatten().filter(|&&i| !self.requests[i].raw) {
+            layers.push(self.requests[i].target.layer);
         }
         layers.sort_unstable();
         layers.dedup();
@@ -267,10 +267,10 @@ impl<'a> Attempt<'a> {
             let wanted: Vec<usize> = self.by_node[&node]
                 .iter()
                 .copied()
-                .filter(|&i| !self.demands[i].raw && self.demands[i].target.layer == layer)
+                .filter(|&i| !self.requests[i].raw && self.requests[i].target.layer == layer)
                 .collect();
-            for cluster in clusters(&self.demands, wanted.into_iter()) {
-                let target = Link::Node(Target { node, layer });
+            for cluster in clusters(&self.requests, wanted.into_iter()) {
+                let target = Link::Node(LayerRef { node, layer });
                 let draft = Compiler::compile(
                     self.planner.recipe,
                     self.planner.graph,
@@ -292,13 +292,13 @@ impl<'a> Attempt<'a> {
     fn make_raw(&mut self, node: usize) -> Result<()> {
         let Op::Filter(filter) = self.planner.recipe.nodes()[node].node.op() else { return Ok(()) };
         let wanted: Vec<usize> =
-            self.by_node.get(&node).into_iter().flatten().copied().filter(|&i| self.demands[i].raw).collect();
-        for cluster in clusters(&self.demands, wanted.into_iter()) {
+            self.by_node.get(&node).into_iter().flatten().copied().filter(|&i| self.requests[i].raw).collect();
+        for cluster in clusters(&self.requests, wanted.into_iter()) {
             let window = cluster.window;
             let layers = self.planner.recipe.nodes()[node].node.layers().len();
             let mut out: Vec<Option<usize>> = vec![None; layers];
             for &i in &cluster.serves {
-                let Some(slot) = out.get_mut(self.demands[i].target.layer) else { continue };
+                let Some(slot) = out.get_mut(self.requests[i].target.layer) else { continue };
                 self.served[i] = *slot.get_or_insert_with(|| {
                     self.grids.push((window, node));
                     self.grids.len() - 1
@@ -319,15 +319,15 @@ impl<'a> Attempt<'a> {
                     Link::Node(target) => {
                         let source = &self.planner.recipe.nodes()[target.node].node;
                         let raw = matches!(source.op(), Op::Filter(_)) && graph.masks[target.node] == Link::None;
-                        Some(self.demand(Demand { target: *target, raw, window: grown }))
+                        Some(self.request(GridRequest { target: *target, raw, window: grown }))
                     }
                 });
             }
             // A constant input becomes a grid of that number, made by a step of its own right before.
             let mut fills = Vec::new();
             for (i, link) in constants {
-                let index = self.demands.len();
-                self.demands.push(Demand { target: Target { node, layer: 0 }, raw: false, window: grown });
+                let index = self.requests.len();
+                self.requests.push(GridRequest { target: LayerRef { node, layer: 0 }, raw: false, window: grown });
                 let grid = self.grid(grown, node);
                 self.served.push(grid);
                 inputs[i] = Some(index);
@@ -377,7 +377,7 @@ impl<'a> Attempt<'a> {
                     Step::Fill { program, window, out }
                 }
                 DraftStep::Apply { node, inputs, window, halo, out } => {
-                    let inputs = inputs.into_iter().map(|input| input.map(|demand| served[demand])).collect();
+                    let inputs = inputs.into_iter().map(|input| input.map(|request| served[request])).collect();
                     Step::Apply { node, inputs, window, halo, out }
                 }
             })

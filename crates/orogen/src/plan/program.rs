@@ -13,8 +13,8 @@ pub const BLOCK_HEIGHT: usize = 64;
 /// Index of a register: one block of samples.
 pub type Register = usize;
 
-/// Index of a place: where samples are asked. Place 0 is the block itself.
-pub type Place = usize;
+/// Index of a coordinate set: the points at which samples are evaluated. Set 0 is the block itself.
+pub type CoordSet = usize;
 
 /// One instruction. It runs once a block, whatever reads its result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -26,18 +26,18 @@ pub enum Instruction {
         /// Where it goes.
         out: Register,
     },
-    /// A field at a place.
+    /// A field at a coordinate set.
     Field {
         /// The node.
         node: usize,
         /// Where it is asked.
-        place: Place,
+        coords: CoordSet,
         /// Its inputs there.
         inputs: Vec<Option<Register>>,
         /// Where it goes.
         out: Register,
     },
-    /// A layer of a solved solver at a place.
+    /// A layer of a solved solver at a coordinate set.
     Solved {
         /// The node.
         node: usize,
@@ -46,20 +46,20 @@ pub enum Instruction {
         /// How the layer is read between its samples.
         kind: LayerKind,
         /// Where it is asked.
-        place: Place,
+        coords: CoordSet,
         /// Its inputs there, if it reads them.
         inputs: Vec<Option<Register>>,
         /// Where it goes.
         out: Register,
     },
-    /// A grid made by an earlier step, at a place.
+    /// A grid made by an earlier step, at a coordinate set.
     Grid {
         /// Index of the grid in the plan.
         grid: usize,
         /// How it is read between its samples.
         kind: LayerKind,
         /// Where it is asked.
-        place: Place,
+        coords: CoordSet,
         /// Where it goes.
         out: Register,
     },
@@ -74,10 +74,10 @@ pub enum Instruction {
         /// Where it goes.
         out: Register,
     },
-    /// A place moved by two registers times a strength, each cut to the reach.
+    /// A coordinate set moved by two registers times a strength, each cut to the reach.
     Displace {
-        /// The place moved.
-        from: Place,
+        /// The coordinate set moved.
+        from: CoordSet,
         /// Moves it east.
         east: Register,
         /// Moves it south.
@@ -86,41 +86,41 @@ pub enum Instruction {
         strength: f64,
         /// Most metres along an axis.
         reach: f64,
-        /// The new place.
-        to: Place,
+        /// The new coords.
+        to: CoordSet,
     },
-    /// A place mapped.
+    /// A coordinate set mapped.
     Map {
-        /// The place mapped.
-        from: Place,
+        /// The coordinate set mapped.
+        from: CoordSet,
         /// The map.
         map: Affine,
-        /// The new place.
-        to: Place,
+        /// The new coords.
+        to: CoordSet,
     },
 }
 
-/// A program over registers and places, each used again as soon as it is free.
+/// A program over registers and coordinate sets, each used again as soon as it is free.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Program {
     /// In the order they run.
     pub instructions: Vec<Instruction>,
     /// How many registers there are.
     pub registers: usize,
-    /// How many places there are.
-    pub places: usize,
+    /// How many coordinate sets there are.
+    pub coord_sets: usize,
     /// The registers that hold the results at the end.
     pub outputs: Vec<Register>,
 }
 
 impl Instruction {
-    fn reads(&self) -> (Vec<Register>, Option<Place>) {
+    fn reads(&self) -> (Vec<Register>, Option<CoordSet>) {
         match self {
             Instruction::Constant { .. } => (Vec::new(), None),
-            Instruction::Field { place, inputs, .. } | Instruction::Solved { place, inputs, .. } => {
-                (inputs.iter().flatten().copied().collect(), Some(*place))
+            Instruction::Field { coords, inputs, .. } | Instruction::Solved { coords, inputs, .. } => {
+                (inputs.iter().flatten().copied().collect(), Some(*coords))
             }
-            Instruction::Grid { place, .. } => (Vec::new(), Some(*place)),
+            Instruction::Grid { coords, .. } => (Vec::new(), Some(*coords)),
             Instruction::Mask { source, result, mask, .. } => {
                 (source.iter().copied().chain([*result, *mask]).collect(), None)
             }
@@ -129,25 +129,25 @@ impl Instruction {
         }
     }
 
-    fn rename(&mut self, register: impl Fn(Register) -> Register, place: impl Fn(Place) -> Place) {
+    fn rename(&mut self, register: impl Fn(Register) -> Register, coords: impl Fn(CoordSet) -> CoordSet) {
         match self {
             Instruction::Constant { .. } => {}
-            Instruction::Field { place: at, inputs, .. } | Instruction::Solved { place: at, inputs, .. } => {
-                *at = place(*at);
+            Instruction::Field { coords: at, inputs, .. } | Instruction::Solved { coords: at, inputs, .. } => {
+                *at = coords(*at);
                 for input in inputs.iter_mut().flatten() {
                     *input = register(*input);
                 }
             }
-            Instruction::Grid { place: at, .. } => *at = place(*at),
+            Instruction::Grid { coords: at, .. } => *at = coords(*at),
             Instruction::Mask { source, result, mask, .. } => {
                 for read in source.iter_mut().chain([result, mask]) {
                     *read = register(*read);
                 }
             }
             Instruction::Displace { from, east, south, .. } => {
-                (*from, *east, *south) = (place(*from), register(*east), register(*south));
+                (*from, *east, *south) = (coords(*from), register(*east), register(*south));
             }
-            Instruction::Map { from, .. } => *from = place(*from),
+            Instruction::Map { from, .. } => *from = coords(*from),
         }
     }
 
@@ -162,7 +162,7 @@ impl Instruction {
         }
     }
 
-    fn new_place(&mut self) -> Option<&mut Place> {
+    fn new_place(&mut self) -> Option<&mut CoordSet> {
         match self {
             Instruction::Displace { to, .. } | Instruction::Map { to, .. } => Some(to),
             _ => None,
@@ -193,27 +193,27 @@ impl Pool {
 }
 
 impl Program {
-    /// From instructions in which every register and place is written once (place 0 by nobody) to as few of both as it takes.
+    /// From instructions in which every register and coordinate set is written once (coords 0 by nobody) to as few of both as it takes.
     pub(super) fn allocate(
         mut instructions: Vec<Instruction>,
         values: usize,
-        places: usize,
+        coord_sets: usize,
         outputs: Vec<Register>,
     ) -> Program {
         let end = instructions.len();
-        let (mut last_value, mut last_place) = (vec![0usize; values], vec![0usize; places]);
+        let (mut last_value, mut last_coords) = (vec![0usize; values], vec![0usize; coord_sets]);
         for (i, instruction) in instructions.iter().enumerate() {
-            let (reads, place) = instruction.reads();
+            let (reads, coords) = instruction.reads();
             reads.iter().for_each(|value| last_value[*value] = i);
-            place.iter().for_each(|place| last_place[*place] = i);
+            coords.iter().for_each(|coords| last_coords[*coords] = i);
         }
         outputs.iter().for_each(|value| last_value[*value] = end);
-        let (mut registers, mut spots) = (Pool::new(values), Pool::new(places));
+        let (mut registers, mut spots) = (Pool::new(values), Pool::new(coord_sets));
         spots.take(0);
-        last_place[0] = end;
+        last_coords[0] = end;
         for (i, instruction) in instructions.iter_mut().enumerate() {
-            let (reads, place) = instruction.reads();
-            instruction.rename(|value| registers.slot[value], |place| spots.slot[place]);
+            let (reads, coords) = instruction.reads();
+            instruction.rename(|value| registers.slot[value], |coords| spots.slot[coords]);
             // The result is placed before its inputs are freed: an instruction never writes over what it reads.
             let fresh = instruction.out().map(|out| {
                 let value = *out;
@@ -231,13 +231,13 @@ impl Program {
                     registers.free.push(std::mem::replace(&mut registers.slot[value], usize::MAX));
                 }
             }
-            for place in place.into_iter().chain(moved) {
-                if last_place[place] <= i && spots.slot[place] != usize::MAX {
-                    spots.free.push(std::mem::replace(&mut spots.slot[place], usize::MAX));
+            for coords in coords.into_iter().chain(moved) {
+                if last_coords[coords] <= i && spots.slot[coords] != usize::MAX {
+                    spots.free.push(std::mem::replace(&mut spots.slot[coords], usize::MAX));
                 }
             }
         }
         let outputs = outputs.into_iter().map(|value| registers.slot[value]).collect();
-        Program { instructions, registers: registers.count, places: spots.count, outputs }
+        Program { instructions, registers: registers.count, coord_sets: spots.count, outputs }
     }
 }

@@ -5,13 +5,13 @@ use crate::dem::ground::Ground;
 use crate::dem::held::Imported;
 use crate::dem::open;
 use crate::dem::square::metres_of_degrees;
-use crate::error::{Complaint, Error, ErrorKind, Result};
+use crate::error::{Diagnostic, Error, ErrorKind, Result};
 use crate::field::dem::Dem;
 use crate::format::crs::registry::Crs;
 use crate::format::crs::unit::Unit;
 use crate::format::dem::{Georeference, Request};
 use crate::node::Node;
-use crate::op::{Op, Setting};
+use crate::op::{Op, WorldParams};
 use crate::palette::histogram;
 use crate::recipe::surface::document::{Expanded, RAMP, Surface};
 use crate::value::{toml_key, toml_string};
@@ -24,7 +24,7 @@ use std::sync::Arc;
 pub const VERSION: i64 = 1;
 
 /// Most nodes a recipe may have.
-pub const MOST_NODES: usize = 65_536;
+pub const MAX_NODES: usize = 65_536;
 
 /// Longest text of a recipe, in bytes.
 pub const LONGEST_TEXT: u64 = 16 << 20;
@@ -55,8 +55,8 @@ impl Default for WorldSpec {
 
 impl WorldSpec {
     /// What every op is told.
-    pub fn setting(&self) -> Setting {
-        Setting { seed: self.seed, size: self.size, cell: self.cell, sea_level: self.sea_level }
+    pub fn world_params(&self) -> WorldParams {
+        WorldParams { seed: self.seed, size: self.size, cell: self.cell, sea_level: self.sea_level }
     }
 
     /// How the world lies on the map of its `crs`, if it has both that and an `origin`. In degrees, metres are counted by the length of a
@@ -102,7 +102,7 @@ pub struct NamedNode {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recipe {
-    /// One sentence about it, or empty.
+    /// One message about it, or empty.
     pub about: String,
     /// The world.
     pub world: WorldSpec,
@@ -213,10 +213,10 @@ impl Recipe {
                 let ground = match file.ground().or(known.get(&path)) {
                     Some(ground) => Arc::clone(ground),
                     None => Arc::new(read().map_err(|error| {
-                        let sentence = format!("node `{name}`: {error}");
-                        Error::from_complaints(
+                        let message = format!("node `{name}`: {error}");
+                        Error::from_diagnostics(
                             ErrorKind::File,
-                            vec![Complaint { sentence, place: file.location().cloned() }],
+                            vec![Diagnostic { message, place: file.location().cloned() }],
                         )
                     })?),
                 };
@@ -261,7 +261,7 @@ impl Recipe {
     /// Refuses a `crs` or an `origin` that contradicts the place in the recipe's files, or lacks the other.
     fn check_map(&self) -> Result<()> {
         let place = self.place();
-        let sentence = match (&place, self.world.crs, self.world.origin) {
+        let message = match (&place, self.world.crs, self.world.origin) {
             (Some(place), _, Some(_)) if place.is_on_map() => {
                 "the file of heights already says where it lies: leave out `origin`".to_string()
             }
@@ -287,7 +287,7 @@ impl Recipe {
             }
             _ => return Ok(()),
         };
-        Err(Error::new(ErrorKind::Recipe, sentence))
+        Err(Error::new(ErrorKind::Recipe, message))
     }
 
     /// A recipe of nothing but a real place at hand, which makes its very samples.

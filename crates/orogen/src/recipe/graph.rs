@@ -1,19 +1,19 @@
 //! A recipe's nodes as a graph: names resolved, order found, keys computed.
 
-use super::document::{MOST_NODES, Recipe};
+use super::document::{MAX_NODES, Recipe};
 use crate::declare::Input;
-use crate::error::{Complaint, Error, ErrorKind};
-use crate::layer::{Between, LayerKind};
+use crate::error::{Diagnostic, Error, ErrorKind};
+use crate::layer::{Interpolation, LayerKind};
 use crate::node::Node;
 use crate::op::Op;
 use crate::words::suggestion;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// Most samples along a side of a world's own lattice.
-pub const MOST_SAMPLES: f64 = (1u64 << 31) as f64;
+pub const MAX_SAMPLES: f64 = (1u64 << 31) as f64;
 
-/// Most faults told at once: finding the nearest name for each of a million would take for ever and help nobody.
-pub const MOST_FAULTS: usize = 20;
+/// Most diagnostics told at once: finding the nearest name for each of a million would take for ever and help nobody.
+pub const MAX_FAULTS: usize = 20;
 
 /// What an input resolves to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,12 +23,12 @@ pub enum Link {
     /// The same number everywhere.
     Value(f32),
     /// A node's layer.
-    Node(Target),
+    Node(LayerRef),
 }
 
 /// A layer of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Target {
+pub struct LayerRef {
     /// Index of the node in the recipe.
     pub node: usize,
     /// Index of the layer among the node's layers.
@@ -61,11 +61,11 @@ pub enum At {
 
 /// One thing that is wrong.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fault {
+pub struct GraphDiagnostic {
     /// Where.
     pub at: At,
     /// What, and what to do.
-    pub sentence: String,
+    pub message: String,
 }
 
 /// Whether a name can be a node's or a layer's.
@@ -78,21 +78,21 @@ fn is_name(name: &str) -> bool {
 const NAME_RULE: &str = "names are 1 to 64 letters, digits, `_` and `-` and do not begin with a digit";
 
 impl Graph {
-    /// Resolves names, checks every value and finds an order, or says what is wrong: all of it, up to [`MOST_FAULTS`].
-    pub fn resolve(recipe: &Recipe) -> Result<Graph, Vec<Fault>> {
+    /// Resolves names, checks every value and finds an order, or says what is wrong: all of it, up to [`MAX_FAULTS`].
+    pub fn resolve(recipe: &Recipe) -> Result<Graph, Vec<GraphDiagnostic>> {
         let nodes = recipe.nodes();
-        if nodes.len() > MOST_NODES {
-            let sentence = format!("the recipe has {} nodes, the most there may be is {MOST_NODES}", nodes.len());
-            return Err(vec![Fault { at: At::Node(MOST_NODES, ""), sentence }]);
+        if nodes.len() > MAX_NODES {
+            let message = format!("the recipe has {} nodes, the most there may be is {MAX_NODES}", nodes.len());
+            return Err(vec![GraphDiagnostic { at: At::Node(MAX_NODES, ""), message }]);
         }
-        let mut resolver = Resolver { recipe, names: HashMap::with_capacity(nodes.len()), faults: Vec::new() };
+        let mut resolver = Resolver { recipe, names: HashMap::with_capacity(nodes.len()), diagnostics: Vec::new() };
         resolver.check_world();
         (0..nodes.len()).try_for_each(|index| resolver.check_node(index))?;
         let linked: Vec<(Vec<Link>, Link)> =
             (0..nodes.len()).map(|index| resolver.link_node(index)).collect::<Result<_, _>>()?;
         let outputs = resolver.link_outputs()?;
-        if !resolver.faults.is_empty() {
-            return Err(resolver.faults);
+        if !resolver.diagnostics.is_empty() {
+            return Err(resolver.diagnostics);
         }
         let (links, masks) = linked.into_iter().unzip();
         let mut graph = Graph { links, masks, order: Vec::new(), outputs };
@@ -150,7 +150,7 @@ impl Graph {
         Err(path)
     }
 
-    fn cycle_fault(&self, cycle: &[usize], recipe: &Recipe) -> Fault {
+    fn cycle_fault(&self, cycle: &[usize], recipe: &Recipe) -> GraphDiagnostic {
         let name = |node: usize| recipe.nodes()[node].name.as_str();
         let reader = cycle.first().copied().unwrap_or(0);
         let source = cycle.last().copied().unwrap_or(0);
@@ -159,7 +159,7 @@ impl Graph {
             .iter()
             .position(|link| matches!(link, Link::Node(target) if target.node == source))
             .map_or("mask", |i| spec.inputs[i].name);
-        let sentence = if cycle.len() == 1 {
+        let message = if cycle.len() == 1 {
             format!("node `{}`, `{key}`: the node reads itself; it can only read others", name(reader))
         } else {
             const SHOWN: usize = 8;
@@ -173,22 +173,23 @@ impl Graph {
                 names.join(" -> ")
             )
         };
-        Fault { at: At::Node(reader, key), sentence }
+        GraphDiagnostic { at: At::Node(reader, key), message }
     }
 
-    /// The error of faults that have no text to point into.
-    pub fn error(faults: Vec<Fault>) -> Error {
-        let complaints = faults.into_iter().map(|fault| Complaint { sentence: fault.sentence, place: None }).collect();
-        Error::from_complaints(ErrorKind::Recipe, complaints)
+    /// The error of diagnostics that have no text to point into.
+    pub fn error(diagnostics: Vec<GraphDiagnostic>) -> Error {
+        let diagnostics =
+            diagnostics.into_iter().map(|diagnostic| Diagnostic { message: diagnostic.message, place: None }).collect();
+        Error::from_diagnostics(ErrorKind::Recipe, diagnostics)
     }
 
     /// How a target is read between its samples. A layer that is read as its source is leads to that, and so on.
-    pub fn layer_kind(&self, recipe: &Recipe, target: Target) -> LayerKind {
+    pub fn layer_kind(&self, recipe: &Recipe, target: LayerRef) -> LayerKind {
         let mut at = target;
         loop {
-            match recipe.nodes()[at.node].node.layers().get(at.layer).map(|layer| layer.between) {
-                Some(Between::As(kind)) => return kind,
-                Some(Between::AsSource) => match self.links[at.node].first() {
+            match recipe.nodes()[at.node].node.layers().get(at.layer).map(|layer| layer.interpolation) {
+                Some(Interpolation::As(kind)) => return kind,
+                Some(Interpolation::AsSource) => match self.links[at.node].first() {
                     Some(Link::Node(source)) => at = *source,
                     _ => return LayerKind::Height,
                 },
@@ -200,14 +201,14 @@ impl Graph {
     /// What `node` or `node.layer` names.
     ///
     /// # Errors
-    /// A sentence with the nearest name, if there is no such node or layer.
-    pub fn find(recipe: &Recipe, text: &str) -> Result<Target, String> {
+    /// A message with the nearest name, if there is no such node or layer.
+    pub fn find(recipe: &Recipe, text: &str) -> Result<LayerRef, String> {
         named(recipe, text, |name| recipe.nodes().iter().position(|node| node.name == name))
     }
 }
 
 /// What `node` or `node.layer` names, the node's index found by `find`.
-fn named(recipe: &Recipe, text: &str, find: impl Fn(&str) -> Option<usize>) -> Result<Target, String> {
+fn named(recipe: &Recipe, text: &str, find: impl Fn(&str) -> Option<usize>) -> Result<LayerRef, String> {
     const SHOWN: usize = 64;
     let (node, layer) = text.split_once('.').map_or((text, None), |(node, layer)| (node, Some(layer)));
     let Some(index) = find(node) else {
@@ -215,10 +216,10 @@ fn named(recipe: &Recipe, text: &str, find: impl Fn(&str) -> Option<usize>) -> R
         let names = recipe.nodes().iter().map(|node| node.name.as_str());
         return Err(format!("there is no node `{shown}`; {}", suggestion(node, names)));
     };
-    let Some(layer) = layer else { return Ok(Target { node: index, layer: 0 }) };
+    let Some(layer) = layer else { return Ok(LayerRef { node: index, layer: 0 }) };
     let layers = recipe.nodes()[index].node.layers();
     match layers.iter().position(|known| known.name == layer) {
-        Some(layer) => Ok(Target { node: index, layer }),
+        Some(layer) => Ok(LayerRef { node: index, layer }),
         None => {
             let shown: String = layer.chars().take(SHOWN).collect();
             let names = layers.iter().map(|layer| layer.name);
@@ -231,18 +232,18 @@ fn named(recipe: &Recipe, text: &str, find: impl Fn(&str) -> Option<usize>) -> R
 struct Resolver<'a> {
     recipe: &'a Recipe,
     names: HashMap<&'a str, usize>,
-    faults: Vec<Fault>,
+    diagnostics: Vec<GraphDiagnostic>,
 }
 
 impl<'a> Resolver<'a> {
-    fn fault(&mut self, at: At, sentence: String) {
-        self.faults.push(Fault { at, sentence });
+    fn diagnostic(&mut self, at: At, message: String) {
+        self.diagnostics.push(GraphDiagnostic { at, message });
     }
 
-    /// Ends the search where there are more faults than anybody reads.
-    fn enough(&mut self) -> Result<(), Vec<Fault>> {
-        match self.faults.len() >= MOST_FAULTS {
-            true => Err(std::mem::take(&mut self.faults)),
+    /// Ends the search where there are more diagnostics than anybody reads.
+    fn enough(&mut self) -> Result<(), Vec<GraphDiagnostic>> {
+        match self.diagnostics.len() >= MAX_FAULTS {
+            true => Err(std::mem::take(&mut self.diagnostics)),
             false => Ok(()),
         }
     }
@@ -251,36 +252,36 @@ impl<'a> Resolver<'a> {
         let world = self.recipe.world;
         for (name, value) in super::schema::world_values(&world) {
             let Some(spec) = super::schema::world_param(name) else { continue };
-            if let Err(sentence) = super::schema::read_world(spec, &value, &mut world.clone()) {
-                self.fault(At::World, sentence);
+            if let Err(message) = super::schema::read_world(spec, &value, &mut world.clone()) {
+                self.diagnostic(At::World, message);
             }
         }
         let Some([width, height]) = world.size else { return };
         let most = width.max(height) / world.cell;
-        if most > MOST_SAMPLES {
-            let sentence = format!(
-                "the world would have {most:.0} samples along a side, the most is {MOST_SAMPLES:.0}: raise `cell`"
+        if most > MAX_SAMPLES {
+            let message = format!(
+                "the world would have {most:.0} samples along a side, the most is {MAX_SAMPLES:.0}: raise `cell`"
             );
-            self.fault(At::World, sentence);
+            self.diagnostic(At::World, message);
         }
         if width.min(height) < world.cell {
-            let sentence = format!(
+            let message = format!(
                 "the world is {width} by {height} metres, less than one `cell` of {}: raise `size` or lower `cell`",
                 world.cell
             );
-            self.fault(At::World, sentence);
+            self.diagnostic(At::World, message);
         }
     }
 
     /// The node for itself: its name, its parameters, and whether it can be in this world.
-    fn check_node(&mut self, index: usize) -> Result<(), Vec<Fault>> {
+    fn check_node(&mut self, index: usize) -> Result<(), Vec<GraphDiagnostic>> {
         let named = &self.recipe.nodes()[index];
         let name = named.name.as_str();
         if !is_name(name) {
-            self.fault(At::Node(index, ""), format!("`{name}` cannot be a node's name: {NAME_RULE}"));
+            self.diagnostic(At::Node(index, ""), format!("`{name}` cannot be a node's name: {NAME_RULE}"));
         }
         if self.names.insert(name, index).is_some() {
-            self.fault(At::Node(index, ""), format!("there are two nodes named `{name}`: rename one"));
+            self.diagnostic(At::Node(index, ""), format!("there are two nodes named `{name}`: rename one"));
         }
         self.check_params(index, &named.node);
         let needs_bounds = match named.node.op() {
@@ -289,11 +290,11 @@ impl<'a> Resolver<'a> {
             _ => None,
         };
         if let (Some(needs), None) = (needs_bounds, self.recipe.world.size) {
-            let sentence = format!(
+            let message = format!(
                 "node `{name}`: the op `{}` {needs}, and this world has no bounds: give `world` a `size`, or leave the node out",
                 named.node.spec().op
             );
-            self.fault(At::Node(index, ""), sentence);
+            self.diagnostic(At::Node(index, ""), message);
         }
         self.enough()
     }
@@ -303,25 +304,25 @@ impl<'a> Resolver<'a> {
         let mut copy = node.clone();
         let mut sound = true;
         for (i, spec) in node.spec().params.iter().enumerate() {
-            if let Err(sentence) = copy.set_param(i, &node.param(i)) {
+            if let Err(message) = copy.set_param(i, &node.param(i)) {
                 sound = false;
-                self.fault(At::Node(index, spec.name), sentence);
+                self.diagnostic(At::Node(index, spec.name), message);
             }
         }
-        if sound && let Err((key, sentence)) = node.consistent() {
-            self.fault(At::Node(index, key), sentence);
+        if sound && let Err((key, message)) = node.consistent() {
+            self.diagnostic(At::Node(index, key), message);
         }
     }
 
     /// A node's inputs and its mask.
-    fn link_node(&mut self, index: usize) -> Result<(Vec<Link>, Link), Vec<Fault>> {
+    fn link_node(&mut self, index: usize) -> Result<(Vec<Link>, Link), Vec<GraphDiagnostic>> {
         let named = &self.recipe.nodes()[index];
         let inputs = named.node.spec().inputs.iter().enumerate();
         let inputs = inputs.map(|(i, input)| (input.name, named.node.input(i), input.required));
         let mut links: Vec<Link> = Vec::new();
         for (key, input, required) in inputs.chain([("mask", &named.mask, false)]) {
-            links.push(self.link(input, required).unwrap_or_else(|sentence| {
-                self.fault(At::Node(index, key), format!("node `{}`, `{key}`: {sentence}", named.name));
+            links.push(self.link(input, required).unwrap_or_else(|message| {
+                self.diagnostic(At::Node(index, key), format!("node `{}`, `{key}`: {message}", named.name));
                 Link::None
             }));
         }
@@ -330,17 +331,17 @@ impl<'a> Resolver<'a> {
         Ok((links, mask))
     }
 
-    fn link_outputs(&mut self) -> Result<Vec<Link>, Vec<Fault>> {
+    fn link_outputs(&mut self) -> Result<Vec<Link>, Vec<GraphDiagnostic>> {
         let (mut seen, mut links) = (HashSet::new(), Vec::new());
         for (index, (name, input)) in self.recipe.output_inputs().iter().enumerate() {
             if !is_name(name) {
-                self.fault(At::Output(index), format!("`{name}` cannot be an output's name: {NAME_RULE}"));
+                self.diagnostic(At::Output(index), format!("`{name}` cannot be an output's name: {NAME_RULE}"));
             }
             if !seen.insert(name) {
-                self.fault(At::Output(index), format!("there are two outputs named `{name}`: rename one"));
+                self.diagnostic(At::Output(index), format!("there are two outputs named `{name}`: rename one"));
             }
-            links.push(self.link(input, true).unwrap_or_else(|sentence| {
-                self.fault(At::Output(index), format!("output `{name}`: {sentence}"));
+            links.push(self.link(input, true).unwrap_or_else(|message| {
+                self.diagnostic(At::Output(index), format!("output `{name}`: {message}"));
                 Link::None
             }));
             self.enough()?;

@@ -33,9 +33,9 @@ pub fn read(text: &Text) -> Result<Spanned<Value>> {
             Some(value) => Ok(convert(&value)),
             None => Err(text.error(&(0..0), "the recipe is empty")),
         },
-        Err(fault) => {
-            let range = fault.range();
-            Err(text.error(&(range.start..range.end), format!("this is not JSON: {}", fault.kind())))
+        Err(diagnostic) => {
+            let range = diagnostic.range();
+            Err(text.error(&(range.start..range.end), format!("this is not JSON: {}", diagnostic.kind())))
         }
     }
 }

@@ -1,11 +1,11 @@
-//! From a tree of values to a recipe, with every complaint at its own key.
+//! From a tree of values to a recipe, with every diagnostic at its own key.
 
-use super::document::{LONGEST_TEXT, MOST_NODES, Recipe, VERSION, WorldSpec};
-use super::graph::{At, Graph, MOST_FAULTS};
+use super::document::{LONGEST_TEXT, MAX_NODES, Recipe, VERSION, WorldSpec};
+use super::graph::{At, Graph, MAX_FAULTS};
 use super::text::{Text, too_long};
 use super::{json, surface, toml};
 use crate::declare::Input;
-use crate::error::{Complaint, Error, ErrorKind, Result};
+use crate::error::{Diagnostic, Error, ErrorKind, Result};
 use crate::node::Node;
 use crate::open;
 use crate::value::{Span, Spanned, Value};
@@ -31,7 +31,7 @@ impl Recipe {
     /// Reads a recipe from a file, TOML or JSON.
     ///
     /// # Errors
-    /// If the file cannot be read, is no text, or is no valid recipe: then every complaint has its line and column.
+    /// If the file cannot be read, is no text, or is no valid recipe: then every diagnostic has its line and column.
     pub fn read(path: &Path) -> Result<Recipe> {
         let doing = "read the recipe";
         let Some(bytes) = open::bytes(path, doing, LONGEST_TEXT)? else {
@@ -43,21 +43,21 @@ impl Recipe {
                 recipe.lies_in(path.parent().unwrap_or(Path::new("")));
                 Ok(recipe)
             }
-            Err(fault) => Err(Error::new(
+            Err(diagnostic) => Err(Error::new(
                 ErrorKind::Recipe,
                 format!(
                     "{} is not a recipe: byte {} is not UTF-8 text; a recipe is a TOML or JSON file",
                     path.display(),
-                    fault.utf8_error().valid_up_to()
+                    diagnostic.utf8_error().valid_up_to()
                 ),
             )),
         }
     }
 
-    /// Reads a recipe from a text, TOML or (if it begins with a brace) JSON; `name` is what complaints call it.
+    /// Reads a recipe from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics call it.
     ///
     /// # Errors
-    /// If it is no valid recipe. All complaints are told at once, in the order of the text.
+    /// If it is no valid recipe. All diagnostics are told at once, in the order of the text.
     pub fn parse(text: &str, name: &str) -> Result<Recipe> {
         parse(text, name)
     }
@@ -78,14 +78,14 @@ fn parse(text: &str, name: &str) -> Result<Recipe> {
     let text = Text { name, text };
     let is_json = text.text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
     let tree = if is_json { json::read(&text)? } else { toml::read(&text)? };
-    Walk { text: &text, complaints: Vec::new(), more: 0, places: HashMap::new(), names: Vec::new() }.recipe(&tree)
+    Walk { text: &text, diagnostics: Vec::new(), more: 0, places: HashMap::new(), names: Vec::new() }.recipe(&tree)
 }
 
-/// The walk through the tree: gathers complaints and remembers where keys stood, for what only the whole graph can tell.
+/// The walk through the tree: gathers diagnostics and remembers where keys stood, for what only the whole graph can tell.
 struct Walk<'a> {
     text: &'a Text<'a>,
-    complaints: Vec<Complaint>,
-    /// How many complaints were not written down because there are too many to be of use.
+    diagnostics: Vec<Diagnostic>,
+    /// How many diagnostics were not written down because there are too many to be of use.
     more: usize,
     /// Where the value of (node, key) stood; the empty key is the node's name.
     places: HashMap<(usize, &'static str), Span>,
@@ -94,13 +94,13 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    fn complain(&mut self, span: &Span, sentence: impl Into<String>) {
-        if self.complaints.len() >= MOST_FAULTS {
+    fn complain(&mut self, span: &Span, message: impl Into<String>) {
+        if self.diagnostics.len() >= MAX_FAULTS {
             self.more += 1;
             return;
         }
-        let complaint = self.text.complaint(span, sentence);
-        self.complaints.push(complaint);
+        let diagnostic = self.text.diagnostic(span, message);
+        self.diagnostics.push(diagnostic);
     }
 
     fn recipe(mut self, tree: &Spanned<Value>) -> Result<Recipe> {
@@ -136,17 +136,17 @@ impl Walk<'_> {
             Some((_, value)) => self.surfaces(value, &mut recipe),
             None => Vec::new(),
         };
-        if recipe.output_inputs().is_empty() && self.complaints.is_empty() {
+        if recipe.output_inputs().is_empty() && self.diagnostics.is_empty() {
             self.complain(
                 &(0..0),
                 "the recipe has no outputs: add a table `[outputs]` with a line such as `height = \"NODE\"`",
             );
         }
-        if self.complaints.is_empty()
-            && let Err(faults) = Graph::resolve(&recipe)
+        if self.diagnostics.is_empty()
+            && let Err(diagnostics) = Graph::resolve(&recipe)
         {
-            for fault in faults {
-                let span = match &fault.at {
+            for diagnostic in diagnostics {
+                let span = match &diagnostic.at {
                     At::Node(node, key) => {
                         let name = self.places.get(&(*node, ""));
                         self.places.get(&(*node, *key)).or(name).cloned().unwrap_or(0..0)
@@ -156,22 +156,22 @@ impl Walk<'_> {
                         top.iter().find(|(key, _)| key.value == "world").map_or(0..0, |(key, _)| key.span.clone())
                     }
                 };
-                self.complain(&span, fault.sentence);
+                self.complain(&span, diagnostic.message);
             }
         }
-        if self.complaints.is_empty() && !places.is_empty() {
+        if self.diagnostics.is_empty() && !places.is_empty() {
             self.check_surfaces(&recipe, &places);
         }
-        match self.complaints.is_empty() {
+        match self.diagnostics.is_empty() {
             true => Ok(recipe),
-            false => Err(self.text.errors(self.complaints, self.more)),
+            false => Err(self.text.errors(self.diagnostics, self.more)),
         }
     }
 
     /// Reads the surfaces, and returns where each stands.
     fn surfaces(&mut self, value: &Spanned<Value>, recipe: &mut Recipe) -> Vec<Span> {
         let read = surface::read::read(value, recipe.world.size.is_some());
-        read.faults.into_iter().for_each(|(span, message)| self.complain(&span, message));
+        read.diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
         read.surfaces.into_iter().for_each(|surface| {
             recipe.surface(surface);
         });
@@ -182,16 +182,16 @@ impl Walk<'_> {
     fn check_surfaces(&mut self, recipe: &Recipe, places: &[Span]) {
         let mut whole = recipe.clone();
         surface::expand::expand(&mut whole);
-        for fault in Graph::resolve(&whole).err().unwrap_or_default() {
-            let at = match fault.at {
+        for diagnostic in Graph::resolve(&whole).err().unwrap_or_default() {
+            let at = match diagnostic.at {
                 At::Node(node, _) => whole.expanded().iter().position(|surface| surface.nodes.contains(&node)),
                 _ => None,
             };
             let span = at.and_then(|at| places.get(at)).cloned().unwrap_or(0..0);
             // The names of nodes that nobody wrote would help nobody.
-            let message = match (at.map(|at| &recipe.surfaces()[at].name), fault.sentence.split_once("`: ")) {
+            let message = match (at.map(|at| &recipe.surfaces()[at].name), diagnostic.message.split_once("`: ")) {
                 (Some(name), Some((_, what))) => format!("surface `{name}`: {what}"),
-                _ => fault.sentence,
+                _ => diagnostic.message,
             };
             self.complain(&span, message);
         }
@@ -240,7 +240,7 @@ impl Walk<'_> {
                 Some(spec) => match super::schema::read_world(spec, &value.value, &mut world) {
                     Ok(()) if spec.name == "cell" => cell = Some(value.span.clone()),
                     Ok(()) => {}
-                    Err(sentence) => self.complain(&value.span, sentence),
+                    Err(message) => self.complain(&value.span, message),
                 },
                 None => {
                     let hint = suggestion(&key.value, super::schema::WORLD.iter().map(|spec| spec.name));
@@ -264,10 +264,10 @@ impl Walk<'_> {
             );
             return Ok(());
         };
-        if entries.len() > MOST_NODES {
+        if entries.len() > MAX_NODES {
             return Err(self.text.error(
-                &entries[MOST_NODES].0.span,
-                format!("this recipe has {} nodes, the most there may be is {MOST_NODES}", entries.len()),
+                &entries[MAX_NODES].0.span,
+                format!("this recipe has {} nodes, the most there may be is {MAX_NODES}", entries.len()),
             ));
         }
         let mut names: HashSet<&str> = HashSet::with_capacity(entries.len());
@@ -278,7 +278,7 @@ impl Walk<'_> {
             }
             let index = recipe.nodes().len();
             self.places.insert((index, ""), name.span.clone());
-            // A node that cannot be read still stands for its name, so that nodes reading it draw no complaint of their own;
+            // A node that cannot be read still stands for its name, so that nodes reading it draw no diagnostic of their own;
             // the recipe is refused anyway.
             if let Some((node, mask)) = self.node(index, name, value) {
                 recipe.add_masked(&name.value, node, mask);
@@ -337,7 +337,7 @@ impl Walk<'_> {
                 self.places.insert((index, spec.params[i].name), value.span.clone());
                 match node.set_param(i, &value.value) {
                     Ok(()) => self.remember(&mut node, value),
-                    Err(sentence) => self.complain(&value.span, sentence),
+                    Err(message) => self.complain(&value.span, message),
                 }
             } else {
                 let known =

@@ -1,7 +1,7 @@
 //! The ops in words, made from their declarations.
 
 use crate::declare::{Shape, Spec, short};
-use crate::layer::{Between, Layer, ONE_LAYER};
+use crate::layer::{Interpolation, Layer, ONE_LAYER};
 use crate::node::Node;
 use crate::value::Value;
 use std::fmt::Write as _;
@@ -18,7 +18,7 @@ pub fn overview() -> String {
     text
 }
 
-/// The first sentence of an op's doc.
+/// The first message of an op's doc.
 pub fn first_sentence(spec: &Spec) -> String {
     let doc = short(spec.doc);
     match doc.find(". ") {
@@ -73,9 +73,9 @@ fn names_layers(spec: &Spec) -> bool {
 
 /// How a layer is read between its samples, and its unit.
 fn between(layer: &Layer) -> String {
-    let how = match layer.between {
-        Between::As(kind) => kind.about(),
-        Between::AsSource => "as the source is",
+    let how = match layer.interpolation {
+        Interpolation::As(kind) => kind.about(),
+        Interpolation::AsSource => "as the source is",
     };
     match layer.unit {
         "" => how.to_string(),

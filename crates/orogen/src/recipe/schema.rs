@@ -111,7 +111,7 @@ pub fn json_schema() -> Json {
         "properties": {
             "$schema": { "type": "string", "description": "The schema of this document, for editors." },
             "orogen": { "const": VERSION, "description": "The version of recipes this one is written in." },
-            "about": { "type": "string", "description": "One sentence about the world." },
+            "about": { "type": "string", "description": "One message about the world." },
             "world": {
                 "type": "object",
                 "description": "The world's seed and measures.",
@@ -303,25 +303,25 @@ mod tests {
     #[test]
     fn the_schema_takes_every_op_and_key_that_recipes_may_name() {
         let schema = json_schema();
-        let complaint = |line: &str| match Recipe::parse(
+        let diagnostic = |line: &str| match Recipe::parse(
             &format!("orogen = 1\n[nodes.n]\n{line}\n[outputs]\nheight = \"n\"\n"),
             "test.toml",
         ) {
             Ok(_) => String::new(),
             Err(error) => error.to_string(),
         };
-        assert!(complaint("op = \"normalizes\"").contains("unknown op"), "the test can fail");
-        assert!(complaint("op = \"fbm\"\ncolor = 1").contains("unknown key"), "the test can fail");
+        assert!(diagnostic("op = \"normalizes\"").contains("unknown op"), "the test can fail");
+        assert!(diagnostic("op = \"fbm\"\ncolor = 1").contains("unknown key"), "the test can fail");
         let mut respellings = 0;
         for node in Node::all() {
             let spec = node.spec();
             for op in spellings(spec.op) {
-                assert!(!complaint(&format!("op = \"{op}\"")).contains("unknown op"), "{op}");
+                assert!(!diagnostic(&format!("op = \"{op}\"")).contains("unknown op"), "{op}");
                 let cases = taken(&schema, &op);
                 assert_eq!(cases.len(), 1, "{op}");
                 let inputs = spec.inputs.iter().map(|input| input.name);
                 for key in inputs.chain(spec.params.iter().map(|param| param.name)).flat_map(spellings) {
-                    let read = !complaint(&format!("op = \"{op}\"\n{key} = 1")).contains("unknown key");
+                    let read = !diagnostic(&format!("op = \"{op}\"\n{key} = 1")).contains("unknown key");
                     assert_eq!(read, !cases[0]["properties"][&key].is_null(), "{op}.{key}");
                 }
                 respellings += usize::from(op != spec.op);

@@ -1,34 +1,34 @@
 //! A recipe's text and the places in it.
 
 use super::document::LONGEST_TEXT;
-use crate::error::{Complaint, Error, ErrorKind, Location};
+use crate::error::{Diagnostic, Error, ErrorKind, Location};
 use crate::value::Span;
 use crate::words::count;
 
-/// A text and what complaints call it.
+/// A text and what diagnostics call it.
 pub struct Text<'a> {
     pub name: &'a str,
     pub text: &'a str,
 }
 
 impl Text<'_> {
-    /// A complaint about a part of the text.
-    pub fn complaint(&self, span: &Span, sentence: impl Into<String>) -> Complaint {
-        Complaint { sentence: sentence.into(), place: Some(self.locate(span)) }
+    /// A diagnostic about a part of the text.
+    pub fn diagnostic(&self, span: &Span, message: impl Into<String>) -> Diagnostic {
+        Diagnostic { message: message.into(), place: Some(self.locate(span)) }
     }
 
-    /// An error of one complaint.
-    pub fn error(&self, span: &Span, sentence: impl Into<String>) -> Error {
-        Error::from_complaints(ErrorKind::Recipe, vec![self.complaint(span, sentence)])
+    /// An error of one diagnostic.
+    pub fn error(&self, span: &Span, message: impl Into<String>) -> Error {
+        Error::from_diagnostics(ErrorKind::Recipe, vec![self.diagnostic(span, message)])
     }
 
     /// An error of several, in the order of the text, and of how many `more` there are.
-    pub fn errors(&self, mut complaints: Vec<Complaint>, more: usize) -> Error {
-        complaints.sort_by_key(|complaint| complaint.place.as_ref().map(|place| (place.line, place.column)));
+    pub fn errors(&self, mut diagnostics: Vec<Diagnostic>, more: usize) -> Error {
+        diagnostics.sort_by_key(|diagnostic| diagnostic.place.as_ref().map(|place| (place.line, place.column)));
         if more > 0 {
-            complaints.push(Complaint { sentence: format!("and {}", count(more, "more complaint")), place: None });
+            diagnostics.push(Diagnostic { message: format!("and {}", count(more, "more diagnostic")), place: None });
         }
-        Error::from_complaints(ErrorKind::Recipe, complaints)
+        Error::from_diagnostics(ErrorKind::Recipe, diagnostics)
     }
 
     /// A part of the text as a place.
@@ -37,7 +37,7 @@ impl Text<'_> {
         let end = floor_boundary(self.text, span.end).max(start);
         let line_start = self.text[..start].rfind('\n').map_or(0, |newline| newline + 1);
         let line_end = self.text[start..].find('\n').map_or(self.text.len(), |newline| start + newline);
-        // Lines nobody can read are not shown: twenty complaints about one of 16 MiB would copy it twenty times.
+        // Lines nobody can read are not shown: twenty diagnostics about one of 16 MiB would copy it twenty times.
         const LONGEST_SHOWN: usize = 20_000;
         let line = if line_end - line_start > LONGEST_SHOWN { "" } else { &self.text[line_start..line_end] };
         Location {

@@ -12,9 +12,9 @@ pub fn read(text: &Text) -> Result<Spanned<Value>> {
             let span = table.span();
             Ok(Spanned { value: convert_table(table.into_inner()), span })
         }
-        Err(fault) => {
-            let span = fault.span().unwrap_or(0..0);
-            Err(text.error(&span, format!("this is not TOML: {}", fault.message().replace('\n', ", "))))
+        Err(diagnostic) => {
+            let span = diagnostic.span().unwrap_or(0..0);
+            Err(text.error(&span, format!("this is not TOML: {}", diagnostic.message().replace('\n', ", "))))
         }
     }
 }

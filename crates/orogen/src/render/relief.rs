@@ -62,7 +62,7 @@ impl Relief {
     /// If there are fewer than 2 x 2 samples, none that is finite, or layers do not lie over the same window.
     pub fn new(land: &Land, exaggeration: f64) -> Result<Relief> {
         let window = *land.heights.window();
-        let fault = |sentence: String| Err(Error::new(ErrorKind::Request, sentence));
+        let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
         let (columns, rows) = (window.width, window.height);
         if columns < 2 || rows < 2 {
             return fault(format!(

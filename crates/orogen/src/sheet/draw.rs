@@ -38,13 +38,13 @@ pub struct Sheet {
 pub fn draw(heights: &Grid, options: &Options, progress: &Progress) -> Result<Sheet> {
     let window = heights.window();
     if window.width < 2 || window.height < 2 || heights.data().iter().all(|height| !height.is_finite()) {
-        let sentence = format!(
+        let message = format!(
             "there is nothing to map: it takes 2 x 2 heights, and there are {} x {}, {} of them finite",
             window.width,
             window.height,
             heights.data().iter().filter(|height| height.is_finite()).count()
         );
-        return Err(Error::new(ErrorKind::Request, sentence));
+        return Err(Error::new(ErrorKind::Request, message));
     }
     let [water, painting, drawing] = progress.parts([4.0, 1.0, 1.0]);
     let letters = Letters::for_texts([options.title.as_str(), options.about.as_str()])?;

@@ -89,7 +89,7 @@ impl Label {
 
 /// How labels are set.
 #[derive(Debug, Clone, Copy)]
-pub struct Setting {
+pub struct LabelStyle {
     /// Height of the letters in millimetres.
     pub size: f32,
     /// Millimetres between two labels, at least.
@@ -102,9 +102,9 @@ pub struct Setting {
 /// stand on its head it is set the other way around, if no better place is found.
 ///
 /// What labels cover is taken.
-pub fn place(line: &[Place], text: &str, width: f32, setting: Setting, taken: &mut Taken) -> Vec<Label> {
+pub fn place(line: &[Place], text: &str, width: f32, style: LabelStyle, taken: &mut Taken) -> Vec<Label> {
     let along = Along::new(line);
-    let (need, step) = (width + setting.size, setting.size * 0.6);
+    let (need, step) = (width + style.size, style.size * 0.6);
     let count = ((along.length() - need) / step).floor();
     if count.is_nan() || count < 1.0 {
         return Vec::new();
@@ -112,7 +112,7 @@ pub fn place(line: &[Place], text: &str, width: f32, setting: Setting, taken: &m
     let mut candidates: Vec<(f32, usize)> =
         (0..=count as usize).filter_map(|k| Some((along.score(k as f32 * step, need)?, k))).collect();
     candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let wanted = ((along.length() / setting.every).ceil() as usize).max(1);
+    let wanted = ((along.length() / style.every).ceil() as usize).max(1);
     let mut labels: Vec<Label> = Vec::new();
     let mut middles: Vec<f32> = Vec::new();
     for (_, k) in candidates {
@@ -121,18 +121,18 @@ pub fn place(line: &[Place], text: &str, width: f32, setting: Setting, taken: &m
         }
         let start = k as f32 * step;
         let middle = start + need / 2.0;
-        if middles.iter().any(|other| (other - middle).abs() < setting.every * 0.6) {
+        if middles.iter().any(|other| (other - middle).abs() < style.every * 0.6) {
             continue;
         }
-        let mut path = along.part(start, start + need, setting.size * 0.25);
-        let reach = setting.size * 0.62;
+        let mut path = along.part(start, start + need, style.size * 0.25);
+        let reach = style.size * 0.62;
         if !path.iter().all(|place| taken.is_free(*place, reach)) {
             continue;
         }
         if path.last().zip(path.first()).is_some_and(|(last, first)| last[0] < first[0]) {
             path.reverse();
         }
-        path.iter().for_each(|place| taken.take(*place, reach + setting.apart / 2.0));
+        path.iter().for_each(|place| taken.take(*place, reach + style.apart / 2.0));
         middles.push(middle);
         labels.push(Label { text: text.to_string(), path });
     }
@@ -246,7 +246,7 @@ pub fn gaps(lines: &[Vec<Place>], labels: &[Label], reach: f32, margin: f32) -> 
 mod tests {
     use super::*;
 
-    const SETTING: Setting = Setting { size: 2.0, apart: 8.0, every: 60.0 };
+    const SETTING: LabelStyle = LabelStyle { size: 2.0, apart: 8.0, every: 60.0 };
 
     fn wave() -> Vec<Place> {
         (0..=400).map(|k| k as f32 * 0.25).map(|x| [x, 50.0 + 10.0 * libm::sinf(x / 12.0)]).collect()

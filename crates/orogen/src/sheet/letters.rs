@@ -32,8 +32,8 @@ const OWN_FOLDERS: [&str; 3] = [".local/share/fonts", ".fonts", "Library/Fonts"]
 
 /// How deep folders are looked into, how many fonts are tried, and how large they may be.
 const DEPTH: usize = 5;
-const MOST_FONTS: usize = 2000;
-const MOST_BYTES: u64 = 128 << 20;
+const MAX_FONTS: usize = 2000;
+const MAX_BYTES: u64 = 128 << 20;
 
 impl Letters {
     /// The fonts that `texts` need. Where the built-in one lacks a letter, the first font of the system that has the most of what
@@ -198,7 +198,7 @@ fn search(lacking: &[char]) -> Option<FontVec> {
     let mut files = Vec::new();
     FOLDERS.iter().map(PathBuf::from).chain(own).for_each(|folder| gather(&folder, DEPTH, &mut files));
     files.sort();
-    files.truncate(MOST_FONTS);
+    files.truncate(MAX_FONTS);
     let mut best: Option<(usize, FontVec)> = None;
     for path in files {
         let Some(font) = read(&path) else { continue };
@@ -228,7 +228,7 @@ fn gather(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) {
 /// A font file; of a collection, its first font.
 fn read(path: &Path) -> Option<FontVec> {
     let length = std::fs::metadata(path).ok()?.len();
-    if length > MOST_BYTES {
+    if length > MAX_BYTES {
         return None;
     }
     FontVec::try_from_vec_and_index(std::fs::read(path).ok()?, 0).ok()

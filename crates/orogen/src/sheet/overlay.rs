@@ -2,7 +2,7 @@
 
 use super::furniture::Desk;
 use super::inks::{BLUE, Inks, LAKES, SHORE, THICK, THIN};
-use super::labels::{Label, Setting, Taken, gaps, place};
+use super::labels::{Label, LabelStyle, Taken, gaps, place};
 use super::letters::Letters;
 use super::lines::is_thick;
 use super::linework::Linework;
@@ -19,7 +19,7 @@ use crate::palette::tint::Tint;
 const RIVERS: [f32; 2] = [0.16, 0.95];
 
 /// Size of the heights along contours, an em in millimetres, and of that their reach above the line.
-const LABEL: Setting = Setting { size: 2.1, apart: 7.0, every: 95.0 };
+const LABEL: LabelStyle = LabelStyle { size: 2.1, apart: 7.0, every: 95.0 };
 
 /// What lies below the lines: the ground's colors, by height or as they are in a picture.
 pub enum Below<'a> {

@@ -40,7 +40,7 @@ impl Ramp {
     /// # Errors
     /// If the palette follows heights, or a logarithmic ramp has no value above 0 to begin with.
     pub fn new(layer: &Layer, palette: &Palette) -> Result<Ramp> {
-        let fault = |sentence: String| Err(Error::new(ErrorKind::Request, sentence));
+        let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
         let name = &layer.name;
         if palette.follows_relief {
             return fault(format!(

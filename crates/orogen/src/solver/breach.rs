@@ -60,7 +60,7 @@ impl Solver for Breach {
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         let mut heights = sources.whole(0, sources.padded())?;
         context.progress.check()?;
-        let outlets = Outlets::new(&heights, self.sea.then_some(context.setting.sea_level as f32));
+        let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
         let deepest = self.deepest as f32;
         let out = match self.way {
             Way::Valley => {

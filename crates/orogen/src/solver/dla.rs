@@ -43,7 +43,7 @@ impl Solver for Dla {
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         let (world, padded) = (sources.world(), sources.padded());
         let ridges = Ridges {
-            seed: context.setting.seed_of(self.seed),
+            seed: context.world_params.seed_of(self.seed),
             reach: self.reach,
             density: self.density,
             gain: self.gain,

@@ -76,7 +76,7 @@ impl Solver for Drainage {
         }
         let heights = sources.whole(0, sources.padded())?;
         context.progress.check()?;
-        let outlets = Outlets::new(&heights, self.sea.then_some(context.setting.sea_level as f32));
+        let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
         let [bed, surface, counting, naming] = context.progress.parts([3.0, 1.0, 1.0, 2.0]);
         let drained = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, &bed)?;
         let filled = fill::filled(&heights, &drained.basins);
@@ -126,7 +126,7 @@ impl Drainage {
         let (mut codes, mut filled) = (sources.raster()?, sources.raster()?);
         let padded = *sources.padded();
         let tiling = Tiling::new(padded, large::side(padded.len() as u64));
-        let sea = self.sea.then_some(context.setting.sea_level as f32);
+        let sea = self.sea.then_some(context.world_params.sea_level as f32);
         let water = Water { heights: &heights, sea, tiling, progress: context.progress };
         water.over_bed(&mut codes, &mut filled)?;
         let water = Water { heights: &filled, ..water };

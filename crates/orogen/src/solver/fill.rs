@@ -53,7 +53,7 @@ impl Solver for Fill {
         }
         let heights = sources.whole(0, sources.padded())?;
         context.progress.check()?;
-        let outlets = Outlets::new(&heights, self.sea.then_some(context.setting.sea_level as f32));
+        let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
         let drained = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, context.progress)?;
         let filled = fill::filled(&heights, &drained.basins);
         drop(drained);
@@ -71,7 +71,7 @@ impl Fill {
     fn solve_on_disk(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         let [mut heights, mut filled, mut codes] = [sources.raster()?, sources.raster()?, sources.raster()?];
         sources.each_tile(0, sources.padded(), &mut |tile| heights.put(tile))?;
-        let sea = self.sea.then_some(context.setting.sea_level as f32);
+        let sea = self.sea.then_some(context.world_params.sea_level as f32);
         let padded = *sources.padded();
         let tiling = Tiling::new(padded, large::side(padded.len() as u64));
         let water = Water { heights: &heights, sea, tiling, progress: context.progress };

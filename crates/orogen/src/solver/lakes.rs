@@ -45,7 +45,7 @@ impl Solver for Lakes {
         let heights = sources.whole(0, sources.padded())?;
         context.progress.check()?;
         let window = *heights.window();
-        let outlets = Outlets::new(&heights, self.sea.then_some(context.setting.sea_level as f32));
+        let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
         let [routing, filling] = context.progress.parts([1.0, 3.0]);
         let drainage = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, &routing)?;
         let fewest = (self.smallest / (window.cell * window.cell)).ceil().clamp(4.0, f64::from(u32::MAX)) as u32;

@@ -96,11 +96,11 @@ impl Solver for StreamPower {
             years: self.years,
             steps: self.steps,
             irregular: self.irregular,
-            scattered: self.scatter.then_some(context.setting.seed_of(self.seed) as u32),
+            scattered: self.scatter.then_some(context.world_params.seed_of(self.seed) as u32),
         };
         let ground = Ground { softness: softness.as_ref(), rise: rise.as_ref(), points: None };
         let mut heights = source.clone();
-        let sea_level = self.sea.then_some(context.setting.sea_level as f32);
+        let sea_level = self.sea.then_some(context.world_params.sea_level as f32);
         let progress = context.progress;
         progress.expect(erosion.work());
         let mut run = ErosionRun::new(erosion, &heights, &ground, sea_level);

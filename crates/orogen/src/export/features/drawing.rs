@@ -83,9 +83,9 @@ impl Drawing {
         match self.layers.as_slice() {
             [(layer, _)] => Ok(layer),
             _ => {
-                let sentence =
+                let message =
                     format!("a .{format} file holds one layer: name one with --layer, or write all into a .gpkg");
-                Err(Error::new(ErrorKind::Request, sentence).into())
+                Err(Error::new(ErrorKind::Request, message).into())
             }
         }
     }
@@ -115,8 +115,8 @@ fn check(layers: &[&VectorLayer], options: &Options) -> Result<()> {
                 .filter(|layer| layer.options.contains(&name))
                 .map(|layer| layer.name)
                 .collect();
-            let sentence = format!("--{name} changes nothing here; it is for {}", knows.join(", "));
-            return Err(Error::new(ErrorKind::Request, sentence));
+            let message = format!("--{name} changes nothing here; it is for {}", knows.join(", "));
+            return Err(Error::new(ErrorKind::Request, message));
         }
     }
     Ok(())

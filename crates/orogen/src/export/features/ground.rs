@@ -55,9 +55,9 @@ impl Ground {
         let all = extent(world, window);
         let samples = (all.width as u64).saturating_mul(all.height as u64);
         if samples > u64::from(u32::MAX) {
-            let sentence =
+            let message =
                 format!("water is found on at most 2^32 samples, and there are {} x {}", all.width, all.height);
-            return Err(Error::new(ErrorKind::Request, sentence));
+            return Err(Error::new(ErrorKind::Request, message));
         }
         // The heights are counted by the plan that makes them.
         let held = samples.saturating_mul(MEMORY - 4 + FEATURES).saturating_add(beside);

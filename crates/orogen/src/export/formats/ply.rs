@@ -26,8 +26,8 @@ pub static FORMAT: Format = Format {
 fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
     let color = color(options, "vertex", files, false);
     if color == "texture" {
-        let sentence = "a .ply file holds no picture: say --color vertex, or none, or write .glb or .obj";
-        return Err(Error::new(ErrorKind::Request, sentence).into());
+        let message = "a .ply file holds no picture: say --color vertex, or none, or write .glb or .obj";
+        return Err(Error::new(ErrorKind::Request, message).into());
     }
     let colors = color == "vertex";
     let mesh = Prepared::new(subject, options, 1)?;

@@ -40,7 +40,7 @@ impl Frame {
     /// of it as they cover) is spread over them; with either, they begin at the window's first sample.
     ///
     /// # Errors
-    /// If the target does not allow a size or tiles; the sentence names the nearest.
+    /// If the target does not allow a size or tiles; the message names the nearest.
     pub fn new(target: &Target, world: &World, asked: &Asked) -> Result<Frame> {
         let tiles = asked.tiles.unwrap_or([1, 1]);
         if asked.tiles.is_some() && target.tile.is_none() {
@@ -120,8 +120,8 @@ impl Frame {
     }
 }
 
-fn refuse<T>(sentence: String) -> Result<T> {
-    Err(Error::new(ErrorKind::Request, sentence))
+fn refuse<T>(message: String) -> Result<T> {
+    Err(Error::new(ErrorKind::Request, message))
 }
 
 fn nearest(target: &Target, side: usize) -> usize {

@@ -108,7 +108,7 @@ pub fn of_epsg(code: u16, geographic: bool) -> GeoKeys {
 /// The keys of the text of a `.prj`: its EPSG code where it has one or is a known system, else the text itself.
 ///
 /// # Errors
-/// A sentence if it is no text of a coordinate system on Earth.
+/// A message if it is no text of a coordinate system on Earth.
 pub fn of_wkt(wkt: &str) -> Result<GeoKeys, String> {
     let wkt = wkt.trim_start_matches('\u{feff}').trim();
     if let Some(code) = arc_info::epsg(wkt) {
@@ -147,7 +147,7 @@ pub fn of_wkt(wkt: &str) -> Result<GeoKeys, String> {
 /// The keys of a well-known text, or of a code such as `EPSG:32632`, also in a URL or URN that ends with it.
 ///
 /// # Errors
-/// A sentence if it is neither.
+/// A message if it is neither.
 pub fn of_text(text: &str) -> Result<GeoKeys, String> {
     let text = text.trim();
     let code = text.rsplit([':', '/']).next().and_then(|code| code.parse().ok());
@@ -180,7 +180,7 @@ fn esri_text(keys: &GeoKeys) -> Option<&str> {
 /// The well-known text of keys, for a `.prj` file.
 ///
 /// # Errors
-/// A sentence that says what could not be expressed.
+/// A message that says what could not be expressed.
 pub fn to_wkt(keys: &GeoKeys) -> Result<String, String> {
     if let Some(code) = epsg(keys) {
         return match epsg::find(code) {

@@ -37,7 +37,7 @@ impl Node {
     /// Takes a text apart.
     ///
     /// # Errors
-    /// A sentence if it is no well-known text.
+    /// A message if it is no well-known text.
     pub fn parse(text: &str) -> Result<Node, String> {
         if text.len() > MAX_LENGTH {
             return Err(format!("a coordinate system takes no {} bytes", text.len()));

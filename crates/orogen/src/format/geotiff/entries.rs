@@ -5,10 +5,10 @@ use std::io::SeekFrom;
 use crate::format::dem::{self, Input};
 
 /// The most entries a directory may have: TIFF knows far fewer tags.
-const MOST_ENTRIES: u64 = 4096;
+const MAX_ENTRIES: u64 = 4096;
 
 /// The most directories looked through for the full raster.
-const MOST_DIRECTORIES: usize = 64;
+const MAX_DIRECTORIES: usize = 64;
 
 /// A TIFF opened: the entries of the directory that describes its full raster.
 pub struct Tiff<'a> {
@@ -48,7 +48,7 @@ impl<'a> Tiff<'a> {
             _ => return Err("it is not a TIFF".into()),
         };
         let mut at = if tiff.big { tiff.number(8, 8)? } else { tiff.number(4, 4)? };
-        for _ in 0..MOST_DIRECTORIES {
+        for _ in 0..MAX_DIRECTORIES {
             if at == 0 {
                 break;
             }
@@ -94,7 +94,7 @@ impl<'a> Tiff<'a> {
     fn directory(&mut self, at: u64) -> Fallible<u64> {
         let (count_size, word) = if self.big { (8, 8) } else { (2, 4) };
         let count = self.number(at, count_size)?;
-        if count > MOST_ENTRIES {
+        if count > MAX_ENTRIES {
             return Err(format!("its directory claims {count} entries; it is damaged"));
         }
         let each = 4 + 2 * word;

@@ -36,32 +36,32 @@ pub fn is_zarr(folder: &Path) -> bool {
 pub fn read(folder: &Path, request: Request) -> Result<Dem> {
     let name = folder.display().to_string();
     open(folder, request).map_err(|fault| match fault {
-        Fault::Other(error) => error,
-        Fault::Sentence(why) => refused(&name, why),
+        ReadFault::Other(error) => error,
+        ReadFault::Message(why) => refused(&name, why),
     })
 }
 
 /// Why an array is not read.
-enum Fault {
-    Sentence(String),
+enum ReadFault {
+    Message(String),
     Other(Error),
 }
 
-impl From<String> for Fault {
-    fn from(why: String) -> Fault {
-        Fault::Sentence(why)
+impl From<String> for ReadFault {
+    fn from(why: String) -> ReadFault {
+        ReadFault::Message(why)
     }
 }
 
-impl From<&str> for Fault {
-    fn from(why: &str) -> Fault {
-        Fault::Sentence(why.to_string())
+impl From<&str> for ReadFault {
+    fn from(why: &str) -> ReadFault {
+        ReadFault::Message(why.to_string())
     }
 }
 
-impl From<Error> for Fault {
-    fn from(error: Error) -> Fault {
-        Fault::Other(error)
+impl From<Error> for ReadFault {
+    fn from(error: Error) -> ReadFault {
+        ReadFault::Other(error)
     }
 }
 
@@ -91,18 +91,18 @@ struct Array {
 }
 
 /// The bytes of a small file; none if it is not there.
-fn text(path: &Path) -> std::result::Result<Option<Value>, Fault> {
+fn text(path: &Path) -> std::result::Result<Option<Value>, ReadFault> {
     if !path.exists() {
         return Ok(None);
     }
     let text = open::bytes(path, "read", MAX_METADATA)?;
     let text = text.ok_or_else(|| format!("its {} is longer than {MAX_METADATA} bytes", path.display()))?;
     let value = serde_json::from_slice(&text);
-    value.map(Some).map_err(|fault| Fault::Sentence(format!("its {} is not valid JSON ({fault})", path.display())))
+    value.map(Some).map_err(|fault| ReadFault::Message(format!("its {} is not valid JSON ({fault})", path.display())))
 }
 
 /// The array of a folder, if it is one.
-fn array(folder: &Path) -> std::result::Result<Option<Array>, Fault> {
+fn array(folder: &Path) -> std::result::Result<Option<Array>, ReadFault> {
     if let Some(value) = text(&folder.join("zarr.json"))? {
         return match value["node_type"].as_str() {
             Some("array") => Ok(Some(version3(folder, &value)?)),
@@ -243,7 +243,7 @@ impl Array {
     }
 
     /// The bytes of a chunk's samples; none if it is left out. `count` heights are held beside it.
-    fn chunk(&self, at: &[u64], count: usize, allowed: u64) -> std::result::Result<Option<Vec<u8>>, Fault> {
+    fn chunk(&self, at: &[u64], count: usize, allowed: u64) -> std::result::Result<Option<Vec<u8>>, ReadFault> {
         let numbers: Vec<String> = at.iter().map(u64::to_string).collect();
         let name = match (self.prefix, self.separator.as_str()) {
             ("", _) => numbers.join(&self.separator),
@@ -290,7 +290,7 @@ impl Array {
     }
 
     /// All numbers of an array of one dimension.
-    fn line(&self, allowed: u64) -> std::result::Result<Vec<f64>, Fault> {
+    fn line(&self, allowed: u64) -> std::result::Result<Vec<f64>, ReadFault> {
         let (length, chunk) = (self.shape[0], self.chunk[0]);
         let mut line = Vec::new();
         for k in 0..length.div_ceil(chunk) {
@@ -301,7 +301,7 @@ impl Array {
     }
 }
 
-fn open(folder: &Path, request: Request) -> std::result::Result<Dem, Fault> {
+fn open(folder: &Path, request: Request) -> std::result::Result<Dem, ReadFault> {
     let (array, group) = match array(folder)? {
         Some(array) => (array, folder.parent().map(Path::to_path_buf)),
         None => (find(folder)?, Some(folder.to_path_buf())),
@@ -350,7 +350,7 @@ fn open(folder: &Path, request: Request) -> std::result::Result<Dem, Fault> {
 }
 
 /// The array of heights in a group.
-fn find(folder: &Path) -> std::result::Result<Array, Fault> {
+fn find(folder: &Path) -> std::result::Result<Array, ReadFault> {
     let mut maps = Vec::new();
     let entries = std::fs::read_dir(folder).map_err(|cause| Error::file("read", folder, &cause))?;
     for entry in entries {
@@ -378,7 +378,7 @@ fn find(folder: &Path) -> std::result::Result<Array, Fault> {
 }
 
 /// Where an array's samples stand, and whether its rows come from the south.
-fn place(array: &Array, group: Option<&Path>, allowed: u64) -> std::result::Result<Option<(Place, bool)>, Fault> {
+fn place(array: &Array, group: Option<&Path>, allowed: u64) -> std::result::Result<Option<(Place, bool)>, ReadFault> {
     let sides = array.names.get(array.names.len().saturating_sub(2)..).unwrap_or_default();
     let keys = system(array, group)?;
     let (rows, columns) = (array.shape[array.shape.len() - 2], array.shape[array.shape.len() - 1]);
@@ -386,7 +386,7 @@ fn place(array: &Array, group: Option<&Path>, allowed: u64) -> std::result::Resu
         let line = |name: &str, length: u64| {
             let plain = !name.is_empty() && !name.contains(['/', '\\']) && name != "..";
             match if plain { self::array(&group.join(name))? } else { None } {
-                Some(line) if line.shape == [length] => Ok::<_, Fault>(regular(&line.line(allowed)?)),
+                Some(line) if line.shape == [length] => Ok::<_, ReadFault>(regular(&line.line(allowed)?)),
                 _ => Ok(None),
             }
         };
@@ -414,7 +414,7 @@ fn regular(line: &[f64]) -> Option<(f64, f64)> {
 }
 
 /// The coordinate system that an array tells, or the array of none dimensions that it calls its `grid_mapping`.
-fn system(array: &Array, group: Option<&Path>) -> std::result::Result<Option<GeoKeys>, Fault> {
+fn system(array: &Array, group: Option<&Path>) -> std::result::Result<Option<GeoKeys>, ReadFault> {
     let mut all = vec![array.attributes.clone()];
     let mapping = array.attributes["grid_mapping"].as_str().unwrap_or("spatial_ref");
     if let Some(group) = group.filter(|_| !mapping.contains(['/', '\\', '.'])) {

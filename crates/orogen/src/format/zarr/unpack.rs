@@ -38,7 +38,7 @@ impl Codec {
     /// Unpacks at most so many bytes.
     ///
     /// # Errors
-    /// A sentence if they are damaged, or more.
+    /// A message if they are damaged, or more.
     pub fn unpack(self, packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
         let damaged = || "a chunk is damaged".to_string();
         match self {

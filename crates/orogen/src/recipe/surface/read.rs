@@ -38,7 +38,7 @@ pub struct Read {
     /// Where each stands.
     pub places: Vec<Span>,
     /// What is wrong, and where.
-    pub faults: Vec<(Span, String)>,
+    pub diagnostics: Vec<(Span, String)>,
 }
 
 /// Reads the list of surfaces. `bounded` tells whether the world has bounds: only then are drainage areas known.
@@ -46,12 +46,16 @@ pub fn read(value: &Spanned<Value>, bounded: bool) -> Read {
     let mut reader = Reader { out: Read::default(), bounded };
     match &value.value {
         Value::List(items) if items.len() > MAX_SURFACES => {
-            reader
-                .fault(&value.span, format!("there are {} surfaces; a recipe has at most {MAX_SURFACES}", items.len()));
+            reader.diagnostic(
+                &value.span,
+                format!("there are {} surfaces; a recipe has at most {MAX_SURFACES}", items.len()),
+            );
         }
         Value::List(items) => items.iter().for_each(|item| reader.surface(item)),
-        other => reader
-            .fault(&value.span, format!("`surface` must be a list of tables, `[[surface]]`, not {}", other.describe())),
+        other => reader.diagnostic(
+            &value.span,
+            format!("`surface` must be a list of tables, `[[surface]]`, not {}", other.describe()),
+        ),
     }
     reader.out
 }
@@ -62,8 +66,8 @@ struct Reader {
 }
 
 impl Reader {
-    fn fault(&mut self, span: &Span, message: impl Into<String>) {
-        self.out.faults.push((span.clone(), message.into()));
+    fn diagnostic(&mut self, span: &Span, message: impl Into<String>) {
+        self.out.diagnostics.push((span.clone(), message.into()));
     }
 
     fn table<'v>(&mut self, what: &str, value: &'v Spanned<Value>) -> Option<&'v [Entry]> {
@@ -72,13 +76,13 @@ impl Reader {
                 let mut seen = HashSet::new();
                 for (key, _) in entries {
                     if !seen.insert(key.value.as_str()) {
-                        self.fault(&key.span, format!("the key `{}` stands twice in this table", key.value));
+                        self.diagnostic(&key.span, format!("the key `{}` stands twice in this table", key.value));
                     }
                 }
                 Some(entries)
             }
             other => {
-                self.fault(&value.span, format!("{what} must be a table, not {}", other.describe()));
+                self.diagnostic(&value.span, format!("{what} must be a table, not {}", other.describe()));
                 None
             }
         }
@@ -94,10 +98,10 @@ impl Reader {
                 other => {
                     let message =
                         format!("`name` must be 1 to 64 letters, digits, `_` and `-`, not {}", other.describe());
-                    self.fault(&name.span, message);
+                    self.diagnostic(&name.span, message);
                 }
             },
-            None => self.fault(&value.span, "a surface needs a `name`, such as \"rock\""),
+            None => self.diagnostic(&value.span, "a surface needs a `name`, such as \"rock\""),
         }
         surface.color = self.coloring(value, entries);
         for (key, value) in entries {
@@ -110,7 +114,7 @@ impl Reader {
                 condition if CONDITIONS.contains(&condition) => surface.all.extend(self.condition(condition, value)),
                 unknown => {
                     let hint = suggestion(unknown, KEYS.into_iter().chain(CONDITIONS));
-                    self.fault(&key.span, format!("unknown key `{unknown}` in a surface; {hint}"));
+                    self.diagnostic(&key.span, format!("unknown key `{unknown}` in a surface; {hint}"));
                 }
             }
         }
@@ -123,7 +127,7 @@ impl Reader {
                     "the first surface lies everywhere and takes no `{}`; list the one that covers the rest first",
                     key.value
                 );
-                self.fault(&key.span, message);
+                self.diagnostic(&key.span, message);
             }
         }
         self.out.surfaces.push(surface);
@@ -138,7 +142,7 @@ impl Reader {
         match given.as_slice() {
             [(key, value)] if key.value == "color" => {
                 if let Some((key, _)) = entries.iter().find(|(key, _)| follows(&key.value)) {
-                    self.fault(
+                    self.diagnostic(
                         &key.span,
                         format!("`{}` belongs to a `gradient` or a `picture`, not to one `color`", key.value),
                     );
@@ -148,7 +152,10 @@ impl Reader {
             [(key, value)] if key.value == "picture" => match &value.value {
                 Value::Text(path) if !path.is_empty() => Coloring::Picture(Imported::from(path.as_str()), along),
                 other => {
-                    self.fault(&value.span, format!("`picture` must be the path of a .png, not {}", other.describe()));
+                    self.diagnostic(
+                        &value.span,
+                        format!("`picture` must be the path of a .png, not {}", other.describe()),
+                    );
                     Coloring::Plain([128; 3])
                 }
             },
@@ -159,19 +166,22 @@ impl Reader {
                 other => {
                     let message =
                         format!("`gradient` must be a list of 2 to {MAX_COLORS} colors, not {}", other.describe());
-                    self.fault(&value.span, message);
+                    self.diagnostic(&value.span, message);
                     Coloring::Plain([128; 3])
                 }
             },
             [] => {
-                self.fault(
+                self.diagnostic(
                     &table.span,
                     "a surface needs a `color`, such as \"#6d675f\", a `gradient` of colors or a `picture`",
                 );
                 Coloring::Plain([128; 3])
             }
             [_, (second, _), ..] => {
-                self.fault(&second.span, "a surface takes one of `color`, `gradient` and `picture`; remove the others");
+                self.diagnostic(
+                    &second.span,
+                    "a surface takes one of `color`, `gradient` and `picture`; remove the others",
+                );
                 Coloring::Plain([128; 3])
             }
         }
@@ -184,7 +194,7 @@ impl Reader {
         };
         if color.is_none() {
             let message = format!("a color is \"#rrggbb\" or a name such as \"khaki\", not {}", value.value.describe());
-            self.fault(&value.span, message);
+            self.diagnostic(&value.span, message);
         }
         color
     }
@@ -204,24 +214,24 @@ impl Reader {
                         "`along` must be \"noise\", \"height\", \"slope\" or a node's name, not {}",
                         other.describe()
                     );
-                    self.fault(&value.span, message);
+                    self.diagnostic(&value.span, message);
                     "noise".to_string()
                 }
             },
         };
         match (along.as_str(), find("span"), find("grain")) {
             ("noise", Some((key, _)), _) => {
-                self.fault(&key.span, "`span` belongs to `along = \"height\"`, \"slope\" or a node; noise takes `grain`, its wavelength in metres");
+                self.diagnostic(&key.span, "`span` belongs to `along = \"height\"`, \"slope\" or a node; noise takes `grain`, its wavelength in metres");
                 Along::default()
             }
             ("noise", ..) => Along::Noise(grain),
             (_, _, Some((key, _))) => {
-                self.fault(&key.span, "`grain` is the wavelength of noise; this gradient follows something else");
+                self.diagnostic(&key.span, "`grain` is the wavelength of noise; this gradient follows something else");
                 Along::default()
             }
             (_, None, _) => {
                 let span = find("along").map_or(0..0, |(key, _)| key.span.clone());
-                self.fault(
+                self.diagnostic(
                     &span,
                     format!(
                         "a gradient along `{along}` needs `span = [FROM, TO]`: the values of its first and last color"
@@ -250,7 +260,7 @@ impl Reader {
         {
             return [from, to];
         }
-        self.fault(
+        self.diagnostic(
             &value.span,
             format!("`span` must be two different numbers [FROM, TO], not {}", value.value.describe()),
         );
@@ -259,14 +269,17 @@ impl Reader {
 
     fn alternatives(&mut self, value: &Spanned<Value>) -> Vec<Vec<Condition>> {
         let Value::List(items) = &value.value else {
-            self.fault(
+            self.diagnostic(
                 &value.span,
                 format!("`any` must be a list of tables of conditions, not {}", value.value.describe()),
             );
             return Vec::new();
         };
         if items.is_empty() || items.len() > MAX_ALTERNATIVES {
-            self.fault(&value.span, format!("`any` takes 1 to {MAX_ALTERNATIVES} alternatives, not {}", items.len()));
+            self.diagnostic(
+                &value.span,
+                format!("`any` takes 1 to {MAX_ALTERNATIVES} alternatives, not {}", items.len()),
+            );
             return Vec::new();
         }
         items.iter().map(|item| self.conditions(item)).collect()
@@ -280,11 +293,11 @@ impl Reader {
                 all.extend(self.condition(&key.value, value));
             } else {
                 let hint = suggestion(&key.value, CONDITIONS);
-                self.fault(&key.span, format!("unknown condition `{}`; {hint}", key.value));
+                self.diagnostic(&key.span, format!("unknown condition `{}`; {hint}", key.value));
             }
         }
         if all.is_empty() {
-            self.fault(&value.span, "an alternative needs a condition, such as `slope = { min = 40 }`");
+            self.diagnostic(&value.span, "an alternative needs a condition, such as `slope = { min = 40 }`");
         }
         all
     }
@@ -298,7 +311,10 @@ impl Reader {
                 .collect();
         }
         if key == "flow" && !self.bounded {
-            self.fault(&value.span, "`flow` needs a world with bounds: give the world a `size`, or leave `flow` out");
+            self.diagnostic(
+                &value.span,
+                "`flow` needs a world with bounds: give the world a `size`, or leave `flow` out",
+            );
         }
         let (of, bounds) = match key {
             "height" => (Quantity::Height, HEIGHTS),
@@ -329,19 +345,22 @@ impl Reader {
                     "`{key}` must be [MIN, MAX] or a table such as {{ min = 30, fade = 5 }}, not {}",
                     other.describe()
                 );
-                self.fault(&value.span, message);
+                self.diagnostic(&value.span, message);
                 return condition;
             }
         }
         if condition.min.zip(condition.max).is_some_and(|(min, max)| min > max) {
-            self.fault(&value.span, format!("the lower end of `{key}` must not be above its upper end"));
+            self.diagnostic(&value.span, format!("the lower end of `{key}` must not be above its upper end"));
             condition.max = condition.min;
         }
         if condition.min.is_none() && condition.max.is_none() {
-            self.fault(&value.span, format!("`{key}` needs a `min` or a `max`"));
+            self.diagnostic(&value.span, format!("`{key}` needs a `min` or a `max`"));
         }
         if matches!(&condition.of, Quantity::Noise(noise) if noise.wavelength == 0.0) {
-            self.fault(&value.span, "`noise` needs a `wavelength` in metres, such as { min = 0, wavelength = 400 }");
+            self.diagnostic(
+                &value.span,
+                "`noise` needs a `wavelength` in metres, such as { min = 0, wavelength = 400 }",
+            );
         }
         condition
     }
@@ -376,7 +395,7 @@ impl Reader {
                 };
                 let known: Vec<&str> = ["min", "max", "fade"].into_iter().chain(more.iter().copied()).collect();
                 let hint = suggestion(unknown, known.iter().copied());
-                self.fault(&name.span, format!("unknown key `{unknown}` in `{key}`; {hint}"));
+                self.diagnostic(&name.span, format!("unknown key `{unknown}` in `{key}`; {hint}"));
             }
         }
     }
@@ -395,7 +414,7 @@ impl Reader {
         let number = value.value.number().filter(|number| (low..=high).contains(number));
         if number.is_none() {
             let message = format!("`{key}` must be a number from {low:?} to {high:?}, not {}", value.value.describe());
-            self.fault(&value.span, message);
+            self.diagnostic(&value.span, message);
         }
         number
     }
@@ -406,7 +425,7 @@ impl Reader {
             _ => {
                 let message =
                     format!("`{key}` must be a whole number from 0 to {most}, not {}", value.value.describe());
-                self.fault(&value.span, message);
+                self.diagnostic(&value.span, message);
                 1
             }
         }
@@ -422,7 +441,7 @@ impl Reader {
             (_, Some(number)) if number.is_finite() => Input::Value(number),
             (other, _) => {
                 let message = format!("`{key}` must name a node or a layer, or be a number, not {}", other.describe());
-                self.fault(&value.span, message);
+                self.diagnostic(&value.span, message);
                 Input::None
             }
         }

@@ -79,9 +79,9 @@ fn faults_stand_at_their_keys() {
         assert!(surfaces.contains(from), "{from}");
         let text = recipe(SIZE, &surfaces.replacen(from, to, 1));
         let error = Recipe::parse(&text, "test").unwrap_err();
-        let complaint = error.complaints().iter().find(|complaint| complaint.sentence.contains(expect));
-        let complaint = complaint.unwrap_or_else(|| panic!("{expect}: {error}"));
-        let place = complaint.place.as_ref().unwrap();
+        let diagnostic = error.diagnostics().iter().find(|diagnostic| diagnostic.message.contains(expect));
+        let diagnostic = diagnostic.unwrap_or_else(|| panic!("{expect}: {error}"));
+        let place = diagnostic.place.as_ref().unwrap();
         let from: String = place.text.chars().skip(place.column - 1).collect();
         assert!(from.starts_with(column), "{from} / {column}: {error}");
     }

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 use crate::layer::LayerKind;
-use crate::op::{Field, Reading, Setting, Slots, Solution, Solver};
+use crate::op::{Field, Inputs, Reading, Solution, Solver, WorldParams};
 use crate::plan::program::{Instruction, Program};
 use crate::resample::{self, NOWHERE};
 use orogen_noise::Points;
@@ -11,13 +11,13 @@ use std::sync::Arc;
 
 /// What a program's instructions refer to.
 pub struct Bindings<'a> {
-    pub setting: &'a Setting,
+    pub world_params: &'a WorldParams,
     pub fields: &'a (dyn Fn(usize) -> Option<&'a dyn Field> + Sync),
     pub solvers: &'a (dyn Fn(usize) -> Option<(&'a dyn Solver, Arc<Solution>)> + Sync),
     pub grids: &'a [Option<Grid>],
 }
 
-/// How a place's buffers are to be understood.
+/// How a coordinate set's buffers are to be understood.
 #[derive(Clone, Copy, Default, PartialEq)]
 enum Shape {
     #[default]
@@ -27,7 +27,7 @@ enum Shape {
 }
 
 #[derive(Default)]
-struct Place {
+struct CoordSet {
     shape: Shape,
     x: Vec<f64>,
     y: Vec<f64>,
@@ -35,7 +35,7 @@ struct Place {
     dy: Vec<f32>,
 }
 
-impl Place {
+impl CoordSet {
     fn points(&self) -> Points<'_> {
         match self.shape {
             Shape::Lattice => Points::Lattice { xs: &self.x, ys: &self.y },
@@ -45,58 +45,58 @@ impl Place {
     }
 }
 
-/// Registers and places between two runs: handed to the next machine, they spare it asking for memory.
+/// Registers and coordinate sets between two runs: handed to the next interpreter, they spare it asking for memory.
 #[derive(Default)]
 pub struct Buffers {
     registers: Vec<Vec<f32>>,
-    places: Vec<Place>,
+    coord_sets: Vec<CoordSet>,
 }
 
-/// Registers and places, used again from block to block.
-pub struct Machine<'p> {
+/// Registers and coordinate sets, used again from block to block.
+pub struct Interpreter<'p> {
     program: &'p Program,
     registers: Vec<Vec<f32>>,
-    places: Vec<Place>,
+    coord_sets: Vec<CoordSet>,
 }
 
-impl<'p> Machine<'p> {
-    /// A machine for a program.
-    pub fn new(program: &'p Program) -> Machine<'p> {
-        Machine::with(program, Buffers::default())
+impl<'p> Interpreter<'p> {
+    /// A interpreter for a program.
+    pub fn new(program: &'p Program) -> Interpreter<'p> {
+        Interpreter::with(program, Buffers::default())
     }
 
-    /// A machine for a program, over buffers that another has left.
-    pub fn with(program: &'p Program, buffers: Buffers) -> Machine<'p> {
-        let Buffers { mut registers, mut places } = buffers;
+    /// A interpreter for a program, over buffers that another has left.
+    pub fn with(program: &'p Program, buffers: Buffers) -> Interpreter<'p> {
+        let Buffers { mut registers, mut coord_sets } = buffers;
         registers.resize_with(program.registers, Vec::new);
-        places.resize_with(program.places.max(1), Place::default);
-        Machine { program, registers, places }
+        coord_sets.resize_with(program.coord_sets.max(1), CoordSet::default);
+        Interpreter { program, registers, coord_sets }
     }
 
-    /// The buffers, for the next machine.
+    /// The buffers, for the next interpreter.
     pub fn into_buffers(self) -> Buffers {
-        Buffers { registers: self.registers, places: self.places }
+        Buffers { registers: self.registers, coord_sets: self.coord_sets }
     }
 
     /// Runs the program over a block of the lattice.
     pub fn run_block(&mut self, block: &Window, bindings: &Bindings) -> Result<()> {
-        let place = &mut self.places[0];
-        place.shape = Shape::Lattice;
-        place.x.clear();
-        place.x.extend((0..block.width).map(|i| block.east(i)));
-        place.y.clear();
-        place.y.extend((0..block.height).map(|j| block.south(j)));
+        let coords = &mut self.coord_sets[0];
+        coords.shape = Shape::Lattice;
+        coords.x.clear();
+        coords.x.extend((0..block.width).map(|i| block.east(i)));
+        coords.y.clear();
+        coords.y.extend((0..block.height).map(|j| block.south(j)));
         self.run(Some(block), block.len(), bindings)
     }
 
     /// Runs the program at any points.
     pub fn run_points(&mut self, x: &[f64], y: &[f64], bindings: &Bindings) -> Result<()> {
-        let place = &mut self.places[0];
-        place.shape = Shape::Scattered;
-        place.x.clear();
-        place.x.extend_from_slice(x);
-        place.y.clear();
-        place.y.extend_from_slice(y);
+        let coords = &mut self.coord_sets[0];
+        coords.shape = Shape::Scattered;
+        coords.x.clear();
+        coords.x.extend_from_slice(x);
+        coords.y.clear();
+        coords.y.extend_from_slice(y);
         self.run(None, x.len().min(y.len()), bindings)
     }
 
@@ -121,24 +121,24 @@ impl<'p> Machine<'p> {
     ) -> Result<()> {
         match instruction {
             Instruction::Constant { value, out } => self.registers[*out].fill(*value),
-            Instruction::Field { node, place, inputs, out } => {
+            Instruction::Field { node, coords, inputs, out } => {
                 let Some(field) = (bindings.fields)(*node) else { return Ok(()) };
-                self.with_inputs(*place, inputs, *out, |points, slots, out| {
-                    field.eval(points, slots, bindings.setting, out);
+                self.with_inputs(*coords, inputs, *out, |points, slots, out| {
+                    field.eval(points, slots, bindings.world_params, out);
                 });
             }
-            Instruction::Solved { node, layer, kind, place, inputs, out } => {
+            Instruction::Solved { node, layer, kind, coords, inputs, out } => {
                 let Some((solver, solution)) = (bindings.solvers)(*node) else { return Ok(()) };
-                self.with_inputs(*place, inputs, *out, |at, inputs, out| {
+                self.with_inputs(*coords, inputs, *out, |at, inputs, out| {
                     solver.read(&solution, &Reading { layer: *layer, kind: *kind, at, inputs }, out)
                 })?;
             }
-            Instruction::Grid { grid, kind, place, out } => {
+            Instruction::Grid { grid, kind, coords, out } => {
                 let Some(grid) = &bindings.grids[*grid] else { return Ok(()) };
                 // Only the block itself lies on the lattice that the grid was made on.
-                let block = block.filter(|_| *place == 0);
+                let block = block.filter(|_| *coords == 0);
                 let mut samples = std::mem::take(&mut self.registers[*out]);
-                copy_or_read(grid, *kind, block, &self.places[*place].points(), &mut samples);
+                copy_or_read(grid, *kind, block, &self.coord_sets[*coords].points(), &mut samples);
                 self.registers[*out] = samples;
             }
             Instruction::Mask { source, result, mask, out } => {
@@ -160,19 +160,19 @@ impl<'p> Machine<'p> {
                 self.registers[*out] = samples;
             }
             Instruction::Displace { from, east, south, strength, reach, to } => {
-                let mut moved = std::mem::take(&mut self.places[*to]);
+                let mut moved = std::mem::take(&mut self.coord_sets[*to]);
                 let metres = |input: f32| {
                     // A displacement that is no number moves nothing: the source then decides what shows.
                     let metres = (f64::from(input) * strength).clamp(-reach, *reach) as f32;
                     if metres.is_nan() { 0.0 } else { metres }
                 };
                 let (east, south) = (&self.registers[*east], &self.registers[*south]);
-                displace(&self.places[*from], count, |k| (metres(east[k]), metres(south[k])), &mut moved);
-                self.places[*to] = moved;
+                displace(&self.coord_sets[*from], count, |k| (metres(east[k]), metres(south[k])), &mut moved);
+                self.coord_sets[*to] = moved;
             }
             Instruction::Map { from, map, to } => {
-                let mut mapped = std::mem::take(&mut self.places[*to]);
-                let from = &self.places[*from];
+                let mut mapped = std::mem::take(&mut self.coord_sets[*to]);
+                let from = &self.coord_sets[*from];
                 mapped.x.clear();
                 mapped.y.clear();
                 if from.shape == Shape::Lattice && map.is_separable() {
@@ -189,7 +189,7 @@ impl<'p> Machine<'p> {
                         mapped.y.push(y);
                     }
                 }
-                self.places[*to] = mapped;
+                self.coord_sets[*to] = mapped;
             }
         }
         Ok(())
@@ -198,10 +198,10 @@ impl<'p> Machine<'p> {
     /// Lends the inputs and takes the output out while an op works, so that both can be borrowed at once.
     fn with_inputs<T>(
         &mut self,
-        place: usize,
+        coords: usize,
         inputs: &[Option<usize>],
         out: usize,
-        work: impl FnOnce(&Points, &Slots, &mut [f32]) -> T,
+        work: impl FnOnce(&Points, &Inputs, &mut [f32]) -> T,
     ) -> T {
         let mut samples = std::mem::take(&mut self.registers[out]);
         const FEW: usize = 8;
@@ -216,7 +216,7 @@ impl<'p> Machine<'p> {
             many = inputs.iter().map(|input| input.map(|register| self.registers[register].as_slice())).collect();
             &many
         };
-        let done = work(&self.places[place].points(), &Slots::new(slots), &mut samples);
+        let done = work(&self.coord_sets[coords].points(), &Inputs::new(slots), &mut samples);
         self.registers[out] = samples;
         done
     }
@@ -238,7 +238,7 @@ fn copy_or_read(grid: &Grid, kind: LayerKind, block: Option<&Window>, points: &P
 
 /// Moves every point. From a lattice the columns and rows stay known beside the displacements; from anywhere else the new
 /// positions are plain points. Either way a position is the f64 sum of where it was and the f32 it moved.
-fn displace(from: &Place, count: usize, by: impl Fn(usize) -> (f32, f32), to: &mut Place) {
+fn displace(from: &CoordSet, count: usize, by: impl Fn(usize) -> (f32, f32), to: &mut CoordSet) {
     to.x.clear();
     to.y.clear();
     to.dx.clear();

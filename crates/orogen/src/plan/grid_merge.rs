@@ -1,9 +1,9 @@
-//! Which grids serve which demands.
+//! Which grids serve which requests.
 
-use super::compile::Demand;
+use super::compile::GridRequest;
 use crate::grid::Window;
 
-/// One grid to make, and the demands it serves.
+/// One grid to make, and the requests it serves.
 pub struct Cluster {
     pub window: Window,
     pub serves: Vec<usize>,
@@ -11,8 +11,8 @@ pub struct Cluster {
 
 /// Joins windows that lie near each other: two become one wherever that makes at most a quarter more samples than the two
 /// apart.
-pub fn clusters(demands: &[Demand], wanted: impl Iterator<Item = usize>) -> Vec<Cluster> {
-    let mut clusters: Vec<Cluster> = wanted.map(|i| Cluster { window: demands[i].window, serves: vec![i] }).collect();
+pub fn clusters(requests: &[GridRequest], wanted: impl Iterator<Item = usize>) -> Vec<Cluster> {
+    let mut clusters: Vec<Cluster> = wanted.map(|i| Cluster { window: requests[i].window, serves: vec![i] }).collect();
     let samples = |window: &Window| window.width as f64 * window.height as f64;
     let mut i = 0;
     while i < clusters.len() {
@@ -41,20 +41,20 @@ pub fn clusters(demands: &[Demand], wanted: impl Iterator<Item = usize>) -> Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recipe::graph::Target;
+    use crate::recipe::graph::LayerRef;
 
     #[test]
     fn near_windows_join_and_far_ones_do_not() {
-        let demand = |x: i64, side: usize| Demand {
-            target: Target { node: 0, layer: 0 },
+        let request = |x: i64, side: usize| GridRequest {
+            target: LayerRef { node: 0, layer: 0 },
             raw: true,
             window: Window::new(side, side, 1.0).at(x, 0),
         };
-        let demands = [demand(0, 100), demand(100_000, 100), demand(-5, 110), demand(100_050, 100)];
-        let clusters = clusters(&demands, 0..4);
+        let requests = [request(0, 100), request(100_000, 100), request(-5, 110), request(100_050, 100)];
+        let clusters = clusters(&requests, 0..4);
         assert_eq!(clusters.len(), 2);
         for cluster in &clusters {
-            assert!(cluster.serves.iter().all(|&i| cluster.window.contains(&demands[i].window)));
+            assert!(cluster.serves.iter().all(|&i| cluster.window.contains(&requests[i].window)));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! A program on the calling thread alone, into samples that the caller holds: no pool, no grid, and no memory asked for once
 //! the buffers have grown to their size.
 
-use super::machine::{Bindings, Buffers, Machine};
+use super::interpreter::{Bindings, Buffers, Interpreter};
 use super::run::{Engine, Solutions};
 use crate::error::Result;
 use crate::grid::{Grid, Window};
@@ -9,14 +9,14 @@ use crate::plan::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use crate::plan::steps::Plan;
 
 /// A program for points with all that it reads made.
-pub struct Ready {
+pub struct PreparedProgram {
     program: Program,
     solutions: Solutions,
     grids: Vec<Option<Grid>>,
     anywhere: bool,
 }
 
-impl Ready {
+impl PreparedProgram {
     /// Whether it answers for every point and every window, not just for points within the window it was planned for.
     pub fn anywhere(&self) -> bool {
         self.anywhere
@@ -25,16 +25,22 @@ impl Ready {
 
 impl Engine<'_> {
     /// Makes all that a plan for points needs before it is asked; `None` if the plan is for no points.
-    pub fn ready(&self, plan: &Plan) -> Result<Option<Ready>> {
+    pub fn ready(&self, plan: &Plan) -> Result<Option<PreparedProgram>> {
         let Some(program) = plan.asked() else { return Ok(None) };
         let (solutions, grids) = self.before_points(plan)?;
-        Ok(Some(Ready { program: program.clone(), solutions, grids, anywhere: plan.is_pointwise() }))
+        Ok(Some(PreparedProgram { program: program.clone(), solutions, grids, anywhere: plan.is_pointwise() }))
     }
 
     /// Makes the samples of a window, row-major, into `out`, which must have its length; gives the buffers back. Only for what
-    /// answers [anywhere](Ready::anywhere).
-    pub fn fill_alone(&self, ready: &Ready, window: &Window, buffers: Buffers, out: &mut [f32]) -> Result<Buffers> {
-        self.alone(ready, buffers, |machine, bindings| {
+    /// answers [anywhere](PreparedProgram::anywhere).
+    pub fn fill_inline(
+        &self,
+        ready: &PreparedProgram,
+        window: &Window,
+        buffers: Buffers,
+        out: &mut [f32],
+    ) -> Result<Buffers> {
+        self.inline(ready, buffers, |interpreter, bindings| {
             let (columns, rows) = block(window.width);
             for top in (0..window.height).step_by(rows) {
                 for left in (0..window.width).step_by(columns) {
@@ -45,8 +51,8 @@ impl Engine<'_> {
                         height: rows.min(window.height - top),
                         cell: window.cell,
                     };
-                    machine.run_block(&block, bindings)?;
-                    let made = machine.output(0).chunks(block.width);
+                    interpreter.run_block(&block, bindings)?;
+                    let made = interpreter.output(0).chunks(block.width);
                     for (row, made) in out.chunks_mut(window.width).skip(top).zip(made) {
                         row[left..left + block.width].copy_from_slice(made);
                     }
@@ -57,35 +63,36 @@ impl Engine<'_> {
     }
 
     /// Makes the values at points into `out`, which must have as many; gives the buffers back.
-    pub fn points_alone(
+    pub fn points_inline(
         &self,
-        ready: &Ready,
+        ready: &PreparedProgram,
         (x, y): (&[f64], &[f64]),
         buffers: Buffers,
         out: &mut [f32],
     ) -> Result<Buffers> {
-        self.alone(ready, buffers, |machine, bindings| {
+        self.inline(ready, buffers, |interpreter, bindings| {
             const POINTS: usize = BLOCK_WIDTH * BLOCK_HEIGHT;
             for ((x, y), out) in x.chunks(POINTS).zip(y.chunks(POINTS)).zip(out.chunks_mut(POINTS)) {
-                machine.run_points(x, y, bindings)?;
-                out.copy_from_slice(machine.output(0));
+                interpreter.run_points(x, y, bindings)?;
+                out.copy_from_slice(interpreter.output(0));
             }
             Ok(())
         })
     }
 
-    fn alone(
+    fn inline(
         &self,
-        ready: &Ready,
+        ready: &PreparedProgram,
         buffers: Buffers,
-        work: impl FnOnce(&mut Machine, &Bindings) -> Result<()>,
+        work: impl FnOnce(&mut Interpreter, &Bindings) -> Result<()>,
     ) -> Result<Buffers> {
         let fields = |node| self.field(node);
         let solvers = |node| self.solver(node, &ready.solutions);
-        let bindings = Bindings { setting: self.setting, fields: &fields, solvers: &solvers, grids: &ready.grids };
-        let mut machine = Machine::with(&ready.program, buffers);
-        work(&mut machine, &bindings)?;
-        Ok(machine.into_buffers())
+        let bindings =
+            Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids: &ready.grids };
+        let mut interpreter = Interpreter::with(&ready.program, buffers);
+        work(&mut interpreter, &bindings)?;
+        Ok(interpreter.into_buffers())
     }
 }
 
