@@ -7,7 +7,7 @@ use cpu_time::ThreadTime;
 use orogen::hydrology::accumulation::accumulate;
 use orogen::hydrology::outlets::Outlets;
 use orogen::hydrology::steepest::Descent;
-use orogen::hydrology::stream_power::{Ground, StreamPower};
+use orogen::hydrology::stream_power::{StreamPower, Substrate};
 use orogen::hydrology::{drainage, fill};
 use orogen::{Grid, Recipe, Window, World};
 use serde_json::{Value, json};
@@ -46,7 +46,7 @@ const CASES: &[Case] = &[
     Case {
         name: "filled, drained over the bed, accumulation (richdem: flats left undrained)",
         side: 2048,
-        ours: over_bed,
+        ours: route_carving,
         peer: 0,
         parts: &["fill", "accumulation"],
         target: Some(3.0),
@@ -134,16 +134,16 @@ fn over_surface(ground: &Grid) {
     std::hint::black_box(accumulate(&drainage::over_surface(&filled, &outlets, Descent::Steepest)));
 }
 
-fn over_bed(ground: &Grid) {
+fn route_carving(ground: &Grid) {
     let outlets = Outlets::new(ground, None);
-    let drained = drainage::over_bed(ground, &outlets, Descent::Steepest);
+    let drained = drainage::route_carving(ground, &outlets, Descent::Steepest);
     std::hint::black_box((fill::filled(ground, &drained.basins), accumulate(&drained.receivers)));
 }
 
 fn step(ground: &Grid) {
     let mut heights = ground.clone();
-    let receivers = drainage::over_bed(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
-    StreamPower::default().step(&mut heights, &receivers, &accumulate(&receivers), &Ground::default(), 3e4);
+    let receivers = drainage::route_carving(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
+    StreamPower::default().step(&mut heights, &receivers, &accumulate(&receivers), &Substrate::default(), 3e4);
     std::hint::black_box(heights);
 }
 

@@ -55,7 +55,7 @@ fn cost(side: usize) -> Result<f64, String> {
     let start = ProcessTime::now();
     let world =
         World::with_options(recipe, Limits { threads: Some(1), ..Limits::default() }).map_err(|e| e.to_string())?;
-    let window = world.whole(world.recipe().world.cell).map_err(|e| e.to_string())?;
+    let window = world.full_window(world.recipe().world.cell).map_err(|e| e.to_string())?;
     let heights = world.grids(&["height"], &window, &Progress::none()).map_err(|e| e.to_string())?;
     let seconds = start.elapsed().as_secs_f64();
     std::hint::black_box(heights);

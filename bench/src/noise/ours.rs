@@ -1,6 +1,6 @@
 //! What we offer.
 
-use orogen_noise::{Depth, Falloff, Fractal, Kind, Mismatch, Perlin, Points, Simplex, Value, White, Worley};
+use orogen_noise::{Depth, Falloff, Fractal, Kind, LengthMismatch, Perlin, Points, Simplex, Value, White, Worley};
 use orogen_simd::Level;
 
 use super::cases::{Case, OCTAVES, SEED, SIZE, SLICE, WARP, Work, scattered};
@@ -38,11 +38,11 @@ pub fn job(case: &Case) -> Job {
 }
 
 /// An error writes no sample; the check before the timings then speaks up.
-fn job_of(mut fill: impl FnMut(&mut [f32]) -> Result<(), Mismatch> + 'static) -> Job {
+fn job_of(mut fill: impl FnMut(&mut [f32]) -> Result<(), LengthMismatch> + 'static) -> Job {
     Job::new("orogen", move |out| _ = fill(out))
 }
 
-fn lattice(fill: impl Fn(&Points, &mut [f32]) -> Result<(), Mismatch> + 'static) -> Job {
+fn lattice(fill: impl Fn(&Points, &mut [f32]) -> Result<(), LengthMismatch> + 'static) -> Job {
     let axis = axis();
     job_of(move |out| fill(&Points::Lattice { xs: &axis, ys: &axis }, out))
 }

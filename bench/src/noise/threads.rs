@@ -1,6 +1,6 @@
 //! Two threads beside one, where arithmetic and not memory is the limit; by the clock on the wall.
 
-use orogen_noise::{Falloff, Fractal, Kind, Mismatch, Points, Worley};
+use orogen_noise::{Falloff, Fractal, Kind, LengthMismatch, Points, Worley};
 
 use super::cases::{OCTAVES, SEED};
 use crate::measure::{self, Clock, Job};
@@ -13,7 +13,7 @@ const SIDE: usize = 2048;
 const TIMES: usize = 16;
 const TARGET: Target = Target { peer: "one thread", ratio: 1.9, or_rate: None };
 
-type Fill = fn(&Points, &mut [f32]) -> Result<(), Mismatch>;
+type Fill = fn(&Points, &mut [f32]) -> Result<(), LengthMismatch>;
 
 const CASES: &[(&str, Fill)] = &[
     ("fBm 6 octaves, two threads", |at, out| fractal(Kind::Fbm).fill(at, out)),

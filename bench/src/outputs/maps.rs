@@ -54,7 +54,7 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
 
 fn sheet() -> Sheet {
     Sheet {
-        title: "Ground".into(),
+        title: "PreparedDem".into(),
         about: String::new(),
         palette: named::all()[0].palette(),
         shading: Shading::Multi,
@@ -69,7 +69,7 @@ fn sheet() -> Sheet {
     }
 }
 
-/// Takes bytes and counts them.
+/// ValueKind bytes and counts them.
 struct Counted(u64);
 
 impl Write for Counted {

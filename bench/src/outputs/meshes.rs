@@ -29,7 +29,8 @@ const PYTHON: &str = "OROGEN_PYDELATIN";
 pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     let preset = orogen::presets::find("alpine").ok_or("there is no preset alpine")?;
     let world = preset.recipe().and_then(World::open).map_err(|e| e.to_string())?;
-    let alpine = world.across(SIDE).and_then(|window| world.window("height", &window)).map_err(|e| e.to_string())?;
+    let alpine =
+        world.window_fitting(SIDE).and_then(|window| world.window("height", &window)).map_err(|e| e.to_string())?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|e| e.to_string())?;
     let mut figures = Vec::new();
     for (name, grid) in [("alpine", &alpine), ("fbm", &ground(SIDE)?)] {

@@ -25,7 +25,7 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     let sea_level = Some(recipe.world.sea_level);
     let world = World::open(recipe).map_err(told)?;
     let progress = Progress::none();
-    let window = world.across(1024).map_err(told)?;
+    let window = world.window_fitting(1024).map_err(told)?;
     let grids = world.grids(&LAYERS, &window, &progress).map_err(told)?;
     let [heights, surface, flow] = grids.as_slice() else {
         return Err("alpine has not the layers of a picture".into());

@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use orogen::export::derived::list;
-use orogen::export::options::{OptionSpec, Options, Takes};
+use orogen::export::options::{OptionSpec, Options, ValueKind};
 use orogen::export::registry;
 
 /// What declares options.
@@ -82,8 +82,8 @@ impl<D: Declares> clap::Args for OptionsOf<D> {
                 .help_heading(D::HEADING);
             // Spelled as people elsewhere do, too.
             let arg = if spec.name == "color" { arg.aliases(["colors", "colour", "colours"]) } else { arg };
-            command = command.arg(match spec.takes {
-                Takes::Nothing => arg.action(ArgAction::SetTrue),
+            command = command.arg(match spec.value_kind {
+                ValueKind::Nothing => arg.action(ArgAction::SetTrue),
                 _ => arg.value_name(spec.value).allow_hyphen_values(true),
             });
         }
@@ -99,9 +99,9 @@ impl<D: Declares> clap::FromArgMatches for OptionsOf<D> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<OptionsOf<D>, clap::Error> {
         let mut given = Vec::new();
         for (spec, _) in D::options() {
-            match spec.takes {
-                Takes::Nothing if matches.get_flag(spec.name) => given.push((spec.name, String::new())),
-                Takes::Nothing => {}
+            match spec.value_kind {
+                ValueKind::Nothing if matches.get_flag(spec.name) => given.push((spec.name, String::new())),
+                ValueKind::Nothing => {}
                 _ => given.extend(matches.get_one::<String>(spec.name).map(|text| (spec.name, text.clone()))),
             }
         }

@@ -12,7 +12,7 @@ use crate::sink::{Sink, is_stdout};
 
 /// What frames are written to.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Target {
+pub enum AnimationTarget {
     /// One PNG that moves (APNG).
     Apng,
     /// One GIF.
@@ -21,12 +21,12 @@ pub enum Target {
     Frames(String, usize, String),
 }
 
-impl Target {
+impl AnimationTarget {
     /// What a file's name tells: `.png` and `.gif` are animations, `view-%03d.png` is a file for each frame, and standard output gets an
     /// APNG; or a message that says why it tells nothing.
-    pub fn of(out: &Path) -> Result<Target, String> {
+    pub fn of(out: &Path) -> Result<AnimationTarget, String> {
         if is_stdout(out) {
-            return Ok(Target::Apng);
+            return Ok(AnimationTarget::Apng);
         }
         let name = out.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
         let extension = out.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default();
@@ -38,12 +38,12 @@ impl Target {
                     digits.filter(|digits| *digits <= 9).map(|digits| (digits, after))
                 });
                 match number.filter(|(_, after)| !after.contains('%')) {
-                    Some((digits, after)) => Ok(Target::Frames(before.into(), digits, after.into())),
+                    Some((digits, after)) => Ok(AnimationTarget::Frames(before.into(), digits, after.into())),
                     None => Err(format!("{name} has a % that is no number's place; {help}")),
                 }
             }
-            (None, "png") => Ok(Target::Apng),
-            (None, "gif") => Ok(Target::Gif),
+            (None, "png") => Ok(AnimationTarget::Apng),
+            (None, "gif") => Ok(AnimationTarget::Gif),
             (_, "") => Err(format!("{} has no extension to tell its format; {help}", out.display())),
             (_, other) => Err(format!("frames cannot be written as .{other}; {help}")),
         }
@@ -52,30 +52,30 @@ impl Target {
     /// The files that so many frames go into, if what is there may be replaced.
     pub fn outputs(&self, out: &Path, frames: u32, policy: &OutputPolicy) -> Result<Vec<Sink>, Failure> {
         match self {
-            Target::Apng | Target::Gif => Ok(vec![Sink::new(out, policy)?]),
-            Target::Frames(before, digits, after) => (0..frames)
+            AnimationTarget::Apng | AnimationTarget::Gif => Ok(vec![Sink::new(out, policy)?]),
+            AnimationTarget::Frames(before, digits, after) => (0..frames)
                 .map(|frame| Sink::new(&out.with_file_name(format!("{before}{frame:0digits$}{after}")), policy))
                 .collect(),
         }
     }
 
     /// Bytes that writing frames of so many pixels takes, their own three a pixel not counted.
-    pub fn beside(&self, pixels: u64) -> u64 {
+    pub fn reserved(&self, pixels: u64) -> u64 {
         match self {
             // What is filtered and what is packed.
-            Target::Apng | Target::Frames(..) => pixels.saturating_mul(6),
+            AnimationTarget::Apng | AnimationTarget::Frames(..) => pixels.saturating_mul(6),
             // Indices, those before them, and the tables of the packer.
-            Target::Gif => pixels.saturating_mul(2).saturating_add(4 << 20),
+            AnimationTarget::Gif => pixels.saturating_mul(2).saturating_add(4 << 20),
         }
     }
 }
 
 /// A moving picture about to be written.
 pub struct Moving<'a> {
-    /// Where to: what [`Target::outputs`] made.
+    /// Where to: what [`AnimationTarget::outputs`] made.
     pub outputs: &'a [Sink],
     /// As what.
-    pub target: &'a Target,
+    pub target: &'a AnimationTarget,
     /// What each frame is.
     pub picture: Picture<'a>,
     /// How many there are, and how long each is shown.
@@ -89,10 +89,10 @@ impl Moving<'_> {
     pub fn write(&self, mut fill: impl FnMut(u32, &mut [u8]) -> io::Result<()>) -> Result<(), Failure> {
         let Picture { width, height, pixel, .. } = self.picture;
         match self.target {
-            Target::Apng => {
+            AnimationTarget::Apng => {
                 self.outputs[0].write(|out| png::write_animation(out, &self.picture, self.animation, fill))?;
             }
-            Target::Gif => self.outputs[0].write(|out| {
+            AnimationTarget::Gif => self.outputs[0].write(|out| {
                 let palette = Palette::of(&colors((self.sample)()?, pixel));
                 let mut own = vec![0; if pixel == Pixel::Grey8 { width * height } else { 0 }];
                 gif::write_animation(out, [width, height], &palette, self.animation, |frame, bytes| {
@@ -104,7 +104,7 @@ impl Moving<'_> {
                     Ok(())
                 })
             })?,
-            Target::Frames(..) => {
+            AnimationTarget::Frames(..) => {
                 let mut bytes = vec![0; width * height * pixel.bytes()];
                 let mut staged: Vec<Staged> = Vec::new();
                 for (frame, sink) in (0..).zip(self.outputs) {
@@ -136,14 +136,14 @@ mod tests {
 
     #[test]
     fn names_tell_what_is_written() {
-        let frames = |before: &str, digits, after: &str| Target::Frames(before.into(), digits, after.into());
+        let frames = |before: &str, digits, after: &str| AnimationTarget::Frames(before.into(), digits, after.into());
         for (name, expect) in [
-            ("a.png", Target::Apng),
-            ("a.GIF", Target::Gif),
+            ("a.png", AnimationTarget::Apng),
+            ("a.GIF", AnimationTarget::Gif),
             ("x/view-%03d.png", frames("view-", 3, ".png")),
             ("%d.png", frames("", 1, ".png")),
         ] {
-            assert_eq!(Target::of(Path::new(name)), Ok(expect), "{name}");
+            assert_eq!(AnimationTarget::of(Path::new(name)), Ok(expect), "{name}");
         }
         for (name, message) in [
             ("a", "no extension"),
@@ -154,7 +154,7 @@ mod tests {
             ("a%99d.png", "no number's place"),
             ("a%03d.gif", ".gif"),
         ] {
-            let error = Target::of(Path::new(name)).unwrap_err();
+            let error = AnimationTarget::of(Path::new(name)).unwrap_err();
             assert!(error.contains(message), "{name}: {error}");
         }
     }

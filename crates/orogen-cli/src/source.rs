@@ -4,8 +4,8 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use orogen::dem::ground::{DEFAULT_MEMORY, Ground};
 use orogen::dem::open;
+use orogen::dem::prepared::{DEFAULT_MEMORY, PreparedDem};
 use orogen::recipe::document::LONGEST_TEXT;
 use orogen::recipe::presets::{self, Preset};
 use orogen::{Budget, Error, ErrorKind, Recipe, nearest};
@@ -72,9 +72,9 @@ impl Source {
             Source::Preset(preset) => preset.recipe()?,
             Source::Stdin => piped()?,
             Source::Dem(path) => {
-                let ground = Ground::read(path, None, budget.left().unwrap_or(DEFAULT_MEMORY))?;
+                let ground = PreparedDem::read(path, None, budget.left().unwrap_or(DEFAULT_MEMORY))?;
                 ground.notes.iter().for_each(|note| say::error(&format!("note: {}: {note}", path.display())));
-                Recipe::of_place(path, &Arc::new(ground))
+                Recipe::from_dem(path, &Arc::new(ground))
             }
         })
     }

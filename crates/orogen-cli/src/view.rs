@@ -88,7 +88,7 @@ impl View {
             return Ok(part);
         }
         match (spec.size, size) {
-            (Some(_), None) => Ok(world.whole(cell)?),
+            (Some(_), None) => Ok(world.full_window(cell)?),
             (Some(extent), Some(size)) => {
                 let [width, height] = extent.map(number);
                 let (width, height, cell) = fit(extent, size, &format!("the world of {width} x {height} m"))?;

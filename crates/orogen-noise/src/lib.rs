@@ -12,7 +12,7 @@
 //!
 //! // The same point, asked alone, gives the same bits.
 //! assert_eq!(heights[3 * 256 + 5], hills.sample(50.0, 30.0));
-//! # Ok::<(), orogen_noise::Mismatch>(())
+//! # Ok::<(), orogen_noise::LengthMismatch>(())
 //! ```
 //!
 #![doc = include_str!("../docs/gallery.md")]
@@ -66,8 +66,8 @@ pub use open_simplex2::OpenSimplex2;
 pub use orogen_simd::{Level, LevelError};
 pub use perlin::Perlin;
 pub use phacelle::Phacelle;
-pub use points::{Depth, Mismatch, Points};
-pub use program::{MAX_OCTAVES, Untileable};
+pub use points::{Depth, LengthMismatch, Points};
+pub use program::{MAX_OCTAVES, TileError};
 pub use simplex::Simplex;
 pub use tiled::{Period, Tiled};
 pub use value::Value;

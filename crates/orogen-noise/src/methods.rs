@@ -2,7 +2,7 @@
 
 use crate::kernel::fill::Fill;
 use crate::kernel::outputs::Outputs;
-use crate::points::{Depth, Mismatch, Points};
+use crate::points::{Depth, LengthMismatch, Points};
 use crate::program::Program;
 use orogen_simd::{Level, LevelError, dispatch, dispatch_at};
 
@@ -13,7 +13,7 @@ pub(crate) fn fill(
     depths: &[Depth],
     value: &mut [f32],
     slopes: Option<[&mut [f32]; 4]>,
-) -> Result<(), Mismatch> {
+) -> Result<(), LengthMismatch> {
     check(points, depths, value, slopes.as_ref())?;
     dispatch(Fill { program, points: *points, depths, outputs: Outputs { value, slopes } });
     Ok(())
@@ -27,7 +27,7 @@ pub(crate) fn fill_at(
     depths: &[Depth],
     value: &mut [f32],
     slopes: Option<[&mut [f32]; 4]>,
-) -> Result<Result<(), Mismatch>, LevelError> {
+) -> Result<Result<(), LengthMismatch>, LevelError> {
     if let Err(mismatch) = check(points, depths, value, slopes.as_ref()) {
         return Ok(Err(mismatch));
     }
@@ -35,9 +35,14 @@ pub(crate) fn fill_at(
     Ok(Ok(()))
 }
 
-fn check(points: &Points, depths: &[Depth], value: &[f32], slopes: Option<&[&mut [f32]; 4]>) -> Result<(), Mismatch> {
+fn check(
+    points: &Points,
+    depths: &[Depth],
+    value: &[f32],
+    slopes: Option<&[&mut [f32]; 4]>,
+) -> Result<(), LengthMismatch> {
     points.check()?;
-    let check = |slice, length| Mismatch::check(slice, length, points.len());
+    let check = |slice, length| LengthMismatch::check(slice, length, points.len());
     check("value", value.len())?;
     if let Some(slopes) = slopes {
         let names = ["dx", "dy", "dz", "dw"];
@@ -88,7 +93,7 @@ macro_rules! value_methods {
             ///
             /// # Errors
             /// A slice does not have the points' length; nothing is written.
-            pub fn fill(&self, points: &$crate::Points, value: &mut [f32]) -> Result<(), $crate::Mismatch> {
+            pub fn fill(&self, points: &$crate::Points, value: &mut [f32]) -> Result<(), $crate::LengthMismatch> {
                 $crate::methods::fill(&self.program(2), points, &[], value, None)
             }
 
@@ -101,7 +106,7 @@ macro_rules! value_methods {
                 points: &$crate::Points,
                 depth: &$crate::Depth,
                 value: &mut [f32],
-            ) -> Result<(), $crate::Mismatch> {
+            ) -> Result<(), $crate::LengthMismatch> {
                 $crate::methods::fill(&self.program(3), points, &[*depth], value, None)
             }
 
@@ -114,7 +119,7 @@ macro_rules! value_methods {
                 points: &$crate::Points,
                 depths: &[$crate::Depth; 2],
                 value: &mut [f32],
-            ) -> Result<(), $crate::Mismatch> {
+            ) -> Result<(), $crate::LengthMismatch> {
                 $crate::methods::fill(&self.program(4), points, depths, value, None)
             }
 
@@ -127,7 +132,7 @@ macro_rules! value_methods {
                 level: $crate::Level,
                 points: &$crate::Points,
                 value: &mut [f32],
-            ) -> Result<Result<(), $crate::Mismatch>, $crate::LevelError> {
+            ) -> Result<Result<(), $crate::LengthMismatch>, $crate::LevelError> {
                 $crate::methods::fill_at(level, &self.program(2), points, &[], value, None)
             }
         }
@@ -151,7 +156,7 @@ macro_rules! noise_methods {
                 value: &mut [f32],
                 dx: &mut [f32],
                 dy: &mut [f32],
-            ) -> Result<(), $crate::Mismatch> {
+            ) -> Result<(), $crate::LengthMismatch> {
                 $crate::methods::fill(&self.program(2), points, &[], value, Some([dx, dy, &mut [], &mut []]))
             }
 
@@ -165,7 +170,7 @@ macro_rules! noise_methods {
                 depth: &$crate::Depth,
                 value: &mut [f32],
                 gradient: [&mut [f32]; 3],
-            ) -> Result<(), $crate::Mismatch> {
+            ) -> Result<(), $crate::LengthMismatch> {
                 let [dx, dy, dz] = gradient;
                 $crate::methods::fill(&self.program(3), points, &[*depth], value, Some([dx, dy, dz, &mut []]))
             }
@@ -181,7 +186,7 @@ macro_rules! noise_methods {
                 depths: &[$crate::Depth; 2],
                 value: &mut [f32],
                 gradient: [&mut [f32]; 4],
-            ) -> Result<(), $crate::Mismatch> {
+            ) -> Result<(), $crate::LengthMismatch> {
                 $crate::methods::fill(&self.program(4), points, depths, value, Some(gradient))
             }
         }

@@ -1,7 +1,7 @@
 //! Phacelle noise.
 
 use crate::kernel::phacelle::{Along, Fill};
-use crate::points::{Mismatch, Points};
+use crate::points::{LengthMismatch, Points};
 use crate::program::{MAX_PERIOD, Program, Source};
 use orogen_simd::{Level, LevelError, dispatch, dispatch_at};
 
@@ -33,7 +33,7 @@ use orogen_simd::{Level, LevelError, dispatch, dispatch_at};
 /// // One sample's stripes run east, the other's south.
 /// stripes.fill_along(&points, &[1.0, 0.0], &[0.0, 1.0], &mut cosine, &mut sine)?;
 /// assert!(cosine.iter().chain(&sine).all(|x| x.abs() <= 1.0));
-/// # Ok::<(), orogen_noise::Mismatch>(())
+/// # Ok::<(), orogen_noise::LengthMismatch>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phacelle {
@@ -98,9 +98,9 @@ impl Phacelle {
     ///
     /// # Errors
     /// A slice does not have the points' length; nothing is written.
-    pub fn fill(&self, points: &Points, value: &mut [f32]) -> Result<(), Mismatch> {
+    pub fn fill(&self, points: &Points, value: &mut [f32]) -> Result<(), LengthMismatch> {
         points.check()?;
-        Mismatch::check("value", value.len(), points.len())?;
+        LengthMismatch::check("value", value.len(), points.len())?;
         dispatch(self.call(&self.program(), points, self.way(), [value, &mut []]));
         Ok(())
     }
@@ -117,7 +117,7 @@ impl Phacelle {
         dy: &[f32],
         cosine: &mut [f32],
         sine: &mut [f32],
-    ) -> Result<(), Mismatch> {
+    ) -> Result<(), LengthMismatch> {
         self.check(points, dx, dy, cosine, sine)?;
         dispatch(self.call(&self.program(), points, Along::Each([dx, dy]), [cosine, sine]));
         Ok(())
@@ -133,7 +133,7 @@ impl Phacelle {
         points: &Points,
         [dx, dy]: [&[f32]; 2],
         [cosine, sine]: [&mut [f32]; 2],
-    ) -> Result<Result<(), Mismatch>, LevelError> {
+    ) -> Result<Result<(), LengthMismatch>, LevelError> {
         if let Err(mismatch) = self.check(points, dx, dy, cosine, sine) {
             return Ok(Err(mismatch));
         }
@@ -141,10 +141,17 @@ impl Phacelle {
         Ok(Ok(()))
     }
 
-    fn check(&self, points: &Points, dx: &[f32], dy: &[f32], cosine: &[f32], sine: &[f32]) -> Result<(), Mismatch> {
+    fn check(
+        &self,
+        points: &Points,
+        dx: &[f32],
+        dy: &[f32],
+        cosine: &[f32],
+        sine: &[f32],
+    ) -> Result<(), LengthMismatch> {
         points.check()?;
         for (name, slice) in [("dx", dx), ("dy", dy), ("cosine", cosine), ("sine", sine)] {
-            Mismatch::check(name, slice.len(), points.len())?;
+            LengthMismatch::check(name, slice.len(), points.len())?;
         }
         Ok(())
     }

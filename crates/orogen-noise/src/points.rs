@@ -69,14 +69,14 @@ impl Points<'_> {
     }
 
     /// Checks that the slices belong together.
-    pub(crate) fn check(&self) -> Result<(), Mismatch> {
+    pub(crate) fn check(&self) -> Result<(), LengthMismatch> {
         match *self {
             Points::Lattice { .. } => Ok(()),
             Points::Displaced { dx, dy, .. } => {
-                Mismatch::check("dx", dx.len(), self.len())?;
-                Mismatch::check("dy", dy.len(), self.len())
+                LengthMismatch::check("dx", dx.len(), self.len())?;
+                LengthMismatch::check("dy", dy.len(), self.len())
             }
-            Points::Scattered { x, y } => Mismatch::check("y", y.len(), x.len()),
+            Points::Scattered { x, y } => LengthMismatch::check("y", y.len(), x.len()),
         }
     }
 }
@@ -92,7 +92,7 @@ pub enum Depth<'a> {
 
 /// A slice whose length does not fit the points. Nothing has been written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Mismatch {
+pub struct LengthMismatch {
     /// Which slice.
     pub slice: &'static str,
     /// How long it is.
@@ -101,16 +101,16 @@ pub struct Mismatch {
     pub expected: usize,
 }
 
-impl Mismatch {
-    pub(crate) fn check(slice: &'static str, length: usize, expected: usize) -> Result<(), Mismatch> {
-        if length == expected { Ok(()) } else { Err(Mismatch { slice, length, expected }) }
+impl LengthMismatch {
+    pub(crate) fn check(slice: &'static str, length: usize, expected: usize) -> Result<(), LengthMismatch> {
+        if length == expected { Ok(()) } else { Err(LengthMismatch { slice, length, expected }) }
     }
 }
 
-impl fmt::Display for Mismatch {
+impl fmt::Display for LengthMismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "`{}` holds {} values where the points need {}", self.slice, self.length, self.expected)
     }
 }
 
-impl std::error::Error for Mismatch {}
+impl std::error::Error for LengthMismatch {}

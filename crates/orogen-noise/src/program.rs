@@ -208,7 +208,7 @@ pub(crate) struct Program {
 
 /// Why a noise cannot repeat.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Untileable {
+pub enum TileError {
     /// An octave does not close.
     Octave {
         /// The octave, counted from 0.
@@ -222,10 +222,10 @@ pub enum Untileable {
     Slanted,
 }
 
-impl fmt::Display for Untileable {
+impl fmt::Display for TileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Untileable::Octave { octave, axis, cells } => {
+            TileError::Octave { octave, axis, cells } => {
                 let axis = ["x", "y", "z", "w"].get(axis).unwrap_or(&"?");
                 write!(
                     f,
@@ -233,7 +233,7 @@ impl fmt::Display for Untileable {
                      {MAX_PERIOD}, so periods times powers of the lacunarity must be such numbers"
                 )
             }
-            Untileable::Slanted => write!(
+            TileError::Slanted => write!(
                 f,
                 "a lattice of simplices closes along its own slanted axes only, so this noise cannot repeat along x and y; take \
                  Perlin, value or Worley noise, or a ring through the third and fourth dimension"
@@ -242,7 +242,7 @@ impl fmt::Display for Untileable {
     }
 }
 
-impl std::error::Error for Untileable {}
+impl std::error::Error for TileError {}
 
 impl Program {
     /// A single noise: its lattice stands on the origin.
@@ -333,12 +333,12 @@ impl Program {
     }
 
     /// The same noise on lattices that repeat: the first octave's after `period` cells along x, y, z and w, 0 for never.
-    pub(crate) fn tiled(mut self, period: [u32; 4]) -> Result<Program, Untileable> {
+    pub(crate) fn tiled(mut self, period: [u32; 4]) -> Result<Program, TileError> {
         if period == [0; 4] {
             return Ok(self);
         }
         if !self.source.repeats() {
-            return Err(Untileable::Slanted);
+            return Err(TileError::Slanted);
         }
         let mut fastest = 0.0_f64;
         for (number, octave) in self.all.iter_mut().take(self.count).enumerate() {
@@ -353,7 +353,7 @@ impl Program {
                 }
                 let cells = f64::from(cells) * octave.ratio.abs();
                 if !(1.0..=MAX_PERIOD).contains(&cells) || cells.floor() != cells {
-                    return Err(Untileable::Octave { octave: number, axis, cells });
+                    return Err(TileError::Octave { octave: number, axis, cells });
                 }
                 octave.period[axis] = cells;
             }

@@ -1,7 +1,7 @@
 //! Noise that repeats.
 
 use crate::methods::noise_methods;
-use crate::program::{Program, Untileable};
+use crate::program::{Program, TileError};
 
 /// A noise whose lattice closes on itself, so that copies of a square of it lie side by side without a seam. Made by `tiled` of
 /// the noise it repeats, which it resembles; it has the same methods, speed, range and gradients.
@@ -24,7 +24,7 @@ use crate::program::{Program, Untileable};
 /// // The second octave would need 6.4 cells in the same place.
 /// let odd = Fractal { lacunarity: 1.6, ..Default::default() };
 /// assert!(odd.tiled([4, 4]).unwrap_err().to_string().starts_with("octave 1 would have to repeat after 6.4 cells"));
-/// # Ok::<(), orogen_noise::Untileable>(())
+/// # Ok::<(), orogen_noise::TileError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Tiled {
@@ -55,7 +55,7 @@ impl From<[u32; 4]> for Period {
 }
 
 impl Tiled {
-    pub(crate) fn new(programs: [Program; 3], period: Period) -> Result<Tiled, Untileable> {
+    pub(crate) fn new(programs: [Program; 3], period: Period) -> Result<Tiled, TileError> {
         let [plane, space, time] = programs;
         Ok(Tiled { programs: [plane.tiled(period.0)?, space.tiled(period.0)?, time.tiled(period.0)?] })
     }
@@ -75,7 +75,7 @@ macro_rules! tileable {
             ///
             /// # Errors
             /// An octave does not fit, or the noise stands on simplices: see [`Tiled`](crate::Tiled).
-            pub fn tiled(&self, period: impl Into<$crate::Period>) -> Result<$crate::Tiled, $crate::Untileable> {
+            pub fn tiled(&self, period: impl Into<$crate::Period>) -> Result<$crate::Tiled, $crate::TileError> {
                 $crate::tiled::Tiled::new([self.program(2), self.program(3), self.program(4)], period.into())
             }
         }

@@ -3,7 +3,7 @@
 use crate::basis::Basis;
 use crate::choices::Kind;
 use crate::fractal::Fractal;
-use crate::points::{Mismatch, Points};
+use crate::points::{LengthMismatch, Points};
 use crate::seed;
 
 /// How a [`Warp`] moves places.
@@ -34,7 +34,7 @@ pub enum WarpKind {
 /// warp.displace(&Points::Lattice { xs: &axis, ys: &axis }, &mut dx, &mut dy)?;
 /// let warped = Points::Displaced { xs: &axis, ys: &axis, dx: &dx, dy: &dy };
 /// Fractal { wavelength: 30.0, ..Default::default() }.fill(&warped, &mut heights)?;
-/// # Ok::<(), orogen_noise::Mismatch>(())
+/// # Ok::<(), orogen_noise::LengthMismatch>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Warp {
@@ -77,10 +77,10 @@ impl Warp {
     ///
     /// # Errors
     /// A slice does not have the points' length; nothing is written.
-    pub fn displace(&self, points: &Points, dx: &mut [f32], dy: &mut [f32]) -> Result<(), Mismatch> {
+    pub fn displace(&self, points: &Points, dx: &mut [f32], dy: &mut [f32]) -> Result<(), LengthMismatch> {
         points.check()?;
-        Mismatch::check("dx", dx.len(), points.len())?;
-        Mismatch::check("dy", dy.len(), points.len())?;
+        LengthMismatch::check("dx", dx.len(), points.len())?;
+        LengthMismatch::check("dy", dy.len(), points.len())?;
         let strength = if self.strength.is_nan() { 0.0 } else { self.strength.clamp(-1e30, 1e30) };
         let fractal = |which: u64| Fractal {
             basis: self.basis,
@@ -118,7 +118,7 @@ impl Warp {
         strength: f64,
         dx: &mut [f32],
         dy: &mut [f32],
-    ) -> Result<(), Mismatch> {
+    ) -> Result<(), LengthMismatch> {
         dx.fill(0.0);
         dy.fill(0.0);
         let octaves = self.octaves.min(crate::MAX_OCTAVES);

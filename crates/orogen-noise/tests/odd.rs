@@ -7,7 +7,7 @@
 mod noises;
 
 use noises::{Ask, Columns, Noise, all, at_each_level, damped, fractals, same_bits};
-use orogen_noise::{Depth, Fractal, MAX_OCTAVES, Mismatch, Points};
+use orogen_noise::{Depth, Fractal, LengthMismatch, MAX_OCTAVES, Points};
 
 /// Positions no map has.
 const PLACES: [f64; 12] = [
@@ -174,7 +174,7 @@ fn wrong_lengths_are_named_and_nothing_is_written() {
     at_each_level(|_| {
         for noise in all(5, 3.0) {
             let (three, two, six) = ([0.0, 1.0, 2.0], [0.0, 1.0], [0.0; 6]);
-            let wrong = |slice, length, expected| Err(Mismatch { slice, length, expected });
+            let wrong = |slice, length, expected| Err(LengthMismatch { slice, length, expected });
             let ask = |points, depth| noise.ask(&Ask { points, depth, slopes: true });
             let displaced = Points::Displaced { xs: &three, ys: &two, dx: &six, dy: &six[..4] };
             assert_eq!(ask(displaced, None), wrong("dy", 4, 6));

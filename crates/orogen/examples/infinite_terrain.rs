@@ -5,7 +5,7 @@
 use orogen::file::{OutputPolicy, write_whole};
 use orogen::map::canvas::Canvas;
 use orogen::map::paint::Painter;
-use orogen::{ChunkId, ChunkStep, Grid, Recipe, Rings, Sampler, Window, World};
+use orogen::{ChunkId, ChunkStep, Grid, LodConfig, Recipe, Sampler, Window, World};
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -27,13 +27,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let world = World::open(Recipe::parse(RECIPE, "infinite_terrain")?)?;
     let ground = Sampler::new(&world, "height")?;
     // Squares of 64 x 64 cells: 1 m near the viewer, 32 m at the horizon.
-    let mut chunks = world.chunks(Rings { range: 6000.0, ..Rings::default() })?;
+    let mut chunks = world.chunks(LodConfig { range: 6000.0, ..LodConfig::default() })?;
     let mut scene: HashMap<ChunkId, Grid> = HashMap::new();
 
     let (mut made, mut dropped) = (0, 0);
     for metres in (0..=10_000).step_by(10) {
         let (x, y) = walk(f64::from(metres));
-        chunks.look(x, y)?;
+        chunks.set_viewer(x, y)?;
         while let Some(step) = chunks.next_step() {
             match step {
                 // Here a game makes a mesh, on any thread; `chunks.coarser(id)` tells which sides need stitching.
@@ -57,7 +57,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             (made, dropped) = (0, 0);
         }
     }
-    draw(&scene, chunks.rings(), Path::new("infinite_terrain.png"))?;
+    draw(&scene, chunks.lod(), Path::new("infinite_terrain.png"))?;
     Ok(())
 }
 
@@ -68,16 +68,16 @@ fn walk(metres: f64) -> (f64, f64) {
 }
 
 /// The ground around the viewer as a map: each pixel from the chunk that covers it, chunks outlined.
-fn draw(scene: &HashMap<ChunkId, Grid>, rings: &Rings, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
+fn draw(scene: &HashMap<ChunkId, Grid>, lod: &LodConfig, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     const PIXELS: usize = 900;
     let (x, y) = walk(10_000.0);
-    let cell = 2.0 * rings.range / PIXELS as f64;
-    let first = |middle: f64| ((middle - rings.range) / cell) as i64;
+    let cell = 2.0 * lod.range / PIXELS as f64;
+    let first = |middle: f64| ((middle - lod.range) / cell) as i64;
     let window = Window::new(PIXELS, PIXELS, cell).at(first(x), first(y));
     let mut heights = Grid::filled(window, 0.0);
     let mut cover = vec![None; window.len()];
     for (j, i) in (0..PIXELS).flat_map(|j| (0..PIXELS).map(move |i| (j, i))) {
-        let Some((id, height)) = sample(scene, rings, window.east(i), window.south(j)) else { continue };
+        let Some((id, height)) = sample(scene, lod, window.east(i), window.south(j)) else { continue };
         heights.row_mut(j)[i] = height;
         cover[j * PIXELS + i] = Some(id);
     }
@@ -101,18 +101,18 @@ fn draw(scene: &HashMap<ChunkId, Grid>, rings: &Rings, path: &Path) -> Result<()
     write_whole(&OutputPolicy::default().output(path)?, |out| {
         page.write_png(out, &[("Title", "Chunks around a viewer")])
     })?;
-    println!("{} shows {:.0} km of ground, the walk in red", path.display(), 2.0 * rings.range / 1000.0);
+    println!("{} shows {:.0} km of ground, the walk in red", path.display(), 2.0 * lod.range / 1000.0);
     Ok(())
 }
 
 /// The finest chunk that is there at a place, and its height there.
-fn sample(scene: &HashMap<ChunkId, Grid>, rings: &Rings, x: f64, y: f64) -> Option<(ChunkId, f32)> {
-    let mut id = ChunkId { level: 0, x: (x / rings.side(0)).floor() as i64, y: (y / rings.side(0)).floor() as i64 };
-    while id.level < rings.levels {
+fn sample(scene: &HashMap<ChunkId, Grid>, lod: &LodConfig, x: f64, y: f64) -> Option<(ChunkId, f32)> {
+    let mut id = ChunkId { level: 0, x: (x / lod.side(0)).floor() as i64, y: (y / lod.side(0)).floor() as i64 };
+    while id.level < lod.levels {
         if let Some(grid) = scene.get(&id) {
             let window = grid.window();
             let (column, row) = (x / window.cell - window.x as f64, y / window.cell - window.y as f64);
-            let (i, j) = ((column as usize).min(rings.cells - 1), (row as usize).min(rings.cells - 1));
+            let (i, j) = ((column as usize).min(lod.cells - 1), (row as usize).min(lod.cells - 1));
             let (right, down) = (column as f32 - i as f32, row as f32 - j as f32);
             let along = |j: usize| grid.get(i, j) * (1.0 - right) + grid.get(i + 1, j) * right;
             return Some((id, along(j) * (1.0 - down) + along(j + 1) * down));

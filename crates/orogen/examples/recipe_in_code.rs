@@ -23,7 +23,7 @@ fn main() -> Result<(), orogen::Error> {
     println!("{}", recipe.to_toml());
 
     let world = World::open(recipe)?;
-    let grid = world.window("height", &world.whole(64.0)?)?;
+    let grid = world.window("height", &world.full_window(64.0)?)?;
     for j in (0..grid.height()).step_by(8) {
         let row: String = (0..grid.width())
             .step_by(4)

@@ -52,13 +52,13 @@ impl World {
         &'w self,
         layers: &[&str],
         window: &Window,
-        beside: u64,
+        reserved: u64,
         progress: &Progress,
     ) -> Result<Bands<'w>> {
         let mut rows = (SAMPLES / window.width.max(1)).clamp(ROWS[0], ROWS[1]).min(window.height.max(1));
         loop {
             let band = (window.width as u64).saturating_mul(rows as u64).saturating_mul(4 * layers.len() as u64);
-            let held = beside.saturating_add(band);
+            let held = reserved.saturating_add(band);
             let memory = self.memory_limit().map(|limit| limit.saturating_sub(held));
             match self.tiles(layers, window, Tiling { memory, ..Tiling::of(rows) }, progress) {
                 Ok(tiles) => return Ok(Bands { tiles, layers: layers.len(), window: *window, rows, next: 0 }),

@@ -3,7 +3,7 @@
 //! One `op!` block gives the struct, its defaults, reading and checking from a recipe, writing back, the JSON Schema, the
 //! command line's help and a user interface's sliders.
 
-use crate::dem::held::{Imported, Picture};
+use crate::dem::file_ref::{FileRef, Picture};
 use crate::layer::Layer;
 use crate::value::{Spanned, Value};
 use serde::{Deserialize, Serialize};
@@ -49,11 +49,31 @@ pub struct Spec {
     pub layers: &'static [Layer],
 }
 
+impl Spec {
+    /// The input with this key or former key.
+    pub fn input_named(&self, key: &str) -> Option<usize> {
+        self.inputs.iter().position(|input| input.name == key || (!key.is_empty() && input.alias == key))
+    }
+
+    /// The parameter with this key or former key.
+    pub fn param_named(&self, key: &str) -> Option<usize> {
+        self.params.iter().position(|param| param.name == key || (!key.is_empty() && param.alias == key))
+    }
+
+    /// The former keys of inputs and parameters, each with today's key.
+    pub fn aliases(&self) -> impl Iterator<Item = (&'static str, &'static str)> + '_ {
+        let inputs = self.inputs.iter().map(|input| (input.alias, input.name));
+        inputs.chain(self.params.iter().map(|param| (param.alias, param.name))).filter(|(alias, _)| !alias.is_empty())
+    }
+}
+
 /// A node read by an op.
 #[derive(Debug)]
 pub struct InputSpec {
     /// Its key.
     pub name: &'static str,
+    /// A former key, which recipes may still use; or empty.
+    pub alias: &'static str,
     /// What it is for.
     pub doc: &'static str,
     /// Whether the op cannot do without.
@@ -65,6 +85,8 @@ pub struct InputSpec {
 pub struct ParamSpec {
     /// Its key.
     pub name: &'static str,
+    /// A former key, which recipes may still use; or empty.
+    pub alias: &'static str,
     /// What it does.
     pub doc: &'static str,
     /// Its unit, or empty.
@@ -158,16 +180,16 @@ pub trait Param: Sized {
         self.write()
     }
     /// The file that it names, if it is a file.
-    fn file(&mut self) -> Option<&mut Imported> {
+    fn file(&mut self) -> Option<&mut FileRef> {
         None
     }
 }
 
-impl Param for Imported {
+impl Param for FileRef {
     const SHAPE: Shape = Shape::File;
-    fn read(value: &Value) -> Option<Imported> {
+    fn read(value: &Value) -> Option<FileRef> {
         match value {
-            Value::Text(path) => Some(Imported::from(path.as_str())),
+            Value::Text(path) => Some(FileRef::from(path.as_str())),
             _ => None,
         }
     }
@@ -180,7 +202,7 @@ impl Param for Imported {
             None => self.write(),
         }
     }
-    fn file(&mut self) -> Option<&mut Imported> {
+    fn file(&mut self) -> Option<&mut FileRef> {
         Some(self)
     }
 }
@@ -199,7 +221,7 @@ impl Param for Picture {
     fn key(&self) -> Value {
         self.0.key()
     }
-    fn file(&mut self) -> Option<&mut Imported> {
+    fn file(&mut self) -> Option<&mut FileRef> {
         Some(&mut self.0)
     }
 }
@@ -361,7 +383,7 @@ pub trait Declared {
     /// What of parameter `i` decides about results.
     fn param_key(&self, i: usize) -> Value;
     /// The files that parameters name.
-    fn files(&mut self) -> Vec<&mut Imported>;
+    fn files(&mut self) -> Vec<&mut FileRef>;
     /// What a single parameter cannot see: a message if parameters contradict each other, with the key it is about.
     fn consistent(&self) -> Result<(), (&'static str, String)>;
 }
@@ -452,10 +474,10 @@ macro_rules! op {
     (
         $(#[doc = $doc:literal])+
         pub struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
-        $(inputs { $( $(#[doc = $idoc:literal])+ $input:ident: $need:ident, )* })?
+        $(inputs { $( $(#[doc = $idoc:literal])+ $input:ident: $need:ident $(, alias $ialias:literal)?, )* })?
         $(params { $(
             $(#[doc = $pdoc:literal])+
-            $param:ident: $pty:ty = $default:expr $(, unit $unit:literal)? $(, range $low:literal to $high:expr)?;
+            $param:ident: $pty:ty = $default:expr $(, unit $unit:literal)? $(, range $low:literal to $high:expr)? $(, alias $palias:literal)?;
         )* })?
         $(layers { $( $(#[doc = $ldoc:literal])+ $layer:ident: $interpolation:ident $(, unit $lunit:literal)?; )+ })?
         $(check $check:expr;)?
@@ -488,11 +510,13 @@ macro_rules! op {
             fn spec(&self) -> &'static $crate::declare::Spec {
                 const INPUTS: &[$crate::declare::InputSpec] = &[$( $( $crate::declare::InputSpec {
                     name: stringify!($input),
+                    alias: concat!($($ialias)?),
                     doc: concat!($($idoc, "\n"),+),
                     required: op!(@required $need),
                 }, )* )?];
                 const PARAMS: &[$crate::declare::ParamSpec] = &[$( $( $crate::declare::ParamSpec {
                     name: stringify!($param),
+                    alias: concat!($($palias)?),
                     doc: concat!($($pdoc, "\n"),+),
                     unit: concat!($($unit)?),
                     shape: <$pty as $crate::declare::Param>::SHAPE,
@@ -557,8 +581,8 @@ macro_rules! op {
                 $crate::value::Value::Other("nothing")
             }
 
-            fn files(&mut self) -> Vec<&mut $crate::dem::held::Imported> {
-                let files: Vec<Option<&mut $crate::dem::held::Imported>> =
+            fn files(&mut self) -> Vec<&mut $crate::dem::file_ref::FileRef> {
+                let files: Vec<Option<&mut $crate::dem::file_ref::FileRef>> =
                     vec![$( $( $crate::declare::Param::file(&mut self.$param), )* )?];
                 files.into_iter().flatten().collect()
             }

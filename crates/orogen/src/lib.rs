@@ -31,7 +31,7 @@ pub mod aggregate;
 pub mod analysis;
 pub mod bands;
 pub mod budget;
-pub mod build;
+pub mod builder;
 pub mod chunks;
 pub mod contour;
 pub mod dem;
@@ -78,7 +78,7 @@ pub mod world;
 
 pub use budget::Budget;
 pub use chunks::id::ChunkId;
-pub use chunks::rings::Rings;
+pub use chunks::lod::LodConfig;
 pub use chunks::stream::{ChunkStep, Chunks};
 pub use error::{Error, ErrorKind, Result};
 pub use grid::{Grid, Window};

@@ -1,7 +1,7 @@
 //! The list of all ops: one enum that a recipe is made of.
 
 use crate::declare::{Declared, Input, Spec};
-use crate::dem::held::Imported;
+use crate::dem::file_ref::FileRef;
 use crate::layer::Layer;
 use crate::op::{Field, Filter, Op, Solver};
 use crate::value::Value;
@@ -95,7 +95,7 @@ impl Node {
     }
 
     /// The files that its parameters name.
-    pub fn files(&mut self) -> Vec<&mut Imported> {
+    pub fn files(&mut self) -> Vec<&mut FileRef> {
         self.declared_mut().files()
     }
 

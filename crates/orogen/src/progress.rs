@@ -26,7 +26,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 /// Progress of one piece of work, shared between the caller and the work. A clone is another handle to the same.
 #[derive(Clone, Default)]
 pub struct Progress {
-    piece: Arc<Piece>,
+    piece: Arc<Node>,
 }
 
 /// Hears the share of the work that is done.
@@ -42,7 +42,7 @@ struct Run {
 }
 
 #[derive(Default)]
-struct Piece {
+struct Node {
     run: Arc<Run>,
     /// The progress that this piece is a part of, and its weight there.
     whole: Option<(Progress, f64)>,
@@ -67,7 +67,7 @@ impl Progress {
     /// and never with a smaller share than before.
     pub fn new(listener: impl Fn(f64) + Send + Sync + 'static) -> Progress {
         let run = Run { listener: Some(Box::new(listener)), ..Run::default() };
-        Progress { piece: Arc::new(Piece { run: Arc::new(run), ..Piece::default() }) }
+        Progress { piece: Arc::new(Node { run: Arc::new(run), ..Node::default() }) }
     }
 
     /// The same, stopped also by whoever sets `flag`: a signal handler, which cannot call [`Progress::cancel`]. The first flag stays.
@@ -126,7 +126,7 @@ impl Progress {
     /// A part of this work, which counts as `work` of it once it is finished. It does not add to what is [expected](Progress::expect).
     pub fn part(&self, work: f64) -> Progress {
         let whole = Some((self.clone(), work.max(0.0)));
-        Progress { piece: Arc::new(Piece { run: Arc::clone(&self.piece.run), whole, ..Piece::default() }) }
+        Progress { piece: Arc::new(Node { run: Arc::clone(&self.piece.run), whole, ..Node::default() }) }
     }
 
     /// Divides this work into parts by their weights, which are all that is expected.

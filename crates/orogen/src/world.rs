@@ -1,7 +1,7 @@
 //! The front door: a recipe opened, asked for windows and points.
 
 use crate::budget::Budget;
-use crate::dem::ground::DEFAULT_MEMORY;
+use crate::dem::prepared::DEFAULT_MEMORY;
 use crate::engine::inline::PreparedProgram;
 use crate::engine::run::Engine;
 use crate::error::{Error, ErrorKind, Result};
@@ -171,7 +171,7 @@ impl World {
     ///
     /// # Errors
     /// If the world has no bounds, or has no sample or more than 2^31 along a side at that cell.
-    pub fn whole(&self, cell: f64) -> Result<Window> {
+    pub fn full_window(&self, cell: f64) -> Result<Window> {
         let size = self.bounds()?;
         let samples = size.map(|length| (length / cell).round());
         let fault = |why: &str, other: &str| {
@@ -197,7 +197,7 @@ impl World {
     ///
     /// # Errors
     /// If the world has no bounds, or no sample is asked for.
-    pub fn across(&self, samples: usize) -> Result<Window> {
+    pub fn window_fitting(&self, samples: usize) -> Result<Window> {
         let size = self.bounds()?;
         if samples == 0 {
             return Err(Error::new(ErrorKind::Request, "no samples along the world's longer side show nothing"));

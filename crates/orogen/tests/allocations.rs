@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use allocation_counter::measure;
-use orogen::{ChunkStep, Chunks, Rings, Sampler, Window, World, presets};
+use orogen::{ChunkStep, Chunks, LodConfig, Sampler, Window, World, presets};
 
 /// How often `work` asks for memory.
 fn allocations(work: impl FnMut()) -> u64 {
@@ -44,13 +44,13 @@ fn a_walk_through_chunks_allocates_nothing_once_warm() {
     recipe.world.size = None;
     let world = World::open(recipe).unwrap();
     let sampler = Sampler::new(&world, "height").unwrap();
-    let mut chunks = world.chunks(Rings { cells: 32, cell: 4.0, range: 4000.0, ..Rings::default() }).unwrap();
+    let mut chunks = world.chunks(LodConfig { cells: 32, cell: 4.0, range: 4000.0, ..LodConfig::default() }).unwrap();
     let mut heights = vec![0.0; 33 * 33];
     let mut walk = |chunks: &mut Chunks| {
         let mut made = 0;
         for step in 0..160 {
             let along = f64::from(80 - i32::abs(step - 80)) * 60.0;
-            chunks.look(along, -0.5 * along).unwrap();
+            chunks.set_viewer(along, -0.5 * along).unwrap();
             while let Some(step) = chunks.next_step() {
                 if let ChunkStep::Make(id) = step {
                     sampler.fill(&chunks.window(id), &mut heights).unwrap();

@@ -7,13 +7,13 @@ use orogen::chunks::seam::{Sides, stitch};
 use orogen::node::Node;
 use orogen::op::Op;
 use orogen::{
-    Budget, ChunkId, ChunkStep, Chunks, Grid, Options, Progress, Rings, Sampler, Window, World, WorldSpec, presets,
+    Budget, ChunkId, ChunkStep, Chunks, Grid, LodConfig, Options, Progress, Sampler, Window, World, WorldSpec, presets,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex};
 use support::{Random, open, recipe_of, world_of};
 
-const RINGS: Rings = Rings { cells: 8, cell: 2.0, levels: 5, detail: 1.25, range: 900.0, slack: 0.25 };
+const RINGS: LodConfig = LodConfig { cells: 8, cell: 2.0, levels: 5, detail: 1.25, range: 900.0, slack: 0.25 };
 
 /// A place in 0 ..= n, negative as often as not.
 fn about(random: &mut Random, n: u64) -> f64 {
@@ -43,37 +43,37 @@ fn covering(sorted: &BTreeSet<ChunkId>, finest: ChunkId, levels: u8) -> Vec<Chun
 }
 
 /// The chunk of the finest level at a place.
-fn finest(rings: &Rings, [x, y]: [f64; 2]) -> ChunkId {
-    let side = rings.side(0);
+fn finest(lod: &LodConfig, [x, y]: [f64; 2]) -> ChunkId {
+    let side = lod.side(0);
     ChunkId { level: 0, y: (y / side).floor() as i64, x: (x / side).floor() as i64 }
 }
 
 #[test]
 fn the_ground_in_range_is_covered_once_and_neighbours_differ_by_one_level() {
     for detail in [1.25, 2.0] {
-        let rings = Rings { detail, ..RINGS };
-        let mut chunks = Chunks::new(rings, None).unwrap();
+        let lod = LodConfig { detail, ..RINGS };
+        let mut chunks = Chunks::new(lod, None).unwrap();
         let square = |side: f64| side * side;
         let mut random = Random(3);
         for at in walk(1, 60) {
-            chunks.look(at[0], at[1]).unwrap();
+            chunks.set_viewer(at[0], at[1]).unwrap();
             let wanted: BTreeSet<ChunkId> = chunks.wanted().iter().copied().collect();
             assert_eq!(wanted.len(), chunks.wanted().len());
-            let area: f64 = wanted.iter().map(|id| square(rings.side(id.level))).sum();
+            let area: f64 = wanted.iter().map(|id| square(lod.side(id.level))).sum();
             let roots: BTreeSet<ChunkId> =
                 wanted.iter().map(|id| (id.level..4).fold(*id, |id, _| id.parent())).collect();
-            assert_eq!(area, roots.len() as f64 * square(rings.side(4)), "{at:?}: no gap and nothing twice");
+            assert_eq!(area, roots.len() as f64 * square(lod.side(4)), "{at:?}: no gap and nothing twice");
             for _ in 0..50 {
                 let place = at.map(|metres| metres + about(&mut random, 899));
-                let covers = covering(&wanted, finest(&rings, place), 5);
+                let covers = covering(&wanted, finest(&lod, place), 5);
                 assert_eq!(covers.len(), 1, "{at:?}: {place:?} is covered by {covers:?}");
                 let id = covers[0];
                 // At least as fine as said, and not finer than said and slack.
-                let distance = rings.distance(id, at);
-                assert!(id.level == 0 || distance >= detail * rings.side(id.level), "{id:?} at {distance} m is coarse");
+                let distance = lod.distance(id, at);
+                assert!(id.level == 0 || distance >= detail * lod.side(id.level), "{id:?} at {distance} m is coarse");
                 let parent = id.parent();
-                let far = (detail + rings.slack) * rings.side(parent.level);
-                assert!(id.level == 4 || rings.distance(parent, at) < far, "{id:?} at {distance} m is fine");
+                let far = (detail + lod.slack) * lod.side(parent.level);
+                assert!(id.level == 4 || lod.distance(parent, at) < far, "{id:?} at {distance} m is fine");
             }
             for id in &wanted {
                 for (columns, rows) in [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)] {
@@ -96,7 +96,7 @@ fn chunks_come_nearest_first_and_leave_no_hole() {
     let mut shown: BTreeSet<ChunkId> = BTreeSet::new();
     let mut made = 0;
     for (number, at) in walk(2, 80).enumerate() {
-        chunks.look(at[0], at[1]).unwrap();
+        chunks.set_viewer(at[0], at[1]).unwrap();
         let wanted: BTreeSet<ChunkId> = chunks.wanted().iter().copied().collect();
         let mut places: Vec<ChunkId> = walk(number as u64, 30)
             .map(|place| finest(&RINGS, [at[0] + place[0] % 880.0, at[1] + place[1] % 880.0]))
@@ -137,7 +137,7 @@ fn random_budget(number: usize) -> usize {
 fn a_viewer_who_goes_to_and_fro_makes_nothing_anew() {
     let mut chunks = Chunks::new(RINGS, None).unwrap();
     let steps = |chunks: &mut Chunks, x: f64| {
-        chunks.look(x, 0.0).unwrap();
+        chunks.set_viewer(x, 0.0).unwrap();
         std::iter::from_fn(|| chunks.next_step()).count()
     };
     assert!(steps(&mut chunks, 0.0) > 50);
@@ -153,33 +153,33 @@ fn a_viewer_who_goes_to_and_fro_makes_nothing_anew() {
 #[test]
 fn chunks_made_elsewhere_come_back_in_any_order() {
     let mut chunks = Chunks::new(RINGS, None).unwrap();
-    chunks.look(0.0, 0.0).unwrap();
+    chunks.set_viewer(0.0, 0.0).unwrap();
     let count = chunks.wanted().len();
     let taken: Vec<ChunkId> = std::iter::from_fn(|| chunks.take()).collect();
     assert_eq!(taken.len(), count);
-    assert_eq!((chunks.take(), chunks.give_up()), (None, None));
+    assert_eq!((chunks.take(), chunks.evict()), (None, None));
     // One fails and is handed out again.
     chunks.forget(taken[0]);
     assert_eq!(chunks.take(), Some(taken[0]));
     // The viewer is far away before any is made: they come, and go again.
-    chunks.look(1e6, 1e6).unwrap();
-    assert_eq!(chunks.give_up(), None, "what is not made yet cannot be given up");
+    chunks.set_viewer(1e6, 1e6).unwrap();
+    assert_eq!(chunks.evict(), None, "what is not made yet cannot be given up");
     taken.iter().rev().for_each(|id| chunks.done(*id));
-    let gone: BTreeSet<ChunkId> = std::iter::from_fn(|| chunks.give_up()).collect();
+    let gone: BTreeSet<ChunkId> = std::iter::from_fn(|| chunks.evict()).collect();
     assert_eq!(gone, taken.iter().copied().collect());
     // A coarse chunk stays until all that replace it are made, in whatever order.
     let mut chunks = Chunks::new(RINGS, None).unwrap();
-    chunks.look(2000.0, 0.0).unwrap();
+    chunks.set_viewer(2000.0, 0.0).unwrap();
     while chunks.next_step().is_some() {}
-    chunks.look(1500.0, 0.0).unwrap();
+    chunks.set_viewer(1500.0, 0.0).unwrap();
     let coarse = ChunkId { level: 4, y: 0, x: 5 };
     let finer: Vec<ChunkId> = std::iter::from_fn(|| chunks.take()).collect();
     let parts: Vec<ChunkId> = finer.iter().copied().filter(|id| coarse.covers(*id)).collect();
     for id in parts.iter().rev() {
-        assert!(!std::iter::from_fn(|| chunks.give_up()).any(|id| id == coarse), "{id:?} is missing yet");
+        assert!(!std::iter::from_fn(|| chunks.evict()).any(|id| id == coarse), "{id:?} is missing yet");
         chunks.done(*id);
     }
-    assert!(parts.is_empty() || std::iter::from_fn(|| chunks.give_up()).any(|id| id == coarse), "{parts:?}");
+    assert!(parts.is_empty() || std::iter::from_fn(|| chunks.evict()).any(|id| id == coarse), "{parts:?}");
     assert!(!parts.is_empty());
 }
 
@@ -192,10 +192,10 @@ fn every_chunk_is_the_window_and_shares_its_borders() {
         let spec = WorldSpec { seed: 3, size: None, cell: 1.0 / 3.0, ..WorldSpec::default() };
         let (world, op) = (open(&recipe_of(&node, spec, false), 2), node.spec().op);
         let sampler = Sampler::new(open(&recipe_of(&node, spec, false), 1), "height").unwrap();
-        let rings = Rings { cells: 8, cell: 1.0 / 3.0, levels: 3, range: 20.0, ..Rings::default() };
+        let lod = LodConfig { cells: 8, cell: 1.0 / 3.0, levels: 3, range: 20.0, ..LodConfig::default() };
         for at in [[0.0, 0.0], [-777.7, 123_456.7], [3e8, -9e9]] {
-            let mut chunks = world.chunks(rings).unwrap();
-            chunks.look(at[0], at[1]).unwrap();
+            let mut chunks = world.chunks(lod).unwrap();
+            chunks.set_viewer(at[0], at[1]).unwrap();
             let mut made: BTreeMap<ChunkId, Grid> = BTreeMap::new();
             while let Some(id) = chunks.take() {
                 made.insert(id, sampler.window(&chunks.window(id)).unwrap());
@@ -239,10 +239,10 @@ fn chunks_of_bounded_worlds_are_windows_too() {
         }
         let (recipe, op) = (recipe_of(&node, world_of(10.24), true), node.spec().op);
         let (world, sampler) = (open(&recipe, 2), Sampler::new(open(&recipe, 1), "height").unwrap());
-        let rings = Rings { cells: 8, cell: 10.24, levels: 3, range: 5000.0, ..Rings::default() };
-        let mut chunks = world.chunks(rings).unwrap();
+        let lod = LodConfig { cells: 8, cell: 10.24, levels: 3, range: 5000.0, ..LodConfig::default() };
+        let mut chunks = world.chunks(lod).unwrap();
         // Beyond a corner: chunks of every level, those at the far edges cut.
-        chunks.look(1000.0, 900.0).unwrap();
+        chunks.set_viewer(1000.0, 900.0).unwrap();
         let mut levels = [0; 3];
         while let Some(id) = chunks.take() {
             let window = chunks.window(id);
@@ -262,9 +262,9 @@ fn chunks_of_bounded_worlds_are_windows_too() {
 fn levels_meet_without_cracks() {
     let world = World::open(presets::find("hills").unwrap().recipe().unwrap()).unwrap();
     let sampler = Sampler::new(&world, "height").unwrap();
-    let rings = Rings { cells: 16, cell: 3.0, levels: 4, range: 1500.0, ..Rings::default() };
-    let mut chunks = world.chunks(rings).unwrap();
-    chunks.look(7000.0, 8000.0).unwrap();
+    let lod = LodConfig { cells: 16, cell: 3.0, levels: 4, range: 1500.0, ..LodConfig::default() };
+    let mut chunks = world.chunks(lod).unwrap();
+    chunks.set_viewer(7000.0, 8000.0).unwrap();
     let mut made: BTreeMap<ChunkId, Grid> = BTreeMap::new();
     while let Some(id) = chunks.take() {
         let mut grid = sampler.window(&chunks.window(id)).unwrap();
@@ -300,10 +300,10 @@ fn a_world_with_bounds_has_no_chunks_beyond_them() {
     let world = open(&recipe_of(&Node::named("edge").unwrap(), world_of(10.0), false), 1);
     let sampler = Sampler::new(&world, "height").unwrap();
     // 960 x 800 m: neither is a whole number of the coarser chunks of 128 and 256 m.
-    let rings = Rings { cells: 8, cell: 8.0, levels: 3, range: 3000.0, ..Rings::default() };
+    let lod = LodConfig { cells: 8, cell: 8.0, levels: 3, range: 3000.0, ..LodConfig::default() };
     for at in [[0.0, 0.0], [960.0, 800.0], [-500.0, 400.0], [480.0, 1500.0]] {
-        let mut chunks = world.chunks(rings).unwrap();
-        chunks.look(at[0], at[1]).unwrap();
+        let mut chunks = world.chunks(lod).unwrap();
+        chunks.set_viewer(at[0], at[1]).unwrap();
         let (mut count, mut right, mut bottom) = (0, 0.0f64, 0.0f64);
         while let Some(ChunkStep::Make(id)) = chunks.next_step() {
             let grid = sampler.window(&chunks.window(id)).unwrap();
@@ -315,8 +315,8 @@ fn a_world_with_bounds_has_no_chunks_beyond_them() {
         assert!(count >= 12, "{count}");
         assert!(right > 960.0 - 32.0 && right <= 960.0 && bottom > 800.0 - 32.0 && bottom <= 800.0, "{right} {bottom}");
     }
-    let mut chunks = world.chunks(rings).unwrap();
-    chunks.look(9000.0, 0.0).unwrap();
+    let mut chunks = world.chunks(lod).unwrap();
+    chunks.set_viewer(9000.0, 0.0).unwrap();
     assert!(chunks.wanted().is_empty(), "the world is out of sight");
     let outside = ChunkId { level: 0, y: 0, x: -1 };
     let error = sampler.window(&chunks.window(outside)).unwrap_err().to_string();
@@ -326,15 +326,15 @@ fn a_world_with_bounds_has_no_chunks_beyond_them() {
 #[test]
 fn positions_that_are_none_are_said() {
     let mut chunks = Chunks::new(RINGS, None).unwrap();
-    chunks.look(5.0, 5.0).unwrap();
+    chunks.set_viewer(5.0, 5.0).unwrap();
     let before = chunks.wanted().to_vec();
     for (x, said) in [(f64::NAN, "finite"), (f64::INFINITY, "finite"), (1e300, "2^52 cells of 2 m")] {
-        let error = chunks.look(x, 0.0).unwrap_err().to_string();
+        let error = chunks.set_viewer(x, 0.0).unwrap_err().to_string();
         assert!(error.contains(said), "{error}");
     }
     assert_eq!(chunks.wanted(), before);
     for far in [9e15, -9e15] {
-        chunks.look(far, -far).unwrap();
+        chunks.set_viewer(far, -far).unwrap();
         assert!(chunks.wanted().len() > 50);
     }
 }
@@ -345,12 +345,12 @@ fn any_number_of_threads_makes_the_same_chunks() {
     let sampler = Sampler::new(Arc::clone(&world), "height").unwrap();
     let mut one = BTreeMap::new();
     let mut chunks = world.chunks(RINGS).unwrap();
-    chunks.look(-400.0, 300.0).unwrap();
+    chunks.set_viewer(-400.0, 300.0).unwrap();
     while let Some(id) = chunks.take() {
         one.insert(id, sampler.window(&chunks.window(id)).unwrap());
     }
     let mut chunks = world.chunks(RINGS).unwrap();
-    chunks.look(-400.0, 300.0).unwrap();
+    chunks.set_viewer(-400.0, 300.0).unwrap();
     let (chunks, made) = (Mutex::new(chunks), Mutex::new(BTreeMap::new()));
     std::thread::scope(|scope| {
         for _ in 0..4 {

@@ -3,8 +3,8 @@
 
 mod support;
 
-use orogen::dem::ground::Ground;
 use orogen::dem::open;
+use orogen::dem::prepared::PreparedDem;
 use orogen::field::dem::{Dem as Node, Shows};
 use orogen::format::crs::keys::{self, GeoKeys};
 use orogen::format::crs::unit::Unit;
@@ -112,7 +112,7 @@ fn a_band_of_several_is_chosen() {
     // In a recipe, and behind a colon.
     let of_node = world(Node { band: 2, ..node("bands.tif") }, None);
     assert_eq!(of_node.height(30.0, 60.0).unwrap(), 1000.0 + formula(1, 2));
-    let ground = Ground::read(&corpus().join("bands-lerc.tif:2"), None, 1 << 20).unwrap();
+    let ground = PreparedDem::read(&corpus().join("bands-lerc.tif:2"), None, 1 << 20).unwrap();
     assert_eq!(ground.grid.get(1, 2), 1000.0 + formula(1, 2));
 }
 
@@ -205,7 +205,7 @@ fn files_that_lie_otherwise_are_understood_or_refused() {
 
 #[test]
 fn degrees_and_oblong_cells_become_square_metres() {
-    let ground = |name: &str| Ground::read(&corpus().join(name), None, 1 << 20).unwrap();
+    let ground = |name: &str| PreparedDem::read(&corpus().join(name), None, 1 << 20).unwrap();
     let degrees = ground("degrees.tif");
     // 3 arc seconds at 46 degrees north: 64.6 by 92.6 m.
     let window = degrees.grid.window();

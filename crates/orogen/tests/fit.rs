@@ -1,8 +1,8 @@
 //! Recipes fitted to places whose figures are known.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
-use orogen::fit::likeness::{Likeness, of_windows};
-use orogen::fit::search::{Effort, Target, search};
+use orogen::fit::features::{FeatureVector, of_windows};
+use orogen::fit::search::{Effort, FitTarget, search};
 use orogen::fit::template::{PARAMS, ParamValues, Stretch, recipe};
 use orogen::{Grid, Options, Progress, Window, World};
 
@@ -34,7 +34,7 @@ fn the_search_comes_nearer_and_meets_slope_and_hypsometry() {
     let hidden: ParamValues = [0.6, 0.55, 0.5, 0.4, 0.6, 0.6, 0.5, 0.4, 0.4];
     let stretch = Stretch { from: [-400.0, 600.0], to: [200.0, 1400.0], bend: 0.8 };
     let place = land(&hidden, &stretch, 99);
-    let target = Target::of(&place).unwrap();
+    let target = FitTarget::of(&place).unwrap();
     let at = |random: usize, improving: usize| {
         search(&target, &Effort { random, improving, seed: 5 }, &options(), &Progress::none()).unwrap()
     };
@@ -44,7 +44,7 @@ fn the_search_comes_nearer_and_meets_slope_and_hypsometry() {
     // Worlds of other seeds: nearer than land with the same relief and no valleys.
     let distance = |grid: &Grid| {
         let windows = of_windows(grid, target.side, 4);
-        windows.iter().map(|window: &Likeness| window.distance(&target.middle)).sum::<f64>() / windows.len() as f64
+        windows.iter().map(|window: &FeatureVector| window.distance(&target.middle)).sum::<f64>() / windows.len() as f64
     };
     let mut found = better.recipe(&target, 7, "");
     found.world.seed = 8;

@@ -66,7 +66,7 @@ fn every_preset_makes_its_golden_bits_on_one_thread_and_two() {
             let world = World::with_options(recipe, options).unwrap();
             // Of a world without bounds, so many samples at its own cell.
             let cell = world.recipe().world.cell;
-            let window = world.across(256).unwrap_or(Window::new(256, 256, cell));
+            let window = world.window_fitting(256).unwrap_or(Window::new(256, 256, cell));
             let grid = world.window("height", &window).unwrap();
             made.insert(preset.name.to_string(), summary(grid.data(), 0.0).sha256);
         }

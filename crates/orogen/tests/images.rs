@@ -33,7 +33,7 @@ fn opened(folder: &Folder, more: &str) -> orogen::Result<World> {
         "orogen = 1\n[nodes.mask]\nop = \"image\"\npath = \"mask.png\"\n{more}\n[outputs]\nheight = \"mask\"\n"
     );
     let mut recipe = Recipe::parse(&text, "r.toml")?;
-    recipe.lies_in(&folder.0);
+    recipe.set_base_dir(&folder.0);
     World::open(recipe)
 }
 

@@ -7,8 +7,8 @@ use std::io::{self, Write};
 use std::sync::{Arc, LazyLock, Mutex};
 
 use orogen::analysis::halo::Halo;
+use orogen::export::layer_source::LayerSource;
 use orogen::export::options::Options;
-use orogen::export::subject::Subject;
 use orogen::export::{registry, run};
 use orogen::file::OutputPolicy;
 use orogen::map::paint::Painter;
@@ -427,7 +427,7 @@ fn holes_are_left_out_or_refused() {
     assert!(error.contains("1 of 400 samples are missing"), "{error}");
 }
 
-/// Takes `left` bytes, then fails.
+/// ValueKind `left` bytes, then fails.
 struct Full {
     left: usize,
 }
@@ -500,9 +500,9 @@ fn export_with(
         let spec = format.options.iter().find(|spec| spec.name == *name).unwrap();
         options.give(spec, text).map_err(|error| error.to_string())?;
     }
-    let subject = Subject::new(world, "height", window, progress).map_err(|error| error.to_string())?;
+    let source = LayerSource::new(world, "height", window, progress).map_err(|error| error.to_string())?;
     let output = OutputPolicy::default().output(path).map_err(|error| error.to_string())?;
-    run::to_file(format, subject, &options, &output).map(|written| written.words).map_err(|error| error.to_string())
+    run::to_file(format, source, &options, &output).map(|written| written.words).map_err(|error| error.to_string())
 }
 
 #[test]

@@ -5,10 +5,10 @@
 use std::path::{Path, PathBuf};
 
 use orogen::export::derived::list;
+use orogen::export::layer_source::LayerSource;
 use orogen::export::mesh_cover::{self, SURFACES};
 use orogen::export::mesh_tint::COLOR_RANGE;
 use orogen::export::options::Options;
-use orogen::export::subject::Subject;
 use orogen::export::targets::frame::{Asked, Frame};
 use orogen::export::{registry, run, targets};
 use orogen::file::OutputPolicy;
@@ -77,9 +77,9 @@ fn colors_of_meshes() {
         let colors = [0, 60].map(|x| {
             let path = folder.join(format!("{x}.ply"));
             let progress = Progress::none();
-            let subject = Subject::new(&world, "height", Window::new(61, 40, 10.0).at(x, 20), &progress).unwrap();
+            let source = LayerSource::new(&world, "height", Window::new(61, 40, 10.0).at(x, 20), &progress).unwrap();
             let output = OutputPolicy::default().output(&path).unwrap();
-            run::to_file(registry::named("ply").unwrap(), subject, &options, &output).unwrap();
+            run::to_file(registry::named("ply").unwrap(), source, &options, &output).unwrap();
             ply_colors(&path)
         });
         let sides = [(&colors[0], 60), (&colors[1], 0)]
@@ -100,8 +100,8 @@ fn textures_of_surfaces() {
     let world = World::open(recipe).unwrap();
     let progress = Progress::none();
     let pictures = [0, 60].map(|x| {
-        let subject = Subject::new(&world, "height", Window::new(61, 40, 10.0).at(x, 20), &progress).unwrap();
-        mesh_cover::of(&subject, &options, true).unwrap().unwrap()
+        let source = LayerSource::new(&world, "height", Window::new(61, 40, 10.0).at(x, 20), &progress).unwrap();
+        mesh_cover::of(&source, &options, true).unwrap().unwrap()
     });
     for of in [
         |pictures: &mesh_cover::Pictures| pictures.base.clone(),

@@ -2,9 +2,9 @@
 // Clippy knows test functions, but not that all of this file is for them.
 #![allow(clippy::unwrap_used)]
 
-use orogen::export::features::ground::Ground;
 use orogen::export::features::list;
 use orogen::export::features::options::FeatureOptions;
+use orogen::export::features::source::FeatureSource;
 use orogen::export::options::Options;
 use orogen::format::features::{Geometry, Value};
 use orogen::hydrography::rivers::Mouth;
@@ -17,10 +17,10 @@ fn preset(name: &str, seed: u64, cell: f64) -> World {
     World::open(recipe).unwrap()
 }
 
-fn ground(world: &World, window: &Window) -> Ground {
+fn ground(world: &World, window: &Window) -> FeatureSource {
     let none = Options::default();
     let options = FeatureOptions::new(&none, world.recipe()).unwrap();
-    Ground::of(world, window, &options, 0, &Progress::none()).unwrap()
+    FeatureSource::of(world, window, &options, 0, &Progress::none()).unwrap()
 }
 
 #[test]
@@ -29,7 +29,7 @@ fn beds_never_rise_and_every_reach_ends_somewhere() {
     for (name, cell) in [("island", 80.0), ("archipelago", 160.0), ("hills", 60.0), ("mesa", 80.0)] {
         for seed in [1, 2, 3] {
             let world = preset(name, seed, cell);
-            let ground = ground(&world, &world.whole(cell).unwrap());
+            let ground = ground(&world, &world.full_window(cell).unwrap());
             count += ground.rivers.len();
             for river in &ground.rivers {
                 assert!(river.points.windows(2).all(|pair| pair[1][2] <= pair[0][2]), "{name} {seed}: {river:?}");
@@ -62,7 +62,7 @@ fn rivers_are_those_of_the_recipes_own_drainage() {
                 op = \"remap\"\nsource = \"hills\"\nfrom = [-1, 1]\nto = [-200, 800]\n[nodes.water]\nop = \"drainage\"\nsource = \"land\"\n\
                 stream = 200000\n[outputs]\nheight = \"land\"\n";
     let world = World::open(Recipe::parse(text, "test").unwrap()).unwrap();
-    for window in [world.whole(50.0).unwrap(), Window::new(70, 60, 50.0).at(30, 25)] {
+    for window in [world.full_window(50.0).unwrap(), Window::new(70, 60, 50.0).at(30, 25)] {
         let ground = ground(&world, &window);
         let flow = world.window("water.flow", &window).unwrap();
         let orders = world.window("water.strahler", &window).unwrap();
@@ -87,7 +87,7 @@ fn every_layer_has_its_fields_and_lies_in_the_window() {
     let window = Window::new(120, 110, 160.0).at(60, 70);
     let none = Options::default();
     let options = FeatureOptions::new(&none, world.recipe()).unwrap();
-    let ground = Ground::of(&world, &window, &options, 0, &Progress::none()).unwrap();
+    let ground = FeatureSource::of(&world, &window, &options, 0, &Progress::none()).unwrap();
     for layer in list::all() {
         let made = (layer.make)(&ground, &options).unwrap();
         assert!(!made.features.is_empty(), "{}", layer.name);

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::ValueEnum;
-use orogen::build::builder::{Build, Report, Start};
-use orogen::build::order::{Form, Order, Samples};
-use orogen::build::xyz;
+use orogen::builder::builder::{Build, Report, Start};
+use orogen::builder::spec::{BuildSpec, Form, Samples};
+use orogen::builder::xyz;
 use orogen::format::encoding::Encoding;
 use orogen::words::{self, bytes, count, number};
 use orogen::{Window, World};
@@ -90,8 +90,8 @@ fn build(args: &Args) -> Result<(), Failure> {
     let output = args.replace.policy(source.inputs(&recipe)).output(&args.out)?;
     let world = args.limits.open(recipe, &budget)?;
     let tile = args.tile.map(|tile| tile as usize);
-    let order = Order { form, window: window(args, &world, form)?, tile, layers: args.layers.clone() };
-    let build = Build::new(&world, &order, &output)?;
+    let spec = BuildSpec { form, window: window(args, &world, form)?, tile, layers: args.layers.clone() };
+    let build = Build::new(&world, &spec, &output)?;
     let start = match (args.resume, args.replace.force) {
         (true, _) => Start::Resume,
         (_, true) => Start::Force,
@@ -109,7 +109,7 @@ fn build(args: &Args) -> Result<(), Failure> {
         let list = words::list(names.iter().map(String::as_str));
         say::error(&format!("note: {} also holds {list}, which no build has made; left as it was", args.out.display()));
     }
-    if args.quiet { Ok(()) } else { say::out(&closing(args, &order, &report, begun.elapsed().as_secs_f64())) }
+    if args.quiet { Ok(()) } else { say::out(&closing(args, &spec, &report, begun.elapsed().as_secs_f64())) }
 }
 
 /// What OUT and --tiles say together.
@@ -152,7 +152,7 @@ fn window(args: &Args, world: &World, form: Form) -> Result<Window, Failure> {
     }
     let whole = match size {
         Some(_) => args.samples.window(world)?,
-        None => world.whole(cell)?,
+        None => world.full_window(cell)?,
     };
     Ok(match form {
         // Up to the far edge, which tiles share with the neighbours they do not have.
@@ -186,8 +186,8 @@ fn needs(args: &Args, build: &Build, start: Start) -> Result<(), Failure> {
 }
 
 /// The closing words.
-fn closing(args: &Args, order: &Order, report: &Report, seconds: f64) -> String {
-    let Window { width, height, cell, .. } = order.window;
+fn closing(args: &Args, spec: &BuildSpec, report: &Report, seconds: f64) -> String {
+    let Window { width, height, cell, .. } = spec.window;
     let made = match report {
         Report { made: 0, .. } => "everything was there and sound".to_string(),
         Report { made, kept: 0, .. } => format!("{} made", count(*made, "tile")),
@@ -199,7 +199,7 @@ fn closing(args: &Args, order: &Order, report: &Report, seconds: f64) -> String 
     format!(
         "{}: {}, {width} x {height} samples of {} m, {}\n{made} in {seconds:.1} s\n",
         Path::new(&args.out).display(),
-        order.layers.join(", "),
+        spec.layers.join(", "),
         number(cell),
         bytes(report.bytes),
     )

@@ -8,7 +8,7 @@ use orogen::export::derived::list;
 use orogen::export::format::Format;
 use orogen::export::run::Written;
 use orogen::export::targets::frame::{Asked, Frame};
-use orogen::export::targets::target::Target;
+use orogen::export::targets::target::EngineTarget;
 use orogen::export::{mesh_cover, registry, run as exporting, targets};
 use orogen::file::OutputPolicy;
 use orogen::words::{count, number};
@@ -111,7 +111,7 @@ impl NameOf {
 
     /// The engines.
     fn engine() -> NameOf {
-        let value = |target: &&Target| PossibleValue::new(target.name).help(target.about);
+        let value = |target: &&EngineTarget| PossibleValue::new(target.name).help(target.about);
         NameOf {
             all: targets::list::all().iter().map(value).collect(),
             declared: |name| targets::list::named(name).map(|target| target.name),
@@ -165,11 +165,11 @@ fn export(args: &Args) -> Result<(), Failure> {
     let window = args.samples.window(&world)?;
     let sink = Sink::new(&args.out, &policy)?;
     let (bar, progress) = Bar::new(args.quiet);
-    let subject = exporting::subject(format, &world, &args.layer, window, &progress)?;
+    let source = exporting::source(format, &world, &args.layer, window, &progress)?;
     let Written { words, count } = match &sink {
-        Sink::Stdout => sink.write(|out| exporting::to_stream(format, subject, &options, out))?,
+        Sink::Stdout => sink.write(|out| exporting::to_stream(format, source, &options, out))?,
         // With what stands beside it.
-        Sink::File(output) => exporting::to_file(format, subject, &options, output)
+        Sink::File(output) => exporting::to_file(format, source, &options, output)
             .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?,
     };
     progress.finish();
@@ -182,7 +182,7 @@ fn export(args: &Args) -> Result<(), Failure> {
 /// Writes the layer for an engine.
 fn for_engine(
     args: &Args,
-    target: &Target,
+    target: &EngineTarget,
     format: &Format,
     world: &World,
     policy: &OutputPolicy,

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use orogen::dem::ground::{DEFAULT_MEMORY, Ground};
+use orogen::dem::prepared::{DEFAULT_MEMORY, PreparedDem};
 use orogen::file::mark;
-use orogen::fit::likeness::{self, Likeness};
-use orogen::fit::search::{Effort, MAX_WINDOWS, SIDE, Target, search};
+use orogen::fit::features::{self, FeatureVector};
+use orogen::fit::search::{Effort, FitTarget, MAX_WINDOWS, SIDE, search};
 use orogen::recipe::presets;
 use orogen::survey::measures::Measures;
 use orogen::survey::real::FIGURES;
@@ -64,7 +64,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let sink = Sink::new(&args.out, &args.replace.policy([&args.place]))?;
     let budget = args.limits.budget();
-    let place = Ground::read(&args.place, None, budget.left().unwrap_or(DEFAULT_MEMORY))?;
+    let place = PreparedDem::read(&args.place, None, budget.left().unwrap_or(DEFAULT_MEMORY))?;
     // The place, and what a window takes while it is measured.
     budget.reserve(place.memory() + MEASURED * (SIDE * SIDE) as u64)?.keep();
     if !args.quiet {
@@ -72,7 +72,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let place = Arc::new(place);
     finite::check("place", &place.grid)?;
-    let target = Target::of(&place.grid)?;
+    let target = FitTarget::of(&place.grid)?;
     let random = args.tries as usize / 2;
     let effort = Effort { random, improving: args.tries as usize - random, seed: args.seed };
     let stopped = |error: Error| interrupt::explain(error.into(), "no recipe was written");
@@ -113,14 +113,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// The samples that are compared with the place's.
-fn land_window(world: &World, target: &Target) -> Result<Window, Failure> {
-    let whole = world.whole(target.cell)?;
+fn land_window(world: &World, target: &FitTarget) -> Result<Window, Failure> {
+    let whole = world.full_window(target.cell)?;
     let [width, height] = target.size;
     Ok(Window { width: whole.width.min(width), height: whole.height.min(height), ..whole })
 }
 
 /// The work of [`land`].
-fn land_work(args: &Args, budget: &Budget, recipe: Recipe, target: &Target) -> Result<f64, Failure> {
+fn land_work(args: &Args, budget: &Budget, recipe: Recipe, target: &FitTarget) -> Result<f64, Failure> {
     let world = args.limits.open(recipe, budget)?;
     let plan = world.plan(&[HEIGHT], &land_window(&world, target)?)?;
     Ok(world.work(&plan))
@@ -132,7 +132,7 @@ fn land(
     budget: &Budget,
     mut recipe: Recipe,
     seed: u64,
-    target: &Target,
+    target: &FitTarget,
     progress: &Progress,
 ) -> Result<Grid, Failure> {
     recipe.world.seed = seed;
@@ -143,8 +143,8 @@ fn land(
 }
 
 /// The measures of windows of a land, those left out that cannot be measured.
-fn windows(land: &Grid, target: &Target) -> Vec<Measures> {
-    let windows = likeness::windows(land.window(), target.side, MAX_WINDOWS);
+fn windows(land: &Grid, target: &FitTarget) -> Vec<Measures> {
+    let windows = features::windows(land.window(), target.side, MAX_WINDOWS);
     windows.into_iter().filter_map(|window| Measures::of(&land.crop(&window)?, None)).collect()
 }
 
@@ -157,9 +157,9 @@ struct Report {
 }
 
 impl Report {
-    fn of(target: &Target, lands: &[Vec<Measures>; 3]) -> Report {
+    fn of(target: &FitTarget, lands: &[Vec<Measures>; 3]) -> Report {
         let apart = |land: &[Measures]| {
-            let distances = land.iter().map(|window| Likeness::of(window).distance(&target.middle)).collect();
+            let distances = land.iter().map(|window| FeatureVector::of(window).distance(&target.middle)).collect();
             (land.len(), median(distances).unwrap_or(f64::NAN))
         };
         let own = (target.windows, median(target.own.clone()).unwrap_or(f64::NAN));
@@ -172,7 +172,7 @@ impl Report {
         Report { distances: [own, apart(&lands[1]), apart(&lands[2])], figures }
     }
 
-    fn words(&self, args: &Args, name: &str, target: &Target, tried: usize) -> String {
+    fn words(&self, args: &Args, name: &str, target: &FitTarget, tried: usize) -> String {
         let [place, ours, defaults] = self.distances;
         let mut out = format!("{:<24}{:>12}{:>12}{:>12}\n", "", "the place", "the recipe", presets::DEFAULT);
         for (figure, values) in FIGURES.iter().zip(&self.figures) {
@@ -197,7 +197,7 @@ impl Report {
         )
     }
 
-    fn json(&self, target: &Target, tried: usize) -> String {
+    fn json(&self, target: &FitTarget, tried: usize) -> String {
         let land = |k: usize| {
             let figures: serde_json::Map<String, serde_json::Value> = FIGURES
                 .iter()

@@ -17,7 +17,7 @@ use orogen::{Budget, Error, Grid, Progress, Recipe, Window};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
-use crate::moving::{Moving, Target};
+use crate::moving::{AnimationTarget, Moving};
 use crate::options::Limits;
 use crate::replace::Replace;
 use crate::seeds::Seeds;
@@ -65,7 +65,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn grow(args: &Args) -> Result<(), Failure> {
-    let target = Target::of(&args.out).map_err(Failure::Usage)?;
+    let target = AnimationTarget::of(&args.out).map_err(Failure::Usage)?;
     if let Some(years) = args.years.filter(|years| !(0.0..=1e9).contains(years)) {
         return Err(Failure::Usage(format!("--years is {years}; it goes from 0 to 1e9")));
     }
@@ -98,7 +98,7 @@ fn grow(args: &Args) -> Result<(), Failure> {
 fn write(
     recipe: Recipe,
     args: &Args,
-    target: &Target,
+    target: &AnimationTarget,
     outputs: &[Sink],
     budget: &Budget,
     progress: &Progress,
@@ -109,7 +109,7 @@ fn write(
     let (width, height) = (window.width, window.height);
     let pixels = (width * height) as u64;
     // Two frames' heights and what they are mixed to; the picture; and what packs it.
-    let _frames = budget.reserve(pixels.saturating_mul(3 + 12).saturating_add(target.beside(pixels)))?;
+    let _frames = budget.reserve(pixels.saturating_mul(3 + 12).saturating_add(target.reserved(pixels)))?;
     let growth = Growth::new(&world, HEIGHT, window)?;
     let frames = Frames::new(args.frames, growth.steps());
     let plan = world.plan(&[HEIGHT], &window)?;

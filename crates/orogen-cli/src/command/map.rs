@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use orogen::export::derived::list;
+use orogen::export::layer_source::LayerSource;
 use orogen::export::place;
 use orogen::export::sheet_cover;
-use orogen::export::subject::Subject;
 use orogen::format::affine::Affine;
 use orogen::layer::LayerKind;
 use orogen::palette::named;
@@ -350,22 +350,22 @@ fn layer(
     range: Option<[f32; 2]>,
     progress: &Progress,
 ) -> Result<Layer, Failure> {
-    let mut subject = Subject::new(world, &args.layer, *window, progress)?;
-    if subject.channels() != 1 {
+    let mut source = LayerSource::new(world, &args.layer, *window, progress)?;
+    if source.channels() != 1 {
         return Err(Failure::Usage(format!(
             "`{}` has {} channels, and a map shows one value at each place",
             args.layer,
-            subject.channels()
+            source.channels()
         )));
     }
-    let scale = match (args.ramp, subject.kind()) {
+    let scale = match (args.ramp, source.kind()) {
         (Some(Ramp::Linear), _) => Scale::Linear,
         (Some(Ramp::Log), _) | (None, LayerKind::Flow) => Scale::Log,
         (Some(Ramp::Labels), _) | (None, LayerKind::Label) => Scale::Labels,
         (None, _) => Scale::Linear,
     };
-    let (name, unit) = (args.layer.clone(), subject.unit());
-    let made = subject.whole().map_err(|cause| file::explain("make the layer of", &args.out, &cause))?;
+    let (name, unit) = (args.layer.clone(), source.unit());
+    let made = source.whole().map_err(|cause| file::explain("make the layer of", &args.out, &cause))?;
     let values = made.into_iter().next().unwrap_or_else(|| Grid::filled(*window, f32::NAN));
     finite::check(&args.layer, &values)?;
     Ok(Layer { values, name, unit, scale, range })

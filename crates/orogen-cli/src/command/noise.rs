@@ -9,7 +9,7 @@ use orogen::Progress;
 use orogen::format::png::{Animation, Picture};
 use orogen::format::{npy, png};
 use orogen::words;
-use orogen_noise::{Basis, Fractal, MAX_OCTAVES, Untileable};
+use orogen_noise::{Basis, Fractal, MAX_OCTAVES, TileError};
 
 use crate::bar::Bar;
 use crate::draw::look::{Drawing, Look};
@@ -18,7 +18,7 @@ use crate::draw::sum;
 use crate::draw::texture::Texture;
 use crate::failure::Failure;
 use crate::format::Format;
-use crate::moving::{Moving, Target};
+use crate::moving::{AnimationTarget, Moving};
 use crate::replace::Replace;
 use crate::sink::{Sink, is_stdout};
 use crate::size::{Bytes, MOST, Size, finite, positive, seed, wavelength};
@@ -132,7 +132,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     // Noise lies nowhere: a map's formats are not for it.
     // Frames may also go into what no single picture does.
     let target = match args.frames.filter(|_| out.extension().is_none_or(|extension| extension != "npy")) {
-        Some(_) => Some(Target::of(out).map_err(Failure::Usage)?),
+        Some(_) => Some(AnimationTarget::of(out).map_err(Failure::Usage)?),
         None => None,
     };
     let format = match target {
@@ -208,7 +208,7 @@ impl Task<'_> {
             () if !png && deep => "--bits is for pictures; an array holds f32".into(),
             () => match self.look.made_of(&self.slice(None)).tiled() {
                 Ok(_) => return Ok(()),
-                Err(Untileable::Slanted) => format!(
+                Err(TileError::Slanted) => format!(
                     "{} cannot be made to repeat: its lattice of triangles closes along slanted axes only; take perlin, value \
                      or worley",
                     basis.name()
@@ -291,9 +291,9 @@ impl Task<'_> {
         })
     }
 
-    fn write_frames(&self, target: &Target, outputs: &[Sink], frames: u32) -> Result<(), Failure> {
+    fn write_frames(&self, target: &AnimationTarget, outputs: &[Sink], frames: u32) -> Result<(), Failure> {
         let drawing = self.drawing();
-        if *target == Target::Gif && self.deep() {
+        if *target == AnimationTarget::Gif && self.deep() {
             return Err(Failure::Usage("a GIF holds 8 bits; leave --bits 16 out, or name a .png".into()));
         }
         let (software, description) = (format!("Orogen {}", env!("CARGO_PKG_VERSION")), self.description());

@@ -20,7 +20,7 @@ use orogen::{Grid, Progress, Window, World};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
-use crate::moving::{Moving, Target};
+use crate::moving::{AnimationTarget, Moving};
 use crate::options::Limits;
 use crate::replace::Replace;
 use crate::seeds::Seeds;
@@ -148,9 +148,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 fn render(args: &Args) -> Result<(), Failure> {
     let target = match args.turntable {
-        Some(_) => Target::of(&args.out).map_err(Failure::Usage)?,
-        None if is_stdout(&args.out) => Target::Apng,
-        None if args.out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) => Target::Apng,
+        Some(_) => AnimationTarget::of(&args.out).map_err(Failure::Usage)?,
+        None if is_stdout(&args.out) => AnimationTarget::Apng,
+        None if args.out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) => {
+            AnimationTarget::Apng
+        }
         None => {
             let message = format!("a view is one picture; name a file that ends in .png, not {}", args.out.display());
             return Err(Failure::Usage(message + ", or ask for frames by --turntable"));
@@ -176,7 +178,7 @@ fn render(args: &Args) -> Result<(), Failure> {
     let pixels = (width * height) as u64;
     // Of each sample of the land: the pyramid, slopes, and light twice while it is made.
     let land = (window.len() as u64).saturating_mul(LAND);
-    let needed = land.saturating_add(3 * pixels).saturating_add(target.beside(pixels));
+    let needed = land.saturating_add(3 * pixels).saturating_add(target.reserved(pixels));
     let _drawing = budget.reserve(needed)?;
     let folder = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     file::check_folder(folder)?;
@@ -334,7 +336,7 @@ const PREVIEW: f64 = 0.25;
 
 /// What is to be drawn, all of it settled.
 struct Shooting<'a> {
-    target: Target,
+    target: AnimationTarget,
     outputs: Vec<Sink>,
     style: Style<'a>,
     shot: Shot,
@@ -355,7 +357,7 @@ fn draw(
     let plan = world.plan(&layers, window)?;
     let pixels = (width * height) as f64 * f64::from(args.turntable.unwrap_or(1));
     let preview = match (args.turntable, target) {
-        (Some(_), Target::Gif) => PREVIEW,
+        (Some(_), AnimationTarget::Gif) => PREVIEW,
         _ => 0.0,
     };
     let [making, preparing, previewing, painting] = progress.parts([

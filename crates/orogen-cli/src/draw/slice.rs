@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use orogen_noise::{Depth, Fractal, Mismatch, Points, Tiled, Untileable};
+use orogen_noise::{Depth, Fractal, LengthMismatch, Points, TileError, Tiled};
 use rayon::prelude::*;
 
 use super::fit::{Fit, Lengths};
@@ -34,7 +34,7 @@ impl Slice {
     }
 
     /// The noise, made to repeat where it is to.
-    pub fn tiled(&self) -> Result<Tiled, Untileable> {
+    pub fn tiled(&self) -> Result<Tiled, TileError> {
         self.noise.tiled(self.fit().cells)
     }
 
@@ -93,7 +93,7 @@ impl Slice {
 
     /// The slices above always have the length of their points, and whether a noise can repeat is asked before; were either ever wrong,
     /// it would be NaN and seen.
-    fn settle(&self, out: &mut [f32], fill: impl FnOnce(&Tiled, &mut [f32]) -> Result<(), Mismatch>) {
+    fn settle(&self, out: &mut [f32], fill: impl FnOnce(&Tiled, &mut [f32]) -> Result<(), LengthMismatch>) {
         match self.tiled() {
             Ok(noise) if fill(&noise, out).is_ok() => {}
             _ => out.fill(f32::NAN),

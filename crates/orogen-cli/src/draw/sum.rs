@@ -5,7 +5,7 @@ use orogen_noise::Kind;
 
 use crate::size::{finite, not_negative};
 
-/// What it takes: the kind of fractal, and the parameters of some kinds.
+/// What it value_kind: the kind of fractal, and the parameters of some kinds.
 #[derive(Debug, clap::Args)]
 pub struct Options {
     /// How octaves become one number [default: fbm]

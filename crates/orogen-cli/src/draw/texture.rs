@@ -20,7 +20,7 @@ pub enum Texture {
     Clouds,
     /// A sine across the picture, distorted by turbulence: the sum of the octaves' sizes
     Marble,
-    /// Rings: the fractional part of a noise that has been counted up and drawn out, and a fine grain
+    /// LodConfig: the fractional part of a noise that has been counted up and drawn out, and a fine grain
     Wood,
 }
 

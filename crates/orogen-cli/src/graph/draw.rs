@@ -3,8 +3,8 @@
 use orogen::Result;
 use orogen::map::text::Face;
 use orogen::palette::color::Rgb;
-use orogen::sheet::letters::Letters;
-use orogen::sheet::scene::{INK, Place, Scene, Step, polygon};
+use orogen::sheet::font_set::FontSet;
+use orogen::sheet::scene::{INK, Point, Scene, Step, polygon};
 
 use super::diagram::{Block, Diagram, Kind};
 use super::layout::{Layout, Link, Size};
@@ -48,7 +48,7 @@ pub fn color(kind: Kind) -> Rgb {
 /// If the built-in font cannot be read.
 pub fn draw(diagram: &Diagram, title: &str) -> Result<Scene> {
     let words = diagram.blocks.iter().flat_map(|block| block.rows.iter().chain([&block.name]));
-    let letters = Letters::for_texts(words.map(String::as_str).chain([title]))?;
+    let letters = FontSet::for_texts(words.map(String::as_str).chain([title]))?;
     let sizes: Vec<Size> = diagram.blocks.iter().map(|block| size(block, &letters)).collect();
     let links: Vec<Link> = (diagram.wires.iter())
         .map(|wire| Link { from: (wire.from, PORT), to: (wire.to, wire.row.map_or(PORT, row_middle)) })
@@ -94,7 +94,7 @@ fn row_middle(row: usize) -> f32 {
     HEAD + ROW * (row as f32 + 0.5) + 0.4
 }
 
-fn size(block: &Block, letters: &Letters) -> Size {
+fn size(block: &Block, letters: &FontSet) -> Size {
     let op = if block.op.is_empty() { 0.0 } else { letters.width(block.op, Face::Italic, SMALL) + 4.0 };
     let head = letters.width(&block.name, Face::Bold, NAME) + op;
     let rows = block.rows.iter().map(|row| letters.width(row, Face::Regular, SMALL)).fold(0.0, f32::max);
@@ -103,7 +103,7 @@ fn size(block: &Block, letters: &Letters) -> Size {
 }
 
 /// A wire: level past boxes, and between columns a curve that leaves and arrives level.
-fn curve(way: &[[f32; 3]], [x, y]: [f32; 2]) -> Vec<Place> {
+fn curve(way: &[[f32; 3]], [x, y]: [f32; 2]) -> Vec<Point> {
     const STEPS: usize = 24;
     let mut line = Vec::new();
     for pair in way.windows(2) {
@@ -122,12 +122,12 @@ fn curve(way: &[[f32; 3]], [x, y]: [f32; 2]) -> Vec<Place> {
 
 struct Page<'a> {
     scene: Scene,
-    letters: &'a Letters,
+    letters: &'a FontSet,
 }
 
 impl Page<'_> {
     /// Writes words from a place on; returns how long they are.
-    fn words(&mut self, text: &str, face: Face, size: f32, ink: Rgb, at: Place, cover: f32) -> f32 {
+    fn words(&mut self, text: &str, face: Face, size: f32, ink: Rgb, at: Point, cover: f32) -> f32 {
         let outline = self.letters.write(text, face, size, at, 0.0);
         self.scene.area(outline, ink, cover);
         self.letters.width(text, face, size)
@@ -142,7 +142,7 @@ impl Page<'_> {
         names.iter().position(|name| *name == layer).unwrap_or(0) as f32 * 2.4
     }
 
-    fn block(&mut self, block: &Block, size: Size, [left, top]: Place) {
+    fn block(&mut self, block: &Block, size: Size, [left, top]: Point) {
         let cover = if block.used { 1.0 } else { FAINT };
         let area = [left, top, size.width, size.height];
         self.scene.area(rounded(area), BODY, 1.0);
@@ -169,14 +169,14 @@ impl Page<'_> {
             Step::Move(place) | Step::Line(place) => Some(place),
             Step::Curve(..) => None,
         });
-        let mut ring: Vec<Place> = outline.collect();
+        let mut ring: Vec<Point> = outline.collect();
         ring.extend(ring.first().copied());
         self.scene.lines(vec![ring], 0.2, EDGE, 0.8 * cover);
     }
 
     /// Where a wire ends.
-    fn dot(&mut self, [x, y]: Place, ink: Rgb) {
-        let corners: Vec<Place> = (0..16)
+    fn dot(&mut self, [x, y]: Point, ink: Rgb) {
+        let corners: Vec<Point> = (0..16)
             .map(|k| std::f32::consts::TAU * k as f32 / 16.0)
             .map(|angle| [x + 0.9 * libm::cosf(angle), y + 0.9 * libm::sinf(angle)])
             .collect();
@@ -194,7 +194,7 @@ fn rounded([left, top, width, height]: [f32; 4]) -> Vec<Step> {
         ([left + RADIUS, top + height - RADIUS], 0.25),
         ([left + RADIUS, top + RADIUS], 0.5),
     ];
-    let places: Vec<Place> = corners
+    let places: Vec<Point> = corners
         .iter()
         .flat_map(|([x, y], turn)| {
             (0..=STEPS).map(move |k| {

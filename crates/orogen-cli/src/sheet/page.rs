@@ -2,7 +2,7 @@
 
 use orogen::Progress;
 use orogen::map::canvas::{Canvas, Ink};
-use orogen::map::text::{Face, Lettering, Style};
+use orogen::map::text::{BuiltinFont, Face, Style};
 use rayon::prelude::*;
 
 use super::panel::{self, Pictures};
@@ -30,7 +30,7 @@ struct Layout<'a> {
     rows: &'a [Row],
     side: usize,
     scale: f64,
-    lettering: Lettering,
+    font: BuiltinFont,
     canvas: Canvas,
 }
 
@@ -54,7 +54,7 @@ fn scale(side: usize) -> f64 {
 pub fn draw(rows: &[Row], side: usize, seed: u64, progress: &Progress) -> orogen::Result<Canvas> {
     let [width, height] = size(rows.len(), side);
     let canvas = Canvas::new(width, height, PAPER);
-    let mut layout = Layout { rows, side, scale: scale(side), lettering: Lettering::new()?, canvas };
+    let mut layout = Layout { rows, side, scale: scale(side), font: BuiltinFont::new()?, canvas };
     progress.expect(rows.iter().map(|row| row.noises.len() as f64).sum());
     let picture = |shown| {
         progress.check()?;
@@ -99,7 +99,7 @@ impl Layout<'_> {
 
     /// Writes from `x` on and returns where it ends.
     fn write(&mut self, text: &str, [x, baseline]: [f64; 2], style: Style) -> f64 {
-        f64::from(self.lettering.write(&mut self.canvas, x as f32, baseline.round() as i64, text, style))
+        f64::from(self.font.write(&mut self.canvas, x as f32, baseline.round() as i64, text, style))
     }
 
     fn rule(&mut self, y: f64, thickness: f64) {
@@ -172,7 +172,7 @@ impl Layout<'_> {
             "fBm is fractional Brownian motion: octaves of noise, each finer and weaker than the one before.".to_string(),
         ];
         for paragraph in words {
-            for line in self.lettering.wrap(&paragraph, style, width as f32) {
+            for line in self.font.wrap(&paragraph, style, width as f32) {
                 self.write(&line, [left, baseline], style);
                 baseline += self.at(18.0);
             }

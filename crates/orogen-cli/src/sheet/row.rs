@@ -3,7 +3,7 @@
 use orogen::Progress;
 use orogen::aggregate::relief::{self, Ridges};
 use orogen::aggregate::single;
-use orogen_noise::{Basis, Falloff, Feature, Fractal, Kind, Mismatch, Points, Worley};
+use orogen_noise::{Basis, Falloff, Feature, Fractal, Kind, LengthMismatch, Points, Worley};
 
 /// A row of noises that belong together.
 #[derive(Debug)]
@@ -51,7 +51,7 @@ pub enum Noise {
 
 impl Noise {
     /// Its samples over columns and rows.
-    pub fn fill(&self, xs: &[f64], ys: &[f64], out: &mut [f32]) -> Result<(), Mismatch> {
+    pub fn fill(&self, xs: &[f64], ys: &[f64], out: &mut [f32]) -> Result<(), LengthMismatch> {
         let lattice = Points::Lattice { xs, ys };
         match *self {
             Noise::Fractal(noise) => noise.fill(&lattice, out),

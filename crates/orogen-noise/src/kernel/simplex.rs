@@ -41,19 +41,19 @@ pub(crate) fn slanted<S: Simd, const DIMS: usize>(simd: S, coordinate: S::F64) -
 }
 
 /// A sample in the skewed lattice: its cube's number and the fractions, from 0 to 1.
-pub(crate) struct Place<S: Simd> {
+pub(crate) struct SkewedPoint<S: Simd> {
     pub whole: [S::F64; 4],
     pub t: [S::F32; 4],
 }
 
 /// Where coordinates come together.
 #[inline(always)]
-pub(crate) fn place<S: Simd, const DIMS: usize>(simd: S, at: &[Slanted<S>; 4]) -> Place<S> {
+pub(crate) fn place<S: Simd, const DIMS: usize>(simd: S, at: &[Slanted<S>; 4]) -> SkewedPoint<S> {
     // The axes beyond x first: a row of samples has them in common.
     let (rest, skew) = beyond_x::<S, DIMS>(at);
     let (carry, rest) = wrapped(simd, at[0].rest + rest);
     let skew = at[0].skew + skew + carry.widen();
-    let mut place = Place { whole: [skew; 4], t: [rest; 4] };
+    let mut place = SkewedPoint { whole: [skew; 4], t: [rest; 4] };
     for axis in 0..DIMS {
         let (carry, t) = wrapped(simd, at[axis].t + rest);
         place.whole[axis] = at[axis].whole + skew + carry.widen();

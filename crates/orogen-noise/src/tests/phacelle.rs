@@ -3,7 +3,7 @@
 use crate::program::Source;
 use crate::tests::common::Rng;
 use crate::tests::twins::hash;
-use crate::{Basis, Level, Mismatch, Phacelle, Points, Warp, WarpKind};
+use crate::{Basis, LengthMismatch, Level, Phacelle, Points, Warp, WarpKind};
 use std::f64::consts::TAU;
 
 /// Cosine and sine as documented: with every pivot within reach, not only those that are looked at.
@@ -113,7 +113,7 @@ fn odd_stripes_are_finite_and_seams_close() {
     }
     let points = Points::Lattice { xs: &odd[2..4], ys: &[3.0] };
     let found = noise.fill_along(&points, &[1.0; 3], &[1.0; 2], &mut [0.0; 2], &mut [0.0; 2]);
-    assert_eq!(found, Err(Mismatch { slice: "dx", length: 3, expected: 2 }));
+    assert_eq!(found, Err(LengthMismatch { slice: "dx", length: 3, expected: 2 }));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Noise that repeats: both sides of every seam are equal to the bit, and what cannot repeat says so.
 
-use crate::{Basis, Classic, Depth, Falloff, Fractal, Kind, Perlin, Points, Tiled, Untileable, Value, White};
+use crate::{Basis, Classic, Depth, Falloff, Fractal, Kind, Perlin, Points, TileError, Tiled, Value, White};
 
 const PERIOD: [u32; 3] = [6, 5, 2];
 
@@ -78,14 +78,14 @@ fn an_axis_may_stay_endless_and_no_period_changes_nothing() {
 fn what_cannot_repeat_says_where() {
     let fractal = Fractal { octaves: 3, ..Default::default() };
     let error = Fractal { lacunarity: 1.5, ..fractal }.tiled([0, 2, 0]).unwrap_err();
-    assert_eq!(error, Untileable::Octave { octave: 2, axis: 1, cells: 4.5 });
+    assert_eq!(error, TileError::Octave { octave: 2, axis: 1, cells: 4.5 });
     assert!(error.to_string().starts_with("octave 2 would have to repeat after 4.5 cells along y"));
     let error = Fractal { octaves: 32, ..fractal }.tiled([4, 0, 0]).unwrap_err();
-    assert_eq!(error, Untileable::Octave { octave: 25, axis: 0, cells: 134_217_728.0 });
+    assert_eq!(error, TileError::Octave { octave: 25, axis: 0, cells: 134_217_728.0 });
     let error = Fractal { lacunarity: 0.25, ..fractal }.tiled([2; 3]).unwrap_err();
-    assert_eq!(error, Untileable::Octave { octave: 1, axis: 0, cells: 0.5 });
+    assert_eq!(error, TileError::Octave { octave: 1, axis: 0, cells: 0.5 });
     let error = Fractal { basis: Basis::Simplex, ..fractal }.tiled([2, 2]).unwrap_err();
-    assert_eq!(error, Untileable::Slanted);
+    assert_eq!(error, TileError::Slanted);
     // Octaves that are constants repeat as they are.
     assert!(Fractal { lacunarity: f64::NAN, ..fractal }.tiled([2; 3]).is_ok());
     assert!(Perlin::default().tiled([u32::MAX, 1, 1]).is_err());

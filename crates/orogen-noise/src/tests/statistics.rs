@@ -1,6 +1,6 @@
 //! Independence of lattice points, chunks, and what is told of wrong lengths. (Statistics of what a user sees: tests/statistics.rs.)
 
-use crate::{Basis, Depth, Falloff, Fractal, Kind, Mismatch, Perlin, Points, White};
+use crate::{Basis, Depth, Falloff, Fractal, Kind, LengthMismatch, Perlin, Points, White};
 
 fn axis(start: f64, cell: f64, count: usize) -> Vec<f64> {
     (0..count).map(|i| start + i as f64 * cell).collect()
@@ -58,7 +58,7 @@ fn chunks_join_without_a_seam() {
 fn wrong_lengths_are_named() {
     let noise = Perlin::default();
     let points = Points::Lattice { xs: &[0.0, 1.0, 2.0], ys: &[0.0, 1.0] };
-    let wrong = |slice, length| Err(Mismatch { slice, length, expected: 6 });
+    let wrong = |slice, length| Err(LengthMismatch { slice, length, expected: 6 });
     assert_eq!(noise.fill(&points, &mut [0.0; 5]), wrong("value", 5));
     assert_eq!(noise.fill_with_gradient(&points, &mut [0.0; 6], &mut [0.0; 7], &mut [0.0; 6]), wrong("dx", 7));
     assert_eq!(noise.fill3(&points, &Depth::Each(&[0.0]), &mut [0.0; 6]), wrong("z", 1));

@@ -1,7 +1,7 @@
 //! The one list of noises for the tests that ask as a user asks: a new basis, kind, feature or distance joins every law by being here.
 
 use orogen_noise::{
-    Basis, Classic, ClassicVariant, Depth, Distance, Fade, Falloff, Feature, Fractal, Kind, Level, Mismatch,
+    Basis, Classic, ClassicVariant, Depth, Distance, Fade, Falloff, Feature, Fractal, Kind, LengthMismatch, Level,
     OpenSimplex2, Perlin, Points, Simplex, Smoothness, Value, White, Worley,
 };
 use std::sync::{Mutex, PoisonError};
@@ -18,7 +18,7 @@ pub struct Ask<'a> {
     pub slopes: bool,
 }
 
-type Fill = Box<dyn Fn(&Ask, &mut Columns) -> Result<(), Mismatch>>;
+type Fill = Box<dyn Fn(&Ask, &mut Columns) -> Result<(), LengthMismatch>>;
 
 /// What its documentation says of a noise's slopes.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -46,7 +46,7 @@ pub struct Noise {
 
 impl Noise {
     /// Answers, in columns of the points' length; those that were not asked for are empty.
-    pub fn ask(&self, ask: &Ask) -> Result<Columns, Mismatch> {
+    pub fn ask(&self, ask: &Ask) -> Result<Columns, LengthMismatch> {
         let count = ask.points.len();
         let slopes = if ask.slopes && self.offers_slopes { count } else { 0 };
         let mut out =

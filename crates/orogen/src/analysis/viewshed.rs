@@ -35,7 +35,7 @@ pub const BEYOND: f32 = -1.0;
 /// How many metres above the ground of each sample something must rise to be seen; 0 where the ground itself is seen, [`BEYOND`] past the radius.
 ///
 /// Exact lines of sight (R3; Franklin and Ray, "Higher isn't necessarily better: visibility algorithms and experiments", 1994): from the eye to every sample,
-/// the ground taken as linear between the samples wherever the line crosses a column (or a row, whichever there are more of). Ground that cannot rise above
+/// the ground taken as linear between the samples wherever the line crosses a column (or a row, whichever there are more of). MaxPyramid that cannot rise above
 /// what was passed is skipped in squares of which the highest sample is known, which changes no result. Holds 15 bytes a sample. Rows side by side.
 ///
 /// # Errors
@@ -46,8 +46,8 @@ pub fn hidden(heights: &Grid, observer: &Observer, check: Check) -> Result<Grid>
     if window.is_empty() {
         return Ok(out);
     }
-    let ground = Ground::new(heights.data().to_vec(), window.width);
-    let turned = Ground::new(transposed(heights.data(), window.width), window.height);
+    let ground = MaxPyramid::new(heights.data().to_vec(), window.width);
+    let turned = MaxPyramid::new(transposed(heights.data(), window.width), window.height);
     let eye = ground.at(x, y) + observer.height;
     out.data_mut().par_chunks_mut(window.width).enumerate().try_for_each(|(j, row)| {
         check()?;
@@ -71,7 +71,7 @@ pub fn hidden(heights: &Grid, observer: &Observer, check: Check) -> Result<Grid>
 }
 
 /// Heights, and the highest of squares of 2, 4, 8 ... samples a side.
-struct Ground {
+struct MaxPyramid {
     levels: Vec<Level>,
 }
 
@@ -81,8 +81,8 @@ struct Level {
     rows: usize,
 }
 
-impl Ground {
-    fn new(samples: Vec<f32>, columns: usize) -> Ground {
+impl MaxPyramid {
+    fn new(samples: Vec<f32>, columns: usize) -> MaxPyramid {
         let rows = samples.len() / columns;
         let mut levels = vec![Level { samples, columns, rows }];
         while let Some(below) = levels.last().filter(|below| below.columns > 1 || below.rows > 1) {
@@ -96,7 +96,7 @@ impl Ground {
             }
             levels.push(Level { samples, columns, rows });
         }
-        Ground { levels }
+        MaxPyramid { levels }
     }
 
     /// The height at a place, linear between the rows and columns around; beyond the ground that of its edge.
@@ -138,7 +138,7 @@ struct Sight {
 
 impl Sight {
     /// The steepest rise per metre from the eye to the ground between; negative infinity where there is none.
-    fn steepest(&self, ground: &Ground) -> f64 {
+    fn steepest(&self, ground: &MaxPyramid) -> f64 {
         let [x, y] = self.from;
         let (across, down) = (self.to[0] as f64 - x, self.to[1] as f64 - y);
         let mut steepest = f64::NEG_INFINITY;
@@ -209,7 +209,7 @@ mod tests {
             for sinking in [0.0, sinking(0.13), 1e-4] {
                 let observer = Observer { at, height: 3.0, radius: 1e9, sinking };
                 let found = hidden(&heights, &observer, &|| Ok(())).unwrap();
-                let plain = Ground::new(heights.data().to_vec(), columns);
+                let plain = MaxPyramid::new(heights.data().to_vec(), columns);
                 let eye = plain.at(at[0], at[1]) + 3.0;
                 for (k, found) in found.data().iter().enumerate() {
                     let (i, j) = ((k % columns) as f64, (k / columns) as f64);

@@ -1,6 +1,6 @@
 //! Ground around a moving viewer, in chunks with levels of detail.
 
 pub mod id;
-pub mod rings;
+pub mod lod;
 pub mod seam;
 pub mod stream;

@@ -1,7 +1,7 @@
 //! Which chunks to make and which to give up, as the viewer moves.
 
 use super::id::ChunkId;
-use super::rings::Rings;
+use super::lod::LodConfig;
 use super::seam::Sides;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Window;
@@ -20,18 +20,18 @@ pub enum ChunkStep {
 ///
 /// It only keeps the list; the samples come from a [`Sampler`](crate::Sampler), on any thread. A chunk is given up only when whatever
 /// replaces it has been made, so that the ground never has a hole; until then some of it is there twice. How the ground is
-/// cut and how chunks fit together: [`Rings`].
+/// cut and how chunks fit together: [`LodConfig`].
 ///
 /// ```
-/// use orogen::{ChunkStep, Recipe, Rings, Sampler, World};
+/// use orogen::{ChunkStep, Recipe, LodConfig, Sampler, World};
 /// use std::collections::HashMap;
 ///
 /// let world = World::open(Recipe::parse("orogen = 1\n[nodes.n]\nop = \"fbm\"\n[outputs]\nheight = \"n\"\n", "example")?)?;
 /// let ground = Sampler::new(&world, "height")?;
-/// let mut chunks = world.chunks(Rings { cells: 16, levels: 3, range: 200.0, ..Rings::default() })?;
+/// let mut chunks = world.chunks(LodConfig { cells: 16, levels: 3, range: 200.0, ..LodConfig::default() })?;
 /// let mut scene = HashMap::new();
 /// for step in 0..20 {
-///     chunks.look(10.0 * f64::from(step), -3.0)?;
+///     chunks.set_viewer(10.0 * f64::from(step), -3.0)?;
 ///     while let Some(step) = chunks.next_step() {
 ///         match step {
 ///             ChunkStep::Make(id) => drop(scene.insert(id, ground.window(&chunks.window(id))?)),
@@ -44,13 +44,13 @@ pub enum ChunkStep {
 /// ```
 ///
 /// **Chunks made on other threads.** [`Chunks::take`] hands out the nearest chunk that nobody makes yet; tell [`Chunks::done`] when it
-/// is made, or [`Chunks::forget`] if it could not be; [`Chunks::give_up`] hands out the chunks to drop. [`Chunks::next_step`] is these in
+/// is made, or [`Chunks::forget`] if it could not be; [`Chunks::evict`] hands out the chunks to drop. [`Chunks::next_step`] is these in
 /// a row, for callers that make each chunk before they ask for the next step.
 ///
 /// Once its lists have grown to their size, none of this asks for memory.
 #[derive(Debug, Clone)]
 pub struct Chunks {
-    rings: Rings,
+    lod: LodConfig,
     size: Option<[f64; 2]>,
     /// The chunks that cover the ground, sorted.
     wanted: Vec<ChunkId>,
@@ -82,9 +82,9 @@ impl World {
     /// those at its far edges are cut where its samples end.
     ///
     /// # Errors
-    /// If the rings cannot be: see [`Rings::check`].
-    pub fn chunks(&self, rings: Rings) -> Result<Chunks> {
-        Chunks::new(rings, self.recipe().world.size)
+    /// If the rings cannot be: see [`LodConfig::check`].
+    pub fn chunks(&self, lod: LodConfig) -> Result<Chunks> {
+        Chunks::new(lod, self.recipe().world.size)
     }
 }
 
@@ -92,11 +92,11 @@ impl Chunks {
     /// The chunks around a viewer, of a world of `size` metres east and south, or one without bounds.
     ///
     /// # Errors
-    /// If the rings cannot be: see [`Rings::check`].
-    pub fn new(rings: Rings, size: Option<[f64; 2]>) -> Result<Chunks> {
-        rings.check()?;
+    /// If the rings cannot be: see [`LodConfig::check`].
+    pub fn new(lod: LodConfig, size: Option<[f64; 2]>) -> Result<Chunks> {
+        lod.check()?;
         Ok(Chunks {
-            rings,
+            lod,
             size,
             wanted: Vec::new(),
             queue: Vec::new(),
@@ -111,13 +111,13 @@ impl Chunks {
     }
 
     /// How the ground is cut.
-    pub fn rings(&self) -> &Rings {
-        &self.rings
+    pub fn lod(&self) -> &LodConfig {
+        &self.lod
     }
 
     /// The samples of a chunk, its far edges included; at the far edges of a world with bounds, those that it has.
     pub fn window(&self, id: ChunkId) -> Window {
-        self.rings.window_within(id, self.size).unwrap_or_else(|| self.rings.window(id))
+        self.lod.window_within(id, self.size).unwrap_or_else(|| self.lod.window(id))
     }
 
     /// The chunks that cover the ground around the viewer, made or not, sorted.
@@ -129,15 +129,15 @@ impl Chunks {
     ///
     /// # Errors
     /// If that is no position, or so far out that positions are no longer exact; nothing has changed then.
-    pub fn look(&mut self, x: f64, y: f64) -> Result<()> {
+    pub fn set_viewer(&mut self, x: f64, y: f64) -> Result<()> {
         // Samples have exact positions up to 2^53; the ground in sight must lie before that.
-        let farthest = (1u64 << 52) as f64 * self.rings.cell;
+        let farthest = (1u64 << 52) as f64 * self.lod.cell;
         if !(x.abs() <= farthest && y.abs() <= farthest) {
             let message = match x.is_finite() && y.is_finite() {
                 false => format!("({x}, {y}) is no position: coordinates must be finite"),
                 true => format!(
                     "({x}, {y}) lies beyond 2^52 cells of {} m from the origin, farther than positions are exact",
-                    self.rings.cell
+                    self.lod.cell
                 ),
             };
             return Err(Error::new(ErrorKind::Request, message));
@@ -145,10 +145,10 @@ impl Chunks {
         let viewer = [x, y];
         self.see(viewer);
         self.cut(viewer);
-        let Chunks { rings, wanted, queue, known, leaving, .. } = self;
+        let Chunks { lod, wanted, queue, known, leaving, .. } = self;
         queue.clear();
         queue.extend(wanted.iter().filter(|id| find(known, **id).is_err()));
-        let nearest = |id: &ChunkId| (rings.distance(*id, viewer), rings.distance_to_middle(*id, viewer));
+        let nearest = |id: &ChunkId| (lod.distance(*id, viewer), lod.distance_to_middle(*id, viewer));
         queue.sort_unstable_by(|a, b| {
             let ((a_near, a_middle), (b_near, b_middle)) = (nearest(a), nearest(b));
             let order = a_near.total_cmp(&b_near).then(a_middle.total_cmp(&b_middle)).then(a.cmp(b));
@@ -161,17 +161,17 @@ impl Chunks {
 
     /// Finds the chunks of the coarsest level that are in range.
     fn see(&mut self, viewer: [f64; 2]) {
-        let level = self.rings.levels - 1;
-        let side = self.rings.side(level);
-        let longer = self.rings.range + self.rings.slack * side;
+        let level = self.lod.levels - 1;
+        let side = self.lod.side(level);
+        let longer = self.lod.range + self.lod.slack * side;
         let [columns, rows] =
             viewer.map(|at| ((at - longer) / side).floor() as i64..=((at + longer) / side).floor() as i64);
         self.fresh.clear();
         for y in rows {
             for x in columns.clone() {
                 let id = ChunkId { level, y, x };
-                let range = if self.roots.binary_search(&id).is_ok() { longer } else { self.rings.range };
-                if self.rings.distance(id, viewer) < range && self.has_ground(id) {
+                let range = if self.roots.binary_search(&id).is_ok() { longer } else { self.lod.range };
+                if self.lod.distance(id, viewer) < range && self.has_ground(id) {
                     self.fresh.push(id);
                 }
             }
@@ -188,15 +188,15 @@ impl Chunks {
         self.stack.extend_from_slice(&self.roots);
         while let Some(id) = self.stack.pop() {
             let was_split = self.split.binary_search(&id).is_ok();
-            let sides = self.rings.detail + if was_split { self.rings.slack } else { 0.0 };
-            if id.level > 0 && self.rings.distance(id, viewer) < sides * self.rings.side(id.level) {
+            let sides = self.lod.detail + if was_split { self.lod.slack } else { 0.0 };
+            if id.level > 0 && self.lod.distance(id, viewer) < sides * self.lod.side(id.level) {
                 self.fresh.push(id);
                 for child in id.children() {
                     if self.has_ground(child) {
                         self.stack.push(child);
                     }
                 }
-            } else if self.rings.window_within(id, self.size).is_some() {
+            } else if self.lod.window_within(id, self.size).is_some() {
                 self.wanted.push(id);
             }
         }
@@ -208,7 +208,7 @@ impl Chunks {
     /// Whether any of a chunk's ground is the world's.
     fn has_ground(&self, id: ChunkId) -> bool {
         let Some([east, south]) = self.size else { return true };
-        let side = self.rings.side(id.level);
+        let side = self.lod.side(id.level);
         let within = |index: i64, length: f64| index >= 0 && (index as f64 * side) < length;
         within(id.x, east) && within(id.y, south)
     }
@@ -243,7 +243,7 @@ impl Chunks {
     }
 
     /// Hands out a chunk that is to be given up; it is forgotten.
-    pub fn give_up(&mut self) -> Option<ChunkId> {
+    pub fn evict(&mut self) -> Option<ChunkId> {
         let replaced = |id: &ChunkId| {
             let missing = |other: &Known| !other.made && other.id.overlaps(*id) && is_wanted(&self.wanted, other.id);
             !self.queue.iter().any(|wanted| wanted.overlaps(*id)) && !self.known.iter().any(missing)
@@ -262,7 +262,7 @@ impl Chunks {
         if let Some(id) = self.handed.take() {
             self.done(id);
         }
-        if let Some(id) = self.give_up() {
+        if let Some(id) = self.evict() {
             return Some(ChunkStep::Drop(id));
         }
         self.handed = self.take();
@@ -273,7 +273,7 @@ impl Chunks {
     pub fn coarser(&self, id: ChunkId) -> Sides {
         let coarser = |columns, rows| {
             let mut beside = id.beside(columns, rows);
-            (beside.level + 1..self.rings.levels).any(|_| {
+            (beside.level + 1..self.lod.levels).any(|_| {
                 beside = beside.parent();
                 is_wanted(&self.wanted, beside)
             })

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::format::affine::Affine;
 use crate::format::crs::keys;
 use crate::format::crs::unit::Unit;
-use crate::format::dem::{Dem, Place, Request, afford, refused};
+use crate::format::dem::{Dem, Placement, Request, afford, refused};
 use crate::format::import;
 use crate::format::vrt::{self, Virtual};
 
@@ -55,7 +55,7 @@ pub fn folder(folder: &Path, request: Request) -> Result<Dem> {
     if tiles.len() > MAX_FILES {
         return Err(refused(&name, format!("it holds {} tiles, and at most {MAX_FILES} are supported", tiles.len())));
     }
-    let heads: Vec<(PathBuf, [usize; 2], Place)> = tiles
+    let heads: Vec<(PathBuf, [usize; 2], Placement)> = tiles
         .into_iter()
         .map(|path| {
             let (size, place) = import::head(&path)?;
@@ -79,14 +79,14 @@ pub fn folder(folder: &Path, request: Request) -> Result<Dem> {
 }
 
 /// Size, place and the first column and row of each of many tiles.
-type Layout = ([u64; 2], Place, Vec<[usize; 2]>);
+type Layout = ([u64; 2], Placement, Vec<[usize; 2]>);
 
-fn layout(tiles: &[(PathBuf, [usize; 2], Place)]) -> std::result::Result<Layout, String> {
+fn layout(tiles: &[(PathBuf, [usize; 2], Placement)]) -> std::result::Result<Layout, String> {
     let Some((first, _, own)) = tiles.first() else {
         return Err("it is a folder without tiles (.tif, .hgt or .asc)".into());
     };
     let called = |path: &Path| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-    let system = |place: &Place| {
+    let system = |place: &Placement| {
         (place.unit == Unit::Degrees, place.keys.as_ref().map(|keys| keys::epsg(keys).ok_or_else(|| keys.clone())))
     };
     for (path, _, place) in &tiles[1..] {
@@ -118,7 +118,7 @@ fn layout(tiles: &[(PathBuf, [usize; 2], Place)]) -> std::result::Result<Layout,
         (0..2).for_each(|k| size[k] = size[k].max((at[k] + tile[k]) as u64));
         to.push(at);
     }
-    Ok((size, Place { origin: [west, north], ..own.clone() }, to))
+    Ok((size, Placement { origin: [west, north], ..own.clone() }, to))
 }
 
 /// Reads a virtual raster.
@@ -173,7 +173,7 @@ pub fn sources(path: &Path) -> Vec<PathBuf> {
 }
 
 /// Where a virtual raster lies.
-fn place(read: &Virtual) -> std::result::Result<Option<Place>, String> {
+fn place(read: &Virtual) -> std::result::Result<Option<Placement>, String> {
     let Some(affine) = read.affine else { return Ok(None) };
     let lattice = Affine::lattice(&affine, read.size[1] as usize)?;
     if lattice.from_south {
@@ -184,11 +184,11 @@ fn place(read: &Virtual) -> std::result::Result<Option<Place>, String> {
         Some(text) => Some(keys::of_text(text)?),
     };
     let unit = keys.as_ref().map_or(Unit::guess(lattice.origin, lattice.step), keys::unit);
-    Ok(Some(Place { origin: lattice.origin, step: lattice.step, unit, cell: None, keys }))
+    Ok(Some(Placement { origin: lattice.origin, step: lattice.step, unit, cell: None, keys }))
 }
 
 /// Lays parts over each other, each file read by itself: beside the whole, the memory of one file is taken.
-fn lay(name: &str, size: [u64; 2], place: Option<Place>, parts: &[Part], request: Request) -> Result<Dem> {
+fn lay(name: &str, size: [u64; 2], place: Option<Placement>, parts: &[Part], request: Request) -> Result<Dem> {
     let count = afford(size[0], size[1], request.allowed).map_err(|why| refused(name, why))?;
     let [width, height] = size.map(|side| side as usize);
     let left = request.allowed.saturating_sub(4 * count as u64);

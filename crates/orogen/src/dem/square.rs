@@ -1,7 +1,7 @@
 //! From degrees and oblong cells to square metres.
 
 use crate::format::crs::unit::Unit;
-use crate::format::dem::{Dem, Place};
+use crate::format::dem::{Dem, Placement};
 use crate::grid::{Grid, Window};
 use crate::layer::LayerKind;
 use crate::resample;
@@ -21,7 +21,7 @@ pub fn metres_of_degrees(latitude: f64) -> [f64; 2] {
 }
 
 /// Metres from a column to the next and from a row to the next, at the middle row of `rows`.
-pub fn steps(place: &Place, rows: usize) -> [f64; 2] {
+pub fn steps(place: &Placement, rows: usize) -> [f64; 2] {
     match place.unit {
         Unit::Metres(unit) => place.step.map(|step| step * unit),
         Unit::Degrees if let Some(cell) = place.cell => [cell; 2],

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use super::files::Files;
 use super::format::refuse;
-use super::options::{OptionSpec, Options, Takes};
+use super::layer_source::LayerSource;
+use super::options::{OptionSpec, Options, ValueKind};
 use super::place;
-use super::sidecar::{self, Held};
-use super::spread;
-use super::subject::Subject;
+use super::quantizer;
+use super::sidecar::{self, SampleEncoding};
 use crate::format::levels::Levels;
 use crate::format::png::{self, Picture, Pixel};
 use crate::grid::Grid;
@@ -21,7 +21,7 @@ pub const NORMAL: OptionSpec = OptionSpec {
     name: "normal",
     value: "WAY",
     about: "Where green points in a normal map: opengl, up the picture, or directx, down [default: opengl]",
-    takes: Takes::Word(&["opengl", "directx"]),
+    value_kind: ValueKind::Word(&["opengl", "directx"]),
 };
 
 /// The option that says how weights are kept.
@@ -30,14 +30,14 @@ pub const WEIGHTS: OptionSpec = OptionSpec {
     value: "HOW",
     about: "Weights of a splat map: rgba, four in a picture (NAME.png, NAME_2.png, ...), or layers, a grey picture each (NAME_grass.png, ...) \
             [default: rgba]",
-    takes: Takes::Word(&["rgba", "layers"]),
+    value_kind: ValueKind::Word(&["rgba", "layers"]),
 };
 
 /// Writes normals as red (east), green (north, or south for DirectX) and blue (up), -1 to 1 as 0 to 255 or 65535.
 ///
 /// Fails as the subject and the files do.
-pub fn write_normals(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let (window, most) = (*subject.window(), if options.word("bits") == Some("16") { 65535 } else { 255 });
+pub fn write_normals(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let (window, most) = (*source.window(), if options.word("bits") == Some("16") { 65535 } else { 255 });
     let directx = options.word(NORMAL.name) == Some("directx");
     let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
     let green = if directx { "south (DirectX)" } else { "north (OpenGL)" };
@@ -48,7 +48,7 @@ pub fn write_normals(subject: &mut Subject, options: &Options, files: &mut Files
     let levels = Levels::new(-1.0, 1.0);
     files.write(|out| {
         png::write_through(out, &picture, |out| {
-            subject.rows(|band| {
+            source.rows(|band| {
                 (0..band[0].height()).try_for_each(|j| {
                     let row: Vec<f32> = (0..window.width)
                         .flat_map(|i| {
@@ -56,28 +56,28 @@ pub fn write_normals(subject: &mut Subject, options: &Options, files: &mut Files
                             [east, if directx { -north } else { north }, up]
                         })
                         .collect();
-                    spread::write_levels(out, &row, &levels, most)
+                    quantizer::write_levels(out, &row, &levels, most)
                 })
             })
         })
     })?;
-    let told = place::write(files, subject, options, Some(false))?;
+    let told = place::write(files, source, options, Some(false))?;
     Ok(format!("red east, green {green}, blue up{told}"))
 }
 
 /// Writes colors as sRGB of 8 bits.
 ///
 /// Fails as the subject and the files do.
-pub fn write_color(subject: &mut Subject, files: &mut Files) -> io::Result<String> {
-    let window = *subject.window();
+pub fn write_color(source: &mut LayerSource, files: &mut Files) -> io::Result<String> {
+    let window = *source.window();
     let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    let about = format!("{}: unlit color, sRGB; {} metres a sample", subject.layer(), window.cell);
+    let about = format!("{}: unlit color, sRGB; {} metres a sample", source.layer(), window.cell);
     let notes = [("Software", made_by.as_str()), ("Description", about.as_str())];
     let picture = Picture { width: window.width, height: window.height, pixel: Pixel::Rgb8, notes: &notes };
     let encoder = Encoder::new();
     files.write(|out| {
         png::write_through(out, &picture, |out| {
-            subject.rows(|band| {
+            source.rows(|band| {
                 let [red, green, blue] = band else { return refuse("a color has three channels".into()) };
                 let light = red.data().iter().zip(green.data()).zip(blue.data());
                 let bytes: Vec<u8> =
@@ -92,19 +92,20 @@ pub fn write_color(subject: &mut Subject, files: &mut Files) -> io::Result<Strin
 /// Writes weights that add up to 255 wherever there is ground.
 ///
 /// Fails as the subject and the files do, and on a stream, which takes one file alone.
-pub fn write_weights(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
+pub fn write_weights(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     let Some(path) = files.path().map(Path::to_path_buf) else {
         return refuse("weights take several files, and standard output is one: name a file with -o".into());
     };
-    let (window, names) = (*subject.window(), subject.channel_names());
+    let (window, names) = (*source.window(), source.channel_names());
     let mut spool = files.spool();
-    subject.rows(|band| put_aside(&mut spool, band))?;
+    source.rows(|band| put_aside(&mut spool, band))?;
     let layers = options.word(WEIGHTS.name) == Some("layers");
     let groups: Vec<Vec<usize>> = match layers {
         true => (0..names.len()).map(|k| vec![k]).collect(),
         false => (0..names.len()).collect::<Vec<usize>>().chunks(4).map(<[usize]>::to_vec).collect(),
     };
-    let mut held = Held { sample: "u8", from_south: spread::from_south(options), ..Held::default() };
+    let mut held =
+        SampleEncoding { sample: "u8", from_south: quantizer::from_south(options), ..SampleEncoding::default() };
     for (n, group) in groups.iter().enumerate() {
         let suffix = match (layers, n) {
             (true, _) => format!("_{}", names[group[0]]),
@@ -138,10 +139,10 @@ pub fn write_weights(subject: &mut Subject, options: &Options, files: &mut Files
             true => files.write(body)?,
             false => files.write_beside(|_| to.clone(), body)?,
         }
-        place::write_for(files, &to, subject, options, Some(from_south))?;
+        place::write_for(files, &to, source, options, Some(from_south))?;
         held.channels.push((to, channels));
     }
-    let told = sidecar::write(files, subject, options, &held)?;
+    let told = sidecar::write(files, source, options, &held)?;
     let list: Vec<String> = (held.channels.iter())
         .map(|(path, channels)| {
             let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();

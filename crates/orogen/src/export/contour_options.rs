@@ -1,6 +1,6 @@
 //! Which contours are wanted: the options of all formats of lines.
 
-use super::options::{OptionSpec, Options, Takes};
+use super::options::{OptionSpec, Options, ValueKind};
 use crate::contour::levels::given;
 use crate::error::{Error, ErrorKind, Result};
 
@@ -9,7 +9,7 @@ pub const INTERVAL: OptionSpec = OptionSpec {
     name: "interval",
     value: "M",
     about: "Metres from one contour to the next [default: a round number that makes 10 to 25]",
-    takes: Takes::Number(1e-6, 1e6),
+    value_kind: ValueKind::Number(1e-6, 1e6),
 };
 
 /// `--levels`.
@@ -17,7 +17,7 @@ pub const LEVELS: OptionSpec = OptionSpec {
     name: "levels",
     value: "A,B,...",
     about: "Heights of contours, instead of an interval",
-    takes: Takes::Text,
+    value_kind: ValueKind::Text,
 };
 
 /// `--smooth`.
@@ -26,7 +26,7 @@ pub const SMOOTH: OptionSpec = OptionSpec {
     value: "N",
     about: "How often the corners of lines are cut, each time doubling their points, and rivers are evened out \
             [default: 0 for contours, 1 for shores and watersheds, 3 for rivers]",
-    takes: Takes::Whole(0, 6),
+    value_kind: ValueKind::Whole(0, 6),
 };
 
 /// Whether the options that say which contours are wanted go together, and can be read.

@@ -3,8 +3,8 @@
 use std::io;
 
 use super::files::Files;
+use super::layer_source::LayerSource;
 use super::options::{OptionSpec, Options};
-use super::subject::Subject;
 use crate::error::{Error, ErrorKind};
 use crate::grid::Window;
 
@@ -22,14 +22,14 @@ pub struct Format {
     pub channels: usize,
     /// Whether it holds vector features.
     pub features: bool,
-    /// Bytes that writing such a window holds beside the rows at hand. A format that asks for the [whole](Subject::whole) counts it
+    /// Bytes that writing such a window holds beside the rows at hand. A format that asks for the [whole](LayerSource::whole) counts it
     /// here.
     pub memory: fn(&Window, &Options) -> u64,
     /// Writes it, and says what its samples stand for, or how much there is of what it makes of them: the end of the message
     /// "height, 64 x 48 samples of 10 m, ...".
     ///
     /// Fails as the subject and the files do.
-    pub write: fn(&mut Subject, &Options, &mut Files) -> io::Result<String>,
+    pub write: fn(&mut LayerSource, &Options, &mut Files) -> io::Result<String>,
 }
 
 impl Format {

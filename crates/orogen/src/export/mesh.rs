@@ -5,10 +5,10 @@ use std::io;
 use serde_json::{Value, json};
 
 use super::files::{Files, Stopping};
+use super::layer_source::LayerSource;
 use super::memory::whole;
 use super::mesh_tint;
-use super::options::{OptionSpec, Options, Takes};
-use super::subject::Subject;
+use super::options::{OptionSpec, Options, ValueKind};
 use crate::analysis::halo::Halo;
 use crate::error::Result;
 use crate::format::dem::Georeference;
@@ -28,7 +28,7 @@ pub const MAX_ERROR: OptionSpec = OptionSpec {
     name: "max-error",
     value: "M",
     about: "Adaptive mesh: no sample is further than M metres above or below its triangles [default: a full grid, two triangles per cell]",
-    takes: Takes::Number(0.0, 1e9),
+    value_kind: ValueKind::Number(0.0, 1e9),
 };
 
 /// `--exaggeration`.
@@ -36,7 +36,7 @@ pub const EXAGGERATION: OptionSpec = OptionSpec {
     name: "exaggeration",
     value: "F",
     about: "Vertical exaggeration, a factor [default: 1]",
-    takes: Takes::Number(0.001, 1000.0),
+    value_kind: ValueKind::Number(0.001, 1000.0),
 };
 
 /// `--height-curve`.
@@ -44,7 +44,7 @@ pub const HEIGHT_CURVE: OptionSpec = OptionSpec {
     name: "height-curve",
     value: "A:B,...",
     about: "Bend the heights: a curve from 0:0, the lowest of the window, to 1:1, the highest, such as 0:0,0.5:0.2,1:1",
-    takes: Takes::Text,
+    value_kind: ValueKind::Text,
 };
 
 /// `--color`.
@@ -52,7 +52,7 @@ pub const COLOR: OptionSpec = OptionSpec {
     name: "color",
     value: "HOW",
     about: "The map's colours, without its shading: texture (a picture), vertex or none [default: texture; ply: vertex]",
-    takes: Takes::Word(&["texture", "vertex", "none"]),
+    value_kind: ValueKind::Word(&["texture", "vertex", "none"]),
 };
 
 /// Nanoseconds of one core that a sample takes, about: to choose the corners of few triangles, or of all, to paint it, and to write its triangles.
@@ -92,17 +92,17 @@ impl Prepared {
     /// The subject's samples, and so many shapes over them: of every second, fourth ... sample, or of twice, four times ... the error.
     ///
     /// Fails as the subject does, and on windows that are no mesh.
-    pub fn new(subject: &mut Subject, options: &Options, levels: usize) -> io::Result<Prepared> {
+    pub fn new(source: &mut LayerSource, options: &Options, levels: usize) -> io::Result<Prepared> {
         let curve = options.text(HEIGHT_CURVE.name).map(HeightCurve::parse).transpose()?;
         let max_error = options.number(MAX_ERROR.name);
-        let samples = subject.window().len() as f64;
+        let samples = source.window().len() as f64;
         let (shaping, writing) = if max_error.is_some() { (FEW_TRIANGLES, WRITING / 4.0) } else { (LATTICE, WRITING) };
-        let progress = subject.progress().clone();
+        let progress = source.progress().clone();
         progress.expect(samples * (PAINTING + levels as f64 * (shaping + writing)));
         let mut halo = Halo::default();
-        let mut grid = subject.surrounded(&mut halo)?;
+        let mut grid = source.surrounded(&mut halo)?;
         // A mesh is lit by whoever shows it, so the map's own light stays out.
-        let painter = Painter::new(mesh_tint::of(subject, options)?, Shade::new(0.0));
+        let painter = Painter::new(mesh_tint::of(source, options)?, Shade::new(0.0));
         let range = extremes(NO_SAMPLES, grid.data());
         if let Some(curve) = &curve {
             curve.bend(&mut grid, &mut halo);
@@ -122,7 +122,7 @@ impl Prepared {
         let exaggeration = options.number(EXAGGERATION.name).unwrap_or(1.0) as f32;
         let painting = progress.part(samples * PAINTING);
         let writing = (0..levels).map(|_| progress.part(samples * writing)).collect();
-        let map = subject.map();
+        let map = source.map();
         Ok(Prepared { grid, halo, shapes, painter, exaggeration, max_error, painting, writing, curve, map })
     }
 

@@ -6,9 +6,9 @@ use super::derived::layer::Derived;
 use super::derived::rows::Rows;
 use super::derived::{albedo, occlusion, roughness};
 use super::format::refuse;
+use super::layer_source::LayerSource;
 use super::mesh::COLOR;
-use super::options::{OptionSpec, Options, Takes};
-use super::subject::Subject;
+use super::options::{OptionSpec, Options, ValueKind};
 use crate::format::png::{self, Picture, Pixel};
 use crate::grid::{Grid, Window};
 use crate::mesh::normal_map;
@@ -22,7 +22,7 @@ pub const SURFACES: OptionSpec = OptionSpec {
     name: "surfaces",
     value: "",
     about: "Color by the recipe's surfaces, or the standard ones, in place of the map's colors; in glb with roughness, occlusion, and normal maps of meshes with few triangles",
-    takes: Takes::Nothing,
+    value_kind: ValueKind::Nothing,
 };
 
 /// Adds to a recipe the nodes that compute its surfaces, where the options ask for them: call it before the world is opened.
@@ -51,21 +51,21 @@ pub struct Pictures {
 /// The pictures, where the options ask for them; those of glTF's material only if `packed`.
 ///
 /// Fails as the subject does, if the recipe was not [prepared](prepare), and if `--color` asks for something else.
-pub fn of(subject: &Subject, options: &Options, packed: bool) -> io::Result<Option<Pictures>> {
+pub fn of(source: &LayerSource, options: &Options, packed: bool) -> io::Result<Option<Pictures>> {
     if !options.has(SURFACES.name) {
         return Ok(None);
     }
     if options.word(COLOR.name).is_some_and(|color| color != "texture") {
         return refuse("--surfaces makes a texture: leave out --color, or say --color texture".into());
     }
-    if subject.world().recipe().expanded().is_empty() {
+    if source.world().recipe().expanded().is_empty() {
         return refuse("the surfaces of this recipe were not prepared before its world was opened".into());
     }
-    let window = *subject.window();
+    let window = *source.window();
     let notes = [("Software", concat!("Orogen ", env!("CARGO_PKG_VERSION")))];
     let picture = |pixel| Picture { width: window.width, height: window.height, pixel, notes: &notes };
     let encoder = Encoder::new();
-    let color = made(subject, &albedo::LAYER)?;
+    let color = made(source, &albedo::LAYER)?;
     let base = packed_rows(&picture(Pixel::Rgb8), |row, bytes| {
         let parts = [0, 1, 2].map(|part| color[part].row(row));
         for (i, pixel) in bytes.chunks_exact_mut(3).enumerate() {
@@ -75,7 +75,7 @@ pub fn of(subject: &Subject, options: &Options, packed: bool) -> io::Result<Opti
     drop(color);
     let mut material = Vec::new();
     if packed {
-        let (rough, open) = (made(subject, &roughness::LAYER)?, made(subject, &occlusion::LAYER)?);
+        let (rough, open) = (made(source, &roughness::LAYER)?, made(source, &occlusion::LAYER)?);
         let byte = |share: f32| (share.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
         material = packed_rows(&picture(Pixel::Data8), |row, bytes| {
             let pairs = open[0].row(row).iter().zip(rough[0].row(row));
@@ -100,10 +100,10 @@ pub fn normal_map(level: &Surface) -> io::Result<Vec<u8>> {
 }
 
 /// A derived layer over the subject's window.
-fn made(subject: &Subject, layer: &'static Derived) -> io::Result<Vec<Grid>> {
+fn made(source: &LayerSource, layer: &'static Derived) -> io::Result<Vec<Grid>> {
     let Some(rows) = layer.rows() else { return refuse(format!("`{}` is not made of rows", layer.name)) };
-    let progress = subject.progress().part(0.0);
-    Ok(Rows::new(rows, subject.world(), subject.window(), 0, &progress)?.whole()?)
+    let progress = source.progress().part(0.0);
+    Ok(Rows::new(rows, source.world(), source.window(), 0, &progress)?.whole()?)
 }
 
 /// A picture whose rows `fill` makes.

@@ -2,12 +2,12 @@
 
 use std::io;
 
-use super::features::ground::Ground;
 use super::features::options::FeatureOptions;
+use super::features::source::FeatureSource;
 use super::format::refuse;
+use super::layer_source::LayerSource;
 use super::mesh::Prepared;
-use super::options::{OptionSpec, Options, Takes};
-use super::subject::Subject;
+use super::options::{OptionSpec, Options, ValueKind};
 use crate::grid::Window;
 use crate::hydrography::water::{Cover, MEMORY};
 use crate::mesh::water::{Ribbon, WaterMesh};
@@ -18,7 +18,7 @@ pub const WATER: OptionSpec = OptionSpec {
     name: "water",
     value: "",
     about: "Rivers as ribbons, lakes and the sea as level surfaces: translucent meshes in nodes of their own",
-    takes: Takes::Nothing,
+    value_kind: ValueKind::Nothing,
 };
 
 /// Linear red, green, blue and cover of rivers, lakes and the sea.
@@ -40,16 +40,16 @@ pub fn memory(window: &Window, options: &Options) -> u64 {
 /// The water on a mesh, if it is wanted: what of rivers, lakes and sea there is.
 ///
 /// Fails as the subject does, and if the mesh is not made of heights.
-pub fn of(subject: &Subject, mesh: &Prepared, options: &Options, beside: u64) -> io::Result<Vec<WaterMesh>> {
+pub fn of(source: &LayerSource, mesh: &Prepared, options: &Options, reserved: u64) -> io::Result<Vec<WaterMesh>> {
     if !options.has(WATER.name) {
         return Ok(Vec::new());
     }
-    if subject.layer() != HEIGHT {
-        return refuse(format!("--water lies on the layer `{HEIGHT}`, not on `{}`", subject.layer()));
+    if source.layer() != HEIGHT {
+        return refuse(format!("--water lies on the layer `{HEIGHT}`, not on `{}`", source.layer()));
     }
     let none = Options::default();
-    let wanted = FeatureOptions::new(&none, subject.world().recipe())?;
-    let ground = Ground::of(subject.world(), subject.window(), &wanted, beside, subject.progress())?;
+    let wanted = FeatureOptions::new(&none, source.world().recipe())?;
+    let ground = FeatureSource::of(source.world(), source.window(), &wanted, reserved, source.progress())?;
     let (left, top) = (ground.frame.columns.start, ground.frame.rows.start);
     let cell = ground.cell();
     let width = |samples: u32| wanted.channel.width_of(wanted.channel.discharge(f64::from(samples) * cell * cell));

@@ -1,19 +1,19 @@
 //! Layers out of the engine into files: one registry of formats for every front end.
 //!
 //! A [`format::Format`] says what it is called, which extensions it has, which options it knows, what memory it takes and how it is written from a
-//! [`subject::Subject`]: a layer over a window, as bands of rows from the north, or whole. What it writes goes through
+//! [`subject::LayerSource`]: a layer over a window, as bands of rows from the north, or whole. What it writes goes through
 //! [`files::Files`], which puts all files of an export in place at the end, or none. [`registry`] lists the formats, and
 //! [`run`] exports.
 //!
 //! ```
 //! use orogen::file::OutputPolicy;
-//! use orogen::export::{options::Options, registry, run, subject::Subject};
+//! use orogen::export::{options::Options, registry, run, subject::LayerSource};
 //! use orogen::{Progress, Window, World};
 //!
 //! let world = World::open(orogen::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
 //! let path = std::env::temp_dir().join(format!("orogen-doc-{}.npy", std::process::id()));
 //! let progress = Progress::none();
-//! let subject = Subject::new(&world, "height", Window::new(100, 80, 20.0), &progress)?;
+//! let subject = LayerSource::new(&world, "height", Window::new(100, 80, 20.0), &progress)?;
 //! run::to_file(registry::of_path(&path)?, subject, &Options::default(), &OutputPolicy::default().output(&path)?)?;
 //! # std::fs::remove_file(&path).ok();
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -27,6 +27,7 @@ pub mod features;
 pub mod files;
 pub mod format;
 pub mod formats;
+pub mod layer_source;
 pub mod memory;
 pub mod mesh;
 pub mod mesh_cover;
@@ -35,11 +36,10 @@ pub mod mesh_water;
 pub mod notes;
 pub mod options;
 pub mod place;
+pub mod quantizer;
 pub mod registry;
 pub mod run;
 pub mod sheet_cover;
 pub mod sidecar;
-pub mod spread;
-pub mod subject;
 pub mod targets;
 pub mod vectors;

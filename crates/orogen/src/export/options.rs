@@ -9,17 +9,17 @@ use crate::error::{Error, ErrorKind, Result};
 pub struct OptionSpec {
     /// Its name, in lower case with hyphens: `bits` for `--bits`.
     pub name: &'static str,
-    /// What a help calls its value: `N`; empty where it takes none.
+    /// What a help calls its value: `N`; empty where it value_kind none.
     pub value: &'static str,
     /// One line for the help, with unit and default.
     pub about: &'static str,
     /// What values there are.
-    pub takes: Takes,
+    pub value_kind: ValueKind,
 }
 
 /// What values an option has.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Takes {
+pub enum ValueKind {
     /// None: it is there or not.
     Nothing,
     /// A whole number within these ends.
@@ -52,29 +52,29 @@ impl OptionSpec {
     fn parse(&self, text: &str) -> std::result::Result<Value, String> {
         let text = text.trim();
         let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-        match self.takes {
-            Takes::Nothing => Ok(Value::Given),
-            Takes::Whole(from, to) => match text.parse::<u64>() {
+        match self.value_kind {
+            ValueKind::Nothing => Ok(Value::Given),
+            ValueKind::Whole(from, to) => match text.parse::<u64>() {
                 Ok(n) if (from..=to).contains(&n) => Ok(Value::Whole(n)),
                 _ => Err(format!("it is a whole number from {from} to {to}")),
             },
-            Takes::Number(from, to) => match number(text) {
+            ValueKind::Number(from, to) => match number(text) {
                 Some(n) if (from..=to).contains(&n) => Ok(Value::Number(n)),
                 _ => Err(format!("it is a number from {from} to {to}")),
             },
-            Takes::Range => match text.split_once(',').map(|(low, high)| (number(low), number(high))) {
+            ValueKind::Range => match text.split_once(',').map(|(low, high)| (number(low), number(high))) {
                 Some((Some(low), Some(high))) if low < high => Ok(Value::Range([low, high])),
                 _ => Err("it is two numbers, the lower first, such as -500,4500".into()),
             },
-            Takes::Point => match text.split_once(',').map(|(x, y)| (number(x), number(y))) {
+            ValueKind::Point => match text.split_once(',').map(|(x, y)| (number(x), number(y))) {
                 Some((Some(x), Some(y))) => Ok(Value::Point([x, y])),
                 _ => Err("it is two numbers with a comma between them, such as 1200,850".into()),
             },
-            Takes::Word(words) => match words.iter().find(|word| word.eq_ignore_ascii_case(text)) {
+            ValueKind::Word(words) => match words.iter().find(|word| word.eq_ignore_ascii_case(text)) {
                 Some(word) => Ok(Value::Word(word)),
                 None => Err(format!("it is {}", one_of(words))),
             },
-            Takes::Text => Ok(Value::Text(text.to_string())),
+            ValueKind::Text => Ok(Value::Text(text.to_string())),
         }
     }
 }
@@ -94,7 +94,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// Takes an option's value as text; what an option without a value is given is not looked at.
+    /// ValueKind an option's value as text; what an option without a value is given is not looked at.
     ///
     /// # Errors
     /// If it is no value that the option has.
@@ -170,40 +170,40 @@ impl Options {
 mod tests {
     use super::*;
 
-    fn spec(takes: Takes) -> OptionSpec {
-        OptionSpec { name: "x", value: "X", about: "a test", takes }
+    fn spec(value_kind: ValueKind) -> OptionSpec {
+        OptionSpec { name: "x", value: "X", about: "a test", value_kind }
     }
 
-    fn given(takes: Takes, text: &str) -> std::result::Result<Options, String> {
+    fn given(value_kind: ValueKind, text: &str) -> std::result::Result<Options, String> {
         let mut options = Options::default();
-        options.give(&spec(takes), text).map_err(|error| error.to_string())?;
+        options.give(&spec(value_kind), text).map_err(|error| error.to_string())?;
         Ok(options)
     }
 
     #[test]
     fn values_are_what_is_declared() {
-        assert_eq!(given(Takes::Whole(1, 9), "9").unwrap().whole("x"), Some(9));
-        assert_eq!(given(Takes::Number(0.0, 1.0), " .5").unwrap().number("x"), Some(0.5));
-        assert_eq!(given(Takes::Range, "-5, 7").unwrap().range("x"), Some([-5.0, 7.0]));
-        assert_eq!(given(Takes::Word(&["half", "float"]), "HALF").unwrap().word("x"), Some("half"));
-        assert_eq!(given(Takes::Point, "7, -5").unwrap().point("x"), Some([7.0, -5.0]));
-        assert_eq!(given(Takes::Text, "any").unwrap().text("x"), Some("any"));
-        let flag = given(Takes::Nothing, "").unwrap();
+        assert_eq!(given(ValueKind::Whole(1, 9), "9").unwrap().whole("x"), Some(9));
+        assert_eq!(given(ValueKind::Number(0.0, 1.0), " .5").unwrap().number("x"), Some(0.5));
+        assert_eq!(given(ValueKind::Range, "-5, 7").unwrap().range("x"), Some([-5.0, 7.0]));
+        assert_eq!(given(ValueKind::Word(&["half", "float"]), "HALF").unwrap().word("x"), Some("half"));
+        assert_eq!(given(ValueKind::Point, "7, -5").unwrap().point("x"), Some([7.0, -5.0]));
+        assert_eq!(given(ValueKind::Text, "any").unwrap().text("x"), Some("any"));
+        let flag = given(ValueKind::Nothing, "").unwrap();
         assert!(flag.has("x") && !flag.has("y") && flag.whole("x").is_none());
     }
 
     #[test]
     fn what_is_no_value_is_a_sentence() {
-        for (takes, text, expect) in [
-            (Takes::Whole(1, 9), "10", "`10` is no value of --x: it is a whole number from 1 to 9"),
-            (Takes::Number(0.0, 1.0), "nan", "a number from 0 to 1"),
-            (Takes::Range, "7,-5", "the lower first"),
-            (Takes::Range, "7", "two numbers"),
-            (Takes::Point, "7", "two numbers"),
-            (Takes::Point, "7,inf", "two numbers"),
-            (Takes::Word(&["a", "b", "c"]), "d", "it is a, b or c"),
+        for (value_kind, text, expect) in [
+            (ValueKind::Whole(1, 9), "10", "`10` is no value of --x: it is a whole number from 1 to 9"),
+            (ValueKind::Number(0.0, 1.0), "nan", "a number from 0 to 1"),
+            (ValueKind::Range, "7,-5", "the lower first"),
+            (ValueKind::Range, "7", "two numbers"),
+            (ValueKind::Point, "7", "two numbers"),
+            (ValueKind::Point, "7,inf", "two numbers"),
+            (ValueKind::Word(&["a", "b", "c"]), "d", "it is a, b or c"),
         ] {
-            let why = given(takes, text).unwrap_err();
+            let why = given(value_kind, text).unwrap_err();
             assert!(why.contains(expect), "{why}");
         }
     }

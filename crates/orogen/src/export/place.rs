@@ -4,9 +4,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::files::Files;
+use super::layer_source::LayerSource;
 use super::options::Options;
-use super::sidecar::{self, Held, NO_SIDECAR};
-use super::subject::Subject;
+use super::sidecar::{self, NO_SIDECAR, SampleEncoding};
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::{self, Existing, Output, Staged};
 use crate::format::affine::Affine;
@@ -21,9 +21,14 @@ const LONGEST: u64 = 1 << 20;
 /// Nothing is written for a world without georeferencing, for a stream, and with `--no-sidecar`.
 ///
 /// Fails as the files do, and if a file of that name lies there that tells another place.
-pub fn write(files: &mut Files, subject: &Subject, options: &Options, from_south: Option<bool>) -> io::Result<String> {
+pub fn write(
+    files: &mut Files,
+    source: &LayerSource,
+    options: &Options,
+    from_south: Option<bool>,
+) -> io::Result<String> {
     let Some(path) = files.path().map(Path::to_path_buf) else { return Ok(String::new()) };
-    write_for(files, &path, subject, options, from_south)
+    write_for(files, &path, source, options, from_south)
 }
 
 /// Writes NAME.json and the location, of a format whose files tell everything but where they lie: only for a world that lies on a map.
@@ -31,15 +36,15 @@ pub fn write(files: &mut Files, subject: &Subject, options: &Options, from_south
 /// Fails as [`write()`] and [`sidecar::write`].
 pub fn write_on_map(
     files: &mut Files,
-    subject: &Subject,
+    source: &LayerSource,
     options: &Options,
     sample: &'static str,
 ) -> io::Result<String> {
-    if subject.map().is_none() {
+    if source.map().is_none() {
         return Ok(String::new());
     }
-    let told = sidecar::write(files, subject, options, &Held { sample, ..Held::default() })?;
-    Ok(told + &write(files, subject, options, Some(false))?)
+    let told = sidecar::write(files, source, options, &SampleEncoding { sample, ..SampleEncoding::default() })?;
+    Ok(told + &write(files, source, options, Some(false))?)
 }
 
 /// As [`write()`], of one of several files.
@@ -48,15 +53,15 @@ pub fn write_on_map(
 pub fn write_for(
     files: &mut Files,
     path: &Path,
-    subject: &Subject,
+    source: &LayerSource,
     options: &Options,
     from_south: Option<bool>,
 ) -> io::Result<String> {
-    let Some(map) = subject.map() else { return Ok(String::new()) };
+    let Some(map) = source.map() else { return Ok(String::new()) };
     if options.has(NO_SIDECAR.name) || files.path().is_some_and(|path| path.exists() && !path.is_file()) {
         return Ok(String::new());
     }
-    let affine = from_south.map(|from_south| map.affine(subject.window(), from_south));
+    let affine = from_south.map(|from_south| map.affine(source.window(), from_south));
     let (all, lacking) = companions(path, &map, affine)?;
     let mut written = Vec::new();
     for Companion { path: to, bytes, shared } in all {

@@ -5,9 +5,9 @@ use std::io::{self, Write};
 use super::features;
 use super::files::Files;
 use super::format::Format;
+use super::layer_source::LayerSource;
 use super::options::Options;
 use super::registry;
-use super::subject::Subject;
 use crate::analysis::finite::FiniteCount;
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::{self, Output};
@@ -25,19 +25,19 @@ pub struct Written {
 }
 
 /// What a format is asked to hold: layers of vector features, if it holds such and all of `layers` (names with commas between them) are; else the layer
-/// of that name, as [`Subject::new`].
+/// of that name, as [`LayerSource::new`].
 ///
 /// # Errors
-/// As [`Subject::new`], and if the layers are vector features and the format holds none.
-pub fn subject<'w>(
+/// As [`LayerSource::new`], and if the layers are vector features and the format holds none.
+pub fn source<'w>(
     format: &Format,
     world: &'w World,
     layers: &str,
     window: Window,
     progress: &Progress,
-) -> Result<Subject<'w>> {
+) -> Result<LayerSource<'w>> {
     match features::list::listed(layers) {
-        Some(vectors) if format.features => Subject::of_features(world, vectors, window, progress),
+        Some(vectors) if format.features => LayerSource::of_features(world, vectors, window, progress),
         Some(vectors) if vectors.len() > 1 || world.unit(layers).is_err() => {
             let holds: Vec<String> = registry::all()
                 .iter()
@@ -51,7 +51,7 @@ pub fn subject<'w>(
             );
             Err(Error::new(ErrorKind::Request, message))
         }
-        _ => Subject::new(world, layers, window, progress),
+        _ => LayerSource::new(world, layers, window, progress),
     }
 }
 
@@ -60,8 +60,8 @@ pub fn subject<'w>(
 /// # Errors
 /// If the format does not know an option or cannot hold the layer, no sample of the layer is finite, memory does not suffice (then nothing was started), the work was cancelled, or
 /// a file cannot be written.
-pub fn to_file(format: &Format, subject: Subject, options: &Options, output: &Output) -> Result<Written> {
-    let (files, written) = staged(format, subject, options, output)?;
+pub fn to_file(format: &Format, source: LayerSource, options: &Options, output: &Output) -> Result<Written> {
+    let (files, written) = staged(format, source, options, output)?;
     files.commit().map_err(|cause| file::explain("write", output.path(), &cause))?;
     Ok(written)
 }
@@ -69,38 +69,38 @@ pub fn to_file(format: &Format, subject: Subject, options: &Options, output: &Ou
 /// As [`to_file`], all but putting the files in their places: for exports of several.
 pub(super) fn staged<'w>(
     format: &Format,
-    mut subject: Subject<'w>,
+    mut source: LayerSource<'w>,
     options: &Options,
     output: &'w Output,
 ) -> Result<(Files<'w>, Written)> {
     let path = output.path();
-    prepare(format, &mut subject, options)?;
+    prepare(format, &mut source, options)?;
     file::check_folder(file::folder(path))?;
-    let mut files = Files::at(output, subject.progress());
+    let mut files = Files::at(output, source.progress());
     let words =
-        write(format, &mut subject, options, &mut files).map_err(|cause| file::explain("write", path, &cause))?;
-    Ok((files, written(&subject, words)?))
+        write(format, &mut source, options, &mut files).map_err(|cause| file::explain("write", path, &cause))?;
+    Ok((files, written(&source, words)?))
 }
 
 /// Exports to a stream: the file alone, nothing beside it.
 ///
 /// # Errors
 /// As [`to_file`]; what the stream itself fails with comes back as it is.
-pub fn to_stream(format: &Format, subject: Subject, options: &Options, out: &mut dyn Write) -> io::Result<Written> {
-    let mut subject = subject;
-    prepare(format, &mut subject, options)?;
-    let mut files = Files::stream(out, subject.progress());
-    let words = write(format, &mut subject, options, &mut files)?;
-    let written = written(&subject, words)?;
+pub fn to_stream(format: &Format, source: LayerSource, options: &Options, out: &mut dyn Write) -> io::Result<Written> {
+    let mut source = source;
+    prepare(format, &mut source, options)?;
+    let mut files = Files::stream(out, source.progress());
+    let words = write(format, &mut source, options, &mut files)?;
+    let written = written(&source, words)?;
     files.commit()?;
     Ok(written)
 }
 
 /// Has a format write. A layer without a finite sample is told as such, whatever the format says of it.
-fn write(format: &Format, subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    (format.write)(subject, options, files).map_err(|cause| {
+fn write(format: &Format, source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    (format.write)(source, options, files).map_err(|cause| {
         let own = cause.get_ref().and_then(|inner| inner.downcast_ref::<Error>());
-        match (own.map(Error::kind), finite(subject)) {
+        match (own.map(Error::kind), finite(source)) {
             (Some(ErrorKind::Request), Err(error)) => error.into(),
             _ => cause,
         }
@@ -108,34 +108,34 @@ fn write(format: &Format, subject: &mut Subject, options: &Options, files: &mut 
 }
 
 /// What was written of a subject, if any sample of it is finite.
-fn written(subject: &Subject, words: String) -> Result<Written> {
-    finite(subject)?;
-    Ok(Written { words, count: subject.count() })
+fn written(source: &LayerSource, words: String) -> Result<Written> {
+    finite(source)?;
+    Ok(Written { words, count: source.count() })
 }
 
-fn finite(subject: &Subject) -> Result<()> {
-    subject.count().check(&format!("the layer `{}`", subject.layer())).map(drop)
+fn finite(source: &LayerSource) -> Result<()> {
+    source.count().check(&format!("the layer `{}`", source.layer())).map(drop)
 }
 
 /// Refuses what cannot be, before anything is begun.
-fn prepare(format: &Format, subject: &mut Subject, options: &Options) -> Result<()> {
+fn prepare(format: &Format, source: &mut LayerSource, options: &Options) -> Result<()> {
     registry::check(format, options)?;
-    if subject.channels() > format.channels {
+    if source.channels() > format.channels {
         let several: Vec<&str> = (registry::all().iter())
-            .filter(|other| other.channels >= subject.channels())
+            .filter(|other| other.channels >= source.channels())
             .map(|other| other.name)
             .collect();
         let message = format!(
             "`{}` has {} channels and the format {} holds {}; those that hold it: {}",
-            subject.layer(),
-            subject.channels(),
+            source.layer(),
+            source.channels(),
             format.name,
             format.channels,
             several.join(", ")
         );
         return Err(Error::new(ErrorKind::Request, message));
     }
-    subject.prepare((format.memory)(subject.window(), options))
+    source.prepare((format.memory)(source.window(), options))
 }
 
 #[cfg(test)]
@@ -158,8 +158,8 @@ mod tests {
             // SRTM's tiles have sizes of their own.
             let side = if format.name == "hgt" { 1201 } else { 40 };
             let write = |out: &mut dyn Write| {
-                let subject = Subject::new(&world, "height", Window::new(side, side, 2.0), &progress).unwrap();
-                to_stream(format, subject, &Options::default(), out)
+                let source = LayerSource::new(&world, "height", Window::new(side, side, 2.0), &progress).unwrap();
+                to_stream(format, source, &Options::default(), out)
             };
             let mut whole = Vec::new();
             let words = write(&mut whole).unwrap().words;
@@ -181,10 +181,10 @@ mod tests {
         for name in ["png", "r16", "tif", "exr"] {
             let progress = Progress::none();
             progress.cancel();
-            let subject = Subject::new(&world, "height", Window::new(30, 30, 2.0), &progress).unwrap();
+            let source = LayerSource::new(&world, "height", Window::new(30, 30, 2.0), &progress).unwrap();
             let path = folder.join("a").with_extension(name);
             let output = OutputPolicy::default().output(&path).unwrap();
-            let error = to_file(registry::named(name).unwrap(), subject, &Options::default(), &output).unwrap_err();
+            let error = to_file(registry::named(name).unwrap(), source, &Options::default(), &output).unwrap_err();
             assert_eq!(error.kind(), ErrorKind::Cancelled, "{name}");
         }
         assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::files::Files;
-use super::options::{OptionSpec, Options, Takes};
-use super::subject::Subject;
+use super::layer_source::LayerSource;
+use super::options::{OptionSpec, Options, ValueKind};
 use crate::format::dem::Georeference;
 use crate::format::levels::Levels;
 use crate::format::sidecar::own;
@@ -18,12 +18,12 @@ pub const NO_SIDECAR: OptionSpec = OptionSpec {
     name: "no-sidecar",
     value: "",
     about: "Write nothing beside the file: no NAME.json, which tells size, cell, range, seed and the like, no .prj, no world file and no .aux.xml with its georeferencing",
-    takes: Takes::Nothing,
+    value_kind: ValueKind::Nothing,
 };
 
 /// How a file holds its samples.
 #[derive(Debug, Clone, Default)]
-pub struct Held {
+pub struct SampleEncoding {
     /// The word for a sample: "u8", "u16", "f32".
     pub sample: &'static str,
     /// "little" or "big", where a sample has several bytes.
@@ -88,22 +88,22 @@ struct Text<'a> {
 /// It is NAME.json, or NAME.EXT.json where that is the sidecar of another file, or no sidecar of ours at all: a recipe, for one.
 ///
 /// Fails as the files do, and if something else has both names.
-pub fn write(files: &mut Files, subject: &Subject, options: &Options, held: &Held) -> io::Result<String> {
+pub fn write(files: &mut Files, source: &LayerSource, options: &Options, held: &SampleEncoding) -> io::Result<String> {
     let Some(path) = files.path().map(Path::to_path_buf) else { return Ok(String::new()) };
     if options.has(NO_SIDECAR.name) || path.exists() && !path.is_file() {
         return Ok(String::new());
     }
     let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let place = place(&path, &name(&path));
-    let (window, world) = (subject.window(), subject.world().recipe());
-    let range = subject.levels();
-    let map = subject.map();
+    let (window, world) = (source.window(), source.world().recipe());
+    let range = source.levels();
+    let map = source.map();
     let wkt = map.as_ref().map(Georeference::wkt);
     let text = Text {
         made_by: format!("Orogen {}", env!("CARGO_PKG_VERSION")),
         file: name(&path),
-        layer: subject.layer(),
-        unit: subject.unit(),
+        layer: source.layer(),
+        unit: source.unit(),
         width: window.width,
         height: window.height,
         cell: window.cell,
@@ -123,7 +123,7 @@ pub fn write(files: &mut Files, subject: &Subject, options: &Options, held: &Hel
         crs: map.as_ref().and_then(Georeference::epsg).map(|code| format!("EPSG:{code}")),
         wkt: wkt.clone().and_then(Result::ok),
         crs_missing: wkt.and_then(Result::err),
-        layer_sha256: subject.key().iter().map(|byte| format!("{byte:02x}")).collect(),
+        layer_sha256: source.key().iter().map(|byte| format!("{byte:02x}")).collect(),
         about: &world.about,
     };
     let json = serde_json::to_string_pretty(&text).map_err(io::Error::other)?;

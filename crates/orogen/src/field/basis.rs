@@ -2,7 +2,7 @@
 
 use crate::declare::{Param, Shape};
 use crate::value::Value;
-use orogen_noise::{Basis, Mismatch};
+use orogen_noise::{Basis, LengthMismatch};
 
 impl Param for Basis {
     const SHAPE: Shape = Shape::Choice(|| Basis::all().iter().map(|basis| (basis.name(), about(*basis))).collect());
@@ -37,7 +37,7 @@ fn about(basis: Basis) -> &'static str {
 
 /// A block of noise. The engine's blocks always have the length of their points; were one ever wrong, it would be NaN and
 /// seen, not the noise of another place.
-pub(super) fn fill(out: &mut [f32], noise: impl FnOnce(&mut [f32]) -> Result<(), Mismatch>) {
+pub(super) fn fill(out: &mut [f32], noise: impl FnOnce(&mut [f32]) -> Result<(), LengthMismatch>) {
     if noise(out).is_err() {
         out.fill(f32::NAN);
     }

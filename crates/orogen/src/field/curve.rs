@@ -22,7 +22,7 @@ op! {
 
 /// One stretch from a control point to the next: to(x) = a + t (b + t (c + t d)) with t = x - start.
 #[derive(Clone, Copy, Default)]
-struct Piece {
+struct Segment {
     start: f32,
     a: f32,
     b: f32,
@@ -37,7 +37,7 @@ struct Knot {
     secant: f64,
     tangent: f64,
     /// The stretch to the next point.
-    piece: Piece,
+    piece: Segment,
 }
 
 /// Curves of so many points need no memory beside the stack: evaluating a block then asks for none.
@@ -80,7 +80,7 @@ impl Curve {
         for (i, pair) in points.windows(2).enumerate() {
             let (width, secant) = (pair[1][0] - pair[0][0], knots[i].secant);
             let (m0, m1) = (knots[i].tangent, knots[i + 1].tangent);
-            knots[i].piece = Piece {
+            knots[i].piece = Segment {
                 start: pair[0][0] as f32,
                 a: pair[0][1] as f32,
                 b: m0 as f32,

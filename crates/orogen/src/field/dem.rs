@@ -1,6 +1,6 @@
 //! A real place, from a file.
 
-use crate::dem::held::Imported;
+use crate::dem::file_ref::FileRef;
 use crate::format::dem::Georeference;
 use crate::layer::LayerKind;
 use crate::op::{Field, Inputs, WorldParams};
@@ -32,7 +32,7 @@ op! {
     pub struct Dem = "dem", field, revision 1;
     params {
         /// The file; a relative path counts from the folder of the recipe.
-        path: Imported = Imported::default();
+        path: FileRef = FileRef::default();
         /// The band of a file of several, from 1; 0 is the only one.
         band: u32 = 0, range 0.0 to 65535.0;
         /// What is shown: the heights, or where there are any.

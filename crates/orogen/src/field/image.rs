@@ -1,7 +1,7 @@
 //! A picture, laid over the ground.
 
 use super::positions::each;
-use crate::dem::held::Picture;
+use crate::dem::file_ref::Picture;
 use crate::layer::LayerKind;
 use crate::op::{Field, Inputs, WorldParams};
 use crate::resample;

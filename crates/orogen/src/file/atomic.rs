@@ -119,7 +119,7 @@ pub fn explain(doing: &str, path: &Path, cause: &io::Error) -> Error {
 }
 
 /// What is to be written to.
-enum Target {
+enum Destination {
     /// A file to put in place, under the name that links lead to, with the permissions of the one that is there.
     File { real: PathBuf, permissions: Option<Permissions> },
     /// A pipe or device.
@@ -135,12 +135,12 @@ fn stage_through(
 ) -> Result<Staged> {
     let failed = |cause: io::Error| Error::file("write", path, &cause);
     let file = match target(path)? {
-        Target::Stream => {
+        Destination::Stream => {
             let file = OpenOptions::new().write(true).open(path).map_err(failed)?;
             fill(path, wrap(&file), body)?;
             None
         }
-        Target::File { real, permissions } => {
+        Destination::File { real, permissions } => {
             let (temporary, file) = match Temporary::create(folder(&real)) {
                 Ok(created) => created,
                 // The folder is what is missing, or what takes no files: say so.
@@ -162,7 +162,7 @@ fn stage_through(
 }
 
 /// Finds out what `path` is, and refuses what cannot be written.
-fn target(path: &Path) -> Result<Target> {
+fn target(path: &Path) -> Result<Destination> {
     let refuse = |why: &str| Error::new(ErrorKind::File, format!("cannot write {}: {why}", path.display()));
     let ends_in_separator = path.to_string_lossy().ends_with(std::path::is_separator);
     match fs::metadata(path) {
@@ -172,9 +172,9 @@ fn target(path: &Path) -> Result<Target> {
                 return Err(refuse("it is marked read-only"));
             }
             let real = fs::canonicalize(path).map_err(|cause| Error::file("write", path, &cause))?;
-            Ok(Target::File { real, permissions: Some(there.permissions()) })
+            Ok(Destination::File { real, permissions: Some(there.permissions()) })
         }
-        Ok(_) => Ok(Target::Stream),
+        Ok(_) => Ok(Destination::Stream),
         Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
             if fs::symlink_metadata(path).is_ok() {
                 return Err(refuse("it is a link to something that does not exist"));
@@ -182,7 +182,7 @@ fn target(path: &Path) -> Result<Target> {
             if path.file_name().is_none() || ends_in_separator {
                 return Err(refuse("it does not name a file"));
             }
-            Ok(Target::File { real: path.to_path_buf(), permissions: None })
+            Ok(Destination::File { real: path.to_path_buf(), permissions: None })
         }
         Err(cause) => Err(Error::file("write", path, &cause)),
     }

@@ -1,5 +1,5 @@
 //! Recipes whose land is like a real place, without holding the place.
 
-pub mod likeness;
+pub mod features;
 pub mod search;
 pub mod template;

@@ -1,6 +1,6 @@
 //! Finding the values of the template whose land is most like a place.
 
-use super::likeness::{Likeness, of_windows};
+use super::features::{FeatureVector, of_windows};
 use super::template::{MARGIN, PARAMS, ParamValues, Stretch, recipe, trial};
 use crate::analysis::slope::steepness;
 use crate::error::{Error, ErrorKind, Result};
@@ -20,7 +20,7 @@ pub const MAX_WINDOWS: usize = 12;
 
 /// A place to be like.
 #[derive(Debug, Clone)]
-pub struct Target {
+pub struct FitTarget {
     /// Metres from one sample to the next.
     pub cell: f64,
     /// Side of the windows compared.
@@ -28,7 +28,7 @@ pub struct Target {
     /// Columns and rows of the place.
     pub size: [usize; 2],
     /// The middle of its windows.
-    pub middle: Likeness,
+    pub middle: FeatureVector,
     /// How many windows that is.
     pub windows: usize,
     /// Distances of its own windows from that middle.
@@ -38,16 +38,16 @@ pub struct Target {
     integral: f64,
 }
 
-impl Target {
+impl FitTarget {
     /// Measures a place.
     ///
     /// # Errors
     /// If it has no window of 64 x 64 samples with some relief.
-    pub fn of(place: &Grid) -> Result<Target> {
+    pub fn of(place: &Grid) -> Result<FitTarget> {
         let window = place.window();
         let side = window.width.min(window.height).min(SIDE);
-        let likenesses = of_windows(place, side.max(1), MAX_WINDOWS);
-        let measures: Vec<Measures> = super::likeness::windows(window, side.max(1), MAX_WINDOWS)
+        let features = of_windows(place, side.max(1), MAX_WINDOWS);
+        let measures: Vec<Measures> = super::features::windows(window, side.max(1), MAX_WINDOWS)
             .into_iter()
             .filter_map(|window| Measures::of(&place.crop(&window)?, None))
             .collect();
@@ -55,18 +55,18 @@ impl Target {
             let message = "the place is too small or too flat to be like: it takes 64 x 64 samples and some relief";
             return Err(Error::new(ErrorKind::Request, message));
         }
-        let middle = Likeness::middle(&likenesses);
+        let middle = FeatureVector::middle(&features);
         let median = |of: fn(&Measures) -> f64| {
             let mut values: Vec<f64> = measures.iter().map(of).collect();
             values.sort_unstable_by(f64::total_cmp);
             values[values.len() / 2]
         };
-        Ok(Target {
+        Ok(FitTarget {
             cell: window.cell,
             side,
             size: [window.width, window.height],
-            own: likenesses.iter().map(|one| one.distance(&middle)).collect(),
-            windows: likenesses.len(),
+            own: features.iter().map(|one| one.distance(&middle)).collect(),
+            windows: features.len(),
             middle,
             lowest: median(|m| m.base),
             slope: median(|m| m.slope_mean),
@@ -106,7 +106,7 @@ pub struct Found {
 
 impl Found {
     /// The recipe in a world as large as the place.
-    pub fn recipe(&self, target: &Target, seed: u64, about: &str) -> Recipe {
+    pub fn recipe(&self, target: &FitTarget, seed: u64, about: &str) -> Recipe {
         let mut recipe = recipe(&self.values, &self.stretch, target.size, target.cell, seed);
         recipe.about = about.to_string();
         recipe
@@ -128,7 +128,7 @@ const FARTHEST: f64 = 100.0;
 ///
 /// # Errors
 /// If the work is cancelled, or memory is short.
-pub fn search(target: &Target, effort: &Effort, options: &Options, progress: &Progress) -> Result<Found> {
+pub fn search(target: &FitTarget, effort: &Effort, options: &Options, progress: &Progress) -> Result<Found> {
     progress.expect(effort.windows(target));
     let mut trial = Trial { target, effort, options, progress, tried: 0, nearest: Vec::new() };
     let mut chance = Chance(effort.seed);
@@ -188,7 +188,7 @@ fn along(from: &ParamValues, to: &ParamValues, share: f64) -> ParamValues {
 }
 
 struct Trial<'a> {
-    target: &'a Target,
+    target: &'a FitTarget,
     effort: &'a Effort,
     options: &'a Options,
     progress: &'a Progress,
@@ -215,7 +215,7 @@ impl Trial<'_> {
         let (stretch, windows) = self.make(values, seed, across, &part)?;
         self.progress.check()?;
         let far = |land: &Grid| {
-            Measures::of(land, None).map_or(FARTHEST, |made| Likeness::of(&made).distance(&self.target.middle))
+            Measures::of(land, None).map_or(FARTHEST, |made| FeatureVector::of(&made).distance(&self.target.middle))
         };
         Ok((stretch, windows.iter().map(far).sum::<f64>() / windows.len().max(1) as f64))
     }
@@ -254,7 +254,7 @@ impl Trial<'_> {
         across: usize,
         progress: &Progress,
     ) -> Result<(Stretch, Vec<Grid>)> {
-        let Target { side, cell, lowest, .. } = *self.target;
+        let FitTarget { side, cell, lowest, .. } = *self.target;
         let plain = Stretch { from: [0.0, 1.0], to: [0.0, 1.0], bend: 0.0 };
         let (world, inside) = trial_world(self.target, values, seed, across, self.options)?;
         let mut grids = world.grids(&["soft"], &inside, progress)?;
@@ -293,7 +293,7 @@ impl Trial<'_> {
 
 /// A world of a values, `across` windows wide, and its samples that are looked at.
 fn trial_world(
-    target: &Target,
+    target: &FitTarget,
     values: &ParamValues,
     seed: u64,
     across: usize,
@@ -309,7 +309,7 @@ fn trial_world(
 
 impl Effort {
     /// Windows that a search makes, about.
-    fn windows(&self, target: &Target) -> f64 {
+    fn windows(&self, target: &FitTarget) -> f64 {
         let first = self.random.max(1) + PARAMS.len() + self.improving;
         let last = FINALISTS * (OTHER_WORLDS as usize + 1) * target.across() * target.across();
         (first + last) as f64
@@ -319,7 +319,7 @@ impl Effort {
     ///
     /// # Errors
     /// As [`search`].
-    pub fn work(&self, target: &Target, options: &Options) -> Result<f64> {
+    pub fn work(&self, target: &FitTarget, options: &Options) -> Result<f64> {
         let (world, inside) = trial_world(target, &[0.5; PARAMS.len()], self.seed, 1, options)?;
         let plan = world.plan(&["soft"], &inside)?;
         Ok(self.windows(target) * (world.work(&plan) + MEASURING * inside.len() as f64))

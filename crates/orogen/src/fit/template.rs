@@ -170,13 +170,13 @@ fn written(
     recipe.add("rock", noise(2, round(wavelength / 2.0), 5));
     let differs = value(6);
     let share = |x: f64| [x, round(libm::exp(2.0 * differs * x))];
-    recipe.add("softness", Curve { source: "rock".into(), points: [-1.0, -0.5, 0.0, 0.5, 1.0].map(share).to_vec() });
+    recipe.add("erodibility", Curve { source: "rock".into(), points: [-1.0, -0.5, 0.0, 0.5, 1.0].map(share).to_vec() });
     recipe.add("lift", noise(3, wavelength, 4));
-    recipe.add("rise", Remap { source: "lift".into(), from: [-1.0, 1.0], to: [0.2, 1.8], ..Remap::default() });
+    recipe.add("uplift", Remap { source: "lift".into(), from: [-1.0, 1.0], to: [0.2, 1.8], ..Remap::default() });
     let law = StreamPower {
         source: "ground".into(),
-        softness: "softness".into(),
-        rise: "rise".into(),
+        erodibility_factor: "erodibility".into(),
+        uplift_factor: "uplift".into(),
         erodibility: value(3),
         uplift: value(4),
         talus_angle: value(5),
@@ -186,13 +186,13 @@ fn written(
     };
     match view {
         Some(view) => {
-            for source in ["ground", "softness", "rise"] {
+            for source in ["ground", "erodibility", "uplift"] {
                 recipe.add(&format!("{source}_around"), view.wider(source));
             }
             let law = StreamPower {
                 source: "ground_around".into(),
-                softness: "softness_around".into(),
-                rise: "rise_around".into(),
+                erodibility_factor: "erodibility_around".into(),
+                uplift_factor: "uplift_around".into(),
                 ..view.law(law)
             };
             recipe.add("cut_around", law);

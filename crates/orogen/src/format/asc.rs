@@ -6,7 +6,7 @@
 use std::io::{self, BufRead, Write};
 
 use super::crs::unit::Unit;
-use super::dem::{Dem, Georeference, Input, Place, afford, refused};
+use super::dem::{Dem, Georeference, Input, Placement, afford, refused};
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 
@@ -77,7 +77,7 @@ struct Head {
 ///
 /// # Errors
 /// If it is no ASCII grid.
-pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Place>)> {
+pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Placement>)> {
     let mut words = Words { input: &mut io::BufReader::new(input), word: Vec::new() };
     let (head, [columns, rows], _) = read_head(&mut words).map_err(|why| refused(name, why))?;
     Ok(([columns as usize, rows as usize], head.place(rows)))
@@ -158,12 +158,18 @@ impl Head {
         Ok(())
     }
 
-    fn place(&self, rows: u64) -> Option<Place> {
+    fn place(&self, rows: u64) -> Option<Placement> {
         let ([Some(dx), Some(dy)], Some(west), Some(south)) = (self.step, self.west, self.south) else { return None };
         let middle = |(at, is_middle): (f64, bool), step: f64| if is_middle { at } else { at + 0.5 * step };
         let (east, bottom) = (middle(west, dx), middle(south, dy));
         let unit = Unit::guess([east, bottom], [dx, dy]);
-        Some(Place { origin: [east, bottom + (rows as f64 - 1.0) * dy], step: [dx, dy], unit, cell: None, keys: None })
+        Some(Placement {
+            origin: [east, bottom + (rows as f64 - 1.0) * dy],
+            step: [dx, dy],
+            unit,
+            cell: None,
+            keys: None,
+        })
     }
 }
 

@@ -59,14 +59,14 @@ pub struct Dem {
     /// Metres, row after row from the north, each from west to east; NaN where the file has no height.
     pub heights: Vec<f32>,
     /// Where they stand, if the file says so.
-    pub place: Option<Place>,
+    pub place: Option<Placement>,
     /// What was done to it and what could not be read, in messages.
     pub notes: Vec<String>,
 }
 
 /// Where samples stand on a map.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Place {
+pub struct Placement {
     /// East and north of the first sample itself: of the middle of its pixel, where the file speaks of pixels as areas.
     pub origin: [f64; 2],
     /// From a column to the next one east, and from a row to the next one south: both above 0.
@@ -164,7 +164,7 @@ impl Dem {
     ///
     /// # Errors
     /// If there is no height among them.
-    pub fn new(size: [usize; 2], mut heights: Vec<f32>, place: Option<Place>) -> Result<Dem, String> {
+    pub fn new(size: [usize; 2], mut heights: Vec<f32>, place: Option<Placement>) -> Result<Dem, String> {
         let [width, height] = size;
         let mut found = false;
         for sample in &mut heights {

@@ -8,7 +8,7 @@ use std::io::{Read, Write};
 
 use super::crs::keys;
 use super::crs::unit::Unit;
-use super::dem::{Dem, Input, Place, afford, length, refused};
+use super::dem::{Dem, Input, Placement, afford, length, refused};
 use crate::error::Result;
 
 const VOID: i16 = -32768;
@@ -43,7 +43,7 @@ pub fn read(input: &mut dyn Input, name: &str, allowed: u64) -> Result<Dem> {
 ///
 /// # Errors
 /// If it has none of the sizes.
-pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Place>)> {
+pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Placement>)> {
     let size = size(input).map_err(|why| refused(name, why))?;
     Ok((size, place(name, size)))
 }
@@ -58,8 +58,8 @@ fn size(input: &mut dyn Input) -> std::result::Result<[usize; 2], String> {
 }
 
 /// Where a tile of that name lies.
-fn place(name: &str, [columns, rows]: [usize; 2]) -> Option<Place> {
-    corner(name).map(|[south, west]| Place {
+fn place(name: &str, [columns, rows]: [usize; 2]) -> Option<Placement> {
+    corner(name).map(|[south, west]| Placement {
         origin: [west, south + 1.0],
         step: [1.0 / (columns - 1) as f64, 1.0 / (rows - 1) as f64],
         unit: Unit::Degrees,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::dem::{Dem, Input, Place, Request, refused};
+use super::dem::{Dem, Input, Placement, Request, refused};
 use super::raw::Sample;
 use super::sidecar::Sidecar;
 use super::{asc, exr_reader, geotiff, grey, hgt, npy, raw};
@@ -33,7 +33,7 @@ pub fn has_head(path: &Path) -> bool {
 ///
 /// # Errors
 /// If it cannot be read.
-pub fn head(path: &Path) -> Result<([usize; 2], Option<Place>)> {
+pub fn head(path: &Path) -> Result<([usize; 2], Option<Placement>)> {
     let name = path.display().to_string();
     let mut file = open::regular(path, "read")?;
     let (size, mut place) = match extension(path).unwrap_or_default().as_str() {

@@ -15,7 +15,7 @@ use super::affine::Affine;
 use super::crs::keys::{self, GeoKeys};
 use super::crs::unit::Unit;
 use super::crs::wkt::MAX_LENGTH;
-use super::dem::{Place, refused, turn_rows};
+use super::dem::{Placement, refused, turn_rows};
 use super::{aux_xml, world_file};
 use crate::error::Result;
 use crate::open;
@@ -165,16 +165,16 @@ impl Sidecar {
     ///
     /// # Errors
     /// A message if what it says of a map cannot be.
-    pub fn place(&self, rows: usize) -> std::result::Result<Option<Place>, String> {
+    pub fn place(&self, rows: usize) -> std::result::Result<Option<Placement>, String> {
         let Some(numbers) = self.geotransform else {
             let Some(cell) = self.cell else { return Ok(None) };
             let origin = [0.0, rows as f64 * cell - cell];
-            return Ok(Some(Place { origin, step: [cell; 2], unit: Unit::Metres(1.0), cell: None, keys: None }));
+            return Ok(Some(Placement { origin, step: [cell; 2], unit: Unit::Metres(1.0), cell: None, keys: None }));
         };
         let lattice = Affine::of_geotransform(numbers).lattice(rows)?;
         let keys = self.system()?;
         let unit = keys.as_ref().map_or(Unit::guess(lattice.origin, lattice.step), keys::unit);
-        Ok(Some(Place { origin: lattice.origin, step: lattice.step, unit, cell: self.cell, keys }))
+        Ok(Some(Placement { origin: lattice.origin, step: lattice.step, unit, cell: self.cell, keys }))
     }
 
     /// The coordinate system that it tells, or that a file beside does.
@@ -187,7 +187,7 @@ impl Sidecar {
     }
 
     /// Adds the coordinate system of a `.prj` or `.aux.xml` to a place that tells none.
-    pub fn complete(&self, place: &mut Place) {
+    pub fn complete(&self, place: &mut Placement) {
         if let (None, Some(keys)) = (&place.keys, &self.keys) {
             place.unit = keys::unit(keys);
             place.keys = Some(keys.clone());

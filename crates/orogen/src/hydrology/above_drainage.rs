@@ -49,7 +49,7 @@ mod tests {
     fn it_is_what_walking_downstream_finds() {
         for heights in samples::grids() {
             let outlets = Outlets::new(&heights, None);
-            let drained = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+            let drained = drainage::route_carving(&heights, &outlets, Descent::Steepest);
             let filled = fill::filled(&heights, &drained.basins);
             let areas = accumulate(&drained.receivers);
             for threshold in [1, 5, 40, u32::MAX] {

@@ -24,14 +24,14 @@ pub struct Basins {
     /// The basin of each cell, row-major; [`OUTSIDE`] for all that drains to an outlet.
     pub labels: Vec<u32>,
     /// One a basin, by its label. That of the outside is empty.
-    pub ways_out: Vec<WayOut>,
+    pub spills: Vec<Spill>,
     /// The labels of all basins but the outside, each after the one that its way out leads to.
     pub order: Vec<u32>,
 }
 
 /// How water leaves a basin.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WayOut {
+pub struct Spill {
     /// The height that water reaches: the highest cell on the best way from the pit to an outlet.
     pub level: f32,
     /// The cell at the bottom of the basin.
@@ -58,11 +58,11 @@ pub(super) fn find_basins<E>(
 ) -> Result<Basins, E> {
     let (labels, pits) = label(outlets, receivers);
     phase()?;
-    let mut basins = Basins { labels, ways_out: Vec::with_capacity(pits.len()), order: Vec::with_capacity(pits.len()) };
+    let mut basins = Basins { labels, spills: Vec::with_capacity(pits.len()), order: Vec::with_capacity(pits.len()) };
     for pit in pits {
-        basins.ways_out.push(WayOut { level: f32::NEG_INFINITY, pit, last: pit, code: NONE, next: OUTSIDE });
+        basins.spills.push(Spill { level: f32::NEG_INFINITY, pit, last: pit, code: NONE, next: OUTSIDE });
     }
-    if basins.ways_out.len() > 1 {
+    if basins.spills.len() > 1 {
         let passes = passes(heights, &basins.labels);
         phase()?;
         flood(&passes, &mut basins, &strides(heights.width()));
@@ -243,7 +243,7 @@ impl Found {
 /// Floods the graph from the outside in: always over the lowest pass known, as Prim's algorithm does.
 fn flood(passes: &[Pass], basins: &mut Basins, strides: &[isize; 8]) {
     // The passes of each basin, side by side: those of basin b are at starts[b] .. starts[b + 1].
-    let count = basins.ways_out.len();
+    let count = basins.spills.len();
     let mut starts = vec![0u32; count + 1];
     for b in passes.iter().flat_map(|pass| pass.basins) {
         starts[b as usize + 1] += 1;
@@ -282,8 +282,8 @@ fn flood(passes: &[Pass], basins: &mut Basins, strides: &[isize; 8]) {
             true => (a, b, next.from, next.code),
             false => (b, a, neighbour(next.from as usize, strides[usize::from(next.code)]) as u32, opposite(next.code)),
         };
-        let below = basins.ways_out[parent as usize].level;
-        let way = &mut basins.ways_out[basin as usize];
+        let below = basins.spills[parent as usize].level;
+        let way = &mut basins.spills[basin as usize];
         way.level = if next.height > below { next.height } else { below };
         (way.last, way.code, way.next) = (last, code, parent);
         basins.order.push(basin);
@@ -320,12 +320,12 @@ mod tests {
             let Ok(basins) =
                 find_basins(&heights, &outlets, &receivers, &mut || Ok::<(), std::convert::Infallible>(()));
             let strides = strides(heights.width());
-            let count = basins.ways_out.len();
+            let count = basins.spills.len();
             assert_eq!(basins.order.len() + 1, count, "every basin is reached");
             let mut reached = vec![false; count];
             reached[0] = true;
             for b in &basins.order {
-                let way = &basins.ways_out[*b as usize];
+                let way = &basins.spills[*b as usize];
                 assert!(reached[way.next as usize], "parents come first");
                 reached[*b as usize] = true;
                 assert_eq!(basins.labels[way.last as usize], *b);
@@ -334,7 +334,7 @@ mod tests {
                 assert_eq!(basins.labels[step], way.next);
                 let h = heights.data();
                 assert!(way.level >= h[way.last as usize] && way.level >= h[step]);
-                assert!(way.level >= basins.ways_out[way.next as usize].level);
+                assert!(way.level >= basins.spills[way.next as usize].level);
             }
             for c in 0..basins.labels.len() {
                 assert_eq!(basins.labels[c], basins.labels[receivers.of(c)]);

@@ -15,7 +15,7 @@ pub fn breach(heights: &Grid, outlets: &Outlets, drainage: &Drainage, deepest: f
     let mut out = filled(heights, &drainage.basins);
     for ((level, h), label) in out.data_mut().iter_mut().zip(heights.data()).zip(&drainage.basins.labels) {
         // As far as a cut of that depth through the pass drains it.
-        let drained = drainage.basins.ways_out[*label as usize].level - deepest;
+        let drained = drainage.basins.spills[*label as usize].level - deepest;
         *level = if drained > *h { drained.min(*level) } else { *h };
     }
     let receivers = &drainage.receivers;
@@ -41,7 +41,7 @@ mod tests {
         for heights in samples::grids() {
             for deepest in [0.0, 20.0, 150.0, f32::INFINITY] {
                 let outlets = Outlets::new(&heights, None);
-                let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+                let drainage = drainage::route_carving(&heights, &outlets, Descent::Steepest);
                 let filled = filled(&heights, &drainage.basins);
                 let out = breach(&heights, &outlets, &drainage, deepest);
                 for c in (0..out.data().len()).filter(|c| !outlets.at(*c)) {
@@ -62,7 +62,7 @@ mod tests {
         let mut heights = Grid::filled(Window::new(9, 5, 1.0), 9.0);
         heights.row_mut(2).copy_from_slice(&[9.0, 3.0, 2.0, 3.0, 6.0, 4.0, 1.0, 0.5, 0.0]);
         let outlets = Outlets::new(&heights, None);
-        let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+        let drainage = drainage::route_carving(&heights, &outlets, Descent::Steepest);
         let cut = breach(&heights, &outlets, &drainage, f32::INFINITY);
         assert_eq!(cut.row(2), [9.0, 3.0, 2.0, 2.0, 2.0, 2.0, 1.0, 0.5, 0.0]);
         let both = breach(&heights, &outlets, &drainage, 1.5);

@@ -1,6 +1,6 @@
 //! Where every cell drains to, depressions included.
 
-use super::basins::{Basins, WayOut, find_basins};
+use super::basins::{Basins, Spill, find_basins};
 use super::direction::opposite;
 use super::flats;
 use super::outlets::Outlets;
@@ -25,12 +25,12 @@ pub struct Drainage {
 /// to the pit, taken backwards, over the pass and out (Cordonnier, Bovy and Braun 2019, who call it carving).
 ///
 /// So a lake's bed keeps its own valleys, where drainage of the *filled* surface has to be made up over level water.
-pub fn over_bed(heights: &Grid, outlets: &Outlets, descent: Descent) -> Drainage {
+pub fn route_carving(heights: &Grid, outlets: &Outlets, descent: Descent) -> Drainage {
     let Ok(drainage) = route_bed(heights, outlets, descent, || Ok::<(), Infallible>(()));
     drainage
 }
 
-/// [`over_bed`] that reports how far it has come, and can be stopped.
+/// [`route_carving`] that reports how far it has come, and can be stopped.
 ///
 /// # Errors
 /// If the work is cancelled.
@@ -45,7 +45,7 @@ pub fn over_bed_with(heights: &Grid, outlets: &Outlets, descent: Descent, progre
 /// How often [`route_bed`] says that a phase is done.
 const PHASES: f64 = 6.0;
 
-/// [`over_bed`]; `phase` is called after each of its phases, and ends it with its error.
+/// [`route_carving`]; `phase` is called after each of its phases, and ends it with its error.
 fn route_bed<E>(
     heights: &Grid,
     outlets: &Outlets,
@@ -58,14 +58,14 @@ fn route_bed<E>(
     phase()?;
     let basins = find_basins(heights, outlets, &receivers, &mut phase)?;
     for basin in &basins.order {
-        lead_out(&basins.ways_out[*basin as usize], &mut receivers);
+        lead_out(&basins.spills[*basin as usize], &mut receivers);
     }
     phase()?;
     Ok(Drainage { receivers, basins })
 }
 
 /// Turns the way from the pass to the pit around.
-fn lead_out(way: &WayOut, receivers: &mut Receivers) {
+fn lead_out(way: &Spill, receivers: &mut Receivers) {
     let (mut cell, mut code) = (way.last as usize, way.code);
     loop {
         let next = receivers.of(cell);
@@ -124,7 +124,7 @@ mod tests {
         for (k, heights) in samples::grids().into_iter().enumerate() {
             let outlets = Outlets::new(&heights, Some(2.0));
             let descent = if k % 2 == 0 { Descent::Steepest } else { Descent::Scattered(k as u32) };
-            ends(&over_bed(&heights, &outlets, descent).receivers, &outlets);
+            ends(&route_carving(&heights, &outlets, descent).receivers, &outlets);
             let filled = fill::fill(&heights, &outlets);
             ends(&over_surface(&filled, &outlets, descent), &outlets);
         }
@@ -134,7 +134,7 @@ mod tests {
     fn nothing_on_the_way_is_higher_than_the_water() {
         for heights in samples::grids() {
             let outlets = Outlets::new(&heights, None);
-            let drainage = over_bed(&heights, &outlets, Descent::Steepest);
+            let drainage = route_carving(&heights, &outlets, Descent::Steepest);
             let filled = fill::filled(&heights, &drainage.basins);
             for c in 0..heights.data().len() {
                 let receiver = drainage.receivers.of(c);
@@ -154,7 +154,7 @@ mod tests {
         }
         let outlets = Outlets::new(&cone, None);
         let steepest = steepest::receivers(&cone, &outlets, Descent::Steepest);
-        assert_eq!(over_bed(&cone, &outlets, Descent::Steepest).receivers, steepest);
+        assert_eq!(route_carving(&cone, &outlets, Descent::Steepest).receivers, steepest);
         assert_eq!(over_surface(&cone, &outlets, Descent::Steepest), steepest);
     }
 }

@@ -6,7 +6,7 @@ use super::drainage;
 use super::outlets::Outlets;
 use super::points::Points;
 use super::steepest::Descent;
-use super::stream_power::{Ground, StreamPower};
+use super::stream_power::{StreamPower, Substrate};
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::progress::Progress;
@@ -25,7 +25,7 @@ pub struct Erosion {
     /// Hashed into the scattered ways of the water in each step; none for the steepest way always.
     pub scattered: Option<u32>,
     /// By how much of half a cell points stand off the lattice, 0 to 1. Between points off the lattice no way is scattered.
-    pub irregular: f64,
+    pub jitter: f64,
 }
 
 impl Erosion {
@@ -39,7 +39,7 @@ impl Erosion {
     pub fn run(
         &self,
         heights: &mut Grid,
-        ground: &Ground,
+        ground: &Substrate,
         sea_level: Option<f32>,
         progress: &Progress,
     ) -> Result<Accumulation> {
@@ -62,7 +62,7 @@ impl Erosion {
         &self,
         heights: &mut Grid,
         outlets: &Outlets,
-        ground: &Ground,
+        ground: &Substrate,
         descent: Descent,
         years: f64,
         progress: &Progress,
@@ -81,7 +81,7 @@ impl Erosion {
 /// A run between two of its steps.
 pub struct ErosionRun<'a> {
     erosion: Erosion,
-    ground: &'a Ground<'a>,
+    ground: &'a Substrate<'a>,
     outlets: Outlets,
     /// Where the heights stand until the end, if not on the lattice.
     points: Option<Points>,
@@ -95,9 +95,9 @@ impl<'a> ErosionRun<'a> {
     pub const FINISHING: f64 = 2.0;
 
     /// Before the first step.
-    pub fn new(erosion: Erosion, heights: &Grid, ground: &'a Ground<'a>, sea_level: Option<f32>) -> ErosionRun<'a> {
+    pub fn new(erosion: Erosion, heights: &Grid, ground: &'a Substrate<'a>, sea_level: Option<f32>) -> ErosionRun<'a> {
         let salt = erosion.scattered.unwrap_or_default();
-        let points = (erosion.irregular > 0.0).then(|| Points::new(*heights.window(), erosion.irregular, salt));
+        let points = (erosion.jitter > 0.0).then(|| Points::new(*heights.window(), erosion.jitter, salt));
         ErosionRun { erosion, ground, outlets: Outlets::new(heights, sea_level), points, buffers: Vec::new(), done: 0 }
     }
 
@@ -114,7 +114,7 @@ impl<'a> ErosionRun<'a> {
             (None, Some(seed)) => Descent::Scattered(seed.wrapping_add(self.done)),
             (None, None) => Descent::Steepest,
         };
-        let between = Ground { points: self.points.as_ref(), ..*self.ground };
+        let between = Substrate { points: self.points.as_ref(), ..*self.ground };
         let amount = years * creep;
         let stages = creep_stages(heights.window(), amount);
         let [cutting, creeping] = progress.parts([45.0, 2.0 * stages]);
@@ -136,7 +136,7 @@ impl<'a> ErosionRun<'a> {
         if let Some(points) = &self.points {
             points.onto_lattice(heights, &self.outlets);
             // What was too steep has slid between the points; along the lattice it would fall into facets after all.
-            last.law.steepest = f64::INFINITY;
+            last.law.max_slope = f64::INFINITY;
         }
         last.cut(heights, &self.outlets, self.ground, Descent::Steepest, 0.0, &cutting)?;
         cutting.finish();
@@ -154,21 +154,21 @@ mod tests {
     use crate::hydrology::samples;
 
     fn erosion() -> Erosion {
-        Erosion { law: StreamPower::default(), creep: 1e-6, years: 1e5, steps: 4, scattered: Some(1), irregular: 0.0 }
+        Erosion { law: StreamPower::default(), creep: 1e-6, years: 1e5, steps: 4, scattered: Some(1), jitter: 0.0 }
     }
 
     fn eroded(heights: &Grid, erosion: &Erosion, sea: Option<f32>) -> Grid {
         let mut out = heights.clone();
-        erosion.run(&mut out, &Ground::default(), sea, &Progress::none()).unwrap();
+        erosion.run(&mut out, &Substrate::default(), sea, &Progress::none()).unwrap();
         out
     }
 
     #[test]
     fn every_cell_drains_downhill_and_the_sea_stays() {
         for heights in samples::grids() {
-            for (sea, irregular) in [(None, 0.0), (Some(250.0), 0.0), (None, 1.0), (Some(250.0), 0.6)] {
+            for (sea, jitter) in [(None, 0.0), (Some(250.0), 0.0), (None, 1.0), (Some(250.0), 0.6)] {
                 let outlets = Outlets::new(&heights, sea);
-                let out = eroded(&heights, &Erosion { irregular, ..erosion() }, sea);
+                let out = eroded(&heights, &Erosion { jitter, ..erosion() }, sea);
                 let receivers = super::super::steepest::receivers(&out, &outlets, Descent::Steepest);
                 for c in 0..out.data().len() {
                     match outlets.at(c) {
@@ -185,9 +185,7 @@ mod tests {
         let heights = samples::hills(150, 130, 3);
         let run = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| {
-                [0.0, 1.0].map(|irregular| eroded(&heights, &Erosion { irregular, ..erosion() }, Some(100.0)))
-            })
+            pool.install(|| [0.0, 1.0].map(|jitter| eroded(&heights, &Erosion { jitter, ..erosion() }, Some(100.0))))
         };
         let one = run(1);
         assert!(one[0] != heights && one[0] != one[1] && [2, 3, 8].map(run).iter().all(|other| *other == one));
@@ -195,11 +193,11 @@ mod tests {
 
     #[test]
     fn slopes_between_irregular_points_do_not_face_the_grids_directions() {
-        // Ground that rises until it stands at the talus angle all over.
+        // Substrate that rises until it stands at the talus angle all over.
         let heights = samples::hills(160, 160, 3);
-        let aligned = |irregular: f64| {
-            let law = StreamPower { uplift: 1.0, erodibility: 1e-6, steepest: 0.8, ..StreamPower::default() };
-            let run = Erosion { law, irregular, years: 1e6, steps: 60, creep: 1e-6, scattered: Some(1) };
+        let aligned = |jitter: f64| {
+            let law = StreamPower { uplift: 1.0, erodibility: 1e-6, max_slope: 0.8, ..StreamPower::default() };
+            let run = Erosion { law, jitter, years: 1e6, steps: 60, creep: 1e-6, scattered: Some(1) };
             let out = eroded(&heights, &run, None);
             let mut bins = [0u32; 9];
             for j in 10..150 {
@@ -213,8 +211,8 @@ mod tests {
             f64::from(bins[4]) / f64::from(bins.iter().sum::<u32>())
         };
         // On the lattice nearly all face what lies between two of its directions; otherwise each ninth has its ninth.
-        let (regular, irregular) = (aligned(0.0), aligned(1.0));
-        assert!(regular > 0.9 && (0.08..0.14).contains(&irregular), "{regular} {irregular}");
+        let (regular, jitter) = (aligned(0.0), aligned(1.0));
+        assert!(regular > 0.9 && (0.08..0.14).contains(&jitter), "{regular} {jitter}");
     }
 
     #[test]
@@ -222,6 +220,6 @@ mod tests {
         let mut heights = samples::hills(20, 20, 3);
         let progress = Progress::none();
         progress.cancel();
-        assert!(erosion().run(&mut heights, &Ground::default(), None, &progress).is_err());
+        assert!(erosion().run(&mut heights, &Substrate::default(), None, &progress).is_err());
     }
 }

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 ///
 /// Heights that are not finite stay as they are, and water leaves at their rim. Costs O(cells).
 pub fn fill(heights: &Grid, outlets: &Outlets) -> Grid {
-    filled(heights, &drainage::over_bed(heights, outlets, Descent::Steepest).basins)
+    filled(heights, &drainage::route_carving(heights, outlets, Descent::Steepest).basins)
 }
 
 /// The same where the basins are known.
@@ -23,7 +23,7 @@ pub fn filled(heights: &Grid, basins: &Basins) -> Grid {
     let rows = out.data_mut().par_chunks_mut(width).zip(basins.labels.par_chunks(width));
     rows.for_each(|(row, labels)| {
         for (h, label) in row.iter_mut().zip(labels) {
-            let level = basins.ways_out[*label as usize].level;
+            let level = basins.spills[*label as usize].level;
             if *h < level {
                 *h = level;
             }

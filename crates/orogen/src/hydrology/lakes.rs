@@ -39,7 +39,7 @@ const GENTLEST: f64 = 1e-4;
 
 /// Fills every depression of at least `fewest` cells with water to where it spills, and smaller ones with ground.
 ///
-/// `drainage` is that of [`over_bed`](super::drainage::over_bed) on the same heights. Then every cell of the land is higher than
+/// `drainage` is that of [`route_carving`](super::drainage::route_carving) on the same heights. Then every cell of the land is higher than
 /// the one it drains to, up to a lake's shore, the sea or the border, and every lake's outlet drains. Costs O(cells).
 pub fn lakes(heights: &Grid, outlets: &Outlets, drainage: &Drainage, fewest: u32) -> Lakes {
     let mut found = find(heights, drainage, fewest);
@@ -73,7 +73,7 @@ pub fn lakes_with(
 /// The connected cells under water. Neighbours under water have one level, or the higher water would run off.
 fn find(heights: &Grid, drainage: &Drainage, fewest: u32) -> Lakes {
     let (h, basins) = (heights.data(), &drainage.basins);
-    let under = |c: usize| h[c] < basins.ways_out[basins.labels[c] as usize].level;
+    let under = |c: usize| h[c] < basins.spills[basins.labels[c] as usize].level;
     let strides = strides(heights.width());
     let mut labels = Grid::filled(*heights.window(), 0u32);
     let mut lakes = Vec::new();
@@ -111,7 +111,7 @@ fn find(heights: &Grid, drainage: &Drainage, fewest: u32) -> Lakes {
         while labels.data()[outlet] == label {
             outlet = drainage.receivers.of(outlet);
         }
-        let level = basins.ways_out[basins.labels[start] as usize].level;
+        let level = basins.spills[basins.labels[start] as usize].level;
         lakes.push(Lake { level, deepest: deepest as u32, outlet: outlet as u32, cells: cells.len() as u32 });
     }
     Lakes { labels, lakes, bed: heights.clone(), surface: heights.clone() }
@@ -149,7 +149,7 @@ mod tests {
 
     fn made(heights: &Grid, fewest: u32) -> (Outlets, Lakes) {
         let outlets = Outlets::new(heights, Some(100.0));
-        let drainage = drainage::over_bed(heights, &outlets, Descent::Steepest);
+        let drainage = drainage::route_carving(heights, &outlets, Descent::Steepest);
         let lakes = lakes(heights, &outlets, &drainage, fewest);
         (outlets, lakes)
     }

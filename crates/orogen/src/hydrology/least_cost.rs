@@ -190,7 +190,7 @@ mod tests {
         // Not so deep: through neither, so it is filled to the lip.
         let shallow = breach(&heights, &outlets, &Limits { deepest: 1.0, longest: 20 }, &Progress::none()).unwrap();
         assert_eq!(shallow.row(5)[2..7], [4.0, 3.0, 3.0, 3.0, 5.0]);
-        let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+        let drainage = drainage::route_carving(&heights, &outlets, Descent::Steepest);
         let around = along_valleys::breach(&heights, &outlets, &drainage, 10.0);
         assert_eq!((around.get(3, 2), around.get(6, 5)), (1.0, 5.0));
     }
@@ -212,7 +212,7 @@ mod tests {
             };
             let least =
                 moved(&breach(&heights, &outlets, &Limits { deepest: 1e9, longest: 1000 }, &Progress::none()).unwrap());
-            let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+            let drainage = drainage::route_carving(&heights, &outlets, Descent::Steepest);
             let valleys = moved(&along_valleys::breach(&heights, &outlets, &drainage, 1e9));
             let full = moved(&fill::fill(&heights, &outlets));
             assert!(least < full, "{least}, to fill {full}");

@@ -19,7 +19,7 @@ pub struct Points {
     reach: f32,
     salt: u32,
     /// One over the distance, in cells, to the neighbours in the east, south-east, south and south-west.
-    nearness: [Vec<f32>; 4],
+    inverse_distance: [Vec<f32>; 4],
 }
 
 /// Half a cell: points that are moved further could pass each other.
@@ -31,8 +31,8 @@ impl Points {
     pub fn new(window: Window, share: f64, salt: u32) -> Points {
         let reach = (share.clamp(0.0, 1.0) * FURTHEST) as f32;
         let (width, cells) = (window.width, window.len());
-        let mut points = Points { window, reach, salt, nearness: std::array::from_fn(|_| vec![1.0; cells]) };
-        let mut planes = std::mem::take(&mut points.nearness);
+        let mut points = Points { window, reach, salt, inverse_distance: std::array::from_fn(|_| vec![1.0; cells]) };
+        let mut planes = std::mem::take(&mut points.inverse_distance);
         let [east, south_east, south, south_west] = &mut planes;
         let rows = |plane| <[f32]>::par_chunks_mut(plane, width.max(1));
         let planes_of_rows = rows(east).zip(rows(south_east)).zip(rows(south).zip(rows(south_west)));
@@ -50,7 +50,7 @@ impl Points {
                 }
             }
         });
-        points.nearness = planes;
+        points.inverse_distance = planes;
         points
     }
 
@@ -68,16 +68,16 @@ impl Points {
             // The way back is as far.
             let (plane, (east, south)) = if code < 4 { (code, (0, 0)) } else { (code - 4, STEPS[code]) };
             let start = (j.wrapping_add_signed(south) * width + 1).wrapping_add_signed(east);
-            &self.nearness[plane][start..start + width - 2]
+            &self.inverse_distance[plane][start..start + width - 2]
         })
     }
 
     /// One over the distance, in cells, from cell `c` to the neighbour in the direction `code`.
     #[inline(always)]
-    pub(super) fn nearness(&self, c: usize, code: u8, strides: &[isize; 8]) -> f32 {
+    pub(super) fn inverse_distance(&self, c: usize, code: u8, strides: &[isize; 8]) -> f32 {
         match code {
-            0..4 => self.nearness[usize::from(code)][c],
-            _ => self.nearness[usize::from(opposite(code))][neighbour(c, strides[usize::from(code)])],
+            0..4 => self.inverse_distance[usize::from(code)][c],
+            _ => self.inverse_distance[usize::from(opposite(code))][neighbour(c, strides[usize::from(code)])],
         }
     }
 
@@ -136,13 +136,13 @@ mod tests {
             for i in 1..39 {
                 let c = j * 40 + i;
                 for code in 0..8u8 {
-                    let near = points.nearness(c, code, &strides);
+                    let near = points.inverse_distance(c, code, &strides);
                     let there = neighbour(c, strides[usize::from(code)]);
-                    assert_eq!(near, points.nearness(there, opposite(code), &strides));
+                    assert_eq!(near, points.inverse_distance(there, opposite(code), &strides));
                     assert_eq!(near, around[usize::from(code)][i - 1]);
                     if (10..28).contains(&i) && (6..19).contains(&j) {
                         let c = (j - 5) * 20 + i - 9;
-                        assert_eq!(near, part.nearness(c, code, &super::strides(20)));
+                        assert_eq!(near, part.inverse_distance(c, code, &super::strides(20)));
                     }
                     (least, most) = (least.min(near), most.max(near));
                 }
@@ -155,7 +155,10 @@ mod tests {
     fn no_share_is_the_lattice() {
         let points = Points::new(Window::new(5, 5, 3.0), 0.0, 5);
         for (code, distance) in crate::hydrology::direction::DISTANCES.iter().enumerate() {
-            assert_eq!(f64::from(points.nearness(12, code as u8, &strides(5))), f64::from((1.0 / distance) as f32));
+            assert_eq!(
+                f64::from(points.inverse_distance(12, code as u8, &strides(5))),
+                f64::from((1.0 / distance) as f32)
+            );
         }
     }
 

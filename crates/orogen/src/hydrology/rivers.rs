@@ -136,7 +136,8 @@ mod tests {
     #[test]
     fn reaches_cover_the_rivers_once_and_join() {
         for heights in samples::grids() {
-            let receivers = drainage::over_bed(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
+            let receivers =
+                drainage::route_carving(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
             let drained = accumulate(&receivers);
             let orders = strahler::orders(&receivers, &drained, 5);
             let reaches = network(&receivers, &orders);
@@ -168,7 +169,7 @@ mod tests {
     fn beds_never_rise_downstream() {
         for heights in samples::grids() {
             let outlets = Outlets::new(&heights, None);
-            let drainage = drainage::over_bed(&heights, &outlets, Descent::Steepest);
+            let drainage = drainage::route_carving(&heights, &outlets, Descent::Steepest);
             let mut ground = breach::breach(&heights, &outlets, &drainage, 30.0);
             let drained = accumulate(&drainage.receivers);
             let orders = strahler::orders(&drainage.receivers, &drained, 5);

@@ -211,7 +211,7 @@ mod tests {
     use crate::hydrology::erosion::Erosion;
     use crate::hydrology::outlets::Outlets;
     use crate::hydrology::steepest::Descent;
-    use crate::hydrology::stream_power::{Ground, StreamPower};
+    use crate::hydrology::stream_power::{StreamPower, Substrate};
     use crate::hydrology::{drainage, samples};
 
     #[test]
@@ -244,9 +244,9 @@ mod tests {
     fn land_in_balance_has_the_numbers_of_its_law() {
         let mut heights = samples::rough(160, 160, 3);
         let law =
-            StreamPower { area_exponent: 0.5, erodibility: 1e-2, uplift: 1e-2, steepest: 1e9, ..Default::default() };
-        let erosion = Erosion { law, creep: 0.0, years: 2e4, steps: 150, scattered: None, irregular: 0.0 };
-        let drained = erosion.run(&mut heights, &Ground::default(), None, &crate::Progress::none()).unwrap();
+            StreamPower { area_exponent: 0.5, erodibility: 1e-2, uplift: 1e-2, max_slope: 1e9, ..Default::default() };
+        let erosion = Erosion { law, creep: 0.0, years: 2e4, steps: 150, scattered: None, jitter: 0.0 };
+        let drained = erosion.run(&mut heights, &Substrate::default(), None, &crate::Progress::none()).unwrap();
         let receivers = drainage::over_surface(&heights, &Outlets::new(&heights, None), Descent::Steepest);
         let theta = concavity(&heights, &receivers, &drained, 10).unwrap();
         let (hack, area) = (hack_exponent(&receivers, &drained, 10).unwrap(), area_exponent(&drained).unwrap());
@@ -257,7 +257,8 @@ mod tests {
     #[test]
     fn a_map_too_small_for_classes_has_no_numbers() {
         for heights in samples::grids().into_iter().filter(|heights| heights.data().len() < 60) {
-            let receivers = drainage::over_bed(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
+            let receivers =
+                drainage::route_carving(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
             let drained = accumulate(&receivers);
             assert_eq!(area_exponent(&drained), None);
             assert_eq!(hack_exponent(&receivers, &drained, 10), None);

@@ -88,14 +88,14 @@ fn steepest_sets(rows: [&[f32]; 3], diagonals: &[f32], sets: &mut [u8]) {
     }
 }
 
-/// The same where each neighbour's drop counts as much as the row of its direction in `nearness` says.
-fn steepest_between(rows: [&[f32]; 3], nearness: [&[f32]; 8], sets: &mut [u8]) {
+/// The same where each neighbour's drop counts as much as the row of its direction in `inverse_distance` says.
+fn steepest_between(rows: [&[f32]; 3], inverse_distance: [&[f32]; 8], sets: &mut [u8]) {
     let count = sets.len() - 2;
     let middle = &rows[1][1..=count];
     let around = around(rows, count);
-    let nearness = nearness.map(|row| &row[..count]);
+    let inverse_distance = inverse_distance.map(|row| &row[..count]);
     for (i, set) in sets[1..=count].iter_mut().enumerate() {
-        *set = largest(&std::array::from_fn(|k| (middle[i] - around[k][i]) * nearness[k][i]));
+        *set = largest(&std::array::from_fn(|k| (middle[i] - around[k][i]) * inverse_distance[k][i]));
     }
 }
 

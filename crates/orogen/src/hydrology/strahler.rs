@@ -39,7 +39,8 @@ mod tests {
     #[test]
     fn orders_follow_from_the_inflows() {
         for heights in samples::grids() {
-            let receivers = drainage::over_bed(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
+            let receivers =
+                drainage::route_carving(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
             let accumulation = accumulate(&receivers);
             for threshold in [1, 4, 20] {
                 let orders = orders(&receivers, &accumulation, threshold);

@@ -37,9 +37,9 @@ pub struct StreamPower {
     /// U, in metres a year.
     pub uplift: f64,
     /// Rise over run that no slope exceeds: what is steeper slides.
-    pub steepest: f64,
+    pub max_slope: f64,
     /// Rise over run of ground that sediment has filled.
-    pub gentlest: f64,
+    pub min_slope: f64,
 }
 
 impl Default for StreamPower {
@@ -49,19 +49,19 @@ impl Default for StreamPower {
             area_exponent: 0.45,
             slope_exponent: 1.0,
             uplift: 2e-4,
-            steepest: 1.2,
-            gentlest: 1e-4,
+            max_slope: 1.2,
+            min_slope: 1e-4,
         }
     }
 }
 
 /// What differs from place to place: factors of the law's numbers, on the grid of the heights.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Ground<'a> {
+pub struct Substrate<'a> {
     /// Of the erodibility; 1 everywhere if there is none. Less than 0 counts as 0.
-    pub softness: Option<&'a Grid>,
+    pub erodibility_factor: Option<&'a Grid>,
     /// Of the uplift; 1 everywhere if there is none.
-    pub rise: Option<&'a Grid>,
+    pub uplift_factor: Option<&'a Grid>,
     /// Where each cell's height stands, which says how far it is from its receiver; on the lattice if there are none.
     pub points: Option<&'a Points>,
 }
@@ -71,7 +71,14 @@ impl StreamPower {
     ///
     /// Every other cell then stands higher than its receiver, so the result has no depressions and no flats. Costs O(cells), on
     /// as many threads as `drained` was counted by.
-    pub fn step(&self, heights: &mut Grid, receivers: &Receivers, drained: &Accumulation, ground: &Ground, years: f64) {
+    pub fn step(
+        &self,
+        heights: &mut Grid,
+        receivers: &Receivers,
+        drained: &Accumulation,
+        ground: &Substrate,
+        years: f64,
+    ) {
         let window = *heights.window();
         let step = Step::new(self, receivers, drained, ground, years);
         let (trunk, bands) = drained.parts();
@@ -115,8 +122,8 @@ impl StreamPower {
 struct Step<'a> {
     codes: &'a [u8],
     area: &'a [u32],
-    softness: Option<&'a [f32]>,
-    rise: Option<&'a [f32]>,
+    erodibility_factor: Option<&'a [f32]>,
+    uplift_factor: Option<&'a [f32]>,
     powers: Powers,
     slope_exponent: f64,
     /// By direction, years, erodibility and the way to the power -n, and the least and the most that a cell stands above its
@@ -133,13 +140,13 @@ impl<'a> Step<'a> {
         law: &StreamPower,
         receivers: &'a Receivers,
         drained: &'a Accumulation,
-        ground: &'a Ground,
+        ground: &'a Substrate,
         years: f64,
     ) -> Step<'a> {
         let cell = receivers.window().cell;
         let factors = |d: f64| {
             let factor = years * law.erodibility * libm::pow(d, -law.slope_exponent);
-            [factor, d * law.gentlest, d * law.steepest]
+            [factor, d * law.min_slope, d * law.max_slope]
         };
         // Between points, the factors of one cell: the way is found when it is known to which neighbour.
         let factors = match ground.points {
@@ -149,8 +156,8 @@ impl<'a> Step<'a> {
         Step {
             codes: receivers.codes(),
             area: drained.area.data(),
-            softness: ground.softness.map(Grid::data),
-            rise: ground.rise.map(Grid::data),
+            erodibility_factor: ground.erodibility_factor.map(Grid::data),
+            uplift_factor: ground.uplift_factor.map(Grid::data),
             powers: Powers::new(law.area_exponent, cell * cell),
             slope_exponent: law.slope_exponent,
             factors,
@@ -165,18 +172,25 @@ impl<'a> Step<'a> {
         let code = self.codes[c] & 7;
         let [mut factor, mut least, mut most] = self.factors[usize::from(code)];
         if let Some((points, strides)) = &self.points {
-            let nearness = f64::from(points.nearness(c, code, strides));
-            let away = 1.0 / nearness;
-            factor *= if self.slope_exponent == 1.0 { nearness } else { libm::pow(nearness, self.slope_exponent) };
+            let inverse_distance = f64::from(points.inverse_distance(c, code, strides));
+            let away = 1.0 / inverse_distance;
+            factor *= if self.slope_exponent == 1.0 {
+                inverse_distance
+            } else {
+                libm::pow(inverse_distance, self.slope_exponent)
+            };
             (least, most) = (least * away, most * away);
         }
-        let softness = self.softness.map_or(1.0, |factors| f64::from(factors[c]).max(0.0));
-        let rise = self.rise.map_or(1.0, |factors| f64::from(factors[c]));
+        let erodibility_factor = self.erodibility_factor.map_or(1.0, |factors| f64::from(factors[c]).max(0.0));
+        let uplift_factor = self.uplift_factor.map_or(1.0, |factors| f64::from(factors[c]));
         let below = f64::from(receiver);
-        let above = f64::from(before) + self.risen * rise - below;
-        let cut = factor * softness * self.powers.of(self.area[c]);
-        let left =
-            if self.slope_exponent == 1.0 { above / (1.0 + cut) } else { settled(above, cut, self.slope_exponent) };
+        let above = f64::from(before) + self.risen * uplift_factor - below;
+        let cut = factor * erodibility_factor * self.powers.of(self.area[c]);
+        let left = if self.slope_exponent == 1.0 {
+            above / (1.0 + cut)
+        } else {
+            solve_newton(above, cut, self.slope_exponent)
+        };
         // A landslide limit below the gentlest slope gives way to it. (What is no number counts as the limit, as with `min`.)
         let left = if left < most { left } else { most };
         let new = (below + if left > least { left } else { least }) as f32;
@@ -189,7 +203,7 @@ impl<'a> Step<'a> {
 ///
 /// Newton's method on a form that is convex, from above: it comes down to the root and never passes it.
 #[inline(never)]
-fn settled(above: f64, cut: f64, n: f64) -> f64 {
+fn solve_newton(above: f64, cut: f64, n: f64) -> f64 {
     if above <= 0.0 || !(above + cut).is_finite() {
         return above.min(0.0);
     }
@@ -245,12 +259,12 @@ mod tests {
         for n in [0.5, 0.8, 1.5, 2.0, 3.0] {
             for cut in [0.0, 1e-6, 0.3, 40.0, 1e5] {
                 for above in [1e-3, 1.0, 700.0] {
-                    let x = settled(above, cut, n);
+                    let x = solve_newton(above, cut, n);
                     let got = x + cut * libm::pow(x, n);
                     assert!((got - above).abs() < 1e-9 * above, "n {n}, cut {cut}, above {above}: {x} gives {got}");
                 }
             }
-            assert_eq!(settled(-3.0, 1.0, n), -3.0);
+            assert_eq!(solve_newton(-3.0, 1.0, n), -3.0);
         }
     }
 
@@ -268,10 +282,15 @@ mod tests {
         for (m, n) in [(0.45, 1.0), (0.5, 1.0), (0.9, 2.0), (0.4, 0.8)] {
             let (mut heights, receivers) = valley(60, 100.0);
             let drained = accumulate(&receivers);
-            let law =
-                StreamPower { area_exponent: m, slope_exponent: n, steepest: 1e9, gentlest: 0.0, ..Default::default() };
+            let law = StreamPower {
+                area_exponent: m,
+                slope_exponent: n,
+                max_slope: 1e9,
+                min_slope: 0.0,
+                ..Default::default()
+            };
             for _ in 0..400 {
-                law.step(&mut heights, &receivers, &drained, &Ground::default(), 1e5);
+                law.step(&mut heights, &receivers, &drained, &Substrate::default(), 1e5);
             }
             for c in 61..118 {
                 let slope = f64::from(heights.data()[c] - heights.data()[c + 1]) / 100.0;
@@ -287,13 +306,18 @@ mod tests {
         let (mut heights, receivers) = valley(5, 10.0);
         heights.row_mut(1).copy_from_slice(&[0.0, 30.0, 20.0, 12.0, 5.0]);
         let drained = accumulate(&receivers);
-        let (softness, rise) = (Grid::filled(*heights.window(), 0.5), Grid::filled(*heights.window(), 3.0));
+        let (erodibility_factor, uplift_factor) =
+            (Grid::filled(*heights.window(), 0.5), Grid::filled(*heights.window(), 3.0));
         let law = StreamPower { erodibility: 1e-3, area_exponent: 0.5, uplift: 1e-3, ..Default::default() };
         law.step(
             &mut heights,
             &receivers,
             &drained,
-            &Ground { softness: Some(&softness), rise: Some(&rise), points: None },
+            &Substrate {
+                erodibility_factor: Some(&erodibility_factor),
+                uplift_factor: Some(&uplift_factor),
+                points: None,
+            },
             100.0,
         );
         // F = 0.5 * 1e-3 * 100 * (cells * 100 m^2)^0.5 / 10 m = 0.05 sqrt(cells); 0.3 m of uplift.
@@ -310,11 +334,11 @@ mod tests {
     fn what_is_left_drains_as_it_did_and_nothing_is_too_steep() {
         for heights in samples::grids() {
             let outlets = Outlets::new(&heights, None);
-            let receivers = drainage::over_bed(&heights, &outlets, Descent::Steepest).receivers;
+            let receivers = drainage::route_carving(&heights, &outlets, Descent::Steepest).receivers;
             let drained = accumulate(&receivers);
             let mut eroded = heights.clone();
-            let law = StreamPower { steepest: 0.9, gentlest: 1e-3, ..Default::default() };
-            law.step(&mut eroded, &receivers, &drained, &Ground::default(), 1000.0);
+            let law = StreamPower { max_slope: 0.9, min_slope: 1e-3, ..Default::default() };
+            law.step(&mut eroded, &receivers, &drained, &Substrate::default(), 1000.0);
             for c in 0..heights.data().len() {
                 let (h, receiver) = (eroded.data()[c], receivers.of(c));
                 if receiver == c {
@@ -333,16 +357,17 @@ mod tests {
     #[test]
     fn hard_rock_stands_and_soft_rock_goes() {
         let heights = samples::hills(48, 40, 1);
-        let receivers = drainage::over_bed(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
+        let receivers = drainage::route_carving(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
         let drained = accumulate(&receivers);
-        let mean = |softness: f32| {
-            let (mut eroded, softness) = (heights.clone(), Grid::filled(*heights.window(), softness));
-            let law = StreamPower { steepest: 1e9, ..Default::default() };
+        let mean = |erodibility_factor: f32| {
+            let (mut eroded, erodibility_factor) =
+                (heights.clone(), Grid::filled(*heights.window(), erodibility_factor));
+            let law = StreamPower { max_slope: 1e9, ..Default::default() };
             law.step(
                 &mut eroded,
                 &receivers,
                 &drained,
-                &Ground { softness: Some(&softness), ..Ground::default() },
+                &Substrate { erodibility_factor: Some(&erodibility_factor), ..Substrate::default() },
                 3e4,
             );
             eroded.data().iter().map(|h| f64::from(*h)).sum::<f64>()

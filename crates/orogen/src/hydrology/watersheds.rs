@@ -36,7 +36,7 @@ mod tests {
     fn a_label_is_one_outlet_and_its_area() {
         for heights in samples::grids() {
             let outlets = Outlets::new(&heights, None);
-            let receivers = drainage::over_bed(&heights, &outlets, Descent::Steepest).receivers;
+            let receivers = drainage::route_carving(&heights, &outlets, Descent::Steepest).receivers;
             let accumulation = accumulate(&receivers);
             let labels = watersheds(&receivers, &outlets, &accumulation);
             let count = labels.data().iter().copied().max().unwrap_or(0);

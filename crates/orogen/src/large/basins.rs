@@ -42,7 +42,7 @@ pub fn drain(
     for t in 0..tiling.count() {
         progress.check()?;
         let basins = Basins::new(heights, codes, tiling, t, sea)?;
-        let (levels, ways) = basins.ways_out(&map.tile(t, &shares[t]));
+        let (levels, ways) = basins.spills(&map.tile(t, &shares[t]));
         let mut surface = basins.heights.clone();
         for (h, label) in surface.data_mut().iter_mut().zip(&basins.labels) {
             let level = levels[*label as usize];
@@ -164,7 +164,7 @@ impl Basins {
 
     /// The level of each basin, and where the receivers have to be turned around: the last cell of each basin before the pass
     /// that it drains over in this tile, and the code over it.
-    fn ways_out(&self, known: &Known) -> (Vec<f32>, Vec<(u32, u8)>) {
+    fn spills(&self, known: &Known) -> (Vec<f32>, Vec<(u32, u8)>) {
         let mut levels = vec![f32::NEG_INFINITY; self.count];
         let mut taken = known.taken.iter();
         let kept: Vec<&Branch> = self

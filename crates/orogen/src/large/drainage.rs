@@ -38,12 +38,12 @@ pub struct Water<'a> {
 
 impl Water<'_> {
     /// Writes the filled heights into `filled`, and into `codes` the receivers over the bed of depressions: what
-    /// [`hydrology::drainage::over_bed`](crate::hydrology::drainage::over_bed) and
+    /// [`hydrology::drainage::route_carving`](crate::hydrology::drainage::route_carving) and
     /// [`hydrology::fill::filled`](crate::hydrology::fill::filled) make.
     ///
     /// # Errors
     /// If the disk fails, or the work is cancelled.
-    pub fn over_bed(&self, codes: &mut Raster, filled: &mut Raster) -> Result<()> {
+    pub fn route_carving(&self, codes: &mut Raster, filled: &mut Raster) -> Result<()> {
         self.progress.expect((FLAT_PASSES + BASIN_PASSES) * self.tiling.count() as f64);
         flats::resolve(self.heights, &self.tiling, self.sea, codes, self.progress)?;
         basins::drain(self.heights, &self.tiling, self.sea, codes, filled, self.progress)
@@ -105,13 +105,13 @@ mod tests {
     fn check(heights: &Grid, side: usize, sea: Option<f32>, surface: bool) {
         let window = *heights.window();
         let outlets = Outlets::new(heights, sea);
-        let bed = drainage::over_bed(heights, &outlets, Descent::Steepest);
+        let bed = drainage::route_carving(heights, &outlets, Descent::Steepest);
         let full = fill::filled(heights, &bed.basins);
         let progress = Progress::default();
         let source = Raster::in_memory(heights.clone());
         let water = Water { heights: &source, sea, tiling: Tiling::new(window, side), progress: &progress };
         let (mut codes, mut filled) = (raster(&window), raster(&window));
-        water.over_bed(&mut codes, &mut filled).unwrap();
+        water.route_carving(&mut codes, &mut filled).unwrap();
         same(&filled, |c| full.data()[c], "filled");
         let mut receivers = bed.receivers;
         if surface {

@@ -60,10 +60,10 @@ struct Known {
 }
 
 impl Flats<'_> {
-    fn ground(&self, t: usize) -> Result<Ground<'_>> {
+    fn ground(&self, t: usize) -> Result<FlatTile<'_>> {
         self.progress.check()?;
         self.progress.advance(1.0);
-        Ground::new(self.heights, self.tiling, t, self.sea)
+        FlatTile::new(self.heights, self.tiling, t, self.sea)
     }
 
     fn measure(&self) -> Result<Known> {
@@ -97,7 +97,7 @@ impl Flats<'_> {
         tiles: &[usize],
         borders: &mut Borders,
         step: u64,
-        seeds: impl Fn(&Ground) -> Vec<u64>,
+        seeds: impl Fn(&FlatTile) -> Vec<u64>,
     ) -> Result<()> {
         let mut queue = Queue::new(self.tiling.count());
         tiles.iter().for_each(|t| queue.push(*t));
@@ -139,7 +139,7 @@ impl Flats<'_> {
 }
 
 /// A tile and two cells around it: its receivers by steepest descent, and the cells of flats in it and right beside it.
-struct Ground<'a> {
+struct FlatTile<'a> {
     tiling: &'a Tiling,
     heights: Grid,
     receivers: Receivers,
@@ -156,8 +156,8 @@ struct Ground<'a> {
 
 const NO_PLACE: u32 = u32::MAX;
 
-impl<'a> Ground<'a> {
-    fn new(heights: &Raster, tiling: &'a Tiling, t: usize, sea: Option<f32>) -> Result<Ground<'a>> {
+impl<'a> FlatTile<'a> {
+    fn new(heights: &Raster, tiling: &'a Tiling, t: usize, sea: Option<f32>) -> Result<FlatTile<'a>> {
         let (tile, beside, window) = (tiling.tile(t), tiling.near(t, 1), tiling.near(t, 2));
         let heights = heights.get(&window)?;
         let outlets = Outlets::new(&heights, sea);
@@ -179,7 +179,7 @@ impl<'a> Ground<'a> {
             }
         }
         let strides = strides(window.width);
-        Ok(Ground { tiling, heights, receivers, strides, flat, places, own, numbers })
+        Ok(FlatTile { tiling, heights, receivers, strides, flat, places, own, numbers })
     }
 
     /// The places of the flat neighbours of a cell that are as high, with their directions.

@@ -59,7 +59,7 @@ impl<'a> Streams<'a> {
             if let Some((to, next)) = streams.areas.next(&exit)
                 && let Some(on) = through[to].get(index)
             {
-                let way = streams.ways_out(t, k).then(on);
+                let way = streams.spills(t, k).then(on);
                 streams.ways[to][next] = streams.ways[to][next].longer(way);
             }
         }
@@ -67,7 +67,7 @@ impl<'a> Streams<'a> {
     }
 
     /// The longest way that comes out of an exit, to the cell that it drains to.
-    fn ways_out(&self, t: usize, k: usize) -> Way {
+    fn spills(&self, t: usize, k: usize) -> Way {
         let (tiling, exit) = (self.areas.tiling, &self.areas.exits[t][k]);
         let from = tiling.place(tiling.cell_of(&tiling.tile(t), exit.index as usize));
         let to = tiling.place(exit.to);
@@ -99,7 +99,7 @@ impl<'a> Streams<'a> {
                 let mut incoming = Border::filled(&tile.window, Way::default());
                 self.areas.each_inflow(t, |index, from, k| {
                     let longest = incoming.get(index).unwrap_or_default();
-                    incoming.set(index, longest.longer(self.ways_out(from, k)));
+                    incoming.set(index, longest.longer(self.spills(from, k)));
                 });
                 let ways = tile.ways(&incoming);
                 let left = (tile.window.x - window.x) as usize;
@@ -161,7 +161,8 @@ mod tests {
     fn strips_are_what_is_made_in_memory() {
         for heights in samples::grids().into_iter().filter(|heights| !heights.data().is_empty()) {
             let window = *heights.window();
-            let receivers = drainage::over_bed(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
+            let receivers =
+                drainage::route_carving(&heights, &Outlets::new(&heights, None), Descent::Steepest).receivers;
             let drained = accumulate(&receivers);
             let (orders, ways) = (strahler::orders(&receivers, &drained, 5), longest_ways(&receivers, &drained));
             let codes = receivers.codes().iter().map(|code| f32::from(*code)).collect();

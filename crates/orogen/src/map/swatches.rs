@@ -2,7 +2,7 @@
 
 use super::canvas::{Canvas, Ink};
 use super::shade::Shade;
-use super::text::{Face, Lettering, Style};
+use super::text::{BuiltinFont, Face, Style};
 use crate::analysis::slope::gradients_between;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
@@ -47,18 +47,18 @@ pub fn draw(swatches: &[Swatch]) -> Result<Canvas> {
     let width = 2 * MARGIN + COLUMNS * COLUMN + (COLUMNS - 1) * GUTTER;
     let mut page = Page {
         canvas: Canvas::new(width, HEADER + rows * ROW + MARGIN, PAPER),
-        lettering: Lettering::new()?,
+        font: BuiltinFont::new()?,
         encoder: Encoder::new(),
         ground: ground(),
     };
     let style = |face, size, ink| Style { face, size, ink };
-    page.lettering.write(&mut page.canvas, MARGIN as f32, 54, "Palettes", style(Face::Bold, 30.0, INK));
+    page.font.write(&mut page.canvas, MARGIN as f32, 54, "Palettes", style(Face::Bold, 30.0, INK));
     let x = (MARGIN + 146) as f32;
     let note = "each as a bar from the lowest to the highest, and on an island";
-    let end = page.lettering.write(&mut page.canvas, x, 54, note, style(Face::Regular, 15.0, SOFT));
+    let end = page.font.write(&mut page.canvas, x, 54, note, style(Face::Regular, 15.0, SOFT));
     page.dot(end as i64 + 30, 49);
     let told = "colour-blind people can tell its heights apart";
-    page.lettering.write(&mut page.canvas, end + 42.0, 54, told, style(Face::Regular, 15.0, SOFT));
+    page.font.write(&mut page.canvas, end + 42.0, 54, told, style(Face::Regular, 15.0, SOFT));
     for (k, swatch) in swatches.iter().enumerate() {
         // Down the first column, then down the second.
         let (column, row) = (k / rows.max(1), k % rows.max(1));
@@ -69,7 +69,7 @@ pub fn draw(swatches: &[Swatch]) -> Result<Canvas> {
 
 struct Page {
     canvas: Canvas,
-    lettering: Lettering,
+    font: BuiltinFont,
     encoder: Encoder,
     ground: Grid,
 }
@@ -79,12 +79,12 @@ impl Page {
         let name = Style { face: Face::Bold, size: 17.0, ink: INK };
         let about = Style { face: Face::Regular, size: 13.0, ink: SOFT };
         let (x, y) = (left as i64, top as i64);
-        let end = self.lettering.write(&mut self.canvas, left as f32, y + 15, &swatch.palette.name, name);
+        let end = self.font.write(&mut self.canvas, left as f32, y + 15, &swatch.palette.name, name);
         if swatch.safe {
             self.dot(end as i64 + 12, y + 9);
         }
-        let cut = shortened(&self.lettering, &swatch.about, about, BAR[0] as f32);
-        self.lettering.write(&mut self.canvas, left as f32, y + 33, &cut, about);
+        let cut = shortened(&self.font, &swatch.about, about, BAR[0] as f32);
+        self.font.write(&mut self.canvas, left as f32, y + 33, &cut, about);
         self.bar(&swatch.palette, x, y + 42);
         self.picture(&swatch.palette, x + (COLUMN - PICTURE[0]) as i64, y + 6);
     }
@@ -151,8 +151,8 @@ impl Page {
 }
 
 /// As much of a text as there is room for.
-fn shortened(lettering: &Lettering, text: &str, style: Style, width: f32) -> String {
-    words::shortened(text, width, |text| lettering.width(text, style))
+fn shortened(font: &BuiltinFont, text: &str, style: Style, width: f32) -> String {
+    words::shortened(text, width, |text| font.width(text, style))
 }
 
 /// An island with two summits, a border of one sample around it.

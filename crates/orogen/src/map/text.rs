@@ -32,18 +32,18 @@ pub struct Style {
 
 /// The font, ready to write with.
 #[derive(Debug)]
-pub struct Lettering {
+pub struct BuiltinFont {
     faces: [FontRef<'static>; 3],
 }
 
-impl Lettering {
+impl BuiltinFont {
     /// Takes the font that comes with the library.
-    pub fn new() -> Result<Lettering> {
+    pub fn new() -> Result<BuiltinFont> {
         let face = |bytes: &'static [u8]| {
             let broken = |cause| Error::new(ErrorKind::File, format!("the built-in font cannot be read: {cause}"));
             FontRef::try_from_slice(bytes).map_err(broken)
         };
-        Ok(Lettering {
+        Ok(BuiltinFont {
             faces: [
                 face(include_bytes!("../../assets/orogen-sans-regular.ttf"))?,
                 face(include_bytes!("../../assets/orogen-sans-bold.ttf"))?,
@@ -148,12 +148,12 @@ mod tests {
 
     #[test]
     fn letters_stand_on_their_line_and_are_as_long_as_told() {
-        let lettering = Lettering::new().unwrap();
+        let font = BuiltinFont::new().unwrap();
         for face in [Face::Regular, Face::Bold, Face::Italic] {
             let style = Style { face, ..PLAIN };
             let mut canvas = Canvas::new(200, 60, [255; 3]);
-            let end = lettering.write(&mut canvas, 10.0, 40, "HEIGHT", style);
-            assert_eq!(end, 10.0 + lettering.width("HEIGHT", style));
+            let end = font.write(&mut canvas, 10.0, 40, "HEIGHT", style);
+            assert_eq!(end, 10.0 + font.width("HEIGHT", style));
             let [left, right, top, bottom] = inked(&canvas).unwrap();
             assert!((9..=13).contains(&left) && (right as f32 - end).abs() < 4.0, "{left} {right} {end}");
             // Capitals are some seven tenths of an em high, and G and the like reach a hair below the line.
@@ -163,52 +163,52 @@ mod tests {
 
     #[test]
     fn smoothed_and_kerned() {
-        let lettering = Lettering::new().unwrap();
+        let font = BuiltinFont::new().unwrap();
         let mut canvas = Canvas::new(60, 40, [255; 3]);
-        lettering.write(&mut canvas, 5.3, 30, "O", PLAIN);
+        font.write(&mut canvas, 5.3, 30, "O", PLAIN);
         let greys = (0..60).flat_map(|x| (0..40).map(move |y| (x, y)));
         let greys: Vec<u8> = greys.filter_map(|(x, y)| canvas.get(x, y)).map(|[grey, ..]| grey).collect();
         assert!(greys.contains(&0) && greys.iter().filter(|&&grey| grey > 40 && grey < 215).count() > 20);
-        let apart = lettering.width("A", PLAIN) + lettering.width("V", PLAIN);
-        assert!(lettering.width("AV", PLAIN) < apart - 0.5);
+        let apart = font.width("A", PLAIN) + font.width("V", PLAIN);
+        assert!(font.width("AV", PLAIN) < apart - 0.5);
     }
 
     #[test]
     fn the_same_bits_at_any_whole_pixel_and_none_off_the_page() {
-        let lettering = Lettering::new().unwrap();
+        let font = BuiltinFont::new().unwrap();
         let draw = |x: f32| {
             let mut canvas = Canvas::new(4200, 30, [255; 3]);
-            lettering.write(&mut canvas, x, 22, "Ridged, k = 10", PLAIN);
+            font.write(&mut canvas, x, 22, "Ridged, k = 10", PLAIN);
             canvas
         };
         let (near, far) = (draw(7.25), draw(4007.25));
         assert!((0..190).all(|x| (0..30).all(|y| near.get(x, y) == far.get(x + 4000, y))));
         let mut canvas = Canvas::new(9, 9, [255; 3]);
         for (x, y) in [(-1e9, 5), (1e9, 5), (0.0, 4000), (1e30, i64::MAX), (f32::NAN, 3)] {
-            lettering.write(&mut canvas, x, y, "gone", PLAIN);
+            font.write(&mut canvas, x, y, "gone", PLAIN);
         }
     }
 
     #[test]
     fn lines_are_cut_at_spaces() {
-        let lettering = Lettering::new().unwrap();
+        let font = BuiltinFont::new().unwrap();
         let text = "heights from black to white, and an extraordinarilylongword among them";
-        let lines = lettering.wrap(text, PLAIN, 120.0);
+        let lines = font.wrap(text, PLAIN, 120.0);
         assert_eq!(lines.join(" "), text);
         assert!(lines.len() > 4);
         for line in &lines {
-            assert!(lettering.width(line, PLAIN) <= 120.0 || !line.contains(' '), "{line}");
+            assert!(font.width(line, PLAIN) <= 120.0 || !line.contains(' '), "{line}");
         }
-        assert!(lettering.wrap("  ", PLAIN, 50.0).is_empty());
+        assert!(font.wrap("  ", PLAIN, 50.0).is_empty());
     }
 
     #[test]
     fn every_letter_that_labels_may_need_is_there() {
-        let lettering = Lettering::new().unwrap();
+        let font = BuiltinFont::new().unwrap();
         for face in [Face::Regular, Face::Bold, Face::Italic] {
             for letter in ('!'..='~').chain("äöüßéñøŁčλμ∑°±²·×–—’“”…−≈≤≥√".chars())
             {
-                assert_ne!(lettering.face(face).glyph_id(letter).0, 0, "{letter}");
+                assert_ne!(font.face(face).glyph_id(letter).0, 0, "{letter}");
             }
         }
     }

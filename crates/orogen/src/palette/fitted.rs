@@ -11,12 +11,12 @@ const ENTRIES: [f64; 2] = [256.0, 16_384.0];
 #[derive(Debug, Clone)]
 pub struct Fitted {
     /// Pieces without a hard step within, from below; each begins at the height named.
-    pieces: Vec<Piece>,
+    pieces: Vec<Segment>,
     missing: Light,
 }
 
 #[derive(Debug, Clone)]
-struct Piece {
+struct Segment {
     /// The lowest height that is its own.
     from: f32,
     start: f64,
@@ -24,7 +24,7 @@ struct Piece {
     table: Vec<Light>,
 }
 
-impl Piece {
+impl Segment {
     fn at(&self, height: f32) -> Light {
         let last = self.table.len() - 1;
         let at = ((f64::from(height) - self.start) * self.per_metre).clamp(0.0, last as f64);
@@ -53,7 +53,7 @@ impl Fitted {
         // Kinds of positions may be mixed in one file; the sort keeps the order of those at one place.
         stops.sort_by(|a, b| a.0.total_cmp(&b.0));
         let missing = palette.missing.unwrap_or(NO_DATA).map(decode);
-        let mut pieces: Vec<Piece> = Vec::new();
+        let mut pieces: Vec<Segment> = Vec::new();
         if let Some(below) = palette.below {
             pieces.push(flat(f32::NEG_INFINITY, below));
         }
@@ -103,8 +103,8 @@ fn reached(height: f64) -> f32 {
     if f64::from(near) >= height { near } else { near.next_up() }
 }
 
-fn flat(from: f32, color: Rgb) -> Piece {
-    Piece { from, start: 0.0, per_metre: 0.0, table: vec![color.map(decode)] }
+fn flat(from: f32, color: Rgb) -> Segment {
+    Segment { from, start: 0.0, per_metre: 0.0, table: vec![color.map(decode)] }
 }
 
 /// Entries that a table over so many metres needs.
@@ -112,7 +112,7 @@ fn entries(length: f64, narrowest: f64) -> f64 {
     (length / narrowest * PER_STRETCH).ceil()
 }
 
-fn piece(from: f32, stops: &[(f64, Rgb)], mix: Mix) -> Piece {
+fn piece(from: f32, stops: &[(f64, Rgb)], mix: Mix) -> Segment {
     let ([first, .., last], true) = (stops, stops.len() > 1) else {
         return flat(from, stops.first().map_or([0; 3], |stop| stop.1));
     };
@@ -128,7 +128,7 @@ fn piece(from: f32, stops: &[(f64, Rgb)], mix: Mix) -> Piece {
         let ((start, from), (end, to)) = (stops[at], stops[at + 1]);
         mixed(from, to, ((height - start) / (end - start)).clamp(0.0, 1.0) as f32, mix)
     });
-    Piece { from, start: first.0, per_metre: (entries / length).min(1e30), table: table.collect() }
+    Segment { from, start: first.0, per_metre: (entries / length).min(1e30), table: table.collect() }
 }
 
 /// The colour between two.

@@ -1,9 +1,9 @@
 //! A recipe in memory: the world, its nodes and its outputs.
 
 use crate::declare::Input;
-use crate::dem::ground::Ground;
-use crate::dem::held::Imported;
+use crate::dem::file_ref::FileRef;
 use crate::dem::open;
+use crate::dem::prepared::PreparedDem;
 use crate::dem::square::metres_of_degrees;
 use crate::error::{Diagnostic, Error, ErrorKind, Result};
 use crate::field::dem::Dem;
@@ -176,9 +176,11 @@ impl Recipe {
     }
 
     /// Says which folder the paths in it count from: that of its file.
-    pub fn lies_in(&mut self, folder: &Path) {
+    pub fn set_base_dir(&mut self, folder: &Path) {
         let nodes = self.nodes.iter_mut().flat_map(|named| named.node.files());
-        nodes.chain(self.surfaces.iter_mut().filter_map(Surface::picture_mut)).for_each(|file| file.lies_in(folder));
+        nodes
+            .chain(self.surfaces.iter_mut().filter_map(Surface::picture_mut))
+            .for_each(|file| file.set_base_dir(folder));
     }
 
     /// The files that its nodes and surfaces name, and those that these are composed of.
@@ -186,7 +188,7 @@ impl Recipe {
         let mut nodes: Vec<Node> = self.nodes.iter().map(|named| named.node.clone()).collect();
         let files = nodes.iter_mut().flat_map(Node::files).filter(|file| !file.is_empty()).map(|file| file.path());
         let files: Vec<PathBuf> =
-            files.chain(self.surfaces.iter().filter_map(Surface::picture).map(Imported::path)).collect();
+            files.chain(self.surfaces.iter().filter_map(Surface::picture).map(FileRef::path)).collect();
         files.iter().flat_map(|path| open::files(path)).collect()
     }
 
@@ -196,7 +198,7 @@ impl Recipe {
     /// If one cannot be read: with the node that names it, and its place if the recipe was read from a text.
     pub fn load(&mut self, allowed: u64) -> Result<()> {
         // One file may be heights to one node and a picture to another.
-        let mut known: BTreeMap<(PathBuf, bool, Option<u32>), Arc<Ground>> = BTreeMap::new();
+        let mut known: BTreeMap<(PathBuf, bool, Option<u32>), Arc<PreparedDem>> = BTreeMap::new();
         self.held = 0;
         for NamedNode { name, node, .. } in &mut self.nodes {
             let band = match node {
@@ -207,8 +209,8 @@ impl Recipe {
                 let path = (file.path(), file.is_picture(), band);
                 let left = allowed.saturating_sub(self.held);
                 let read = || match path.1 {
-                    true => Ground::picture(&path.0, left),
-                    false => Ground::read(&path.0, None, Request { band, allowed: left }),
+                    true => PreparedDem::picture(&path.0, left),
+                    false => PreparedDem::read(&path.0, None, Request { band, allowed: left }),
                 };
                 let ground = match file.ground().or(known.get(&path)) {
                     Some(ground) => Arc::clone(ground),
@@ -291,13 +293,13 @@ impl Recipe {
     }
 
     /// A recipe of nothing but a real place at hand, which makes its very samples.
-    pub fn of_place(path: &Path, ground: &Arc<Ground>) -> Recipe {
+    pub fn from_dem(path: &Path, ground: &Arc<PreparedDem>) -> Recipe {
         let window = *ground.grid.window();
         let size = [window.width, window.height].map(|samples| samples as f64 * window.cell);
         let mut recipe = Recipe::new(WorldSpec { size: Some(size), cell: window.cell, ..WorldSpec::default() });
         let (path, band) = open::split(path);
-        let mut file = Imported::from(path.to_string_lossy().as_ref());
-        file.lies_in(Path::new(""));
+        let mut file = FileRef::from(path.to_string_lossy().as_ref());
+        file.set_base_dir(Path::new(""));
         file.hold(Arc::clone(ground));
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
         recipe.about = format!("Heights of {name}");

@@ -40,7 +40,7 @@ impl Recipe {
         match String::from_utf8(bytes) {
             Ok(text) => {
                 let mut recipe = Recipe::parse(&text, &path.display().to_string())?;
-                recipe.lies_in(path.parent().unwrap_or(Path::new("")));
+                recipe.set_base_dir(path.parent().unwrap_or(Path::new("")));
                 Ok(recipe)
             }
             Err(diagnostic) => Err(Error::new(
@@ -313,13 +313,13 @@ impl Walk<'_> {
         };
         let spec = node.spec();
         let (mut seen, mut mask) = (HashSet::new(), Input::None);
-        let is_known = |name: &str| {
-            spec.inputs.iter().any(|input| input.name == name) || spec.params.iter().any(|param| param.name == name)
-        };
+        let is_known = |name: &str| spec.input_named(name).is_some() || spec.param_named(name).is_some();
         let entries: Vec<(Spanned<String>, &Spanned<Value>)> = (entries.iter())
             .map(|(key, value)| {
                 let other = respelled(&key.value).filter(|other| !is_known(&key.value) && is_known(other));
-                (Spanned { value: other.unwrap_or_else(|| key.value.clone()), span: key.span.clone() }, value)
+                let name = other.unwrap_or_else(|| key.value.clone());
+                let alias = spec.aliases().find(|(alias, _)| *alias == name).map(|(_, name)| name.to_string());
+                (Spanned { value: alias.unwrap_or(name), span: key.span.clone() }, value)
             })
             .collect();
         for (key, value) in &entries {
@@ -329,11 +329,11 @@ impl Walk<'_> {
             if key.value == "mask" {
                 self.places.insert((index, "mask"), value.span.clone());
                 mask = self.input("mask", value);
-            } else if let Some(i) = spec.inputs.iter().position(|input| input.name == key.value) {
+            } else if let Some(i) = spec.input_named(&key.value) {
                 self.places.insert((index, spec.inputs[i].name), value.span.clone());
                 let input = self.input(spec.inputs[i].name, value);
                 node.set_input(i, input);
-            } else if let Some(i) = spec.params.iter().position(|param| param.name == key.value) {
+            } else if let Some(i) = spec.param_named(&key.value) {
                 self.places.insert((index, spec.params[i].name), value.span.clone());
                 match node.set_param(i, &value.value) {
                     Ok(()) => self.remember(&mut node, value),

@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 pub static WORLD: &[ParamSpec] = &[
     ParamSpec {
         name: "seed",
+        alias: "",
         doc: "The seed of the world. Every node's own seed is hashed with it.",
         unit: "",
         shape: Shape::Seed,
@@ -19,6 +20,7 @@ pub static WORLD: &[ParamSpec] = &[
     },
     ParamSpec {
         name: "size",
+        alias: "",
         doc: "Extent of the world east and south, [width, height], or one number for a square. Left out: a world without \
               bounds, which solvers cannot work in.",
         unit: "m",
@@ -27,6 +29,7 @@ pub static WORLD: &[ParamSpec] = &[
     },
     ParamSpec {
         name: "cell",
+        alias: "",
         doc: "From one sample to the next of the world's own lattice, on which solvers work. Left out: a 1024th of the longer \
               side, or 10 m in a world without bounds.",
         unit: "m",
@@ -35,6 +38,7 @@ pub static WORLD: &[ParamSpec] = &[
     },
     ParamSpec {
         name: "sea_level",
+        alias: "",
         doc: "Height of the sea's surface.",
         unit: "m",
         shape: Shape::Number,
@@ -42,6 +46,7 @@ pub static WORLD: &[ParamSpec] = &[
     },
     ParamSpec {
         name: "crs",
+        alias: "",
         doc: "The coordinate reference system that the world lies in, by its EPSG code, with `origin`: GeoTIFF, GeoJSON and other files with \
               coordinates carry it. Left out: metres of the world's own, or the system of the heights that a node `dem` reads.",
         unit: "",
@@ -50,6 +55,7 @@ pub static WORLD: &[ParamSpec] = &[
     },
     ParamSpec {
         name: "origin",
+        alias: "",
         doc: "East and north of the world's north-west corner in the units of `crs`; longitude and latitude where these are degrees.",
         unit: "",
         shape: Shape::Pair,
@@ -220,6 +226,13 @@ fn op_schema(node: &Node) -> Json {
         let schema = param_schema(param, Some(&node.param(i)));
         properties.extend(spellings(param.name).into_iter().map(|name| (name, schema.clone())));
     }
+    for (alias, name) in spec.aliases() {
+        if let Some(mut schema) = properties.get(name).cloned() {
+            schema["description"] = json!(format!("The former name of `{name}`."));
+            schema["deprecated"] = json!(true);
+            properties.insert(alias.into(), schema);
+        }
+    }
     properties.insert("mask".into(), mask_schema());
     let required: Vec<&str> =
         ["op"].into_iter().chain(spec.inputs.iter().filter(|input| input.required).map(|input| input.name)).collect();
@@ -320,7 +333,8 @@ mod tests {
                 let cases = taken(&schema, &op);
                 assert_eq!(cases.len(), 1, "{op}");
                 let inputs = spec.inputs.iter().map(|input| input.name);
-                for key in inputs.chain(spec.params.iter().map(|param| param.name)).flat_map(spellings) {
+                let keys = inputs.chain(spec.params.iter().map(|param| param.name)).flat_map(spellings);
+                for key in keys.chain(spec.aliases().map(|(alias, _)| alias.to_string())) {
                     let read = !diagnostic(&format!("op = \"{op}\"\n{key} = 1")).contains("unknown key");
                     assert_eq!(read, !cases[0]["properties"][&key].is_null(), "{op}.{key}");
                 }

@@ -57,7 +57,7 @@ pub(super) struct Look {
 
 /// The ground of a land, ready to be looked at.
 #[derive(Debug, Clone)]
-pub(super) struct Ground {
+pub(super) struct GroundCover {
     colors: Colors,
     tint: Tint,
     /// Of each sample: slope east and south (metres a metre), how hollow it is (-1 to 1), how much flows through (0 to 1).
@@ -88,9 +88,9 @@ const PAPER: f32 = 0.55;
 /// The same of ground without a height: a middle grey, darker than snow.
 const MISSING: f32 = 0.3;
 
-impl Ground {
+impl GroundCover {
     /// The ground of a land. The map's tint goes by `palette`; snow begins at `snow_line`, in metres, or where it suits the relief.
-    pub fn new(land: &Land, relief: &Relief, dress: &Dress) -> Ground {
+    pub fn new(land: &Land, relief: &Relief, dress: &Dress) -> GroundCover {
         let Dress { colors, palette, cover, snow_line } = *dress;
         let [columns, rows] = relief.samples();
         let (base, top) = (relief.height_of(0.0), relief.height_of(relief.highest()));
@@ -99,7 +99,7 @@ impl Ground {
         let snow = snow_line.unwrap_or(if rise < SNOW_RELIEF { f64::INFINITY } else { base + SNOW_SHARE * rise });
         let tree = if snow.is_finite() { base + TREE_SHARE / SNOW_SHARE * (snow - base) } else { f64::INFINITY };
         let sea = land.sea_level.unwrap_or(f64::MIN) as f32;
-        Ground {
+        GroundCover {
             colors,
             tint: match palette {
                 Some(palette) => Tint::of(palette, land.heights, sea),
@@ -390,12 +390,16 @@ mod tests {
     use crate::grid::Window;
 
     /// A ramp that faces south, `rise` metres a metre, from 0 to 4000 m.
-    fn ground(rise: f32, colors: Colors, snow_line: Option<f64>) -> Ground {
+    fn ground(rise: f32, colors: Colors, snow_line: Option<f64>) -> GroundCover {
         let window = Window::new(5, 401, 10.0 / f64::from(rise));
         let data = (0..window.len()).map(|at| 4000.0 - 10.0 * (at / 5) as f32).collect();
         let heights = Grid::from_data(window, data).unwrap();
         let land = Land { heights: &heights, surface: None, flow: None, sea_level: None };
-        Ground::new(&land, &Relief::new(&land, 1.0).unwrap(), &Dress { colors, palette: None, cover: None, snow_line })
+        GroundCover::new(
+            &land,
+            &Relief::new(&land, 1.0).unwrap(),
+            &Dress { colors, palette: None, cover: None, snow_line },
+        )
     }
 
     #[test]
@@ -409,7 +413,7 @@ mod tests {
         let relief = Relief::new(&land, 1.0).unwrap();
         for colors in [Colors::Natural, Colors::Desert, Colors::Surfaces, Colors::Map, Colors::Clay] {
             let dress = Dress { colors, palette: None, cover: Some([&layer; 4]), snow_line: None };
-            let ground = Ground::new(&land, &relief, &dress);
+            let ground = GroundCover::new(&land, &relief, &dress);
             let albedo = |x: f64, y: f64| ground.look(&Site { x, y, height: 3600.0, footprint: 1e6 }).albedo;
             let [red, green, blue] = albedo(4.3, 3.7);
             assert!(red == green && green == blue && (0.15..0.3).contains(&red), "{colors:?}: {red} {green} {blue}");

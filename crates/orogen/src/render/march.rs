@@ -29,7 +29,7 @@ impl Ray {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Surface {
     /// The ground.
-    Ground,
+    GroundCover,
     /// Water of a sea or a lake.
     Water,
     /// The side of the block that the land is cut out as, below the ground's edge; its outward normal points west or east, or
@@ -218,7 +218,7 @@ impl Relief {
                 return Some((enter + s, Surface::Water));
             }
         }
-        ground.map(|s| (enter + s, Surface::Ground))
+        ground.map(|s| (enter + s, Surface::GroundCover))
     }
 
     /// The steepest rise (z per cell of way) to any ground along the level direction (dx, dy) of length 1, seen from a place and no
@@ -377,7 +377,7 @@ mod tests {
         for (k, along) in directions().enumerate() {
             let from = Vector::new(-5.0 + k as f64, 12.5, 20.0);
             let ray = Ray { from, along };
-            let found = rough.hit(&ray, 0.0).filter(|hit| hit.surface == Surface::Ground);
+            let found = rough.hit(&ray, 0.0).filter(|hit| hit.surface == Surface::GroundCover);
             // Feeling one's way in steps of a thousandth.
             let felt = (0..90_000).map(|step| f64::from(step) / 1000.0).find(|&t| {
                 let place = ray.at(t);
@@ -439,12 +439,12 @@ mod tests {
         let down = |x: f64| relief.hit(&ray([x, 1.0, 9.0], [0.0, 0.0, -1.0]), 0.0).unwrap();
         assert_eq!((down(0.5).surface, down(0.5).distance), (Surface::Water, 6.0));
         assert_eq!((down(1.25).surface, down(1.25).distance), (Surface::Water, 6.0));
-        assert_eq!((down(1.75).surface, down(1.75).distance), (Surface::Ground, 4.5));
+        assert_eq!((down(1.75).surface, down(1.75).distance), (Surface::GroundCover, 4.5));
         let west = |z: f64| relief.hit(&ray([-2.0, 1.0, z], [1.0, 0.0, 0.0]), 0.0).unwrap();
         assert_eq!((west(2.0).surface, west(2.0).distance), (Surface::WaterSide, 2.0));
         assert_eq!(west(-0.5).surface, Surface::Side);
         assert_eq!(west(-0.5).normal, Vector::new(-1.0, 0.0, 0.0));
-        assert_eq!((west(4.5).surface, west(4.5).distance), (Surface::Ground, 3.75));
+        assert_eq!((west(4.5).surface, west(4.5).distance), (Surface::GroundCover, 3.75));
         assert_eq!(relief.hit(&ray([-2.0, 1.0, 7.0], [1.0, 0.0, 0.0]), 0.0), None);
         assert_eq!(relief.hit(&ray([0.5, 1.0, 9.0], [0.0, 0.0, 1.0]), 0.0), None);
     }

@@ -4,12 +4,12 @@ use rayon::prelude::*;
 
 use super::camera::{Camera, Frame, folded};
 pub use super::ground::Colors;
-use super::ground::{Dress, Ground};
+use super::ground::{Dress, GroundCover};
 use super::march::{Hit, Ray, Surface};
 use super::relief::{Land, Relief};
 use super::sky::{Haze, SUN_RADIUS, Sky};
 use super::skylight::Skylight;
-use super::tone::film;
+use super::tone::tone_map;
 use super::vector::Vector;
 use super::water::Water;
 use crate::error::{Error, ErrorKind, Result};
@@ -88,7 +88,7 @@ const CLEAR_AROUND: f64 = 1.0;
 #[derive(Debug, Clone)]
 pub struct Scene {
     pub(super) relief: Relief,
-    pub(super) ground: Ground,
+    pub(super) ground: GroundCover,
     pub(super) water: Water,
     pub(super) sky: Sky,
     pub(super) skylight: Skylight,
@@ -149,7 +149,7 @@ impl Scene {
         }
         let Style { colors, palette, cover, snow_line, .. } = *style;
         let dress = Dress { colors, palette, cover, snow_line };
-        let ground = Ground::new(land, &relief, &dress);
+        let ground = GroundCover::new(land, &relief, &dress);
         painting.finish();
         progress.check()?;
         let [east, south] = relief.reach();
@@ -238,7 +238,7 @@ impl Scene {
                     let [u, v] = spot(k);
                     let ray = camera.ray((i as f64 + u) / width as f64, (j as f64 + v) / height as f64);
                     let light = self.light(&ray, pixel);
-                    let shown = film(std::array::from_fn(|c| light[c] * self.exposure[c]));
+                    let shown = tone_map(std::array::from_fn(|c| light[c] * self.exposure[c]));
                     sum.iter_mut().zip(shown).for_each(|(sum, c)| *sum += c);
                 }
                 bytes.copy_from_slice(&self.encoder.bytes(sum.map(|c| c / self.samples as f32)));

@@ -31,7 +31,7 @@ impl Scene {
     /// The light that what was met sends back; `mirrors` says whether water shows what stands behind it.
     pub(super) fn shade(&self, met: &Met, pixel: f64, mirrors: bool) -> Light {
         match met.surface {
-            Seen::Land(Surface::Ground) => self.shade_ground(met, pixel),
+            Seen::Land(Surface::GroundCover) => self.shade_ground(met, pixel),
             Seen::Land(Surface::Water) => self.shade_water(met, pixel, mirrors),
             Seen::Land(surface) => self.shade_side(met, surface),
             Seen::Table => self.shade_table(met),
@@ -99,14 +99,14 @@ impl Scene {
         let away = away.unit();
         let reflected = Ray { from: met.place, along: away };
         let behind = if mirrors { self.relief.hit(&reflected, 0.1) } else { None };
-        let behind = match behind.filter(|hit| hit.surface == Surface::Ground) {
+        let behind = match behind.filter(|hit| hit.surface == Surface::GroundCover) {
             Some(hit) => {
                 let there = Met {
                     distance: met.distance + hit.distance,
                     place: reflected.at(hit.distance),
                     along: away,
                     flip: met.flip,
-                    surface: Seen::Land(Surface::Ground),
+                    surface: Seen::Land(Surface::GroundCover),
                     normal: Vector::UP,
                 };
                 let light = self.shade_ground(&there, pixel * 2.0);

@@ -6,7 +6,7 @@ use crate::palette::color::Light;
 ///
 /// S. Hill's fit of the Academy's reference rendering and output transforms (ACES, 2014), with its mixing of the three colours,
 /// which lets bright light pale as it does on film. `light` is what is seen, 1 where a white sheet in the sun is.
-pub(super) fn film(light: Light) -> Light {
+pub(super) fn tone_map(light: Light) -> Light {
     let [r, g, b] = light.map(|c| c.max(0.0));
     let mixed = [
         0.597_19 * r + 0.354_58 * g + 0.048_23 * b,
@@ -25,26 +25,26 @@ pub(super) fn film(light: Light) -> Light {
 
 #[cfg(test)]
 mod tests {
-    use super::film;
+    use super::tone_map;
 
     #[test]
     fn greys_stay_grey_and_keep_their_order() {
         let mut before = -1.0;
         for step in 0..400 {
             let light = step as f32 * step as f32 / 4000.0;
-            let [r, g, b] = film([light; 3]);
+            let [r, g, b] = tone_map([light; 3]);
             assert!((r - g).abs() < 0.004 && (b - g).abs() < 0.004, "{light}: {r} {g} {b}");
             assert!(g >= before && (0.0..=1.0).contains(&g));
             before = g;
         }
         assert!(before > 0.99, "{before}");
-        assert_eq!(film([0.0; 3]), [0.0; 3]);
+        assert_eq!(tone_map([0.0; 3]), [0.0; 3]);
     }
 
     #[test]
     fn bright_colours_pale() {
-        let [r, g, b] = film([0.2, 0.1, 0.05]);
-        let [bright_r, bright_g, bright_b] = film([20.0, 10.0, 5.0]);
+        let [r, g, b] = tone_map([0.2, 0.1, 0.05]);
+        let [bright_r, bright_g, bright_b] = tone_map([20.0, 10.0, 5.0]);
         assert!(b / r < bright_b / bright_r && g / r < bright_g / bright_r && bright_b > 0.8);
     }
 }

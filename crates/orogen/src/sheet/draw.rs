@@ -1,8 +1,8 @@
 //! A map sheet: heights, and all that belongs to a map of them, on a page.
 
+use super::font_set::FontSet;
 use super::furniture::{COLORS, Desk, Entry, LEGEND_ROWS, Sign, colors_block, legend_block, north_block, scale_block};
 use super::layout::{Block, Layout};
-use super::letters::Letters;
 use super::linework::Linework;
 use super::options::{Coloring, Options, Page, SurfaceEntry};
 use super::overlay::Below;
@@ -21,7 +21,7 @@ use crate::progress::Progress;
 pub struct Sheet {
     /// What is on it.
     pub scene: Scene,
-    /// Letters of its title that no font at hand has; they are left out.
+    /// FontSet of its title that no font at hand has; they are left out.
     pub lacking: Vec<char>,
     /// Metres from one contour to the next, if there are contours.
     pub interval: Option<f64>,
@@ -47,7 +47,7 @@ pub fn draw(heights: &Grid, options: &Options, progress: &Progress) -> Result<Sh
         return Err(Error::new(ErrorKind::Request, message));
     }
     let [water, painting, drawing] = progress.parts([4.0, 1.0, 1.0]);
-    let letters = Letters::for_texts([options.title.as_str(), options.about.as_str()])?;
+    let letters = FontSet::for_texts([options.title.as_str(), options.about.as_str()])?;
     let linework = Linework::of(heights, options)?;
     water.finish();
     progress.check()?;

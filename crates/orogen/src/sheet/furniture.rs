@@ -1,8 +1,8 @@
 //! What stands around a map: heading, numbers along the sides, colour bar, scale, north arrow, legend.
 
+use super::font_set::FontSet;
 use super::layout::{BLOCK_GAP, Block, MARGIN, ROW};
-use super::letters::Letters;
-use super::scene::{INK, Item, Place, Scene, polygon};
+use super::scene::{INK, Item, Point, Scene, polygon};
 use super::ticks::{Count, grouped, step, ticks};
 use crate::map::text::Face;
 use crate::palette::color::{Encoder, Rgb, decode, linear, mix, oklab};
@@ -20,7 +20,7 @@ pub struct Desk<'a> {
     /// The page.
     pub scene: Scene,
     /// Its fonts.
-    pub letters: &'a Letters,
+    pub letters: &'a FontSet,
 }
 
 /// How words stand to their place: from it on, up to it, or around it.
@@ -36,7 +36,7 @@ pub enum Align {
 
 impl Desk<'_> {
     /// Writes words that stand on a place; returns how long they are.
-    pub fn text(&mut self, text: &str, face: Face, size: f32, ink: Rgb, at: Place, align: Align) -> f32 {
+    pub fn text(&mut self, text: &str, face: Face, size: f32, ink: Rgb, at: Point, align: Align) -> f32 {
         let width = self.letters.width(text, face, size);
         let shift = match align {
             Align::Start => 0.0,
@@ -49,7 +49,7 @@ impl Desk<'_> {
     }
 
     /// Small print.
-    pub fn small(&mut self, text: &str, at: Place, align: Align) -> f32 {
+    pub fn small(&mut self, text: &str, at: Point, align: Align) -> f32 {
         self.text(text, Face::Regular, SMALL, SOFT, at, align)
     }
 
@@ -78,7 +78,7 @@ impl Desk<'_> {
         let [left, top, width, height] = map;
         let (right, bottom) = (left + width, top + height);
         let mark = 1.3;
-        let mut marks: Vec<Vec<Place>> = Vec::new();
+        let mut marks: Vec<Vec<Point>> = Vec::new();
         let at = |span: [f64; 2], value: f64| ((value - span[0]) / (span[1] - span[0])) as f32;
         let across = ticks(spans[0], (width / 26.0).max(1.0) as usize, counts[0]);
         let mut free = f32::MIN;
@@ -102,7 +102,7 @@ impl Desk<'_> {
     }
 
     /// A bar of the colours with their heights, so wide with its unit.
-    pub fn colors(&mut self, [left, top]: Place, width: f32, tint: &Tint, [low, high]: [f64; 2]) {
+    pub fn colors(&mut self, [left, top]: Point, width: f32, tint: &Tint, [low, high]: [f64; 2]) {
         const STEPS: usize = 600;
         let encoder = Encoder::new();
         let flat = high <= low;
@@ -114,7 +114,7 @@ impl Desk<'_> {
         let area = [left, top, width - 10.0, 3.6];
         self.scene.items.push(Item::Picture { area, width: STEPS, height: 1, pixels: pixels.collect() });
         self.scene.frame(area, 0.15, INK);
-        let mut marks: Vec<Vec<Place>> = Vec::new();
+        let mut marks: Vec<Vec<Point>> = Vec::new();
         let mut free = f32::MIN;
         let step = step(high - low, 6);
         for (value, _) in ticks([low, high], 6, Count::Latitude) {
@@ -133,7 +133,7 @@ impl Desk<'_> {
     }
 
     /// A bar of a round length.
-    pub fn scale(&mut self, [left, top]: Place, metres_a_millimetre: f64) {
+    pub fn scale(&mut self, [left, top]: Point, metres_a_millimetre: f64) {
         let most = f64::from(SCALE - 14.0);
         let length = {
             let rough = most * metres_a_millimetre;
@@ -163,7 +163,7 @@ impl Desk<'_> {
     }
 
     /// An arrow to the top of the page.
-    pub fn north(&mut self, [left, top]: Place) {
+    pub fn north(&mut self, [left, top]: Point) {
         let (x, foot) = (left + NORTH / 2.0, top + 8.2);
         self.scene.area(polygon(&[[x, top + 0.2], [x + 2.1, foot], [x, foot - 1.5]]), INK, 1.0);
         let light = [[x, top + 0.2], [x - 2.1, foot], [x, foot - 1.5], [x, top + 0.2]];
@@ -173,7 +173,7 @@ impl Desk<'_> {
     }
 
     /// What lines and marks mean: in so many rows.
-    pub fn legend(&mut self, [left, top]: Place, entries: &[Entry], rows: usize) {
+    pub fn legend(&mut self, [left, top]: Point, entries: &[Entry], rows: usize) {
         let widths = columns(entries, self.letters, rows);
         for (k, entry) in entries.iter().enumerate() {
             let (column, row) = (k / rows, k % rows);
@@ -186,7 +186,7 @@ impl Desk<'_> {
                     self.scene.lines(vec![wave.collect()], width, ink, 1.0);
                 }
                 Sign::Water(fill, shore) => {
-                    let ring: Vec<Place> = (0..=32)
+                    let ring: Vec<Point> = (0..=32)
                         .map(|k| k as f32 / 32.0 * std::f32::consts::TAU)
                         .map(|a| {
                             let r = 1.0 + 0.18 * libm::cosf(2.0 * a + 0.6) + 0.1 * libm::sinf(3.0 * a);
@@ -254,7 +254,7 @@ pub const COLORS: f32 = 88.0;
 const SCALE: f32 = 62.0;
 const NORTH: f32 = 6.0;
 
-fn columns(entries: &[Entry], letters: &Letters, rows: usize) -> Vec<f32> {
+fn columns(entries: &[Entry], letters: &FontSet, rows: usize) -> Vec<f32> {
     let width = |entry: &Entry| SIGN + 1.8 + letters.width(&entry.text, Face::Regular, SMALL) + 5.0;
     entries.chunks(rows.max(1)).map(|pair| pair.iter().map(width).fold(0.0, f32::max)).collect()
 }
@@ -275,7 +275,7 @@ pub fn north_block() -> Block {
 }
 
 /// The block of the legend.
-pub fn legend_block(entries: &[Entry], letters: &Letters) -> Block {
+pub fn legend_block(entries: &[Entry], letters: &FontSet) -> Block {
     let width = |rows: usize| columns(entries, letters, rows).iter().sum::<f32>().max(1.0) - 5.0;
     Block { widths: [width(LEGEND_ROWS), width(entries.len())], height: LINE * entries.len() as f32 + 1.0 }
 }

@@ -1,6 +1,6 @@
 //! Heights written along contour lines, each in a gap of its line.
 
-use super::scene::Place;
+use super::scene::Point;
 
 /// What is already on the sheet: where no word may stand.
 #[derive(Debug, Clone)]
@@ -9,7 +9,7 @@ pub struct Taken {
     rows: usize,
     /// Whether something stands in a square of [`SQUARE`] millimetres.
     squares: Vec<bool>,
-    origin: Place,
+    origin: Point,
 }
 
 /// Side of a square in millimetres.
@@ -22,13 +22,13 @@ impl Taken {
         Taken { columns, rows, squares: vec![false; columns * rows], origin: [left, top] }
     }
 
-    fn square(&self, place: Place) -> Option<usize> {
+    fn square(&self, place: Point) -> Option<usize> {
         let [i, j] = [0, 1].map(|c| ((place[c] - self.origin[c]) / SQUARE).floor());
         let inside = (0.0..self.columns as f32).contains(&i) && (0.0..self.rows as f32).contains(&j);
         inside.then(|| j as usize * self.columns + i as usize)
     }
 
-    fn squares_around(&self, place: Place, reach: f32) -> impl Iterator<Item = Option<usize>> + '_ {
+    fn squares_around(&self, place: Point, reach: f32) -> impl Iterator<Item = Option<usize>> + '_ {
         let steps = (reach / SQUARE).ceil() as i32;
         (-steps..=steps)
             .flat_map(move |v| (-steps..=steps).map(move |u| [u as f32 * SQUARE, v as f32 * SQUARE]))
@@ -37,13 +37,13 @@ impl Taken {
     }
 
     /// Takes what lies within `reach` of a place.
-    pub fn take(&mut self, place: Place, reach: f32) {
+    pub fn take(&mut self, place: Point, reach: f32) {
         let found: Vec<usize> = self.squares_around(place, reach).flatten().collect();
         found.into_iter().for_each(|square| self.squares[square] = true);
     }
 
     /// Takes a line.
-    pub fn take_line(&mut self, line: &[Place], reach: f32) {
+    pub fn take_line(&mut self, line: &[Point], reach: f32) {
         for pair in line.windows(2) {
             let [dx, dy] = [0, 1].map(|c| pair[1][c] - pair[0][c]);
             let steps = ((dx * dx + dy * dy).sqrt() / SQUARE).ceil().clamp(1.0, 1e4) as usize;
@@ -55,7 +55,7 @@ impl Taken {
     }
 
     /// Whether all within `reach` of a place is free.
-    pub fn is_free(&self, place: Place, reach: f32) -> bool {
+    pub fn is_free(&self, place: Point, reach: f32) -> bool {
         self.squares_around(place, reach).all(|square| square.is_some_and(|square| !self.squares[square]))
     }
 }
@@ -66,12 +66,12 @@ pub struct Label {
     /// What it says.
     pub text: String,
     /// Places along its middle, a letter's width or less apart, in the order it is read.
-    pub path: Vec<Place>,
+    pub path: Vec<Point>,
 }
 
 impl Label {
     /// Where it is read at a distance along it, and how it is turned there: radians counter-clockwise.
-    pub fn at(&self, along: f32) -> (Place, f32) {
+    pub fn at(&self, along: f32) -> (Point, f32) {
         let mut left = along;
         let last = self.path.len().saturating_sub(2);
         for (k, pair) in self.path.windows(2).enumerate() {
@@ -102,7 +102,7 @@ pub struct LabelStyle {
 /// stand on its head it is set the other way around, if no better place is found.
 ///
 /// What labels cover is taken.
-pub fn place(line: &[Place], text: &str, width: f32, style: LabelStyle, taken: &mut Taken) -> Vec<Label> {
+pub fn place(line: &[Point], text: &str, width: f32, style: LabelStyle, taken: &mut Taken) -> Vec<Label> {
     let along = Along::new(line);
     let (need, step) = (width + style.size, style.size * 0.6);
     let count = ((along.length() - need) / step).floor();
@@ -141,13 +141,13 @@ pub fn place(line: &[Place], text: &str, width: f32, style: LabelStyle, taken: &
 
 /// A line by the distance along it.
 struct Along<'a> {
-    line: &'a [Place],
+    line: &'a [Point],
     /// The distance of each place from the first.
     distances: Vec<f32>,
 }
 
 impl<'a> Along<'a> {
-    fn new(line: &'a [Place]) -> Along<'a> {
+    fn new(line: &'a [Point]) -> Along<'a> {
         let mut sum = 0.0;
         let mut distances = vec![0.0];
         for pair in line.windows(2) {
@@ -162,7 +162,7 @@ impl<'a> Along<'a> {
         self.distances.last().copied().unwrap_or(0.0)
     }
 
-    fn at(&self, distance: f32) -> Place {
+    fn at(&self, distance: f32) -> Point {
         let after = self.distances.partition_point(|d| *d < distance).clamp(1, self.line.len() - 1);
         let (from, to) = (self.distances[after - 1], self.distances[after]);
         let share = if to > from { ((distance - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
@@ -170,10 +170,10 @@ impl<'a> Along<'a> {
         [0, 1].map(|c| a[c] + (b[c] - a[c]) * share)
     }
 
-    fn part(&self, from: f32, to: f32, step: f32) -> Vec<Place> {
+    fn part(&self, from: f32, to: f32, step: f32) -> Vec<Point> {
         let count = ((to - from) / step).ceil().max(1.0) as usize;
         // Wiggles shorter than a letter would turn letters against each other.
-        let places: Vec<Place> = (0..=count).map(|k| self.at(from + (to - from) * k as f32 / count as f32)).collect();
+        let places: Vec<Point> = (0..=count).map(|k| self.at(from + (to - from) * k as f32 / count as f32)).collect();
         let reach = (count / 6).max(1);
         (0..=count)
             .map(|k| {
@@ -204,18 +204,18 @@ impl<'a> Along<'a> {
 }
 
 /// What is left of lines where labels stand: gaps as wide as the words and `margin` more.
-pub fn gaps(lines: &[Vec<Place>], labels: &[Label], reach: f32, margin: f32) -> Vec<Vec<Place>> {
+pub fn gaps(lines: &[Vec<Point>], labels: &[Label], reach: f32, margin: f32) -> Vec<Vec<Point>> {
     if labels.is_empty() {
         return lines.to_vec();
     }
     // Labels by squares, so that each place looks at few.
     let near = 12.0f32;
-    let key = |place: Place| ((place[0] / near).floor() as i32, (place[1] / near).floor() as i32);
-    let mut known: std::collections::BTreeMap<(i32, i32), Vec<Place>> = std::collections::BTreeMap::new();
+    let key = |place: Point| ((place[0] / near).floor() as i32, (place[1] / near).floor() as i32);
+    let mut known: std::collections::BTreeMap<(i32, i32), Vec<Point>> = std::collections::BTreeMap::new();
     for place in labels.iter().flat_map(|label| &label.path) {
         known.entry(key(*place)).or_default().push(*place);
     }
-    let hidden = |place: Place| {
+    let hidden = |place: Point| {
         let (i, j) = key(place);
         (j - 1..=j + 1).flat_map(|j| (i - 1..=i + 1).map(move |i| (i, j))).any(|square| {
             known.get(&square).is_some_and(|places| {
@@ -228,7 +228,7 @@ pub fn gaps(lines: &[Vec<Place>], labels: &[Label], reach: f32, margin: f32) -> 
     };
     let mut left = Vec::new();
     for line in lines {
-        let mut part: Vec<Place> = Vec::new();
+        let mut part: Vec<Point> = Vec::new();
         for place in line {
             if hidden(*place) {
                 left.push(std::mem::take(&mut part));
@@ -248,7 +248,7 @@ mod tests {
 
     const SETTING: LabelStyle = LabelStyle { size: 2.0, apart: 8.0, every: 60.0 };
 
-    fn wave() -> Vec<Place> {
+    fn wave() -> Vec<Point> {
         (0..=400).map(|k| k as f32 * 0.25).map(|x| [x, 50.0 + 10.0 * libm::sinf(x / 12.0)]).collect()
     }
 
@@ -273,7 +273,7 @@ mod tests {
             assert!(taken.is_free([50.0, 5.0], 0.5));
             let left = gaps(&[line.clone()], &labels, 1.2, 0.3);
             assert_eq!(left.len(), 3);
-            let length = |lines: &[Vec<Place>]| lines.iter().map(|line| Along::new(line).length()).sum::<f32>();
+            let length = |lines: &[Vec<Point>]| lines.iter().map(|line| Along::new(line).length()).sum::<f32>();
             let gone = length(&[line]) - length(&left);
             assert!((gone - 2.0 * (5.0 + 2.0 + 2.0 * 1.5)).abs() < 2.5, "{gone}");
         }
@@ -287,7 +287,7 @@ mod tests {
         let mut taken = Taken::none([0.0, 0.0, 100.0, 100.0]);
         assert!(place(&[[5.0, 5.0], [7.0, 5.0]], "1200", 5.0, SETTING, &mut taken).is_empty());
         // A tight coil has no straight part.
-        let coil: Vec<Place> = (0..400)
+        let coil: Vec<Point> = (0..400)
             .map(|k| k as f32 * 0.1)
             .map(|a| [50.0 + 1.5 * libm::cosf(a), 50.0 + 1.5 * libm::sinf(a)])
             .collect();

@@ -1,20 +1,20 @@
 //! Marks on the map itself.
 
+use super::font_set::FontSet;
 use super::labels::Taken;
-use super::letters::Letters;
-use super::scene::{INK, Place, Scene, Step, polygon};
+use super::scene::{INK, Point, Scene, Step, polygon};
 use crate::map::text::Face;
 
 /// Size of a summit's height, an em in millimetres.
 const SIZE: f32 = 2.5;
 
 /// A small triangle around a place.
-pub fn triangle([x, y]: Place) -> Vec<Step> {
+pub fn triangle([x, y]: Point) -> Vec<Step> {
     polygon(&[[x, y - 0.95], [x + 0.85, y + 0.6], [x - 0.85, y + 0.6]])
 }
 
 /// Marks a summit and writes its height beside it, where there is room: to the right, else to the left. Takes that room.
-pub fn summit(scene: &mut Scene, letters: &Letters, taken: &mut Taken, at: Place, text: &str) {
+pub fn summit(scene: &mut Scene, letters: &FontSet, taken: &mut Taken, at: Point, text: &str) {
     let width = letters.width(text, Face::Bold, SIZE);
     let starts = [at[0] + 1.5, at[0] - 1.5 - width];
     let middle = |start: f32, share: f32| [start + width * share, at[1]];
@@ -24,7 +24,7 @@ pub fn summit(scene: &mut Scene, letters: &Letters, taken: &mut Taken, at: Place
     let outline = letters.write(text, Face::Bold, SIZE, [start, at[1] + SIZE * 0.35], 0.0);
     let mark = triangle(at);
     // A bright edge, so that dark ground does not swallow it.
-    let edge: Vec<Vec<Place>> = rings(&outline).into_iter().chain(rings(&mark)).collect();
+    let edge: Vec<Vec<Point>> = rings(&outline).into_iter().chain(rings(&mark)).collect();
     scene.lines(edge, 0.75, [255; 3], 0.55);
     scene.area(mark, INK, 1.0);
     scene.area(outline, INK, 1.0);
@@ -33,8 +33,8 @@ pub fn summit(scene: &mut Scene, letters: &Letters, taken: &mut Taken, at: Place
 }
 
 /// The parts of an outline as closed lines; curves as their ends, which at this size is near enough.
-fn rings(outline: &[Step]) -> Vec<Vec<Place>> {
-    let mut rings: Vec<Vec<Place>> = Vec::new();
+fn rings(outline: &[Step]) -> Vec<Vec<Point>> {
+    let mut rings: Vec<Vec<Point>> = Vec::new();
     for step in outline {
         match (*step, rings.last_mut()) {
             (Step::Move(place), _) | (Step::Line(place) | Step::Curve(_, _, place), None) => rings.push(vec![place]),
@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn summits_find_room_or_are_left_out() {
-        let letters = Letters::for_texts([]).unwrap();
+        let letters = FontSet::for_texts([]).unwrap();
         let mut scene = Scene { size: [50.0; 2], title: String::new(), items: Vec::new() };
         let mut taken = Taken::none([0.0, 0.0, 50.0, 50.0]);
         summit(&mut scene, &letters, &mut taken, [25.0, 25.0], "2345");

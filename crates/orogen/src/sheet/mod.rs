@@ -2,12 +2,12 @@
 //! ([`scene`]), and that list as pixels ([`raster`]), SVG ([`vector`]) and PDF ([`pdf`]).
 
 pub mod draw;
+pub mod font_set;
 pub mod furniture;
 pub mod ground;
 pub mod inks;
 pub mod labels;
 pub mod layout;
-pub mod letters;
 pub mod lines;
 pub mod linework;
 pub mod marks;

@@ -1,14 +1,14 @@
 //! Draws the linework on the map, each line in an ink that is seen on the ground below it.
 
+use super::font_set::FontSet;
 use super::furniture::Desk;
 use super::inks::{BLUE, Inks, LAKES, SHORE, THICK, THIN};
 use super::labels::{Label, LabelStyle, Taken, gaps, place};
-use super::letters::Letters;
 use super::lines::is_thick;
 use super::linework::Linework;
 use super::marks;
 use super::options::Options;
-use super::scene::{Place, Scene, Step};
+use super::scene::{Point, Scene, Step};
 use super::ticks::grouped;
 use crate::contour::line::Line;
 use crate::map::text::Face;
@@ -31,7 +31,7 @@ pub enum Below<'a> {
 
 impl Below<'_> {
     /// The mean color under a line of one height, as linear light.
-    fn color(&self, [left, top, width, height]: [f32; 4], elevation: f64, line: &[Place]) -> Light {
+    fn color(&self, [left, top, width, height]: [f32; 4], elevation: f64, line: &[Point]) -> Light {
         match self {
             Below::Tint(tint) => tint.at(elevation as f32),
             Below::Picture(columns, pixels) => {
@@ -56,9 +56,9 @@ impl Linework {
         let down = height / (self.grid.height() - 1) as f32;
         let spot = |[x, y]: [f64; 2]| [left + x as f32 * across, top + y as f32 * down];
         let cell = self.grid.window().cell;
-        let path = |line: &Line| line.path().map(|[x, y]| spot([x / cell, y / cell])).collect::<Vec<Place>>();
+        let path = |line: &Line| line.path().map(|[x, y]| spot([x / cell, y / cell])).collect::<Vec<Point>>();
         let mut taken = Taken::none(inset(map, 1.0));
-        let rivers: Vec<(f32, Vec<Place>)> = match options.parts.rivers {
+        let rivers: Vec<(f32, Vec<Point>)> = match options.parts.rivers {
             true => self
                 .water
                 .rivers
@@ -67,11 +67,11 @@ impl Linework {
                 .collect(),
             false => Vec::new(),
         };
-        let lakes: Vec<Vec<Place>> = match options.parts.lakes {
+        let lakes: Vec<Vec<Point>> = match options.parts.lakes {
             true => self.water.lakes.iter().map(|ring| ring.iter().map(|p| spot(*p)).collect()).collect(),
             false => Vec::new(),
         };
-        let shore: Vec<Vec<Place>> = self.shore.iter().map(path).collect();
+        let shore: Vec<Vec<Point>> = self.shore.iter().map(path).collect();
         rivers.iter().for_each(|(width, line)| taken.take_line(line, 0.35 + width / 2.0));
         lakes.iter().chain(&shore).for_each(|line| taken.take_line(line, 0.5));
         // Summits are written last, over the lines, but take their room first.
@@ -90,10 +90,10 @@ impl Linework {
         let interval = self.interval.unwrap_or(1.0);
         // By ink and thickness, in the order in which they were met.
         let ink =
-            |line: &Line, places: &[Place]| Inks::over(below.color(map, line.elevation, places), line.elevation > sea);
-        let mut kinds: Vec<(Rgb, f32, f32, Vec<Vec<Place>>)> = Vec::new();
-        let mut thick: Vec<(&Line, Vec<Place>)> = Vec::new();
-        let mut sort = |line: &Line, places: Vec<Place>| {
+            |line: &Line, places: &[Point]| Inks::over(below.color(map, line.elevation, places), line.elevation > sea);
+        let mut kinds: Vec<(Rgb, f32, f32, Vec<Vec<Point>>)> = Vec::new();
+        let mut thick: Vec<(&Line, Vec<Point>)> = Vec::new();
+        let mut sort = |line: &Line, places: Vec<Point>| {
             let inks = ink(line, &places);
             let (width, cover) = if is_thick(line, interval) { (THICK, inks.cover + 0.18) } else { (THIN, inks.cover) };
             match kinds.iter_mut().find(|kind| (kind.0, kind.1) == (inks.line, width)) {
@@ -143,12 +143,12 @@ impl Linework {
     /// Heights along the index contours, the longest first, with their inks.
     fn labels(
         &self,
-        letters: &Letters,
-        thick: &[(&Line, Vec<Place>)],
+        letters: &FontSet,
+        thick: &[(&Line, Vec<Point>)],
         taken: &mut Taken,
-        ink: impl Fn(&Line, &[Place]) -> Inks,
+        ink: impl Fn(&Line, &[Point]) -> Inks,
     ) -> Vec<(Inks, Label)> {
-        let mut order: Vec<&(&Line, Vec<Place>)> = thick.iter().collect();
+        let mut order: Vec<&(&Line, Vec<Point>)> = thick.iter().collect();
         order.sort_by(|a, b| b.0.length().total_cmp(&a.0.length()));
         let mut labels = Vec::new();
         for (line, places) in order {
@@ -172,7 +172,7 @@ fn inset([left, top, width, height]: [f32; 4], by: f32) -> [f32; 4] {
     [left + by, top + by, width - 2.0 * by, height - 2.0 * by]
 }
 
-fn distance(a: Place, b: Place) -> f32 {
+fn distance(a: Point, b: Point) -> f32 {
     let [dx, dy] = [0, 1].map(|c| b[c] - a[c]);
     (dx * dx + dy * dy).sqrt()
 }

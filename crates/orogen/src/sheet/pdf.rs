@@ -5,7 +5,7 @@ use std::io::{self, Write};
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
-use super::scene::{Item, Place, Scene, Step};
+use super::scene::{Item, Point, Scene, Step};
 
 /// Points in a millimetre.
 const POINT: f32 = 72.0 / 25.4;
@@ -163,7 +163,7 @@ impl<'a> Drawn<'a> {
         let _ = writeln!(self.text, "q /C{number} gs {red:.3} {green:.3} {blue:.3} {operator}");
     }
 
-    fn spot(&mut self, [x, y]: Place) {
+    fn spot(&mut self, [x, y]: Point) {
         let _ = write!(self.text, "{:.2} {:.2} ", x * POINT, (self.height - y) * POINT);
     }
 }

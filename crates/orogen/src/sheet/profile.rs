@@ -2,7 +2,7 @@
 
 use super::furniture::{Align, Desk, SMALL, SOFT};
 use super::options::Options;
-use super::scene::{INK, Item, Place, polygon};
+use super::scene::{INK, Item, Point, polygon};
 use super::ticks::{Count, grouped, ticks};
 use crate::grid::Grid;
 use crate::map::text::Face;
@@ -141,8 +141,8 @@ impl Profile {
         let (right, bottom) = (left + width, top + height);
         let up = |metres: f64| bottom - height * ((metres - self.span[0]) / (self.span[1] - self.span[0])) as f32;
         self.ground(desk, tint, dpi);
-        let mut marks: Vec<Vec<Place>> = Vec::new();
-        let mut lines: Vec<Vec<Place>> = Vec::new();
+        let mut marks: Vec<Vec<Point>> = Vec::new();
+        let mut lines: Vec<Vec<Point>> = Vec::new();
         let decimals = if self.span[1] - self.span[0] < 20.0 { 1 } else { 0 };
         // Heights are metres however large they are.
         for (value, _) in ticks(self.span, (height / 6.5).max(2.0) as usize, Count::Latitude) {
@@ -166,7 +166,7 @@ impl Profile {
             height.is_finite().then(|| [x, up(f64::from(*height))])
         };
         // A line for each stretch without holes.
-        let places: Vec<Option<Place>> = self.heights.iter().enumerate().map(place).collect();
+        let places: Vec<Option<Point>> = self.heights.iter().enumerate().map(place).collect();
         let stretches = places.split(Option::is_none).map(|stretch| stretch.iter().copied().flatten().collect());
         desk.scene.lines(stretches.collect(), 0.22, INK, 1.0);
         desk.scene.lines(vec![vec![[left, top], [left, bottom], [right, bottom]]], 0.2, INK, 1.0);

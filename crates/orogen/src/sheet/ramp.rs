@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::furniture::{Align, Desk, SMALL};
 use super::ground::at_pixels;
 use super::options::{Layer, Scale};
-use super::scene::{INK, Item, Place};
+use super::scene::{INK, Item, Point};
 use super::ticks::{Count, grouped, step, ticks};
 use crate::error::{Error, ErrorKind, Result};
 use crate::format::levels::Levels;
@@ -169,7 +169,7 @@ fn label(value: f32) -> Light {
 
 impl Desk<'_> {
     /// A bar of the ramp's colours with its values and its name, so wide in all.
-    pub fn ramp(&mut self, [left, top]: Place, width: f32, ramp: &Ramp) {
+    pub fn ramp(&mut self, [left, top]: Point, width: f32, ramp: &Ramp) {
         const STEPS: usize = 600;
         let encoder = Encoder::new();
         let (named, unit) = (ramp.name.clone(), ramp.unit);
@@ -197,7 +197,7 @@ impl Desk<'_> {
         });
         self.scene.items.push(Item::Picture { area, width: STEPS, height: 1, pixels: pixels.collect() });
         self.scene.frame(area, 0.15, INK);
-        let mut lines: Vec<Vec<Place>> = Vec::new();
+        let mut lines: Vec<Vec<Point>> = Vec::new();
         let mut free = f32::MIN;
         for (share, name) in ramp.marks() {
             let x = left + area[2] * share as f32;

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::scene::{Item, Place, Scene, Step};
+use super::scene::{Item, Point, Scene, Step};
 use crate::map::canvas::Canvas;
 use crate::palette::color::Rgb;
 
@@ -41,25 +41,25 @@ pub fn pixels(scene: &Scene, dpi: f64) -> [usize; 2] {
 enum Shape<'a> {
     Picture { area: [f32; 4], width: usize, height: usize, pixels: &'a [u8] },
     Lines { lines: Vec<Line>, half: f32, ink: Rgb, cover: f32 },
-    Area { edges: Vec<[Place; 2]>, top: f32, bottom: f32, ink: Rgb, cover: f32 },
+    Area { edges: Vec<[Point; 2]>, top: f32, bottom: f32, ink: Rgb, cover: f32 },
 }
 
 struct Line {
-    places: Vec<Place>,
+    places: Vec<Point>,
     top: f32,
     bottom: f32,
 }
 
 impl<'a> Shape<'a> {
     fn of(item: &'a Item, scale: f32) -> Shape<'a> {
-        let at = |place: &Place| place.map(|side| side * scale);
+        let at = |place: &Point| place.map(|side| side * scale);
         match item {
             Item::Picture { area, width, height, pixels } => {
                 Shape::Picture { area: area.map(|side| side * scale), width: *width, height: *height, pixels }
             }
             Item::Lines { lines, width, ink, cover } => {
                 let lines = lines.iter().map(|line| {
-                    let places: Vec<Place> = line.iter().map(at).collect();
+                    let places: Vec<Point> = line.iter().map(at).collect();
                     let (top, bottom) = span(places.iter().map(|place| place[1]));
                     Line { places, top, bottom }
                 });
@@ -79,8 +79,8 @@ fn span(values: impl Iterator<Item = f32>) -> (f32, f32) {
 }
 
 /// An outline as straight edges, every part of it closed.
-fn edges(outline: &[Step], scale: f32) -> Vec<[Place; 2]> {
-    let at = |place: Place| place.map(|side| side * scale);
+fn edges(outline: &[Step], scale: f32) -> Vec<[Point; 2]> {
+    let at = |place: Point| place.map(|side| side * scale);
     let mut edges = Vec::new();
     let (mut first, mut here) = ([0.0; 2], [0.0; 2]);
     for step in outline {
@@ -183,7 +183,7 @@ impl Band {
     }
 
     /// One stretch of a line: what it covers by its distance from each pixel's middle.
-    fn stretch(&mut self, [ax, ay]: Place, [bx, by]: Place, half: f32, rows: &mut [usize; 2]) {
+    fn stretch(&mut self, [ax, ay]: Point, [bx, by]: Point, half: f32, rows: &mut [usize; 2]) {
         let reach = half + 1.0;
         let (dx, dy) = (bx - ax, by - ay);
         let length = (dx * dx + dy * dy).max(1e-12);
@@ -210,7 +210,7 @@ impl Band {
     }
 
     /// An area: every edge adds to the pixels on its right what lies to the right of it, with the sign of its way.
-    fn area(&mut self, edges: &[[Place; 2]], ink: Rgb, cover: f32) {
+    fn area(&mut self, edges: &[[Point; 2]], ink: Rgb, cover: f32) {
         // One column more takes what lies beyond the page.
         let stride = self.width + 2;
         let (left, right) = span(edges.iter().flatten().map(|place| place[0]));
@@ -356,7 +356,7 @@ mod tests {
     #[test]
     fn a_line_is_as_wide_as_asked_and_crosses_itself_unseen() {
         let line =
-            |places: &[Place], width, cover| Item::Lines { lines: vec![places.to_vec()], width, ink: [0; 3], cover };
+            |places: &[Point], width, cover| Item::Lines { lines: vec![places.to_vec()], width, ink: [0; 3], cover };
         let across = [[10.0, 50.3], [90.0, 50.3]];
         for width in [0.3f32, 1.0, 4.0] {
             let column: f64 = {

@@ -6,17 +6,17 @@ use crate::palette::color::Rgb;
 pub const INK: Rgb = [38, 36, 34];
 
 /// A position on the page in millimetres: from the left, from the top.
-pub type Place = [f32; 2];
+pub type Point = [f32; 2];
 
 /// A part of an outline, from where the last one ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
     /// Begins a new outline.
-    Move(Place),
+    Move(Point),
     /// A straight line.
-    Line(Place),
+    Line(Point),
     /// A cubic curve: two handles, then the end.
-    Curve(Place, Place, Place),
+    Curve(Point, Point, Point),
 }
 
 /// One thing that is drawn.
@@ -36,7 +36,7 @@ pub enum Item {
     /// Lines with round ends and corners, of one width, as one: where they cross, ink is not laid twice.
     Lines {
         /// Each an open line; a ring names its first place again.
-        lines: Vec<Vec<Place>>,
+        lines: Vec<Vec<Point>>,
         /// In millimetres.
         width: f32,
         /// The colour.
@@ -68,8 +68,8 @@ pub struct Scene {
 
 impl Scene {
     /// Adds lines, if there are any.
-    pub fn lines(&mut self, lines: Vec<Vec<Place>>, width: f32, ink: Rgb, cover: f32) {
-        let lines: Vec<Vec<Place>> = lines.into_iter().filter(|line| line.len() > 1).collect();
+    pub fn lines(&mut self, lines: Vec<Vec<Point>>, width: f32, ink: Rgb, cover: f32) {
+        let lines: Vec<Vec<Point>> = lines.into_iter().filter(|line| line.len() > 1).collect();
         if !lines.is_empty() {
             self.items.push(Item::Lines { lines, width, ink, cover });
         }
@@ -97,6 +97,6 @@ impl Scene {
 }
 
 /// The outline of a polygon.
-pub fn polygon(corners: &[Place]) -> Vec<Step> {
+pub fn polygon(corners: &[Point]) -> Vec<Step> {
     corners.iter().enumerate().map(|(k, place)| if k == 0 { Step::Move(*place) } else { Step::Line(*place) }).collect()
 }

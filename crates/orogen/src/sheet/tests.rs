@@ -3,7 +3,7 @@
 use super::draw::{self, Sheet};
 use super::options::Shading;
 use super::options::{Coloring, Options, Page, Parts, Resolution, SurfaceCover, SurfaceEntry};
-use super::scene::{Item, Place, Scene, Step};
+use super::scene::{Item, Point, Scene, Step};
 use super::{pdf, raster, vector};
 use crate::error::Result;
 use crate::grid::{Grid, Window};
@@ -43,7 +43,7 @@ fn hills(width: usize, height: usize) -> Grid {
     grid
 }
 
-fn places(scene: &Scene) -> Vec<Place> {
+fn places(scene: &Scene) -> Vec<Point> {
     let of = |item: &Item| match item {
         Item::Picture { area, .. } => vec![[area[0], area[1]], [area[0] + area[2], area[1] + area[3]]],
         Item::Lines { lines, .. } => lines.concat(),

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use super::scene::{Item, Place, Scene, Step};
+use super::scene::{Item, Point, Scene, Step};
 use crate::format::png::{self, Picture, Pixel};
 use crate::format::svg::{self, MAX_PATH};
 use crate::palette::color::Rgb;
@@ -116,7 +116,7 @@ fn embed(out: &mut dyn Write, area: [f32; 4], size: [usize; 2], pixels: &[u8]) -
 }
 
 /// Lines as the data of paths, none much longer than [`MAX_PATH`].
-fn paths(lines: &[Vec<Place>]) -> Vec<String> {
+fn paths(lines: &[Vec<Point>]) -> Vec<String> {
     let mut paths = vec![String::new()];
     let mut text = String::new();
     for line in lines.iter().flat_map(|line| svg::pieces(line)) {
@@ -165,7 +165,7 @@ fn thousandths(text: &mut String, number: i64, follows: bool) {
 }
 
 /// A place to a hundredth of a millimetre and a bit.
-fn spot(text: &mut String, [x, y]: Place) {
+fn spot(text: &mut String, [x, y]: Point) {
     let _ = write!(text, "{} {}", (x * 1000.0).round() / 1000.0, (y * 1000.0).round() / 1000.0);
 }
 

@@ -128,7 +128,7 @@ impl Drainage {
         let tiling = Tiling::new(padded, large::side(padded.len() as u64));
         let sea = self.sea.then_some(context.world_params.sea_level as f32);
         let water = Water { heights: &heights, sea, tiling, progress: context.progress };
-        water.over_bed(&mut codes, &mut filled)?;
+        water.route_carving(&mut codes, &mut filled)?;
         let water = Water { heights: &filled, ..water };
         if self.over == Over::Surface {
             water.over_surface(&mut codes)?;

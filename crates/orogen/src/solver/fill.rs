@@ -75,7 +75,7 @@ impl Fill {
         let padded = *sources.padded();
         let tiling = Tiling::new(padded, large::side(padded.len() as u64));
         let water = Water { heights: &heights, sea, tiling, progress: context.progress };
-        water.over_bed(&mut codes, &mut filled)?;
+        water.route_carving(&mut codes, &mut filled)?;
         for t in 0..tiling.count() {
             heights.put(&difference(&filled.get(&tiling.tile(t))?, heights.get(&tiling.tile(t))?))?;
         }

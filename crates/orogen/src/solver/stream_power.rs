@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::grid::{Grid, Window};
 use crate::hydrology::accumulation::Accumulation;
 use crate::hydrology::erosion::{Erosion, ErosionRun};
-use crate::hydrology::stream_power::{Ground, StreamPower as Law};
+use crate::hydrology::stream_power::{StreamPower as Law, Substrate};
 use crate::op::{Context, Solution, Solver, Sources};
 
 op! {
@@ -15,17 +15,17 @@ op! {
     /// 2013), which is stable however long the step; what is steeper than the talus angle slides; then soil creeps by linear
     /// diffusion (Culling 1960). The sea and the world's border stay as they are. In the end every cell is higher than the
     /// one it drains to: no depressions, no flats. Ten steps turn any relief into valleys; some hundred bring it to where uplift and
-    /// erosion balance. Rock and uplift that differ from place to place (`softness`, `rise`) make it look real. What comes out
+    /// erosion balance. Rock and uplift that differ from place to place (`erodibility_factor`, `uplift_factor`) make it look real. What comes out
     /// depends on the cell it is solved at. Time grows with the world and the steps; memory is 45 bytes
-    /// a cell, and 16 more if `irregular`.
+    /// a cell, and 16 more if `jitter`.
     pub struct StreamPower = "stream-power", solver, revision 2;
     inputs {
         /// The heights to begin with.
         source: required,
         /// A factor of the erodibility, 1 if left out: small where rock is hard. Less than 0 counts as 0.
-        softness: optional,
+        erodibility_factor: optional, alias "softness",
         /// A factor of the uplift, 1 if left out.
-        rise: optional,
+        uplift_factor: optional, alias "rise",
     }
     params {
         /// How long it goes on.
@@ -45,13 +45,13 @@ op! {
         /// How fast soil creeps: the diffusivity. Rounds crests, and widens hills to sqrt(creep * time).
         creep: f64 = 0.01, unit "m^2/yr", range 0.0 to 100.0;
         /// Whether water that runs between two of a grid's eight directions takes one of them by chance (Rho8, Fairfield and
-        /// Leymarie 1991), another in each step, where `irregular` is 0. Without both, slopes show straight parallel grooves.
-        scatter: bool = true;
+        /// Leymarie 1991), another in each step, where `jitter` is 0. Without both, slopes show straight parallel grooves.
+        random_receivers: bool = true, alias "scatter";
         /// How far the points at which heights are solved stand off the grid's own: by up to half of this share of a cell to each
         /// side. The valleys and the slopes at the talus angle then do not line up with the grid. In the end the heights are carried
         /// over to it.
-        irregular: f64 = 1.0, range 0.0 to 1.0;
-        /// Which chances.
+        jitter: f64 = 1.0, range 0.0 to 1.0, alias "irregular";
+        /// Seed of the random choices.
         seed: u64 = 0;
         /// Whether the ground at or below sea level stays as it is, and water ends there.
         sea: bool = true;
@@ -75,35 +75,39 @@ impl Solver for StreamPower {
     }
 
     fn scratch(&self, padded: &Window) -> u64 {
-        padded.len() as u64 * if self.irregular > 0.0 { 61 } else { 45 }
+        padded.len() as u64 * if self.jitter > 0.0 { 61 } else { 45 }
     }
 
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         let window = *sources.padded();
         let source = sources.whole(0, &window)?;
         let given = |i: usize| sources.given(i).then(|| sources.whole(i, &window)).transpose();
-        let (softness, rise) = (given(1)?, given(2)?);
+        let (erodibility_factor, uplift_factor) = (given(1)?, given(2)?);
         let erosion = Erosion {
             law: Law {
                 erodibility: self.erodibility,
                 area_exponent: self.area_exponent,
                 slope_exponent: self.slope_exponent,
                 uplift: self.uplift / 1000.0,
-                steepest: libm::tan(self.talus_angle.to_radians()),
-                gentlest: Law::default().gentlest,
+                max_slope: libm::tan(self.talus_angle.to_radians()),
+                min_slope: Law::default().min_slope,
             },
             creep: self.creep,
             years: self.years,
             steps: self.steps,
-            irregular: self.irregular,
-            scattered: self.scatter.then_some(context.world_params.seed_of(self.seed) as u32),
+            jitter: self.jitter,
+            scattered: self.random_receivers.then_some(context.world_params.seed_of(self.seed) as u32),
         };
-        let ground = Ground { softness: softness.as_ref(), rise: rise.as_ref(), points: None };
+        let substrate = Substrate {
+            erodibility_factor: erodibility_factor.as_ref(),
+            uplift_factor: uplift_factor.as_ref(),
+            points: None,
+        };
         let mut heights = source.clone();
         let sea_level = self.sea.then_some(context.world_params.sea_level as f32);
         let progress = context.progress;
         progress.expect(erosion.work());
-        let mut run = ErosionRun::new(erosion, &heights, &ground, sea_level);
+        let mut run = ErosionRun::new(erosion, &heights, &substrate, sea_level);
         for done in 1..=self.steps {
             let part = progress.part(1.0);
             run.step(&mut heights, &part)?;

@@ -15,14 +15,14 @@ use std::time::Instant;
 /// same solution, and would then wait for itself. Two requests at the same moment may so both make it; they make the same bits,
 /// and the first is kept.
 pub struct Store {
-    held: Mutex<Held>,
+    held: Mutex<Entries>,
     cache: Option<Cache>,
     /// Where rasters are put that do not fit in memory.
     scratch: PathBuf,
 }
 
 #[derive(Default)]
-struct Held {
+struct Entries {
     solutions: HashMap<Key, (u64, Arc<Solution>)>,
     turn: u64,
 }
@@ -38,7 +38,7 @@ impl Store {
     /// A store that holds these solutions, and keeps no others for later runs.
     pub fn holding(solutions: Vec<(Key, Arc<Solution>)>, scratch: PathBuf) -> Store {
         let solutions = solutions.into_iter().map(|(key, solution)| (key, (0, solution))).collect();
-        Store { held: Mutex::new(Held { solutions, turn: 0 }), cache: None, scratch }
+        Store { held: Mutex::new(Entries { solutions, turn: 0 }), cache: None, scratch }
     }
 
     /// The folder for what does not fit in memory.
@@ -126,7 +126,7 @@ impl Store {
     }
 
     /// A lock whose holder panicked still guards sound data: solutions go in whole.
-    fn lock(&self) -> MutexGuard<'_, Held> {
+    fn lock(&self) -> MutexGuard<'_, Entries> {
         self.held.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

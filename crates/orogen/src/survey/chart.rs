@@ -1,7 +1,7 @@
 //! Lines, bars and axes on a page.
 
 use crate::map::canvas::{Canvas, Ink};
-use crate::map::text::{Face, Lettering, Style};
+use crate::map::text::{BuiltinFont, Face, Style};
 
 /// What the page is drawn with.
 pub const PAPER: Ink = [253, 253, 251];
@@ -25,7 +25,7 @@ pub struct Sheet {
     /// The page.
     pub canvas: Canvas,
     /// Its letters.
-    pub lettering: Lettering,
+    pub font: BuiltinFont,
 }
 
 /// How a chart's axis runs.
@@ -105,8 +105,8 @@ fn label(value: f64) -> String {
 impl Sheet {
     /// Writes words from a column on; `align` is 0 for from there on, 1 for up to there, 0.5 for around it.
     pub fn text(&mut self, x: f64, y: f64, align: f64, text: &str, style: Style) {
-        let width = f64::from(self.lettering.width(text, style));
-        self.lettering.write(&mut self.canvas, (x - align * width) as f32, y.round() as i64, text, style);
+        let width = f64::from(self.font.width(text, style));
+        self.font.write(&mut self.canvas, (x - align * width) as f32, y.round() as i64, text, style);
     }
 
     /// Axes with their marks, a heading and what the axes show.
@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn a_line_is_as_wide_as_asked() {
-        let mut sheet = Sheet { canvas: Canvas::new(40, 20, [255; 3]), lettering: Lettering::new().unwrap() };
+        let mut sheet = Sheet { canvas: Canvas::new(40, 20, [255; 3]), font: BuiltinFont::new().unwrap() };
         sheet.line(&[(5.0, 10.0), (35.0, 10.0)], 4.0, [0; 3]);
         let dark = (0..20).map(|y| 255 - i32::from(sheet.canvas.get(20, y).unwrap()[0])).sum::<i32>();
         assert!((dark - 4 * 255).abs() < 8, "{dark}");

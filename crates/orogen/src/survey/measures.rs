@@ -18,7 +18,7 @@ use crate::grid::{Grid, Window};
 use crate::progress::Progress;
 use crate::raster::Raster;
 
-/// Slopes are counted in classes of so many degrees.
+/// SlopeStatistics are counted in classes of so many degrees.
 pub const SLOPE_CLASS: f64 = 2.0;
 
 /// How far geomorphons look, in cells, and what counts as level, in degrees.
@@ -157,7 +157,7 @@ impl Measures {
         else {
             return Ok(None);
         };
-        let Some(slope) = Slopes::of(&part(1, 1))? else { return Ok(None) };
+        let Some(slope) = SlopeStatistics::of(&part(1, 1))? else { return Ok(None) };
         let (curvature, skew) = bends(&part(2, 1))?;
         let mut rugged = Mean::default();
         part(3, 1).bands(|band| {
@@ -336,7 +336,7 @@ fn bends(land: &Part) -> Result<(f64, f64)> {
 }
 
 /// What is counted of slopes.
-struct Slopes {
+struct SlopeStatistics {
     mean: f64,
     median: f64,
     p90: f64,
@@ -347,8 +347,8 @@ struct Slopes {
     aspects: Vec<f64>,
 }
 
-impl Slopes {
-    fn of(land: &Part) -> Result<Option<Slopes>> {
+impl SlopeStatistics {
+    fn of(land: &Part) -> Result<Option<SlopeStatistics>> {
         let degrees = |rise: f32| f64::from(libm::atanf(rise)).to_degrees();
         let order = land.sorted(
             |band| from_gradients(band, |gradient| gradient.steepness()),
@@ -389,7 +389,7 @@ impl Slopes {
         }
         aspects.iter_mut().for_each(|share| *share /= f64::max(facing, 1.0));
         let mean = sum / count;
-        Ok(Some(Slopes {
+        Ok(Some(SlopeStatistics {
             mean: angles / count,
             median: degrees(median),
             p90: degrees(p90),

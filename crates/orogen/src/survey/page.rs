@@ -12,7 +12,7 @@ use crate::grid::{Grid, Window};
 use crate::layer::LayerKind;
 use crate::map::canvas::Canvas;
 use crate::map::paint::Painter;
-use crate::map::text::Lettering;
+use crate::map::text::BuiltinFont;
 use crate::palette::palette::NO_DATA;
 use crate::resample;
 use crate::words;
@@ -51,13 +51,12 @@ pub struct Title {
 /// If the disk fails, or the built-in font cannot be read.
 pub fn draw(title: &Title, land: &Land, measures: &Measures) -> Result<Canvas> {
     let canvas = Canvas::new(WIDTH as usize, HEIGHT as usize, PAPER);
-    let mut sheet = Sheet { canvas, lettering: Lettering::new()? };
+    let mut sheet = Sheet { canvas, font: BuiltinFont::new()? };
     let (window, sea_level) = (land.window(), land.sea_level());
     let wide = (WIDTH - 2.0 * MARGIN) as f32;
-    let fitted =
-        |lettering: &Lettering, text: &str, style| words::shortened(text, wide, |text| lettering.width(text, style));
-    let name = fitted(&sheet.lettering, &title.name, bold(34.0));
-    let about = fitted(&sheet.lettering, &title.about, small());
+    let fitted = |font: &BuiltinFont, text: &str, style| words::shortened(text, wide, |text| font.width(text, style));
+    let name = fitted(&sheet.font, &title.name, bold(34.0));
+    let about = fitted(&sheet.font, &title.about, small());
     sheet.text(MARGIN, 74.0, 0.0, &name, bold(34.0));
     let size = [window.width, window.height].map(|samples| samples as f64 * window.cell / 1000.0);
     let [low, mean, high] = measures.heights;
@@ -373,8 +372,8 @@ mod tests {
 
     #[test]
     fn no_mark_of_the_table_stands_on_a_number() {
-        let lettering = Lettering::new().unwrap();
-        let width = |text: &str| f64::from(lettering.width(text, small()));
+        let font = BuiltinFont::new().unwrap();
+        let width = |text: &str| f64::from(font.width(text, small()));
         let column = (WIDTH - 2.0 * MARGIN - 50.0) / 2.0;
         let track = track(0.0, column);
         // Marks are 3.4 wide.

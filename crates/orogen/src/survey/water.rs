@@ -79,7 +79,7 @@ pub fn measure(heights: &Grid, progress: &Progress) -> Result<Water> {
     counting.check()?;
     let spring = spring(window);
     let orders = strahler::orders(&receivers, &drained, spring);
-    let mut ground = Ground::default();
+    let mut ground = WaterCounts::default();
     ground.add(heights, &filled);
     counting.check()?;
     let laws = Laws {
@@ -116,7 +116,7 @@ pub fn measure_on_disk(land: &Land, folder: &Path, budget: &Budget, progress: &P
     }
     let (mut codes, mut filled) = (raster()?, raster()?);
     let tiling = Tiling::new(window, large::side(window.len() as u64));
-    large::Water { heights: &heights, sea: None, tiling, progress: &filling }.over_bed(&mut codes, &mut filled)?;
+    large::Water { heights: &heights, sea: None, tiling, progress: &filling }.route_carving(&mut codes, &mut filled)?;
     filling.finish();
     large::Water { heights: &filled, sea: None, tiling, progress: &draining }.over_surface(&mut codes)?;
     draining.finish();
@@ -126,7 +126,7 @@ pub fn measure_on_disk(land: &Land, folder: &Path, budget: &Budget, progress: &P
     passing.finish();
 
     // What is counted of all cells, and how many are rivers.
-    let (mut ground, mut counts, mut wet) = (Ground::default(), AreaCounts::new(window.len()), Mean::default());
+    let (mut ground, mut counts, mut wet) = (WaterCounts::default(), AreaCounts::new(window.len()), Mean::default());
     let (mut largest, mut rivers) = (0, 0);
     streams.each(|strip| {
         counting.check()?;
@@ -211,13 +211,13 @@ fn part(window: &Window, rows: &Range<usize>) -> Window {
 
 /// What is counted of the ground.
 #[derive(Debug, Clone, Copy, Default)]
-struct Ground {
+struct WaterCounts {
     land: f64,
     wet: f64,
     deep: f64,
 }
 
-impl Ground {
+impl WaterCounts {
     fn add(&mut self, heights: &Grid, filled: &Grid) {
         for (height, level) in heights.data().iter().zip(filled.data()).filter(|(height, _)| height.is_finite()) {
             self.land += 1.0;
@@ -237,7 +237,7 @@ struct Laws {
 }
 
 impl Water {
-    fn of(window: &Window, ground: &Ground, laws: Laws, wetness: f64, reaches: Vec<Reach>) -> Water {
+    fn of(window: &Window, ground: &WaterCounts, laws: Laws, wetness: f64, reaches: Vec<Reach>) -> Water {
         let streams = streams(&reaches, window);
         let river: f64 = streams.iter().map(|(_, length)| length).sum();
         let area = ground.land * window.cell * window.cell;

@@ -1,7 +1,7 @@
 //! Nodes that a derived layer appends to a recipe.
 
 use crate::declare::Input;
-use crate::export::options::{OptionSpec, Options, Takes};
+use crate::export::options::{OptionSpec, Options, ValueKind};
 use crate::node::Node;
 use crate::recipe::document::Recipe;
 use crate::solver::drainage::Drainage;
@@ -11,7 +11,7 @@ pub const STREAM: OptionSpec = OptionSpec {
     name: "stream",
     value: "AREA",
     about: "Drainage area from which on there is a stream, in m^2 [default: 1e6]",
-    takes: Takes::Number(0.0, 1e15),
+    value_kind: ValueKind::Number(0.0, 1e15),
 };
 
 /// A recipe whose heights are known, and the options that were given.

@@ -2,7 +2,7 @@
 
 use super::appended::STREAM;
 use super::layer::{Derived, Made, NodeLayer};
-use crate::export::options::{OptionSpec, Takes};
+use crate::export::options::{OptionSpec, ValueKind};
 use crate::filter::flow_direction::{Codes, FlowDirection};
 
 /// Numbers of directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster.
@@ -10,7 +10,7 @@ const CODES: OptionSpec = OptionSpec {
     name: "codes",
     value: "WHOSE",
     about: "Numbers of directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster [default: esri]",
-    takes: Takes::Word(&["esri", "grass", "taudem", "whitebox", "pcraster"]),
+    value_kind: ValueKind::Word(&["esri", "grass", "taudem", "whitebox", "pcraster"]),
 };
 
 /// How much ground lies upstream.

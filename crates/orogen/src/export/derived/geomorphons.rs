@@ -1,7 +1,7 @@
 //! What form the ground has.
 
 use super::layer::{Derived, Made, NodeLayer};
-use crate::export::options::{OptionSpec, Takes};
+use crate::export::options::{OptionSpec, ValueKind};
 use crate::filter::geomorphons::Geomorphons;
 
 /// How far geomorphons look, in metres.
@@ -9,7 +9,7 @@ const REACH: OptionSpec = OptionSpec {
     name: "reach",
     value: "M",
     about: "How far geomorphons look, in metres [default: 500]",
-    takes: Takes::Number(0.0, 1e6),
+    value_kind: ValueKind::Number(0.0, 1e6),
 };
 
 /// Ground that rises or falls by less is level, in degrees.
@@ -17,7 +17,7 @@ const FLAT: OptionSpec = OptionSpec {
     name: "flat",
     value: "DEG",
     about: "Ground that rises or falls by less is level, in degrees [default: 1]",
-    takes: Takes::Number(0.0, 45.0),
+    value_kind: ValueKind::Number(0.0, 45.0),
 };
 
 /// The layer.

@@ -4,7 +4,7 @@ use super::appended::Appended;
 use super::layer::{Derived, Made, NodeLayer};
 use crate::dem::latitude;
 use crate::error::{Error, ErrorKind, Result};
-use crate::export::options::{OptionSpec, Takes};
+use crate::export::options::{OptionSpec, ValueKind};
 use crate::solver::insolation::Insolation;
 
 /// One day.
@@ -12,7 +12,7 @@ const DAY: OptionSpec = OptionSpec {
     name: "day",
     value: "N",
     about: "Day of the year that the sun shines on, 1 to 365 [default: the whole year]",
-    takes: Takes::Whole(1, 365),
+    value_kind: ValueKind::Whole(1, 365),
 };
 
 /// A season.
@@ -20,7 +20,7 @@ const SEASON: OptionSpec = OptionSpec {
     name: "season",
     value: "WHEN",
     about: "Season that the sun shines in, from equinox to solstice or solstice to equinox at the latitude: spring, summer, autumn or winter",
-    takes: Takes::Word(&["spring", "summer", "autumn", "winter"]),
+    value_kind: ValueKind::Word(&["spring", "summer", "autumn", "winter"]),
 };
 
 /// Where on the earth.
@@ -28,7 +28,7 @@ const LATITUDE: OptionSpec = OptionSpec {
     name: "latitude",
     value: "DEG",
     about: "Degrees north of the equator [default: that of a file of heights, else 45]",
-    takes: Takes::Number(-90.0, 90.0),
+    value_kind: ValueKind::Number(-90.0, 90.0),
 };
 
 /// How hazy the air is.
@@ -36,7 +36,7 @@ const TURBIDITY: OptionSpec = OptionSpec {
     name: "turbidity",
     value: "T",
     about: "Linke's turbidity of the air: 1 clean and dry, 6 hazy [default: 3]",
-    takes: Takes::Number(1.0, 10.0),
+    value_kind: ValueKind::Number(1.0, 10.0),
 };
 
 /// The first day of each season in the north, and the last.

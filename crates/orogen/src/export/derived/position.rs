@@ -2,7 +2,7 @@
 
 use super::appended::{Appended, AppendedNode};
 use super::layer::{Derived, Made, NodeLayer};
-use crate::export::options::{OptionSpec, Takes};
+use crate::export::options::{OptionSpec, ValueKind};
 use crate::filter::topographic_position::TopographicPosition;
 
 /// Radius of the disc, in metres.
@@ -10,7 +10,7 @@ const RADIUS: OptionSpec = OptionSpec {
     name: "disc",
     value: "M",
     about: "Radius of the disc, in metres [default: 300]",
-    takes: Takes::Number(0.0, 1e6),
+    value_kind: ValueKind::Number(0.0, 1e6),
 };
 
 /// Appends the node.

@@ -50,7 +50,7 @@ impl<'w> Rows<'w> {
         derived: &'static RowLayer,
         world: &'w World,
         window: &Window,
-        beside: u64,
+        reserved: u64,
         progress: &Progress,
     ) -> Result<Rows<'w>> {
         let reach = (derived.reach)(window.cell);
@@ -60,8 +60,8 @@ impl<'w> Rows<'w> {
         let channels = (derived.channels)(world.recipe()).len();
         let held = (layers.len() * (at_once(window) + 2 * reach + BAND) * wide.width) as u64;
         let made = (channels * at_once(window) * window.width) as u64;
-        let beside = beside.saturating_add(4 * (held + 2 * made));
-        let bands = world.bands(&layers, &wide, beside, progress)?;
+        let reserved = reserved.saturating_add(4 * (held + 2 * made));
+        let bands = world.bands(&layers, &wide, reserved, progress)?;
         let source = Source { bands, wide, rows: vec![Vec::new(); layers.len()], first: 0 };
         Ok(Rows { derived, channels, window: *window, world, source, next: 0 })
     }

@@ -2,7 +2,7 @@
 
 use super::layer::{Derived, Made, NodeLayer};
 use crate::error::{Error, ErrorKind};
-use crate::export::options::{OptionSpec, Takes};
+use crate::export::options::{OptionSpec, ValueKind};
 use crate::solver::viewshed::Viewshed;
 
 /// Where the observer stands.
@@ -10,7 +10,7 @@ const OBSERVER: OptionSpec = OptionSpec {
     name: "observer",
     value: "X,Y",
     about: "Where the observer of a viewshed stands: metres east and south of the world's north-west corner",
-    takes: Takes::Point,
+    value_kind: ValueKind::Point,
 };
 
 /// Height of the eye.
@@ -18,7 +18,7 @@ const OBSERVER_HEIGHT: OptionSpec = OptionSpec {
     name: "observer-height",
     value: "M",
     about: "Height of the observer's eye above the ground, in metres [default: 1.75]",
-    takes: Takes::Number(0.0, 1e6),
+    value_kind: ValueKind::Number(0.0, 1e6),
 };
 
 /// Height of what is looked at.
@@ -26,7 +26,7 @@ const TARGET_HEIGHT: OptionSpec = OptionSpec {
     name: "target-height",
     value: "M",
     about: "Height above the ground of what the observer looks at, in metres [default: 0]",
-    takes: Takes::Number(0.0, 1e6),
+    value_kind: ValueKind::Number(0.0, 1e6),
 };
 
 /// How far the observer looks.
@@ -34,7 +34,7 @@ const RADIUS: OptionSpec = OptionSpec {
     name: "radius",
     value: "M",
     about: "How far the observer looks, in metres [default: over the whole world]",
-    takes: Takes::Number(0.0, 1e9),
+    value_kind: ValueKind::Number(0.0, 1e9),
 };
 
 /// Whether the earth is curved, and the air bends rays.
@@ -42,7 +42,7 @@ const REFRACTION: OptionSpec = OptionSpec {
     name: "refraction",
     value: "K",
     about: "The observer stands on a curved earth, and the air bends lines of sight by this share of its curvature, such as 0.13 [default: a flat earth]",
-    takes: Takes::Number(0.0, 1.0),
+    value_kind: ValueKind::Number(0.0, 1.0),
 };
 
 /// The layer.

@@ -2,15 +2,15 @@
 
 use std::io;
 
-use super::ground::Ground;
 use super::layer::{Style, VectorLayer};
 use super::options::FeatureOptions;
+use super::source::FeatureSource;
 use crate::analysis::finite::FiniteCount;
 use crate::error::{Error, ErrorKind, Result};
 use crate::export::contour_options;
 use crate::export::contours::{self, Contours};
+use crate::export::layer_source::LayerSource;
 use crate::export::options::Options;
-use crate::export::subject::Subject;
 use crate::export::vectors;
 use crate::format::dem::Georeference;
 use crate::format::features::{Crs, FeatureLayer};
@@ -28,30 +28,30 @@ pub struct Drawing {
 /// The contours of a subject's samples.
 ///
 /// Fails as the subject does, or if the levels cannot be read.
-pub fn contours(subject: &mut Subject, options: &Options) -> io::Result<Contours> {
+pub fn contours(source: &mut LayerSource, options: &Options) -> io::Result<Contours> {
     contour_options::check(options)?;
-    Ok(contours::on(&subject.whole()?.swap_remove(0), options)?)
+    Ok(contours::on(&source.whole()?.swap_remove(0), options)?)
 }
 
 impl Drawing {
     /// What a subject's layers are as features, in metres east and south of the world's origin.
     ///
     /// Fails as the subject does, and if an option was given that none of the layers knows.
-    pub fn of(subject: &mut Subject, options: &Options) -> io::Result<Drawing> {
-        let (map, cell) = (subject.map(), subject.window().cell);
-        let asked = subject.vectors().to_vec();
+    pub fn of(source: &mut LayerSource, options: &Options) -> io::Result<Drawing> {
+        let (map, cell) = (source.map(), source.window().cell);
+        let asked = source.vectors().to_vec();
         let mut words = None;
         let layers = match asked.as_slice() {
             [] => {
-                let found = contours(subject, options)?;
-                words = Some(found.words(subject.unit()));
+                let found = contours(source, options)?;
+                words = Some(found.words(source.unit()));
                 vec![(vectors::contours::features(&found), vectors::contours::LAYER.style)]
             }
             asked => {
                 check(asked, options)?;
-                let wanted = FeatureOptions::new(options, subject.world().recipe())?;
-                let ground = Ground::of(subject.world(), subject.window(), &wanted, 0, subject.progress())?;
-                subject.made_of(
+                let wanted = FeatureOptions::new(options, source.world().recipe())?;
+                let ground = FeatureSource::of(source.world(), source.window(), &wanted, 0, source.progress())?;
+                source.made_of(
                     ground.heights().map_or(FiniteCount::default(), |heights| FiniteCount::of(heights.data())),
                 );
                 let make = |layer: &&VectorLayer| Ok(((layer.make)(&ground, &wanted)?, layer.style));

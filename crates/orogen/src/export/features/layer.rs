@@ -1,7 +1,7 @@
 //! What a layer of vector features is.
 
-use super::ground::Ground;
 use super::options::FeatureOptions;
+use super::source::FeatureSource;
 use crate::error::Result;
 use crate::format::features::FeatureLayer;
 
@@ -16,7 +16,7 @@ pub struct VectorLayer {
     /// How it is drawn.
     pub style: Style,
     /// Makes its features, in metres east and south of the world's origin.
-    pub make: fn(&Ground, &FeatureOptions) -> Result<FeatureLayer>,
+    pub make: fn(&FeatureSource, &FeatureOptions) -> Result<FeatureLayer>,
 }
 
 /// How features are drawn.

@@ -2,8 +2,8 @@
 //! (`drawing`). The layers themselves are in [`vectors`](super::vectors).
 
 pub mod drawing;
-pub mod ground;
 pub mod layer;
 pub mod list;
 pub mod options;
+pub mod source;
 pub mod svg;

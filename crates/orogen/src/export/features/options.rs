@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::export::contour_options;
-use crate::export::options::{OptionSpec, Options, Takes};
+use crate::export::options::{OptionSpec, Options, ValueKind};
 use crate::hydrology::rivers::Channel;
 use crate::node::Node;
 use crate::recipe::document::Recipe;
@@ -12,7 +12,7 @@ pub const RIVER_AREA: OptionSpec = OptionSpec {
     name: "river-area",
     value: "M2",
     about: "Drainage area in m^2 from which on there is a river [default: the recipe's, else 1000000, at least 32 samples]",
-    takes: Takes::Number(0.0, 1e15),
+    value_kind: ValueKind::Number(0.0, 1e15),
 };
 
 /// `--lake-area`.
@@ -20,7 +20,7 @@ pub const LAKE_AREA: OptionSpec = OptionSpec {
     name: "lake-area",
     value: "M2",
     about: "Area in m^2 from which on water in a depression is a lake [default: the recipe's, else 20000, at least 4 samples]",
-    takes: Takes::Number(0.0, 1e15),
+    value_kind: ValueKind::Number(0.0, 1e15),
 };
 
 /// `--runoff`.
@@ -28,7 +28,7 @@ pub const RUNOFF: OptionSpec = OptionSpec {
     name: "runoff",
     value: "M",
     about: "Water that runs off the ground, in metres a year: gives discharges and widths [default: the recipe's, else 0.5]",
-    takes: Takes::Number(0.0, 1000.0),
+    value_kind: ValueKind::Number(0.0, 1000.0),
 };
 
 /// `--prominence`.
@@ -36,7 +36,7 @@ pub const PROMINENCE: OptionSpec = OptionSpec {
     name: "prominence",
     value: "M",
     about: "Metres that a summit stands above the way to a higher one at least [default: a 25th of the relief]",
-    takes: Takes::Number(0.0, 1e6),
+    value_kind: ValueKind::Number(0.0, 1e6),
 };
 
 /// The options of formats that hold vector features.

@@ -4,10 +4,10 @@ use std::io;
 
 use crate::export::files::Files;
 use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
 use crate::export::options::Options;
 use crate::export::place;
 use crate::export::sidecar::NO_SIDECAR;
-use crate::export::subject::Subject;
 use crate::format::asc;
 
 /// The format.
@@ -22,13 +22,13 @@ pub static FORMAT: Format = Format {
     write,
 };
 
-fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let (window, map) = (*subject.window(), subject.map());
+fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let (window, map) = (*source.window(), source.map());
     files.write(|out| {
         asc::write_head(out, &window, map.as_ref())?;
-        subject.rows(|band| asc::write_rows(out, window.width, band[0].data()))
+        source.rows(|band| asc::write_rows(out, window.width, band[0].data()))
     })?;
-    let levels = subject.levels();
-    let told = place::write(files, subject, options, None)?;
+    let levels = source.levels();
+    let told = place::write(files, source, options, None)?;
     Ok(format!("{} to {}{told}", levels.low(), levels.high()))
 }

@@ -4,11 +4,11 @@ use std::io;
 
 use crate::export::files::Files;
 use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
 use crate::export::memory::{aside, whole};
-use crate::export::options::{OptionSpec, Options, Takes};
+use crate::export::options::{OptionSpec, Options, ValueKind};
 use crate::export::place;
 use crate::export::sidecar::NO_SIDECAR;
-use crate::export::subject::Subject;
 use crate::format::exr::{Picture, Sample, Writer};
 use crate::grid::Window;
 use crate::recipe::surface::document::MAX_SURFACES;
@@ -30,7 +30,7 @@ pub const HALF: OptionSpec = OptionSpec {
     name: "half",
     value: "",
     about: "Floats of 16 bits instead of 32: steps of 2 m from 2048 m up",
-    takes: Takes::Nothing,
+    value_kind: ValueKind::Nothing,
 };
 
 /// The option of three channels.
@@ -38,7 +38,7 @@ pub const RGB: OptionSpec = OptionSpec {
     name: "rgb",
     value: "",
     about: "The samples in each of the channels R, G and B instead of in Y",
-    takes: Takes::Nothing,
+    value_kind: ValueKind::Nothing,
 };
 
 /// Packed rows that wait, and rows on their way into blocks.
@@ -46,22 +46,22 @@ fn memory(window: &Window, _: &Options) -> u64 {
     aside(3 * whole(window)).saturating_add((window.width as u64).saturating_mul(4 * 3 * 600))
 }
 
-fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let window = *subject.window();
-    let rgb = options.has("rgb") && subject.channels() == 1;
+fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let window = *source.window();
+    let rgb = options.has("rgb") && source.channels() == 1;
     let channels = match rgb {
         true => ["R", "G", "B"].map(String::from).to_vec(),
-        false if subject.channels() == 1 => vec!["Y".to_string()],
-        false => subject.channel_names(),
+        false if source.channels() == 1 => vec!["Y".to_string()],
+        false => source.channel_names(),
     };
     let sample = if options.has("half") { Sample::Half } else { Sample::Float };
-    let unit = if subject.unit().is_empty() { "plain numbers" } else { subject.unit() };
+    let unit = if source.unit().is_empty() { "plain numbers" } else { source.unit() };
     let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    let comments = format!("{made_by}: {} in {unit}; {} metres a sample", subject.layer(), window.cell);
+    let comments = format!("{made_by}: {} in {unit}; {} metres a sample", source.layer(), window.cell);
     let picture = Picture { width: window.width, height: window.height, channels, sample, comments };
     let mut writer = Writer::new(picture, files.spool())?;
     files.write(|out| {
-        subject.rows(|band| {
+        source.rows(|band| {
             let samples: Vec<&[f32]> = match rgb {
                 true => vec![band[0].data(); 3],
                 false => band.iter().map(|grid| grid.data()).collect(),
@@ -70,12 +70,12 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
         })?;
         writer.finish(out)
     })?;
-    let levels = subject.levels();
+    let levels = source.levels();
     let rounded = match sample {
         Sample::Half => format!(", the highest to steps of {}", half_step(levels.low().abs().max(levels.high().abs()))),
         Sample::Float => String::new(),
     };
-    let told = place::write_on_map(files, subject, options, if sample == Sample::Half { "f16" } else { "f32" })?;
+    let told = place::write_on_map(files, source, options, if sample == Sample::Half { "f16" } else { "f32" })?;
     Ok(format!("{} to {}{rounded}{told}", levels.low(), levels.high()))
 }
 

@@ -7,8 +7,8 @@ use crate::export::features::drawing::Drawing;
 use crate::export::features::options::OPTIONS;
 use crate::export::files::Files;
 use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
 use crate::export::options::Options;
-use crate::export::subject::Subject;
 use crate::format::fgb;
 
 /// The format.
@@ -23,8 +23,8 @@ pub static FORMAT: Format = Format {
     write,
 };
 
-fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let mut drawing = Drawing::of(subject, options)?;
+fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let mut drawing = Drawing::of(source, options)?;
     drawing.place();
     let layer = drawing.only("fgb")?;
     files.write(|out| fgb::write(out, layer, drawing.crs()))?;

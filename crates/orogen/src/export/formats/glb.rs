@@ -6,13 +6,13 @@ use serde_json::{Map, json};
 
 use crate::export::files::Files;
 use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
 use crate::export::memory::whole;
 use crate::export::mesh::{COLOR, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, color, memory};
 use crate::export::mesh_cover::{self, SURFACES};
 use crate::export::mesh_tint::COLOR_RANGE;
 use crate::export::mesh_water::{self, WATER, memory as water_memory};
-use crate::export::options::{OptionSpec, Options, Takes};
-use crate::export::subject::Subject;
+use crate::export::options::{OptionSpec, Options, ValueKind};
 use crate::grid::Window;
 use crate::mesh::glb::{Model, write as write_model};
 use crate::mesh::surface::Surface;
@@ -21,7 +21,7 @@ const LODS: OptionSpec = OptionSpec {
     name: "lods",
     value: "N",
     about: "Levels of detail: every second, fourth, ... sample, or twice, four times ... the error of --max-error [default: 1]",
-    takes: Takes::Whole(1, 12),
+    value_kind: ValueKind::Whole(1, 12),
 };
 
 /// The format.
@@ -33,22 +33,22 @@ pub static FORMAT: Format = Format {
     channels: 1,
     features: false,
     // And the picture, which has to be packed before its size can be told.
-    memory: |window, options| beside(window, options).saturating_add(water_memory(window, options)),
+    memory: |window, options| reserved(window, options).saturating_add(water_memory(window, options)),
     write,
 };
 
-fn beside(window: &Window, options: &Options) -> u64 {
+fn reserved(window: &Window, options: &Options) -> u64 {
     memory(window, options).saturating_add(whole(window)).saturating_add(mesh_cover::memory(window, options))
 }
 
-fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let mesh = Prepared::new(subject, options, options.whole(LODS.name).unwrap_or(1) as usize)?;
+fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let mesh = Prepared::new(source, options, options.whole(LODS.name).unwrap_or(1) as usize)?;
     let color = color(options, "texture", files, false);
     let levels: Vec<Surface> = (0..mesh.shapes.len()).map(|level| mesh.surface(level, color == "vertex")).collect();
     let mut texture = Vec::new();
     let mut material = Vec::new();
     let mut normal_maps = Vec::new();
-    match mesh_cover::of(subject, options, true)? {
+    match mesh_cover::of(source, options, true)? {
         Some(pictures) => {
             (texture, material) = (pictures.base, pictures.material);
             for (nth, level) in levels.iter().enumerate() {
@@ -70,7 +70,7 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
     .chain(mesh.extras())
     .collect();
     let [texture, material] = [&texture, &material].map(|picture| (!picture.is_empty()).then_some(picture.as_slice()));
-    let water = mesh_water::of(subject, &mesh, options, beside(subject.window(), options))?;
+    let water = mesh_water::of(source, &mesh, options, reserved(source.window(), options))?;
     files.write(|out| {
         write_model(
             out,

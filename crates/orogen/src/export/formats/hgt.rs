@@ -4,8 +4,8 @@ use std::io;
 
 use crate::export::files::Files;
 use crate::export::format::{Format, refuse};
+use crate::export::layer_source::LayerSource;
 use crate::export::options::Options;
-use crate::export::subject::Subject;
 use crate::format::dem::Georeference;
 use crate::format::hgt::{self, SIZES};
 use crate::grid::Window;
@@ -22,8 +22,8 @@ pub static FORMAT: Format = Format {
     write,
 };
 
-fn write(subject: &mut Subject, _: &Options, files: &mut Files) -> io::Result<String> {
-    let window = *subject.window();
+fn write(source: &mut LayerSource, _: &Options, files: &mut Files) -> io::Result<String> {
+    let window = *source.window();
     if !SIZES.contains(&[window.width, window.height]) {
         let Window { width, height, .. } = window;
         let square = if width.max(height) < 2401 { 1201 } else { 3601 };
@@ -40,10 +40,10 @@ fn write(subject: &mut Subject, _: &Options, files: &mut Files) -> io::Result<St
         ));
     }
     let name = files.path().map(|path| path.to_string_lossy().into_owned()).unwrap_or_default();
-    files.write(|out| subject.rows(|band| hgt::write(out, band[0].data())))?;
-    let levels = subject.levels();
+    files.write(|out| source.rows(|band| hgt::write(out, band[0].data())))?;
+    let levels = source.levels();
     let place = match hgt::corner(&name) {
-        Some(corner) if subject.map().is_some_and(|map| !lies_at(&map, &window, corner)) => {
+        Some(corner) if source.map().is_some_and(|map| !lies_at(&map, &window, corner)) => {
             "its name tells a place where it does not lie, and readers will believe it".to_string()
         }
         Some([south, west]) => format!("its south-west corner at {south} north, {west} east"),

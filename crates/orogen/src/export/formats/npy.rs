@@ -4,10 +4,10 @@ use std::io;
 
 use crate::export::files::Files;
 use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
 use crate::export::options::Options;
 use crate::export::place;
 use crate::export::sidecar::NO_SIDECAR;
-use crate::export::subject::Subject;
 use crate::format::npy;
 
 /// The format.
@@ -22,15 +22,15 @@ pub static FORMAT: Format = Format {
     write,
 };
 
-fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let window = *subject.window();
+fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let window = *source.window();
     files.write(|out| {
-        if subject.channels() == 1 {
+        if source.channels() == 1 {
             npy::write_header(out, window.width, window.height)?;
-            return subject.rows(|band| npy::write_rows(out, band[0].data()));
+            return source.rows(|band| npy::write_rows(out, band[0].data()));
         }
-        npy::write_shape(out, &[window.height, window.width, subject.channels()])?;
-        subject.rows(|band| {
+        npy::write_shape(out, &[window.height, window.width, source.channels()])?;
+        source.rows(|band| {
             (0..band[0].height()).try_for_each(|j| {
                 let row: Vec<f32> =
                     (0..window.width).flat_map(|i| band.iter().map(move |grid| grid.get(i, j))).collect();
@@ -38,7 +38,7 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
             })
         })
     })?;
-    let levels = subject.levels();
-    let told = place::write_on_map(files, subject, options, "f32")?;
+    let levels = source.levels();
+    let told = place::write_on_map(files, source, options, "f32")?;
     Ok(format!("{} to {}{told}", levels.low(), levels.high()))
 }

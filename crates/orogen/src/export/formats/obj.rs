@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use crate::export::files::Files;
 use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
 use crate::export::mesh::{COLOR, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, color, memory};
 use crate::export::mesh_cover::{self, SURFACES};
 use crate::export::mesh_tint::COLOR_RANGE;
 use crate::export::options::Options;
-use crate::export::subject::Subject;
 use crate::mesh::obj;
 
 /// The format.
@@ -24,15 +24,15 @@ pub static FORMAT: Format = Format {
     write,
 };
 
-fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let mesh = Prepared::new(subject, options, 1)?;
+fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let mesh = Prepared::new(source, options, 1)?;
     let color = color(options, "texture", files, true);
     let comments = mesh.comments("x east, y up, z south");
     let path = files.path().map(Path::to_path_buf).filter(|_| color == "texture");
     let library = path.as_deref().map(|path| file_name(&material(path)));
     files.write(|out| obj::write(out, &mesh.surface(0, color == "vertex"), &comments, library.as_deref()))?;
     if let Some(path) = path {
-        match mesh_cover::of(subject, options, false)? {
+        match mesh_cover::of(source, options, false)? {
             Some(pictures) => files.write_beside(picture, |out| out.write_all(&pictures.base))?,
             None => files.write_beside(picture, |out| mesh.picture(out))?,
         }

@@ -4,13 +4,13 @@ use std::io;
 
 use crate::export::files::Files;
 use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
 use crate::export::memory::{aside, whole};
 use crate::export::notes;
 use crate::export::options::Options;
 use crate::export::place;
-use crate::export::sidecar::{self, Held, NO_SIDECAR};
-use crate::export::spread::{self, BITS, FIRST_ROW, RANGE, Spread};
-use crate::export::subject::Subject;
+use crate::export::quantizer::{self, BITS, FIRST_ROW, Quantizer, RANGE};
+use crate::export::sidecar::{self, NO_SIDECAR, SampleEncoding};
 use crate::format::pgm;
 
 /// The format.
@@ -25,19 +25,24 @@ pub static FORMAT: Format = Format {
     write,
 };
 
-fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let (window, most) = (*subject.window(), spread::most(options));
-    let mut spread = Spread::new(subject, options, most, files)?;
+fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let (window, most) = (*source.window(), quantizer::most(options));
+    let mut spread = Quantizer::new(source, options, most, files)?;
     let levels = spread.levels();
     let notes: Vec<String> = notes::of_heights(window.cell, &levels).into_iter().map(|(_, text)| text).collect();
     files.write(|out| {
         pgm::write_head(out, [window.width, window.height], most, &notes)?;
-        spread.rows(|samples| spread::write_levels(out, samples, &levels, most))
+        spread.rows(|samples| quantizer::write_levels(out, samples, &levels, most))
     })?;
     let (sample, byte_order) = if most == 255 { ("u8", None) } else { ("u16", Some("big")) };
-    let held =
-        Held { sample, byte_order, levels: Some(levels), from_south: spread::from_south(options), ..Held::default() };
-    let told = sidecar::write(files, subject, options, &held)?
-        + &place::write(files, subject, options, Some(held.from_south))?;
-    Ok(spread::words(&levels, most) + &told)
+    let held = SampleEncoding {
+        sample,
+        byte_order,
+        levels: Some(levels),
+        from_south: quantizer::from_south(options),
+        ..SampleEncoding::default()
+    };
+    let told =
+        sidecar::write(files, source, options, &held)? + &place::write(files, source, options, Some(held.from_south))?;
+    Ok(quantizer::words(&levels, most) + &told)
 }

@@ -5,10 +5,10 @@ use std::io;
 use crate::error::{Error, ErrorKind};
 use crate::export::files::Files;
 use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
 use crate::export::mesh::{COLOR, EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, color, memory};
 use crate::export::mesh_tint::COLOR_RANGE;
 use crate::export::options::Options;
-use crate::export::subject::Subject;
 use crate::mesh::ply;
 
 /// The format.
@@ -23,14 +23,14 @@ pub static FORMAT: Format = Format {
     write,
 };
 
-fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
+fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     let color = color(options, "vertex", files, false);
     if color == "texture" {
         let message = "a .ply file holds no picture: say --color vertex, or none, or write .glb or .obj";
         return Err(Error::new(ErrorKind::Request, message).into());
     }
     let colors = color == "vertex";
-    let mesh = Prepared::new(subject, options, 1)?;
+    let mesh = Prepared::new(source, options, 1)?;
     let comments = mesh.comments("x east, y north, z up");
     files.write(|out| ply::write(out, &mesh.surface(0, colors), &comments))?;
     Ok(mesh.words())

@@ -6,13 +6,13 @@ use crate::export::channels::{self, NORMAL, WEIGHTS};
 use crate::export::derived::layer::Nature;
 use crate::export::files::Files;
 use crate::export::format::{Format, refuse};
+use crate::export::layer_source::LayerSource;
 use crate::export::memory::{aside, whole};
 use crate::export::notes;
-use crate::export::options::{OptionSpec, Options, Takes};
+use crate::export::options::{OptionSpec, Options, ValueKind};
 use crate::export::place;
-use crate::export::sidecar::{self, Held, NO_SIDECAR};
-use crate::export::spread::{self, BITS, FIRST_ROW, RANGE, Spread};
-use crate::export::subject::Subject;
+use crate::export::quantizer::{self, BITS, FIRST_ROW, Quantizer, RANGE};
+use crate::export::sidecar::{self, NO_SIDECAR, SampleEncoding};
 use crate::format::encoding::Encoding;
 use crate::format::png::{self, Picture, Pixel};
 use crate::recipe::surface::document::MAX_SURFACES;
@@ -34,11 +34,11 @@ const ENCODING: OptionSpec = OptionSpec {
     name: "encoding",
     value: "NAME",
     about: "Heights in red, green and blue instead of grey: terrarium, in steps of 1/256 m, or terrain-rgb, of 1/10 m",
-    takes: Takes::Word(&["terrarium", "terrain-rgb"]),
+    value_kind: ValueKind::Word(&["terrarium", "terrain-rgb"]),
 };
 
-fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let fits = |nature: Nature| subject.nature() == nature;
+fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let fits = |nature: Nature| source.nature() == nature;
     for (option, holds, what) in [
         (NORMAL.name, fits(Nature::Normal), "the layer `normal`"),
         (WEIGHTS.name, fits(Nature::Weights), "the layer `splat`"),
@@ -48,24 +48,24 @@ fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Res
         (BITS.name, fits(Nature::Numbers) || fits(Nature::Normal), "plain numbers and normals"),
     ] {
         if options.has(option) && !holds {
-            return refuse(format!("--{option} is for {what}: leave it out for `{}`", subject.layer()));
+            return refuse(format!("--{option} is for {what}: leave it out for `{}`", source.layer()));
         }
     }
-    match subject.nature() {
-        Nature::Normal => return channels::write_normals(subject, options, files),
-        Nature::Weights => return channels::write_weights(subject, options, files),
-        Nature::Color => return channels::write_color(subject, files),
+    match source.nature() {
+        Nature::Normal => return channels::write_normals(source, options, files),
+        Nature::Weights => return channels::write_weights(source, options, files),
+        Nature::Color => return channels::write_color(source, files),
         Nature::Numbers => {}
     }
     match Encoding::ALL.into_iter().find(|encoding| options.word("encoding") == Some(encoding.name())) {
-        Some(encoding) => write_encoded(subject, options, files, encoding),
-        None => write_grey(subject, options, files),
+        Some(encoding) => write_encoded(source, options, files, encoding),
+        None => write_grey(source, options, files),
     }
 }
 
-fn write_grey(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let (window, most) = (*subject.window(), spread::most(options));
-    let mut spread = Spread::new(subject, options, most, files)?;
+fn write_grey(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let (window, most) = (*source.window(), quantizer::most(options));
+    let mut spread = Quantizer::new(source, options, most, files)?;
     let levels = spread.levels();
     let pixel = if most == 255 { Pixel::Grey8 } else { Pixel::Grey16 };
     let notes = notes::of_heights(window.cell, &levels);
@@ -73,19 +73,24 @@ fn write_grey(subject: &mut Subject, options: &Options, files: &mut Files) -> io
     let picture = Picture { width: window.width, height: window.height, pixel, notes: &notes };
     files.write(|out| {
         png::write_through(out, &picture, |out| {
-            spread.rows(|samples| spread::write_levels(out, samples, &levels, most))
+            spread.rows(|samples| quantizer::write_levels(out, samples, &levels, most))
         })
     })?;
     let (sample, byte_order) = if most == 255 { ("u8", None) } else { ("u16", Some("big")) };
-    let held =
-        Held { sample, byte_order, levels: Some(levels), from_south: spread::from_south(options), ..Held::default() };
-    let told = sidecar::write(files, subject, options, &held)?
-        + &place::write(files, subject, options, Some(held.from_south))?;
-    Ok(spread::words(&levels, most) + &told)
+    let held = SampleEncoding {
+        sample,
+        byte_order,
+        levels: Some(levels),
+        from_south: quantizer::from_south(options),
+        ..SampleEncoding::default()
+    };
+    let told =
+        sidecar::write(files, source, options, &held)? + &place::write(files, source, options, Some(held.from_south))?;
+    Ok(quantizer::words(&levels, most) + &told)
 }
 
 fn write_encoded(
-    subject: &mut Subject,
+    source: &mut LayerSource,
     options: &Options,
     files: &mut Files,
     encoding: Encoding,
@@ -93,12 +98,12 @@ fn write_encoded(
     if let Some(other) = ["bits", "range"].into_iter().find(|name| options.has(name)) {
         return refuse(format!("--encoding {} has bits and a range of its own: leave out --{other}", encoding.name()));
     }
-    let window = *subject.window();
+    let window = *source.window();
     let about = format!("heights in metres as {} colours; {} metres a sample", encoding.name(), window.cell);
     let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
     let notes = [("Software", made_by.as_str()), ("Description", about.as_str())];
     let picture = Picture { width: window.width, height: window.height, pixel: Pixel::Data8, notes: &notes };
-    let mut spread = Spread::plain(subject, options, files)?;
+    let mut spread = Quantizer::plain(source, options, files)?;
     files.write(|out| {
         png::write_through(out, &picture, |out| {
             spread.rows(|samples| {
@@ -107,15 +112,15 @@ fn write_encoded(
             })
         })
     })?;
-    let held = Held {
+    let held = SampleEncoding {
         sample: encoding.name(),
         byte_order: None,
         levels: None,
-        from_south: spread::from_south(options),
-        ..Held::default()
+        from_south: quantizer::from_south(options),
+        ..SampleEncoding::default()
     };
-    let told = sidecar::write(files, subject, options, &held)?
-        + &place::write(files, subject, options, Some(held.from_south))?;
-    let levels = subject.levels();
+    let told =
+        sidecar::write(files, source, options, &held)? + &place::write(files, source, options, Some(held.from_south))?;
+    let levels = source.levels();
     Ok(format!("{} to {} as {} colours{told}", levels.low(), levels.high(), encoding.name()))
 }

@@ -4,12 +4,12 @@ use std::io;
 
 use crate::export::files::Files;
 use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
 use crate::export::memory::{aside, whole};
 use crate::export::options::Options;
 use crate::export::place;
-use crate::export::sidecar::{self, Held, NO_SIDECAR};
-use crate::export::spread::{self, FIRST_ROW, RANGE, Spread};
-use crate::export::subject::Subject;
+use crate::export::quantizer::{self, FIRST_ROW, Quantizer, RANGE};
+use crate::export::sidecar::{self, NO_SIDECAR, SampleEncoding};
 use crate::format::raw;
 
 /// The format.
@@ -24,13 +24,19 @@ pub static FORMAT: Format = Format {
     write,
 };
 
-fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let mut spread = Spread::new(subject, options, u16::MAX, files)?;
+fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let mut spread = Quantizer::new(source, options, u16::MAX, files)?;
     let levels = spread.levels();
     files.write(|out| spread.rows(|samples| raw::write_u16(out, samples, &levels)))?;
-    let from_south = spread::from_south(options);
-    let held = Held { sample: "u16", byte_order: Some("little"), levels: Some(levels), from_south, ..Held::default() };
-    let told = sidecar::write(files, subject, options, &held)?
-        + &place::write(files, subject, options, Some(held.from_south))?;
-    Ok(spread::words(&levels, u16::MAX) + &told)
+    let from_south = quantizer::from_south(options);
+    let held = SampleEncoding {
+        sample: "u16",
+        byte_order: Some("little"),
+        levels: Some(levels),
+        from_south,
+        ..SampleEncoding::default()
+    };
+    let told =
+        sidecar::write(files, source, options, &held)? + &place::write(files, source, options, Some(held.from_south))?;
+    Ok(quantizer::words(&levels, u16::MAX) + &told)
 }

@@ -4,12 +4,12 @@ use std::io;
 
 use crate::export::files::Files;
 use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
 use crate::export::memory::{aside, whole};
 use crate::export::options::Options;
 use crate::export::place;
-use crate::export::sidecar::{self, Held, NO_SIDECAR};
-use crate::export::spread::{self, FIRST_ROW, Spread};
-use crate::export::subject::Subject;
+use crate::export::quantizer::{self, FIRST_ROW, Quantizer};
+use crate::export::sidecar::{self, NO_SIDECAR, SampleEncoding};
 use crate::format::raw;
 
 /// The format.
@@ -20,17 +20,23 @@ pub static FORMAT: Format = Format {
     options: &[FIRST_ROW, NO_SIDECAR],
     channels: 1,
     features: false,
-    memory: |window, options| if spread::from_south(options) { aside(whole(window)) } else { 0 },
+    memory: |window, options| if quantizer::from_south(options) { aside(whole(window)) } else { 0 },
     write,
 };
 
-fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let mut spread = Spread::plain(subject, options, files)?;
+fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let mut spread = Quantizer::plain(source, options, files)?;
     files.write(|out| spread.rows(|samples| raw::write_f32(out, samples)))?;
-    let from_south = spread::from_south(options);
-    let held = Held { sample: "f32", byte_order: Some("little"), levels: None, from_south, ..Held::default() };
-    let told = sidecar::write(files, subject, options, &held)?
-        + &place::write(files, subject, options, Some(held.from_south))?;
-    let levels = subject.levels();
+    let from_south = quantizer::from_south(options);
+    let held = SampleEncoding {
+        sample: "f32",
+        byte_order: Some("little"),
+        levels: None,
+        from_south,
+        ..SampleEncoding::default()
+    };
+    let told =
+        sidecar::write(files, source, options, &held)? + &place::write(files, source, options, Some(held.from_south))?;
+    let levels = source.levels();
     Ok(format!("{} to {}{told}", levels.low(), levels.high()))
 }

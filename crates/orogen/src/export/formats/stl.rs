@@ -4,23 +4,23 @@ use std::io;
 
 use crate::export::files::Files;
 use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
 use crate::export::mesh::{EXAGGERATION, HEIGHT_CURVE, MAX_ERROR, Prepared, memory};
-use crate::export::options::{OptionSpec, Options, Takes};
-use crate::export::subject::Subject;
+use crate::export::options::{OptionSpec, Options, ValueKind};
 use crate::mesh::stl::{Print, write as write_solid};
 
 const PRINT_SIZE: OptionSpec = OptionSpec {
     name: "print-size",
     value: "MM",
     about: "Millimetres of the longer side [default: 150]",
-    takes: Takes::Number(1.0, 1e5),
+    value_kind: ValueKind::Number(1.0, 1e5),
 };
 
 const BASE: OptionSpec = OptionSpec {
     name: "base",
     value: "MM",
     about: "Millimetres of material below the lowest sample [default: 3]",
-    takes: Takes::Number(0.1, 1e4),
+    value_kind: ValueKind::Number(0.1, 1e4),
 };
 
 /// The format.
@@ -35,8 +35,8 @@ pub static FORMAT: Format = Format {
     write,
 };
 
-fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let mesh = Prepared::new(subject, options, 1)?;
+fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let mesh = Prepared::new(source, options, 1)?;
     let size = options.number(PRINT_SIZE.name).unwrap_or(150.0);
     let print = Print { size, base: options.number(BASE.name).unwrap_or(3.0) };
     let mut height = 0.0;

@@ -9,8 +9,8 @@ use crate::export::features::options::OPTIONS;
 use crate::export::features::svg as drawn;
 use crate::export::files::Files;
 use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
 use crate::export::options::Options;
-use crate::export::subject::Subject;
 
 /// The format.
 pub static FORMAT: Format = Format {
@@ -24,14 +24,14 @@ pub static FORMAT: Format = Format {
     write,
 };
 
-fn write(subject: &mut Subject, options: &Options, files: &mut Files) -> io::Result<String> {
-    let window = *subject.window();
-    if !subject.vectors().is_empty() {
-        let drawing = Drawing::of(subject, options)?;
+fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let window = *source.window();
+    if !source.vectors().is_empty() {
+        let drawing = Drawing::of(source, options)?;
         files.write(|out| drawn::write(out, &drawing.layers, &window))?;
         return Ok(drawing.words());
     }
-    let found = drawing::contours(subject, options)?;
+    let found = drawing::contours(source, options)?;
     files.write(|out| svg::write(out, &found.lines, &window, found.interval))?;
-    Ok(found.words(subject.unit()))
+    Ok(found.words(source.unit()))
 }

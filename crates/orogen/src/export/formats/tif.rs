@@ -4,9 +4,9 @@ use std::io;
 
 use crate::export::files::Files;
 use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
 use crate::export::memory::{aside, whole};
 use crate::export::options::Options;
-use crate::export::subject::Subject;
 use crate::format::geotiff::options::Options as Layout;
 use crate::format::geotiff::writer::Writer;
 use crate::grid::Window;
@@ -28,13 +28,13 @@ fn memory(window: &Window, _: &Options) -> u64 {
     aside(whole(window)).saturating_add((window.width as u64).saturating_mul(4 * 4 * 512))
 }
 
-fn write(subject: &mut Subject, _: &Options, files: &mut Files) -> io::Result<String> {
-    let layout = Layout { map: subject.map(), ..Layout::default() };
-    let mut writer = Writer::new(subject.window(), &layout, files.spool())?;
+fn write(source: &mut LayerSource, _: &Options, files: &mut Files) -> io::Result<String> {
+    let layout = Layout { map: source.map(), ..Layout::default() };
+    let mut writer = Writer::new(source.window(), &layout, files.spool())?;
     files.write(|out| {
-        subject.rows(|band| writer.rows(band[0].data()))?;
+        source.rows(|band| writer.rows(band[0].data()))?;
         writer.finish(out)
     })?;
-    let levels = subject.levels();
+    let levels = source.levels();
     Ok(format!("{} to {}", levels.low(), levels.high()))
 }

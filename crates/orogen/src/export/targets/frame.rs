@@ -1,6 +1,6 @@
 //! Which samples an engine gets: a size that it allows, and the cell that makes the world fit.
 
-use super::target::Target;
+use super::target::EngineTarget;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Window;
 use crate::tiles::Tiling;
@@ -41,7 +41,7 @@ impl Frame {
     ///
     /// # Errors
     /// If the target does not allow a size or tiles; the message names the nearest.
-    pub fn new(target: &Target, world: &World, asked: &Asked) -> Result<Frame> {
+    pub fn new(target: &EngineTarget, world: &World, asked: &Asked) -> Result<Frame> {
         let tiles = asked.tiles.unwrap_or([1, 1]);
         if asked.tiles.is_some() && target.tile.is_none() {
             return refuse(format!("{} takes one file and cuts it itself: leave out --tiles", target.name));
@@ -124,11 +124,11 @@ fn refuse<T>(message: String) -> Result<T> {
     Err(Error::new(ErrorKind::Request, message))
 }
 
-fn nearest(target: &Target, side: usize) -> usize {
+fn nearest(target: &EngineTarget, side: usize) -> usize {
     target.sides.iter().copied().min_by_key(|allowed| allowed.abs_diff(side)).unwrap_or(side)
 }
 
-fn allowed(target: &Target, side: usize) -> Result<usize> {
+fn allowed(target: &EngineTarget, side: usize) -> Result<usize> {
     match target.sides.contains(&side) {
         true => Ok(side),
         false => {

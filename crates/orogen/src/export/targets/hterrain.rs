@@ -3,12 +3,12 @@
 //! Its height map is an EXR of one channel in half floats, 2^n + 1 samples a side, metres as they are; its splat maps have the size without the last row and
 //! column.
 
-use super::target::Target;
+use super::target::EngineTarget;
 use crate::export::formats::exr;
 use crate::format::levels::Levels;
 
 /// The target.
-pub static TARGET: Target = Target {
+pub static TARGET: EngineTarget = EngineTarget {
     name: "hterrain",
     about: "HTerrain for Godot: EXR of one channel in half floats, 2^n + 1 samples",
     sides: &[65, 129, 257, 513, 1025, 2049, 4097],

@@ -1,16 +1,16 @@
 //! The targets there are.
 
-use super::target::Target;
+use super::target::EngineTarget;
 use super::{hterrain, terrain3d, unity, unreal};
 
-static ALL: [&Target; 4] = [&unreal::TARGET, &unity::TARGET, &terrain3d::TARGET, &hterrain::TARGET];
+static ALL: [&EngineTarget; 4] = [&unreal::TARGET, &unity::TARGET, &terrain3d::TARGET, &hterrain::TARGET];
 
 /// All targets.
-pub fn all() -> &'static [&'static Target] {
+pub fn all() -> &'static [&'static EngineTarget] {
     &ALL
 }
 
 /// The target of that name.
-pub fn named(name: &str) -> Option<&'static Target> {
+pub fn named(name: &str) -> Option<&'static EngineTarget> {
     ALL.into_iter().find(|target| target.name == name)
 }

@@ -3,17 +3,17 @@
 use std::path::PathBuf;
 
 use super::frame::Frame;
-use super::target::Target;
+use super::target::EngineTarget;
 use crate::analysis::finite::FiniteCount;
 use crate::error::{Error, ErrorKind, Result};
 use crate::export::channels::{NORMAL, WEIGHTS, suffixed};
 use crate::export::derived::layer::Nature;
 use crate::export::files::Files;
 use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
 use crate::export::options::Options;
+use crate::export::quantizer::{self, BITS, RANGE};
 use crate::export::run;
-use crate::export::spread::{self, BITS, RANGE};
-use crate::export::subject::Subject;
 use crate::file::{self, Output};
 use crate::grid::Window;
 use crate::progress::Progress;
@@ -39,7 +39,7 @@ pub struct Exported {
 /// # Errors
 /// If the format is none of the target's, or as [`run::to_file`].
 pub fn export(
-    target: &Target,
+    target: &EngineTarget,
     format: &Format,
     frame: &Frame,
     world: &World,
@@ -50,11 +50,11 @@ pub fn export(
     let path = output.path();
     let mut options = Options::default();
     // Plain numbers are made twice: for their range, and tile by tile.
-    let nature = Subject::new(world, layer, frame.window, progress)?.nature();
+    let nature = LayerSource::new(world, layer, frame.window, progress)?.nature();
     let [ranging, writing] = progress.parts([if nature == Nature::Numbers { 1.0 } else { 0.0 }, 1.0]);
     writing.expect((frame.tiles[0] * frame.tiles[1]) as f64);
-    let subject = |window: Window, progress: &Progress| Subject::new(world, layer, window, progress);
-    let mut all = subject(frame.window, &ranging)?;
+    let source = |window: Window, progress: &Progress| LayerSource::new(world, layer, window, progress);
+    let mut all = source(frame.window, &ranging)?;
     let known: &[&str] = if layer == HEIGHT { target.formats } else { &["png"] };
     if !known.contains(&format.name) {
         let list: Vec<String> = known.iter().map(|name| format!(".{name}")).collect();
@@ -87,7 +87,7 @@ pub fn export(
                 import = (target.import)(frame.side, frame.window.cell, &levels);
             } else {
                 options.give(&BITS, "8")?;
-                let levels = spread::natural(&all, spread::most(&options))
+                let levels = quantizer::natural(&all, quantizer::most(&options))
                     .map_err(|cause| file::explain("write", path, &cause))?;
                 if !levels.is_flat() {
                     options.give(&RANGE, &format!("{},{}", levels.low(), levels.high()))?;
@@ -107,7 +107,7 @@ pub fn export(
             let tile = frame.tile(column, row);
             let window = Window { width: tile.width - less, height: tile.height - less, ..tile };
             let output = &outputs[row * frame.tiles[0] + column];
-            let (made, told) = run::staged(format, subject(window, &writing.part(1.0))?, &options, output)?;
+            let (made, told) = run::staged(format, source(window, &writing.part(1.0))?, &options, output)?;
             (words, count) = (told.words, count.and(told.count));
             written.push(made);
         }

@@ -6,7 +6,7 @@ use crate::format::levels::Levels;
 use crate::error::Result;
 
 /// An engine's import of heights.
-pub struct Target {
+pub struct EngineTarget {
     /// What `--target` calls it.
     pub name: &'static str,
     /// One line for a list.

@@ -3,12 +3,12 @@
 //! "Importing & Exporting Data" (terrain3d.readthedocs.io): EXR or r16 for heights, metres as they are; it cuts the map into regions of 1024
 //! samples by itself. Three channels of 32 bits without opacity, which Godot reads as floats; half floats would be steps of 2 m at 3000 m.
 
-use super::target::Target;
+use super::target::EngineTarget;
 use crate::export::formats::exr;
 use crate::format::levels::Levels;
 
 /// The target.
-pub static TARGET: Target = Target {
+pub static TARGET: EngineTarget = EngineTarget {
     name: "terrain3d",
     about: "Terrain3D for Godot 4: EXR of f32 in metres, red, green and blue, whole regions of 1024 samples",
     sides: &[256, 512, 1024, 2048, 4096, 8192, 16384],

@@ -3,13 +3,13 @@
 //! "Working with Heightmaps" and "Terrain Settings" (docs.unity3d.com): 2^n + 1 samples, 33 to 4097; RAW of 16 bits; a terrain's first row is its
 //! southern one (z grows north), so the rows are written from the south and nothing is flipped.
 
-use super::target::Target;
+use super::target::EngineTarget;
 use crate::export::formats::r16;
-use crate::export::spread::{FIRST_ROW, RANGE};
+use crate::export::quantizer::{FIRST_ROW, RANGE};
 use crate::format::levels::Levels;
 
 /// The target.
-pub static TARGET: Target = Target {
+pub static TARGET: EngineTarget = EngineTarget {
     name: "unity",
     about: "Unity terrains: r16 little-endian from the south, 2^n + 1 samples, tiles _x_z",
     sides: &[33, 65, 129, 257, 513, 1025, 2049, 4097],

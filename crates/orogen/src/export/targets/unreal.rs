@@ -3,13 +3,13 @@
 //! "Landscape Technical Guide" (dev.epicgames.com): sizes that use whole components; 16 bits, of which 32768 is height 0 of the actor;
 //! height = (value - 32768) / 128 x the actor's Z scale / 100, in metres.
 
-use super::target::Target;
+use super::target::EngineTarget;
 use crate::export::formats::{png, r16};
-use crate::export::spread::RANGE;
+use crate::export::quantizer::RANGE;
 use crate::format::levels::Levels;
 
 /// The target.
-pub static TARGET: Target = Target {
+pub static TARGET: EngineTarget = EngineTarget {
     name: "unreal",
     about: "Unreal Engine landscapes: 16-bit PNG or r16, 32768 is 0 m, tiles _x0_y0",
     sides: &[127, 253, 505, 1009, 2017, 4033, 8129],

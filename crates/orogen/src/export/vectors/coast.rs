@@ -2,9 +2,9 @@
 
 use crate::error::Result;
 use crate::export::contour_options;
-use crate::export::features::ground::Ground;
 use crate::export::features::layer::{Style, VectorLayer};
 use crate::export::features::options::FeatureOptions;
+use crate::export::features::source::FeatureSource;
 use crate::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value, length};
 
 /// The layer.
@@ -23,7 +23,7 @@ const FIELDS: &[Field] = &[
     Field { name: "closed", kind: FieldType::Boolean, about: "whether the line ends where it begins" },
 ];
 
-fn make(ground: &Ground, _: &FeatureOptions) -> Result<FeatureLayer> {
+fn make(ground: &FeatureSource, _: &FeatureOptions) -> Result<FeatureLayer> {
     let level = f64::from(ground.water.sea_level.unwrap_or_default());
     let coast = |(id, line): (i64, &Vec<[f64; 2]>)| {
         let points: Vec<[f64; 3]> = (line.iter())

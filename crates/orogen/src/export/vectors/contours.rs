@@ -4,9 +4,9 @@ use crate::contour::levels::is_index;
 use crate::error::Result;
 use crate::export::contour_options;
 use crate::export::contours::{self, Contours};
-use crate::export::features::ground::Ground;
 use crate::export::features::layer::{Style, VectorLayer};
 use crate::export::features::options::FeatureOptions;
+use crate::export::features::source::FeatureSource;
 use crate::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value};
 
 /// The layer.
@@ -27,7 +27,7 @@ const FIELDS: &[Field] = &[
     },
 ];
 
-fn make(ground: &Ground, options: &FeatureOptions) -> Result<FeatureLayer> {
+fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer> {
     let found = match ground.heights() {
         Some(heights) => contours::on(&heights, options.given)?,
         None => Contours { lines: Vec::new(), interval: None },

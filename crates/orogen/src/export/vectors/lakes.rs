@@ -2,9 +2,9 @@
 
 use crate::contour::line::twice_area;
 use crate::error::Result;
-use crate::export::features::ground::Ground;
 use crate::export::features::layer::{Style, VectorLayer};
 use crate::export::features::options::{FeatureOptions, WATER};
+use crate::export::features::source::FeatureSource;
 use crate::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value};
 use crate::hydrography::rivers::Source;
 
@@ -30,7 +30,7 @@ const FIELDS: &[Field] = &[
     },
 ];
 
-fn make(ground: &Ground, _: &FeatureOptions) -> Result<FeatureLayer> {
+fn make(ground: &FeatureSource, _: &FeatureOptions) -> Result<FeatureLayer> {
     let water = &ground.water;
     let cell_area = ground.cell() * ground.cell();
     let mut volumes = vec![0.0f64; water.lakes.len() + 1];

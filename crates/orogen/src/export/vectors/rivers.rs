@@ -1,9 +1,9 @@
 //! Rivers.
 
 use crate::error::Result;
-use crate::export::features::ground::Ground;
 use crate::export::features::layer::{Style, VectorLayer};
 use crate::export::features::options::{FeatureOptions, WATER};
+use crate::export::features::source::FeatureSource;
 use crate::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value, length};
 use crate::hydrography::rivers::{Mouth, Source};
 
@@ -36,7 +36,7 @@ const FIELDS: &[Field] = &[
     Field { name: "mouth_lake", kind: FieldType::Integer, about: "id of the lake that it ends in" },
 ];
 
-fn make(ground: &Ground, options: &FeatureOptions) -> Result<FeatureLayer> {
+fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer> {
     let cell_area = ground.cell() * ground.cell();
     let mut features = Vec::with_capacity(ground.rivers.len());
     for (id, river) in (1..).zip(&ground.rivers) {

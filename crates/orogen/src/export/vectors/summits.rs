@@ -1,9 +1,9 @@
 //! Summits.
 
 use crate::error::Result;
-use crate::export::features::ground::Ground;
 use crate::export::features::layer::{Style, VectorLayer};
 use crate::export::features::options::{FeatureOptions, PROMINENCE};
+use crate::export::features::source::FeatureSource;
 use crate::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value};
 use crate::hydrography::summits::summits;
 
@@ -30,7 +30,7 @@ const FIELDS: &[Field] = &[
 /// The prominence of a summit at least, as a share of the relief.
 const SHARE: f64 = 1.0 / 25.0;
 
-fn make(ground: &Ground, options: &FeatureOptions) -> Result<FeatureLayer> {
+fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer> {
     let water = &ground.water;
     let in_frame = |row: usize| &water.heights.row(row)[ground.frame.columns.clone()];
     let finite = || ground.frame.rows.clone().flat_map(in_frame).copied().filter(|height| height.is_finite());

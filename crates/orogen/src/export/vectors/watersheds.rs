@@ -1,9 +1,9 @@
 //! Watersheds.
 
 use crate::error::Result;
-use crate::export::features::ground::Ground;
 use crate::export::features::layer::{Style, VectorLayer};
 use crate::export::features::options::{FeatureOptions, WATER};
+use crate::export::features::source::FeatureSource;
 use crate::format::features::{Feature, FeatureLayer, Field, FieldType, Geometry, GeometryType, Value};
 use crate::grid::{Grid, Window};
 use crate::hydrography::outlines::outlines;
@@ -42,7 +42,7 @@ struct Measures {
     sum: f64,
 }
 
-fn make(ground: &Ground, options: &FeatureOptions) -> Result<FeatureLayer> {
+fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer> {
     let found = watersheds(&ground.water, &ground.frame, &ground.rivers);
     let window = Window::new(ground.frame.columns.len(), ground.frame.rows.len(), 1.0)
         .at(ground.frame.columns.start as i64, ground.frame.rows.start as i64);

@@ -4,12 +4,12 @@ use super::entries::Tiff;
 use crate::format::affine::Affine;
 use crate::format::crs::keys::{self, GeoKeys, length_unit, short};
 use crate::format::crs::unit::Unit;
-use crate::format::dem::Place;
+use crate::format::dem::Placement;
 
 /// Where the samples stand, whether rows come from the south, and how many metres a unit of height is. A raster without tags of
 /// place has none; one without GeoKeys, or projected in a unit that they do not tell, counts in metres.
 pub struct Found {
-    pub place: Option<Place>,
+    pub place: Option<Placement>,
     pub from_south: bool,
     pub metres_high: f64,
 }
@@ -35,7 +35,7 @@ pub fn find(tiff: &mut Tiff, height: usize) -> Result<Found, String> {
     };
     let lattice = Affine([a, b, c + half * (a + b), d, e, f + half * (d + e)]).lattice(height)?;
     let unit = keys.as_ref().map_or(Unit::Metres(1.0), keys::unit);
-    let place = Place { origin: lattice.origin, step: lattice.step, unit, cell: None, keys };
+    let place = Placement { origin: lattice.origin, step: lattice.step, unit, cell: None, keys };
     Ok(Found { place: Some(place), from_south: lattice.from_south, metres_high })
 }
 

@@ -8,7 +8,7 @@ use super::entries::Tiff;
 use super::place;
 use super::unpack::{Layout, Packing};
 use crate::error::Result;
-use crate::format::dem::{Dem, Input, Place, Request, afford, afford_beside, refused, turn_rows};
+use crate::format::dem::{Dem, Input, Placement, Request, afford, afford_beside, refused, turn_rows};
 
 /// Reads a band of a GeoTIFF. `name` is what errors call it.
 ///
@@ -22,7 +22,7 @@ pub fn read(input: &mut dyn Input, name: &str, request: impl Into<Request>) -> R
 ///
 /// # Errors
 /// If it is no TIFF, or its directory is damaged.
-pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Place>)> {
+pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Placement>)> {
     let read = |input| {
         let tiff = &mut Tiff::open(input)?;
         let size = [side(tiff, 256, "width")?, side(tiff, 257, "height")?];

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::format::affine::Affine;
 use crate::format::crs::keys::{self, GeoKeys};
 use crate::format::crs::unit::Unit;
-use crate::format::dem::{Dem, Place, Request, afford, afford_beside, refused, turn_rows};
+use crate::format::dem::{Dem, Placement, Request, afford, afford_beside, refused, turn_rows};
 use crate::open;
 
 /// The longest metadata read.
@@ -378,7 +378,11 @@ fn find(folder: &Path) -> std::result::Result<Array, ReadFault> {
 }
 
 /// Where an array's samples stand, and whether its rows come from the south.
-fn place(array: &Array, group: Option<&Path>, allowed: u64) -> std::result::Result<Option<(Place, bool)>, ReadFault> {
+fn place(
+    array: &Array,
+    group: Option<&Path>,
+    allowed: u64,
+) -> std::result::Result<Option<(Placement, bool)>, ReadFault> {
     let sides = array.names.get(array.names.len().saturating_sub(2)..).unwrap_or_default();
     let keys = system(array, group)?;
     let (rows, columns) = (array.shape[array.shape.len() - 2], array.shape[array.shape.len() - 1]);
@@ -398,7 +402,7 @@ fn place(array: &Array, group: Option<&Path>, allowed: u64) -> std::result::Resu
                 None if degrees => Unit::Degrees,
                 None => Unit::Metres(1.0),
             };
-            let place = Place { origin: lattice.origin, step: lattice.step, unit, cell: None, keys };
+            let place = Placement { origin: lattice.origin, step: lattice.step, unit, cell: None, keys };
             return Ok(Some((place, lattice.from_south)));
         }
     }

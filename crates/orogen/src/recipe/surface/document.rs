@@ -1,7 +1,7 @@
 //! A surface in memory.
 
 use crate::declare::Input;
-use crate::dem::held::Imported;
+use crate::dem::file_ref::FileRef;
 use crate::palette::color::{Light, Rgb, decode, linear, mix, oklab};
 use crate::value::{toml_key, toml_string};
 use std::fmt::Write as _;
@@ -134,7 +134,7 @@ pub enum Coloring {
     /// Colors along a quantity, mixed in Oklab.
     Gradient(Vec<Rgb>, Along),
     /// The colors of a picture along a quantity, each as often as it occurs there: its histogram.
-    Picture(Imported, Along),
+    Picture(FileRef, Along),
 }
 
 /// What a gradient follows from its first color to its last.
@@ -178,7 +178,7 @@ impl Coloring {
 
 impl Surface {
     /// The picture that its colors come from.
-    pub fn picture(&self) -> Option<&Imported> {
+    pub fn picture(&self) -> Option<&FileRef> {
         match &self.color {
             Coloring::Picture(file, _) => Some(file),
             _ => None,
@@ -186,7 +186,7 @@ impl Surface {
     }
 
     /// The same, to be changed.
-    pub fn picture_mut(&mut self) -> Option<&mut Imported> {
+    pub fn picture_mut(&mut self) -> Option<&mut FileRef> {
         match &mut self.color {
             Coloring::Picture(file, _) => Some(file),
             _ => None,

@@ -6,7 +6,7 @@ use super::document::{
     Along, Coloring, Condition, DEFAULT_GRAIN, MAX_ALTERNATIVES, MAX_COLORS, MAX_SURFACES, Noise, Quantity, Surface,
 };
 use crate::declare::Input;
-use crate::dem::held::Imported;
+use crate::dem::file_ref::FileRef;
 use crate::palette::color::Rgb;
 use crate::palette::names;
 use crate::value::{Span, Spanned, Value};
@@ -150,7 +150,7 @@ impl Reader {
                 Coloring::Plain(self.color(value).unwrap_or([128; 3]))
             }
             [(key, value)] if key.value == "picture" => match &value.value {
-                Value::Text(path) if !path.is_empty() => Coloring::Picture(Imported::from(path.as_str()), along),
+                Value::Text(path) if !path.is_empty() => Coloring::Picture(FileRef::from(path.as_str()), along),
                 other => {
                     self.diagnostic(
                         &value.span,

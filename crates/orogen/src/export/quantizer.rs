@@ -4,8 +4,8 @@ use std::io::{self, Write};
 
 use super::files::Files;
 use super::format::refuse;
-use super::options::{OptionSpec, Options, Takes};
-use super::subject::Subject;
+use super::layer_source::LayerSource;
+use super::options::{OptionSpec, Options, ValueKind};
 use crate::format::levels::Levels;
 use crate::format::npy;
 use crate::layer::LayerKind;
@@ -16,7 +16,7 @@ pub const RANGE: OptionSpec = OptionSpec {
     name: "range",
     value: "LOW,HIGH",
     about: "Values of the least and the greatest level, one scale for many windows [default: the lowest and the highest of this one]",
-    takes: Takes::Range,
+    value_kind: ValueKind::Range,
 };
 
 /// The option that turns the rows.
@@ -24,7 +24,7 @@ pub const FIRST_ROW: OptionSpec = OptionSpec {
     name: "first-row",
     value: "SIDE",
     about: "Side that the first row lies on, north or south [default: north]",
-    takes: Takes::Word(&["north", "south"]),
+    value_kind: ValueKind::Word(&["north", "south"]),
 };
 
 /// The option of 8 bits.
@@ -32,7 +32,7 @@ pub const BITS: OptionSpec = OptionSpec {
     name: "bits",
     value: "N",
     about: "Bits of a sample, 8 or 16 [default: 16, of normals 8]",
-    takes: Takes::Word(&["8", "16"]),
+    value_kind: ValueKind::Word(&["8", "16"]),
 };
 
 /// The largest level that the options ask for.
@@ -46,8 +46,8 @@ pub fn from_south(options: &Options) -> bool {
 }
 
 /// The rows of a layer of plain numbers, and the range that its levels stand for.
-pub struct Spread<'s, 'w> {
-    subject: &'s mut Subject<'w>,
+pub struct Quantizer<'s, 'w> {
+    source: &'s mut LayerSource<'w>,
     levels: Levels,
     /// The samples, where they had to be made to know their range or to turn their rows.
     kept: Option<Spool>,
@@ -57,32 +57,32 @@ pub struct Spread<'s, 'w> {
 /// Samples that are read back at a time.
 const PIECE: usize = 1 << 20;
 
-impl<'s, 'w> Spread<'s, 'w> {
+impl<'s, 'w> Quantizer<'s, 'w> {
     /// Finds the range: the one asked for; else of labels, the labels themselves; of a layer without a unit whose samples all lie within 0 to 1, a mask,
     /// 0 to 1; of all others the lowest to the highest of the window.
     ///
     /// Fails as the subject does, and if labels pass the largest level `most`.
-    pub fn new(subject: &'s mut Subject<'w>, options: &Options, most: u16, files: &Files) -> io::Result<Self> {
+    pub fn new(source: &'s mut LayerSource<'w>, options: &Options, most: u16, files: &Files) -> io::Result<Self> {
         let asked = options.range("range").map(|[low, high]| Levels::new(low as f32, high as f32));
         let from_south = from_south(options);
         let kept = match asked.is_none() || from_south {
-            true => Some(keep(subject, files)?),
+            true => Some(keep(source, files)?),
             false => None,
         };
         let levels = match asked {
             Some(levels) => levels,
-            None => natural(subject, most)?,
+            None => natural(source, most)?,
         };
-        Ok(Spread { subject, levels, kept, from_south })
+        Ok(Quantizer { source, levels, kept, from_south })
     }
 
     /// The rows as they are, of a format that keeps the samples: put aside only to be turned.
     ///
     /// Fails as the subject does.
-    pub fn plain(subject: &'s mut Subject<'w>, options: &Options, files: &Files) -> io::Result<Self> {
+    pub fn plain(source: &'s mut LayerSource<'w>, options: &Options, files: &Files) -> io::Result<Self> {
         let from_south = from_south(options);
-        let kept = if from_south { Some(keep(subject, files)?) } else { None };
-        Ok(Spread { subject, levels: Levels::new(0.0, 0.0), kept, from_south })
+        let kept = if from_south { Some(keep(source, files)?) } else { None };
+        Ok(Quantizer { source, levels: Levels::new(0.0, 0.0), kept, from_south })
     }
 
     /// What the least and the greatest level stand for.
@@ -95,9 +95,9 @@ impl<'s, 'w> Spread<'s, 'w> {
     /// Fails as `visit`, the subject and the spool do.
     pub fn rows(&mut self, mut visit: impl FnMut(&[f32]) -> io::Result<()>) -> io::Result<()> {
         let Some(spool) = &mut self.kept else {
-            return self.subject.rows(|band| visit(band[0].data()));
+            return self.source.rows(|band| visit(band[0].data()));
         };
-        let (width, height) = (self.subject.window().width, self.subject.window().height);
+        let (width, height) = (self.source.window().width, self.source.window().height);
         let at_once = (PIECE / width.max(1)).max(1);
         let (mut bytes, mut samples) = (Vec::new(), Vec::new());
         for first in (0..height).step_by(at_once) {
@@ -120,32 +120,32 @@ impl<'s, 'w> Spread<'s, 'w> {
 }
 
 /// Makes the samples and puts them aside.
-fn keep(subject: &mut Subject, files: &Files) -> io::Result<Spool> {
+fn keep(source: &mut LayerSource, files: &Files) -> io::Result<Spool> {
     let mut spool = files.spool();
-    subject.rows(|band| npy::write_rows(&mut spool, band[0].data()))?;
+    source.rows(|band| npy::write_rows(&mut spool, band[0].data()))?;
     Ok(spool)
 }
 
 /// The range that a layer's samples have by themselves, of a subject whose rows were made.
 ///
 /// Fails if labels pass the largest level `most`.
-pub fn natural(subject: &Subject, most: u16) -> io::Result<Levels> {
-    let levels = subject.levels();
-    match subject.kind() {
+pub fn natural(source: &LayerSource, most: u16) -> io::Result<Levels> {
+    let levels = source.levels();
+    match source.kind() {
         LayerKind::Label if levels.low() < 0.0 || levels.high() > f32::from(most) => refuse(format!(
             "`{}` names things by numbers from {} to {}, which do not fit 0 to {most}: choose npy, r32, exr or tif, or say --range",
-            subject.layer(),
+            source.layer(),
             levels.low(),
             levels.high()
         )),
         LayerKind::Label => Ok(Levels::new(0.0, f32::from(most))),
-        _ if is_mask(subject, &levels) => Ok(Levels::new(0.0, 1.0)),
+        _ if is_mask(source, &levels) => Ok(Levels::new(0.0, 1.0)),
         _ => Ok(levels),
     }
 }
 
-fn is_mask(subject: &Subject, levels: &Levels) -> bool {
-    subject.unit().is_empty() && levels.low() >= 0.0 && levels.high() <= 1.0 && levels.high() > 0.0
+fn is_mask(source: &LayerSource, levels: &Levels) -> bool {
+    source.unit().is_empty() && levels.low() >= 0.0 && levels.high() <= 1.0 && levels.high() > 0.0
 }
 
 /// Writes samples as levels: a byte each, or two, the higher first.

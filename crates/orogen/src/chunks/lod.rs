@@ -16,7 +16,7 @@ use crate::plan::planner::world_windows;
 /// the neighbour is one level coarser, its samples are every second one of the finer chunk's, with the same bits unless the recipe
 /// has filters (what a filter makes depends on the cell): see [`stitch`](super::seam::stitch).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rings {
+pub struct LodConfig {
     /// Cells along a chunk's side: an even number from 2 to 4096. Default 64.
     pub cells: usize,
     /// Metres from one sample to the next at level 0. Default 1.
@@ -34,16 +34,16 @@ pub struct Rings {
     pub slack: f64,
 }
 
-impl Default for Rings {
-    fn default() -> Rings {
-        Rings { cells: 64, cell: 1.0, levels: 6, detail: 1.5, range: 8000.0, slack: 0.25 }
+impl Default for LodConfig {
+    fn default() -> LodConfig {
+        LodConfig { cells: 64, cell: 1.0, levels: 6, detail: 1.5, range: 8000.0, slack: 0.25 }
     }
 }
 
 /// The most chunks that the coarsest level may have along the way from one end of the range to the other.
 const MAX_ACROSS: f64 = 256.0;
 
-impl Rings {
+impl LodConfig {
     /// Whether these are rings at all.
     ///
     /// # Errors
@@ -143,32 +143,32 @@ mod tests {
 
     #[test]
     fn what_cannot_be_is_said() {
-        let good = Rings::default();
+        let good = LodConfig::default();
         assert!(good.check().is_ok());
-        for (rings, said) in [
-            (Rings { cells: 0, ..good }, "0 cells"),
-            (Rings { cells: 33, ..good }, "even number"),
-            (Rings { cell: f64::NAN, ..good }, "NaN m"),
-            (Rings { levels: 0, ..good }, "1 to 24"),
-            (Rings { levels: 25, ..good }, "1 to 24"),
-            (Rings { detail: 1.2, ..good }, "1 + slack = 1.25"),
-            (Rings { slack: -0.1, ..good }, "slack of -0.1"),
-            (Rings { range: 0.0, ..good }, "range of 0 m"),
-            (Rings { range: 1e9, ..good }, "more levels"),
+        for (lod, said) in [
+            (LodConfig { cells: 0, ..good }, "0 cells"),
+            (LodConfig { cells: 33, ..good }, "even number"),
+            (LodConfig { cell: f64::NAN, ..good }, "NaN m"),
+            (LodConfig { levels: 0, ..good }, "1 to 24"),
+            (LodConfig { levels: 25, ..good }, "1 to 24"),
+            (LodConfig { detail: 1.2, ..good }, "1 + slack = 1.25"),
+            (LodConfig { slack: -0.1, ..good }, "slack of -0.1"),
+            (LodConfig { range: 0.0, ..good }, "range of 0 m"),
+            (LodConfig { range: 1e9, ..good }, "more levels"),
         ] {
-            let error = rings.check().unwrap_err().to_string();
+            let error = lod.check().unwrap_err().to_string();
             assert!(error.contains(said), "{error}");
         }
     }
 
     #[test]
     fn chunks_share_their_edges_with_neighbours_and_parents() {
-        let rings = Rings { cell: 1.0 / 3.0, ..Rings::default() };
+        let lod = LodConfig { cell: 1.0 / 3.0, ..LodConfig::default() };
         let id = ChunkId { level: 1, y: -2, x: 3 };
-        let (window, east) = (rings.window(id), rings.window(id.beside(1, 0)));
+        let (window, east) = (lod.window(id), lod.window(id.beside(1, 0)));
         assert_eq!(window.right() - 1, east.x);
         assert_eq!(window.east(64).to_bits(), east.east(0).to_bits());
-        let parent = rings.window(id.parent());
+        let parent = lod.window(id.parent());
         assert_eq!(
             (parent.x * 2, parent.y * 2),
             (window.x - 64, window.y),
@@ -179,8 +179,8 @@ mod tests {
 
     #[test]
     fn a_world_ends_where_its_samples_end() {
-        let rings = Rings { cells: 10, cell: 1.0, levels: 3, ..Rings::default() };
-        let within = |level, x, y| rings.window_within(ChunkId { level, y, x }, Some([25.0, 40.0]));
+        let lod = LodConfig { cells: 10, cell: 1.0, levels: 3, ..LodConfig::default() };
+        let within = |level, x, y| lod.window_within(ChunkId { level, y, x }, Some([25.0, 40.0]));
         let size = |window: Option<Window>| window.map(|window| (window.width, window.height));
         assert_eq!(size(within(0, 0, 0)), Some((11, 11)));
         assert_eq!(size(within(0, 2, 3)), Some((6, 11)));

@@ -4,16 +4,16 @@ use std::path::{Path, PathBuf};
 
 use ab_glyph::{Font, FontRef, FontVec, GlyphId, OutlineCurve};
 
-use super::scene::{Place, Step};
+use super::scene::{Point, Step};
 use crate::error::{Error, ErrorKind, Result};
 use crate::map::text::Face;
 
 /// The fonts of a sheet.
-pub struct Letters {
+pub struct FontSet {
     faces: [FontRef<'static>; 3],
     /// A font of the system, for letters that the built-in one lacks.
     other: Option<FontVec>,
-    /// Letters that no font has.
+    /// FontSet that no font has.
     lacking: Vec<char>,
 }
 
@@ -35,13 +35,13 @@ const DEPTH: usize = 5;
 const MAX_FONTS: usize = 2000;
 const MAX_BYTES: u64 = 128 << 20;
 
-impl Letters {
+impl FontSet {
     /// The fonts that `texts` need. Where the built-in one lacks a letter, the first font of the system that has the most of what
     /// is lacking is taken.
     ///
     /// # Errors
     /// If the built-in font cannot be read.
-    pub fn for_texts<'a>(texts: impl IntoIterator<Item = &'a str>) -> Result<Letters> {
+    pub fn for_texts<'a>(texts: impl IntoIterator<Item = &'a str>) -> Result<FontSet> {
         let face = |bytes: &'static [u8]| {
             let broken = |cause| Error::new(ErrorKind::File, format!("the built-in font cannot be read: {cause}"));
             FontRef::try_from_slice(bytes).map_err(broken)
@@ -62,10 +62,10 @@ impl Letters {
         if let Some(font) = &other {
             lacking.retain(|letter| font.glyph_id(*letter).0 == 0);
         }
-        Ok(Letters { faces, other, lacking })
+        Ok(FontSet { faces, other, lacking })
     }
 
-    /// Letters that neither the built-in font nor any of the system's has; they are left out.
+    /// FontSet that neither the built-in font nor any of the system's has; they are left out.
     pub fn lacking(&self) -> &[char] {
         &self.lacking
     }
@@ -76,7 +76,7 @@ impl Letters {
     }
 
     /// The outlines of a line of text from `at` on, standing on a line that rises by `angle` radians (counter-clockwise).
-    pub fn write(&self, text: &str, face: Face, size: f32, at: Place, angle: f32) -> Vec<Step> {
+    pub fn write(&self, text: &str, face: Face, size: f32, at: Point, angle: f32) -> Vec<Step> {
         let (sin, cos) = libm::sincosf(angle);
         let mut steps = Vec::new();
         self.set(text, face, size, |font, id, along| {
@@ -95,7 +95,7 @@ impl Letters {
     }
 
     /// The outline of each letter of a text by itself, with where its middle stands along the line: for text that bends.
-    pub fn each(&self, text: &str, face: Face, size: f32, mut place: impl FnMut(f32) -> (Place, f32)) -> Vec<Step> {
+    pub fn each(&self, text: &str, face: Face, size: f32, mut place: impl FnMut(f32) -> (Point, f32)) -> Vec<Step> {
         let mut steps = Vec::new();
         self.set(text, face, size, |font, id, along| {
             let half = font.advance(id, size) / 2.0;
@@ -164,7 +164,7 @@ impl<F: Font> Glyphs for F {
     }
 }
 
-fn outline(font: &dyn Glyphs, id: GlyphId, size: f32, place: impl Fn([f32; 2]) -> Place, steps: &mut Vec<Step>) {
+fn outline(font: &dyn Glyphs, id: GlyphId, size: f32, place: impl Fn([f32; 2]) -> Point, steps: &mut Vec<Step>) {
     let (curves, em) = font.curves(id);
     let at = |x: f32, y: f32| place([x * size / em, y * size / em]);
     let mut last = None;
@@ -240,7 +240,7 @@ mod tests {
 
     #[test]
     fn outlines_stand_on_their_line_and_turn_with_it() {
-        let letters = Letters::for_texts([]).unwrap();
+        let letters = FontSet::for_texts([]).unwrap();
         let width = letters.width("HIH", Face::Regular, 10.0);
         let ends = |steps: &[Step]| {
             steps.iter().fold([f32::MAX, f32::MIN, f32::MAX, f32::MIN], |[l, r, t, b], step| {
@@ -260,7 +260,7 @@ mod tests {
     #[test]
     fn letters_that_nobody_has_are_named() {
         // No font has letters for noncharacters.
-        let letters = Letters::for_texts(["Höhe \u{fdd0}"]).unwrap();
+        let letters = FontSet::for_texts(["Höhe \u{fdd0}"]).unwrap();
         assert_eq!(letters.lacking(), ['\u{fdd0}']);
         let widths = ["Höhe", "Höhe\u{fdd0}"].map(|text| letters.width(text, Face::Bold, 5.0));
         assert_eq!(widths[0], widths[1]);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::piece::Piece;
+use super::digest::FileDigest;
 
 /// One tile of one stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -35,7 +35,7 @@ impl Stage {
 
 /// A file that a job makes.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Place {
+pub enum JobFile {
     /// Part of the result: a path within it.
     Result(PathBuf),
     /// Needed on the way, and gone in the end: a path within the scratch folder.
@@ -55,7 +55,7 @@ pub struct Made {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     /// Its files.
-    pub pieces: Vec<Piece>,
+    pub digests: Vec<FileDigest>,
     /// As in [`Made`].
     pub ranges: Vec<[f32; 2]>,
 }

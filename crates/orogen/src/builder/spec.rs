@@ -93,7 +93,7 @@ impl Form {
 
 /// What is wanted: samples of layers, in a form.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Order {
+pub struct BuildSpec {
     /// What is made.
     pub form: Form,
     /// The samples.
@@ -107,7 +107,7 @@ pub struct Order {
 /// Longest name of a layer that becomes part of a file's name.
 const LONGEST_NAME: usize = 100;
 
-impl Order {
+impl BuildSpec {
     /// Refuses what no form can be made of.
     ///
     /// # Errors

@@ -22,7 +22,7 @@ use crate::world::{HEIGHT, World};
 type Source<'w> = Box<dyn Iterator<Item = Result<(Vec<Grid>, FiniteCount)>> + 'w>;
 
 /// A layer of a world over a window.
-pub struct Subject<'w> {
+pub struct LayerSource<'w> {
     world: &'w World,
     layer: String,
     /// What the layer is if the recipe has none of that name.
@@ -32,7 +32,7 @@ pub struct Subject<'w> {
     window: Window,
     progress: Progress,
     /// Bytes held beside the rows at hand.
-    beside: u64,
+    reserved: u64,
     /// Rows that are about to be made.
     ready: Option<Source<'w>>,
     /// The lowest and highest sample so far.
@@ -41,13 +41,13 @@ pub struct Subject<'w> {
     count: FiniteCount,
 }
 
-impl<'w> Subject<'w> {
+impl<'w> LayerSource<'w> {
     /// A layer over a window: one of the recipe's, or one that is [derived](super::derived) from its heights (of which some want the recipe
     /// [prepared](super::derived::list::prepare)). `progress` hears of the samples, and may stop the work.
     ///
     /// # Errors
     /// If there is no such layer, or the window is not one of this world.
-    pub fn new(world: &'w World, layer: &str, window: Window, progress: &Progress) -> Result<Subject<'w>> {
+    pub fn new(world: &'w World, layer: &str, window: Window, progress: &Progress) -> Result<LayerSource<'w>> {
         world.check(&window)?;
         let derived = match world.unit(layer) {
             Ok(_) => None,
@@ -73,14 +73,14 @@ impl<'w> Subject<'w> {
             world.unit(HEIGHT)?;
         }
         let layer = layer.to_string();
-        Ok(Subject {
+        Ok(LayerSource {
             world,
             layer,
             derived,
             vectors: Vec::new(),
             window,
             progress: progress.clone(),
-            beside: 0,
+            reserved: 0,
             ready: None,
             range: NO_SAMPLES,
             count: FiniteCount::default(),
@@ -90,17 +90,17 @@ impl<'w> Subject<'w> {
     /// Layers of vector features over a window, in place of samples.
     ///
     /// # Errors
-    /// As [`Subject::new`], of the heights.
+    /// As [`LayerSource::new`], of the heights.
     pub fn of_features(
         world: &'w World,
         vectors: Vec<&'static VectorLayer>,
         window: Window,
         progress: &Progress,
-    ) -> Result<Subject<'w>> {
-        let mut subject = Subject::new(world, HEIGHT, window, progress)?;
-        subject.layer = vectors.iter().map(|layer| layer.name).collect::<Vec<_>>().join(", ");
-        subject.vectors = vectors;
-        Ok(subject)
+    ) -> Result<LayerSource<'w>> {
+        let mut source = LayerSource::new(world, HEIGHT, window, progress)?;
+        source.layer = vectors.iter().map(|layer| layer.name).collect::<Vec<_>>().join(", ");
+        source.vectors = vectors;
+        Ok(source)
     }
 
     /// Says how many samples features were made of, where these do not come as rows.
@@ -117,8 +117,8 @@ impl<'w> Subject<'w> {
     ///
     /// # Errors
     /// As [`World::bands`].
-    pub(super) fn prepare(&mut self, beside: u64) -> Result<()> {
-        self.beside = beside;
+    pub(super) fn prepare(&mut self, reserved: u64) -> Result<()> {
+        self.reserved = reserved;
         // Features are made of more than the window's rows, and count their memory themselves.
         if self.vectors.is_empty() {
             self.ready = Some(self.source(&self.window)?);
@@ -128,9 +128,9 @@ impl<'w> Subject<'w> {
 
     fn source(&self, window: &Window) -> Result<Source<'w>> {
         if let Some(derived) = self.derived {
-            return Ok(Box::new(Rows::new(derived, self.world, window, self.beside, &self.progress)?));
+            return Ok(Box::new(Rows::new(derived, self.world, window, self.reserved, &self.progress)?));
         }
-        let bands = self.world.bands(&[&self.layer], window, self.beside, &self.progress)?;
+        let bands = self.world.bands(&[&self.layer], window, self.reserved, &self.progress)?;
         let counted = |grids: Vec<Grid>| {
             let count =
                 grids.iter().fold(FiniteCount::default(), |count, grid| count.and(FiniteCount::of(grid.data())));
@@ -237,7 +237,7 @@ impl<'w> Subject<'w> {
     }
 
     /// The first channel, all rows at once, and into `halo` the samples around it, as far as the world goes: what follows from a sample and its
-    /// neighbours is then the same in windows that share it. A format that calls this counts it as [`whole`](Subject::whole).
+    /// neighbours is then the same in windows that share it. A format that calls this counts it as [`whole`](LayerSource::whole).
     ///
     /// Fails as the world does.
     pub fn surrounded(&mut self, halo: &mut Halo) -> io::Result<Grid> {

@@ -1,6 +1,6 @@
 //! An XYZ tree of PNG tiles in an encoding of heights ([`Encoding`]), with TileJSON.
 //!
-//! **Place.** Web Mercator, the world's origin at 0 degrees east and north. A pixel is an area there, and a sample stands in the middle
+//! **JobFile.** Web Mercator, the world's origin at 0 degrees east and north. A pixel is an area there, and a sample stands in the middle
 //! of its own. Near the equator Mercator is true to scale: one metre of the world is one metre of the map if a sample's cell is a pixel of some
 //! zoom, which [`cell_near`] finds; otherwise the map is stretched by what TileJSON says. Tiles are those of the whole map, so
 //! that windows of one world fit together; what of a tile lies beyond the window repeats its edge.
@@ -11,12 +11,12 @@ use std::path::PathBuf;
 
 use serde_json::json;
 
+use super::digest::FileDigest;
 use super::identity::Identity;
-use super::job::{Job, Made, Place, Stage};
-use super::piece::Piece;
+use super::job::{Job, JobFile, Made, Stage};
+use super::output_store::OutputStore;
 use super::samples;
-use super::shelf::Shelf;
-use super::target::{Disk, Target};
+use super::target::{BuildTarget, Disk};
 use crate::error::{Error, ErrorKind, Result};
 use crate::format::encoding::Encoding;
 use crate::format::png::{self, Picture, Pixel};
@@ -115,14 +115,14 @@ impl Tree {
         (self.zoom - job.stage as u32, left + job.column as u64, top + job.row as u64)
     }
 
-    fn picture(&self, job: Job) -> Place {
+    fn picture(&self, job: Job) -> JobFile {
         let (zoom, column, row) = self.address(job);
-        Place::Result(format!("{zoom}/{column}/{row}.png").into())
+        JobFile::Result(format!("{zoom}/{column}/{row}.png").into())
     }
 
-    fn half(&self, job: Job) -> Place {
+    fn half(&self, job: Job) -> JobFile {
         let (zoom, column, row) = self.address(job);
-        Place::Scratch(format!("half/{zoom}/{column}/{row}").into())
+        JobFile::Scratch(format!("half/{zoom}/{column}/{row}").into())
     }
 
     /// The samples of a window that a tile holds, and where the tile begins on the lattice.
@@ -152,13 +152,13 @@ impl Tree {
     }
 
     /// The samples of a tile made of those below it; where there is none, the edge of its neighbour is repeated.
-    fn gathered(&self, job: Job, shelf: &Shelf) -> Result<Vec<f32>> {
+    fn gathered(&self, job: Job, store: &OutputStore) -> Result<Vec<f32>> {
         let (tile, half) = (self.tile(), self.tile() / 2);
         let mut quarters: [[Option<Vec<f32>>; 2]; 2] = Default::default();
         for below in self.reads(job) {
             let (_, column, row) = self.address(below);
             quarters[(row % 2) as usize][(column % 2) as usize] =
-                Some(samples::read(shelf, &self.half(below), half * half)?);
+                Some(samples::read(store, &self.half(below), half * half)?);
         }
         // Tiles of a zoom fill a rectangle: a whole row or column of quarters is there, or none of it.
         let [there_down, there_across] = [
@@ -219,7 +219,7 @@ fn halved(samples: &[f32], side: usize) -> Vec<f32> {
     (0..half).flat_map(|j| (0..half).map(move |i| (i, j))).map(mean).collect()
 }
 
-impl Target for Tree {
+impl BuildTarget for Tree {
     fn stages(&self) -> Vec<Stage> {
         self.stages.clone()
     }
@@ -228,7 +228,7 @@ impl Target for Tree {
         self.inside(row, column).0
     }
 
-    fn places(&self, job: Job) -> Vec<Place> {
+    fn places(&self, job: Job) -> Vec<JobFile> {
         match job.stage + 1 == self.stages.len() {
             true => vec![self.picture(job)],
             false => vec![self.picture(job), self.half(job)],
@@ -245,10 +245,10 @@ impl Target for Tree {
         below(row, top, bottom).flat_map(|row| columns.clone().map(move |column| job(column, row))).collect()
     }
 
-    fn make(&self, job: Job, grids: &[Grid], shelf: &Shelf) -> Result<Made> {
+    fn make(&self, job: Job, grids: &[Grid], store: &OutputStore) -> Result<Made> {
         let samples = match grids.first() {
             Some(grid) => self.full(job, grid),
-            None => self.gathered(job, shelf)?,
+            None => self.gathered(job, store)?,
         };
         let mut files = vec![self.encode(&samples)?];
         if job.stage + 1 < self.stages.len() {
@@ -257,7 +257,7 @@ impl Target for Tree {
         Ok(Made { files, ranges: Vec::new() })
     }
 
-    fn finish(&self, shelf: &Shelf) -> Result<Vec<(PathBuf, Piece)>> {
+    fn finish(&self, store: &OutputStore) -> Result<Vec<(PathBuf, FileDigest)>> {
         let [west, south, east, north] = self.bounds();
         let lowest = self.zoom + 1 - self.stages.len() as u32;
         let tiles = json!({
@@ -281,8 +281,8 @@ impl Target for Tree {
             },
         });
         let path = PathBuf::from(TILEJSON);
-        let piece = shelf.file(&Place::Result(path.clone()), format!("{tiles:#}\n").as_bytes())?;
-        Ok(vec![(path, piece)])
+        let digest = store.file(&JobFile::Result(path.clone()), format!("{tiles:#}\n").as_bytes())?;
+        Ok(vec![(path, digest)])
     }
 
     fn extras(&self) -> Vec<PathBuf> {

@@ -1,6 +1,6 @@
 //! Worlds larger than memory, built tile by tile into files, and never lost.
 //!
-//! An [`order::Order`] says what is wanted: which window, which layers, as what. A [`builder::Build`] makes it: tile after tile, each
+//! An [`order::BuildSpec`] says what is wanted: which window, which layers, as what. A [`builder::Build`] makes it: tile after tile, each
 //! written whole and entered with its checksum into a journal. Whatever interrupts it (a kill, a full disk, a power cut), the same
 //! order resumed keeps the tiles that are sound, makes the others and ends with the same bytes as if nothing had happened.
 //!
@@ -16,16 +16,16 @@
 mod blocks;
 pub mod builder;
 mod cog;
+mod digest;
 mod folder;
 mod identity;
 mod job;
 mod journal;
-pub mod order;
-mod piece;
+mod output_store;
 mod samples;
-mod shelf;
-mod site;
+pub mod spec;
 mod target;
+mod work_dir;
 pub mod xyz;
 mod zarr;
 

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
+use super::digest::FileDigest;
 use super::identity::Identity;
-use super::job::{Job, Made, Place, Stage};
-use super::piece::Piece;
+use super::job::{Job, JobFile, Made, Stage};
+use super::output_store::OutputStore;
 use super::samples::square;
-use super::shelf::Shelf;
-use super::target::{Disk, Target};
+use super::target::{BuildTarget, Disk};
 use crate::error::{Error, ErrorKind, Result};
 use crate::format::dem::Georeference;
 use crate::format::zarr::blosc;
@@ -108,7 +108,7 @@ fn coordinates(window: &Window, map: Option<&Georeference>) -> [Coordinate; 2] {
     ]
 }
 
-impl Target for Zarr {
+impl BuildTarget for Zarr {
     fn stages(&self) -> Vec<Stage> {
         vec![self.stage()]
     }
@@ -117,8 +117,8 @@ impl Target for Zarr {
         self.tiling.tile(&self.identity.window, column, row)
     }
 
-    fn places(&self, job: Job) -> Vec<Place> {
-        let chunk = |layer: &String| Place::Result(format!("{layer}/c/{}/{}", job.row, job.column).into());
+    fn places(&self, job: Job) -> Vec<JobFile> {
+        let chunk = |layer: &String| JobFile::Result(format!("{layer}/c/{}/{}", job.row, job.column).into());
         self.identity.layers.iter().map(chunk).collect()
     }
 
@@ -126,17 +126,17 @@ impl Target for Zarr {
         Vec::new()
     }
 
-    fn make(&self, _: Job, grids: &[Grid], _: &Shelf) -> Result<Made> {
+    fn make(&self, _: Job, grids: &[Grid], _: &OutputStore) -> Result<Made> {
         let files =
             grids.iter().map(|grid| pack(square(grid, self.identity.tile, f32::NAN).iter().map(|h| h.to_le_bytes())));
         Ok(Made { files: files.collect::<Result<_>>()?, ranges: Vec::new() })
     }
 
-    fn finish(&self, shelf: &Shelf) -> Result<Vec<(PathBuf, Piece)>> {
+    fn finish(&self, store: &OutputStore) -> Result<Vec<(PathBuf, FileDigest)>> {
         let mut written = Vec::new();
         let mut put = |path: PathBuf, bytes: &[u8]| {
-            let piece = shelf.file(&Place::Result(path.clone()), bytes)?;
-            written.push((path, piece));
+            let digest = store.file(&JobFile::Result(path.clone()), bytes)?;
+            written.push((path, digest));
             Ok::<(), Error>(())
         };
         let mut arrays = Vec::new();

@@ -7,7 +7,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::job::Place;
+use super::job::JobFile;
 use crate::error::{Error, ErrorKind, Result};
 use crate::file::{self, Output};
 
@@ -25,7 +25,7 @@ const SYNCS: usize = 16;
 
 /// The result and the folder beside it.
 #[derive(Debug, Clone)]
-pub struct Site {
+pub struct WorkDir {
     /// What may be replaced there.
     output: Output,
     out: PathBuf,
@@ -34,9 +34,9 @@ pub struct Site {
     file: bool,
 }
 
-/// Held while a build is at work. The system lets go of it when the process ends, however it ends.
+/// BuildLock while a build is at work. The system lets go of it when the process ends, however it ends.
 #[derive(Debug)]
-pub struct Held {
+pub struct BuildLock {
     _lock: File,
     beside: PathBuf,
     /// Whether the folder was made for this build.
@@ -45,14 +45,14 @@ pub struct Held {
     kept: bool,
 }
 
-impl Held {
+impl BuildLock {
     /// The folder has got what it was made for.
     pub fn keep(&mut self) {
         self.kept = true;
     }
 }
 
-impl Drop for Held {
+impl Drop for BuildLock {
     fn drop(&mut self) {
         if self.new && !self.kept {
             // What fails before anything was made leaves no trace. Removes only what is as good as empty.
@@ -62,12 +62,12 @@ impl Drop for Held {
     }
 }
 
-impl Site {
+impl WorkDir {
     /// The site of a result at `out`.
     ///
     /// # Errors
     /// If `out` does not name something that can be a result.
-    pub fn new(output: &Output, is_file: bool) -> Result<Site> {
+    pub fn new(output: &Output, is_file: bool) -> Result<WorkDir> {
         let out = output.path();
         let refuse = |why: &str| Err(Error::new(ErrorKind::File, format!("cannot build {}: {why}", out.display())));
         // Through links, so that what they name is replaced and they stay.
@@ -90,7 +90,7 @@ impl Site {
         }
         let mut beside = name.to_os_string();
         beside.push(".build");
-        Ok(Site { output: output.clone(), beside: real.with_file_name(beside), out: real, file: is_file })
+        Ok(WorkDir { output: output.clone(), beside: real.with_file_name(beside), out: real, file: is_file })
     }
 
     /// The result.
@@ -114,10 +114,10 @@ impl Site {
     }
 
     /// A file of a job.
-    pub fn path(&self, place: &Place) -> PathBuf {
+    pub fn path(&self, place: &JobFile) -> PathBuf {
         match place {
-            Place::Result(path) => self.result(path),
-            Place::Scratch(path) => self.beside.join(SCRATCH).join(path),
+            JobFile::Result(path) => self.result(path),
+            JobFile::Scratch(path) => self.beside.join(SCRATCH).join(path),
         }
     }
 
@@ -135,7 +135,7 @@ impl Site {
     ///
     /// # Errors
     /// If another build is at work there, or nothing can be written there.
-    pub fn hold(&self) -> Result<Held> {
+    pub fn hold(&self) -> Result<BuildLock> {
         file::check_folder(file::folder(&self.out))?;
         let new = match fs::create_dir(&self.beside) {
             Ok(()) => true,
@@ -155,7 +155,7 @@ impl Site {
         let failed = |cause: io::Error| Error::file("lock", &path, &cause);
         let lock = OpenOptions::new().create(true).truncate(false).write(true).open(&path).map_err(failed)?;
         match lock.try_lock() {
-            Ok(()) => Ok(Held { _lock: lock, beside: self.beside.clone(), new, kept: false }),
+            Ok(()) => Ok(BuildLock { _lock: lock, beside: self.beside.clone(), new, kept: false }),
             Err(TryLockError::WouldBlock) => Err(Error::new(
                 ErrorKind::File,
                 format!(

@@ -11,7 +11,7 @@ use crate::progress::Progress;
 use crate::world::{HEIGHT, World};
 
 /// Heights and water.
-pub struct Ground {
+pub struct FeatureSource {
     /// The water of all the ground that was looked at.
     pub water: Water,
     /// The part of it that is wanted.
@@ -40,7 +40,7 @@ fn extent(world: &World, window: &Window) -> Window {
     }
 }
 
-impl Ground {
+impl FeatureSource {
     /// The ground of a window, beside `beside` bytes that the caller holds.
     ///
     /// # Errors
@@ -49,9 +49,9 @@ impl Ground {
         world: &World,
         window: &Window,
         options: &FeatureOptions,
-        beside: u64,
+        reserved: u64,
         progress: &Progress,
-    ) -> Result<Ground> {
+    ) -> Result<FeatureSource> {
         let all = extent(world, window);
         let samples = (all.width as u64).saturating_mul(all.height as u64);
         if samples > u64::from(u32::MAX) {
@@ -60,10 +60,11 @@ impl Ground {
             return Err(Error::new(ErrorKind::Request, message));
         }
         // The heights are counted by the plan that makes them.
-        let held = samples.saturating_mul(MEMORY - 4 + FEATURES).saturating_add(beside);
+        let held = samples.saturating_mul(MEMORY - 4 + FEATURES).saturating_add(reserved);
         let heights = world.grid_beside(HEIGHT, &all, held, progress)?;
-        world
-            .install(|| Ground::from_heights(heights, world.recipe().world.sea_level as f32, window, options, progress))
+        world.install(|| {
+            FeatureSource::from_heights(heights, world.recipe().world.sea_level as f32, window, options, progress)
+        })
     }
 
     /// The same of heights at hand, which hold the window.
@@ -76,7 +77,7 @@ impl Ground {
         window: &Window,
         options: &FeatureOptions,
         progress: &Progress,
-    ) -> Result<Ground> {
+    ) -> Result<FeatureSource> {
         let all = *heights.window();
         let [spring, lake] = options.fewest(all.cell);
         let least = Least { spring, lake, depth: 0.0, scattered: false };
@@ -89,7 +90,7 @@ impl Ground {
         let rivers = rivers(&water, &frame, even, &mut shores);
         let lakes = shores.areas();
         progress.check()?;
-        Ok(Ground { water, frame, shores, rivers, lakes, window: all })
+        Ok(FeatureSource { water, frame, shores, rivers, lakes, window: all })
     }
 
     /// Metres from one sample to the next.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::builder::{Build, Report, Start};
-use super::order::{Form, Order, Samples};
+use super::spec::{BuildSpec, Form, Samples};
 use crate::error::ErrorKind;
 use crate::file::{Existing, Output, OutputPolicy};
 use crate::format::encoding::Encoding;
@@ -49,7 +49,7 @@ fn world(memory: Option<u64>, threads: usize) -> World {
 }
 
 /// Odd sides, so that tiles and overviews do not come out even.
-fn order(form: Form) -> Order {
+fn spec(form: Form) -> BuildSpec {
     let tile = match form {
         Form::Cog => 32,
         Form::Xyz(_) => 256,
@@ -61,7 +61,7 @@ fn order(form: Form) -> Order {
         _ => Window::new(101, 77, 5.0).at(7, 11),
     };
     let layers = if form.holds_many() { vec!["height".into(), "rough".into()] } else { vec!["height".into()] };
-    Order { form, window, tile: Some(tile), layers }
+    BuildSpec { form, window, tile: Some(tile), layers }
 }
 
 struct Folder(PathBuf);
@@ -112,14 +112,14 @@ fn output(out: &Path) -> Output {
     OutputPolicy::new(Existing::Replace).output(out).unwrap()
 }
 
-fn run(world: &World, order: &Order, out: &Path, start: Start) -> Report {
-    Build::new(world, order, &output(out)).unwrap().run(start, &Progress::none()).unwrap()
+fn run(world: &World, spec: &BuildSpec, out: &Path, start: Start) -> Report {
+    Build::new(world, spec, &output(out)).unwrap().run(start, &Progress::none()).unwrap()
 }
 
 /// An undisturbed build.
 fn undisturbed(form: Form) -> (BTreeMap<PathBuf, Vec<u8>>, Report) {
     let folder = Folder::new();
-    let report = run(&world(None, 2), &order(form), &folder.out(), Start::Fresh);
+    let report = run(&world(None, 2), &spec(form), &folder.out(), Start::Fresh);
     let beside = files(&folder.0.join("out.build"));
     let names: Vec<&str> = beside.keys().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
     assert_eq!(names, ["journal", "lock"], "{form:?}");
@@ -132,16 +132,16 @@ fn the_bytes_depend_neither_on_memory_nor_on_threads() {
         let (expect, report) = undisturbed(form);
         assert!(report.made > 3 && report.kept == 0, "{form:?} {report:?}");
         assert_eq!(report.bytes, expect.values().map(|bytes| bytes.len() as u64).sum::<u64>(), "{form:?}");
-        let order = order(form);
+        let spec = spec(form);
         // So little that each tile is made alone.
         let folder = Folder::new();
-        let fits = |memory: &u64| Build::new(&world(Some(*memory), 1), &order, &output(&folder.out())).is_ok();
+        let fits = |memory: &u64| Build::new(&world(Some(*memory), 1), &spec, &output(&folder.out())).is_ok();
         let smaller = |memory: &u64| Some(memory / 4 * 3);
         let least = std::iter::successors(Some(1 << 30), smaller).take_while(fits).last();
         assert!(least.is_some());
         for (memory, threads) in [(least, 1), (None, 5)] {
             let folder = Folder::new();
-            run(&world(memory, threads), &order, &folder.out(), Start::Fresh);
+            run(&world(memory, threads), &spec, &folder.out(), Start::Fresh);
             assert!(result(&folder.out()) == expect, "{form:?} {memory:?} {threads}");
         }
     }
@@ -151,7 +151,7 @@ fn the_bytes_depend_neither_on_memory_nor_on_threads() {
 fn too_little_memory_is_refused_before_anything_is_written() {
     let folder = Folder::new();
     let world = world(Some(10_000), 1);
-    let error = Build::new(&world, &order(Form::Zarr), &output(&folder.out())).err().unwrap();
+    let error = Build::new(&world, &spec(Form::Zarr), &output(&folder.out())).err().unwrap();
     assert_eq!(error.kind(), ErrorKind::Memory);
     assert!(error.to_string().contains("and 9.8 KiB is allowed: ask for smaller tiles, or allow more"), "{error}");
     assert_eq!(files(&folder.0), BTreeMap::new());
@@ -166,8 +166,8 @@ fn a_geotiff_is_the_one_that_export_writes() {
         for tile in [16, 32] {
             let window = Window::new(width, height, 5.0).at(n as i64, 3);
             let folder = Folder::new();
-            let order = Order { form: Form::Cog, window, tile: Some(tile), layers: vec!["height".into()] };
-            run(&world, &order, &folder.out(), Start::Fresh);
+            let spec = BuildSpec { form: Form::Cog, window, tile: Some(tile), layers: vec!["height".into()] };
+            run(&world, &spec, &folder.out(), Start::Fresh);
             let mut expect = Vec::new();
             let options = options::Options { tile: Some(tile), ..options::Options::default() };
             writer::write(&mut expect, &world.window("height", &window).unwrap(), &options, Spool::in_memory())
@@ -191,12 +191,12 @@ fn fill_after(build: &mut Build, files: usize) {
 fn interrupted_anywhere_it_ends_with_the_same_bytes() {
     for form in FORMS {
         let (expect, whole) = undisturbed(form);
-        let (world, order) = (world(None, 2), order(form));
+        let (world, spec) = (world(None, 2), spec(form));
         let folder = Folder::new();
         // Full again and again, a little later each time.
         let mut kept = 0;
         for files in (0..).step_by(3) {
-            let mut build = Build::new(&world, &order, &output(&folder.out())).unwrap();
+            let mut build = Build::new(&world, &spec, &output(&folder.out())).unwrap();
             fill_after(&mut build, files);
             match build.run(Start::Resume, &Progress::none()) {
                 Ok(report) => {
@@ -223,12 +223,12 @@ fn cancelled_it_goes_on() {
     use std::sync::atomic::AtomicBool;
     for form in FORMS {
         let (expect, whole) = undisturbed(form);
-        let (world, order) = (world(None, 1), order(form));
+        let (world, spec) = (world(None, 1), spec(form));
         // Somewhere among these some tiles are made and others are not.
         let mut amid = false;
         for share_at_stop in [0.5, 0.7, 0.8, 0.9, 0.95, 0.98] {
             let folder = Folder::new();
-            let build = Build::new(&world, &order, &output(&folder.out())).unwrap();
+            let build = Build::new(&world, &spec, &output(&folder.out())).unwrap();
             let flag = Arc::new(AtomicBool::new(false));
             let stop = Arc::clone(&flag);
             let progress =
@@ -248,9 +248,9 @@ fn cancelled_it_goes_on() {
 fn what_is_damaged_is_made_again() {
     for form in FORMS {
         let (expect, _) = undisturbed(form);
-        let (world, order) = (world(None, 2), order(form));
+        let (world, spec) = (world(None, 2), spec(form));
         let folder = Folder::new();
-        run(&world, &order, &folder.out(), Start::Fresh);
+        run(&world, &spec, &folder.out(), Start::Fresh);
         for (n, path) in expect.keys().enumerate() {
             let path = if path.as_os_str().is_empty() { folder.out() } else { folder.out().join(path) };
             let whole = fs::read(&path).unwrap();
@@ -264,11 +264,11 @@ fn what_is_damaged_is_made_again() {
             }
             // One by one, and all that are left at once.
             if n < 6 || n + 1 == expect.len() {
-                run(&world, &order, &folder.out(), Start::Resume);
+                run(&world, &spec, &folder.out(), Start::Resume);
                 assert!(result(&folder.out()) == expect, "{form:?}: {}", path.display());
             }
         }
-        let report = run(&world, &order, &folder.out(), Start::Resume);
+        let report = run(&world, &spec, &folder.out(), Start::Resume);
         assert_eq!(report.made, 0, "{form:?}");
     }
 }
@@ -277,9 +277,9 @@ fn what_is_damaged_is_made_again() {
 fn what_is_damaged_on_the_way_is_made_again() {
     for form in FORMS {
         let (expect, whole) = undisturbed(form);
-        let (world, order) = (world(None, 2), order(form));
+        let (world, spec) = (world(None, 2), spec(form));
         let folder = Folder::new();
-        let mut build = Build::new(&world, &order, &output(&folder.out())).unwrap();
+        let mut build = Build::new(&world, &spec, &output(&folder.out())).unwrap();
         fill_after(&mut build, 4);
         assert!(build.run(Start::Fresh, &Progress::none()).is_err());
         for (n, (path, mut bytes)) in files(&folder.0).into_iter().enumerate() {
@@ -293,7 +293,7 @@ fn what_is_damaged_on_the_way_is_made_again() {
             }
             fs::write(path, bytes).unwrap();
         }
-        let report = run(&world, &order, &folder.out(), Start::Resume);
+        let report = run(&world, &spec, &folder.out(), Start::Resume);
         assert_eq!((report.made, report.kept), (whole.made, 0), "{form:?}");
         assert!(result(&folder.out()) == expect, "{form:?}");
     }
@@ -302,18 +302,18 @@ fn what_is_damaged_on_the_way_is_made_again() {
 #[test]
 fn what_is_there_is_not_overwritten() {
     let folder = Folder::new();
-    let (world, order) = (world(None, 2), order(Form::Zarr));
-    let build = |order: &Order, start| {
-        let done = Build::new(&world, order, &output(&folder.out())).unwrap().run(start, &Progress::none());
+    let (world, spec) = (world(None, 2), spec(Form::Zarr));
+    let build = |spec: &BuildSpec, start| {
+        let done = Build::new(&world, spec, &output(&folder.out())).unwrap().run(start, &Progress::none());
         done.map_err(|error| error.to_string().replace(&folder.0.display().to_string(), "~"))
     };
-    build(&order, Start::Fresh).unwrap();
+    build(&spec, Start::Fresh).unwrap();
     let expect = result(&folder.out());
     assert_eq!(
-        build(&order, Start::Fresh).unwrap_err(),
+        build(&spec, Start::Fresh).unwrap_err(),
         "~/out is finished: --resume checks it, --force builds it anew"
     );
-    let other = Order { tile: Some(64), ..order.clone() };
+    let other = BuildSpec { tile: Some(64), ..spec.clone() };
     assert_eq!(
         build(&other, Start::Resume).unwrap_err(),
         "~/out cannot be resumed: it was begun with tiles of 40, not 64; ask for the same, or begin anew with --force"
@@ -321,32 +321,32 @@ fn what_is_there_is_not_overwritten() {
     assert!(result(&folder.out()) == expect);
     build(&other, Start::Force).unwrap();
     assert!(result(&folder.out()) != expect);
-    build(&order, Start::Force).unwrap();
+    build(&spec, Start::Force).unwrap();
     assert!(result(&folder.out()) == expect, "and nothing is left of the other");
     fs::write(folder.0.join("out.build/journal"), "nonsense").unwrap();
-    assert!(build(&order, Start::Resume).unwrap_err().contains("is damaged where it says what is being built"));
+    assert!(build(&spec, Start::Resume).unwrap_err().contains("is damaged where it says what is being built"));
     fs::remove_file(folder.0.join("out.build/journal")).unwrap();
-    assert_eq!(build(&order, Start::Fresh).unwrap_err(), "~/out is there already: --force replaces it");
-    assert!(build(&order, Start::Resume).unwrap_err().contains("nothing tells what it is; --force builds it anew"));
+    assert_eq!(build(&spec, Start::Fresh).unwrap_err(), "~/out is there already: --force replaces it");
+    assert!(build(&spec, Start::Resume).unwrap_err().contains("nothing tells what it is; --force builds it anew"));
     // What no build has made is safe even from --force.
     fs::remove_dir_all(folder.out()).unwrap();
     fs::create_dir_all(folder.out()).unwrap();
     fs::write(folder.out().join("diary"), "mine").unwrap();
-    assert!(build(&order, Start::Force).unwrap_err().contains("--force does not remove those"));
+    assert!(build(&spec, Start::Force).unwrap_err().contains("--force does not remove those"));
     assert_eq!(result(&folder.out()).len(), 1);
 }
 
 #[test]
 fn a_begun_build_is_not_begun_again() {
     let folder = Folder::new();
-    let (world, order) = (world(None, 2), order(Form::Cog));
-    let mut build = Build::new(&world, &order, &output(&folder.out())).unwrap();
+    let (world, spec) = (world(None, 2), spec(Form::Cog));
+    let mut build = Build::new(&world, &spec, &output(&folder.out())).unwrap();
     fill_after(&mut build, 5);
     assert!(build.run(Start::Fresh, &Progress::none()).is_err());
     let error =
-        Build::new(&world, &order, &output(&folder.out())).unwrap().run(Start::Fresh, &Progress::none()).unwrap_err();
+        Build::new(&world, &spec, &output(&folder.out())).unwrap().run(Start::Fresh, &Progress::none()).unwrap_err();
     assert!(error.to_string().contains("was begun and not finished: --resume goes on with it"), "{error}");
-    let other = Order { window: order.window.at(0, 0), ..order };
+    let other = BuildSpec { window: spec.window.at(0, 0), ..spec };
     let error =
         Build::new(&world, &other, &output(&folder.out())).unwrap().run(Start::Resume, &Progress::none()).unwrap_err();
     assert!(error.to_string().contains("it was begun over 101 x 77 samples at (7, 11)"), "{error}");
@@ -355,10 +355,10 @@ fn a_begun_build_is_not_begun_again() {
 #[test]
 fn only_one_builds_at_a_time() {
     let folder = Folder::new();
-    let (world, order) = (world(None, 1), order(Form::Xyz(Encoding::Terrarium)));
-    let build = Build::new(&world, &order, &output(&folder.out())).unwrap();
-    let site = super::site::Site::new(&output(&folder.out()), false).unwrap();
-    let held = site.hold().unwrap();
+    let (world, spec) = (world(None, 1), spec(Form::Xyz(Encoding::Terrarium)));
+    let build = Build::new(&world, &spec, &output(&folder.out())).unwrap();
+    let work_dir = super::work_dir::WorkDir::new(&output(&folder.out()), false).unwrap();
+    let held = work_dir.hold().unwrap();
     for start in [Start::Fresh, Start::Resume, Start::Force] {
         let error = build.run(start, &Progress::none()).unwrap_err();
         assert!(error.to_string().contains("another build is at work on"), "{error}");
@@ -373,8 +373,8 @@ fn impossible_orders_are_sentences() {
     let window = Window::new(50, 50, 5.0);
     let layers = |names: &[&str]| names.iter().map(ToString::to_string).collect::<Vec<String>>();
     let check = |form, window, tile, names: &[&str], expect: &str| {
-        let order = Order { form, window, tile, layers: layers(names) };
-        let error = Build::new(&world, &order, &output(&Folder::new().out())).err().unwrap().to_string();
+        let spec = BuildSpec { form, window, tile, layers: layers(names) };
+        let error = Build::new(&world, &spec, &output(&Folder::new().out())).err().unwrap().to_string();
         assert!(error.contains(expect), "{error} / {expect}");
     };
     check(Form::Zarr, window, None, &[], "a build of no layer makes nothing");
@@ -389,6 +389,6 @@ fn impossible_orders_are_sentences() {
     check(Form::Zarr, Window::new(500, 5, 5.0), None, &["height"], "is not inside the world");
     let folder = Folder::new();
     fs::write(folder.out(), "a file").unwrap();
-    let error = Build::new(&world, &order(Form::Zarr), &output(&folder.out())).err().unwrap().to_string();
+    let error = Build::new(&world, &spec(Form::Zarr), &output(&folder.out())).err().unwrap().to_string();
     assert!(error.contains("it is a file, and a folder has to be there"), "{error}");
 }

@@ -7,16 +7,16 @@ use rayon::prelude::*;
 
 use super::blocks::{Block, union};
 use super::cog::Cog;
+use super::digest::FileDigest;
 use super::folder::Folder;
 use super::identity::Identity;
-use super::job::{Job, Place, Record, Stage};
-use super::journal::{Journal, Story};
-use super::order::{Form, Order};
-use super::piece::Piece;
+use super::job::{Job, JobFile, Record, Stage};
+use super::journal::{Journal, JournalState};
+use super::output_store::{OutputStore, Put, put};
 use super::samples::range;
-use super::shelf::{Put, Shelf, put};
-use super::site::Site;
-use super::target::{Disk, Target, paths};
+use super::spec::{BuildSpec, Form};
+use super::target::{BuildTarget, Disk, paths};
+use super::work_dir::WorkDir;
 use super::xyz::Tree;
 use super::zarr::Zarr;
 use crate::analysis::finite::FiniteCount;
@@ -60,15 +60,15 @@ pub struct Report {
 /// A build: an order that can be met, about to be carried out.
 ///
 /// ```
-/// use orogen::build::builder::{Build, Start};
-/// use orogen::build::order::{Form, Order};
+/// use orogen::builder::builder::{Build, Start};
+/// use orogen::builder::order::{Form, BuildSpec};
 /// use orogen::file::OutputPolicy;
 /// use orogen::{Progress, Window, World};
 ///
 /// let world = World::open(orogen::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
 /// let out = std::env::temp_dir().join(format!("orogen-doc-{}.zarr", std::process::id()));
 /// let order =
-///     Order { form: Form::Zarr, window: Window::new(300, 200, 30.0), tile: Some(128), layers: vec!["height".into()] };
+///     BuildSpec { form: Form::Zarr, window: Window::new(300, 200, 30.0), tile: Some(128), layers: vec!["height".into()] };
 /// let build = Build::new(&world, &order, &OutputPolicy::default().output(&out)?)?;
 /// let report = build.run(Start::Fresh, &Progress::none())?;
 /// assert_eq!((report.made, report.kept), (6, 0));
@@ -80,10 +80,10 @@ pub struct Report {
 pub struct Build<'a> {
     world: &'a World,
     identity: Identity,
-    target: Box<dyn Target>,
+    target: Box<dyn BuildTarget>,
     stages: Vec<Stage>,
     block: Block,
-    site: Site,
+    work_dir: WorkDir,
     /// How files are written.
     pub(super) put: Box<Put>,
 }
@@ -93,21 +93,21 @@ impl<'a> Build<'a> {
     ///
     /// # Errors
     /// If the order or its place is impossible, the world does not have these samples, or one tile needs more memory than allowed.
-    pub fn new(world: &'a World, order: &Order, output: &Output) -> Result<Build<'a>> {
-        order.check()?;
-        let tile = match order.tile.or(order.form.usual_tile()) {
+    pub fn new(world: &'a World, spec: &BuildSpec, output: &Output) -> Result<Build<'a>> {
+        spec.check()?;
+        let tile = match spec.tile.or(spec.form.usual_tile()) {
             Some(tile) => tile,
-            None => Cog::usual_tile(&order.window)?,
+            None => Cog::usual_tile(&spec.window)?,
         };
-        let identity = Identity::of(world, order, tile)?;
-        let layers: Vec<&str> = order.layers.iter().map(String::as_str).collect();
+        let identity = Identity::of(world, spec, tile)?;
+        let layers: Vec<&str> = spec.layers.iter().map(String::as_str).collect();
         // Refuses a window that is none, before it is cut.
-        world.plan(&layers, &order.window)?;
-        let target = target(world, &identity, order.form)?;
+        world.plan(&layers, &spec.window)?;
+        let target = target(world, &identity, spec.form)?;
         let stages = target.stages();
         let block = Block::fitting(world, target.as_ref(), stages[0], &layers)?;
-        let site = Site::new(output, order.form.is_file())?;
-        Ok(Build { world, identity, target, stages, block, site, put: Box::new(put) })
+        let work_dir = WorkDir::new(output, spec.form.is_file())?;
+        Ok(Build { world, identity, target, stages, block, work_dir, put: Box::new(put) })
     }
 
     /// Bytes of memory that it takes at most.
@@ -117,8 +117,10 @@ impl<'a> Build<'a> {
 
     /// Bytes on disk that it takes at most, and how many of them are there already.
     pub fn disk(&self) -> (Disk, u64) {
-        let there = match Story::read(&self.site.journal()) {
-            Ok(Some(story)) => story.records.values().flat_map(|record| &record.pieces).map(|piece| piece.length).sum(),
+        let there = match JournalState::read(&self.work_dir.journal()) {
+            Ok(Some(state)) => {
+                state.records.values().flat_map(|record| &record.digests).map(|digest| digest.length).sum()
+            }
             _ => 0,
         };
         (self.target.disk(), there)
@@ -132,7 +134,7 @@ impl<'a> Build<'a> {
 
     /// The folder that holds the journal, and, until the build is finished, what it needs on the way.
     pub fn beside(&self) -> &Path {
-        self.site.beside()
+        self.work_dir.beside()
     }
 
     /// Builds.
@@ -141,72 +143,72 @@ impl<'a> Build<'a> {
     /// If something is there that `start` does not allow for, another build is at work there, a file cannot be written, or the work
     /// is cancelled. After any of these, and after a kill, [`Start::Resume`] goes on.
     pub fn run(&self, start: Start, progress: &Progress) -> Result<Report> {
-        let mut held = self.site.hold()?;
-        let (story, sound, foreign) = self.begin(start, progress)?;
+        let mut held = self.work_dir.hold()?;
+        let (state, sound, foreign) = self.begin(start, progress)?;
         held.keep();
-        if let Some(report) = self.is_finished(&story, &sound) {
-            self.site.sweep()?;
+        if let Some(report) = self.is_finished(&state, &sound) {
+            self.work_dir.sweep()?;
             return Ok(report);
         }
         let wanted = self.wanted(&sound);
         let (kept, again) = (sound.len(), wanted.intersection(&sound).count());
-        let records: BTreeMap<Job, Record> = story.records;
-        let journal = Story { identity: self.identity.clone(), records: records.clone(), finished: None };
-        self.site.tidy()?;
-        self.site.furnish()?;
-        let journal = Journal::write(&self.site.journal(), &self.site.temporary(0), &journal)?;
-        let shelf = Shelf::new(&self.site, journal, records, self.put.as_ref());
+        let records: BTreeMap<Job, Record> = state.records;
+        let journal = JournalState { identity: self.identity.clone(), records: records.clone(), finished: None };
+        self.work_dir.tidy()?;
+        self.work_dir.furnish()?;
+        let journal = Journal::write(&self.work_dir.journal(), &self.work_dir.temporary(0), &journal)?;
+        let store = OutputStore::new(&self.work_dir, journal, records, self.put.as_ref());
         let made = wanted.len() - again;
-        let samples = self.world.install(|| self.make(&wanted, &shelf, progress))?;
+        let samples = self.world.install(|| self.make(&wanted, &store, progress))?;
         progress.check()?;
         for (n, layer) in self.identity.layers.iter().enumerate() {
-            if shelf.range(n).is_none() {
+            if store.range(n).is_none() {
                 // Also if all of it was there already: then nothing was counted now.
                 FiniteCount { samples: samples.samples.max(1), finite: 0 }.check(&format!("the layer `{layer}`"))?;
             }
         }
-        let extra = self.target.finish(&shelf)?;
-        let bytes = self.close(shelf, extra)?;
+        let extra = self.target.finish(&store)?;
+        let bytes = self.close(store, extra)?;
         Ok(Report { made, kept, again, samples, foreign, bytes })
     }
 
     /// What is known of the build, and which of its jobs' files are as they should be.
-    fn begin(&self, start: Start, progress: &Progress) -> Result<(Story, BTreeSet<Job>, Vec<PathBuf>)> {
+    fn begin(&self, start: Start, progress: &Progress) -> Result<(JournalState, BTreeSet<Job>, Vec<PathBuf>)> {
         let mut foreign = Vec::new();
-        let story = match (start, Story::read(&self.site.journal())) {
+        let state = match (start, JournalState::read(&self.work_dir.journal())) {
             (Start::Force, read) => {
                 let known = !matches!(read, Ok(None));
-                foreign = self.clear(read.ok().flatten().map(|story| story.identity).as_ref(), known)?;
+                foreign = self.clear(read.ok().flatten().map(|state| state.identity).as_ref(), known)?;
                 None
             }
             (_, read) => read?,
         };
         let refuse = |message: String| Err(Error::new(ErrorKind::File, message));
-        let out = self.site.out().display();
-        match (start, story) {
-            (Start::Fresh, Some(Story { finished: Some(_), .. })) => {
+        let out = self.work_dir.out().display();
+        match (start, state) {
+            (Start::Fresh, Some(JournalState { finished: Some(_), .. })) => {
                 refuse(format!("{out} is finished: --resume checks it, --force builds it anew"))
             }
             (Start::Fresh, Some(_)) => refuse(format!(
                 "a build of {out} was begun and not finished: --resume goes on with it, --force begins anew"
             )),
-            (Start::Fresh | Start::Resume, None) if self.site.is_taken() => match start {
+            (Start::Fresh | Start::Resume, None) if self.work_dir.is_taken() => match start {
                 Start::Fresh => refuse(format!("{out} is there already: --force replaces it")),
                 _ => refuse(format!(
                     "{out} is there, but no journal of its build ({}): nothing tells what it is; --force builds it anew",
-                    self.site.journal().display()
+                    self.work_dir.journal().display()
                 )),
             },
-            (_, Some(story)) => match self.identity.difference(&story.identity) {
+            (_, Some(state)) => match self.identity.difference(&state.identity) {
                 Some(difference) => refuse(format!(
                     "{out} cannot be resumed: it was begun {difference}; ask for the same, or begin anew with --force"
                 )),
                 None => {
-                    let sound = self.world.install(|| self.sound(&story, progress))?;
-                    Ok((story, sound, foreign))
+                    let sound = self.world.install(|| self.sound(&state, progress))?;
+                    Ok((state, sound, foreign))
                 }
             },
-            (_, None) => Ok((Story::begun(self.identity.clone()), BTreeSet::new(), foreign)),
+            (_, None) => Ok((JournalState::begun(self.identity.clone()), BTreeSet::new(), foreign)),
         }
     }
 
@@ -216,31 +218,31 @@ impl<'a> Build<'a> {
         // Without a journal that tells, only what would be written anew is a build's own.
         let old = before.and_then(|before| target(self.world, before, Form::named(&before.form)?).ok());
         let old = old.map_or_else(|| new.clone(), |target| paths(target.as_ref()));
-        self.site.clear(known, &old, &new)
+        self.work_dir.clear(known, &old, &new)
     }
 
     /// The jobs whose files are all there and what they were.
-    fn sound(&self, story: &Story, progress: &Progress) -> Result<BTreeSet<Job>> {
-        let records: Vec<(&Job, &Record)> = story.records.iter().collect();
+    fn sound(&self, state: &JournalState, progress: &Progress) -> Result<BTreeSet<Job>> {
+        let records: Vec<(&Job, &Record)> = state.records.iter().collect();
         let checked = records.into_par_iter().map(|(job, record)| {
             progress.check()?;
             let stage = self.stages.get(job.stage).filter(|stage| job.row < stage.rows && job.column < stage.columns);
             let places = if stage.is_some() { self.target.places(*job) } else { Vec::new() };
-            let as_many = !places.is_empty() && places.len() == record.pieces.len();
-            let same = |(place, piece): (&Place, &Piece)| match (place, &story.finished) {
+            let as_many = !places.is_empty() && places.len() == record.digests.len();
+            let same = |(place, digest): (&JobFile, &FileDigest)| match (place, &state.finished) {
                 // What was needed on the way is gone, and not missed.
-                (Place::Scratch(_), Some(_)) => true,
-                _ => piece.is_at(&self.site.path(place)),
+                (JobFile::Scratch(_), Some(_)) => true,
+                _ => digest.is_at(&self.work_dir.path(place)),
             };
-            Ok((as_many && places.iter().zip(&record.pieces).all(same)).then_some(*job))
+            Ok((as_many && places.iter().zip(&record.digests).all(same)).then_some(*job))
         });
         Ok(checked.collect::<Result<Vec<Option<Job>>>>()?.into_iter().flatten().collect())
     }
 
     /// If all is there and sound: what there is.
-    fn is_finished(&self, story: &Story, sound: &BTreeSet<Job>) -> Option<Report> {
-        let finished = story.finished.as_ref()?;
-        let whole = finished.iter().all(|(path, piece)| piece.is_at(&self.site.result(path)));
+    fn is_finished(&self, state: &JournalState, sound: &BTreeSet<Job>) -> Option<Report> {
+        let finished = state.finished.as_ref()?;
+        let whole = finished.iter().all(|(path, digest)| digest.is_at(&self.work_dir.result(path)));
         let tiles = if self.target.assembles() { 0 } else { self.tiles().0 };
         (whole && sound.len() >= tiles).then(|| Report {
             made: 0,
@@ -248,7 +250,7 @@ impl<'a> Build<'a> {
             again: 0,
             samples: FiniteCount::default(),
             foreign: Vec::new(),
-            bytes: self.bytes(&story.records, finished.iter().map(|(_, piece)| piece.length).sum()),
+            bytes: self.bytes(&state.records, finished.iter().map(|(_, digest)| digest.length).sum()),
         })
     }
 
@@ -266,13 +268,13 @@ impl<'a> Build<'a> {
                 let places = self.target.places(job);
                 let needed = read.contains(&job)
                     || self.target.assembles()
-                    || places.iter().any(|place| matches!(place, Place::Result(_)));
+                    || places.iter().any(|place| matches!(place, JobFile::Result(_)));
                 // After the end, scratch counts as sound while nobody reads it.
                 let there = sound.contains(&job)
                     && (!read.contains(&job)
                         || places
                             .iter()
-                            .all(|place| matches!(place, Place::Result(_)) || self.site.path(place).is_file()));
+                            .all(|place| matches!(place, JobFile::Result(_)) || self.work_dir.path(place).is_file()));
                 if needed && !there {
                     wanted.insert(job);
                 }
@@ -282,7 +284,7 @@ impl<'a> Build<'a> {
     }
 
     /// Does the jobs, stage after stage. Returns how many of the samples are finite.
-    fn make(&self, wanted: &BTreeSet<Job>, shelf: &Shelf, progress: &Progress) -> Result<FiniteCount> {
+    fn make(&self, wanted: &BTreeSet<Job>, store: &OutputStore, progress: &Progress) -> Result<FiniteCount> {
         let mut count = FiniteCount::default();
         let samples = |stage: usize| {
             wanted.iter().filter(|job| job.stage == stage).map(|job| self.stages[job.stage].samples as f64).sum::<f64>()
@@ -296,13 +298,13 @@ impl<'a> Build<'a> {
                 for group in self.block.groups(&tiles.collect(), *stage) {
                     // What had to be solved is solved with the first group.
                     let work = std::mem::take(&mut solving) + each * (group.len() * stage.samples) as f64;
-                    count = count.and(self.make_group(&group, shelf, progress, work)?);
+                    count = count.and(self.make_group(&group, store, progress, work)?);
                 }
             } else {
                 let tiles: Vec<(usize, usize)> = tiles.collect();
                 tiles
                     .into_par_iter()
-                    .try_for_each(|(row, column)| self.make_one(Job { stage: n, row, column }, &[], shelf, progress))?;
+                    .try_for_each(|(row, column)| self.make_one(Job { stage: n, row, column }, &[], store, progress))?;
             }
         }
         Ok(count)
@@ -321,7 +323,7 @@ impl<'a> Build<'a> {
     fn make_group(
         &self,
         group: &[(usize, usize)],
-        shelf: &Shelf,
+        store: &OutputStore,
         progress: &Progress,
         work: f64,
     ) -> Result<FiniteCount> {
@@ -334,26 +336,26 @@ impl<'a> Build<'a> {
             let window = self.target.window(row, column);
             let tiles: Option<Vec<Grid>> = grids.iter().map(|grid| grid.crop(&window)).collect();
             let tiles = tiles.ok_or_else(|| Error::new(ErrorKind::Request, "a tile lies outside of its block"))?;
-            self.make_one(Job { stage: 0, row, column }, &tiles, shelf, progress)
+            self.make_one(Job { stage: 0, row, column }, &tiles, store, progress)
         })?;
         Ok(grids.iter().fold(FiniteCount::default(), |count, grid| count.and(FiniteCount::of(grid.data()))))
     }
 
-    fn make_one(&self, job: Job, grids: &[Grid], shelf: &Shelf, progress: &Progress) -> Result<()> {
+    fn make_one(&self, job: Job, grids: &[Grid], store: &OutputStore, progress: &Progress) -> Result<()> {
         progress.check()?;
-        let mut made = self.target.make(job, grids, shelf)?;
+        let mut made = self.target.make(job, grids, store)?;
         if made.ranges.is_empty() {
             // Whether there is any finite sample is asked of every result.
             made.ranges = grids.iter().map(range).collect();
         }
-        shelf.keep(job, &self.target.places(job), &made)?;
+        store.keep(job, &self.target.places(job), &made)?;
         progress.advance(PACKING * self.stages[job.stage].samples as f64);
         Ok(())
     }
 
     /// Makes all of it last, says so in the journal, and removes what is needed no more. Returns the bytes of the result.
-    fn close(&self, shelf: Shelf, extra: Vec<(PathBuf, Piece)>) -> Result<u64> {
-        let mut records = shelf.into_records();
+    fn close(&self, store: OutputStore, extra: Vec<(PathBuf, FileDigest)>) -> Result<u64> {
+        let mut records = store.into_records();
         if self.target.assembles() {
             // The file is what there is to check from now on.
             records.clear();
@@ -361,15 +363,15 @@ impl<'a> Build<'a> {
         let mut paths: Vec<PathBuf> = extra.iter().map(|(path, _)| path.clone()).collect();
         for job in records.keys() {
             paths.extend(self.target.places(*job).into_iter().filter_map(|place| match place {
-                Place::Result(path) => Some(path),
-                Place::Scratch(_) => None,
+                JobFile::Result(path) => Some(path),
+                JobFile::Scratch(_) => None,
             }));
         }
-        self.site.sync(&paths)?;
-        let bytes = self.bytes(&records, extra.iter().map(|(_, piece)| piece.length).sum());
-        let story = Story { identity: self.identity.clone(), records, finished: Some(extra) };
-        Journal::write(&self.site.journal(), &self.site.temporary(0), &story)?;
-        self.site.sweep()?;
+        self.work_dir.sync(&paths)?;
+        let bytes = self.bytes(&records, extra.iter().map(|(_, digest)| digest.length).sum());
+        let state = JournalState { identity: self.identity.clone(), records, finished: Some(extra) };
+        Journal::write(&self.work_dir.journal(), &self.work_dir.temporary(0), &state)?;
+        self.work_dir.sweep()?;
         Ok(bytes)
     }
 
@@ -377,15 +379,15 @@ impl<'a> Build<'a> {
     fn bytes(&self, records: &BTreeMap<Job, Record>, extra: u64) -> u64 {
         let of = |(job, record): (&Job, &Record)| -> u64 {
             let places = self.target.places(*job);
-            let own = places.iter().zip(&record.pieces).filter(|(place, _)| matches!(place, Place::Result(_)));
-            own.map(|(_, piece)| piece.length).sum()
+            let own = places.iter().zip(&record.digests).filter(|(place, _)| matches!(place, JobFile::Result(_)));
+            own.map(|(_, digest)| digest.length).sum()
         };
         records.iter().map(of).sum::<u64>() + extra
     }
 }
 
 /// What an identity's result consists of.
-fn target(world: &World, identity: &Identity, form: Form) -> Result<Box<dyn Target>> {
+fn target(world: &World, identity: &Identity, form: Form) -> Result<Box<dyn BuildTarget>> {
     let (about, sea_level) = (&world.recipe().about, world.recipe().world.sea_level);
     Ok(match form {
         Form::Cog => Box::new(Cog::new(identity)?),

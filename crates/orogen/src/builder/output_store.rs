@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use super::job::{Job, Made, Place, Record};
+use super::digest::{FileDigest, Measured};
+use super::job::{Job, JobFile, Made, Record};
 use super::journal::Journal;
-use super::piece::{Measured, Piece};
-use super::site::Site;
+use super::work_dir::WorkDir;
 use crate::error::{Error, Result};
 use crate::file;
 
@@ -21,30 +21,35 @@ const BUFFER: usize = 1 << 20;
 pub type Put = dyn Fn(&Path, &[u8]) -> io::Result<()> + Send + Sync;
 
 /// The files that were made, and the journal that knows of them.
-pub struct Shelf<'a> {
-    site: &'a Site,
+pub struct OutputStore<'a> {
+    work_dir: &'a WorkDir,
     journal: Journal,
     records: Mutex<BTreeMap<Job, Record>>,
     count: AtomicU64,
     put: &'a Put,
 }
 
-impl<'a> Shelf<'a> {
+impl<'a> OutputStore<'a> {
     /// What `records` tell of, and what will be made.
-    pub fn new(site: &'a Site, journal: Journal, records: BTreeMap<Job, Record>, put: &'a Put) -> Shelf<'a> {
-        Shelf { site, journal, records: Mutex::new(records), count: AtomicU64::new(0), put }
+    pub fn new(
+        work_dir: &'a WorkDir,
+        journal: Journal,
+        records: BTreeMap<Job, Record>,
+        put: &'a Put,
+    ) -> OutputStore<'a> {
+        OutputStore { work_dir, journal, records: Mutex::new(records), count: AtomicU64::new(0), put }
     }
 
     /// Puts the files of a job into their places and enters them into the journal.
     ///
     /// # Errors
     /// If they cannot be written.
-    pub fn keep(&self, job: Job, places: &[Place], made: &Made) -> Result<()> {
-        let mut pieces = Vec::with_capacity(made.files.len());
+    pub fn keep(&self, job: Job, places: &[JobFile], made: &Made) -> Result<()> {
+        let mut digests = Vec::with_capacity(made.files.len());
         for (place, bytes) in places.iter().zip(&made.files) {
-            pieces.push(self.file(place, bytes)?);
+            digests.push(self.file(place, bytes)?);
         }
-        let record = Record { pieces, ranges: made.ranges.clone() };
+        let record = Record { digests, ranges: made.ranges.clone() };
         self.journal.enter(job, &record)?;
         self.records.lock().unwrap_or_else(PoisonError::into_inner).insert(job, record);
         Ok(())
@@ -54,35 +59,35 @@ impl<'a> Shelf<'a> {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn file(&self, place: &Place, bytes: &[u8]) -> Result<Piece> {
-        let path = self.site.path(place);
+    pub fn file(&self, place: &JobFile, bytes: &[u8]) -> Result<FileDigest> {
+        let path = self.work_dir.path(place);
         let temporary = self.temporary();
         let put = || {
             (self.put)(&temporary, bytes)?;
             settle(&temporary, &path)
         };
         put().map_err(|cause| Error::file("write", &path, &cause))?;
-        Ok(Piece::of(bytes))
+        Ok(FileDigest::of(bytes))
     }
 
     /// Puts together the result that is one file: `body` writes it; it takes its place when it is whole and synced.
     ///
     /// # Errors
     /// If it cannot be written, or as `body` does.
-    pub fn assemble(&self, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Piece> {
-        let (path, temporary) = (self.site.out(), self.temporary());
-        let put = || -> io::Result<Piece> {
+    pub fn assemble(&self, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<FileDigest> {
+        let (path, temporary) = (self.work_dir.out(), self.temporary());
+        let put = || -> io::Result<FileDigest> {
             let mut out = BufWriter::with_capacity(BUFFER, Measured::new(File::create(&temporary)?));
             body(&mut out)?;
-            let (file, piece) = out.into_inner().map_err(io::IntoInnerError::into_error)?.end();
+            let (file, digest) = out.into_inner().map_err(io::IntoInnerError::into_error)?.end();
             if let Ok(there) = fs::metadata(path) {
                 // Some file systems have no permissions to keep; the file matters more.
                 let _ = file.set_permissions(there.permissions());
             }
             file.sync_all()?;
-            self.site.output().check(Some(&temporary))?;
+            self.work_dir.output().check(Some(&temporary))?;
             settle(&temporary, path)?;
-            Ok(piece)
+            Ok(digest)
         };
         put().map_err(|cause| file::explain("write", path, &cause))
     }
@@ -91,18 +96,18 @@ impl<'a> Shelf<'a> {
     ///
     /// # Errors
     /// If it cannot be read.
-    pub fn read(&self, place: &Place, bytes: &mut Vec<u8>) -> io::Result<()> {
+    pub fn read(&self, place: &JobFile, bytes: &mut Vec<u8>) -> io::Result<()> {
         use io::Read as _;
         bytes.clear();
-        let path = self.site.path(place);
+        let path = self.work_dir.path(place);
         let explain = |cause: io::Error| io::Error::from(Error::file("read", &path, &cause));
         File::open(&path).and_then(|mut file| file.read_to_end(bytes)).map_err(explain)?;
         Ok(())
     }
 
     /// Where a file of a job is.
-    pub fn path(&self, place: &Place) -> PathBuf {
-        self.site.path(place)
+    pub fn path(&self, place: &JobFile) -> PathBuf {
+        self.work_dir.path(place)
     }
 
     /// What is known of a job that was done.
@@ -125,7 +130,7 @@ impl<'a> Shelf<'a> {
     }
 
     fn temporary(&self) -> PathBuf {
-        self.site.temporary(self.count.fetch_add(1, Ordering::Relaxed))
+        self.work_dir.temporary(self.count.fetch_add(1, Ordering::Relaxed))
     }
 }
 

@@ -19,7 +19,7 @@ const MISSING: f64 = 3.0;
 
 /// The figures compared, each in units of the spread that real land has.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Likeness {
+pub struct FeatureVector {
     values: Vec<Option<f64>>,
 }
 
@@ -27,20 +27,20 @@ fn compared() -> impl Iterator<Item = &'static Figure> {
     FIGURES.iter().filter(|figure| !LEFT_OUT.contains(&figure.key))
 }
 
-impl Likeness {
+impl FeatureVector {
     /// Of measures.
-    pub fn of(measures: &Measures) -> Likeness {
+    pub fn of(measures: &Measures) -> FeatureVector {
         let value = |figure: &Figure| {
             let value = figure.value(measures)?;
             let least = LOGARITHMIC.iter().find(|(key, _)| *key == figure.key).map(|(_, least)| *least);
             let scaled = |value: f64| least.map_or(value, |least| libm::log(value.max(least)));
             Some(scaled(value) * TENTHS / (scaled(figure.real[2]) - scaled(figure.real[0])))
         };
-        Likeness { values: compared().map(value).collect() }
+        FeatureVector { values: compared().map(value).collect() }
     }
 
     /// The middle of several, figure by figure.
-    pub fn middle(of: &[Likeness]) -> Likeness {
+    pub fn middle(of: &[FeatureVector]) -> FeatureVector {
         let count = of.first().map_or(0, |first| first.values.len());
         let middle = |k: usize| {
             let mut values: Vec<f64> = of.iter().filter_map(|one| one.values.get(k).copied().flatten()).collect();
@@ -52,12 +52,12 @@ impl Likeness {
                 (_, false) => Some(values[half]),
             }
         };
-        Likeness { values: (0..count).map(middle).collect() }
+        FeatureVector { values: (0..count).map(middle).collect() }
     }
 
     /// The root of the mean square of the differences, in standard deviations of real land: 0 is the same, 1.4 what two pieces of
     /// real land picked by chance are apart.
-    pub fn distance(&self, other: &Likeness) -> f64 {
+    pub fn distance(&self, other: &FeatureVector) -> f64 {
         let differences = self.values.iter().zip(&other.values).map(|pair| match pair {
             (Some(a), Some(b)) => (a - b).clamp(-6.0, 6.0),
             (None, None) => 0.0,
@@ -83,18 +83,18 @@ pub fn windows(grid: &Window, side: usize, most: usize) -> Vec<Window> {
     all.into_iter().step_by(every).collect()
 }
 
-/// The likenesses of windows of a grid, those left out that cannot be measured.
-pub fn of_windows(grid: &Grid, side: usize, most: usize) -> Vec<Likeness> {
+/// The features of windows of a grid, those left out that cannot be measured.
+pub fn of_windows(grid: &Grid, side: usize, most: usize) -> Vec<FeatureVector> {
     let crops = windows(grid.window(), side, most).into_iter().filter_map(|window| grid.crop(&window));
-    crops.filter_map(|crop| Measures::of(&crop, None)).map(|measures| Likeness::of(&measures)).collect()
+    crops.filter_map(|crop| Measures::of(&crop, None)).map(|measures| FeatureVector::of(&measures)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn like(values: &[Option<f64>]) -> Likeness {
-        Likeness { values: values.to_vec() }
+    fn like(values: &[Option<f64>]) -> FeatureVector {
+        FeatureVector { values: values.to_vec() }
     }
 
     #[test]
@@ -103,7 +103,7 @@ mod tests {
         let b = like(&[Some(4.0), Some(6.0), None, Some(9.0)]);
         assert_eq!(a.distance(&a), 0.0);
         assert!((a.distance(&b) - ((9.0 + 16.0 + 9.0) / 4.0f64).sqrt()).abs() < 1e-12);
-        let middle = Likeness::middle(&[a.clone(), b.clone(), like(&[Some(2.0), None, None, None])]);
+        let middle = FeatureVector::middle(&[a.clone(), b.clone(), like(&[Some(2.0), None, None, None])]);
         assert_eq!(middle, like(&[Some(2.0), Some(4.0), None, Some(9.0)]));
     }
 

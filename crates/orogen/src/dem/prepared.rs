@@ -22,7 +22,7 @@ pub const DEFAULT_MEMORY: u64 = 4 << 30;
 
 /// Heights of a real place on a lattice of square metres, without holes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Ground {
+pub struct PreparedDem {
     /// The heights; the first sample is the north-west corner, at the origin.
     pub grid: Grid,
     /// How many samples of the file had no height and were made up.
@@ -37,24 +37,24 @@ pub struct Ground {
     pub hash: [u8; 32],
 }
 
-impl Ground {
+impl PreparedDem {
     /// Reads what a path names ([`open::read`]): holes are filled ([`fill`]), degrees and oblong cells become square metres
     /// ([`Layout`]). `cell` is the distance between samples in metres, where the file's own is not to be used or it has none; heights take no more
     /// than is allowed.
     ///
     /// # Errors
     /// If the file cannot be read, is too large, or nobody tells how far its samples stand apart.
-    pub fn read(path: &Path, cell: Option<f64>, request: impl Into<Request>) -> Result<Ground> {
+    pub fn read(path: &Path, cell: Option<f64>, request: impl Into<Request>) -> Result<PreparedDem> {
         let (name, request) = (path.display().to_string(), request.into());
         let dem = open::read(path, request)?;
-        Ground::of(dem, cell, request.allowed).map_err(|why| refused(&name, why))
+        PreparedDem::of(dem, cell, request.allowed).map_err(|why| refused(&name, why))
     }
 
     /// Reads a grey picture: 0 for black, 1 for white, pixels a metre apart, in no more than `allowed` bytes.
     ///
     /// # Errors
     /// If the file cannot be read, is no grey .png, or is too large.
-    pub fn picture(path: &Path, allowed: u64) -> Result<Ground> {
+    pub fn picture(path: &Path, allowed: u64) -> Result<PreparedDem> {
         let name = path.display().to_string();
         if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
             return Err(refused(&name, "pictures are read from .png; heights of other formats by the op `dem`"));
@@ -62,14 +62,14 @@ impl Ground {
         let mut file = regular(path, "read")?;
         let greys = Sidecar { low: Some(0.0), high: Some(1.0), cell: Some(1.0), ..Sidecar::default() };
         let dem = import::parse(&mut file, &name, "png", Some(greys), allowed)?;
-        Ground::of(dem, None, allowed).map_err(|why| refused(&name, why))
+        PreparedDem::of(dem, None, allowed).map_err(|why| refused(&name, why))
     }
 
-    /// Of a DEM at hand, as [`Ground::read`] does.
+    /// Of a DEM at hand, as [`PreparedDem::read`] does.
     ///
     /// # Errors
-    /// As [`Ground::read`], as a message.
-    pub fn of(mut dem: Dem, cell: Option<f64>, allowed: u64) -> std::result::Result<Ground, String> {
+    /// As [`PreparedDem::read`], as a message.
+    pub fn of(mut dem: Dem, cell: Option<f64>, allowed: u64) -> std::result::Result<PreparedDem, String> {
         let steps = match (cell, &dem.place) {
             (Some(cell), _) => [cell; 2],
             (None, Some(place)) => steps(place, dem.height),
@@ -109,7 +109,7 @@ impl Ground {
         });
         let grid = layout.apply(dem).ok_or("it has another number of samples than it says")?;
         let hash = hash(&grid);
-        Ok(Ground { grid, missing, samples, georeference, notes, hash })
+        Ok(PreparedDem { grid, missing, samples, georeference, notes, hash })
     }
 
     /// Bytes of memory that it takes.

@@ -3,14 +3,14 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use super::job::{Job, Made, Place, Stage};
-use super::piece::Piece;
-use super::shelf::Shelf;
+use super::digest::FileDigest;
+use super::job::{Job, JobFile, Made, Stage};
+use super::output_store::OutputStore;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 
 /// A kind of result: how it is cut into jobs, and what each makes.
-pub trait Target: Sync {
+pub trait BuildTarget: Sync {
     /// The stages, in order. The first one's jobs read the world.
     fn stages(&self) -> Vec<Stage>;
 
@@ -18,23 +18,23 @@ pub trait Target: Sync {
     fn window(&self, row: usize, column: usize) -> Window;
 
     /// The files that a job makes.
-    fn places(&self, job: Job) -> Vec<Place>;
+    fn places(&self, job: Job) -> Vec<JobFile>;
 
     /// The jobs, all of the stage before, whose files a job reads.
     fn reads(&self, job: Job) -> Vec<Job>;
 
     /// Does a job: `grids` are its window's samples, one grid a layer, in the first stage, and none later.
-    fn make(&self, job: Job, grids: &[Grid], shelf: &Shelf) -> Result<Made>;
+    fn make(&self, job: Job, grids: &[Grid], store: &OutputStore) -> Result<Made>;
 
-    /// Whether the result is one file, put together by [`Target::finish`] from all that lies on the shelf.
+    /// Whether the result is one file, put together by [`BuildTarget::finish`] from all that lies on the shelf.
     fn assembles(&self) -> bool {
         false
     }
 
     /// Writes what belongs to no tile, once all tiles are there; returns the files, by their paths within the result.
-    fn finish(&self, shelf: &Shelf) -> Result<Vec<(PathBuf, Piece)>>;
+    fn finish(&self, store: &OutputStore) -> Result<Vec<(PathBuf, FileDigest)>>;
 
-    /// The files that [`Target::finish`] writes, by their paths within the result; none if the result is one file.
+    /// The files that [`BuildTarget::finish`] writes, by their paths within the result; none if the result is one file.
     fn extras(&self) -> Vec<PathBuf> {
         Vec::new()
     }
@@ -47,14 +47,14 @@ pub trait Target: Sync {
 }
 
 /// All files of a result that is a folder, by their paths within it.
-pub fn paths(target: &dyn Target) -> BTreeSet<PathBuf> {
+pub fn paths(target: &dyn BuildTarget) -> BTreeSet<PathBuf> {
     let mut paths: BTreeSet<PathBuf> = target.extras().into_iter().collect();
     for (stage, Stage { rows, columns, .. }) in target.stages().into_iter().enumerate() {
         for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
             let places = target.places(Job { stage, row, column }).into_iter();
             paths.extend(places.filter_map(|place| match place {
-                Place::Result(path) => Some(path),
-                Place::Scratch(_) => None,
+                JobFile::Result(path) => Some(path),
+                JobFile::Scratch(_) => None,
             }));
         }
     }

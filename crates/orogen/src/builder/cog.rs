@@ -6,12 +6,12 @@ use std::io;
 use std::ops::Range;
 use std::path::PathBuf;
 
+use super::digest::FileDigest;
 use super::identity::Identity;
-use super::job::{Job, Made, Place, Stage};
-use super::piece::Piece;
+use super::job::{Job, JobFile, Made, Stage};
+use super::output_store::OutputStore;
 use super::samples;
-use super::shelf::Shelf;
-use super::target::{Disk, Target};
+use super::target::{BuildTarget, Disk};
 use crate::error::{Error, ErrorKind, Result};
 use crate::format::geotiff::options::Options;
 use crate::format::geotiff::overview::{Below, Span, half, reduce};
@@ -127,22 +127,22 @@ impl Cog {
         }
     }
 
-    fn packed(job: Job) -> Place {
-        Place::Scratch(format!("packed/{}/{}/{}", job.stage, job.row, job.column).into())
+    fn packed(job: Job) -> JobFile {
+        JobFile::Scratch(format!("packed/{}/{}/{}", job.stage, job.row, job.column).into())
     }
 
-    fn coarser(job: Job) -> Place {
-        Place::Scratch(format!("coarser/{}/{}/{}", job.stage, job.row, job.column).into())
+    fn coarser(job: Job) -> JobFile {
+        JobFile::Scratch(format!("coarser/{}/{}/{}", job.stage, job.row, job.column).into())
     }
 
     /// The part of a level that a job needs, from what the jobs of the level before have made of it.
-    fn gather(&self, job: Job, shelf: &Shelf) -> Result<Part> {
+    fn gather(&self, job: Job, store: &OutputStore) -> Result<Part> {
         let [columns, rows] = self.needs(job);
         let mut part = Part { samples: vec![0.0; columns.len() * rows.len()], columns, rows };
         let [across, down] = self.sides(job.stage - 1);
         for maker in self.reads(job) {
             let (columns, rows) = (across.makes(maker.column), down.makes(maker.row));
-            let samples = samples::read(shelf, &Cog::coarser(maker), columns.len() * rows.len())?;
+            let samples = samples::read(store, &Cog::coarser(maker), columns.len() * rows.len())?;
             part.paste(&Part { columns, rows, samples });
         }
         Ok(part)
@@ -171,7 +171,7 @@ fn pyramid(window: &Window, options: &Options) -> Result<Pyramid> {
     Pyramid::new(window, options).map_err(|cause| Error::new(ErrorKind::Request, cause.to_string()))
 }
 
-impl Target for Cog {
+impl BuildTarget for Cog {
     fn stages(&self) -> Vec<Stage> {
         let stage = |level| {
             let [columns, rows] = self.pyramid.tiles(level);
@@ -191,7 +191,7 @@ impl Target for Cog {
         }
     }
 
-    fn places(&self, job: Job) -> Vec<Place> {
+    fn places(&self, job: Job) -> Vec<JobFile> {
         match self.is_last(job.stage) {
             true => vec![Cog::packed(job)],
             false => vec![Cog::packed(job), Cog::coarser(job)],
@@ -205,13 +205,13 @@ impl Target for Cog {
         down.makers(&rows).flat_map(|row| columns.clone().map(move |column| Job { stage, row, column })).collect()
     }
 
-    fn make(&self, job: Job, grids: &[Grid], shelf: &Shelf) -> Result<Made> {
+    fn make(&self, job: Job, grids: &[Grid], store: &OutputStore) -> Result<Made> {
         let part = match grids.first() {
             Some(grid) => {
                 let [columns, rows] = self.needs(job);
                 Part { columns, rows, samples: grid.data().to_vec() }
             }
-            None => self.gather(job, shelf)?,
+            None => self.gather(job, store)?,
         };
         let [across, down] = self.sides(job.stage);
         let columns = across.tile(job.column);
@@ -227,14 +227,14 @@ impl Target for Cog {
         true
     }
 
-    fn finish(&self, shelf: &Shelf) -> Result<Vec<(PathBuf, Piece)>> {
+    fn finish(&self, store: &OutputStore) -> Result<Vec<(PathBuf, FileDigest)>> {
         let job = |level: usize, tile: usize| {
             let [columns, _] = self.pyramid.tiles(level);
             Job { stage: level, row: tile / columns, column: tile % columns }
         };
         let length = |level, tile| {
-            let record = shelf.record(job(level, tile));
-            record.and_then(|record| record.pieces.first().map(|piece| piece.length as u32)).unwrap_or(0)
+            let record = store.record(job(level, tile));
+            record.and_then(|record| record.digests.first().map(|digest| digest.length as u32)).unwrap_or(0)
         };
         let lengths = (0..self.pyramid.sizes().len())
             .map(|level| {
@@ -242,13 +242,13 @@ impl Target for Cog {
                 (0..columns * rows).map(|tile| length(level, tile)).collect()
             })
             .collect();
-        let file = shelf.assemble(|out| {
+        let file = store.assemble(|out| {
             self.pyramid.write(out, lengths, |level, tile, bytes| {
                 let (place, length) = (Cog::packed(job(level, tile)), bytes.len());
-                shelf.read(&place, bytes)?;
+                store.read(&place, bytes)?;
                 match bytes.len() == length && length > 4 {
                     true => Ok(()),
-                    false => Err(io::Error::from(samples::changed(shelf, &place))),
+                    false => Err(io::Error::from(samples::changed(store, &place))),
                 }
             })
         })?;

@@ -8,9 +8,9 @@ use std::sync::{Mutex, PoisonError};
 
 use serde::{Deserialize, Serialize};
 
+use super::digest::FileDigest;
 use super::identity::Identity;
 use super::job::{Job, Record};
-use super::piece::Piece;
 use crate::error::{Error, ErrorKind, Result};
 
 /// One line: JSON, a tab and the start of the JSON's SHA-256, so that a line cut short or damaged is told from a whole one.
@@ -33,19 +33,19 @@ const CHECK: usize = 16;
 
 /// What a journal says.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Story {
+pub struct JournalState {
     /// What is built.
     pub identity: Identity,
     /// What was done.
     pub records: BTreeMap<Job, Record>,
     /// If all is done: the files that belong to no tile.
-    pub finished: Option<Vec<(PathBuf, Piece)>>,
+    pub finished: Option<Vec<(PathBuf, FileDigest)>>,
 }
 
-impl Story {
+impl JournalState {
     /// Of a build that has just begun.
-    pub fn begun(identity: Identity) -> Story {
-        Story { identity, records: BTreeMap::new(), finished: None }
+    pub fn begun(identity: Identity) -> JournalState {
+        JournalState { identity, records: BTreeMap::new(), finished: None }
     }
 
     /// Reads the journal at `path`; `None` if there is none. Lines that are damaged or cut short are as if they were not there,
@@ -53,7 +53,7 @@ impl Story {
     ///
     /// # Errors
     /// If it cannot be read, or does not begin as a journal does.
-    pub fn read(path: &Path) -> Result<Option<Story>> {
+    pub fn read(path: &Path) -> Result<Option<JournalState>> {
         let bytes = match fs::read(path) {
             Ok(bytes) => bytes,
             Err(cause) if cause.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -67,29 +67,29 @@ impl Story {
             );
             return Err(Error::new(ErrorKind::File, message));
         };
-        let mut story = Story::begun(identity);
+        let mut state = JournalState::begun(identity);
         for line in lines.flatten() {
             match line {
                 Line::Begun(_) => {}
                 Line::Done([stage, row, column], files, ranges) => {
-                    let pieces = files.into_iter().map(|(length, sha256)| Piece { length, sha256 }).collect();
+                    let digests = files.into_iter().map(|(length, sha256)| FileDigest { length, sha256 }).collect();
                     let ranges = ranges.into_iter().map(|range| range.map(f32::from_bits)).collect();
-                    story.records.insert(Job { stage, row, column }, Record { pieces, ranges });
+                    state.records.insert(Job { stage, row, column }, Record { digests, ranges });
                 }
                 Line::Finished(files) => {
-                    let files = files.into_iter().map(|(path, length, sha256)| (path, Piece { length, sha256 }));
-                    story.finished = Some(files.collect());
+                    let files = files.into_iter().map(|(path, length, sha256)| (path, FileDigest { length, sha256 }));
+                    state.finished = Some(files.collect());
                 }
             }
         }
-        Ok(Some(story))
+        Ok(Some(state))
     }
 
     fn lines(&self) -> impl Iterator<Item = Line> {
         let begun = Line::Begun(self.identity.clone());
         let done = self.records.iter().map(|(job, record)| done(*job, record));
         let finished = self.finished.iter().map(|files| {
-            let files = files.iter().map(|(path, piece)| (path.clone(), piece.length, piece.sha256.clone()));
+            let files = files.iter().map(|(path, digest)| (path.clone(), digest.length, digest.sha256.clone()));
             Line::Finished(files.collect())
         });
         std::iter::once(begun).chain(done).chain(finished)
@@ -97,20 +97,20 @@ impl Story {
 }
 
 fn done(job: Job, record: &Record) -> Line {
-    let files = record.pieces.iter().map(|piece| (piece.length, piece.sha256.clone())).collect();
+    let files = record.digests.iter().map(|digest| (digest.length, digest.sha256.clone())).collect();
     let ranges = record.ranges.iter().map(|range| range.map(f32::to_bits)).collect();
     Line::Done([job.stage, job.row, job.column], files, ranges)
 }
 
 fn text(line: &Line) -> io::Result<String> {
     let json = serde_json::to_string(line)?;
-    let check = Piece::of(json.as_bytes()).sha256;
+    let check = FileDigest::of(json.as_bytes()).sha256;
     Ok(format!("{json}\t{}\n", &check[..CHECK]))
 }
 
 fn parse(line: &[u8]) -> Option<Line> {
     let (json, check) = line.split_at_checked(line.len().checked_sub(CHECK + 1)?)?;
-    let expect = Piece::of(json).sha256;
+    let expect = FileDigest::of(json).sha256;
     (check.strip_prefix(b"\t")? == &expect.as_bytes()[..CHECK]).then(|| serde_json::from_slice(json).ok())?
 }
 
@@ -127,10 +127,10 @@ impl Journal {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn write(path: &Path, temporary: &Path, story: &Story) -> Result<Journal> {
+    pub fn write(path: &Path, temporary: &Path, state: &JournalState) -> Result<Journal> {
         let put = || -> io::Result<File> {
             let mut all = String::new();
-            for line in story.lines() {
+            for line in state.lines() {
                 all.push_str(&text(&line)?);
             }
             let mut file = File::create(temporary)?;
@@ -161,7 +161,7 @@ mod tests {
     use super::*;
     use crate::grid::Window;
 
-    fn story() -> Story {
+    fn state() -> JournalState {
         let identity = Identity {
             version: "1.2.3".into(),
             form: "zarr".into(),
@@ -172,13 +172,13 @@ mod tests {
             tile: 512,
             map: None,
         };
-        let mut story = Story::begun(identity);
+        let mut state = JournalState::begun(identity);
         for n in 0..4usize {
-            let pieces = (0..n).map(|k| Piece::of(&vec![0; k])).collect();
+            let digests = (0..n).map(|k| FileDigest::of(&vec![0; k])).collect();
             let ranges = vec![[n as f32 / 3.0, f32::NEG_INFINITY]; n];
-            story.records.insert(Job { stage: n % 2, row: n, column: 7 }, Record { pieces, ranges });
+            state.records.insert(Job { stage: n % 2, row: n, column: 7 }, Record { digests, ranges });
         }
-        story
+        state
     }
 
     #[test]
@@ -186,38 +186,38 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("orogen-journal-{}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
         let (path, temporary) = (folder.join("journal"), folder.join("tmp"));
-        assert_eq!(Story::read(&path).unwrap(), None);
-        let mut story = story();
-        let journal = Journal::write(&path, &temporary, &story).unwrap();
-        assert_eq!(Story::read(&path).unwrap().as_ref(), Some(&story));
+        assert_eq!(JournalState::read(&path).unwrap(), None);
+        let mut state = state();
+        let journal = Journal::write(&path, &temporary, &state).unwrap();
+        assert_eq!(JournalState::read(&path).unwrap().as_ref(), Some(&state));
         // What is entered one by one is read as what is written at once.
-        let (job, record) = (Job { stage: 9, row: 1, column: 2 }, Record { pieces: vec![], ranges: vec![] });
+        let (job, record) = (Job { stage: 9, row: 1, column: 2 }, Record { digests: vec![], ranges: vec![] });
         journal.enter(job, &record).unwrap();
-        story.records.insert(job, record);
-        assert_eq!(Story::read(&path).unwrap().as_ref(), Some(&story));
-        story.finished = Some(vec![("a/b".into(), Piece::of(b"x"))]);
-        Journal::write(&path, &temporary, &story).unwrap();
-        assert_eq!(Story::read(&path).unwrap().as_ref(), Some(&story));
+        state.records.insert(job, record);
+        assert_eq!(JournalState::read(&path).unwrap().as_ref(), Some(&state));
+        state.finished = Some(vec![("a/b".into(), FileDigest::of(b"x"))]);
+        Journal::write(&path, &temporary, &state).unwrap();
+        assert_eq!(JournalState::read(&path).unwrap().as_ref(), Some(&state));
         // Cut anywhere behind the first line, it tells of fewer jobs, and never of others.
         let bytes = fs::read(&path).unwrap();
         let first = bytes.iter().position(|byte| *byte == b'\n').unwrap();
         for end in first..bytes.len() {
             fs::write(&path, &bytes[..end]).unwrap();
-            let cut = Story::read(&path).unwrap().unwrap();
-            assert!(cut.records.iter().all(|(job, record)| story.records.get(job) == Some(record)), "{end}");
-            assert!(cut.records.len() <= story.records.len() && (cut.finished.is_none() || end + 1 == bytes.len()));
+            let cut = JournalState::read(&path).unwrap().unwrap();
+            assert!(cut.records.iter().all(|(job, record)| state.records.get(job) == Some(record)), "{end}");
+            assert!(cut.records.len() <= state.records.len() && (cut.finished.is_none() || end + 1 == bytes.len()));
         }
         for end in 0..first {
             fs::write(&path, &bytes[..end]).unwrap();
-            assert!(Story::read(&path).unwrap_err().to_string().contains("--force begins anew"), "{end}");
+            assert!(JournalState::read(&path).unwrap_err().to_string().contains("--force begins anew"), "{end}");
         }
         // A flipped bit takes its own line away and nothing else.
         for at in first + 1..bytes.len() {
             let mut other = bytes.clone();
             other[at] ^= 1;
             fs::write(&path, &other).unwrap();
-            let read = Story::read(&path).unwrap().unwrap();
-            assert!(read.records.iter().all(|(job, record)| story.records.get(job) == Some(record)), "{at}");
+            let read = JournalState::read(&path).unwrap().unwrap();
+            assert!(read.records.iter().all(|(job, record)| state.records.get(job) == Some(record)), "{at}");
         }
         fs::remove_dir_all(&folder).unwrap();
     }

@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::ground::Ground;
+use super::prepared::PreparedDem;
 use crate::error::Location;
 
 /// A file of heights named by a recipe. What is in it is read once, when the world is opened.
 #[derive(Debug, Clone, Default)]
-pub struct Imported {
+pub struct FileRef {
     path: String,
     folder: Option<PathBuf>,
-    ground: Option<Arc<Ground>>,
+    ground: Option<Arc<PreparedDem>>,
     picture: bool,
     /// Where a recipe's text names it.
     location: Option<Box<Location>>,
@@ -19,7 +19,7 @@ pub struct Imported {
 
 /// A grey picture named by a recipe: what is read of it are numbers from 0 for black to 1 for white, a metre apart.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Picture(pub Imported);
+pub struct Picture(pub FileRef);
 
 impl Default for Picture {
     fn default() -> Picture {
@@ -29,24 +29,24 @@ impl Default for Picture {
 
 impl From<&str> for Picture {
     fn from(path: &str) -> Picture {
-        Picture(Imported { picture: true, ..Imported::from(path) })
+        Picture(FileRef { picture: true, ..FileRef::from(path) })
     }
 }
 
 /// Two are the same if they name the same file: what was read of it makes no difference.
-impl PartialEq for Imported {
-    fn eq(&self, other: &Imported) -> bool {
+impl PartialEq for FileRef {
+    fn eq(&self, other: &FileRef) -> bool {
         self.path() == other.path()
     }
 }
 
-impl From<&str> for Imported {
-    fn from(path: &str) -> Imported {
-        Imported { path: path.to_string(), ..Imported::default() }
+impl From<&str> for FileRef {
+    fn from(path: &str) -> FileRef {
+        FileRef { path: path.to_string(), ..FileRef::default() }
     }
 }
 
-impl Imported {
+impl FileRef {
     /// Whether no file is named.
     pub fn is_empty(&self) -> bool {
         self.path.is_empty()
@@ -74,7 +74,7 @@ impl Imported {
     }
 
     /// Says which folder the recipe lies in.
-    pub fn lies_in(&mut self, folder: &Path) {
+    pub fn set_base_dir(&mut self, folder: &Path) {
         self.folder = Some(folder.to_path_buf());
     }
 
@@ -89,12 +89,12 @@ impl Imported {
     }
 
     /// What was read of it.
-    pub fn ground(&self) -> Option<&Arc<Ground>> {
+    pub fn ground(&self) -> Option<&Arc<PreparedDem>> {
         self.ground.as_ref()
     }
 
     /// Takes what was read of it.
-    pub fn hold(&mut self, ground: Arc<Ground>) {
+    pub fn hold(&mut self, ground: Arc<PreparedDem>) {
         self.ground = Some(ground);
     }
 }

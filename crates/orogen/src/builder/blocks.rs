@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::job::Stage;
-use super::target::Target;
+use super::target::BuildTarget;
 use crate::error::Result;
 use crate::grid::Window;
 use crate::world::World;
@@ -27,7 +27,7 @@ impl Block {
     ///
     /// # Errors
     /// If not even one tile can be made in the memory allowed, or the world does not have these samples.
-    pub fn fitting(world: &World, target: &dyn Target, stage: Stage, layers: &[&str]) -> Result<Block> {
+    pub fn fitting(world: &World, target: &dyn BuildTarget, stage: Stage, layers: &[&str]) -> Result<Block> {
         let of = |columns: usize, rows: usize| -> Result<Block> {
             let memory = memory(world, target, layers, columns, rows)?;
             Ok(Block { columns, rows, memory })
@@ -76,7 +76,7 @@ impl Block {
 }
 
 /// Bytes that making so many tiles together takes.
-fn memory(world: &World, target: &dyn Target, layers: &[&str], columns: usize, rows: usize) -> Result<u64> {
+fn memory(world: &World, target: &dyn BuildTarget, layers: &[&str], columns: usize, rows: usize) -> Result<u64> {
     let window = union(target, (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))));
     let Some(window) = window else { return Ok(0) };
     let plan = world.memory_of(&world.plan(layers, &window)?);
@@ -86,6 +86,6 @@ fn memory(world: &World, target: &dyn Target, layers: &[&str], columns: usize, r
 }
 
 /// The window that holds all of these tiles' windows.
-pub fn union(target: &dyn Target, tiles: impl Iterator<Item = (usize, usize)>) -> Option<Window> {
+pub fn union(target: &dyn BuildTarget, tiles: impl Iterator<Item = (usize, usize)>) -> Option<Window> {
     tiles.map(|(row, column)| target.window(row, column)).reduce(|all, tile| all.union(&tile))
 }

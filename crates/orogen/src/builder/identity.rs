@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::order::Order;
-use super::piece::digits;
+use super::digest::digits;
+use super::spec::BuildSpec;
 use crate::error::Result;
 use crate::format::dem::Georeference;
 use crate::grid::Window;
@@ -38,20 +38,20 @@ impl Identity {
     ///
     /// # Errors
     /// If the world has no such layer.
-    pub fn of(world: &World, order: &Order, tile: usize) -> Result<Identity> {
+    pub fn of(world: &World, spec: &BuildSpec, tile: usize) -> Result<Identity> {
         let mut hash = Sha256::new();
         let mut units = Vec::new();
-        for layer in &order.layers {
+        for layer in &spec.layers {
             hash.update(world.key(layer)?);
             units.push(world.unit(layer)?.to_string());
         }
         Ok(Identity {
             version: env!("CARGO_PKG_VERSION").to_string(),
-            form: order.form.name().to_string(),
+            form: spec.form.name().to_string(),
             recipe: digits(&hash.finalize()),
-            layers: order.layers.clone(),
+            layers: spec.layers.clone(),
             units,
-            window: order.window,
+            window: spec.window,
             tile,
             map: world.recipe().georeference(),
         })

@@ -2,8 +2,8 @@
 
 use std::io;
 
-use super::job::Place;
-use super::shelf::Shelf;
+use super::job::JobFile;
+use super::output_store::OutputStore;
 use crate::error::{Error, ErrorKind, Result};
 use crate::file;
 use crate::grid::Grid;
@@ -14,19 +14,19 @@ pub fn to_bytes(samples: &[f32]) -> Vec<u8> {
 }
 
 /// The samples of a file on the shelf, which must be so many.
-pub fn read(shelf: &Shelf, place: &Place, count: usize) -> Result<Vec<f32>> {
+pub fn read(store: &OutputStore, place: &JobFile, count: usize) -> Result<Vec<f32>> {
     let mut bytes = Vec::with_capacity(4 * count);
-    let path = shelf.path(place);
-    shelf.read(place, &mut bytes).map_err(|cause: io::Error| file::explain("read", &path, &cause))?;
+    let path = store.path(place);
+    store.read(place, &mut bytes).map_err(|cause: io::Error| file::explain("read", &path, &cause))?;
     if bytes.len() != 4 * count {
-        return Err(changed(shelf, place));
+        return Err(changed(store, place));
     }
     Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
 }
 
 /// What there is to say of a file that is not as it was written.
-pub fn changed(shelf: &Shelf, place: &Place) -> Error {
-    let path = shelf.path(place);
+pub fn changed(store: &OutputStore, place: &JobFile) -> Error {
+    let path = store.path(place);
     let message = format!("{} is not as it was written: resume the build to make it again", path.display());
     Error::new(ErrorKind::File, message)
 }

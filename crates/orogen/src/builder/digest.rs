@@ -11,27 +11,27 @@ const BUFFER: usize = 1 << 20;
 
 /// What is known of a file that was written: enough to tell whether it still is what it was.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Piece {
+pub struct FileDigest {
     /// Its length in bytes.
     pub length: u64,
     /// Its SHA-256, in hexadecimal digits.
     pub sha256: String,
 }
 
-impl Piece {
+impl FileDigest {
     /// Of these bytes.
-    pub fn of(bytes: &[u8]) -> Piece {
-        Piece { length: bytes.len() as u64, sha256: digits(&Sha256::digest(bytes)) }
+    pub fn of(bytes: &[u8]) -> FileDigest {
+        FileDigest { length: bytes.len() as u64, sha256: digits(&Sha256::digest(bytes)) }
     }
 
     /// Of the file at `path`, as far as it can be read.
-    pub fn of_file(path: &Path) -> io::Result<Piece> {
+    pub fn of_file(path: &Path) -> io::Result<FileDigest> {
         let mut file = File::open(path)?;
         let (mut hash, mut length) = (Sha256::new(), 0);
         let mut buffer = vec![0; BUFFER];
         loop {
             let count = match file.read(&mut buffer) {
-                Ok(0) => return Ok(Piece { length, sha256: digits(&hash.finalize()) }),
+                Ok(0) => return Ok(FileDigest { length, sha256: digits(&hash.finalize()) }),
                 Ok(count) => count,
                 Err(cause) if cause.kind() == io::ErrorKind::Interrupted => continue,
                 Err(cause) => return Err(cause),
@@ -44,7 +44,7 @@ impl Piece {
     /// Whether the file at `path` is this one. One that cannot be read is not.
     pub fn is_at(&self, path: &Path) -> bool {
         std::fs::metadata(path).is_ok_and(|there| there.is_file() && there.len() == self.length)
-            && Piece::of_file(path).is_ok_and(|piece| piece == *self)
+            && FileDigest::of_file(path).is_ok_and(|digest| digest == *self)
     }
 }
 
@@ -62,8 +62,8 @@ impl<W: Write> Measured<W> {
     }
 
     /// The writer, and what it got.
-    pub fn end(self) -> (W, Piece) {
-        (self.inner, Piece { length: self.length, sha256: digits(&self.hash.finalize()) })
+    pub fn end(self) -> (W, FileDigest) {
+        (self.inner, FileDigest { length: self.length, sha256: digits(&self.hash.finalize()) })
     }
 }
 
@@ -97,23 +97,23 @@ mod tests {
     fn any_change_of_a_file_is_noticed() {
         let path = std::env::temp_dir().join(format!("orogen-piece-{}", std::process::id()));
         let bytes: Vec<u8> = (0..3_000_000u32).map(|n| n.wrapping_mul(n) as u8).collect();
-        let piece = Piece::of(&bytes);
-        assert!(!piece.is_at(&path), "it is not there");
+        let digest = FileDigest::of(&bytes);
+        assert!(!digest.is_at(&path), "it is not there");
         let mut out = Measured::new(File::create(&path).unwrap());
         bytes.chunks(700_001).for_each(|chunk| out.write_all(chunk).unwrap());
-        assert_eq!(out.end().1, piece);
-        assert!(piece.is_at(&path));
+        assert_eq!(out.end().1, digest);
+        assert!(digest.is_at(&path));
         for at in [0, 1_500_000, bytes.len() - 1] {
             let mut other = bytes.clone();
             other[at] ^= 1;
             std::fs::write(&path, &other).unwrap();
-            assert!(!piece.is_at(&path), "flipped at {at}");
+            assert!(!digest.is_at(&path), "flipped at {at}");
         }
         std::fs::write(&path, &bytes[1..]).unwrap();
-        assert!(!piece.is_at(&path), "cut");
+        assert!(!digest.is_at(&path), "cut");
         std::fs::remove_file(&path).unwrap();
         assert_eq!(
-            Piece::of(b"abc").sha256,
+            FileDigest::of(b"abc").sha256,
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad",
             "FIPS 180-2"
         );

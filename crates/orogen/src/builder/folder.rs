@@ -5,13 +5,13 @@ use std::path::PathBuf;
 
 use serde_json::{Map, Value, json};
 
+use super::digest::FileDigest;
 use super::identity::Identity;
-use super::job::{Job, Made, Place, Stage};
-use super::order::{Form, Samples};
-use super::piece::Piece;
+use super::job::{Job, JobFile, Made, Stage};
+use super::output_store::OutputStore;
 use super::samples::{self, range, square_repeated};
-use super::shelf::Shelf;
-use super::target::{Disk, Target};
+use super::spec::{Form, Samples};
+use super::target::{BuildTarget, Disk};
 use crate::error::{Error, ErrorKind, Result};
 use crate::format::levels::Levels;
 use crate::format::png::{self, Picture, Pixel};
@@ -65,14 +65,14 @@ impl Folder {
         self.samples != Samples::R32
     }
 
-    fn waiting(&self, job: Job) -> impl Iterator<Item = Place> {
+    fn waiting(&self, job: Job) -> impl Iterator<Item = JobFile> {
         let layers = 0..self.identity.layers.len();
-        layers.map(move |layer| Place::Scratch(format!("samples/{layer}/{}/{}", job.row, job.column).into()))
+        layers.map(move |layer| JobFile::Scratch(format!("samples/{layer}/{}/{}", job.row, job.column).into()))
     }
 
     /// What of a layer is spread over all numbers.
-    fn levels(shelf: &Shelf, layer: usize) -> Levels {
-        let [low, high] = shelf.range(layer).unwrap_or([0.0; 2]);
+    fn levels(store: &OutputStore, layer: usize) -> Levels {
+        let [low, high] = store.range(layer).unwrap_or([0.0; 2]);
         Levels::new(low, high)
     }
 
@@ -98,9 +98,9 @@ impl Folder {
         Ok(bytes)
     }
 
-    fn layer(&self, shelf: &Shelf, layer: usize) -> Value {
+    fn layer(&self, store: &OutputStore, layer: usize) -> Value {
         let name = &self.identity.layers[layer];
-        let [low, high] = shelf.range(layer).unwrap_or([0.0; 2]);
+        let [low, high] = store.range(layer).unwrap_or([0.0; 2]);
         let mut about = json!({
             "name": name,
             "unit": self.identity.units[layer],
@@ -109,7 +109,7 @@ impl Folder {
             "highest": high,
         });
         if self.scales() {
-            let levels = Folder::levels(shelf, layer);
+            let levels = Folder::levels(store, layer);
             about["value"] = json!("low + number / 65535 * (high - low)");
             about["low"] = json!(levels.low());
             about["high"] = json!(levels.high());
@@ -117,14 +117,14 @@ impl Folder {
         about
     }
 
-    fn tile(&self, shelf: &Shelf, row: usize, column: usize) -> Value {
+    fn tile(&self, store: &OutputStore, row: usize, column: usize) -> Value {
         let window = self.tiling.tile(&self.identity.window, column, row);
         let job = Job { stage: usize::from(self.scales()), row, column };
         let mut files = Map::new();
-        if let Some(record) = shelf.record(job) {
-            for (layer, piece) in self.identity.layers.iter().zip(&record.pieces) {
+        if let Some(record) = store.record(job) {
+            for (layer, digest) in self.identity.layers.iter().zip(&record.digests) {
                 let name = self.name(layer, row, column);
-                files.insert(layer.clone(), json!({ "name": name, "bytes": piece.length, "sha256": piece.sha256 }));
+                files.insert(layer.clone(), json!({ "name": name, "bytes": digest.length, "sha256": digest.sha256 }));
             }
         }
         json!({
@@ -140,7 +140,7 @@ impl Folder {
     }
 }
 
-impl Target for Folder {
+impl BuildTarget for Folder {
     fn stages(&self) -> Vec<Stage> {
         vec![self.stage(); 1 + usize::from(self.scales())]
     }
@@ -149,11 +149,11 @@ impl Target for Folder {
         self.tiling.tile(&self.identity.window, column, row)
     }
 
-    fn places(&self, job: Job) -> Vec<Place> {
+    fn places(&self, job: Job) -> Vec<JobFile> {
         match job.stage {
             0 if self.scales() => self.waiting(job).collect(),
             _ => {
-                let name = |layer: &String| Place::Result(self.name(layer, job.row, job.column).into());
+                let name = |layer: &String| JobFile::Result(self.name(layer, job.row, job.column).into());
                 self.identity.layers.iter().map(name).collect()
             }
         }
@@ -166,12 +166,12 @@ impl Target for Folder {
         }
     }
 
-    fn make(&self, job: Job, grids: &[Grid], shelf: &Shelf) -> Result<Made> {
+    fn make(&self, job: Job, grids: &[Grid], store: &OutputStore) -> Result<Made> {
         let side = self.identity.tile;
         if job.stage > 0 {
             let samples = self.waiting(job).enumerate().map(|(layer, place)| {
-                let samples = samples::read(shelf, &place, side * side)?;
-                self.encode(&samples, &Folder::levels(shelf, layer))
+                let samples = samples::read(store, &place, side * side)?;
+                self.encode(&samples, &Folder::levels(store, layer))
             });
             return Ok(Made { files: samples.collect::<Result<_>>()?, ranges: Vec::new() });
         }
@@ -179,12 +179,12 @@ impl Target for Folder {
         Ok(Made { files, ranges: grids.iter().map(range).collect() })
     }
 
-    fn finish(&self, shelf: &Shelf) -> Result<Vec<(PathBuf, Piece)>> {
+    fn finish(&self, store: &OutputStore) -> Result<Vec<(PathBuf, FileDigest)>> {
         let Window { x, y, width, height, cell } = self.identity.window;
         let stage = self.stage();
-        let layers: Vec<Value> = (0..self.identity.layers.len()).map(|layer| self.layer(shelf, layer)).collect();
+        let layers: Vec<Value> = (0..self.identity.layers.len()).map(|layer| self.layer(store, layer)).collect();
         let all = (0..stage.rows).flat_map(|row| (0..stage.columns).map(move |column| (row, column)));
-        let tiles: Vec<Value> = all.map(|(row, column)| self.tile(shelf, row, column)).collect();
+        let tiles: Vec<Value> = all.map(|(row, column)| self.tile(store, row, column)).collect();
         let (number, order) = match self.samples {
             Samples::Png => ("16-bit grey PNG", Value::Null),
             Samples::R16 => ("u16", json!("little")),
@@ -205,8 +205,8 @@ impl Target for Folder {
             "tiles": tiles,
         });
         let path = PathBuf::from(MANIFEST);
-        let piece = shelf.file(&Place::Result(path.clone()), format!("{manifest:#}\n").as_bytes())?;
-        Ok(vec![(path, piece)])
+        let digest = store.file(&JobFile::Result(path.clone()), format!("{manifest:#}\n").as_bytes())?;
+        Ok(vec![(path, digest)])
     }
 
     fn extras(&self) -> Vec<PathBuf> {
