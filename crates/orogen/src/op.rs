@@ -192,8 +192,11 @@ pub struct Context<'a> {
 
 /// Takes what a solver that goes step by step would end with after some of its steps: the solution of a shorter run of the same steps.
 pub trait StepObserver {
-    /// Whether the solution after so many steps is wanted. It is not asked about the last.
+    /// Whether the solution after so many steps is wanted: 0 is that of one step that takes no time. It is not asked about the last.
     fn wants(&self, step: u32) -> bool;
+
+    /// Whether a layer of those solutions is read. If none after the first is, the solver may leave them out.
+    fn reads(&self, layer: usize) -> bool;
 
     /// Takes that solution.
     ///

@@ -20,7 +20,7 @@ use crate::recipe::graph::{Graph, LayerRef, Link, MAX_SAMPLES};
 use crate::store::cache::Cache;
 use crate::store::solutions::Store;
 use crate::words::{number, suggestion};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -134,6 +134,11 @@ impl World {
         self.store.find(key, on_disk)
     }
 
+    /// How many solutions this world made, not found.
+    pub(crate) fn solutions_made(&self) -> usize {
+        self.store.made()
+    }
+
     /// A plan that does no more than solve nodes and what they read.
     pub(crate) fn plan_to_solve(&self, nodes: &[usize]) -> Result<Plan> {
         let links: Vec<Link> = nodes.iter().map(|&node| Link::Node(LayerRef { node, layer: 0 })).collect();
@@ -159,6 +164,19 @@ impl World {
     /// The nodes in an order in which each comes after those that it reads.
     pub(crate) fn order(&self) -> &[usize] {
         &self.graph.order
+    }
+
+    /// The layers of nodes that a layer is made of, masks included.
+    pub(crate) fn layers_read(&self, layer: &str) -> Result<BTreeSet<LayerRef>> {
+        let mut read = BTreeSet::new();
+        let mut waiting = vec![self.target(layer)?];
+        while let Some(link) = waiting.pop() {
+            let Link::Node(target) = link else { continue };
+            if read.insert(target) {
+                waiting.extend(self.graph.links[target.node].iter().chain([&self.graph.masks[target.node]]));
+            }
+        }
+        Ok(read)
     }
 
     /// The recipe.

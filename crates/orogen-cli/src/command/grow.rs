@@ -1,19 +1,20 @@
 //! `orogen grow`.
 
 use std::cell::RefCell;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::io;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use orogen::format::png::{Animation, Picture, Pixel};
-use orogen::growth::Growth;
+use orogen::growth::frame_spool::FrameSpool;
+use orogen::growth::run::Growth;
 use orogen::map::paint::Painter;
 use orogen::node::Node;
 use orogen::spool::Spool;
 use orogen::words::count;
 use orogen::world::HEIGHT;
-use orogen::{Budget, Error, Grid, Progress, Recipe, Window};
+use orogen::{Budget, Error, Grid, Progress, Recipe};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
@@ -43,6 +44,10 @@ pub struct Args {
     /// Years that each node `stream-power` goes on for [default: those of the recipe]
     #[arg(long, value_name = "YR", allow_negative_numbers = true)]
     years: Option<f64>,
+    /// Make every frame from the whole recipe. By default, frames of a node `stream-power` that another one follows are made at twice the cell, and
+    /// their finest detail comes from the frame at its end, which is several times faster
+    #[arg(long)]
+    exact: bool,
     /// How long each frame is shown, in milliseconds
     #[arg(long, value_name = "MS", default_value = "120")]
     delay: u16,
@@ -111,26 +116,19 @@ fn write(
     // Two frames' heights and what they are mixed to; the picture; and what packs it.
     let _frames = budget.reserve(pixels.saturating_mul(3 + 12).saturating_add(target.reserved(pixels)))?;
     let growth = Growth::new(&world, HEIGHT, window)?;
+    let growth = if args.exact { growth.in_full() } else { growth };
     let frames = Frames::new(args.frames, growth.steps());
     let plan = world.plan(&[HEIGHT], &window)?;
     // Growing is the terrain itself and what each frame takes after its step, about a twentieth of that.
     let growing = world.work(&plan) * (1.0 + frames.steps.len() as f64 / 20.0);
     let [growing, painting] = progress.parts([growing, PAINTING * pixels as f64 * f64::from(args.frames)]);
     // The last frame's colours are those of all: the heights wait until it is made.
-    let heights = Mutex::new((Spool::beside(&args.out), BTreeMap::new()));
+    let heights = Mutex::new(FrameSpool::new(Spool::beside(&args.out), window));
     growth.run(&frames.steps, &growing, &|step, grid| {
-        let (spool, places) = &mut *heights.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut at = None;
-        for row in 0..height {
-            let bytes: Vec<u8> = grid.row(row).iter().flat_map(|sample| sample.to_le_bytes()).collect();
-            let place = spool.push(&bytes).map_err(|cause| Error::file("write", &args.out, &cause))?;
-            at.get_or_insert(place);
-        }
-        places.insert(step, at.unwrap_or_default());
-        Ok(())
+        let mut heights = heights.lock().unwrap_or_else(PoisonError::into_inner);
+        heights.put(step, grid).map_err(|cause| Error::file("write", &args.out, &cause))
     })?;
-    let (spool, places) = heights.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let land = Land { spool: RefCell::new(spool), places, window };
+    let land = Land { heights: RefCell::new(heights.into_inner().unwrap_or_else(PoisonError::into_inner)) };
     let last =
         land.at(growth.steps()).map_err(|cause| Error::file("read back what was put aside for", &args.out, &cause))?;
     finite::check(HEIGHT, &last)?;
@@ -185,27 +183,15 @@ impl Frames {
     }
 }
 
-/// Heights after steps, put aside.
+/// Heights after steps.
 struct Land {
-    spool: RefCell<Spool>,
-    /// Where those after each step are.
-    places: BTreeMap<u32, u64>,
-    window: Window,
+    heights: RefCell<FrameSpool>,
 }
 
 impl Land {
     /// The heights after a step.
     fn at(&self, step: u32) -> io::Result<Grid> {
-        let at = *self.places.get(&step).ok_or(io::ErrorKind::NotFound)?;
-        let mut grid = Grid::filled(self.window, 0.0);
-        let mut bytes = vec![0; 4 * self.window.width];
-        for row in 0..self.window.height {
-            self.spool.borrow_mut().read(at + (row * bytes.len()) as u64, &mut bytes)?;
-            for (sample, bytes) in grid.row_mut(row).iter_mut().zip(bytes.as_chunks().0) {
-                *sample = f32::from_le_bytes(*bytes);
-            }
-        }
-        Ok(grid)
+        self.heights.borrow_mut().get(step)
     }
 
     /// The heights on the way from one step to the next, as far as the fraction says.

@@ -1,6 +1,7 @@
 //! Gullies down the slopes of any field.
 
 use super::basis::fill;
+use super::powers::raise;
 use crate::op::{Field, Inputs, Stencil, WorldParams};
 use orogen_noise::{Phacelle, Points};
 
@@ -144,13 +145,14 @@ impl Gullies {
                 noise.fill_along(points, &x[..count], &y[..count], cosine, &mut sine[..count])
             });
             let (amplitude, turn) = (depth as f32, (std::f64::consts::TAU * depth / wavelength) as f32 * weight);
-            let last = octave + 1 == self.octaves;
             for k in 0..count {
                 target[k] += (cosine[k] * weight - target[k]) * mask[k];
                 heights[k] += target[k] * amplitude;
-                if last {
-                    continue;
-                }
+            }
+            if octave + 1 == self.octaves {
+                break;
+            }
+            for k in 0..count {
                 // The gradient of a stripe's cosine is minus its sine, across the stripe.
                 let (x, y) = (slope[0][k], slope[1][k]);
                 let length = (x * x + y * y).sqrt();
@@ -158,8 +160,11 @@ impl Gullies {
                     let across = -turn.copysign(sine[k]) / length;
                     (slope[0][k], slope[1][k]) = (x - y * across, y + x * across);
                 }
-                let left = (1.0 - mask[k]).max(0.0);
-                mask[k] = (1.0 - libm::powf(left, detail)) * soft(sine[k].abs() * sharpness);
+                mask[k] = (1.0 - mask[k]).max(0.0);
+            }
+            raise(&mut mask[..count], detail);
+            for k in 0..count {
+                mask[k] = (1.0 - mask[k]) * soft(sine[k].abs() * sharpness);
             }
             wavelength /= self.lacunarity;
             depth *= self.gain;

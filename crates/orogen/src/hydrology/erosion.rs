@@ -125,21 +125,29 @@ impl<'a> ErosionRun<'a> {
         Ok(())
     }
 
-    /// Makes the heights that a run ends with if these are its last: on the lattice, drained. Returns how water runs over them.
+    /// Makes the heights that a run ends with if these are its last: on the lattice, drained.
     ///
     /// # Errors
     /// If the work is cancelled.
-    pub fn finish(&self, heights: &mut Grid, progress: &Progress) -> Result<Accumulation> {
+    pub fn settle(&self, heights: &mut Grid, progress: &Progress) -> Result<()> {
         progress.check()?;
-        let [cutting, routing] = progress.parts([1.0, 1.0]);
         let mut last = self.erosion;
         if let Some(points) = &self.points {
             points.onto_lattice(heights, &self.outlets);
             // What was too steep has slid between the points; along the lattice it would fall into facets after all.
             last.law.max_slope = f64::INFINITY;
         }
-        last.cut(heights, &self.outlets, self.ground, Descent::Steepest, 0.0, &cutting)?;
-        cutting.finish();
+        last.cut(heights, &self.outlets, self.ground, Descent::Steepest, 0.0, progress)
+    }
+
+    /// Does what [`ErosionRun::settle`] does, and returns how water runs over the heights.
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    pub fn finish(&self, heights: &mut Grid, progress: &Progress) -> Result<Accumulation> {
+        let [settling, routing] = progress.parts([1.0, 1.0]);
+        self.settle(heights, &settling)?;
+        settling.finish();
         let receivers = drainage::over_surface_with(heights, &self.outlets, Descent::Steepest, &routing)?;
         progress.check()?;
         let drained = accumulate(&receivers);

@@ -6,7 +6,7 @@
 //! 2001). Here each cell keeps its eight neighbours, and its point is moved within it: distances differ from pair to pair, and a
 //! slope's water and its facets go now this way, now that.
 
-use super::direction::{STEPS, hashed, neighbour, opposite, strides};
+use super::direction::{STEPS, hashed, neighbour, opposite};
 use super::outlets::Outlets;
 use crate::grid::{Grid, Window};
 use rayon::prelude::*;
@@ -89,46 +89,91 @@ impl Points {
         }
         let before = heights.clone();
         let h = before.data();
-        let strides = strides(width);
-        heights.data_mut().par_chunks_mut(width).enumerate().filter(|(j, _)| *j > 0 && j + 1 < height).for_each(
-            |(j, row)| {
-                for (i, height) in row.iter_mut().enumerate().take(width - 1).skip(1) {
-                    let c = j * width + i;
-                    if outlets.at(c) {
-                        continue;
-                    }
-                    let here = self.at(i as i64, j as i64);
-                    // The plane through the point that fits its neighbours best: two equations.
-                    let [mut xx, mut xy, mut yy, mut xh, mut yh] = [0.0f32; 5];
-                    for ((east, south), stride) in STEPS.iter().zip(strides) {
-                        let there = self.at((i as i64) + *east as i64, (j as i64) + *south as i64);
-                        let (x, y) = (*east as f32 + there[0] - here[0], *south as f32 + there[1] - here[1]);
-                        let rise = h[neighbour(c, stride)] - h[c];
-                        xx += x * x;
-                        xy += x * y;
-                        yy += y * y;
-                        xh += x * rise;
-                        yh += y * rise;
-                    }
-                    let scale = 1.0 / (xx * yy - xy * xy);
-                    let slope = [(xh * yy - yh * xy) * scale, (yh * xx - xh * xy) * scale];
-                    *height = h[c] - slope[0] * here[0] - slope[1] * here[1];
+        // Each thread takes some rows together, so that an offset is hashed once for the three rows that read it.
+        heights.data_mut().par_chunks_mut(width * ROWS).enumerate().for_each(|(band, rows)| {
+            let first = band * ROWS;
+            let mut offsets = [Offsets::default(), Offsets::default(), Offsets::default()];
+            for (j, row) in (first..).zip(rows.chunks_mut(width)).filter(|(j, _)| *j > 0 && j + 1 < height) {
+                if j == first || j == 1 {
+                    self.offsets(j - 1, &mut offsets[0]);
+                    self.offsets(j, &mut offsets[1]);
+                } else {
+                    offsets.rotate_left(1);
                 }
-            },
-        );
+                self.offsets(j + 1, &mut offsets[2]);
+                let around = [j - 1, j, j + 1].map(|j| &h[j * width..(j + 1) * width]);
+                carry_over(around, [&offsets[0], &offsets[1], &offsets[2]], row);
+                for (i, height) in row.iter_mut().enumerate() {
+                    if i == 0 || i + 1 == width || outlets.at(j * width + i) {
+                        *height = around[1][i];
+                    }
+                }
+            }
+        });
+    }
+
+    /// The offsets of the points of a row.
+    fn offsets(&self, j: usize, out: &mut Offsets) {
+        let width = self.window.width;
+        out.east.resize(width, 0.0);
+        out.south.resize(width, 0.0);
+        for (i, (east, south)) in out.east.iter_mut().zip(&mut out.south).enumerate() {
+            [*east, *south] = self.at(i as i64, j as i64);
+        }
+    }
+}
+
+/// Rows that are carried over to the lattice together.
+const ROWS: usize = 16;
+
+/// How far the points of a row stand off the lattice, in cells.
+#[derive(Default)]
+struct Offsets {
+    east: Vec<f32>,
+    south: Vec<f32>,
+}
+
+/// The heights at the lattice points of the middle one of three rows, its ends left alone.
+fn carry_over(h: [&[f32]; 3], offsets: [&Offsets; 3], row: &mut [f32]) {
+    let width = row.len();
+    let (here_x, here_y) = (&offsets[1].east[1..width - 1], &offsets[1].south[1..width - 1]);
+    let here = &h[1][1..width - 1];
+    // The eight neighbours, in the order of STEPS: heights and offsets of the cells that far along the row.
+    let around = STEPS.map(|(east, south)| {
+        let from = 1usize.wrapping_add_signed(east);
+        let at = 1usize.wrapping_add_signed(south);
+        let range = from..from + width - 2;
+        (east as f32, south as f32, &h[at][range.clone()], &offsets[at].east[range.clone()], &offsets[at].south[range])
+    });
+    for (i, height) in row[1..width - 1].iter_mut().enumerate() {
+        // The plane through the point that fits its neighbours best: two equations.
+        let [mut xx, mut xy, mut yy, mut xh, mut yh] = [0.0f32; 5];
+        for (east, south, heights, there_x, there_y) in &around {
+            let (x, y) = (east + there_x[i] - here_x[i], south + there_y[i] - here_y[i]);
+            let rise = heights[i] - here[i];
+            xx += x * x;
+            xy += x * y;
+            yy += y * y;
+            xh += x * rise;
+            yh += y * rise;
+        }
+        let scale = 1.0 / (xx * yy - xy * xy);
+        let slope = [(xh * yy - yh * xy) * scale, (yh * xx - xh * xy) * scale];
+        *height = here[i] - slope[0] * here_x[i] - slope[1] * here_y[i];
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hydrology::direction::strides;
     use crate::hydrology::samples;
 
     #[test]
     fn both_ways_are_as_far_and_shifted_windows_agree() {
         let window = Window::new(40, 30, 1.0).at(-7, 3);
         let points = Points::new(window, 1.0, 5);
-        let strides = strides(40);
+        let (strides, inner) = (strides(40), strides(20));
         let part = Points::new(Window::new(20, 15, 1.0).at(2, 8), 1.0, 5);
         let (mut least, mut most) = (f32::INFINITY, 0.0f32);
         for j in 1..29 {
@@ -142,7 +187,7 @@ mod tests {
                     assert_eq!(near, around[usize::from(code)][i - 1]);
                     if (10..28).contains(&i) && (6..19).contains(&j) {
                         let c = (j - 5) * 20 + i - 9;
-                        assert_eq!(near, part.inverse_distance(c, code, &super::strides(20)));
+                        assert_eq!(near, part.inverse_distance(c, code, &inner));
                     }
                     (least, most) = (least.min(near), most.max(near));
                 }

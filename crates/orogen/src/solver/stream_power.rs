@@ -1,5 +1,6 @@
 //! Mountains that rivers cut while they rise.
 
+use crate::declare::Declared;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 use crate::hydrology::accumulation::Accumulation;
@@ -107,15 +108,31 @@ impl Solver for StreamPower {
         let sea_level = self.sea.then_some(context.world_params.sea_level as f32);
         let progress = context.progress;
         progress.expect(erosion.work());
+        let observe = |done: u32, run: &ErosionRun, mut now: Grid| {
+            let Some(observer) = context.observer else { return Ok(()) };
+            let part = progress.part(0.0);
+            if (1..self.spec().layers.len()).any(|layer| observer.reads(layer)) {
+                let drained = run.finish(&mut now, &part)?;
+                return observer.take(done, solution(sources, now, &drained, source.clone())?);
+            }
+            run.settle(&mut now, &part)?;
+            observer.take(done, Solution { layers: vec![sources.keep(now)?], scalars: Vec::new() })
+        };
+        let wants = |done: u32| context.observer.is_some_and(|observer| observer.wants(done));
+        if wants(0) {
+            let mut begun =
+                ErosionRun::new(Erosion { years: 0.0, steps: 1, ..erosion }, &heights, &substrate, sea_level);
+            let mut now = heights.clone();
+            begun.step(&mut now, &progress.part(0.0))?;
+            observe(0, &begun, now)?;
+        }
         let mut run = ErosionRun::new(erosion, &heights, &substrate, sea_level);
         for done in 1..=self.steps {
             let part = progress.part(1.0);
             run.step(&mut heights, &part)?;
             part.finish();
-            if let Some(observer) = context.observer.filter(|observer| done < self.steps && observer.wants(done)) {
-                let mut now = heights.clone();
-                let drained = run.finish(&mut now, &progress.part(0.0))?;
-                observer.take(done, solution(sources, now, &drained, source.clone())?)?;
+            if done < self.steps && wants(done) {
+                observe(done, &run, heights.clone())?;
             }
         }
         let drained = run.finish(&mut heights, &progress.part(ErosionRun::FINISHING))?;

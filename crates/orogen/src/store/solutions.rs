@@ -6,6 +6,7 @@ use crate::op::Solution;
 use crate::plan::key::Key;
 use std::collections::HashMap;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
@@ -19,6 +20,8 @@ pub struct Store {
     cache: Option<Cache>,
     /// Where rasters are put that do not fit in memory.
     scratch: PathBuf,
+    /// Solutions made.
+    made: AtomicUsize,
 }
 
 #[derive(Default)]
@@ -32,13 +35,23 @@ impl Store {
     /// says, the cache's folder, or else the system's folder for temporary files.
     pub fn new(cache: Option<Cache>, scratch: Option<PathBuf>) -> Store {
         let scratch = scratch.or_else(|| cache.as_ref().map(|cache| cache.folder.clone()));
-        Store { held: Mutex::default(), cache, scratch: scratch.unwrap_or_else(std::env::temp_dir) }
+        Store {
+            held: Mutex::default(),
+            cache,
+            scratch: scratch.unwrap_or_else(std::env::temp_dir),
+            made: AtomicUsize::new(0),
+        }
     }
 
     /// A store that holds these solutions, and keeps no others for later runs.
     pub fn holding(solutions: Vec<(Key, Arc<Solution>)>, scratch: PathBuf) -> Store {
         let solutions = solutions.into_iter().map(|(key, solution)| (key, (0, solution))).collect();
-        Store { held: Mutex::new(Entries { solutions, turn: 0 }), cache: None, scratch }
+        Store { held: Mutex::new(Entries { solutions, turn: 0 }), cache: None, scratch, made: AtomicUsize::new(0) }
+    }
+
+    /// How many solutions were made, not found.
+    pub fn made(&self) -> usize {
+        self.made.load(Ordering::Relaxed)
     }
 
     /// The folder for what does not fit in memory.
@@ -88,6 +101,7 @@ impl Store {
     pub fn make(&self, key: &Key, make: impl FnOnce() -> Result<Solution>) -> Result<Arc<Solution>> {
         let begun = Instant::now();
         let made = make()?;
+        self.made.fetch_add(1, Ordering::Relaxed);
         if let Some(cache) = self.cache.as_ref().filter(|cache| begun.elapsed() >= cache.slower_than) {
             cache.keep(key, &made);
         }
