@@ -27,7 +27,7 @@ Builds the benches at full optimisation, measures one area (or each in turn) and
                outputs   contours beside contourpy, meshes beside pydelatin and OpenEXR files beside its library (by pip; OROGEN_CONTOURPY,
                          OROGEN_PYDELATIN and OROGEN_OPENEXR name a Python that has it) and a Cloud-Optimised GeoTIFF beside
                          gdal_translate, CPU time; maps of 4096 x 4096 and a rendered view, wall clock
-               world     chunks, tiles with halos, threads and whole builds of the preset `hills`; the builds (--case build) take
+               world     chunks, tiles with halos, threads and whole builds of the preset `hills`, films of presets that grow; the builds (--case build) take
                          minutes and a dozen GiB of disk
   --json FILE  write the rows as JSON too; needs an AREA once there are several
   --case TEXT  only the cases with this in their name

@@ -7,11 +7,8 @@ use std::path::{Path, PathBuf};
 
 use super::figure::{Figure, Target};
 use super::hills;
-use super::process::{Cost, watch};
+use super::process::{Cost, program, watch};
 use crate::options::Options;
-
-/// Names the program to run: `cargo xtask bench` builds it and sets this.
-const PROGRAM: &str = "OROGEN_BIN";
 
 /// Samples a side: of what is large, of what it is compared with, and of what is timed on the wall.
 const LARGE: usize = 32_768;
@@ -49,8 +46,7 @@ impl Drop for Bench {
 
 /// Measures.
 pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
-    let program = std::env::var_os(PROGRAM).map(PathBuf::from);
-    let program = program.ok_or_else(|| format!("{PROGRAM} is not set: run `cargo xtask bench world`"))?;
+    let program = program()?;
     let folder = std::env::temp_dir().join(format!("orogen-bench-build-{}", std::process::id()));
     std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let recipe = hills::stretched()?;

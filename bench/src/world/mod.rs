@@ -3,6 +3,7 @@
 mod build;
 mod chunk;
 pub mod figure;
+mod grow;
 mod hills;
 pub mod process;
 mod threads;
@@ -17,8 +18,13 @@ use figure::Figure;
 type Case = (&'static str, fn(&Options) -> Result<Vec<Figure>, String>);
 
 /// Every case.
-const CASES: &[Case] =
-    &[("chunk", chunk::measure), ("tiles", tiles::measure), ("threads", threads::measure), ("build", build::measure)];
+const CASES: &[Case] = &[
+    ("chunk", chunk::measure),
+    ("tiles", tiles::measure),
+    ("threads", threads::measure),
+    ("grow", grow::measure),
+    ("build", build::measure),
+];
 
 /// Measures every case, or those named.
 pub fn run(options: &Options) -> Result<Value, String> {

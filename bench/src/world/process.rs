@@ -1,6 +1,6 @@
 //! A program's run, watched from outside: processor time and memory, as Linux tells them.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
@@ -9,6 +9,15 @@ const INTERVAL: Duration = Duration::from_millis(5);
 
 /// The kernel counts processor time in hundredths of a second, for whoever asks.
 const TICKS: f64 = 100.0;
+
+/// Names the program to run: `cargo xtask bench` builds it and sets this.
+const PROGRAM: &str = "OROGEN_BIN";
+
+/// The program to run.
+pub fn program() -> Result<PathBuf, String> {
+    let program = std::env::var_os(PROGRAM).map(PathBuf::from);
+    program.ok_or_else(|| format!("{PROGRAM} is not set: run `cargo xtask bench world`"))
+}
 
 /// What a run took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

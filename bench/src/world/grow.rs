@@ -1,0 +1,42 @@
+//! Films of a terrain growing, beside the terrain itself, by the program that users run. What is compared is processor time.
+
+use super::figure::{Figure, Target};
+use super::process::{program, watch};
+use crate::options::Options;
+
+/// With one stage of `stream-power` and with two.
+const PRESETS: [&str; 4] = ["volcano", "dla-peaks", "canyon", "alpine"];
+
+/// How many times the processor time of the terrain its film may take.
+const DEARER: f64 = 3.0;
+
+/// Measures.
+pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
+    let program = program()?;
+    let folder = std::env::temp_dir().join(format!("orogen-bench-grow-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let (film, terrain) = (folder.join("grow.png"), folder.join("terrain"));
+    let (film, terrain) = (film.to_string_lossy().into_owned(), terrain.to_string_lossy().into_owned());
+    // The least of several runs: other work on the machine only adds.
+    let runs = if options.repetitions < 9 { 1 } else { 3 };
+    let least = |arguments: &[&str]| -> Result<f64, String> {
+        let common = ["--size", "512", "--no-cache", "--quiet", "--force"];
+        let arguments: Vec<&str> = arguments.iter().copied().chain(common).collect();
+        let costs = (0..runs).map(|_| watch(&program, &arguments, f64::INFINITY).map(|(cost, _)| cost.cpu));
+        costs.collect::<Result<Vec<f64>, String>>().map(|costs| costs.into_iter().fold(f64::INFINITY, f64::min))
+    };
+    let figures = PRESETS.map(|preset| {
+        let terrain = least(&["generate", preset, "--out", &terrain])?;
+        let film = least(&["grow", preset, "--frames", "40", "--out", &film])?;
+        Ok(Figure {
+            case: format!("film of `{preset}` growing, 40 frames of 512 x 512"),
+            ours: film,
+            unit: "s",
+            other: Some(("generate", terrain)),
+            target: Target::RatioAtMost(DEARER),
+        })
+    });
+    // Only what was made here, in a folder of our own, is removed.
+    let _ = std::fs::remove_dir_all(&folder);
+    figures.into_iter().collect()
+}
