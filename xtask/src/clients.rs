@@ -8,6 +8,7 @@ mod blender;
 mod install;
 mod neon;
 mod presets;
+mod wasm;
 
 use std::path::{Path, PathBuf};
 
@@ -24,9 +25,10 @@ Builds `orogen` for release, installs what is missing and runs every client, or 
 
   build     cargo build --release -p orogen-cli
   install   apt (as root on Debian), pip into target/clients/venv, npm into target/clients/node; versions pinned; rustup's
-            aarch64-unknown-linux-gnu
+            aarch64-unknown-linux-gnu and wasm32-unknown-unknown
   neon      the tests of every SIMD level, built for ARM, in QEMU: the bits of NEON are the committed ones
   presets   every preset against golden/presets.txt, on one thread and two, at every SIMD level of this machine
+  wasm      the libraries built for WebAssembly, without threads; every preset under node, with vectors and without
   asan      the tests of the SIMD levels under AddressSanitizer: no kernel reads or writes beside its slices
   numpy     NumPy reads .npy: the numbers of summary.json, and which way is east
   pillow    Pillow reads the pictures: what a grey value stands for, what is sea; animations
@@ -69,6 +71,7 @@ const PILLOW: &str = "pillow==12.2.0";
 
 const CLIENTS: &[Client] = &[
     Client { name: "neon", apt: neon::APT, pip: &[], npm: &[] },
+    Client { name: "wasm", apt: &[("node", "nodejs")], pip: &[], npm: &[] },
     Client { name: "numpy", apt: &[], pip: &[NUMPY], npm: &[] },
     Client { name: "pillow", apt: &[], pip: &[NUMPY, PILLOW], npm: &[] },
     Client { name: "rasterio", apt: &[], pip: &[NUMPY, RASTERIO, "rio-cogeo==7.0.4"], npm: &[] },
@@ -126,7 +129,8 @@ const INSTALL: Step = Step {
     about: "what the clients need",
     run: || {
         install::all(CLIENTS)?;
-        neon::install()
+        neon::install()?;
+        wasm::install()
     },
 };
 
@@ -135,6 +139,7 @@ const STEPS: &[&Step] = &[
     &INSTALL,
     &Step { name: "presets", about: "the presets' golden hashes at every level and thread count", run: presets::check },
     &Step { name: "neon", about: "the tests of every SIMD level on an emulated ARM processor", run: neon::check },
+    &Step { name: "wasm", about: "every preset made by the libraries built for WebAssembly", run: wasm::check },
     &Step { name: "asan", about: "the tests of the SIMD levels under AddressSanitizer", run: asan::check },
     &Step { name: "numpy", about: "NumPy reads .npy", run: || script("numpy") },
     &Step { name: "pillow", about: "Pillow reads the pictures", run: || script("pillow") },

@@ -14,6 +14,7 @@ mod shell;
 mod steps;
 mod table;
 mod test;
+mod words;
 
 use std::process::ExitCode;
 

@@ -3,7 +3,7 @@
 use crate::failure::Result;
 use crate::shell::{cargo, run as sh};
 use crate::steps::{self, Step};
-use crate::{codegen, licences};
+use crate::{codegen, licences, words};
 
 pub const ABOUT: &str = "everything that proves it works, with Rust alone";
 
@@ -14,6 +14,7 @@ Runs the steps in this order, or only those named, and stops at the first that f
 
   fmt       every file is formatted
   lists     the generated module and node lists are current
+  words     names and texts use the field's terms
   clippy    no warning in any target
   tests     unit tests, integration tests, doctests, examples build
   schema    recipes/orogen.schema.json is what `orogen schema` prints
@@ -26,6 +27,7 @@ It needs nothing but Rust and, the first time, the crates that Cargo.lock names.
 const STEPS: &[&Step] = &[
     &Step { name: "fmt", about: "cargo fmt --all --check", run: || sh(&mut cargo("fmt --all --check")) },
     &Step { name: "lists", about: "the generated module and node lists are current", run: || codegen::lists(true) },
+    &Step { name: "words", about: "names and texts use the field's terms", run: words::check },
     &Step {
         name: "clippy",
         about: "cargo clippy --workspace --all-targets -- -D warnings",

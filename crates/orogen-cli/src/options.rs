@@ -50,7 +50,13 @@ impl Limits {
         let threads = self.threads();
         // For what is made from grids; fails only if already set, when remaking: then it is the same.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-        Options { threads: Some(threads), memory: budget.clone(), cache: self.cache(), scratch: None }
+        Options {
+            threads: Some(threads),
+            memory: budget.clone(),
+            cache: self.cache(),
+            scratch: None,
+            kept_grids: Some(0),
+        }
     }
 
     /// As many as are asked for, but no more than there are cores: more would take turns, and memory.

@@ -12,7 +12,7 @@ use crate::{interrupt, say};
 /// A place for one file.
 #[derive(Debug, Clone)]
 pub enum Sink {
-    /// A file, which appears whole or not at all.
+    /// A file, written atomically.
     File(Output),
     /// Standard output.
     Stdout,

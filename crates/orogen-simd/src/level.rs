@@ -8,6 +8,8 @@ use std::sync::atomic::{AtomicU8, Ordering};
 pub enum Level {
     /// No instructions beyond the target's baseline; lanes are emulated over arrays.
     Scalar,
+    /// WebAssembly's 128-bit vectors: 4 lanes. Part of modules that are built with them.
+    Simd128,
     /// ARM's 128-bit vectors: 4 lanes. Part of every aarch64 target.
     Neon,
     /// x86-64 with AVX2 and FMA (2013 on): 8 lanes.
@@ -16,7 +18,7 @@ pub enum Level {
     Avx512,
 }
 
-/// The environment variable that forces a level for a whole process: `scalar`, `neon`, `avx2` or `avx512`.
+/// The environment variable that forces a level for a whole process: `scalar`, `simd128`, `neon`, `avx2` or `avx512`.
 pub const LEVEL_VARIABLE: &str = "OROGEN_SIMD";
 
 /// Why a level cannot be used.
@@ -67,13 +69,14 @@ static CURRENT: AtomicU8 = AtomicU8::new(0);
 
 impl Level {
     /// Every level there is, slowest first.
-    pub const ALL: [Level; 4] = [Level::Scalar, Level::Neon, Level::Avx2, Level::Avx512];
+    pub const ALL: [Level; 5] = [Level::Scalar, Level::Simd128, Level::Neon, Level::Avx2, Level::Avx512];
 
     /// The level's name as [`LEVEL_VARIABLE`] takes it.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Level::Scalar => "scalar",
+            Level::Simd128 => "simd128",
             Level::Neon => "neon",
             Level::Avx2 => "avx2",
             Level::Avx512 => "avx512",
@@ -84,7 +87,7 @@ impl Level {
     #[must_use]
     pub const fn lanes(self) -> usize {
         match self {
-            Level::Scalar | Level::Neon => 4,
+            Level::Scalar | Level::Simd128 | Level::Neon => 4,
             Level::Avx2 => 8,
             Level::Avx512 => 16,
         }
@@ -95,6 +98,7 @@ impl Level {
     pub fn is_available(self) -> bool {
         match self {
             Level::Scalar => true,
+            Level::Simd128 => cfg!(all(target_arch = "wasm32", target_feature = "simd128")),
             Level::Neon => cfg!(target_arch = "aarch64"),
             #[cfg(target_arch = "x86_64")]
             Level::Avx2 => crate::avx2::Avx2::detect().is_some(),
@@ -165,9 +169,10 @@ impl Level {
     const fn number(self) -> u8 {
         match self {
             Level::Scalar => 1,
-            Level::Neon => 2,
-            Level::Avx2 => 3,
-            Level::Avx512 => 4,
+            Level::Simd128 => 2,
+            Level::Neon => 3,
+            Level::Avx2 => 4,
+            Level::Avx512 => 5,
         }
     }
 }
@@ -184,7 +189,7 @@ mod tests {
         }
         assert_eq!(" AVX2 ".parse(), Ok(Level::Avx2));
         assert_eq!("sse9".parse::<Level>(), Err(LevelError::Unknown("sse9".into())));
-        assert!(LevelError::Unknown("sse9".into()).to_string().contains("scalar, neon, avx2, avx512"));
+        assert!(LevelError::Unknown("sse9".into()).to_string().contains("scalar, simd128, neon, avx2, avx512"));
     }
 
     #[test]

@@ -49,6 +49,8 @@ mod avx2;
 mod avx512;
 #[cfg(target_arch = "aarch64")]
 mod neon;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+mod simd128;
 
 pub use double::{Double, Pair};
 pub use fma::fma;
@@ -63,6 +65,8 @@ pub use avx2::Avx2;
 pub use avx512::Avx512;
 #[cfg(target_arch = "aarch64")]
 pub use neon::Neon;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+pub use simd128::Simd128;
 
 /// Code written once for any level. Mark `run` `#[inline(always)]`.
 pub trait Body {
@@ -85,6 +89,8 @@ pub fn dispatch<B: Body>(body: B) -> B::Output {
         Level::Avx2 => unsafe { Avx2::new_unchecked() }.run(body),
         #[cfg(target_arch = "aarch64")]
         Level::Neon => Neon::new().run(body),
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        Level::Simd128 => Simd128::new().run(body),
         _ => Scalar::<4>.run(body),
     }
 }
@@ -102,8 +108,10 @@ pub fn dispatch_at<B: Body>(level: Level, body: B) -> Result<B::Output, LevelErr
         Level::Avx512 => Avx512::detect().map(|token| token.run(body)).ok_or(LevelError::Unavailable(level)),
         #[cfg(target_arch = "aarch64")]
         Level::Neon => Ok(Neon::new().run(body)),
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        Level::Simd128 => Ok(Simd128::new().run(body)),
         #[cfg(target_arch = "x86_64")]
-        Level::Neon => Err(LevelError::Unavailable(level)),
+        Level::Neon | Level::Simd128 => Err(LevelError::Unavailable(level)),
         #[cfg(not(target_arch = "x86_64"))]
         _ => Err(LevelError::Unavailable(level)),
     }

@@ -21,6 +21,8 @@ pub enum ErrorKind {
     File,
     /// The work was cancelled by its caller.
     Cancelled,
+    /// The library broke a rule of its own: a bug, whatever was asked for.
+    Internal,
 }
 
 /// An error: one or more messages that say what is wrong, where, and what to do instead.

@@ -1,7 +1,7 @@
 //! What an op is: a field, a filter or a solver, and what each is given.
 
 use crate::declare::Declared;
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::format::dem::Georeference;
 use crate::grid::{Grid, Window};
 use crate::layer::LayerKind;
@@ -232,6 +232,11 @@ pub trait Filter: Declared + Send + Sync {
         let _ = cell;
         5.0
     }
+
+    /// Whether the result depends on the world's sea level. A filter that says no and reads it nevertheless breaks content keys.
+    fn reads_sea_level(&self) -> bool {
+        false
+    }
 }
 
 /// What a solver found: read like a field ever after.
@@ -336,16 +341,18 @@ pub trait Solver: Declared + Send + Sync {
     fn read(&self, solution: &Solution, asked: &Reading, out: &mut [f32]) -> Result<()> {
         match solution.layers.get(asked.layer) {
             Some(raster) => raster.read(asked.kind, asked.at, out),
-            None => {
-                out.fill(0.0);
-                Ok(())
-            }
+            None => Err(Error::new(ErrorKind::Internal, format!("a solution has no layer {}", asked.layer))),
         }
     }
 
     /// About how many nanoseconds a sample of the world takes to solve, its sources not counted.
     fn cost(&self) -> f64 {
         1.0
+    }
+
+    /// Whether the solution depends on the world's sea level. A solver that says no and reads it nevertheless breaks content keys.
+    fn reads_sea_level(&self) -> bool {
+        false
     }
 }
 

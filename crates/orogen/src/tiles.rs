@@ -116,10 +116,7 @@ impl World {
         progress: &Progress,
     ) -> Result<Tiles<'w>> {
         if tiling.side == 0 {
-            return Err(Error::new(
-                ErrorKind::Request,
-                "tiles of no samples make nothing: give them a side of at least 1",
-            ));
+            return Err(Error::new(ErrorKind::Request, "the tile size must be at least 1 sample"));
         }
         if tiling.overlap > tiling.side {
             let message = format!("tiles of {} samples cannot overlap by {}", tiling.side, tiling.overlap);

@@ -1,6 +1,6 @@
 //! The front door: a recipe opened, asked for windows and points.
 
-use crate::budget::Budget;
+use crate::budget::{Budget, Reservation};
 use crate::dem::prepared::DEFAULT_MEMORY;
 use crate::engine::inline::PreparedProgram;
 use crate::engine::run::Engine;
@@ -10,33 +10,18 @@ use crate::layer::LayerKind;
 use crate::op::{Solution, StepObserver, WorldParams};
 use crate::plan::cost;
 use crate::plan::explain::explain;
-use crate::plan::key::{Key, keys, link_key};
+use crate::plan::key::{Key, identity, keys, link_key};
 use crate::plan::memory;
 use crate::plan::planner::{Planner, world_windows};
 use crate::plan::steps::Plan;
 use crate::progress::Progress;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, LayerRef, Link, MAX_SAMPLES};
-use crate::store::cache::Cache;
-use crate::store::solutions::Store;
+use crate::session::{Options, Session};
 use crate::words::{number, suggestion};
 use std::collections::{BTreeSet, HashMap};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
-
-/// How a world is worked on. None of it changes a bit of the terrain.
-#[derive(Debug, Clone, Default)]
-pub struct Options {
-    /// Threads; `None` takes as many as the machine has cores.
-    pub threads: Option<usize>,
-    /// Bytes that a request may need. Solutions that are too large for it are kept on disk.
-    pub memory: Budget,
-    /// Where solutions are found again by later runs; `None` keeps none.
-    pub cache: Option<Cache>,
-    /// The folder for what does not fit in memory; `None` takes the cache's, or else the system's for temporary files. Nothing
-    /// stays in it, not even after a kill.
-    pub scratch: Option<PathBuf>,
-}
 
 /// A world: any window of it, at any resolution, always the same.
 ///
@@ -65,11 +50,23 @@ pub struct World {
     recipe: Recipe,
     graph: Graph,
     world_params: WorldParams,
-    store: Store,
-    pool: Arc<rayon::ThreadPool>,
-    memory: Budget,
+    /// The content keys of the nodes.
+    keys: Vec<Key>,
+    /// What plans of this recipe carry.
+    identity: Key,
+    session: Session,
     /// Plans for points of layers that depend on no grid: the same for every point.
     pointwise: Mutex<HashMap<String, Arc<Plan>>>,
+}
+
+impl Session {
+    /// Opens a recipe in this session.
+    ///
+    /// # Errors
+    /// If the recipe is not valid, or a file that it names cannot be read.
+    pub fn open(&self, recipe: Recipe) -> Result<World> {
+        World::in_session(recipe, self.clone())
+    }
 }
 
 /// The layer that maps and meshes are made from.
@@ -88,27 +85,25 @@ impl World {
     ///
     /// # Errors
     /// If the recipe is not valid, a file that it names cannot be read, or no threads can be started.
-    pub fn with_options(mut recipe: Recipe, options: Options) -> Result<World> {
+    pub fn with_options(recipe: Recipe, options: Options) -> Result<World> {
+        Session::new(options)?.open(recipe)
+    }
+
+    /// Opens a recipe in a session that other worlds may share.
+    fn in_session(mut recipe: Recipe, session: Session) -> Result<World> {
         let graph = Graph::resolve(&recipe).map_err(Graph::error)?;
-        recipe.load(options.memory.left().unwrap_or(DEFAULT_MEMORY))?;
+        recipe.load(session.budget.left().unwrap_or(DEFAULT_MEMORY))?;
         if recipe.outputs().next().is_none() {
             let message = "the recipe has no outputs: name at least one, such as `height`";
             return Err(Error::new(ErrorKind::Recipe, message));
         }
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(options.threads.unwrap_or(0))
-            .build()
-            .map_err(|cause| Error::new(ErrorKind::Request, format!("cannot start the threads asked for: {cause}")))?;
-        let world_params = recipe.world.world_params();
-        Ok(World {
-            recipe,
-            graph,
-            world_params,
-            store: Store::new(options.cache, options.scratch),
-            pool: Arc::new(pool),
-            memory: options.memory,
-            pointwise: Mutex::default(),
-        })
+        Ok(World::new(recipe, graph, session))
+    }
+
+    fn new(recipe: Recipe, graph: Graph, session: Session) -> World {
+        let (world_params, keys) = (recipe.world.world_params(), keys(&recipe, &graph));
+        let identity = identity(&keys);
+        World { recipe, graph, world_params, keys, identity, session, pointwise: Mutex::default() }
     }
 
     /// A world of the same recipe with other parameters, on the same threads and in as much memory. What it solves is kept nowhere; what is
@@ -118,25 +113,17 @@ impl World {
     /// If the recipe is not valid.
     pub(crate) fn variant(&self, recipe: Recipe, solved: Vec<(Key, Arc<Solution>)>) -> Result<World> {
         let graph = Graph::resolve(&recipe).map_err(Graph::error)?;
-        Ok(World {
-            world_params: recipe.world.world_params(),
-            recipe,
-            graph,
-            store: Store::holding(solved, self.store.scratch().clone()),
-            pool: Arc::clone(&self.pool),
-            memory: self.memory.clone(),
-            pointwise: Mutex::default(),
-        })
+        Ok(World::new(recipe, graph, self.session.with_solutions(solved)))
     }
 
     /// The solution stored under a key, if there is one.
     pub(crate) fn solution(&self, key: &Key, on_disk: bool) -> Result<Option<Arc<Solution>>> {
-        self.store.find(key, on_disk)
+        self.session.store.find(key, on_disk)
     }
 
     /// How many solutions this world made, not found.
     pub(crate) fn solutions_made(&self) -> usize {
-        self.store.made()
+        self.session.solutions_made() as usize
     }
 
     /// A plan that does no more than solve nodes and what they read.
@@ -156,9 +143,9 @@ impl World {
         node: usize,
         observer: &(dyn StepObserver + Sync),
     ) -> Result<()> {
-        self.afford(plan)?;
+        let _running = self.admit(plan, progress)?;
         let engine = Engine { observer: Some((node, observer)), ..self.engine(progress) };
-        self.pool.install(|| engine.run(plan)).map(drop)
+        engine.run(plan).map(drop)
     }
 
     /// The nodes in an order in which each comes after those that it reads.
@@ -218,7 +205,7 @@ impl World {
     pub fn window_fitting(&self, samples: usize) -> Result<Window> {
         let size = self.bounds()?;
         if samples == 0 {
-            return Err(Error::new(ErrorKind::Request, "no samples along the world's longer side show nothing"));
+            return Err(Error::new(ErrorKind::Request, "the longer side of the world must have at least 1 sample"));
         }
         let cell = size[0].max(size[1]) / samples as f64;
         let [width, height] = size.map(|length| ((length / cell).round() as usize).max(1));
@@ -240,24 +227,35 @@ impl World {
         self.planned(&targets, *window, false)
     }
 
+    /// What this world shares with others.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
     /// The memory that requests share with what the caller holds: see [`Budget::reserve`].
     pub fn budget(&self) -> &Budget {
-        &self.memory
+        &self.session.budget
     }
 
     /// The folder for what does not fit in memory.
     pub fn scratch(&self) -> &Path {
-        self.store.scratch()
+        self.session.store.scratch()
     }
 
     /// Bytes that a request may need; `None` for no limit.
     pub fn memory_limit(&self) -> Option<u64> {
-        self.memory.left()
+        self.session.budget.left()
     }
 
     fn planned(&self, targets: &[Link], window: Window, scattered: bool) -> Result<Plan> {
-        let threads = self.pool.current_num_threads();
-        Planner::new(&self.recipe, &self.graph).fitting(targets, window, scattered, threads, self.memory_limit())
+        let threads = self.threads();
+        Planner::new(&self.recipe, &self.graph, &self.keys).fitting(
+            targets,
+            window,
+            scattered,
+            threads,
+            self.memory_limit(),
+        )
     }
 
     /// Bytes of disk that running a plan takes at most, what stays in the cache not counted.
@@ -267,7 +265,7 @@ impl World {
 
     /// Bytes that running a plan takes at most.
     pub fn memory_of(&self, plan: &Plan) -> u64 {
-        memory::needed(plan, &self.recipe, self.pool.current_num_threads())
+        memory::needed(plan, &self.recipe, self.threads())
     }
 
     /// About how many nanoseconds of one core running a plan takes: solving what is not solved yet, and the steps.
@@ -288,21 +286,21 @@ impl World {
 
     /// What a plan does, in words.
     pub fn explain(&self, plan: &Plan) -> String {
-        explain(plan, &self.recipe, &self.graph, self.pool.current_num_threads())
+        explain(plan, &self.recipe, &self.graph, self.threads())
     }
 
     /// How many threads work on a request.
     pub fn threads(&self) -> usize {
-        self.pool.current_num_threads()
+        self.session.threads()
     }
 
-    /// A hash of all that a layer depends on: its nodes with their parameters, the seed, the world. Names of nodes do not
-    /// enter it.
+    /// A hash of all that a layer depends on: its nodes with their parameters, and what these read of the world (seed, extent, cell, sea level). Names of
+    /// nodes do not enter it.
     ///
     /// # Errors
     /// If there is no such layer.
     pub fn key(&self, layer: &str) -> Result<[u8; 32]> {
-        Ok(link_key(&self.target(layer)?, &keys(&self.recipe, &self.graph)))
+        Ok(link_key(&self.target(layer)?, &self.keys))
     }
 
     /// The unit of a layer: metres for [`HEIGHT`], else what its node says of itself, which may be nothing.
@@ -330,16 +328,16 @@ impl World {
 
     /// Does work that shares itself out among this world's threads.
     pub(crate) fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
-        self.pool.install(work)
+        self.session.pool.install(work)
     }
 
     /// Runs a plan: one grid a layer, in the order they were asked for.
     ///
     /// # Errors
-    /// If it would need more memory than allowed (then nothing was started), or was cancelled.
+    /// If it is a plan of another recipe, would need more memory than allowed (then nothing was started), or was cancelled.
     pub fn run(&self, plan: &Plan, progress: &Progress) -> Result<Vec<Grid>> {
-        self.afford(plan)?;
-        self.pool.install(|| self.engine(progress).run(plan))
+        let _running = self.admit(plan, progress)?;
+        self.engine(progress).run(plan)
     }
 
     /// Makes layers over a window.
@@ -356,7 +354,7 @@ impl World {
     /// As [`World::plan`] and [`World::run`].
     pub(crate) fn grid_beside(&self, layer: &str, window: &Window, beside: u64, progress: &Progress) -> Result<Grid> {
         let plan = self.planned(&[self.target(layer)?], *window, false)?;
-        self.memory.afford(self.memory_of(&plan).saturating_add(beside))?;
+        self.session.budget.afford(self.memory_of(&plan).saturating_add(beside))?;
         let mut grids = self.run(&plan, progress)?;
         grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "nothing was asked for"))
     }
@@ -406,9 +404,9 @@ impl World {
                 plan
             }
         };
-        self.afford(&plan)?;
         let progress = Progress::none();
-        let values = self.pool.install(|| self.engine(&progress).run_points(&plan, x, y))?;
+        let _running = self.admit(&plan, &progress)?;
+        let values = self.engine(&progress).run_points(&plan, x, y)?;
         Ok(values.into_iter().next().unwrap_or_default())
     }
 
@@ -429,9 +427,10 @@ impl World {
     /// A plan for points of a layer within `around`, and all that it needs made.
     pub(crate) fn ready(&self, layer: &str, around: Window) -> Result<PreparedProgram> {
         let plan = self.planned(&[self.target(layer)?], around, true)?;
-        self.afford(&plan)?;
-        let ready = self.pool.install(|| self.engine(&Progress::none()).ready(&plan))?;
-        ready.ok_or_else(|| Error::new(ErrorKind::Request, "a plan for points asks at no point"))
+        let progress = Progress::none();
+        let _running = self.admit(&plan, &progress)?;
+        let ready = self.engine(&progress).ready(&plan)?;
+        ready.ok_or_else(|| Error::new(ErrorKind::Internal, "a plan for points has no program for them"))
     }
 
     /// The samples at the world's cell around points, as far as the interpolating cubic reads.
@@ -453,7 +452,11 @@ impl World {
             recipe: &self.recipe,
             graph: &self.graph,
             world_params: &self.world_params,
-            store: &self.store,
+            keys: &self.keys,
+            store: &self.session.store,
+            grids: Some(&self.session.grids),
+            budget: &self.session.budget,
+            pool: &self.session.pool,
             progress,
             observer: None,
         }
@@ -526,17 +529,19 @@ impl World {
 
     /// Whether there is memory for a window's samples, beside what is held already.
     pub(crate) fn afford_grid(&self, window: &Window) -> Result<()> {
-        self.memory.afford((window.width as u64).saturating_mul(window.height as u64).saturating_mul(4))
+        self.session.budget.afford((window.width as u64).saturating_mul(window.height as u64).saturating_mul(4))
     }
 
-    /// Refuses a plan that needs more than is allowed, and lets go of other solutions to make room for it.
-    fn afford(&self, plan: &Plan) -> Result<()> {
-        let needed = self.memory_of(plan);
-        self.memory.afford(needed)?;
-        if let Some(allowed) = self.memory_limit() {
-            let keys: Vec<Key> = plan.solves.iter().map(|solve| solve.key).collect();
-            self.store.make_room(allowed.saturating_sub(needed), &keys);
+    /// Sets aside the memory that a plan needs, and lets go of other solutions to make room for it. Refuses a plan of another recipe.
+    fn admit(&self, plan: &Plan, progress: &Progress) -> Result<Reservation> {
+        if plan.recipe != self.identity {
+            let message =
+                "the plan was made for another recipe or another state of this one: make it again with `World::plan`";
+            return Err(Error::new(ErrorKind::Request, message));
         }
-        Ok(())
+        let running = self.session.budget.admit(self.memory_of(plan), progress)?;
+        let keys: Vec<Key> = plan.solves.iter().map(|solve| solve.key).collect();
+        self.session.make_room(&keys);
+        Ok(running)
     }
 }

@@ -146,7 +146,7 @@ fn a_viewer_who_goes_to_and_fro_makes_nothing_anew() {
         // 4 m are the slack of the finest chunks, whose sides are 16 m.
         assert_eq!((steps(&mut chunks, x - 3.9), steps(&mut chunks, x)), (0, 0), "{x}, first {first}");
     }
-    assert_eq!(steps(&mut chunks, 4.0), 0, "standing still makes nothing");
+    assert_eq!(steps(&mut chunks, 4.0), 0, "standing still takes no steps");
     assert!(steps(&mut chunks, 100.0) > 0);
 }
 

@@ -62,9 +62,9 @@ fn compare(width: usize, height: usize, over: &str, memory: Option<u64>) {
     for window in Window::new(width, height, 30.0).tiles(400) {
         let mut plan = tiled.plan(&LAYERS, &window).unwrap();
         if memory.is_none() {
-            plan.solves.iter_mut().for_each(|solve| solve.on_disk = true);
+            plan.solve_on_disk(1024);
         }
-        assert!(plan.solves.iter().all(|solve| solve.on_disk), "{}", tiled.explain(&plan));
+        assert!(plan.solves().iter().all(|solve| solve.on_disk), "{}", tiled.explain(&plan));
         let progress = Progress::none();
         let expect = whole.grids(&LAYERS, &window, &progress).unwrap();
         let got = tiled.run(&plan, &progress).unwrap();

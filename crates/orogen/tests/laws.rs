@@ -8,7 +8,7 @@ use orogen::field::{add::Add, constant::Constant, fbm::Fbm, perlin::Perlin, tran
 use orogen::filter::blur::Blur;
 use orogen::node::Node;
 use orogen::op::Op;
-use orogen::plan::steps::Step;
+use orogen::plan::steps::{Plan, Step};
 use orogen::solver::{bake::Bake, normalise::Normalise};
 use orogen::{Grid, Progress, Recipe, Window, World, WorldSpec};
 use support::{Random, open, recipe_of, world_of};
@@ -91,10 +91,8 @@ fn every_node_is_the_same_from_disk_and_in_tiles_of_any_size() {
         {
             let world = open(&recipe, threads);
             let mut plan = world.plan(&layers, &tile).unwrap();
-            assert!(!plan.solves.is_empty());
-            for solve in &mut plan.solves {
-                (solve.on_disk, solve.side) = (true, side);
-            }
+            assert!(!plan.solves().is_empty());
+            plan.solve_on_disk(side);
             for (whole, made) in expect.iter().zip(world.run(&plan, &Progress::none()).unwrap()) {
                 same_bits(&format!("{} in tiles of {side}, on disk", node.spec().op), whole, &made);
             }
@@ -204,7 +202,7 @@ fn forty_diamonds_cost_forty_evaluations() {
     recipe.output("height", "n40");
     let world = open(&recipe, 1);
     let plan = world.plan(&["height"], &Window::new(16, 16, 10.0)).unwrap();
-    let [Step::Fill { program, .. }] = plan.steps.as_slice() else { panic!("one fill") };
+    let [Step::Fill { program, .. }] = plan.steps() else { panic!("one fill") };
     assert_eq!(program.instructions.len(), 41);
     assert!(program.registers <= 2, "{} registers", program.registers);
     assert_eq!(world.height(0.0, 0.0).unwrap(), (1u64 << 40) as f32);
@@ -292,7 +290,7 @@ fn dear_sources_of_a_filter_are_made_once() {
     let world = World::open(Recipe::parse(text, "t").unwrap()).unwrap();
     let plan = world.plan(&["height"], &Window::new(16, 16, 10.0)).unwrap();
     let fields: usize = plan
-        .steps
+        .steps()
         .iter()
         .map(|step| match step {
             Step::Fill { program, .. } => program
@@ -317,7 +315,7 @@ fn layers_are_read_by_name_and_only_those_wanted_are_made() {
     let window = Window::new(16, 16, 10.0);
     let world = open("s.south").unwrap();
     let plan = world.plan(&["height"], &window).unwrap();
-    let Some(Step::Apply { out, .. }) = plan.steps.iter().find(|step| matches!(step, Step::Apply { .. })) else {
+    let Some(Step::Apply { out, .. }) = plan.steps().iter().find(|step| matches!(step, Step::Apply { .. })) else {
         panic!("a filter is applied")
     };
     assert!(matches!(out.as_slice(), [None, None, Some(_)]), "{}", world.explain(&plan));
@@ -349,6 +347,58 @@ fn a_plan_is_a_value_that_can_be_sent() {
     let came = serde_json::from_str(&sent).unwrap();
     assert_eq!(plan, came);
     assert_eq!(world.run(&came, &Progress::none()).unwrap()[0], world.window("height", &window).unwrap());
+    // Damage anywhere is found, before a number of it is used; so is another version's plan.
+    let damaged = |from: &str, to: &str| {
+        assert!(sent.contains(from), "{from} in {sent}");
+        serde_json::from_str::<Plan>(&sent.replacen(from, to, 1)).unwrap_err().to_string()
+    };
+    for (from, to) in
+        [("\"x\":5", "\"x\":6"), ("\"halo\":", "\"halo\":1"), ("\"scattered\":false", "\"scattered\":true")]
+    {
+        assert!(damaged(from, to).contains("checksum"), "{}", damaged(from, to));
+    }
+    let version = format!("\"orogen\":\"{}\"", env!("CARGO_PKG_VERSION"));
+    assert!(damaged(&version, "\"orogen\":\"0.0.9\"").contains("made by Orogen 0.0.9"));
+    // A plan of another recipe, or of this one before it was edited.
+    let edited = World::open(Recipe::parse(&text.replace("\"blur\"", "\"blur\"\nradius = 35"), "t").unwrap()).unwrap();
+    let error = edited.run(&came, &Progress::none()).unwrap_err();
+    assert!(error.kind() == orogen::ErrorKind::Request && error.to_string().contains("another recipe"), "{error}");
+}
+
+/// What changes a node's samples changes its content key: stored solutions and kept grids are never stale.
+#[test]
+fn content_keys_hold_all_that_a_node_reads_of_the_world() {
+    let window = Window::new(24, 20, 30.0).at(20, 18);
+    let (mut same, mut other) = (0, 0);
+    for node in Node::all() {
+        let world = world_of(30.0);
+        let recipe = recipe_of(&node, world, false);
+        let made = |recipe: &Recipe| {
+            let world = open(recipe, 1);
+            (world.key("node").unwrap(), world.window("node", &window).unwrap())
+        };
+        let (key, grid) = made(&recipe);
+        let size = world.size.unwrap_or_default();
+        for changed in [
+            WorldSpec { seed: 43, ..world },
+            WorldSpec { sea_level: 0.25, ..world },
+            WorldSpec { size: Some([size[0] + 300.0, size[1]]), ..world },
+            WorldSpec { size: Some([size[0], size[1] + 600.0]), ..world },
+            WorldSpec { cell: 60.0, ..world },
+        ] {
+            let mut recipe = recipe.clone();
+            recipe.world = changed;
+            let (changed_key, changed_grid) = made(&recipe);
+            match key == changed_key {
+                true => {
+                    same_bits(&format!("{} with {changed:?}", node.spec().op), &grid, &changed_grid);
+                    same += 1;
+                }
+                false => other += 1,
+            }
+        }
+    }
+    assert!(same > 100 && other > 100, "{same} {other}");
 }
 
 #[test]

@@ -271,3 +271,25 @@ fn cliffs_of_the_preset_mesa_have_no_teeth() {
         assert!(most < 80.0, "{seed}: {most} m from one sample to the next");
     }
 }
+
+#[test]
+fn former_keys_mean_what_todays_mean() {
+    let recipe = |keys: [&str; 4]| {
+        let [erodibility, uplift, jitter, random] = keys;
+        format!(
+            "orogen = 1\n[world]\nsize = [2000, 2000]\ncell = 50\n[nodes.land]\nop = \"fbm\"\n[nodes.worn]\nop = \"stream-power\"\n\
+             source = \"land\"\nsteps = 1\n{erodibility} = 0.5\n{uplift} = \"land\"\n{jitter} = 0.25\n{random} = false\n\
+             [outputs]\nheight = \"worn\"\n"
+        )
+    };
+    let today = recipe(["erodibility_factor", "uplift_factor", "jitter", "random_receivers"]);
+    let former = recipe(["softness", "rise", "irregular", "scatter"]);
+    let [today, former] = [&today, &former].map(|text| Recipe::parse(text, "test.toml").unwrap());
+    assert_eq!(today, former);
+    assert!(former.to_toml().contains("jitter = 0.25"), "{}", former.to_toml());
+    complains(&recipe_with_both(), "5:1", &["jitter", "twice"]);
+}
+
+fn recipe_with_both() -> String {
+    "orogen = 1\n[nodes.worn]\nop = \"stream-power\"\njitter = 0.5\nirregular = 0.5\nsource = 1\n".to_string()
+}

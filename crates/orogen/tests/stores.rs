@@ -100,13 +100,19 @@ fn memory_disk_and_folder_make_the_same_bits() {
             let cache = cached.then(|| folder.cache());
             let world = open(
                 &recipe,
-                Options { threads: Some(threads), memory: Budget::of(memory), cache, scratch: Some(folder.0.clone()) },
+                Options {
+                    threads: Some(threads),
+                    memory: Budget::of(memory),
+                    cache,
+                    scratch: Some(folder.0.clone()),
+                    ..Options::default()
+                },
             );
             let name = format!("{threads} threads, {memory:?} of memory, cache {cached}, cell {cell}");
             let mut moved = 0;
             for part in &parts {
                 let plan = world.plan(&["height", "steep", "again"], part).unwrap();
-                let on_disk = plan.solves.iter().filter(|solve| solve.on_disk).count();
+                let on_disk = plan.solves().iter().filter(|solve| solve.on_disk).count();
                 moved += on_disk;
                 assert!(memory.is_none_or(|memory| world.memory_of(&plan) <= memory), "{}", world.explain(&plan));
                 assert_eq!(world.disk_of(&plan) > 0, on_disk > 0);
@@ -139,7 +145,7 @@ fn tiles_of_any_size_solve_the_same() {
         let world = open(&recipe, Options { threads: Some(2), memory: Budget::of(memory), ..Options::default() });
         let plan = world.plan(&["height", "steep", "again"], &window).unwrap();
         assert!(world.memory_of(&plan) <= memory, "{memory}: {}", world.explain(&plan));
-        sides.push(plan.solves[0].side);
+        sides.push(plan.solves()[0].side);
         same(&format!("{memory} bytes"), &whole, &layers(&world, &window));
     }
     assert!(sides[0] > sides[2], "several sizes of tiles were seen: {sides:?}");
@@ -240,7 +246,7 @@ fn a_chain_of_solvers_is_planned_in_no_time() {
     let world = open(&recipe, Options::default());
     let begun = Instant::now();
     let plan = world.plan(&["height"], &Window::new(9, 9, 10.0)).unwrap();
-    assert_eq!(plan.solves.len(), 199);
+    assert_eq!(plan.solves().len(), 199);
     let told = world.explain(&plan);
     assert!(told.contains("samples: ") && told.contains(" to solve the world once\n"), "{told}");
     assert!(begun.elapsed() < Duration::from_secs(5), "{:?}", begun.elapsed());
@@ -260,7 +266,7 @@ fn several_worlds_share_a_folder_at_once() {
             scope.spawn(move || {
                 let world = open(
                     recipe,
-                    Options { threads: Some(1), memory: Budget::of(memory), cache: Some(cache), scratch: None },
+                    Options { threads: Some(1), memory: Budget::of(memory), cache: Some(cache), ..Options::default() },
                 );
                 same("shared", expect, &layers(&world, &window));
             });

@@ -129,7 +129,7 @@ struct Task<'a> {
 pub fn run(args: &Args) -> Result<(), Failure> {
     let default = if args.volume.is_some() { "noise.npy" } else { "noise.png" };
     let out = args.out.as_deref().unwrap_or(Path::new(default));
-    // Noise lies nowhere: a map's formats are not for it.
+    // Noise has no position on the earth: formats of maps do not apply.
     // Frames may also go into what no single picture does.
     let target = match args.frames.filter(|_| out.extension().is_none_or(|extension| extension != "npy")) {
         Some(_) => Some(AnimationTarget::of(out).map_err(Failure::Usage)?),

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 /// What a relief is made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ridges {
-    /// Which chances.
+    /// Seed of the random choices.
     pub seed: u64,
     /// How far it grows from the middle, as a share of the way to the edges.
     pub reach: f64,

@@ -122,8 +122,8 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Writes a journal that tells `story`, in place of what may be there, and goes on from its end. `temporary` names a file beside it
-    /// that is nobody's.
+    /// Writes a journal of `state`, replaces the one that may be there, and appends from then on. `temporary` names a file beside it that no other process
+    /// uses.
     ///
     /// # Errors
     /// If it cannot be written.

@@ -115,7 +115,7 @@ impl BuildSpec {
     pub fn check(&self) -> Result<()> {
         let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
         if self.layers.is_empty() {
-            return refuse("a build of no layer makes nothing: name at least one".into());
+            return refuse("no layer was chosen: name at least one".into());
         }
         if self.layers.len() > 1 && !self.form.holds_many() {
             return refuse(format!(

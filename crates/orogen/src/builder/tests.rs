@@ -377,7 +377,7 @@ fn impossible_orders_are_sentences() {
         let error = Build::new(&world, &spec, &output(&Folder::new().out())).err().unwrap().to_string();
         assert!(error.contains(expect), "{error} / {expect}");
     };
-    check(Form::Zarr, window, None, &[], "a build of no layer makes nothing");
+    check(Form::Zarr, window, None, &[], "no layer was chosen");
     check(Form::Zarr, window, None, &["height", "height"], "asked for twice");
     check(Form::Zarr, window, None, &["hieght"], "did you mean `height`?");
     check(Form::Cog, window, None, &["height", "rough"], "a GeoTIFF holds one layer and 2 are asked for");

@@ -1,6 +1,6 @@
 //! Runs a program over one block of samples.
 
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::layer::LayerKind;
 use crate::op::{Field, Inputs, Reading, Solution, Solver, WorldParams};
@@ -122,19 +122,21 @@ impl<'p> Interpreter<'p> {
         match instruction {
             Instruction::Constant { value, out } => self.registers[*out].fill(*value),
             Instruction::Field { node, coords, inputs, out } => {
-                let Some(field) = (bindings.fields)(*node) else { return Ok(()) };
+                let field = (bindings.fields)(*node).ok_or_else(|| internal("a node to evaluate is not a field"))?;
                 self.with_inputs(*coords, inputs, *out, |points, slots, out| {
                     field.eval(points, slots, bindings.world_params, out);
                 });
             }
             Instruction::Solved { node, layer, kind, coords, inputs, out } => {
-                let Some((solver, solution)) = (bindings.solvers)(*node) else { return Ok(()) };
+                let solved = (bindings.solvers)(*node);
+                let (solver, solution) = solved.ok_or_else(|| internal("a solver was read before it was solved"))?;
                 self.with_inputs(*coords, inputs, *out, |at, inputs, out| {
                     solver.read(&solution, &Reading { layer: *layer, kind: *kind, at, inputs }, out)
                 })?;
             }
             Instruction::Grid { grid, kind, coords, out } => {
-                let Some(grid) = &bindings.grids[*grid] else { return Ok(()) };
+                let grid = bindings.grids.get(*grid).and_then(Option::as_ref);
+                let grid = grid.ok_or_else(|| internal("a grid was read before it was made"))?;
                 // Only the block itself lies on the lattice that the grid was made on.
                 let block = block.filter(|_| *coords == 0);
                 let mut samples = std::mem::take(&mut self.registers[*out]);
@@ -220,6 +222,10 @@ impl<'p> Interpreter<'p> {
         self.registers[out] = samples;
         done
     }
+}
+
+fn internal(message: &str) -> Error {
+    Error::new(ErrorKind::Internal, message)
 }
 
 /// Copies a block out of a grid on its own lattice, or reads it between samples.

@@ -1,26 +1,38 @@
 //! Runs a plan's steps.
 
 use super::interpreter::{Bindings, Interpreter};
+use crate::budget::Budget;
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::{Grid, Window};
 use crate::op::{Context, Field, Op, Solution, Solver, StepObserver, WorldParams};
 use crate::plan::cost;
+use crate::plan::key::Key;
 use crate::plan::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use crate::plan::steps::{Plan, Step};
+use crate::pool::Pool;
 use crate::progress::Progress;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;
+use crate::store::grids::{EXPENSIVE, GridKey, GridStore};
 use crate::store::solutions::Store;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// What runs plans of one recipe.
+#[derive(Clone, Copy)]
 pub struct Engine<'a> {
     pub recipe: &'a Recipe,
     pub graph: &'a Graph,
     pub world_params: &'a WorldParams,
+    /// The content keys of the nodes.
+    pub keys: &'a [Key],
     pub store: &'a Store,
+    /// Where the grids of expensive filters are kept, if they are.
+    pub grids: Option<&'a GridStore>,
+    pub budget: &'a Budget,
+    /// The threads that work is shared out to. What only waits, waits on the calling thread.
+    pub pool: &'a Pool,
     pub progress: &'a Progress,
     /// Who observes the steps of which node's solver. That node is solved even if its solution is stored.
     pub observer: Option<(usize, &'a (dyn StepObserver + Sync))>,
@@ -42,7 +54,8 @@ impl<'a> Engine<'a> {
         let work = cost::steps(plan, self.recipe);
         self.progress.expect(work);
         let solutions = self.solve(plan)?;
-        let grids = self.steps(plan, &solutions, &self.progress.part(work))?;
+        let part = self.progress.part(work);
+        let grids = self.pool.install(|| self.steps(plan, &solutions, &part))?;
         self.progress.finish();
         Ok(grids)
     }
@@ -51,8 +64,13 @@ impl<'a> Engine<'a> {
     pub(super) fn steps(&self, plan: &Plan, solutions: &Solutions, progress: &Progress) -> Result<Vec<Grid>> {
         progress.expect(cost::steps(plan, self.recipe));
         let mut grids: Vec<Option<Grid>> = plan.grids.iter().map(|_| None).collect();
+        let needed = self.kept_grids(plan, &mut grids);
         for (at, step) in plan.steps.iter().enumerate() {
             progress.check()?;
+            if !needed[at] {
+                progress.advance(cost::step(step, plan, self.recipe));
+                continue;
+            }
             let part = progress.part(cost::step(step, plan, self.recipe));
             self.step(step, solutions, &mut grids, &part)?;
             part.finish();
@@ -66,11 +84,41 @@ impl<'a> Engine<'a> {
         Ok(plan.outputs.iter().filter_map(|&slot| grids[slot].take()).collect())
     }
 
+    /// Takes the grids of expensive filters that are kept from earlier requests. Returns which steps still have to be made: those whose grids are
+    /// read by others that have to be, or are results.
+    fn kept_grids(&self, plan: &Plan, grids: &mut [Option<Grid>]) -> Vec<bool> {
+        let mut needed = vec![true; plan.steps.len()];
+        let Some(store) = self.grids.filter(|store| store.is_used()) else { return needed };
+        let mut read: Vec<bool> = plan.grids.iter().map(|slot| slot.last_use >= plan.steps.len()).collect();
+        for (at, step) in plan.steps.iter().enumerate().rev() {
+            let writes = step.writes();
+            // A program for points writes no grid.
+            needed[at] = writes.is_empty() || writes.iter().any(|&slot| read[slot]);
+            if let Some(found) = needed[at].then(|| store.find(&self.grid_keys(step)?)).flatten() {
+                writes.iter().zip(found).for_each(|(&slot, grid)| grids[slot] = Some(grid));
+                needed[at] = false;
+            }
+            if needed[at] {
+                step.reads().into_iter().for_each(|slot| read[slot] = true);
+            }
+        }
+        needed
+    }
+
+    /// What the grids of a step are kept under; `None` if they are not worth it.
+    fn grid_keys(&self, step: &Step) -> Option<Vec<GridKey>> {
+        let Step::Apply { node, window, out, .. } = step else { return None };
+        let Op::Filter(filter) = self.recipe.nodes().get(*node)?.node.op() else { return None };
+        let layers = out.iter().enumerate().filter_map(|(layer, slot)| slot.map(|_| layer));
+        (filter.cost(window.cell) >= EXPENSIVE)
+            .then(|| layers.map(|layer| GridKey::new(self.keys[*node], layer, window)).collect())
+    }
+
     /// Makes a scattered plan's values at points, output after output.
     pub fn run_points(&self, plan: &Plan, x: &[f64], y: &[f64]) -> Result<Vec<Vec<f32>>> {
         let (solutions, grids) = self.before_points(plan)?;
         let Some(program) = plan.asked() else { return Ok(Vec::new()) };
-        self.at_points(program, x, y, &solutions, &grids)
+        self.pool.install(|| self.at_points(program, x, y, &solutions, &grids))
     }
 
     /// All that a scattered plan makes before it is asked at any point.
@@ -80,7 +128,7 @@ impl<'a> Engine<'a> {
         for step in &plan.steps {
             match step {
                 Step::Fill { out, .. } if out.is_empty() => {}
-                _ => self.step(step, &solutions, &mut grids, self.progress)?,
+                _ => self.pool.install(|| self.step(step, &solutions, &mut grids, self.progress))?,
             }
         }
         Ok((solutions, grids))
@@ -92,12 +140,25 @@ impl<'a> Engine<'a> {
                 let filling = Filling { program, window, outputs: out.len() };
                 self.fill(&filling, solutions, grids, progress)?
             }
-            Step::Apply { .. } => self.apply(step, grids, progress)?,
+            Step::Apply { .. } => {
+                let made = self.apply(step, grids, progress)?;
+                self.keep_grids(step, &made);
+                made
+            }
         };
         for (slot, grid) in step.writes().into_iter().zip(made) {
             grids[slot] = Some(grid);
         }
         Ok(())
+    }
+
+    /// Keeps the grids of an expensive filter for the next request.
+    fn keep_grids(&self, step: &Step, made: &[Grid]) {
+        let Some(store) = self.grids.filter(|store| store.is_used()) else { return };
+        for (key, grid) in self.grid_keys(step).into_iter().flatten().zip(made) {
+            let allowed = self.budget.unused().map(|unused| unused.saturating_sub(self.store.memory()));
+            store.keep(key, grid, allowed);
+        }
     }
 
     pub(super) fn field(&self, node: usize) -> Option<&'a dyn Field> {
@@ -194,7 +255,7 @@ impl<'a> Engine<'a> {
     fn apply(&self, step: &Step, grids: &[Option<Grid>], progress: &Progress) -> Result<Vec<Grid>> {
         let Step::Apply { node, inputs, window, halo, out } = step else { return Ok(Vec::new()) };
         let Op::Filter(filter) = self.recipe.nodes()[*node].node.op() else {
-            return Err(Error::new(ErrorKind::Recipe, "a node that is no filter was to be applied"));
+            return Err(Error::new(ErrorKind::Internal, "a node that is not a filter was to be applied"));
         };
         let grown = window.grown(*halo);
         // An input may have been made for others too, over more samples: the filter gets just what it declared.

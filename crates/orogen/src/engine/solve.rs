@@ -10,6 +10,7 @@ use crate::plan::planner::Planner;
 use crate::plan::steps::{Plan, Solve};
 use crate::progress::Progress;
 use crate::recipe::graph::Link;
+use crate::store::solutions::Begun;
 use std::sync::Arc;
 
 impl Engine<'_> {
@@ -24,7 +25,7 @@ impl Engine<'_> {
                 continue;
             }
             match self.store.find(&order.key, order.on_disk)? {
-                Some(solution) if self.observer.is_none_or(|(node, _)| node != order.node) => {
+                Some(solution) if !self.is_observed(order.node) => {
                     there.insert(order.node, solution);
                 }
                 _ => {
@@ -36,11 +37,32 @@ impl Engine<'_> {
         missing.iter().for_each(|order| self.progress.expect(order.work()));
         for order in missing.into_iter().rev() {
             let part = self.progress.part(order.work());
-            let solution = self.store.make(&order.key, || self.solved(order, &there, &part))?;
+            let begun = match self.is_observed(order.node) {
+                true => self.store.begin_again(&order.key),
+                false => self.store.begin(&order.key, self.may_wait(), &part)?,
+            };
+            let solution = match begun {
+                Begun::Found(solution) => solution,
+                // It is stored on a thread of the pool: the calling thread may have been lent to another request that waits for it.
+                Begun::Make(making) => {
+                    self.pool.install(|| Ok::<_, Error>(making.finish(self.solved(order, &there, &part)?)))?
+                }
+            };
             part.finish();
             there.insert(order.node, self.moved(order, solution)?);
         }
         Ok(there)
+    }
+
+    /// Whether this thread may wait for a solution that another request is making. A thread of the pool may not: that request could be further down
+    /// its own stack.
+    fn may_wait(&self) -> bool {
+        !self.pool.is_current()
+    }
+
+    /// Whether somebody wants to see the steps of a node's solver, which is then solved even if its solution is stored.
+    fn is_observed(&self, node: usize) -> bool {
+        self.observer.is_some_and(|(observed, _)| observed == node)
     }
 
     /// Nanoseconds of one core that solving takes before a plan's steps can be run, about.
@@ -67,14 +89,16 @@ impl Engine<'_> {
     /// Solves one solver, all that its sources read being there.
     fn solved(&self, order: &Solve, there: &Solutions, progress: &Progress) -> Result<Solution> {
         let Op::Solver(solver) = self.recipe.nodes()[order.node].node.op() else {
-            return Err(Error::new(ErrorKind::Recipe, "a node that is no solver was to be solved"));
+            return Err(Error::new(ErrorKind::Internal, "a node that is not a solver was to be solved"));
         };
-        let planner = Planner::new(self.recipe, self.graph);
+        let planner = Planner::new(self.recipe, self.graph, self.keys);
         let [sources, own] = progress.parts([order.source_work, order.own_work]);
         sources.expect(order.source_work);
         let make = |link: Link, tile: Window| {
             let plan = planner.source(link, tile)?;
-            self.steps(&plan, there, &sources.part(cost::steps(&plan, self.recipe)))
+            // The solution is kept, what it was made of is not.
+            let engine = Engine { grids: None, ..*self };
+            engine.steps(&plan, there, &sources.part(cost::steps(&plan, self.recipe)))
         };
         let tiles = Tiles { links: &self.graph.links[order.node], order, make: &make, scratch: self.store.scratch() };
         let observer = self.observer.and_then(|(node, observer)| (node == order.node).then_some(observer));

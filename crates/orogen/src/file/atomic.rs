@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all.
+//! Files are written atomically.
 
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, BufWriter, Write};

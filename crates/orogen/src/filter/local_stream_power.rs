@@ -64,6 +64,10 @@ impl Filter for LocalStreamPower {
         36 * window.grown(self.halo(window.cell)).len() as u64
     }
 
+    fn reads_sea_level(&self) -> bool {
+        self.sea
+    }
+
     fn apply(
         &self,
         inputs: &[Option<&Grid>],

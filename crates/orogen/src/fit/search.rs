@@ -8,8 +8,9 @@ use crate::grid::{Grid, Window};
 use crate::op::{self, Field, Inputs};
 use crate::progress::Progress;
 use crate::recipe::document::Recipe;
+use crate::session::Options;
 use crate::survey::measures::Measures;
-use crate::world::{Options, World};
+use crate::world::World;
 use orogen_noise::Points;
 
 /// Side of the windows that are compared, in samples, where the place is large enough.

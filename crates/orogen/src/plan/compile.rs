@@ -92,7 +92,7 @@ impl<'a> Compiler<'a> {
             if let Link::Node(target) = link {
                 compiler.run(*target)?;
             }
-            outputs.push(compiler.value(link, 0));
+            outputs.push(compiler.value(link, 0)?);
         }
         let coord_sets = compiler.windows.len();
         let program = Program::allocate(compiler.instructions, compiler.values, coord_sets, outputs);
@@ -111,9 +111,9 @@ impl<'a> Compiler<'a> {
             }
             match work {
                 Work::Visit(target, coords) => self.visit(target, coords, &mut stack),
-                Work::Enter(target, coords) => self.enter(target, coords, &mut stack),
+                Work::Enter(target, coords) => self.enter(target, coords, &mut stack)?,
                 Work::Surround(target, coords) => self.surround(target, coords, &mut stack),
-                Work::Emit(target, coords) => self.emit(target, coords),
+                Work::Emit(target, coords) => self.emit(target, coords)?,
             }
         }
         Ok(())
@@ -170,9 +170,9 @@ impl<'a> Compiler<'a> {
     }
 
     /// Makes the coordinate set that a moving field reads its source at.
-    fn enter(&mut self, target: LayerRef, coords: CoordSet, stack: &mut Vec<Work>) {
-        let Op::Field(field) = self.recipe.nodes()[target.node].node.op() else { return };
-        let Some(map) = field.coord_map() else { return };
+    fn enter(&mut self, target: LayerRef, coords: CoordSet, stack: &mut Vec<Work>) -> Result<()> {
+        let Op::Field(field) = self.recipe.nodes()[target.node].node.op() else { return Ok(()) };
+        let Some(map) = field.coord_map() else { return Ok(()) };
         let links = &self.graph.links[target.node];
         let source = match map {
             CoordMap::Displaced { source, .. } | CoordMap::Mapped { source, .. } => source,
@@ -184,7 +184,7 @@ impl<'a> Compiler<'a> {
                 let around = self.windows[coords];
                 match map {
                     CoordMap::Displaced { east, south, strength, reach, .. } => {
-                        let (east, south) = (self.value(&links[east], coords), self.value(&links[south], coords));
+                        let (east, south) = (self.value(&links[east], coords)?, self.value(&links[south], coords)?);
                         self.windows.push(around.grown((reach / around.cell).ceil() as usize + MARGIN));
                         self.instructions.push(Instruction::Displace {
                             from: coords,
@@ -207,6 +207,7 @@ impl<'a> Compiler<'a> {
         if let Link::Node(source) = links[source] {
             stack.push(Work::Visit(source, to));
         }
+        Ok(())
     }
 
     /// Makes the four coordinate sets around one that a field with slopes reads its source at.
@@ -237,29 +238,31 @@ impl<'a> Compiler<'a> {
         Some((stencil, [0, 1, 2, 3].map(|k| first + k)))
     }
 
-    fn emit(&mut self, target: LayerRef, coords: CoordSet) {
+    fn emit(&mut self, target: LayerRef, coords: CoordSet) -> Result<()> {
         if self.made.contains_key(&(target, coords)) {
-            return;
+            return Ok(());
         }
         let node = target.node;
         let kind = self.graph.layer_kind(self.recipe, target);
         if self.is_kept(node, coords) {
             let out = self.request(target, false, coords, kind);
             self.made.insert((target, coords), out);
-            return;
+            return Ok(());
         }
         let links = self.graph.links[node].clone();
         let result = match self.recipe.nodes()[node].node.op() {
             Op::Field(field) => match field.coord_map() {
                 Some(CoordMap::Displaced { source, .. } | CoordMap::Mapped { source, .. }) => {
-                    let to = self.entered.get(&(node, coords)).copied().unwrap_or(coords);
-                    self.value(&links[source], to)
+                    let to = self.entered.get(&(node, coords)).copied();
+                    self.value(&links[source], to.ok_or_else(|| internal("a coordinate map was not planned"))?)?
                 }
                 None => {
                     self.note(node, coords);
-                    let mut inputs = self.values(&links, coords);
+                    let mut inputs = self.values(&links, coords)?;
                     if let Some((stencil, around)) = self.stencil(node, coords) {
-                        inputs.extend(around.map(|to| Some(self.value(&links[stencil.source], to))));
+                        for to in around {
+                            inputs.push(Some(self.value(&links[stencil.source], to)?));
+                        }
                     }
                     let out = self.fresh();
                     self.instructions.push(Instruction::Field { node, coords, inputs, out });
@@ -268,7 +271,7 @@ impl<'a> Compiler<'a> {
             },
             Op::Solver(solver) => {
                 self.note(node, coords);
-                let inputs = if solver.reads_inputs() { self.values(&links, coords) } else { Vec::new() };
+                let inputs = if solver.reads_inputs() { self.values(&links, coords)? } else { Vec::new() };
                 let out = self.fresh();
                 self.instructions.push(Instruction::Solved { node, layer: target.layer, kind, coords, inputs, out });
                 out
@@ -279,13 +282,14 @@ impl<'a> Compiler<'a> {
         let value = if mask == Link::None {
             result
         } else {
-            let source = self.masked_source(target).map(|link| self.value(&link, coords));
-            let mask = self.value(&mask, coords);
+            let source = self.masked_source(target).map(|link| self.value(&link, coords)).transpose()?;
+            let mask = self.value(&mask, coords)?;
             let out = self.fresh();
             self.instructions.push(Instruction::Mask { source, result, mask, out });
             out
         };
         self.made.insert((target, coords), value);
+        Ok(())
     }
 
     fn request(&mut self, target: LayerRef, raw: bool, coords: CoordSet, kind: LayerKind) -> Register {
@@ -308,21 +312,21 @@ impl<'a> Compiler<'a> {
         self.values - 1
     }
 
-    fn values(&mut self, links: &[Link], coords: CoordSet) -> Vec<Option<Register>> {
-        links.iter().map(|link| (*link != Link::None).then(|| self.value(link, coords))).collect()
+    fn values(&mut self, links: &[Link], coords: CoordSet) -> Result<Vec<Option<Register>>> {
+        links.iter().map(|link| (*link != Link::None).then(|| self.value(link, coords)).transpose()).collect()
     }
 
     /// The register of what a link gives at a coordinate set where it has been visited.
-    fn value(&mut self, link: &Link, coords: CoordSet) -> Register {
+    fn value(&mut self, link: &Link, coords: CoordSet) -> Result<Register> {
         let constant = match link {
             Link::Node(target) => match self.made.get(&(*target, coords)) {
-                Some(register) => return *register,
-                None => 0.0,
+                Some(register) => return Ok(*register),
+                None => return Err(internal("a node was read before it was planned")),
             },
             Link::Value(value) => *value,
             Link::None => 0.0,
         };
-        match self.constants.get(&constant.to_bits()) {
+        Ok(match self.constants.get(&constant.to_bits()) {
             Some(register) => *register,
             None => {
                 let out = self.fresh();
@@ -330,8 +334,12 @@ impl<'a> Compiler<'a> {
                 self.constants.insert(constant.to_bits(), out);
                 out
             }
-        }
+        })
     }
+}
+
+fn internal(message: &str) -> Error {
+    Error::new(ErrorKind::Internal, message)
 }
 
 /// Samples beyond a position that the interpolating cubic reads.

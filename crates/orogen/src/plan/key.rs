@@ -1,26 +1,28 @@
 //! Content keys: what a node's result depends on, and nothing else.
 
-use crate::declare::Spec;
-use crate::op::WorldParams;
+use crate::declare::{Shape, Spec};
+use crate::node::Node;
+use crate::op::{Op, WorldParams};
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, Link};
 use sha2::{Digest, Sha256};
 
-/// A hash of the op, its revision, its parameters, its sources' keys and the world. Names do not enter it.
+/// A hash of all that a node's result depends on: the op, its revision, its parameters, its sources' keys, and those of the world's facts that it reads.
+/// Names do not enter it.
 pub type Key = [u8; 32];
 
 /// The key of every node, by index.
 pub fn keys(recipe: &Recipe, graph: &Graph) -> Vec<Key> {
-    let world = world_key(&recipe.world.world_params());
+    let world_params = recipe.world.world_params();
     let mut keys: Vec<Key> = vec![[0; 32]; recipe.nodes().len()];
     for &index in &graph.order {
         let node = &recipe.nodes()[index].node;
         let spec: &Spec = node.spec();
         let mut hash = Sha256::new();
-        hash.update(world);
         hash.update(spec.op.as_bytes());
         hash.update([0]);
         hash.update(spec.revision.to_le_bytes());
+        put_world(&mut hash, node, &world_params);
         for (i, param) in spec.params.iter().enumerate() {
             hash.update(param.name.as_bytes());
             hash.update([0]);
@@ -57,13 +59,30 @@ fn put_link(hash: &mut Sha256, link: &Link, keys: &[Key]) {
     }
 }
 
-fn world_key(world_params: &WorldParams) -> Key {
+/// What a node reads of the world: its seed, if the node has one of its own; its extent and the lattice that it is solved on, if it looks at the whole
+/// world; the sea level, if the op says so.
+fn put_world(hash: &mut Sha256, node: &Node, world: &WorldParams) {
+    let mut put = |number: Option<u64>| {
+        hash.update([u8::from(number.is_some())]);
+        hash.update(number.unwrap_or(0).to_le_bytes());
+    };
+    let is_seeded = node.spec().params.iter().any(|param| matches!(param.shape, Shape::Seed));
+    let (size, cell, sea) = match node.op() {
+        Op::Field(field) => (field.needs_bounds(), None, false),
+        Op::Filter(filter) => (false, None, filter.reads_sea_level()),
+        Op::Solver(solver) => (true, Some(solver.cell(world.cell)), solver.reads_sea_level()),
+    };
+    put(is_seeded.then_some(world.seed));
+    let size = size.then_some(world.size).flatten();
+    put(size.map(|[width, _]| width.to_bits()));
+    put(size.map(|[_, height]| height.to_bits()));
+    put(cell.map(f64::to_bits));
+    put(sea.then_some(world.sea_level.to_bits()));
+}
+
+/// What a plan is known by: the keys of all nodes, in the order of the recipe. Plans refer to nodes by their index.
+pub fn identity(keys: &[Key]) -> Key {
     let mut hash = Sha256::new();
-    hash.update(world_params.seed.to_le_bytes());
-    for number in
-        world_params.size.unwrap_or([f64::INFINITY; 2]).into_iter().chain([world_params.cell, world_params.sea_level])
-    {
-        hash.update(number.to_bits().to_le_bytes());
-    }
+    keys.iter().for_each(|key| hash.update(key));
     hash.finalize().into()
 }

@@ -9,3 +9,4 @@ pub mod memory;
 pub mod planner;
 pub mod program;
 pub mod steps;
+mod stored;

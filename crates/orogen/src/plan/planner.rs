@@ -3,7 +3,7 @@
 use super::compile::{Compiler, Draft, GridRequest};
 use super::cost;
 use super::grid_merge::clusters;
-use super::key::{Key, keys};
+use super::key::{Key, identity};
 use super::memory;
 use super::program::{Instruction, Program};
 use super::steps::{GridSlot, Plan, Solve, Step};
@@ -37,7 +37,7 @@ pub struct Planner<'a> {
     recipe: &'a Recipe,
     graph: &'a Graph,
     world_params: WorldParams,
-    keys: Vec<Key>,
+    keys: &'a [Key],
     /// Samples along a side of the tiles that solvers' sources are made in.
     side: usize,
     /// Threads that the plan will run on.
@@ -45,16 +45,9 @@ pub struct Planner<'a> {
 }
 
 impl<'a> Planner<'a> {
-    /// A planner for a resolved recipe.
-    pub fn new(recipe: &'a Recipe, graph: &'a Graph) -> Planner<'a> {
-        Planner {
-            recipe,
-            graph,
-            world_params: recipe.world.world_params(),
-            keys: keys(recipe, graph),
-            side: TILES[0],
-            threads: 1,
-        }
+    /// A planner for a resolved recipe and the content keys of its nodes.
+    pub fn new(recipe: &'a Recipe, graph: &'a Graph, keys: &'a [Key]) -> Planner<'a> {
+        Planner { recipe, graph, world_params: recipe.world.world_params(), keys, side: TILES[0], threads: 1 }
     }
 
     /// A plan for layers over a window that needs at most `allowed` bytes on `threads` threads where that can be: solutions that
@@ -92,6 +85,7 @@ impl<'a> Planner<'a> {
     /// If the recipe multiplies into more evaluations than can be planned.
     pub fn plan(&self, targets: &[Link], window: Window, scattered: bool) -> Result<Plan> {
         let mut plan = self.steps(targets, window, scattered)?;
+        plan.recipe = identity(self.keys);
         plan.solves = self.solves(plan.solvers_read())?;
         Ok(plan)
     }
@@ -103,10 +97,10 @@ impl<'a> Planner<'a> {
 
     /// A plan's steps, without what must be solved first.
     fn steps(&self, targets: &[Link], window: Window, scattered: bool) -> Result<Plan> {
-        // First what is a grid anyway is read instead of made again; of what is still made by several programs, what is dear.
+        // First what is a grid anyway is read instead of made again; of what is still made by several programs, what is expensive.
         let mut kept = HashSet::new();
         let mut attempt = Attempt::new(self, HashSet::new(), scattered).run(targets, window)?;
-        for choose in [Attempt::grids_made_again, Attempt::dear_made_again] {
+        for choose in [Attempt::grids_made_again, Attempt::expensive_made_again] {
             let more = choose(&attempt, self);
             if !more.is_empty() {
                 kept.extend(more);
@@ -118,7 +112,7 @@ impl<'a> Planner<'a> {
 
     fn solve(&self, node: usize) -> Result<Solve> {
         let Op::Solver(solver) = self.recipe.nodes()[node].node.op() else {
-            return Err(Error::new(ErrorKind::Recipe, "a node that is no solver was to be solved"));
+            return Err(Error::new(ErrorKind::Internal, "a node that is not a solver was to be solved"));
         };
         let cell = solver.cell(self.world_params.cell);
         let (world, padded) = world_windows(self.world_params.size.unwrap_or([cell, cell]), cell);
@@ -351,15 +345,15 @@ impl<'a> Attempt<'a> {
         self.filled.iter().filter(|node| self.evaluated.get(node).is_some_and(|count| *count >= 2)).copied().collect()
     }
 
-    /// Dear fields that several programs make.
-    fn dear_made_again(&self, planner: &Planner) -> HashSet<usize> {
-        const DEAR: f64 = 1.0;
-        let is_dear = |node: &usize| match planner.recipe.nodes()[*node].node.op() {
-            Op::Field(field) => field.cost() >= DEAR,
+    /// Expensive fields that several programs make.
+    fn expensive_made_again(&self, planner: &Planner) -> HashSet<usize> {
+        const EXPENSIVE: f64 = 1.0;
+        let is_expensive = |node: &usize| match planner.recipe.nodes()[*node].node.op() {
+            Op::Field(field) => field.cost() >= EXPENSIVE,
             _ => false,
         };
         let again = self.evaluated.iter().filter(|(_, count)| **count >= 2).map(|(node, _)| *node);
-        again.filter(is_dear).collect()
+        again.filter(is_expensive).collect()
     }
 
     fn finish(self, window: Window) -> Plan {
@@ -391,7 +385,8 @@ impl<'a> Attempt<'a> {
             }
         }
         self.outputs.iter().for_each(|&grid| grids[grid].last_use = steps.len());
-        Plan { window, scattered: self.scattered, solves: Vec::new(), steps, grids, outputs: self.outputs }
+        let recipe = Key::default();
+        Plan { recipe, window, scattered: self.scattered, solves: Vec::new(), steps, grids, outputs: self.outputs }
     }
 }
 

@@ -2,25 +2,32 @@
 
 use super::key::Key;
 use super::program::{Instruction, Program};
+use super::stored::StoredPlan;
 use crate::grid::Window;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 /// What will be done to make some layers over a window: an owned value that touches no sample.
+///
+/// It may be stored or sent (serde): it carries the version of the library, the identity of its recipe and a checksum. A plan of another version and a
+/// damaged one are not read; a plan of another recipe is not run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "StoredPlan", into = "StoredPlan")]
 pub struct Plan {
+    /// The identity of its recipe: the content keys of all nodes.
+    pub(crate) recipe: Key,
     /// What is made.
-    pub window: Window,
+    pub(crate) window: Window,
     /// Whether the program is asked at the window's lattice, or at points that lie anywhere within it.
-    pub scattered: bool,
+    pub(crate) scattered: bool,
     /// The solvers that must be solved first, in order.
-    pub solves: Vec<Solve>,
+    pub(crate) solves: Vec<Solve>,
     /// What is then done, in order.
-    pub steps: Vec<Step>,
+    pub(crate) steps: Vec<Step>,
     /// The grids that steps make.
-    pub grids: Vec<GridSlot>,
+    pub(crate) grids: Vec<GridSlot>,
     /// The grids that hold the results (empty if scattered: then the last step's program makes them).
-    pub outputs: Vec<usize>,
+    pub(crate) outputs: Vec<usize>,
 }
 
 /// A solver to be solved.
@@ -134,6 +141,28 @@ impl Step {
 }
 
 impl Plan {
+    /// The samples that are made.
+    pub fn window(&self) -> &Window {
+        &self.window
+    }
+
+    /// The solvers that must be solved first, in order.
+    pub fn solves(&self) -> &[Solve] {
+        &self.solves
+    }
+
+    /// What is then done, in order.
+    pub fn steps(&self) -> &[Step] {
+        &self.steps
+    }
+
+    /// Solves on disk, and makes solvers' sources in tiles of `side` samples, as the planner does where memory is short.
+    pub fn solve_on_disk(&mut self, side: usize) {
+        for solve in &mut self.solves {
+            (solve.on_disk, solve.side) = (true, side);
+        }
+    }
+
     /// Whether the same program answers for every point: no step depends on where the points lie.
     pub fn is_pointwise(&self) -> bool {
         self.scattered && self.steps.len() == 1 && self.grids.is_empty()

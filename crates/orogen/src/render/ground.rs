@@ -36,7 +36,7 @@ pub(super) struct Dress<'a> {
 
 /// What is known of the ground at a place.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Site {
+pub(super) struct GroundPoint {
     /// In cells.
     pub x: f64,
     pub y: f64,
@@ -142,7 +142,7 @@ impl GroundCover {
     }
 
     /// A noise of a wavelength in metres, as far as a pixel lets it be seen.
-    fn noise(&self, site: &Site, wavelength: f32, kind: u32) -> f32 {
+    fn noise(&self, site: &GroundPoint, wavelength: f32, kind: u32) -> f32 {
         let seen = seen(wavelength, site.footprint);
         if seen <= 0.0 {
             return 0.0;
@@ -152,14 +152,14 @@ impl GroundCover {
     }
 
     /// Whether the sample nearest to a place has no finite height.
-    fn is_missing(&self, site: &Site) -> bool {
+    fn is_missing(&self, site: &GroundPoint) -> bool {
         let nearest = |at: f64, count: usize| (at.max(0.0).round() as usize).min(count - 1);
         !self.missing.is_empty()
             && self.missing[nearest(site.y, self.rows) * self.columns + nearest(site.x, self.columns)]
     }
 
     /// What the ground is at a place.
-    pub fn look(&self, site: &Site) -> Look {
+    pub fn look(&self, site: &GroundPoint) -> Look {
         let shape = self.shape_at(site.x, site.y);
         if self.is_missing(site) {
             let slope = [shape[0], shape[1]].map(|part| part * self.exaggeration);
@@ -180,7 +180,7 @@ impl GroundCover {
     }
 
     /// Adds what is smaller than a cell: octaves from two cells down to what a pixel shows, the smaller ones steeper.
-    fn roughen(&self, site: &Site, rough: f32, slope: &mut [f32; 2]) {
+    fn roughen(&self, site: &GroundPoint, rough: f32, slope: &mut [f32; 2]) {
         let mut wavelength = 2.0 * self.cell;
         for octave in 0..8u8 {
             let seen = seen(wavelength, site.footprint) * (0.45 + 0.15 * f32::from(octave.min(4)));
@@ -199,7 +199,7 @@ impl GroundCover {
     }
 
     /// The recipe's surfaces. Between samples their color varies as that of soil and rock does.
-    fn covered(&self, site: &Site) -> (Light, f32) {
+    fn covered(&self, site: &GroundPoint) -> (Light, f32) {
         let [red, green, blue, roughness] = self.between(&self.cover, site.x, site.y);
         let (small, fine) = (self.noise(site, 2.0 * self.cell, 2), self.noise(site, 0.5 * self.cell, 3));
         let grain = 1.0 + 0.16 * small + 0.18 * fine;
@@ -207,7 +207,7 @@ impl GroundCover {
     }
 
     /// Land in a temperate climate: its colour and how rough it is.
-    fn natural(&self, site: &Site, [east, south, hollow, flow]: [f32; 4]) -> (Light, f32) {
+    fn natural(&self, site: &GroundPoint, [east, south, hollow, flow]: [f32; 4]) -> (Light, f32) {
         let steep = (east * east + south * south).sqrt();
         // 1 where it faces north.
         let north = south / (steep + 0.2);
@@ -271,7 +271,7 @@ impl GroundCover {
     }
 
     /// Land where hardly anything grows.
-    fn desert(&self, site: &Site, [east, south, hollow, flow]: [f32; 4]) -> (Light, f32) {
+    fn desert(&self, site: &GroundPoint, [east, south, hollow, flow]: [f32; 4]) -> (Light, f32) {
         const BEDS: [Light; 6] = [
             [0.27, 0.105, 0.055],
             [0.33, 0.165, 0.088],
@@ -414,7 +414,7 @@ mod tests {
         for colors in [Colors::Natural, Colors::Desert, Colors::Surfaces, Colors::Map, Colors::Clay] {
             let dress = Dress { colors, palette: None, cover: Some([&layer; 4]), snow_line: None };
             let ground = GroundCover::new(&land, &relief, &dress);
-            let albedo = |x: f64, y: f64| ground.look(&Site { x, y, height: 3600.0, footprint: 1e6 }).albedo;
+            let albedo = |x: f64, y: f64| ground.look(&GroundPoint { x, y, height: 3600.0, footprint: 1e6 }).albedo;
             let [red, green, blue] = albedo(4.3, 3.7);
             assert!(red == green && green == blue && (0.15..0.3).contains(&red), "{colors:?}: {red} {green} {blue}");
             let [red, green, blue] = albedo(5.6, 4.0);
@@ -422,9 +422,9 @@ mod tests {
         }
     }
 
-    fn site(height: f32) -> Site {
+    fn site(height: f32) -> GroundPoint {
         // Seen from so far that no noise is left.
-        Site { x: 2.0, y: f64::from(4000.0 - height) / 10.0, height, footprint: 1e6 }
+        GroundPoint { x: 2.0, y: f64::from(4000.0 - height) / 10.0, height, footprint: 1e6 }
     }
 
     #[test]
@@ -454,7 +454,8 @@ mod tests {
             let ground = ground(0.5, colors, None);
             for k in 0..300u16 {
                 let k = f64::from(k);
-                let site = Site { x: k % 5.0, y: k * 1.3, height: (k * 13.0) as f32, footprint: (k * 0.1) as f32 };
+                let site =
+                    GroundPoint { x: k % 5.0, y: k * 1.3, height: (k * 13.0) as f32, footprint: (k * 0.1) as f32 };
                 let look = ground.look(&site);
                 assert!(look.albedo.iter().all(|c| (0.0..=1.0).contains(c)), "{colors:?} {k}: {look:?}");
                 assert!(look.slope.iter().all(|c| c.is_finite()));

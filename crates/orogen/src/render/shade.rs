@@ -1,6 +1,6 @@
 //! What light comes back from what a ray has met.
 
-use super::ground::Site;
+use super::ground::GroundPoint;
 use super::march::{Ray, Surface};
 use super::scene::{Met, Scene, Seen};
 use super::vector::Vector;
@@ -64,7 +64,8 @@ impl Scene {
     fn shade_ground(&self, met: &Met, pixel: f64) -> Light {
         let Vector { x, y, z } = met.place;
         let slant = -met.along.z + 0.3;
-        let site = Site { x, y, height: self.relief.height_of(z) as f32, footprint: self.footprint(met, pixel, slant) };
+        let site =
+            GroundPoint { x, y, height: self.relief.height_of(z) as f32, footprint: self.footprint(met, pixel, slant) };
         let look = self.ground.look(&site);
         let normal = Vector::new(-f64::from(look.slope[0]), -f64::from(look.slope[1]), 1.0).unit();
         let facing = normal.dot(self.sun(met.flip)) as f32;

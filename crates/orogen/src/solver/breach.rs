@@ -57,6 +57,10 @@ impl Solver for Breach {
         padded.len() as u64 * each
     }
 
+    fn reads_sea_level(&self) -> bool {
+        self.sea
+    }
+
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         let mut heights = sources.whole(0, sources.padded())?;
         context.progress.check()?;

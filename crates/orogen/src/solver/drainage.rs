@@ -70,6 +70,10 @@ impl Solver for Drainage {
         large::memory(padded.len() as u64)
     }
 
+    fn reads_sea_level(&self) -> bool {
+        self.sea
+    }
+
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         if sources.on_disk() {
             return self.solve_on_disk(sources, context);

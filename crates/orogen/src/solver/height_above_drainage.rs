@@ -42,6 +42,10 @@ impl Solver for HeightAboveDrainage {
         padded.len() as u64 * 56
     }
 
+    fn reads_sea_level(&self) -> bool {
+        self.sea
+    }
+
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         let heights = sources.whole(0, sources.padded())?;
         context.progress.check()?;

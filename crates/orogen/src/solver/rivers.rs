@@ -51,6 +51,10 @@ impl Solver for Rivers {
         padded.len() as u64 * 40
     }
 
+    fn reads_sea_level(&self) -> bool {
+        self.sea
+    }
+
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         let heights = sources.whole(0, sources.padded())?;
         context.progress.check()?;

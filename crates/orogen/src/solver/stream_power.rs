@@ -79,6 +79,10 @@ impl Solver for StreamPower {
         padded.len() as u64 * if self.jitter > 0.0 { 61 } else { 45 }
     }
 
+    fn reads_sea_level(&self) -> bool {
+        self.sea
+    }
+
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
         let window = *sources.padded();
         let source = sources.whole(0, &window)?;

@@ -132,7 +132,7 @@ impl Reader<'_> {
     fn head(&mut self, key: &[u8; 32], length: u64) -> Result<Head> {
         let mut bytes = self.bytes(MAGIC.len() + 32 + 16)?;
         if bytes[..16] != MAGIC[..] || bytes[16..48] != key[..] {
-            return Err(self.fault("it begins otherwise"));
+            return Err(self.fault("it is not a solution of this version (bad magic number)"));
         }
         let [scalars, layers] = [48, 56].map(|at| usize::try_from(word(&bytes, at)).unwrap_or(usize::MAX));
         if scalars > MOST || layers > MOST {

@@ -2,5 +2,6 @@
 
 pub mod cache;
 mod entry;
+pub mod grids;
 pub mod listing;
 pub mod solutions;

@@ -1,0 +1,49 @@
+//! The libraries built for WebAssembly without a system, and every preset made by them under node: the golden bits with vectors and without.
+
+use super::install;
+use crate::failure::{Failure, Result};
+use crate::shell;
+
+const TARGET: &str = "wasm32-unknown-unknown";
+
+/// Gets the target's standard library.
+pub fn install() -> Result {
+    let ask = ["--print", "target-libdir", "--target", TARGET];
+    if shell::capture(shell::program("rustc").args(ask))
+        .is_ok_and(|folder| std::path::Path::new(folder.trim()).is_dir())
+    {
+        return Ok(());
+    }
+    println!("    rustup target add {TARGET}");
+    install::patiently(|| {
+        let mut command = shell::program("rustup");
+        command.args(["target", "add", TARGET]);
+        command
+    })
+}
+
+/// Builds without threads, with vectors, and makes every preset at both levels.
+pub fn check() -> Result {
+    let folder = super::folder().join("wasm");
+    let mut build =
+        shell::cargo("build --quiet --package orogen --example golden_presets --no-default-features --release");
+    build
+        .env("CARGO_BUILD_TARGET", TARGET)
+        .env("CARGO_TARGET_DIR", &folder)
+        .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", "-C target-feature=+simd128")
+        .env("CARGO_PROFILE_RELEASE_LTO", "off")
+        .env("CARGO_PROFILE_RELEASE_OPT_LEVEL", "2")
+        .env("CARGO_PROFILE_RELEASE_CODEGEN_UNITS", "16");
+    shell::run(&mut build)?;
+    let module = folder.join(TARGET).join("release/examples/golden_presets.wasm");
+    let mut run = shell::program("node");
+    run.arg(shell::root().join("xtask/clients/run_wasm.mjs")).arg(module);
+    match run.status().map_err(|cause| Failure::new(format!("cannot run node: {cause}")))?.code() {
+        Some(0) => {
+            println!("    every preset at the levels simd128 and scalar: all as in golden/presets.txt");
+            Ok(())
+        }
+        Some(number @ 1..=200) => Err(Failure::new(format!("preset number {number} differs from golden/presets.txt"))),
+        code => Err(Failure::new(format!("the module did not get to its end: exit code {code:?}"))),
+    }
+}

@@ -1,0 +1,115 @@
+//! Words that the field has a better one for: no name and no text of the project uses them.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::failure::{Failure, Result};
+
+/// Names that are not defined again, each with what it is called.
+const NAMES: &[(&str, &str)] = &[
+    ("Setting", "WorldParams"),
+    ("Slots", "Inputs"),
+    ("Moves", "CoordMap"),
+    ("Slopes", "Stencil"),
+    ("Place", "CoordSet, Placement, Point"),
+    ("Demand", "GridRequest"),
+    ("Between", "Interpolation"),
+    ("Machine", "Interpreter"),
+    ("Ready", "PreparedProgram"),
+    ("Complaint", "Diagnostic"),
+    ("Fault", "Diagnostic"),
+    ("Imported", "FileRef"),
+    ("lies_in", "set_base_dir"),
+    ("of_place", "from_dem"),
+    ("Order", "BuildSpec"),
+    ("Shelf", "OutputStore"),
+    ("Story", "JournalState"),
+    ("Subject", "LayerSource"),
+    ("Spread", "Quantizer"),
+    ("Takes", "ValueKind"),
+    ("WayOut", "Spill"),
+    ("over_bed", "route_carving"),
+    ("nearness", "inverse_distance"),
+    ("settled", "solve_newton"),
+    ("Rings", "LodConfig"),
+    ("give_up", "evict"),
+    ("KNOBS", "PARAMS"),
+    ("Likeness", "FeatureVector"),
+    ("film", "tone_map"),
+    ("Lettering", "BuiltinFont"),
+    ("Letters", "FontSet"),
+    ("Mismatch", "LengthMismatch"),
+    ("Untileable", "TileError"),
+];
+
+/// Beginnings of names.
+const PREFIXES: &[(&str, &str)] = &[("MOST_", "MAX_"), ("USUAL_", "DEFAULT_")];
+
+/// What a name follows where it is defined.
+const DEFINITIONS: &[&str] = &["struct", "enum", "trait", "type", "fn", "const", "static", "mod"];
+
+/// Phrases of no text.
+const PHRASES: &[&str] = &[
+    "a plan for points asks at no point",
+    "show nothing",
+    "makes nothing",
+    "make nothing",
+    "Which chances.",
+    "/// One.",
+    "/// The other.",
+    "it begins otherwise",
+    "lies nowhere",
+    "it is nobody's",
+    "that is nobody's",
+    "grow by what sticks to them",
+    "each as fast as it is by itself",
+    "appear whole or not at all",
+    "appears whole or not at all",
+    "What depends on what it is asked for",
+];
+
+/// Looks through every file that git tracks.
+pub fn check() -> Result {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
+    let listed = Command::new("git").args(["ls-files", "*.rs", "*.md", "*.toml"]).current_dir(root).output();
+    let listed = listed.map_err(|cause| Failure::Failed(format!("cannot run git: {cause}")))?;
+    let mut found = Vec::new();
+    for file in String::from_utf8_lossy(&listed.stdout).lines().filter(|file| *file != "xtask/src/words.rs") {
+        let Ok(text) = std::fs::read_to_string(root.join(file)) else { continue };
+        for (number, line) in text.lines().enumerate() {
+            found.extend(faults(line).into_iter().map(|fault| format!("  {file}:{}: {fault}", number + 1)));
+        }
+    }
+    match found.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::Failed(format!("these have a plainer word:\n{}", found.join("\n")))),
+    }
+}
+
+fn faults(line: &str) -> Vec<String> {
+    let mut faults: Vec<String> =
+        PHRASES.iter().filter(|phrase| line.contains(*phrase)).map(|phrase| format!("\"{phrase}\"")).collect();
+    let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let code = line.split("//").next().unwrap_or_default();
+    let words: Vec<&str> = code.split(|c| !is_name(c)).filter(|word| !word.is_empty()).collect();
+    for pair in words.windows(2).filter(|pair| DEFINITIONS.contains(&pair[0])) {
+        let name = NAMES.iter().find(|(name, _)| *name == pair[1]);
+        let prefix = PREFIXES.iter().find(|(prefix, _)| pair[1].starts_with(prefix));
+        faults.extend(name.or(prefix).map(|(_, instead)| format!("`{}`: {instead}", pair[1])));
+    }
+    faults
+}
+
+#[cfg(test)]
+mod tests {
+    use super::faults;
+
+    #[test]
+    fn definitions_and_phrases_are_found_and_uses_are_not() {
+        assert_eq!(faults("pub struct Shelf<'a> {"), ["`Shelf`: OutputStore"]);
+        assert_eq!(faults("const MOST_NODES: usize = 3;"), ["`MOST_NODES`: MAX_"]);
+        assert_eq!(faults("    /// Which chances."), ["\"Which chances.\""]);
+        assert!(faults("impl Shelf { // struct Shelf").is_empty());
+        assert!(faults("let order = Order::new();").is_empty());
+    }
+}
