@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::ValueEnum;
-use orogen::builder::builder::{Build, Report, Start};
+use orogen::builder::run::{Build, Report, Start};
 use orogen::builder::spec::{BuildSpec, Form, Samples};
 use orogen::builder::xyz;
 use orogen::format::encoding::Encoding;

@@ -14,7 +14,6 @@
 //! again. All is synced once, before the result is declared finished.
 
 mod blocks;
-pub mod builder;
 mod cog;
 mod digest;
 mod folder;
@@ -22,6 +21,7 @@ mod identity;
 mod job;
 mod journal;
 mod output_store;
+pub mod run;
 mod samples;
 pub mod spec;
 mod target;

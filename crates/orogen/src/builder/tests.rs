@@ -6,7 +6,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::builder::{Build, Report, Start};
+use super::run::{Build, Report, Start};
 use super::spec::{BuildSpec, Form, Samples};
 use crate::error::ErrorKind;
 use crate::file::{Existing, Output, OutputPolicy};

@@ -60,7 +60,7 @@ pub struct Report {
 /// A build: an order that can be met, about to be carried out.
 ///
 /// ```
-/// use orogen::builder::builder::{Build, Start};
+/// use orogen::builder::run::{Build, Start};
 /// use orogen::builder::order::{Form, BuildSpec};
 /// use orogen::file::OutputPolicy;
 /// use orogen::{Progress, Window, World};
