@@ -16,7 +16,7 @@ use crate::format::levels::{NO_SAMPLES, extremes};
 use crate::grid::{Grid, Window};
 use crate::map::paint::Painter;
 use crate::map::shade::Shade;
-use crate::mesh::adaptive::adaptive_with;
+use crate::mesh::adaptive::{TILE, adaptive_with};
 use crate::mesh::relief::HeightCurve;
 use crate::mesh::shape::Shape;
 use crate::mesh::surface::Surface;
@@ -61,11 +61,17 @@ const LATTICE: f64 = 3.0;
 const PAINTING: f64 = 60.0;
 const WRITING: f64 = 60.0;
 
-/// Bytes that a mesh of a window takes beside what its file is written from: the heights, and for few triangles the triangulation
-/// while it grows, if one sample in five becomes a corner.
+/// Bytes that a mesh of a window takes beside what its file is written from: the heights, and for few triangles these and the triangulations of the tiles at
+/// work, if one sample in five becomes a corner.
 pub fn memory(window: &Window, options: &Options) -> u64 {
     let samples = whole(window);
-    samples.saturating_mul(if options.has(MAX_ERROR.name) { 8 } else { 2 })
+    match options.has(MAX_ERROR.name) {
+        true => {
+            let at_work = (TILE * TILE * rayon::current_num_threads() * size_of::<f32>()) as u64;
+            samples.saturating_mul(2).saturating_add(samples.min(at_work).saturating_mul(6))
+        }
+        false => samples.saturating_mul(2),
+    }
 }
 
 /// A grid and what is made of it.

@@ -1,17 +1,20 @@
 //! Few triangles, and none of the samples further from them than stated.
 
+use std::sync::{Mutex, PoisonError};
+
 use rayon::prelude::*;
 
-use super::shape::{Packed, Part, Shape, enough};
+use super::packed::PackedTriangles;
+use super::shape::{Part, Shape, enough};
 use super::tile::Tile;
-use super::tin::{Triangulation, triangulate};
+use super::tin::{Workspace, triangulate};
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Grid;
 use crate::progress::Progress;
 
 /// The most cells a tile has along each side: a larger grid is cut. The coordinates within a tile must stay small enough for
 /// exact arithmetic in 64 bits, and what a tile holds should stay in cache.
-const TILE: usize = 1024;
+pub(crate) const TILE: usize = 1024;
 
 /// A surface through some of the samples from which none is further than `max_error` metres, measured vertically.
 ///
@@ -50,20 +53,25 @@ pub fn adaptive_with(grid: &Grid, max_error: f64, progress: &Progress) -> Result
         .flat_map(|rows| across.windows(2).map(|columns| [[columns[0], rows[0]], [columns[1], rows[1]]]))
         .collect();
     progress.expect(tiles.len() as f64);
+    // As many as there are threads, each used for one tile after another.
+    let free: Mutex<Vec<(Vec<f32>, Workspace)>> = Mutex::default();
+    // It stays usable if a thread panics while it holds the lock.
+    let lock = || free.lock().unwrap_or_else(PoisonError::into_inner);
     let parts: Result<Vec<Part>> = tiles
         .into_par_iter()
         .map(|[[left, top], [right, bottom]]| {
-            let tile = Tile::of(grid, [left, top], [right - left + 1, bottom - top + 1]);
-            let Triangulation { places, triangles } = triangulate(&tile, max_error, progress)?;
-            // A tile has at most 1025 samples a side.
-            let samples = places.iter().map(|&[column, row]| column as u32 | (row as u32) << 16).collect();
+            let (memory, mut workspace) = lock().pop().unwrap_or_default();
+            let tile = Tile::of(grid, [left, top], [right - left + 1, bottom - top + 1], memory);
+            let triangles = triangulate(&tile, max_error, &mut workspace, progress)?;
             // From clockwise on the page, y downwards, to counter-clockwise from above.
-            let triangles = triangles.iter().map(|&[a, b, c]| Packed::new([a, c, b])).collect();
+            let triangles = PackedTriangles::new(triangles.map(|[a, b, c]| [a, c, b]));
+            lock().push((tile.into_memory(), workspace));
             progress.advance(1.0);
-            Ok(Part { corner: [left as u32, top as u32], samples, triangles })
+            Ok(Part { corner: [left, top], triangles })
         })
         .collect();
-    Ok(Shape::joined(parts?))
+    drop(free);
+    Ok(Shape::joined([grid.width(), grid.height()], parts?))
 }
 
 /// The columns (or rows) at which so many samples are cut into tiles, evenly, with the first and the last.

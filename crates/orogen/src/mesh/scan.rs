@@ -1,20 +1,39 @@
 //! The sample that is furthest above or below a triangle.
 
-use orogen_simd::{Body, F32Lanes, Simd, U32Lanes};
+use orogen_simd::{Body, F32Lanes, Simd, U32Lanes, dispatch};
 
-use super::tile::Tile;
+use super::tile::{Sample, Tile};
 
 /// The most lanes a register has.
 const LANES: usize = 16;
+
+/// A triangle with at most this many samples in a row is looked at sample by sample.
+const NARROW: i32 = 4;
 
 /// Looks at every sample of a triangle once, but for its corners and the tile's border: one on an edge belongs to the triangle
 /// west of it, on a level edge to the one south of it. So samples on the edges are seen by one of two neighbours.
 ///
 /// In f32, at any SIMD level the same bits: the first of the furthest samples, row by row.
-pub(super) struct Scan<'a> {
-    pub tile: &'a Tile,
+#[inline]
+pub(super) fn furthest(tile: &Tile, corners: [Sample; 3]) -> Worst {
+    let [a, b, c] = corners.map(Sample::place);
+    let [east, south] = [0, 1].map(|axis| [b[axis] - a[axis], c[axis] - a[axis]]);
+    // By Pick's theorem a triangle of this area has no samples but its corners.
+    if (east[0] * south[1] - east[1] * south[0]).abs() == 1 {
+        return Worst::NONE;
+    }
+    let [least, most] = [east[0].min(east[1]).min(0), east[0].max(east[1]).max(0)];
+    match most - least <= NARROW {
+        true => one_by_one(tile, [a, b, c]),
+        false => dispatch(Scan { tile, corners: [a, b, c] }),
+    }
+}
+
+/// [`furthest`] by registers.
+struct Scan<'a> {
+    tile: &'a Tile,
     /// Columns and rows of the corners.
-    pub corners: [[i32; 2]; 3],
+    corners: [[i32; 2]; 3],
 }
 
 /// A sample and how far from the surface it is.
@@ -22,13 +41,14 @@ pub(super) struct Scan<'a> {
 pub(super) struct Worst {
     /// Metres above or below.
     pub error: f32,
-    /// Where it is among the tile's samples.
-    pub at: u32,
+    pub at: Sample,
 }
 
 impl Worst {
     /// Of a triangle that holds no sample.
-    pub const NONE: Worst = Worst { error: 0.0, at: 0 };
+    pub const NONE: Worst = Worst { error: 0.0, at: Sample::FIRST };
+    /// Of a triangle that was not looked at.
+    pub const UNKNOWN: Worst = Worst { error: -1.0, at: Sample::FIRST };
 }
 
 /// The corners from north to south, and what follows from them.
@@ -46,12 +66,16 @@ struct Triangle {
 impl Triangle {
     /// `None` if there is no row to look at.
     #[inline(always)]
-    fn new(tile: &Tile, mut corners: [[i32; 2]; 3]) -> Option<Triangle> {
+    fn new(tile: &Tile, corners: [[i32; 2]; 3]) -> Option<Triangle> {
+        // Those of the same row stay in order. Without a branch: which way it goes cannot be foreseen.
+        let mut keys = [0, 1, 2].map(|k| {
+            let corner = corners[k];
+            (corner[1] as u64) << 34 | (k as u64) << 32 | u64::from(Sample::at(corner).number())
+        });
         for [a, b] in [[0, 1], [1, 2], [0, 1]] {
-            if corners[b][1] < corners[a][1] {
-                corners.swap(a, b);
-            }
+            (keys[a], keys[b]) = (keys[a].min(keys[b]), keys[a].max(keys[b]));
         }
+        let corners = keys.map(|key| Sample::from_number(key as u32).place());
         let [a, b, c] = corners;
         let first = if a[1] == b[1] { a[1] } else { a[1] + 1 };
         let rows = [first.max(1), (c[1] - 1).min(tile.height as i32 - 2)];
@@ -184,6 +208,7 @@ impl Body for Scan<'_> {
             let mut first = row as usize * tile.stride + west as usize;
             let start = simd.f32(triangle.surface(west, row) as f32);
             let mut away = iota;
+            let mut number = Sample::at([west, row]).number();
             while left > 0 {
                 let error = ((start + rise * away) - simd.load(&heights[first..first + S::LANES])).abs();
                 let error = match left >= S::LANES as i32 {
@@ -192,9 +217,10 @@ impl Body for Scan<'_> {
                 };
                 let further = worst.lt(error);
                 worst = error.select(further, worst);
-                at = simd.u32(first as u32).select(further, at);
+                at = simd.u32(number).select(further, at);
                 left -= S::LANES as i32;
                 first += S::LANES;
+                number += S::LANES as u32;
                 away = away + lanes;
             }
         }
@@ -203,7 +229,7 @@ impl Body for Scan<'_> {
         at.store(&mut places);
         let mut found = Worst::NONE;
         for (lane, (&error, &place)) in errors.iter().zip(&places).enumerate().take(S::LANES) {
-            let at = place + lane as u32;
+            let at = Sample::from_number(place + lane as u32);
             if error > found.error || error == found.error && at < found.at {
                 found = Worst { error, at };
             }
@@ -212,21 +238,43 @@ impl Body for Scan<'_> {
     }
 }
 
-/// As [`Scan`], in f64: for distances that are not far from what f32 rounds by, and for heights near its ends.
-pub(super) fn exactly(tile: &Tile, corners: [[i32; 2]; 3]) -> Worst {
+/// [`furthest`] sample by sample.
+fn one_by_one(tile: &Tile, corners: [[i32; 2]; 3]) -> Worst {
     let Some(triangle) = Triangle::new(tile, corners) else { return Worst::NONE };
-    let (mut worst, mut at) = (0.0, 0);
+    let rise = triangle.rise[0] as f32;
+    let mut worst = Worst::NONE;
+    let mut spans = Spans::new(&triangle, tile);
+    while let Some([row, west, east]) = spans.next() {
+        if west > east {
+            continue;
+        }
+        let start = triangle.surface(west, row) as f32;
+        for column in west..=east {
+            let error = ((start + rise * (column - west) as f32) - tile.at([column, row])).abs();
+            if error > worst.error {
+                worst = Worst { error, at: Sample::at([column, row]) };
+            }
+        }
+    }
+    worst
+}
+
+/// As [`furthest`], in f64: for distances that are not far from what f32 rounds by, and for heights near its ends.
+pub(super) fn exactly(tile: &Tile, corners: [Sample; 3]) -> Worst {
+    let corners = corners.map(Sample::place);
+    let Some(triangle) = Triangle::new(tile, corners) else { return Worst::NONE };
+    let (mut worst, mut at) = (0.0, Sample::FIRST);
     let mut spans = Spans::new(&triangle, tile);
     while let Some([row, west, east]) = spans.next() {
         for column in west..=east {
             let error = (triangle.surface(column, row) - f64::from(tile.at([column, row]))).abs();
             // A corner is on the surface, whatever rounding says.
             if error > worst && !corners.contains(&[column, row]) {
-                (worst, at) = (error, row as usize * tile.stride + column as usize);
+                (worst, at) = (error, Sample::at([column, row]));
             }
         }
     }
-    Worst { error: worst as f32, at: at as u32 }
+    Worst { error: worst as f32, at }
 }
 
 #[cfg(test)]
@@ -238,7 +286,7 @@ mod tests {
     fn bumpy(side: usize) -> Tile {
         let data =
             (0..side * side).map(|i| 1000.0 + ((i as u32).wrapping_mul(2_654_435_761) >> 20) as f32 / 7.0).collect();
-        Tile::of(&Grid::from_data(Window::new(side, side, 1.0), data).unwrap(), [0, 0], [side, side])
+        Tile::of(&Grid::from_data(Window::new(side, side, 1.0), data).unwrap(), [0, 0], [side, side], Vec::new())
     }
 
     fn cross(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> i64 {
@@ -281,14 +329,16 @@ mod tests {
                     }
                 }
             }
-            let found = exactly(&tile, corners);
+            let found = exactly(&tile, corners.map(Sample::at));
             // Samples on an edge may be further away than those inside.
             assert!(f64::from(found.error) >= worst - 1e-3, "{corners:?}");
             for level in Level::available() {
                 let quick = dispatch_at(level, Scan { tile: &tile, corners }).unwrap();
                 assert!((quick.error - found.error).abs() < 2e-3, "{corners:?} {level:?}: {quick:?} {found:?}");
                 assert_eq!(quick, dispatch_at(Level::Scalar, Scan { tile: &tile, corners }).unwrap(), "{level:?}");
+                assert_eq!(quick, one_by_one(&tile, corners), "{level:?}");
             }
+            assert_eq!(furthest(&tile, corners.map(Sample::at)), one_by_one(&tile, corners), "{corners:?}");
         }
     }
 

@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::packed::{PIECE, PackedTriangles};
+use super::sample_set::{SampleSet, Word, columns, count};
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Grid;
 
@@ -23,120 +25,25 @@ enum Kind {
     /// Some samples (column, row), in order, and any triangles.
     Listed { samples: Vec<[u32; 2]>, triangles: Vec<[u32; 3]> },
     /// Some samples, and triangles part by part; a piece is some triangles of a part.
-    Joined { samples: ByRow, parts: Vec<Numbered>, pieces: Vec<[u32; 2]>, triangles: usize },
-}
-
-/// Some samples of a grid, row by row.
-#[derive(Debug, Clone, PartialEq)]
-struct ByRow {
-    /// Their columns, in each row in order.
-    columns: Vec<u32>,
-    /// Where each row begins among them, and where the last one ends.
-    starts: Vec<u32>,
-}
-
-impl ByRow {
-    /// The samples of all parts, each once.
-    fn of(parts: &[Part]) -> ByRow {
-        let places = || parts.iter().flat_map(Part::places);
-        let rows = places().map(|[_, row]| row as usize + 1).max().unwrap_or(0);
-        let mut starts = vec![0u32; rows + 1];
-        places().for_each(|[_, row]| starts[row as usize + 1] += 1);
-        (0..rows).for_each(|row| starts[row + 1] += starts[row]);
-        let mut columns = vec![0u32; starts[rows] as usize];
-        let mut next = starts.clone();
-        for [column, row] in places() {
-            columns[next[row as usize] as usize] = column;
-            next[row as usize] += 1;
-        }
-        drop(next);
-        // Parts share what lies along their edges.
-        let mut kept = 0;
-        for row in 0..rows {
-            let (first, end) = (starts[row] as usize, starts[row + 1] as usize);
-            columns[first..end].sort_unstable();
-            starts[row] = kept as u32;
-            for k in first..end {
-                if kept == starts[row] as usize || columns[kept - 1] != columns[k] {
-                    columns[kept] = columns[k];
-                    kept += 1;
-                }
-            }
-        }
-        starts[rows] = kept as u32;
-        columns.truncate(kept);
-        ByRow { columns, starts }
-    }
-
-    /// The columns of a row.
-    fn row(&self, row: usize) -> &[u32] {
-        &self.columns[self.starts[row] as usize..self.starts[row + 1] as usize]
-    }
-
-    /// The number of a sample that is one of them.
-    fn number(&self, [column, row]: [u32; 2]) -> u32 {
-        let row = row as usize;
-        self.starts[row] + self.row(row).partition_point(|other| *other < column) as u32
-    }
-
-    /// The column and row of a number.
-    fn sample(&self, number: u32) -> [usize; 2] {
-        let row = self.starts.partition_point(|start| *start <= number) - 1;
-        [self.columns[number as usize] as usize, row]
-    }
-}
-
-/// Triangles of corners that are numbered within a part.
-#[derive(Debug, Clone, PartialEq)]
-struct Numbered {
-    /// The numbers in the shape.
-    numbers: Box<[u32]>,
-    triangles: Box<[Packed]>,
-}
-
-/// Three numbers of fewer than 21 bits.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Packed(u64);
-
-impl Packed {
-    /// Bits of a number.
-    const BITS: u32 = 21;
-
-    /// The numbers must be below 2^21.
-    pub fn new([a, b, c]: [u32; 3]) -> Packed {
-        Packed(u64::from(a) | u64::from(b) << Packed::BITS | u64::from(c) << (2 * Packed::BITS))
-    }
-
-    fn get(self) -> [u32; 3] {
-        [0, 1, 2].map(|k| (self.0 >> (k * Packed::BITS)) as u32 & ((1 << Packed::BITS) - 1))
-    }
+    Joined { samples: SampleSet, parts: Vec<Part>, pieces: Vec<[u32; 2]>, triangles: usize },
 }
 
 /// Some triangles over samples of a part of a grid.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Part {
     /// The part's first column and row.
-    pub corner: [u32; 2],
-    /// Columns, and above these 16 bits rows, from there: fewer than 2^21 samples.
-    pub samples: Box<[u32]>,
-    /// Triples of them, counter-clockwise seen from above.
-    pub triangles: Box<[Packed]>,
+    pub corner: [usize; 2],
+    /// Triples of its samples, counter-clockwise seen from above.
+    pub triangles: PackedTriangles,
 }
 
 impl Part {
-    /// The samples' columns and rows in the grid.
-    fn places(&self) -> impl Iterator<Item = [u32; 2]> {
-        self.samples.iter().map(|sample| self.place(*sample))
-    }
-
-    fn place(&self, sample: u32) -> [u32; 2] {
-        [self.corner[0] + (sample & 0xffff), self.corner[1] + (sample >> 16)]
-    }
-
-    /// The part by the numbers of its samples among all, which take their places.
-    fn numbered(mut self, all: &ByRow) -> Numbered {
-        let mut numbers = std::mem::take(&mut self.samples);
-        numbers.iter_mut().for_each(|sample| *sample = all.number(self.place(*sample)));
-        Numbered { numbers, triangles: self.triangles }
+    /// Hands each triangle of a piece to `each`, its corners as columns and rows of the grid.
+    fn piece(&self, piece: usize, mut each: impl FnMut([[usize; 2]; 3])) {
+        let [left, top] = self.corner;
+        self.triangles.piece(piece, |triangle| {
+            each(triangle.map(|[column, row]| [left + column as usize, top + row as usize]));
+        });
     }
 }
 
@@ -157,15 +64,18 @@ impl Shape {
         if whole { Ok(lattice) } else { lattice.without_holes(grid) }
     }
 
-    /// Parts that share samples along their edges. All samples of a part must be corners of its triangles.
-    pub(super) fn joined(parts: Vec<Part>) -> Shape {
-        let samples = ByRow::of(&parts);
-        let parts: Vec<Numbered> = parts.into_par_iter().map(|part| part.numbered(&samples)).collect();
-        let each = |(p, part): (usize, &Numbered)| {
-            (0..part.triangles.len().div_ceil(PIECE)).map(move |k| [p as u32, k as u32]).collect::<Vec<_>>()
-        };
-        let pieces = parts.iter().enumerate().flat_map(each).collect();
-        let triangles = parts.iter().map(|part| part.triangles.len()).sum();
+    /// Parts of a grid of this width and height. They may share samples along their edges.
+    pub(super) fn joined(size: [usize; 2], parts: Vec<Part>) -> Shape {
+        let mut samples = SampleSet::empty(size);
+        let mut pieces = Vec::new();
+        for (p, part) in parts.iter().enumerate() {
+            for k in 0..part.triangles.pieces() {
+                part.piece(k, |triangle| triangle.into_iter().for_each(|sample| samples.insert(sample)));
+                pieces.push([p as u32, k as u32]);
+            }
+        }
+        samples.number_all();
+        let triangles = parts.iter().map(|part| part.triangles.count()).sum();
         Shape { kind: Kind::Joined { samples, parts, pieces, triangles } }
     }
 
@@ -221,7 +131,7 @@ impl Shape {
         match &self.kind {
             Kind::Lattice { columns, rows } => columns.len() * rows.len(),
             Kind::Listed { samples, .. } => samples.len(),
-            Kind::Joined { samples, .. } => samples.columns.len(),
+            Kind::Joined { samples, .. } => samples.len(),
         }
     }
 
@@ -252,8 +162,10 @@ impl Shape {
             Kind::Lattice { columns, rows } => {
                 rows.iter().map(|&row| CornerRow { row: row as usize, corners: Corners::Columns(columns) }).collect()
             }
-            Kind::Joined { samples, .. } => (0..samples.starts.len() - 1)
-                .map(|row| CornerRow { row, corners: Corners::Columns(samples.row(row)) })
+            Kind::Joined { samples, .. } => samples
+                .rows()
+                .enumerate()
+                .map(|(row, words)| CornerRow { row, corners: Corners::Words(words) })
                 .filter(|corners| corners.len() > 0)
                 .collect(),
             Kind::Listed { samples, .. } => samples
@@ -293,12 +205,9 @@ impl Shape {
             Kind::Listed { triangles, .. } => {
                 triangles[piece * PIECE..triangles.len().min((piece + 1) * PIECE)].iter().copied().for_each(each);
             }
-            Kind::Joined { parts, pieces, .. } => {
+            Kind::Joined { samples, parts, pieces, .. } => {
                 let [part, k] = pieces[piece].map(|k| k as usize);
-                let Numbered { numbers, triangles } = &parts[part];
-                for triangle in &triangles[k * PIECE..triangles.len().min((k + 1) * PIECE)] {
-                    each(triangle.get().map(|corner| numbers[corner as usize]));
-                }
+                parts[part].piece(k, |triangle| each(triangle.map(|sample| samples.number(sample))));
             }
         }
     }
@@ -315,9 +224,6 @@ impl Shape {
     }
 }
 
-/// How many listed triangles make a piece.
-const PIECE: usize = 1 << 14;
-
 /// A row of samples and those that are corners.
 pub(crate) struct CornerRow<'a> {
     /// The row of the grid.
@@ -328,6 +234,7 @@ pub(crate) struct CornerRow<'a> {
 enum Corners<'a> {
     Columns(&'a [u32]),
     Samples(&'a [[u32; 2]]),
+    Words(&'a [Word]),
 }
 
 impl CornerRow<'_> {
@@ -336,6 +243,7 @@ impl CornerRow<'_> {
         match self.corners {
             Corners::Columns(columns) => columns.len(),
             Corners::Samples(samples) => samples.len(),
+            Corners::Words(words) => count(words),
         }
     }
 
@@ -344,6 +252,7 @@ impl CornerRow<'_> {
         match self.corners {
             Corners::Columns(columns) => columns.iter().for_each(|&column| each(column as usize)),
             Corners::Samples(samples) => samples.iter().for_each(|&[column, _]| each(column as usize)),
+            Corners::Words(words) => columns(words, each),
         }
     }
 }

@@ -14,11 +14,9 @@
 
 use std::collections::BinaryHeap;
 
-use orogen_simd::dispatch;
-
 use super::border::polyline;
-use super::scan::{Scan, Worst, exactly};
-use super::tile::Tile;
+use super::scan::{Worst, exactly, furthest};
+use super::tile::{Sample, Tile};
 use crate::error::Result;
 use crate::progress::Progress;
 
@@ -36,21 +34,38 @@ const SWEEPS: [f32; 2] = [4.0, 2.0];
 /// The greatest multiple of the error at which a flip is tried.
 const FLIPPED: f32 = 3.0;
 
-/// Triangles over a tile: places of samples (column, row), and triples of them, each clockwise seen as a picture.
-pub(super) struct Triangulation {
-    pub places: Vec<[i32; 2]>,
-    pub triangles: Vec<[u32; 3]>,
+/// The memory that a triangulation grows in. It is used for one tile after another.
+#[derive(Default)]
+pub(super) struct Workspace {
+    triangles: Vec<Triangle>,
+    queue: Queue,
 }
 
-/// Triangulates a tile of at least 2 x 2 finite samples so that none is further than `max_error` from the surface.
+/// Triangulates a tile of at least 2 x 2 finite samples so that none is further than `max_error` from the surface. Returns triples of samples, each
+/// clockwise seen as a picture.
 ///
 /// # Errors
 /// If the work is cancelled.
-pub(super) fn triangulate(tile: &Tile, max_error: f64, progress: &Progress) -> Result<Triangulation> {
-    let mut tin = Tin::new(tile, max_error);
+pub(super) fn triangulate<'a>(
+    tile: &Tile,
+    max_error: f64,
+    workspace: &'a mut Workspace,
+    progress: &Progress,
+) -> Result<impl Iterator<Item = [Sample; 3]> + Clone + use<'a>> {
+    let mut tin = Tin::new(tile, max_error, workspace);
     tin.lay_out(max_error);
     tin.refine(progress)?;
-    Ok(Triangulation { places: tin.places, triangles: tin.corners })
+    Ok(workspace.triangles.iter().map(|triangle| triangle.corners))
+}
+
+/// A triangle and what it borders on. Edge 4 t + k leads from corner k of triangle t to the next.
+#[derive(Clone, Copy)]
+struct Triangle {
+    corners: [Sample; 3],
+    /// The same edges seen from the triangles beyond them.
+    twins: [u32; 3],
+    /// Its furthest sample, or [`Worst::UNKNOWN`].
+    worst: Worst,
 }
 
 /// How distances are measured.
@@ -64,16 +79,12 @@ struct Tin<'a> {
     precision: Precision,
     /// Samples further off than this become corners.
     limit: f32,
-    places: Vec<[i32; 2]>,
-    /// Edge 3 t + k leads from corner k of triangle t to the next.
-    corners: Vec<[u32; 3]>,
-    /// The same edge seen from the triangle beyond it.
-    twins: Vec<u32>,
-    /// For each triangle, its furthest sample; `None` until it is looked at.
-    worst: Vec<Option<Worst>>,
-    /// For each corner on the border, the edge that leads on along it.
+    triangles: &'a mut Vec<Triangle>,
+    queue: &'a mut Queue,
+    /// How many corners there are.
+    count: usize,
+    /// For each sample of the border, counted from the first one clockwise, the edge that leads on along the border from there.
     along: Vec<u32>,
-    queue: Queue,
     /// Triangles to look at.
     fresh: Vec<u32>,
     /// Edges to check, kept to save allocations.
@@ -81,7 +92,7 @@ struct Tin<'a> {
 }
 
 impl<'a> Tin<'a> {
-    fn new(tile: &'a Tile, max_error: f64) -> Tin<'a> {
+    fn new(tile: &'a Tile, max_error: f64, workspace: &'a mut Workspace) -> Tin<'a> {
         // A handful of f32 roundings of numbers up to the greatest height; twice that, to be sure.
         let greatest = f64::from(tile.greatest());
         let rounding = greatest * f64::from(f32::EPSILON) * 4.0;
@@ -95,32 +106,47 @@ impl<'a> Tin<'a> {
             rounded if f64::from(rounded) > limit => rounded.next_down(),
             rounded => rounded,
         };
+        let Workspace { triangles, queue } = workspace;
+        triangles.clear();
+        // Room for as many as there can be, so that it need not move. The system gives memory only to what is written.
+        triangles.reserve_exact(2 * (tile.width - 1) * (tile.height - 1));
+        queue.reset();
         Tin {
             tile,
             precision,
             limit: limit.max(0.0),
-            places: Vec::new(),
-            corners: Vec::new(),
-            twins: Vec::new(),
-            worst: Vec::new(),
-            along: Vec::new(),
-            queue: Queue::new(),
+            triangles,
+            queue,
+            count: 0,
+            along: vec![LATER; 2 * (tile.width + tile.height)],
             fresh: Vec::new(),
             doubtful: Vec::new(),
         }
     }
 
-    fn place(&self, corner: u32) -> [i32; 2] {
-        self.places[corner as usize]
+    fn worst(&self, triangle: u32) -> Worst {
+        self.triangles[triangle as usize].worst
     }
 
     /// The corner that an edge begins at.
-    fn start(&self, edge: u32) -> u32 {
-        self.corners[(edge / 3) as usize][(edge % 3) as usize]
+    fn start(&self, edge: u32) -> Sample {
+        self.triangles[(edge / 4) as usize].corners[(edge % 4) as usize]
     }
 
     fn twin(&self, edge: u32) -> u32 {
-        self.twins[edge as usize]
+        self.triangles[(edge / 4) as usize].twins[(edge % 4) as usize]
+    }
+
+    /// Where a sample of the border comes, clockwise from the first one.
+    fn around(&self, sample: Sample) -> usize {
+        let [east, south] = [self.tile.width - 1, self.tile.height - 1];
+        let [column, row] = sample.place().map(|at| at as usize);
+        match [column, row] {
+            [column, 0] => column,
+            [column, row] if column == east => east + row,
+            [column, row] if row == south => 2 * east + south - column,
+            [_, row] => 2 * (east + south) - row,
+        }
     }
 
     /// Two triangles over the tile, then the corners along its border.
@@ -139,22 +165,21 @@ impl<'a> Tin<'a> {
         ];
         sides[2].reverse();
         sides[3].reverse();
-        let mut ends = Vec::new();
+        let (mut border, mut ends) = (Vec::new(), Vec::new());
         for side in &sides {
-            ends.push(self.places.len() as u32);
-            self.places.extend(&side[..side.len() - 1]);
+            ends.push(border.len());
+            border.extend(side[..side.len() - 1].iter().map(|&place| Sample::at(place)));
         }
-        self.along = vec![LATER; self.places.len()];
+        self.count = border.len();
         let [a, b, c, d] = [ends[0], ends[1], ends[2], ends[3]];
-        let first = self.add(None, [a, b, c], [OUTSIDE, OUTSIDE, LATER]);
-        self.add(None, [a, c, d], [3 * first + 2, OUTSIDE, OUTSIDE]);
-        let count = self.places.len() as u32;
+        let first = self.add(None, [border[a], border[b], border[c]], [OUTSIDE, OUTSIDE, LATER]);
+        self.add(None, [border[a], border[c], border[d]], [4 * first + 2, OUTSIDE, OUTSIDE]);
         // The middle one first: else one corner would have them all as neighbours.
-        let mut stretches: Vec<[u32; 2]> = vec![[a, b], [b, c], [c, d], [d, count]];
+        let mut stretches = vec![[a, b], [b, c], [c, d], [d, border.len()]];
         while let Some([from, to]) = stretches.pop() {
             if to - from >= 2 {
                 let middle = from + (to - from) / 2;
-                self.split(self.along[from as usize], middle);
+                self.split(self.along[self.around(border[from])], border[middle]);
                 stretches.extend([[from, middle], [middle, to]]);
             }
         }
@@ -164,12 +189,12 @@ impl<'a> Tin<'a> {
     fn refine(&mut self, progress: &Progress) -> Result<()> {
         progress.check()?;
         let enough = self.tile.width * self.tile.height / SPARSE;
-        while self.places.len() < enough
-            && let Some(triangle) = self.queue.pop_above(0, self.limit, &self.worst)
+        while self.count < enough
+            && let Some(triangle) = self.queue.pop_above(0, self.limit, self.triangles)
         {
             self.insert_worst(triangle);
         }
-        self.queue.cut(self.tile, &self.worst);
+        self.queue.cut(self.tile, self.triangles);
         for factor in SWEEPS {
             self.sweep(factor * self.limit, progress)?;
         }
@@ -183,10 +208,9 @@ impl<'a> Tin<'a> {
         let mut busy = false;
         for block in 0..self.queue.blocks.len() {
             progress.check()?;
-            while let Some(triangle) = self.queue.pop_above(block, error, &self.worst) {
+            while let Some(triangle) = self.queue.pop_above(block, error, self.triangles) {
                 busy = true;
-                let off = self.worst[triangle as usize].map_or(0.0, |worst| worst.error);
-                if off > FLIPPED * self.limit || !self.flip(triangle) {
+                if self.worst(triangle).error > FLIPPED * self.limit || !self.flip(triangle) {
                     self.insert_worst(triangle);
                 }
             }
@@ -196,49 +220,45 @@ impl<'a> Tin<'a> {
 
     /// Makes the furthest sample of a triangle a corner.
     fn insert_worst(&mut self, triangle: u32) {
-        let Some(worst) = self.worst[triangle as usize] else { return };
-        let stride = self.tile.stride as u32;
-        self.places.push([(worst.at % stride) as i32, (worst.at / stride) as i32]);
-        self.insert(triangle, self.places.len() as u32 - 1);
+        self.count += 1;
+        self.insert(triangle, self.worst(triangle).at);
         self.look();
     }
 
     /// Puts a corner that lies in or on the edge of a triangle into the triangulation.
-    fn insert(&mut self, triangle: u32, new: u32) {
-        let [a, b, c] = self.corners[triangle as usize];
-        let place = self.place(new);
-        let edge = 3 * triangle;
+    fn insert(&mut self, triangle: u32, new: Sample) {
+        let Triangle { corners: [a, b, c], twins: [ab, bc, ca], .. } = self.triangles[triangle as usize];
+        let edge = 4 * triangle;
         for (k, [from, to]) in [[a, b], [b, c], [c, a]].into_iter().enumerate() {
-            if turn(self.place(from), self.place(to), place) == 0 {
+            if turn(from, to, new) == 0 {
                 return self.split(edge + k as u32, new);
             }
         }
-        let [ab, bc, ca] = [self.twin(edge), self.twin(edge + 1), self.twin(edge + 2)];
         let first = self.add(Some(triangle), [a, b, new], [ab, LATER, LATER]);
-        let second = self.add(None, [b, c, new], [bc, LATER, 3 * first + 1]);
-        let third = self.add(None, [c, a, new], [ca, 3 * first + 2, 3 * second + 1]);
-        self.settle([3 * first, 3 * second, 3 * third]);
+        let second = self.add(None, [b, c, new], [bc, LATER, 4 * first + 1]);
+        let third = self.add(None, [c, a, new], [ca, 4 * first + 2, 4 * second + 1]);
+        self.settle([4 * first, 4 * second, 4 * third]);
     }
 
     /// Cuts an edge, and the one or two triangles beside it, at a corner that lies on it.
-    fn split(&mut self, edge: u32, new: u32) {
+    fn split(&mut self, edge: u32, new: Sample) {
         let (left, right) = (next(edge), previous(edge));
         let (from, to, apex) = (self.start(edge), self.start(left), self.start(right));
         let (outer_left, outer_right) = (self.twin(left), self.twin(right));
         let twin = self.twin(edge);
         if twin == OUTSIDE {
-            let first = self.add(Some(edge / 3), [new, to, apex], [OUTSIDE, outer_left, LATER]);
-            let second = self.add(None, [from, new, apex], [OUTSIDE, 3 * first + 2, outer_right]);
-            return self.settle([3 * first + 1, 3 * second + 2]);
+            let first = self.add(Some(edge / 4), [new, to, apex], [OUTSIDE, outer_left, LATER]);
+            let second = self.add(None, [from, new, apex], [OUTSIDE, 4 * first + 2, outer_right]);
+            return self.settle([4 * first + 1, 4 * second + 2]);
         }
         let (far_left, far_right) = (previous(twin), next(twin));
         let far_apex = self.start(far_left);
         let (beyond_left, beyond_right) = (self.twin(far_left), self.twin(far_right));
-        let first = self.add(Some(edge / 3), [new, to, apex], [LATER, outer_left, LATER]);
-        let second = self.add(None, [from, new, apex], [LATER, 3 * first + 2, outer_right]);
-        let third = self.add(Some(twin / 3), [new, from, far_apex], [3 * second, beyond_right, LATER]);
-        let fourth = self.add(None, [to, new, far_apex], [3 * first, 3 * third + 2, beyond_left]);
-        self.settle([3 * first + 1, 3 * second + 2, 3 * third + 1, 3 * fourth + 2]);
+        let first = self.add(Some(edge / 4), [new, to, apex], [LATER, outer_left, LATER]);
+        let second = self.add(None, [from, new, apex], [LATER, 4 * first + 2, outer_right]);
+        let third = self.add(Some(twin / 4), [new, from, far_apex], [4 * second, beyond_right, LATER]);
+        let fourth = self.add(None, [to, new, far_apex], [4 * first, 4 * third + 2, beyond_left]);
+        self.settle([4 * first + 1, 4 * second + 2, 4 * third + 1, 4 * fourth + 2]);
     }
 
     /// Flips edges as long as one has the corner beyond it within the circle around its triangle (Lawson's algorithm), beginning
@@ -250,10 +270,10 @@ impl<'a> Tin<'a> {
             if twin == OUTSIDE {
                 continue;
             }
-            let [from, to, apex] = [edge, next(edge), previous(edge)].map(|edge| self.place(self.start(edge)));
-            if within_circle([from, to, apex], self.place(self.start(previous(twin)))) {
+            let [from, to, apex] = [edge, next(edge), previous(edge)].map(|edge| self.start(edge));
+            if within_circle([from, to, apex], self.start(previous(twin))) {
                 let [near, far] = self.turn_edge(edge);
-                self.doubtful.extend([3 * near + 1, 3 * far + 2]);
+                self.doubtful.extend([4 * near + 1, 4 * far + 2]);
             }
         }
     }
@@ -267,8 +287,8 @@ impl<'a> Tin<'a> {
         let [from, to, apex, far_apex] = [edge, left, right, far_left].map(|edge| self.start(edge));
         let [outer_left, outer_right, beyond_left, beyond_right] =
             [left, right, far_left, far_right].map(|edge| self.twin(edge));
-        let near = self.add(Some(edge / 3), [apex, far_apex, to], [LATER, beyond_left, outer_left]);
-        let far = self.add(Some(twin / 3), [far_apex, apex, from], [3 * near, outer_right, beyond_right]);
+        let near = self.add(Some(edge / 4), [apex, far_apex, to], [LATER, beyond_left, outer_left]);
+        let far = self.add(Some(twin / 4), [far_apex, apex, from], [4 * near, outer_right, beyond_right]);
         [near, far]
     }
 
@@ -276,13 +296,13 @@ impl<'a> Tin<'a> {
     /// whether there is one.
     fn flip(&mut self, triangle: u32) -> bool {
         let mut best: Option<(f32, u32)> = None;
-        for edge in [3 * triangle, 3 * triangle + 1, 3 * triangle + 2] {
+        for edge in [4 * triangle, 4 * triangle + 1, 4 * triangle + 2] {
             let twin = self.twin(edge);
             if twin == OUTSIDE {
                 continue;
             }
             let [from, to, apex, far_apex] =
-                [edge, next(edge), previous(edge), previous(twin)].map(|edge| self.place(self.start(edge)));
+                [edge, next(edge), previous(edge), previous(twin)].map(|edge| self.start(edge));
             if turn(apex, far_apex, to) <= 0 || turn(far_apex, apex, from) <= 0 {
                 continue;
             }
@@ -297,34 +317,34 @@ impl<'a> Tin<'a> {
         }
         let Some((_, edge)) = best else { return false };
         for triangle in self.turn_edge(edge) {
-            self.worst[triangle as usize] = Some(Worst::NONE);
+            self.triangles[triangle as usize].worst = Worst::NONE;
         }
         self.fresh.clear();
         true
     }
 
     /// Writes a triangle over another or as a new one, with the twins of its edges, and links those back.
-    fn add(&mut self, over: Option<u32>, corners: [u32; 3], twins: [u32; 3]) -> u32 {
+    fn add(&mut self, over: Option<u32>, corners: [Sample; 3], twins: [u32; 3]) -> u32 {
+        let written = Triangle { corners, twins, worst: Worst::UNKNOWN };
         let triangle = match over {
             Some(triangle) => {
-                self.corners[triangle as usize] = corners;
-                self.worst[triangle as usize] = None;
+                self.triangles[triangle as usize] = written;
                 triangle
             }
             None => {
-                self.corners.push(corners);
-                self.twins.extend([LATER; 3]);
-                self.worst.push(None);
-                self.corners.len() as u32 - 1
+                self.triangles.push(written);
+                self.triangles.len() as u32 - 1
             }
         };
         for (k, twin) in twins.into_iter().enumerate() {
-            let edge = 3 * triangle + k as u32;
-            self.twins[edge as usize] = twin;
+            let edge = 4 * triangle + k as u32;
             match twin {
-                OUTSIDE => self.along[corners[k] as usize] = edge,
+                OUTSIDE => {
+                    let at = self.around(corners[k]);
+                    self.along[at] = edge;
+                }
                 LATER => {}
-                _ => self.twins[twin as usize] = edge,
+                _ => self.triangles[(twin / 4) as usize].twins[(twin % 4) as usize] = edge,
             }
         }
         self.fresh.push(triangle);
@@ -335,9 +355,10 @@ impl<'a> Tin<'a> {
     fn look(&mut self) {
         for index in 0..self.fresh.len() {
             let triangle = self.fresh[index];
-            if self.worst[triangle as usize].is_none() {
-                let worst = self.furthest(self.corners[triangle as usize].map(|corner| self.place(corner)));
-                self.worst[triangle as usize] = Some(worst);
+            let Triangle { corners, worst, .. } = self.triangles[triangle as usize];
+            if worst == Worst::UNKNOWN {
+                let worst = self.furthest(corners);
+                self.triangles[triangle as usize].worst = worst;
                 if worst.error > self.limit {
                     self.queue.push(triangle, worst);
                 }
@@ -346,9 +367,9 @@ impl<'a> Tin<'a> {
         self.fresh.clear();
     }
 
-    fn furthest(&self, corners: [[i32; 2]; 3]) -> Worst {
+    fn furthest(&self, corners: [Sample; 3]) -> Worst {
         match self.precision {
-            Precision::Quick => dispatch(Scan { tile: self.tile, corners }),
+            Precision::Quick => furthest(self.tile, corners),
             Precision::Exact => exactly(self.tile, corners),
         }
     }
@@ -357,28 +378,30 @@ impl<'a> Tin<'a> {
 /// Triangles by their error, the greatest first; block by block, once it was cut.
 ///
 /// What is taken out may be out of date: a triangle that changed was put in again.
+#[derive(Default)]
 struct Queue {
     blocks: Vec<BinaryHeap<u64>>,
-    /// Samples a row of the tile's memory and blocks a row, once it was cut.
-    rows: Option<[u32; 2]>,
+    /// Blocks a row, once it was cut; before, there is one queue.
+    across: Option<u32>,
 }
 
 impl Queue {
-    fn new() -> Queue {
-        Queue { blocks: vec![BinaryHeap::new()], rows: None }
+    /// Empties it, for a tile that is not cut yet.
+    fn reset(&mut self) {
+        self.blocks.iter_mut().for_each(BinaryHeap::clear);
+        self.blocks.resize_with(self.blocks.len().max(1), BinaryHeap::new);
+        self.across = None;
     }
 
     fn push(&mut self, triangle: u32, worst: Worst) {
-        let block = match self.rows {
-            None => 0,
-            Some([stride, across]) => ((worst.at / stride) >> BLOCK) * across + ((worst.at % stride) >> BLOCK),
-        };
+        let [column, row] = worst.at.place().map(|at| (at as u32) >> BLOCK);
+        let block = self.across.map_or(0, |across| row * across + column);
         // The bits of positive floats are ordered as they are. Of two with the same error, the older first.
         self.blocks[block as usize].push(u64::from(worst.error.to_bits()) << 32 | u64::from(!triangle));
     }
 
     /// The triangle with the greatest error, if it is more than `error`.
-    fn pop_above(&mut self, block: usize, error: f32, worst: &[Option<Worst>]) -> Option<u32> {
+    fn pop_above(&mut self, block: usize, error: f32, triangles: &[Triangle]) -> Option<u32> {
         let heap = &mut self.blocks[block];
         while let Some(key) = heap.peek() {
             let (triangle, off) = (!(*key as u32), f32::from_bits((key >> 32) as u32));
@@ -386,7 +409,7 @@ impl Queue {
                 return None;
             }
             heap.pop();
-            if worst[triangle as usize].is_some_and(|worst| worst.error == off) {
+            if triangles[triangle as usize].worst.error == off {
                 return Some(triangle);
             }
         }
@@ -394,16 +417,15 @@ impl Queue {
     }
 
     /// Makes one queue for each block of the tile.
-    fn cut(&mut self, tile: &Tile, worst: &[Option<Worst>]) {
+    fn cut(&mut self, tile: &Tile, triangles: &[Triangle]) {
         let blocks = |samples: usize| samples.div_ceil(1 << BLOCK);
-        self.rows = Some([tile.stride as u32, blocks(tile.width) as u32]);
-        let whole =
-            std::mem::replace(&mut self.blocks, vec![BinaryHeap::new(); blocks(tile.width) * blocks(tile.height)]);
-        for key in whole.into_iter().flat_map(BinaryHeap::into_vec) {
+        let whole = std::mem::take(&mut self.blocks[0]);
+        self.across = Some(blocks(tile.width) as u32);
+        self.blocks.resize_with(blocks(tile.width) * blocks(tile.height), BinaryHeap::new);
+        for key in whole {
             let triangle = !(key as u32);
-            if let Some(worst) = worst[triangle as usize]
-                && worst.error.to_bits() == (key >> 32) as u32
-            {
+            let worst = triangles[triangle as usize].worst;
+            if worst.error.to_bits() == (key >> 32) as u32 {
                 self.push(triangle, worst);
             }
         }
@@ -411,26 +433,32 @@ impl Queue {
 }
 
 fn next(edge: u32) -> u32 {
-    if edge % 3 == 2 { edge - 2 } else { edge + 1 }
+    if edge % 4 == 2 { edge - 2 } else { edge + 1 }
 }
 
 fn previous(edge: u32) -> u32 {
-    if edge.is_multiple_of(3) { edge + 2 } else { edge - 1 }
+    if edge.is_multiple_of(4) { edge + 2 } else { edge - 1 }
 }
 
 /// Twice the area of a triangle: positive if it is clockwise seen as a picture.
-fn turn(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> i64 {
-    let away = |p: [i32; 2]| [i64::from(p[0] - a[0]), i64::from(p[1] - a[1])];
+fn turn(a: Sample, b: Sample, c: Sample) -> i32 {
+    let a = a.place();
+    let away = |p: Sample| {
+        let [x, y] = p.place();
+        [x - a[0], y - a[1]]
+    };
     let ([bx, by], [cx, cy]) = (away(b), away(c));
     bx * cy - by * cx
 }
 
 /// Whether `p` lies within the circle around a triangle. Exact: a tile has far fewer than 2^15 samples a side.
-fn within_circle([a, b, c]: [[i32; 2]; 3], p: [i32; 2]) -> bool {
-    let seen = |q: [i32; 2]| {
-        let [x, y] = [i64::from(q[0] - p[0]), i64::from(q[1] - p[1])];
-        (x, y, x * x + y * y)
+fn within_circle([a, b, c]: [Sample; 3], p: Sample) -> bool {
+    let p = p.place();
+    let seen = |q: Sample| {
+        let [x, y] = q.place();
+        let [x, y] = [x - p[0], y - p[1]];
+        (x, y, i64::from(x * x + y * y))
     };
     let ((ax, ay, a), (bx, by, b), (cx, cy, c)) = (seen(a), seen(b), seen(c));
-    a * (bx * cy - by * cx) - b * (ax * cy - ay * cx) + c * (ax * by - ay * bx) > 0
+    a * i64::from(bx * cy - by * cx) - b * i64::from(ax * cy - ay * cx) + c * i64::from(ax * by - ay * bx) > 0
 }
