@@ -111,7 +111,7 @@ r.mapcalc "streams = if(area >= {STREAM}, 1, null())" --q
 r.grow.distance input=streams distance=far --q
 r.viewshed -b input=z output=seen coordinates={observer[0]},{observer[1]} observer_elevation=10 --q
 r.slope.aspect elevation=z slope=slope aspect=aspect -e --q
-r.sun elevation=z aspect=aspect slope=slope linke_value=3 albedo_value=0.2 day={DAY} step=0.25 glob_rad=sun nprocs={os.cpu_count()} --q
+r.sun elevation=z aspect=aspect slope=slope linke_value=3 albedo_value=0.2 day={DAY} step=0.1 glob_rad=sun nprocs={os.cpu_count()} --q
 """
     mean, forms, wet, far, seen, sun = place.grass(script, "mean", "forms", "wet", "far", "seen", "sun")
     border = disc + 1
@@ -135,6 +135,7 @@ r.sun elevation=z aspect=aspect slope=slope linke_value=3 albedo_value=0.2 day={
     other = place.ours("insolation", "--day", DAY - 60, *place.options)
     told = numpy.nanmean(inner(numpy.abs(1000 * other - sun) / sun, 1))
     checks.that(f"{name}: another day is told apart", told > 0.05, told)
+    # r.sun looks for shadows in the nearest samples of the ray, so what is left does not vanish with its steps: see docs/layers.md.
     found["insolation (r.sun)"] = numpy.nanmean(inner(numpy.abs(light - sun) / sun, 1)), 0.01
     return found
 

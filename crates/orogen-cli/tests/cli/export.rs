@@ -1,6 +1,6 @@
 //! `orogen export`.
 
-use crate::harness::{Folder, Outcome, npy, png};
+use crate::harness::{Folder, Outcome, SMALL, npy, png};
 use orogen::export::derived::layer::{Made, Nature};
 use orogen::export::derived::list as derived;
 use std::io::Read;
@@ -503,6 +503,12 @@ fn layers_that_follow_from_the_heights_have_options_of_their_own() {
     // Options change what is made.
     let (june, winter) = (export("insolation", &["--day", "172"]), export("insolation", &["--season", "winter"]));
     assert!(june.data().iter().zip(winter.data()).all(|(june, winter)| june > winter));
+    // A single day is stepped through more finely than the node does by itself.
+    let node = "[nodes.sun]\nop = \"insolation\"\nsource = \"land\"\ndays = [172, 172]\nstep = 0.1\n[outputs]\nsun = \"sun\"\n";
+    folder.write("sun.toml", SMALL.replace("[outputs]\n", node));
+    folder.good(&["export", "sun.toml", "-o", "node.npy", "-q", "--layer", "sun"]);
+    folder.good(&["export", "small.toml", "-o", "layer.npy", "-q", "--layer", "insolation", "--day", "172"]);
+    assert_eq!(npy(&folder.read("node.npy")).data(), npy(&folder.read("layer.npy")).data());
     let south = export("insolation", &["--season", "winter", "--latitude", "-45"]);
     // Not everywhere: a steep slope to the north gets more of a low northern sun than of a high southern one.
     assert!(south.data().iter().sum::<f32>() < june.data().iter().sum::<f32>());

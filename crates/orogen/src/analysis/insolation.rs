@@ -132,6 +132,24 @@ mod tests {
     }
 
     #[test]
+    fn a_tenth_of_an_hour_is_enough_for_a_day_in_the_mountains() {
+        // Peaks 700 m high and 450 m apart: long shadows move over narrow valleys.
+        let peaks = |x: usize, y: usize| {
+            let [x, y] = [x as f64 * 0.42, y as f64 * 0.39];
+            (350.0 * (libm::sin(x) * libm::cos(y) + 0.5 * libm::sin(1.7 * x + 2.3 * y))) as f32
+        };
+        let day = |step: f64| made(&Period { latitude: 46.0, days: [355, 355], step }, peaks);
+        let fine = day(0.01);
+        let off = |step: f64| {
+            let coarse = day(step);
+            let pairs = coarse.data().iter().zip(fine.data());
+            pairs.map(|(coarse, fine)| f64::from((coarse / fine - 1.0).abs())).sum::<f64>() / fine.data().len() as f64
+        };
+        let (tenth, half) = (off(0.1), off(0.5));
+        assert!(tenth < 0.01 && half > 2.0 * tenth, "{tenth} {half}");
+    }
+
+    #[test]
     fn days_are_in_the_middle_and_run_over_the_turn_of_the_year() {
         let days = |days| Period { latitude: 0.0, days, step: 0.5 }.sampled_days();
         assert_eq!(days([172, 172]), [172]);

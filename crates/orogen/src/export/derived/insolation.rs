@@ -23,6 +23,9 @@ const SEASON: OptionSpec = OptionSpec {
     value_kind: ValueKind::Word(&["spring", "summer", "autumn", "winter"]),
 };
 
+/// The step through a single day, in hours. The days of a longer period have sunrise at different times, so shadows between the steps even out.
+const STEP_OF_A_DAY: f64 = 0.1;
+
 /// Where on the earth.
 const LATITUDE: OptionSpec = OptionSpec {
     name: "latitude",
@@ -55,10 +58,12 @@ pub static LAYER: Derived = Derived {
             let (options, defaults) = (to.options(), Insolation::default());
             let latitude =
                 options.number(LATITUDE.name).unwrap_or_else(|| latitude_of(to).unwrap_or(defaults.latitude));
+            let step = if options.has(DAY.name) { STEP_OF_A_DAY } else { defaults.step };
             let node = Insolation {
                 source: to.heights(),
                 latitude,
                 days: days(to, latitude)?.unwrap_or(defaults.days),
+                step,
                 turbidity: options.number(TURBIDITY.name).unwrap_or(defaults.turbidity),
                 ..defaults
             };
