@@ -7,7 +7,7 @@ use orogen::Level;
 use crate::bar::{Mode, set_mode};
 use crate::command::{
     analyze, build, cache, check, compare, completions, explain, export, fit, generate, graph, grow, map, new, noise,
-    ops, palettes, presets, render, schema,
+    ops, palettes, presets, render, schema, variants,
 };
 use crate::failure::Failure;
 
@@ -43,6 +43,8 @@ enum Command {
     Render(render::Args),
     /// Draw a map sheet: relief, contours, rivers, lakes, scale and legend, as a picture, SVG or PDF.
     Map(map::Args),
+    /// Draw variants of a recipe side by side: other seeds, or a parameter from one value to another.
+    Variants(variants::Args),
     /// Write a new recipe to start from.
     New(new::Args),
     /// List the built-in presets.
@@ -84,6 +86,7 @@ impl Cli {
             Command::Grow(args) => grow::run(&args),
             Command::Render(args) => render::run(&args),
             Command::Map(args) => map::run(&args),
+            Command::Variants(args) => variants::run(&args),
             Command::New(args) => new::run(&args),
             Command::Presets => presets::run(),
             Command::Ops(args) => ops::run(&args),

@@ -3,9 +3,11 @@
 // These macros panic when the other end of a pipe is gone; `say` does not.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
+mod arguments;
 mod bar;
 mod cli;
 mod command;
+mod contact;
 mod disk;
 mod draw;
 mod export_options;

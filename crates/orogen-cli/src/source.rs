@@ -10,6 +10,7 @@ use orogen::recipe::document::LONGEST_TEXT;
 use orogen::recipe::presets::{self, Preset};
 use orogen::{Budget, Error, ErrorKind, Recipe, nearest};
 
+use crate::arguments::Arguments;
 use crate::failure::Failure;
 use crate::say;
 use crate::sink::DASH;
@@ -65,12 +66,19 @@ impl Source {
         files
     }
 
-    /// Reads the recipe; heights of a real place take no more than what is left of `budget`.
-    pub fn read(&self, budget: &Budget) -> Result<Recipe, Failure> {
+    /// Reads the recipe with values for its parameters; heights of a real place take no more than what is left of `budget`.
+    pub fn read(&self, budget: &Budget, arguments: &Arguments) -> Result<Recipe, Failure> {
+        let set = arguments.values();
         Ok(match self {
-            Source::File(path) => Recipe::read(path)?,
-            Source::Preset(preset) => preset.recipe()?,
-            Source::Stdin => piped()?,
+            Source::File(path) => Recipe::read_with(path, &set)?,
+            Source::Preset(preset) => preset.recipe_with(&set)?,
+            Source::Stdin => piped(&set)?,
+            Source::Dem(path) if !set.is_empty() => {
+                return Err(Failure::Usage(format!(
+                    "--set gives values to a recipe's parameters, and {} is a file of heights, which has none",
+                    path.display()
+                )));
+            }
             Source::Dem(path) => {
                 let ground = PreparedDem::read(path, None, budget.left().unwrap_or(DEFAULT_MEMORY))?;
                 ground.notes.iter().for_each(|note| say::error(&format!("note: {}: {note}", path.display())));
@@ -81,7 +89,7 @@ impl Source {
 }
 
 /// The recipe on standard input. Relative paths in it count from the working folder.
-fn piped() -> Result<Recipe, Failure> {
+fn piped(set: &[(String, f64)]) -> Result<Recipe, Failure> {
     let bytes = match PIPED.get() {
         Some(bytes) => bytes,
         None => {
@@ -92,7 +100,7 @@ fn piped() -> Result<Recipe, Failure> {
         }
     };
     match std::str::from_utf8(bytes) {
-        Ok(text) => Ok(Recipe::parse(text, STDIN)?),
+        Ok(text) => Ok(Recipe::parse_with(text, STDIN, set)?),
         Err(_) => Err(Error::new(
             ErrorKind::Recipe,
             format!(

@@ -7,6 +7,7 @@ use orogen::format::dem::Georeference;
 use orogen::words::number;
 use orogen::{Recipe, Window, World};
 
+use crate::arguments::Arguments;
 use crate::failure::Failure;
 use crate::region::{Bounds, Rectangle, place};
 use crate::seeds::Seeds;
@@ -20,6 +21,8 @@ pub struct View {
     /// (NAME-7.png, or wherever the name has {seed})
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seed: Option<Seeds>,
+    #[command(flatten)]
+    pub arguments: Arguments,
     /// Metres from one sample to the next [default: the world's cell]
     #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
     pub cell: Option<f64>,

@@ -1,11 +1,11 @@
 //! Making something again whenever a file changes.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use orogen::recipe::document::LONGEST_TEXT;
-use orogen::{ErrorKind, Progress};
+use orogen::{ErrorKind, Progress, Recipe};
 
 use crate::bar::Bar;
 use crate::failure::Failure;
@@ -21,7 +21,7 @@ const CALM: Duration = Duration::from_millis(50);
 /// For how many looks a file may be gone before that is a change: editors replace files by way of removing them.
 const PATIENCE: u32 = 5;
 
-/// Calls `make` now and after each change of the file at `path`, for ever; work on what is outdated is cancelled. Failures are
+/// Calls `make` now and after each change of the recipe at `path` or of one that it uses, for ever; work on what is outdated is cancelled. Failures are
 /// told and the watch goes on, except that nobody listens any more.
 pub fn watch(
     path: &Path,
@@ -31,7 +31,7 @@ pub fn watch(
     let mut seen = Seen::look(path);
     loop {
         let (bar, progress) = Bar::new(quiet);
-        let made = until_changed(path, &seen, &progress, || make(&progress));
+        let made = until_changed(&seen, &progress, || make(&progress));
         drop(bar);
         match made {
             Ok(text) => say::out(&text)?,
@@ -46,7 +46,7 @@ pub fn watch(
         if !quiet && !interrupt::asked() {
             say::error(&format!("watching {}; Ctrl-C ends", path.display()));
         }
-        while !interrupt::asked() && !seen.changed(path) {
+        while !interrupt::asked() && !seen.changed() {
             std::thread::sleep(INTERVAL);
         }
         if interrupt::asked() {
@@ -57,12 +57,12 @@ pub fn watch(
 }
 
 /// Runs `work`, cancelling it if the file changes meanwhile.
-fn until_changed<T>(path: &Path, seen: &Seen, progress: &Progress, work: impl FnOnce() -> T) -> T {
+fn until_changed<T>(seen: &Seen, progress: &Progress, work: impl FnOnce() -> T) -> T {
     let finished = AtomicBool::new(false);
     std::thread::scope(|scope| {
         let looker = scope.spawn(|| {
             while !finished.load(Ordering::Relaxed) {
-                if seen.clone().changed(path) {
+                if seen.clone().changed() {
                     progress.cancel();
                     return;
                 }
@@ -76,9 +76,14 @@ fn until_changed<T>(path: &Path, seen: &Seen, progress: &Progress, work: impl Fn
     })
 }
 
-/// What was last seen in the file.
+/// What was last seen in the recipe's file and in those of the recipes that it uses.
 #[derive(Debug, Clone, PartialEq)]
-struct Seen {
+struct Seen(Vec<SeenFile>);
+
+/// What was last seen in a file.
+#[derive(Debug, Clone, PartialEq)]
+struct SeenFile {
+    path: PathBuf,
     content: Option<Vec<u8>>,
     missed: u32,
 }
@@ -90,23 +95,47 @@ fn read(path: &Path) -> Option<Vec<u8>> {
 
 impl Seen {
     fn look(path: &Path) -> Seen {
-        Seen { content: read(path), missed: 0 }
+        let used = Recipe::read(path).map(|recipe| recipe.used().to_vec()).unwrap_or_default();
+        Seen::look_at([path.to_path_buf()].into_iter().chain(used))
+    }
+
+    /// Looks at files, at each once.
+    fn look_at(paths: impl Iterator<Item = PathBuf>) -> Seen {
+        let mut files: Vec<SeenFile> = Vec::new();
+        for path in paths {
+            if !files.iter().any(|file| file.path == path) {
+                files.push(SeenFile { content: read(&path), path, missed: 0 });
+            }
+        }
+        Seen(files)
     }
 
     /// Looks until nothing changes any more.
     fn settle(&mut self, path: &Path) {
         loop {
-            *self = Seen::look(path);
+            let mut now = Seen::look(path);
+            if now.0.len() == 1 {
+                // A recipe that cannot be read names no others: those that it used last may be what is wrong with it.
+                now = Seen::look_at(self.0.iter().map(|file| file.path.clone()));
+            }
+            *self = now;
             std::thread::sleep(CALM);
-            if Seen::look(path) == *self {
+            if Seen::look_at(self.0.iter().map(|file| file.path.clone())) == *self {
                 return;
             }
         }
     }
 
     /// Looks again: whether there is something else than before.
-    fn changed(&mut self, path: &Path) -> bool {
-        let now = read(path);
+    fn changed(&mut self) -> bool {
+        // Every file is looked at, so that each is up to date.
+        self.0.iter_mut().fold(false, |changed, file| file.changed() || changed)
+    }
+}
+
+impl SeenFile {
+    fn changed(&mut self) -> bool {
+        let now = read(&self.path);
         if now == self.content {
             self.missed = 0;
             return false;
@@ -115,7 +144,7 @@ impl Seen {
             self.missed += 1;
             return false;
         }
-        *self = Seen { content: now, missed: 0 };
+        (self.content, self.missed) = (now, 0);
         true
     }
 }
@@ -129,18 +158,18 @@ mod tests {
         let path = std::env::temp_dir().join(format!("orogen-watch-{}.toml", std::process::id()));
         std::fs::write(&path, "a").unwrap();
         let mut seen = Seen::look(&path);
-        assert!(!seen.changed(&path));
+        assert!(!seen.changed());
         std::fs::write(&path, "a").unwrap();
-        assert!(!seen.changed(&path));
+        assert!(!seen.changed());
         std::fs::write(&path, "b").unwrap();
-        assert!(seen.changed(&path) && !seen.changed(&path));
+        assert!(seen.changed() && !seen.changed());
         std::fs::remove_file(&path).unwrap();
         for _ in 0..PATIENCE {
-            assert!(!seen.changed(&path));
+            assert!(!seen.changed());
         }
-        assert!(seen.changed(&path) && !seen.changed(&path));
+        assert!(seen.changed() && !seen.changed());
         std::fs::write(&path, "b").unwrap();
-        assert!(seen.changed(&path));
+        assert!(seen.changed());
         std::fs::remove_file(&path).unwrap();
     }
 }

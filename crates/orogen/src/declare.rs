@@ -4,6 +4,7 @@
 //! command line's help and a user interface's sliders.
 
 use crate::dem::file_ref::{FileRef, Picture};
+use crate::expression::term::Expression;
 use crate::layer::Layer;
 use crate::value::{Spanned, Value};
 use serde::{Deserialize, Serialize};
@@ -43,6 +44,8 @@ pub struct Spec {
     pub doc: &'static str,
     /// The nodes it reads.
     pub inputs: &'static [InputSpec],
+    /// Whether it also reads whatever its expression names.
+    pub named_inputs: bool,
     /// What it can be told.
     pub params: &'static [ParamSpec],
     /// What it makes: at least one layer.
@@ -80,6 +83,15 @@ pub struct InputSpec {
     pub required: bool,
 }
 
+/// An input of a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct InputName<'a> {
+    /// Its key.
+    pub name: &'a str,
+    /// Whether the node cannot do without.
+    pub required: bool,
+}
+
 /// A parameter of an op.
 #[derive(Debug)]
 pub struct ParamSpec {
@@ -112,6 +124,8 @@ pub enum Shape {
     Choice(fn() -> Vec<(&'static str, &'static str)>),
     /// Two numbers.
     Pair,
+    /// An expression of the node's inputs.
+    Expression,
     /// Control points [[x, y], ...], at least two, x rising.
     Curve,
     /// The path of a file.
@@ -182,6 +196,22 @@ pub trait Param: Sized {
     /// The file that it names, if it is a file.
     fn file(&mut self) -> Option<&mut FileRef> {
         None
+    }
+}
+
+impl Param for Expression {
+    const SHAPE: Shape = Shape::Expression;
+    fn read(value: &Value) -> Option<Expression> {
+        match value {
+            Value::Text(text) => Some(Expression::from(text.as_str())),
+            _ => None,
+        }
+    }
+    fn write(&self) -> Value {
+        Value::Text(self.text().to_string())
+    }
+    fn key(&self) -> Value {
+        Value::Text(Expression::key(self))
     }
 }
 
@@ -345,6 +375,7 @@ impl ParamSpec {
             Shape::Curve => format!(
                 "a list of at least two points [[x, y], ...] of finite numbers{range}, each x greater than the one before"
             ),
+            Shape::Expression => "an expression in quotes, such as \"a * 2 + b\"".to_string(),
             Shape::File => "the path of a file, in quotes".to_string(),
             Shape::Crs => "an EPSG code in quotes, such as \"EPSG:32632\"".to_string(),
         }
@@ -368,10 +399,21 @@ pub fn read_param<T: Param>(spec: &ParamSpec, value: &Value) -> Result<T, String
     }
 }
 
+/// Sets what a name in an expression stands for, and keeps the names in the expression's order.
+pub fn set_named(inputs: &mut Vec<(String, Input)>, names: &[String], name: String, input: Input) {
+    inputs.retain(|(other, _)| *other != name);
+    inputs.push((name, input));
+    inputs.sort_by_key(|(name, _)| names.iter().position(|other| other == name));
+}
+
 /// What an `op!` block implements: reaching a node's inputs and parameters by their index in the [`Spec`].
 pub trait Declared {
     /// What was declared.
     fn spec(&self) -> &'static Spec;
+    /// The inputs it has: those declared, or those that its expression names.
+    fn inputs(&self) -> Vec<InputName<'_>> {
+        self.spec().inputs.iter().map(|input| InputName { name: input.name, required: input.required }).collect()
+    }
     /// Input `i`.
     fn input(&self, i: usize) -> &Input;
     /// Sets input `i`.
@@ -428,6 +470,8 @@ macro_rules! choice {
 /// What a filter or solver makes besides one layer of heights is declared in a block `layers`: each with its doc, how it is
 /// read between samples (`height`, `label`, `flow`, or as its `source`) and its unit.
 ///
+/// With `inputs of NAME;` it reads whatever the expression in its parameter NAME names.
+///
 /// With `octaves;` after its name the op is a fractal: it gets the parameters all fractals share, beside its own.
 macro_rules! op {
     (
@@ -474,6 +518,7 @@ macro_rules! op {
     (
         $(#[doc = $doc:literal])+
         pub struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
+        $(inputs of $expression:ident;)?
         $(inputs { $( $(#[doc = $idoc:literal])+ $input:ident: $need:ident $(, alias $ialias:literal)?, )* })?
         $(params { $(
             $(#[doc = $pdoc:literal])+
@@ -487,6 +532,10 @@ macro_rules! op {
         #[doc = concat!("In recipes: `op = \"", $op, "\"`.")]
         #[derive(Debug, Clone, PartialEq)]
         pub struct $name {
+            $(
+                #[doc = concat!("What the names in `", stringify!($expression), "` stand for.")]
+                pub inputs: Vec<(String, $crate::declare::Input)>,
+            )?
             $( $( $(#[doc = $idoc])+ pub $input: $crate::declare::Input, )* )?
             $( $(
                 $(#[doc = $pdoc])+
@@ -500,6 +549,7 @@ macro_rules! op {
         impl Default for $name {
             fn default() -> $name {
                 $name {
+                    $( inputs: op!(@empty $expression), )?
                     $( $( $input: $crate::declare::Input::None, )* )?
                     $( $( $param: $default, )* )?
                 }
@@ -534,14 +584,27 @@ macro_rules! op {
                     revision: $revision,
                     doc: concat!($($doc, "\n"),+),
                     inputs: INPUTS,
+                    named_inputs: op!(@given $($expression)?),
                     params: PARAMS,
                     layers: if LAYERS.is_empty() { $crate::layer::ONE_LAYER } else { LAYERS },
                 };
                 &SPEC
             }
 
+            $(
+                fn inputs(&self) -> Vec<$crate::declare::InputName<'_>> {
+                    let names = self.$expression.names().iter();
+                    names.map(|name| $crate::declare::InputName { name, required: true }).collect()
+                }
+            )?
+
             #[allow(unused_variables, unused_mut, unused_assignments, reason = "not every op has inputs")]
             fn input(&self, i: usize) -> &$crate::declare::Input {
+                $(
+                    let given = self.$expression.names().get(i);
+                    let given = self.inputs.iter().find(|(name, _)| Some(name) == given);
+                    if let Some((_, input)) = given { return input; }
+                )?
                 let mut at = 0;
                 $( $( if i == at { return &self.$input; } at += 1; )* )?
                 &$crate::declare::Input::None
@@ -549,6 +612,12 @@ macro_rules! op {
 
             #[allow(unused_variables, unused_mut, unused_assignments, reason = "not every op has inputs")]
             fn set_input(&mut self, i: usize, input: $crate::declare::Input) {
+                $(
+                    if let Some(name) = self.$expression.names().get(i).cloned() {
+                        $crate::declare::set_named(&mut self.inputs, self.$expression.names(), name, input);
+                        return;
+                    }
+                )?
                 let mut at = 0;
                 $( $( if i == at { self.$input = input; return; } at += 1; )* )?
             }
@@ -593,6 +662,9 @@ macro_rules! op {
             }
         }
     };
+    (@empty $given:tt) => { Vec::new() };
+    (@given) => { false };
+    (@given $given:tt) => { true };
     (@required required) => { true };
     (@required optional) => { false };
     (@range) => { [f64::NEG_INFINITY, f64::INFINITY] };

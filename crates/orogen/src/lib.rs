@@ -39,6 +39,7 @@ mod engine;
 pub mod erosion;
 pub mod error;
 pub mod export;
+pub mod expression;
 pub mod field;
 pub mod file;
 pub mod filter;

@@ -1,6 +1,6 @@
 //! The list of all ops: one enum that a recipe is made of.
 
-use crate::declare::{Declared, Input, Spec};
+use crate::declare::{Declared, Input, InputName, Spec};
 use crate::dem::file_ref::FileRef;
 use crate::layer::Layer;
 use crate::op::{Field, Filter, Op, Solver};
@@ -69,7 +69,12 @@ impl Node {
         self.declared().spec()
     }
 
-    /// Input `i` of the declaration.
+    /// Its inputs: those that its op declares, or those that its expression names.
+    pub fn inputs(&self) -> Vec<InputName<'_>> {
+        self.declared().inputs()
+    }
+
+    /// Input `i` of [`Node::inputs`].
     pub fn input(&self, i: usize) -> &Input {
         self.declared().input(i)
     }

@@ -2,6 +2,7 @@
 
 use crate::declare::Declared;
 use crate::error::{Error, ErrorKind, Result};
+use crate::expression::term::{self, Term};
 use crate::format::dem::Georeference;
 use crate::grid::{Grid, Window};
 use crate::layer::LayerKind;
@@ -62,8 +63,17 @@ impl<'a> Inputs<'a> {
 /// A field looks at one position and the seed, and at its inputs there. It is pure: any point, any order, any number of
 /// times.
 pub trait Field: Send + Sync {
-    /// Makes one value a point.
-    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]);
+    /// Makes one value a point. A field that has [`Field::terms`] need not say how.
+    fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
+        let _ = (at, world_params);
+        term::evaluate(&self.terms().unwrap_or_default(), |input| inputs.get(input), out);
+    }
+
+    /// What it computes, where that is functions of its inputs alone: each input by its index as a name. The engine then computes it by these
+    /// terms, and never calls [`Field::eval`].
+    fn terms(&self) -> Option<Vec<Term>> {
+        None
+    }
 
     /// Where a field's source is read elsewhere than at the position asked for. Such a field's [`Field::eval`] is never
     /// called: the engine moves the points and evaluates the source there.

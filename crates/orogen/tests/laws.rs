@@ -148,7 +148,7 @@ fn unsoftened(from: &Recipe) -> Recipe {
     let mut recipe = Recipe::new(from.world);
     for named in from.nodes().iter().filter(|named| named.name != "soft") {
         let mut node = named.node.clone();
-        for i in 0..node.spec().inputs.len() {
+        for i in 0..node.inputs().len() {
             if *node.input(i) == Input::from("soft") {
                 node.set_input(i, Input::Node(format!("in{i}")));
             }

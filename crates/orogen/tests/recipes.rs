@@ -232,7 +232,7 @@ fn recipes_in_the_docs_are_recipes() {
             }
         }
     }
-    assert_eq!(found, 2);
+    assert_eq!(found, 3);
 }
 
 /// Teeth and notches of a cliff: samples more than 40 m above, or below, the ground on both sides, one or two samples away; and the steps of

@@ -67,7 +67,7 @@ fn measure(args: &Args) -> Result<(), Failure> {
     }
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();
-    let mut recipe = source.read(&budget)?;
+    let mut recipe = source.read(&budget, &args.samples.view.arguments)?;
     args.samples.view.apply(&mut recipe);
     let policy = args.replace.policy(source.inputs(&recipe));
     let sink = args.out.as_ref().map(|out| Sink::new(out, &policy)).transpose()?;

@@ -85,7 +85,7 @@ fn build(args: &Args) -> Result<(), Failure> {
     let form = form(args)?;
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();
-    let mut recipe = source.read(&budget)?;
+    let mut recipe = source.read(&budget, &args.samples.view.arguments)?;
     args.samples.view.apply(&mut recipe);
     let output = args.replace.policy(source.inputs(&recipe)).output(&args.out)?;
     let world = args.limits.open(recipe, &budget)?;

@@ -7,6 +7,7 @@ use orogen::words::count;
 use orogen::{Options, World};
 use serde_json::{Value, json};
 
+use crate::arguments::Arguments;
 use crate::failure::Failure;
 use crate::report::report;
 use crate::size::Bytes;
@@ -19,6 +20,8 @@ pub struct Args {
     /// Recipes to check: files, names of presets, files of heights, or - for standard input
     #[arg(required = true)]
     recipes: Vec<PathBuf>,
+    #[command(flatten)]
+    arguments: Arguments,
     /// Most memory that the files of heights in them may take, such as 512MiB or 2GiB [default: half of what is free]
     #[arg(long, value_name = "BYTES")]
     memory: Option<Bytes>,
@@ -54,7 +57,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 /// Reads a recipe and all files that it names, and plans each of its layers.
 fn check(recipe: &Path, args: &Args) -> Result<World, Failure> {
     let memory = memory::budget(args.memory, memory::cores());
-    let recipe = Source::find(recipe)?.read(&memory)?;
+    let recipe = Source::find(recipe)?.read(&memory, &args.arguments)?;
     let world = World::with_options(recipe, Options { memory, ..Options::default() })?;
     let cell = world.recipe().world.cell;
     let window = orogen::Window::new(1, 1, cell);

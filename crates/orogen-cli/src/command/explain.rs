@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use orogen::Recipe;
+
 use crate::failure::Failure;
 use crate::options::Limits;
 use crate::say;
@@ -32,9 +34,33 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     })
 }
 
+/// The recipe's parameters, one a line: name, value, unit and range, and what it does.
+fn parameters(recipe: &Recipe) -> String {
+    let parameters = recipe.parameters();
+    if parameters.is_empty() {
+        return String::new();
+    }
+    let values: Vec<String> = parameters
+        .iter()
+        .map(|parameter| format!("{} {}", parameter.value, parameter.unit).trim_end().into())
+        .collect();
+    let longest = parameters.iter().map(|parameter| parameter.name.len()).max().unwrap_or(0);
+    let widest = values.iter().map(|value| value.chars().count()).max().unwrap_or(0);
+    let mut text = String::from("parameters, set by --set NAME=VALUE\n");
+    for (parameter, value) in parameters.iter().zip(values) {
+        let range = match parameter.range {
+            [low, high] if low.is_finite() || high.is_finite() => format!("{low} to {high}"),
+            _ => "any number".into(),
+        };
+        let line = format!("  {:longest$}  {value:widest$}  {range:16}  {}", parameter.name, parameter.help);
+        text += &format!("{}\n", line.trim_end());
+    }
+    text + "\n"
+}
+
 fn tell(args: &Args) -> Result<(), Failure> {
     let budget = args.limits.budget();
-    let mut recipe = Source::find(&args.recipe)?.read(&budget)?;
+    let mut recipe = Source::find(&args.recipe)?.read(&budget, &args.samples.view.arguments)?;
     args.samples.view.apply(&mut recipe);
     let layers: Vec<String> = match &args.layer {
         Some(layer) => vec![layer.clone()],
@@ -43,5 +69,5 @@ fn tell(args: &Args) -> Result<(), Failure> {
     let layers: Vec<&str> = layers.iter().map(String::as_str).collect();
     let world = args.limits.open(recipe, &budget)?;
     let plan = world.plan(&layers, &args.samples.window(&world)?)?;
-    say::out(&world.explain(&plan))
+    say::out(&(parameters(world.recipe()) + &world.explain(&plan)))
 }

@@ -153,7 +153,7 @@ fn export(args: &Args) -> Result<(), Failure> {
     registry::check(format, &options)?;
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();
-    let mut recipe = source.read(&budget)?;
+    let mut recipe = source.read(&budget, &args.samples.view.arguments)?;
     args.samples.view.apply(&mut recipe);
     let policy = args.replace.policy(source.inputs(&recipe));
     list::prepare(&mut recipe, &args.layer, &args.layer_options.read()?)?;

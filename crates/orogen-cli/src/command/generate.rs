@@ -93,7 +93,7 @@ const WRITING: f64 = 150.0;
 fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Failure> {
     let begun = Instant::now();
     let budget = args.limits.budget();
-    let mut recipe = source.read(&budget)?;
+    let mut recipe = source.read(&budget, &args.samples.view.arguments)?;
     args.samples.view.apply(&mut recipe);
     let policy = args.replace.policy(source.inputs(&recipe));
     let world = args.limits.open(recipe, &budget)?;

@@ -7,6 +7,7 @@ use clap::ValueEnum;
 use orogen::sheet::{pdf, raster, vector};
 use orogen::words::count;
 
+use crate::arguments::Arguments;
 use crate::failure::Failure;
 use crate::graph::diagram::Diagram;
 use crate::graph::{dot, draw};
@@ -31,6 +32,8 @@ pub struct Args {
     /// Pixels an inch of a .png
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=1200), default_value = "150")]
     dpi: u16,
+    #[command(flatten)]
+    arguments: Arguments,
     /// Most memory that the program may take, such as 512MiB or 2GiB [default: half of what is free]
     #[arg(long, value_name = "BYTES")]
     memory: Option<Bytes>,
@@ -67,7 +70,7 @@ const MAX_PIXELS: f32 = 4e8;
 pub fn run(args: &Args) -> Result<(), Failure> {
     let kind = kind(&args.out, args.format, &KINDS, "a graph")?;
     let source = Source::find(&args.recipe)?;
-    let recipe = source.read(&memory::budget(args.memory, memory::cores()))?;
+    let recipe = source.read(&memory::budget(args.memory, memory::cores()), &args.arguments)?;
     let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)))?;
     let diagram = Diagram::of(&recipe)?;
     let title = title(&args.recipe);

@@ -76,7 +76,7 @@ fn grow(args: &Args) -> Result<(), Failure> {
     }
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();
-    let mut recipe = source.read(&budget)?;
+    let mut recipe = source.read(&budget, &args.samples.view.arguments)?;
     args.samples.view.apply(&mut recipe);
     if let Some(years) = args.years {
         recipe.change(|node| {

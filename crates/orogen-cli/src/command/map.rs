@@ -233,7 +233,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     }
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();
-    let mut recipe = source.read(&budget)?;
+    let mut recipe = source.read(&budget, &args.view.arguments)?;
     args.view.apply(&mut recipe);
     let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)).protecting(&args.palette))?;
     list::prepare(&mut recipe, &args.layer, &args.layer_options.read()?)?;

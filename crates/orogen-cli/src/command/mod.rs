@@ -20,3 +20,4 @@ pub mod palettes;
 pub mod presets;
 pub mod render;
 pub mod schema;
+pub mod variants;

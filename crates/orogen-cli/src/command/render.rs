@@ -166,7 +166,7 @@ fn render(args: &Args) -> Result<(), Failure> {
     let (style, shot) = (style(args, palette.as_ref())?, shot(args)?);
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();
-    let mut recipe = source.read(&budget)?;
+    let mut recipe = source.read(&budget, &args.view.arguments)?;
     args.view.apply(&mut recipe);
     let policy = args.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
     let outputs = target.outputs(&args.out, args.turntable.unwrap_or(1), &policy)?;

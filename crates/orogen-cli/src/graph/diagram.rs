@@ -98,7 +98,8 @@ impl Diagram {
             let named = &recipe.nodes()[index];
             let spec = named.node.spec();
             let mut rows = Vec::new();
-            let inputs = (spec.inputs.iter().enumerate()).map(|(i, input)| (input.name, named.node.input(i)));
+            let names = named.node.inputs();
+            let inputs = names.iter().enumerate().map(|(i, input)| (input.name, named.node.input(i)));
             for (name, input) in inputs.chain([("mask", &named.mask)]) {
                 match input {
                     Input::None => {}

@@ -54,6 +54,7 @@ pub const WRITERS: &[Writer] = &[
     writer(&["map", "small.toml", "--dpi", "30", "-o", "map.png"], &["map.png"]),
     writer(&["map", "small.toml", "--dpi", "30", "-o", "map.svg"], &["map.svg"]),
     writer(&["map", "small.toml", "--dpi", "30", "-o", "map.pdf"], &["map.pdf"]),
+    writer(&["variants", "small.toml", "--seeds", "2", "--size", "64", "-o", "variants.png"], &["variants.png"]),
     writer(&["noise", "perlin", "--size", "32", "-o", "noise.png"], &["noise.png"]),
     writer(&["noise", "perlin", "--size", "32", "-o", "noise.npy"], &["noise.npy"]),
     writer(&["noise", "perlin", "--size", "32", "--volume", "3", "-o", "block.npy"], &["block.npy"]),

@@ -22,6 +22,7 @@ mod not_finite;
 mod others;
 mod outputs;
 mod palettes;
+mod parameters;
 mod places;
 mod progress;
 mod render;

@@ -1,10 +1,11 @@
 //! Runs a program over one block of samples.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::expression::function::{Argument, MAX_ARGUMENTS};
 use crate::grid::{Grid, Window};
 use crate::layer::LayerKind;
 use crate::op::{Field, Inputs, Reading, Solution, Solver, WorldParams};
-use crate::plan::program::{Instruction, Program};
+use crate::plan::program::{Instruction, Operand, Program};
 use crate::resample::{self, NOWHERE};
 use orogen_noise::Points;
 use std::sync::Arc;
@@ -126,6 +127,18 @@ impl<'p> Interpreter<'p> {
                 self.with_inputs(*coords, inputs, *out, |points, slots, out| {
                     field.eval(points, slots, bindings.world_params, out);
                 });
+            }
+            Instruction::Apply { function, arguments, out } => {
+                let mut samples = std::mem::take(&mut self.registers[*out]);
+                let mut given = [Argument::Number(0.0); MAX_ARGUMENTS];
+                for (given, argument) in given.iter_mut().zip(arguments) {
+                    *given = match argument {
+                        Operand::Number(number) => Argument::Number(*number),
+                        Operand::Register(register) => Argument::Samples(&self.registers[*register]),
+                    };
+                }
+                function.apply(&given[..arguments.len().min(MAX_ARGUMENTS)], &mut samples);
+                self.registers[*out] = samples;
             }
             Instruction::Solved { node, layer, kind, coords, inputs, out } => {
                 let solved = (bindings.solvers)(*node);

@@ -1,7 +1,8 @@
 //! Cutting values off.
 
-use crate::op::{Field, Inputs, WorldParams};
-use orogen_noise::Points;
+use crate::expression::function::Function;
+use crate::expression::term::Term;
+use crate::op::Field;
 
 op! {
     /// The source, cut off below `low` and above `high`.
@@ -23,10 +24,8 @@ op! {
 }
 
 impl Field for Clamp {
-    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
-        let (low, high) = (self.low as f32, self.high as f32);
-        for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
-            *sample = source.clamp(low, high);
-        }
+    fn terms(&self) -> Option<Vec<Term>> {
+        let ends = [self.low, self.high].map(Term::Number);
+        Some(vec![Term::Name(0), ends[0], ends[1], Term::Apply(Function::Clamp, [0, 1, 2])])
     }
 }

@@ -1,8 +1,8 @@
 //! The greater of two, with a rounded seam if asked.
 
-use super::seam::rounded;
-use crate::op::{Field, Inputs, WorldParams};
-use orogen_noise::Points;
+use crate::expression::function::Function;
+use crate::expression::term::Term;
+use crate::op::Field;
 
 op! {
     /// The greater of a and b; with `smooth` above 0 the seam between them is rounded.
@@ -23,7 +23,11 @@ op! {
 }
 
 impl Field for Max {
-    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
-        rounded(out, inputs.required(0), inputs.required(1), self.smooth as f32, -1.0);
+    fn terms(&self) -> Option<Vec<Term>> {
+        let seam = Term::Number(self.smooth);
+        Some(match self.smooth > 0.0 {
+            true => vec![Term::Name(0), Term::Name(1), seam, Term::Apply(Function::SmoothMax, [0, 1, 2])],
+            false => vec![Term::Name(0), Term::Name(1), Term::Apply(Function::Max, [0, 1, 0])],
+        })
     }
 }

@@ -1,7 +1,8 @@
 //! From one to another.
 
-use crate::op::{Field, Inputs, WorldParams};
-use orogen_noise::Points;
+use crate::expression::function::Function;
+use crate::expression::term::Term;
+use crate::op::Field;
 
 op! {
     /// a where `amount` is 0, b where it is 1, and in between in proportion: a + (b - a) * amount.
@@ -19,10 +20,7 @@ op! {
 }
 
 impl Field for Mix {
-    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
-        let (a, b, amount) = (inputs.required(0), inputs.required(1), inputs.required(2));
-        for (((sample, a), b), amount) in out.iter_mut().zip(a).zip(b).zip(amount) {
-            *sample = a + (b - a) * amount.clamp(0.0, 1.0);
-        }
+    fn terms(&self) -> Option<Vec<Term>> {
+        Some(vec![Term::Name(0), Term::Name(1), Term::Name(2), Term::Apply(Function::Mix, [0, 1, 2])])
     }
 }

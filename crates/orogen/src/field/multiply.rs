@@ -1,7 +1,8 @@
 //! Product of two.
 
-use crate::op::{Field, Inputs, WorldParams};
-use orogen_noise::Points;
+use crate::expression::function::Function;
+use crate::expression::term::Term;
+use crate::op::Field;
 
 op! {
     /// a * b: scales one by the other.
@@ -15,9 +16,7 @@ op! {
 }
 
 impl Field for Multiply {
-    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
-        for ((sample, a), b) in out.iter_mut().zip(inputs.required(0)).zip(inputs.required(1)) {
-            *sample = a * b;
-        }
+    fn terms(&self) -> Option<Vec<Term>> {
+        Some(vec![Term::Name(0), Term::Name(1), Term::Apply(Function::Multiply, [0, 1, 0])])
     }
 }

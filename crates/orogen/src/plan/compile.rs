@@ -4,8 +4,10 @@
 //! becomes one instruction, however often it is read. Work is kept on an explicit stack, so a chain of any length is
 //! flattened without recursion.
 
-use super::program::{CoordSet, Instruction, Program, Register};
+use super::program::{CoordSet, Instruction, Operand, Program, Register};
 use crate::error::{Error, ErrorKind, Result};
+use crate::expression::function::{Function, MAX_ARGUMENTS};
+use crate::expression::term::Term;
 use crate::grid::Window;
 use crate::layer::LayerKind;
 use crate::op::{CoordMap, Op, Stencil};
@@ -256,6 +258,10 @@ impl<'a> Compiler<'a> {
                     let to = self.entered.get(&(node, coords)).copied();
                     self.value(&links[source], to.ok_or_else(|| internal("a coordinate map was not planned"))?)?
                 }
+                None if let Some(terms) = field.terms() => {
+                    self.note(node, coords);
+                    self.evaluate(&terms, &links, coords)?
+                }
                 None => {
                     self.note(node, coords);
                     let mut inputs = self.values(&links, coords)?;
@@ -298,6 +304,55 @@ impl<'a> Compiler<'a> {
         let out = self.fresh();
         self.instructions.push(Instruction::Grid { grid, kind, coords, out });
         out
+    }
+
+    /// Emits what a field computes sample by sample. Of numbers alone nothing is emitted but their result.
+    fn evaluate(&mut self, terms: &[Term], links: &[Link], coords: CoordSet) -> Result<Register> {
+        let mut used = vec![false; terms.len()];
+        if let Some(last) = used.last_mut() {
+            *last = true;
+        }
+        for (at, term) in terms.iter().enumerate().rev() {
+            if let (true, Term::Apply(function, arguments)) = (used[at], term) {
+                arguments[..function.arity()].iter().for_each(|argument| used[*argument] = true);
+            }
+        }
+        let mut made: Vec<Operand> = Vec::with_capacity(terms.len());
+        for (term, used) in terms.iter().zip(used) {
+            let operand = match term {
+                _ if !used => Operand::Number(0.0),
+                Term::Number(number) => Operand::Number(*number as f32),
+                Term::Name(name) => match links.get(*name) {
+                    Some(Link::Value(value)) => Operand::Number(*value),
+                    Some(link @ Link::Node(_)) => Operand::Register(self.value(link, coords)?),
+                    Some(Link::None) | None => Operand::Number(0.0),
+                },
+                Term::Apply(function, arguments) => {
+                    let arguments = arguments[..function.arity()].iter().map(|argument| made[*argument]).collect();
+                    self.apply(*function, arguments)
+                }
+            };
+            made.push(operand);
+        }
+        match made.last() {
+            Some(Operand::Register(register)) => Ok(*register),
+            Some(Operand::Number(number)) => self.value(&Link::Value(*number), coords),
+            None => self.value(&Link::None, coords),
+        }
+    }
+
+    /// A function of operands: of numbers alone, a number.
+    fn apply(&mut self, function: Function, arguments: Vec<Operand>) -> Operand {
+        let mut numbers = [0.0; MAX_ARGUMENTS];
+        for (number, argument) in numbers.iter_mut().zip(&arguments) {
+            let Operand::Number(value) = argument else {
+                let out = self.fresh();
+                self.instructions.push(Instruction::Apply { function, arguments, out });
+                return Operand::Register(out);
+            };
+            *number = *value;
+        }
+        Operand::Number(function.of_f32(numbers))
     }
 
     /// Remembers what is evaluated at the block itself: what several programs do so may be better kept.

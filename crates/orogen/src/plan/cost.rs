@@ -51,6 +51,7 @@ fn program_cost(program: &Program, scattered: bool, recipe: &Recipe) -> f64 {
     for instruction in &program.instructions {
         sum += match instruction {
             Instruction::Constant { .. } => 0.05,
+            Instruction::Apply { function, .. } => function.cost(),
             Instruction::Field { node, coords, inputs, .. } => match recipe.nodes()[*node].node.op() {
                 Op::Field(field) if inputs.is_empty() && !moved[*coords] => field.cost_in_rows(),
                 Op::Field(field) => field.cost(),

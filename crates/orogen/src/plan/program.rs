@@ -1,5 +1,6 @@
 //! A program: fused fields as a flat list of instructions over block registers.
 
+use crate::expression::function::Function;
 use crate::layer::LayerKind;
 use crate::op::Affine;
 use serde::{Deserialize, Serialize};
@@ -15,6 +16,24 @@ pub type Register = usize;
 
 /// Index of a coordinate set: the points at which samples are evaluated. Set 0 is the block itself.
 pub type CoordSet = usize;
+
+/// What a function is given.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Operand {
+    /// The same number everywhere.
+    Number(f32),
+    /// A block of samples.
+    Register(Register),
+}
+
+impl Operand {
+    fn register(&self) -> Option<Register> {
+        match self {
+            Operand::Register(register) => Some(*register),
+            Operand::Number(_) => None,
+        }
+    }
+}
 
 /// One instruction. It runs once a block, whatever reads its result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -34,6 +53,15 @@ pub enum Instruction {
         coords: CoordSet,
         /// Its inputs there.
         inputs: Vec<Option<Register>>,
+        /// Where it goes.
+        out: Register,
+    },
+    /// A function of samples: what arithmetic is made of, in nodes and in expressions.
+    Apply {
+        /// The function.
+        function: Function,
+        /// Its arguments.
+        arguments: Vec<Operand>,
         /// Where it goes.
         out: Register,
     },
@@ -117,6 +145,7 @@ impl Instruction {
     fn reads(&self) -> (Vec<Register>, Option<CoordSet>) {
         match self {
             Instruction::Constant { .. } => (Vec::new(), None),
+            Instruction::Apply { arguments, .. } => (arguments.iter().filter_map(Operand::register).collect(), None),
             Instruction::Field { coords, inputs, .. } | Instruction::Solved { coords, inputs, .. } => {
                 (inputs.iter().flatten().copied().collect(), Some(*coords))
             }
@@ -132,6 +161,13 @@ impl Instruction {
     fn rename(&mut self, register: impl Fn(Register) -> Register, coords: impl Fn(CoordSet) -> CoordSet) {
         match self {
             Instruction::Constant { .. } => {}
+            Instruction::Apply { arguments, .. } => {
+                for argument in arguments {
+                    if let Operand::Register(read) = argument {
+                        *read = register(*read);
+                    }
+                }
+            }
             Instruction::Field { coords: at, inputs, .. } | Instruction::Solved { coords: at, inputs, .. } => {
                 *at = coords(*at);
                 for input in inputs.iter_mut().flatten() {
@@ -154,6 +190,7 @@ impl Instruction {
     fn out(&mut self) -> Option<&mut Register> {
         match self {
             Instruction::Constant { out, .. }
+            | Instruction::Apply { out, .. }
             | Instruction::Field { out, .. }
             | Instruction::Solved { out, .. }
             | Instruction::Grid { out, .. }

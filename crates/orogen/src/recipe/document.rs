@@ -13,9 +13,10 @@ use crate::format::dem::{Georeference, Request};
 use crate::node::Node;
 use crate::op::{Op, WorldParams};
 use crate::palette::histogram;
+use crate::recipe::parameters::{Formula, Parameter, Parameters};
 use crate::recipe::surface::document::{Expanded, RAMP, Surface};
 use crate::value::{toml_key, toml_string};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -100,17 +101,32 @@ pub struct NamedNode {
 /// recipe.output("height", "hills");
 /// assert!(recipe.to_toml().starts_with("orogen = 1"));
 /// ```
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Recipe {
     /// One message about it, or empty.
     pub about: String,
     /// The world.
     pub world: WorldSpec,
+    parameters: Parameters,
+    used: Vec<PathBuf>,
     nodes: Vec<NamedNode>,
     outputs: Vec<(String, Input)>,
     surfaces: Vec<Surface>,
     expanded: Vec<Expanded>,
     held: u64,
+}
+
+impl PartialEq for Recipe {
+    /// Whether two recipes make the same world from the same parameters.
+    fn eq(&self, other: &Recipe) -> bool {
+        let document = |recipe: &Recipe| (recipe.about.clone(), recipe.world, recipe.held);
+        document(self) == document(other)
+            && self.parameters.list == other.parameters.list
+            && self.nodes == other.nodes
+            && self.outputs == other.outputs
+            && self.surfaces == other.surfaces
+            && self.expanded == other.expanded
+    }
 }
 
 impl Recipe {
@@ -119,6 +135,8 @@ impl Recipe {
         Recipe {
             about: String::new(),
             world,
+            parameters: Parameters::default(),
+            used: Vec::new(),
             nodes: Vec::new(),
             outputs: Vec::new(),
             surfaces: Vec::new(),
@@ -165,6 +183,56 @@ impl Recipe {
         self.expanded = expanded;
     }
 
+    /// The numbers that it offers: what they are called, what they may be and what they are. [`Recipe::read_with`] and
+    /// [`Recipe::parse_with`] read it with others.
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters.list
+    }
+
+    /// Notes its parameters, and where formulas of them stood.
+    pub(super) fn set_parameters(&mut self, parameters: Parameters) {
+        self.parameters = parameters;
+    }
+
+    /// Where formulas stood.
+    pub(super) fn formulas(&self) -> &[Formula] {
+        &self.parameters.formulas
+    }
+
+    /// The files of the recipes that it uses, and of those that they use.
+    pub fn used(&self) -> &[PathBuf] {
+        &self.used
+    }
+
+    /// Notes the files of the recipes that it uses.
+    pub(super) fn set_used(&mut self, used: Vec<PathBuf>) {
+        self.used = used;
+    }
+
+    /// Puts others in the places of names that its nodes, outputs and surfaces read.
+    pub(super) fn rename_inputs(&mut self, of: impl Fn(&str) -> Option<Input>) {
+        let other = |input: &Input| match input {
+            Input::Node(name) => of(name),
+            _ => None,
+        };
+        for NamedNode { node, mask, .. } in &mut self.nodes {
+            for i in 0..node.inputs().len() {
+                if let Some(input) = other(node.input(i)) {
+                    node.set_input(i, input);
+                }
+            }
+            if let Some(input) = other(mask) {
+                *mask = input;
+            }
+        }
+        for (_, output) in &mut self.outputs {
+            if let Some(input) = other(output) {
+                *output = input;
+            }
+        }
+        self.surfaces.iter_mut().for_each(|surface| surface.rename_inputs(&of));
+    }
+
     /// The nodes in the order they were written.
     pub fn nodes(&self) -> &[NamedNode] {
         &self.nodes
@@ -183,13 +251,13 @@ impl Recipe {
             .for_each(|file| file.set_base_dir(folder));
     }
 
-    /// The files that its nodes and surfaces name, and those that these are composed of.
+    /// The files that its nodes and surfaces name, those that these are composed of, and the recipes that it uses.
     pub fn files(&self) -> Vec<PathBuf> {
         let mut nodes: Vec<Node> = self.nodes.iter().map(|named| named.node.clone()).collect();
         let files = nodes.iter_mut().flat_map(Node::files).filter(|file| !file.is_empty()).map(|file| file.path());
         let files: Vec<PathBuf> =
             files.chain(self.surfaces.iter().filter_map(Surface::picture).map(FileRef::path)).collect();
-        files.iter().flat_map(|path| open::files(path)).collect()
+        files.iter().flat_map(|path| open::files(path)).chain(self.used.iter().cloned()).collect()
     }
 
     /// Reads the files that its nodes name, each once and not again where it was read, so that together their heights take no more than `allowed` bytes.
@@ -323,12 +391,13 @@ impl Recipe {
     }
 
     /// The recipe as TOML with every default written out: self-contained, it makes the same world whatever the defaults of
-    /// a later version are.
+    /// a later version are; recipes that it uses are nodes of it. Its parameters are kept, with the values that they have now as their defaults, and so are formulas of them.
     pub fn to_toml(&self) -> String {
         let mut text = format!("orogen = {VERSION}\n");
         if !self.about.is_empty() {
             let _ = writeln!(text, "about = {}", toml_string(&self.about));
         }
+        self.parameters.write_toml(&mut text);
         let _ = writeln!(text, "\n[world]\nseed = {}", self.world.seed);
         if let Some([width, height]) = self.world.size {
             let _ = writeln!(text, "size = [{width:?}, {height:?}]");
@@ -340,15 +409,30 @@ impl Recipe {
         if let Some([east, north]) = self.world.origin {
             let _ = writeln!(text, "origin = [{east:?}, {north:?}]");
         }
+        let bound = self.parameters.bound();
         let added = |at: &usize| self.expanded.iter().any(|surface| surface.nodes.contains(at));
         for (_, NamedNode { name, node, mask }) in self.nodes.iter().enumerate().filter(|(at, _)| !added(at)) {
             let spec = node.spec();
             let _ = writeln!(text, "\n[nodes.{}]\nop = {:?}", toml_key(name), spec.op);
-            for (i, input) in spec.inputs.iter().enumerate() {
-                write_input(&mut text, input.name, node.input(i));
-            }
-            for (i, param) in spec.params.iter().enumerate() {
-                let _ = writeln!(text, "{} = {}", param.name, node.param(i).to_toml());
+            let inputs = |text: &mut String| {
+                for (i, input) in node.inputs().iter().enumerate() {
+                    if !(spec.named_inputs && self.is_meant(&bound, name, input.name, node.input(i))) {
+                        write_input(text, &toml_key(input.name), node.input(i));
+                    }
+                }
+            };
+            let params = |text: &mut String| {
+                for (i, param) in spec.params.iter().enumerate() {
+                    let _ = writeln!(text, "{} = {}", param.name, node.param(i).to_toml());
+                }
+            };
+            // An expression stands before what it names.
+            if spec.named_inputs {
+                params(&mut text);
+                inputs(&mut text);
+            } else {
+                inputs(&mut text);
+                params(&mut text);
             }
             write_input(&mut text, "mask", mask);
         }
@@ -357,7 +441,16 @@ impl Recipe {
             write_input(&mut text, &toml_key(layer), input);
         }
         self.surfaces.iter().for_each(|surface| surface.write_toml(&mut text));
-        text
+        self.parameters.restore(text)
+    }
+
+    /// Whether a name in an expression means this without being told.
+    fn is_meant(&self, bound: &HashSet<(&str, &str)>, node: &str, name: &str, input: &Input) -> bool {
+        match (self.parameters.value(name), input) {
+            (Some(value), Input::Value(number)) => value == *number && bound.contains(&(node, name)),
+            (None, Input::Node(source)) => source == name,
+            _ => false,
+        }
     }
 }
 

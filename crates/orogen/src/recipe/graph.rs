@@ -1,6 +1,7 @@
 //! A recipe's nodes as a graph: names resolved, order found, keys computed.
 
 use super::document::{MAX_NODES, Recipe};
+use super::subgraph::MAX_DEPTH;
 use crate::declare::Input;
 use crate::error::{Diagnostic, Error, ErrorKind};
 use crate::layer::{Interpolation, LayerKind};
@@ -52,7 +53,7 @@ pub struct Graph {
 #[derive(Debug, Clone, PartialEq)]
 pub enum At {
     /// A node's key; the empty key is the node itself.
-    Node(usize, &'static str),
+    Node(usize, String),
     /// An output.
     Output(usize),
     /// The world.
@@ -69,10 +70,15 @@ pub struct GraphDiagnostic {
 }
 
 /// Whether a name can be a node's or a layer's.
-fn is_name(name: &str) -> bool {
+pub(super) fn is_name(name: &str) -> bool {
     (1..=64).contains(&name.len())
         && name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
         && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-')
+}
+
+/// Whether a name can be a node's: a name, behind those of the recipes that it was taken from.
+fn is_path(name: &str) -> bool {
+    name.split('/').count() <= MAX_DEPTH + 1 && name.split('/').all(is_name)
 }
 
 const NAME_RULE: &str = "names are 1 to 64 letters, digits, `_` and `-` and do not begin with a digit";
@@ -83,7 +89,7 @@ impl Graph {
         let nodes = recipe.nodes();
         if nodes.len() > MAX_NODES {
             let message = format!("the recipe has {} nodes, the most there may be is {MAX_NODES}", nodes.len());
-            return Err(vec![GraphDiagnostic { at: At::Node(MAX_NODES, ""), message }]);
+            return Err(vec![GraphDiagnostic { at: At::Node(MAX_NODES, String::new()), message }]);
         }
         let mut resolver = Resolver { recipe, names: HashMap::with_capacity(nodes.len()), diagnostics: Vec::new() };
         resolver.check_world();
@@ -154,11 +160,11 @@ impl Graph {
         let name = |node: usize| recipe.nodes()[node].name.as_str();
         let reader = cycle.first().copied().unwrap_or(0);
         let source = cycle.last().copied().unwrap_or(0);
-        let spec = recipe.nodes()[reader].node.spec();
+        let inputs = recipe.nodes()[reader].node.inputs();
         let key = self.links[reader]
             .iter()
             .position(|link| matches!(link, Link::Node(target) if target.node == source))
-            .map_or("mask", |i| spec.inputs[i].name);
+            .map_or("mask", |i| inputs[i].name);
         let message = if cycle.len() == 1 {
             format!("node `{}`, `{key}`: the node reads itself; it can only read others", name(reader))
         } else {
@@ -173,7 +179,7 @@ impl Graph {
                 names.join(" -> ")
             )
         };
-        GraphDiagnostic { at: At::Node(reader, key), message }
+        GraphDiagnostic { at: At::Node(reader, key.to_string()), message }
     }
 
     /// The error of diagnostics that have no text to point into.
@@ -277,11 +283,11 @@ impl<'a> Resolver<'a> {
     fn check_node(&mut self, index: usize) -> Result<(), Vec<GraphDiagnostic>> {
         let named = &self.recipe.nodes()[index];
         let name = named.name.as_str();
-        if !is_name(name) {
-            self.diagnostic(At::Node(index, ""), format!("`{name}` cannot be a node's name: {NAME_RULE}"));
+        if !is_path(name) {
+            self.diagnostic(At::Node(index, String::new()), format!("`{name}` cannot be a node's name: {NAME_RULE}"));
         }
         if self.names.insert(name, index).is_some() {
-            self.diagnostic(At::Node(index, ""), format!("there are two nodes named `{name}`: rename one"));
+            self.diagnostic(At::Node(index, String::new()), format!("there are two nodes named `{name}`: rename one"));
         }
         self.check_params(index, &named.node);
         let needs_bounds = match named.node.op() {
@@ -294,7 +300,7 @@ impl<'a> Resolver<'a> {
                 "node `{name}`: the op `{}` {needs}, and this world has no bounds: give `world` a `size`, or leave the node out",
                 named.node.spec().op
             );
-            self.diagnostic(At::Node(index, ""), message);
+            self.diagnostic(At::Node(index, String::new()), message);
         }
         self.enough()
     }
@@ -306,23 +312,23 @@ impl<'a> Resolver<'a> {
         for (i, spec) in node.spec().params.iter().enumerate() {
             if let Err(message) = copy.set_param(i, &node.param(i)) {
                 sound = false;
-                self.diagnostic(At::Node(index, spec.name), message);
+                self.diagnostic(At::Node(index, spec.name.to_string()), message);
             }
         }
         if sound && let Err((key, message)) = node.consistent() {
-            self.diagnostic(At::Node(index, key), message);
+            self.diagnostic(At::Node(index, key.to_string()), message);
         }
     }
 
     /// A node's inputs and its mask.
     fn link_node(&mut self, index: usize) -> Result<(Vec<Link>, Link), Vec<GraphDiagnostic>> {
         let named = &self.recipe.nodes()[index];
-        let inputs = named.node.spec().inputs.iter().enumerate();
-        let inputs = inputs.map(|(i, input)| (input.name, named.node.input(i), input.required));
+        let inputs = named.node.inputs();
+        let inputs = inputs.iter().enumerate().map(|(i, input)| (input.name, named.node.input(i), input.required));
         let mut links: Vec<Link> = Vec::new();
         for (key, input, required) in inputs.chain([("mask", &named.mask, false)]) {
             links.push(self.link(input, required).unwrap_or_else(|message| {
-                self.diagnostic(At::Node(index, key), format!("node `{}`, `{key}`: {message}", named.name));
+                self.diagnostic(At::Node(index, key.to_string()), format!("node `{}`, `{key}`: {message}", named.name));
                 Link::None
             }));
         }

@@ -3,10 +3,12 @@
 pub mod document;
 pub mod graph;
 mod json;
+pub mod parameters;
 mod parse;
 pub mod presets;
 pub mod reference;
 pub mod schema;
+mod subgraph;
 pub mod surface;
 mod text;
 mod toml;

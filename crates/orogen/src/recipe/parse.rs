@@ -2,10 +2,13 @@
 
 use super::document::{LONGEST_TEXT, MAX_NODES, Recipe, VERSION, WorldSpec};
 use super::graph::{At, Graph, MAX_FAULTS};
+use super::parameters::{Formula, Parameters, Step, resolve};
+use super::subgraph::{Complaint, Origin, Shared, Uses, take_in};
 use super::text::{Text, too_long};
 use super::{json, surface, toml};
 use crate::declare::Input;
 use crate::error::{Diagnostic, Error, ErrorKind, Result};
+use crate::field::expr::Expr;
 use crate::node::Node;
 use crate::open;
 use crate::value::{Span, Spanned, Value};
@@ -25,6 +28,17 @@ const ALIASES: [(&str, &str); 8] = [
     ("amount", "strength"),
 ];
 
+/// What a key may have meant.
+fn unknown_key(key: &str, node: &Node) -> String {
+    let inputs = node.inputs();
+    let params = node.spec().params.iter().map(|param| param.name);
+    let known = inputs.iter().map(|input| input.name).chain(params);
+    match ALIASES.iter().find(|(alias, name)| *alias == key && known.clone().any(|known| known == *name)) {
+        Some((_, name)) => format!("it is called `{name}` here"),
+        None => suggestion(key, known.chain(["op", "mask"])),
+    }
+}
+
 type Table = [(Spanned<String>, Spanned<Value>)];
 
 impl Recipe {
@@ -33,25 +47,26 @@ impl Recipe {
     /// # Errors
     /// If the file cannot be read, is no text, or is no valid recipe: then every diagnostic has its line and column.
     pub fn read(path: &Path) -> Result<Recipe> {
+        Recipe::read_with(path, &[])
+    }
+
+    /// The same with other values for some of its parameters.
+    ///
+    /// # Errors
+    /// As [`Recipe::read`], and if a parameter is not there or may not have that value.
+    pub fn read_with(path: &Path, set: &[(String, f64)]) -> Result<Recipe> {
         let doing = "read the recipe";
         let Some(bytes) = open::bytes(path, doing, LONGEST_TEXT)? else {
             return Err(too_long(&path.display().to_string()));
         };
-        match String::from_utf8(bytes) {
-            Ok(text) => {
-                let mut recipe = Recipe::parse(&text, &path.display().to_string())?;
-                recipe.set_base_dir(path.parent().unwrap_or(Path::new("")));
-                Ok(recipe)
-            }
-            Err(diagnostic) => Err(Error::new(
-                ErrorKind::Recipe,
-                format!(
-                    "{} is not a recipe: byte {} is not UTF-8 text; a recipe is a TOML or JSON file",
-                    path.display(),
-                    diagnostic.utf8_error().valid_up_to()
-                ),
-            )),
-        }
+        let shared = Shared::default();
+        parse(&text_of(bytes, path)?, &path.display().to_string(), set, &Origin::file(path, &shared))
+    }
+
+    /// Reads a preset.
+    pub(super) fn parse_preset(name: &str, text: &str, set: &[(String, f64)]) -> Result<Recipe> {
+        let shared = Shared::default();
+        parse(text, &format!("recipes/{name}.toml"), set, &Origin::preset(name, &shared))
     }
 
     /// Reads a recipe from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics call it.
@@ -59,11 +74,35 @@ impl Recipe {
     /// # Errors
     /// If it is no valid recipe. All diagnostics are told at once, in the order of the text.
     pub fn parse(text: &str, name: &str) -> Result<Recipe> {
-        parse(text, name)
+        Recipe::parse_with(text, name, &[])
+    }
+
+    /// The same with other values for some of its parameters.
+    ///
+    /// # Errors
+    /// As [`Recipe::parse`], and if a parameter is not there or may not have that value.
+    pub fn parse_with(text: &str, name: &str, set: &[(String, f64)]) -> Result<Recipe> {
+        let shared = Shared::default();
+        parse(text, name, set, &Origin::text(&shared))
     }
 }
 
-fn parse(text: &str, name: &str) -> Result<Recipe> {
+/// What a file holds, if it is text.
+pub(super) fn text_of(content: Vec<u8>, path: &Path) -> Result<String> {
+    String::from_utf8(content).map_err(|fault| {
+        Error::new(
+            ErrorKind::Recipe,
+            format!(
+                "{} is not a recipe: byte {} is not UTF-8 text; a recipe is a TOML or JSON file",
+                path.display(),
+                fault.utf8_error().valid_up_to()
+            ),
+        )
+    })
+}
+
+/// Reads a recipe, with those that it uses.
+pub(super) fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Result<Recipe> {
     if text.len() as u64 > LONGEST_TEXT {
         return Err(too_long(name));
     }
@@ -78,7 +117,17 @@ fn parse(text: &str, name: &str) -> Result<Recipe> {
     let text = Text { name, text };
     let is_json = text.text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
     let tree = if is_json { json::read(&text)? } else { toml::read(&text)? };
-    Walk { text: &text, diagnostics: Vec::new(), more: 0, places: HashMap::new(), names: Vec::new() }.recipe(&tree)
+    let walk = Walk {
+        text: &text,
+        diagnostics: Vec::new(),
+        more: 0,
+        places: HashMap::new(),
+        names: Vec::new(),
+        parameters: Parameters::default(),
+        failed: HashSet::new(),
+        elsewhere: Vec::new(),
+    };
+    walk.recipe(tree, set, origin)
 }
 
 /// The walk through the tree: gathers diagnostics and remembers where keys stood, for what only the whole graph can tell.
@@ -88,13 +137,22 @@ struct Walk<'a> {
     /// How many diagnostics were not written down because there are too many to be of use.
     more: usize,
     /// Where the value of (node, key) stood; the empty key is the node's name.
-    places: HashMap<(usize, &'static str), Span>,
+    places: HashMap<(usize, String), Span>,
     /// Where the output names' values stood.
     names: Vec<Span>,
+    /// What formulas are made of.
+    parameters: Parameters,
+    /// Formulas that have no value: enough has been said of them.
+    failed: HashSet<Span>,
+    /// What is wrong with recipes that this one uses.
+    elsewhere: Vec<Diagnostic>,
 }
 
 impl Walk<'_> {
     fn complain(&mut self, span: &Span, message: impl Into<String>) {
+        if self.failed.contains(span) {
+            return;
+        }
         if self.diagnostics.len() >= MAX_FAULTS {
             self.more += 1;
             return;
@@ -103,11 +161,19 @@ impl Walk<'_> {
         self.diagnostics.push(diagnostic);
     }
 
-    fn recipe(mut self, tree: &Spanned<Value>) -> Result<Recipe> {
+    fn recipe(mut self, mut tree: Spanned<Value>, set: &[(String, f64)], origin: &Origin) -> Result<Recipe> {
         let Value::Table(top) = &tree.value else {
             return Err(self.text.error(&tree.span, "a recipe is a table of keys"));
         };
         self.version(top)?;
+        let resolved = resolve(&mut tree, self.text, set)
+            .map_err(|message| Error::new(ErrorKind::Recipe, format!("{}: {message}", self.text.name)))?;
+        resolved.complaints.into_iter().for_each(|(span, message)| self.complain(&span, message));
+        self.parameters = resolved.parameters;
+        self.failed = resolved.failed.into_iter().collect();
+        let Value::Table(top) = &tree.value else {
+            return Err(self.text.error(&tree.span, "a recipe is a table of keys"));
+        };
         let mut recipe = Recipe::new(WorldSpec::default());
         let mut seen = HashSet::new();
         for (key, value) in top {
@@ -115,7 +181,7 @@ impl Walk<'_> {
                 continue;
             }
             match key.value.as_str() {
-                "orogen" | "$schema" => {}
+                "orogen" | "$schema" | "parameters" => {}
                 "about" => match &value.value {
                     Value::Text(about) => recipe.about = about.clone(),
                     other => self.complain(&value.span, format!("`about` must be a string, not {}", other.describe())),
@@ -123,10 +189,10 @@ impl Walk<'_> {
                 "world" => recipe.world = self.world(value),
                 "nodes" => self.nodes(value, &mut recipe)?,
                 "outputs" => self.outputs(value, &mut recipe),
-                // Read last: they are told whether the world has bounds.
-                "surface" => {}
+                // Read last: surfaces are told whether the world has bounds, used recipes come behind its own nodes.
+                "surface" | "use" => {}
                 unknown => {
-                    let known = ["orogen", "about", "world", "nodes", "outputs", "surface"];
+                    let known = ["orogen", "about", "parameters", "world", "nodes", "use", "outputs", "surface"];
                     let hint = suggestion(unknown, known);
                     self.complain(&key.span, format!("unknown key `{unknown}` in a recipe; {hint}"));
                 }
@@ -136,20 +202,28 @@ impl Walk<'_> {
             Some((_, value)) => self.surfaces(value, &mut recipe),
             None => Vec::new(),
         };
-        if recipe.output_inputs().is_empty() && self.diagnostics.is_empty() {
+        if let Some(folder) = &origin.folder {
+            recipe.set_base_dir(folder);
+        }
+        let uses = match top.iter().find(|(key, _)| key.value == "use") {
+            Some((_, value)) => self.uses(value, &mut recipe, origin),
+            None => Uses::default(),
+        };
+        if recipe.output_inputs().is_empty() && self.is_sound() {
             self.complain(
                 &(0..0),
                 "the recipe has no outputs: add a table `[outputs]` with a line such as `height = \"NODE\"`",
             );
         }
-        if self.diagnostics.is_empty()
+        if self.is_sound()
             && let Err(diagnostics) = Graph::resolve(&recipe)
         {
             for diagnostic in diagnostics {
                 let span = match &diagnostic.at {
                     At::Node(node, key) => {
-                        let name = self.places.get(&(*node, ""));
-                        self.places.get(&(*node, *key)).or(name).cloned().unwrap_or(0..0)
+                        let name = self.places.get(&(*node, String::new()));
+                        let place = self.places.get(&(*node, key.clone())).or(name);
+                        place.or_else(|| uses.place(*node)).cloned().unwrap_or(0..0)
                     }
                     At::Output(output) => self.names.get(*output).cloned().unwrap_or(0..0),
                     At::World => {
@@ -159,13 +233,38 @@ impl Walk<'_> {
                 self.complain(&span, diagnostic.message);
             }
         }
-        if self.diagnostics.is_empty() && !places.is_empty() {
+        if self.is_sound() && !places.is_empty() {
             self.check_surfaces(&recipe, &places);
         }
-        match self.diagnostics.is_empty() {
-            true => Ok(recipe),
-            false => Err(self.text.errors(self.diagnostics, self.more)),
+        match self.is_sound() {
+            true => {
+                recipe.set_used(uses.files);
+                recipe.set_parameters(self.parameters);
+                Ok(recipe)
+            }
+            false => Err(self.text.errors(self.diagnostics, self.elsewhere, self.more)),
         }
+    }
+
+    /// Whether nothing is wrong so far.
+    fn is_sound(&self) -> bool {
+        self.diagnostics.is_empty() && self.elsewhere.is_empty()
+    }
+
+    /// Takes in the recipes that this one uses.
+    fn uses(&mut self, value: &Spanned<Value>, recipe: &mut Recipe, origin: &Origin) -> Uses {
+        let mut uses = take_in(value, recipe, &mut self.parameters, origin);
+        for complaint in std::mem::take(&mut uses.complaints) {
+            match complaint {
+                Complaint::Here(span, message) => self.complain(&span, message),
+                Complaint::There(error) => {
+                    let room = MAX_FAULTS.saturating_sub(self.elsewhere.len());
+                    self.elsewhere.extend(error.diagnostics().iter().take(room).cloned());
+                }
+            }
+        }
+        recipe.rename_inputs(|name| uses.output(name).cloned());
+        uses
     }
 
     /// Reads the surfaces, and returns where each stands.
@@ -277,7 +376,7 @@ impl Walk<'_> {
                 continue;
             }
             let index = recipe.nodes().len();
-            self.places.insert((index, ""), name.span.clone());
+            self.places.insert((index, String::new()), name.span.clone());
             // A node that cannot be read still stands for its name, so that nodes reading it draw no diagnostic of their own;
             // the recipe is refused anyway.
             if let Some((node, mask)) = self.node(index, name, value) {
@@ -314,7 +413,7 @@ impl Walk<'_> {
         let spec = node.spec();
         let (mut seen, mut mask) = (HashSet::new(), Input::None);
         let is_known = |name: &str| spec.input_named(name).is_some() || spec.param_named(name).is_some();
-        let entries: Vec<(Spanned<String>, &Spanned<Value>)> = (entries.iter())
+        let mut entries: Vec<(Spanned<String>, &Spanned<Value>)> = (entries.iter())
             .map(|(key, value)| {
                 let other = respelled(&key.value).filter(|other| !is_known(&key.value) && is_known(other));
                 let name = other.unwrap_or_else(|| key.value.clone());
@@ -322,39 +421,74 @@ impl Walk<'_> {
                 (Spanned { value: alias.unwrap_or(name), span: key.span.clone() }, value)
             })
             .collect();
+        // Only an expression says which inputs there are.
+        if spec.named_inputs {
+            entries.sort_by_key(|(key, _)| spec.param_named(&key.value).is_none());
+        }
+        let mut sound = true;
         for (key, value) in &entries {
             if self.repeated(&mut seen, key) || key.value == "op" {
                 continue;
             }
             if key.value == "mask" {
-                self.places.insert((index, "mask"), value.span.clone());
+                self.places.insert((index, key.value.clone()), value.span.clone());
                 mask = self.input("mask", value);
-            } else if let Some(i) = spec.input_named(&key.value) {
-                self.places.insert((index, spec.inputs[i].name), value.span.clone());
-                let input = self.input(spec.inputs[i].name, value);
-                node.set_input(i, input);
             } else if let Some(i) = spec.param_named(&key.value) {
-                self.places.insert((index, spec.params[i].name), value.span.clone());
+                self.places.insert((index, key.value.clone()), value.span.clone());
                 match node.set_param(i, &value.value) {
-                    Ok(()) => self.remember(&mut node, value),
-                    Err(message) => self.complain(&value.span, message),
+                    Ok(()) => {
+                        self.remember(&mut node, value);
+                        sound &= self.expression(&node, value);
+                    }
+                    Err(message) => {
+                        self.complain(&value.span, message);
+                        sound = false;
+                    }
                 }
-            } else {
-                let known =
-                    spec.inputs.iter().map(|input| input.name).chain(spec.params.iter().map(|param| param.name));
-                let hint =
-                    match ALIASES.iter().find(|(alias, name)| *alias == key.value && known.clone().any(|k| k == *name))
-                    {
-                        Some((_, name)) => format!("it is called `{name}` here"),
-                        None => suggestion(&key.value, known.chain(["op", "mask"])),
-                    };
+            } else if let Some(i) = node.inputs().iter().position(|input| input.name == key.value) {
+                self.places.insert((index, key.value.clone()), value.span.clone());
+                let input = self.input(&key.value, value);
+                node.set_input(i, input);
+            } else if sound || !spec.named_inputs {
+                let hint = unknown_key(&key.value, &node);
                 self.complain(
                     &key.span,
                     format!("unknown key `{}` in node `{}` (op `{}`); {hint}", key.value, name.value, spec.op),
                 );
             }
         }
+        if spec.named_inputs {
+            self.name_inputs(&name.value, &mut node);
+        }
         Some((node, mask))
+    }
+
+    /// Complains of what is wrong within an expression, where it is wrong.
+    fn expression(&mut self, node: &Node, value: &Spanned<Value>) -> bool {
+        let (Node::Expr(Expr { expr, .. }), Value::Text(text)) = (node, &value.value) else { return true };
+        let Some(fault) = expr.fault() else { return true };
+        let span = self.text.within(&value.span, text, &fault.span);
+        self.complain(&span, fault.message.clone());
+        false
+    }
+
+    /// What an expression names and no key explains: a parameter, or else a node or layer.
+    fn name_inputs(&mut self, node_name: &str, node: &mut Node) {
+        let names: Vec<String> = node.inputs().iter().map(|input| input.name.to_string()).collect();
+        for (i, name) in names.iter().enumerate() {
+            if *node.input(i) != Input::None {
+                continue;
+            }
+            let input = match self.parameters.value(name) {
+                Some(value) => {
+                    let path = ["nodes", node_name, name].map(|key| Step::Key(key.to_string()));
+                    self.parameters.formulas.push(Formula { path: path.into(), text: format!(" {name}") });
+                    Input::Value(value)
+                }
+                None => Input::from(name),
+            };
+            node.set_input(i, input);
+        }
     }
 
     /// Where a file is named, so that whoever cannot read it can say so.

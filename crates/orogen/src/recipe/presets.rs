@@ -18,7 +18,15 @@ impl Preset {
     /// # Errors
     /// None in a release: a test reads every preset.
     pub fn recipe(&self) -> Result<Recipe> {
-        Recipe::parse(self.text, &format!("recipes/{}.toml", self.name))
+        self.recipe_with(&[])
+    }
+
+    /// Reads it with other values for some of its parameters.
+    ///
+    /// # Errors
+    /// If a parameter is not there or may not have that value.
+    pub fn recipe_with(&self, set: &[(String, f64)]) -> Result<Recipe> {
+        Recipe::parse_preset(self.name, self.text, set)
     }
 }
 

@@ -38,6 +38,11 @@ pub fn describe(node: &Node) -> String {
     let longest =
         spec.inputs.iter().map(|input| input.name.len()).chain(spec.params.iter().map(|p| p.name.len())).max();
     let longest = longest.unwrap_or(0);
+    if spec.named_inputs {
+        text.push_str(
+            "\ninputs: a key for each name in the expression that is no node's: a node, `node.layer`, or a number\n",
+        );
+    }
     for input in spec.inputs {
         let optional = if input.required { "" } else { " (optional)" };
         let _ = writeln!(text, "  {:longest$}  {}{optional}", input.name, short(input.doc));
@@ -130,6 +135,12 @@ fn keys(text: &mut String, node: &Node) {
     for input in spec.inputs {
         let needed = if input.required { "required" } else { "none" };
         let _ = writeln!(text, "| `{}` | {} | input | {needed} |", input.name, short(input.doc));
+    }
+    if spec.named_inputs {
+        let _ = writeln!(
+            text,
+            "| any name | What that name in the expression stands for. | input | the parameter or node of that name |"
+        );
     }
     for (i, param) in spec.params.iter().enumerate() {
         let takes = match param.shape {

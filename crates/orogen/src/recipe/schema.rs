@@ -107,7 +107,7 @@ pub fn json_schema() -> Json {
         let side = json!({ "type": "number", "minimum": 1e-3, "maximum": 1e9 });
         world.insert("size".into(), json!({ "description": pair["description"], "anyOf": [side, pair] }));
     }
-    json!({
+    let mut schema = json!({
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "Orogen recipe",
         "description": "A world: its nodes and what it offers.",
@@ -118,6 +118,7 @@ pub fn json_schema() -> Json {
             "$schema": { "type": "string", "description": "The schema of this document, for editors." },
             "orogen": { "const": VERSION, "description": "The version of recipes this one is written in." },
             "about": { "type": "string", "description": "One message about the world." },
+            "parameters": parameters_schema(&name),
             "world": {
                 "type": "object",
                 "description": "The world's seed and measures.",
@@ -127,9 +128,10 @@ pub fn json_schema() -> Json {
             "nodes": {
                 "type": "object",
                 "description": "The nodes by name.",
-                "propertyNames": name,
+                "propertyNames": { "type": "string", "pattern": "^[A-Za-z_][A-Za-z0-9_/-]*$" },
                 "additionalProperties": { "$ref": "#/definitions/node" },
             },
+            "use": uses_schema(&name),
             "outputs": {
                 "type": "object",
                 "description": "What the world offers: layer names with the node (or node.layer) they show. `height` is what maps \
@@ -143,11 +145,99 @@ pub fn json_schema() -> Json {
         "definitions": {
             "input": {
                 "anyOf": [
-                    { "type": "string", "pattern": "^[A-Za-z_][A-Za-z0-9_-]{0,63}(\\.[A-Za-z0-9_-]+)?$" },
+                    { "type": "string", "pattern": "^[A-Za-z_][A-Za-z0-9_/-]*(\\.[A-Za-z0-9_-]+)?$" },
                     { "type": "number" },
                 ],
             },
             "node": node_schema(),
+        },
+    });
+    for part in ["properties", "definitions"] {
+        let parts = schema[part].as_object_mut().into_iter().flatten();
+        parts
+            .filter(|(name, _)| !matches!(name.as_str(), "orogen" | "parameters"))
+            .for_each(|(_, part)| take_formulas(part));
+    }
+    schema
+}
+
+/// What a formula of parameters looks like.
+const FORMULA: &str = "^\\s*=";
+
+/// Lets a formula stand wherever a number does.
+fn take_formulas(schema: &mut Json) {
+    match schema {
+        Json::Object(keys) => {
+            if let Some(kind) =
+                keys.get("type").and_then(Json::as_str).filter(|kind| matches!(*kind, "number" | "integer"))
+            {
+                let kinds = json!([kind, "string"]);
+                keys.insert("type".into(), kinds);
+                keys.insert("pattern".into(), json!(FORMULA));
+            }
+            keys.values_mut().for_each(take_formulas);
+        }
+        Json::Array(items) => items.iter_mut().for_each(take_formulas),
+        _ => {}
+    }
+}
+
+/// What a recipe offers to whoever makes it.
+fn parameters_schema(name: &Json) -> Json {
+    let number = json!({ "type": "number" });
+    let mut name = name.clone();
+    name["pattern"] = json!("^[A-Za-z_][A-Za-z0-9_]{0,63}$");
+    json!({
+        "type": "object",
+        "description": "Numbers that the recipe offers, by name. A string that begins with `=` is a formula of them, wherever a number can stand; \
+                        `--set NAME=VALUE` gives them other values.",
+        "propertyNames": name,
+        "additionalProperties": {
+            "anyOf": [
+                number,
+                {
+                    "type": "object",
+                    "required": ["default"],
+                    "additionalProperties": false,
+                    "properties": {
+                        "default": { "type": "number", "description": "Its value if nobody gives another." },
+                        "unit": { "type": "string", "description": "Its unit." },
+                        "range": {
+                            "type": "array", "minItems": 2, "maxItems": 2, "items": number,
+                            "description": "The lowest and the highest value it may have.",
+                        },
+                        "help": { "type": "string", "description": "What it does." },
+                    },
+                },
+            ],
+        },
+    })
+}
+
+/// Other recipes as parts of this one.
+fn uses_schema(name: &Json) -> Json {
+    json!({
+        "type": "object",
+        "description": "Other recipes as parts of this one, by name. `NAME.layer` reads one of their outputs, `NAME` their `height`.",
+        "propertyNames": name,
+        "additionalProperties": {
+            "type": "object",
+            "required": ["recipe"],
+            "additionalProperties": false,
+            "properties": {
+                "recipe": { "type": "string", "description": "Name of a preset, or path of a recipe." },
+                "inputs": {
+                    "type": "object",
+                    "description": "What its nodes of the op `input` read, by their names.",
+                    "additionalProperties": { "$ref": "#/definitions/input" },
+                },
+                "parameters": {
+                    "type": "object",
+                    "description": "Values of its parameters, by their names.",
+                    "additionalProperties": { "type": "number" },
+                },
+                "seed": { "type": "integer", "minimum": 0, "description": "Hashed with the seeds of its nodes; 0 leaves them as they are." },
+            },
         },
     })
 }
@@ -234,6 +324,8 @@ fn op_schema(node: &Node) -> Json {
         }
     }
     properties.insert("mask".into(), mask_schema());
+    // What an expression names is an input: any key.
+    let others = if spec.named_inputs { json!({ "$ref": "#/definitions/input" }) } else { json!(false) };
     let required: Vec<&str> =
         ["op"].into_iter().chain(spec.inputs.iter().filter(|input| input.required).map(|input| input.name)).collect();
     json!({
@@ -241,7 +333,7 @@ fn op_schema(node: &Node) -> Json {
         "description": short(spec.doc),
         "type": "object",
         "required": required,
-        "additionalProperties": false,
+        "additionalProperties": others,
         "properties": properties,
     })
 }
@@ -264,7 +356,7 @@ fn param_schema(spec: &ParamSpec, default: Option<&Value>) -> Json {
         Shape::Choice(choices) => json!({
             "oneOf": choices().iter().map(|(name, doc)| json!({ "const": name, "description": short(doc) })).collect::<Vec<_>>(),
         }),
-        Shape::File => json!({ "type": "string" }),
+        Shape::File | Shape::Expression => json!({ "type": "string" }),
         Shape::Crs => json!({ "type": "string", "pattern": "^EPSG:[0-9]+$" }),
         Shape::Pair => json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": number }),
         Shape::Curve => json!({

@@ -22,13 +22,26 @@ impl Text<'_> {
         Error::from_diagnostics(ErrorKind::Recipe, vec![self.diagnostic(span, message)])
     }
 
-    /// An error of several, in the order of the text, and of how many `more` there are.
-    pub fn errors(&self, mut diagnostics: Vec<Diagnostic>, more: usize) -> Error {
+    /// An error of several, in the order of the text, of those in other texts, and of how many `more` there are.
+    pub fn errors(&self, mut diagnostics: Vec<Diagnostic>, elsewhere: Vec<Diagnostic>, more: usize) -> Error {
         diagnostics.sort_by_key(|diagnostic| diagnostic.place.as_ref().map(|place| (place.line, place.column)));
+        diagnostics.extend(elsewhere);
         if more > 0 {
             diagnostics.push(Diagnostic { message: format!("and {}", count(more, "more diagnostic")), place: None });
         }
         Error::from_diagnostics(ErrorKind::Recipe, diagnostics)
+    }
+
+    /// A part of a string's value, as a part of the text: exactly where the string stands as it is, all of it where it is written with escapes.
+    pub fn within(&self, string: &Span, value: &str, part: &Span) -> Span {
+        let source = self.text.get(string.clone()).unwrap_or_default();
+        match source.find(value) {
+            Some(at) if !value.is_empty() => {
+                let start = string.start + at;
+                start + part.start..start + part.end
+            }
+            _ => string.clone(),
+        }
     }
 
     /// A part of the text as a place.

@@ -65,6 +65,9 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("insolation", "days") => pair(80.0, 120.0),
             ("insolation", "step") => Value::Number(3.0),
             ("radial", "radius") => Value::Number(40.0 * world.cell),
+            ("expr", "expr") => Value::Text(
+                "mix(source, -other * 2, smoothstep(-0.5, 0.5, third)) + max(source, other)^2 - sin(third)".into(),
+            ),
             ("dem", "path") => Value::Text(DEM.into()),
             ("image", "path") => Value::Text(PICTURE.into()),
             ("dem", "at") => pair(17.3 * world.cell, -5.1 * world.cell),
@@ -81,12 +84,13 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
         };
         node.set_param(i, &fitted).unwrap();
     }
-    for (i, input) in spec.inputs.iter().enumerate() {
+    let inputs: Vec<String> = node.inputs().iter().map(|input| input.name.to_string()).collect();
+    for (i, input) in inputs.iter().enumerate() {
         let name = format!("in{i}");
         let noise = Fbm { seed: i as u64, wavelength: 9.0 * world.cell, octaves: 3, ..Default::default() };
         recipe.add(&name, noise);
         // A filter below the node under test puts halos on top of halos.
-        if input.name == "source" {
+        if input == "source" {
             recipe.add("soft", Blur { source: Input::from(&name), radius: 1.2 * world.cell });
             node.set_input(i, Input::from("soft"));
             if spec.op == "flow-direction" {

@@ -185,6 +185,30 @@ impl Surface {
         }
     }
 
+    /// Puts others in the places of the nodes and layers that it reads.
+    pub(in crate::recipe) fn rename_inputs(&mut self, of: &impl Fn(&str) -> Option<Input>) {
+        let renamed = |layer: &mut String| {
+            if let Some(Input::Node(name)) = of(layer) {
+                *layer = name;
+            }
+        };
+        if let Input::Node(name) = &self.mask
+            && let Some(input) = of(name)
+        {
+            self.mask = input;
+        }
+        for condition in self.all.iter_mut().chain(self.any.iter_mut().flatten()) {
+            if let Quantity::Layer(layer) = &mut condition.of {
+                renamed(layer);
+            }
+        }
+        if let Coloring::Gradient(_, Along::Layer(layer, _)) | Coloring::Picture(_, Along::Layer(layer, _)) =
+            &mut self.color
+        {
+            renamed(layer);
+        }
+    }
+
     /// The same, to be changed.
     pub fn picture_mut(&mut self) -> Option<&mut FileRef> {
         match &mut self.color {

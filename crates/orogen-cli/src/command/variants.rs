@@ -1,0 +1,234 @@
+//! `orogen variants`.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use orogen::budget::Reservation;
+use orogen::world::HEIGHT;
+use orogen::{Budget, Grid, Progress, Recipe, Window, World};
+
+use crate::arguments::Arguments;
+use crate::bar::Bar;
+use crate::contact::{self, Sheet, Variant};
+use crate::failure::Failure;
+use crate::format::Format;
+use crate::options::Limits;
+use crate::replace::Replace;
+use crate::sink::{Sink, is_stdout};
+use crate::size::seed;
+use crate::source::{Source, title};
+use crate::{finite, interrupt};
+
+/// What it takes.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A recipe's file, or the name of a preset
+    #[arg(default_value = orogen::recipe::presets::DEFAULT)]
+    recipe: PathBuf,
+    /// Show so many seeds, from the recipe's (or --seed) on [default: 9]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64), conflicts_with = "sweep")]
+    seeds: Option<u8>,
+    /// Show N values of a parameter, evenly spaced from A to B, such as relief=200..2000:9
+    #[arg(long, value_name = "NAME=A..B:N", allow_hyphen_values = true)]
+    sweep: Option<Sweep>,
+    /// The first seed, or the seed of all, instead of the recipe's
+    #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
+    seed: Option<u64>,
+    #[command(flatten)]
+    arguments: Arguments,
+    /// Picture to write, a .png
+    #[arg(short, long, value_name = "FILE", default_value = "variants.png")]
+    out: PathBuf,
+    /// Samples of the longer side of each picture
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(64..=2048), default_value = "320", allow_negative_numbers = true)]
+    size: u16,
+    /// Pictures in a row [default: about as many as there are rows]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
+    columns: Option<u8>,
+    #[command(flatten)]
+    replace: Replace,
+    #[command(flatten)]
+    limits: Limits,
+    /// Leave out the progress and the closing words
+    #[arg(short, long, help_heading = "Output")]
+    quiet: bool,
+}
+
+/// Pictures where nobody says how many.
+const DEFAULT_SEEDS: u8 = 9;
+
+/// Samples along a side of a world without bounds that are shown, at its own cell.
+const UNBOUNDED: f64 = 1024.0;
+
+/// Values of a parameter, evenly spaced.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sweep {
+    name: String,
+    ends: [f64; 2],
+    count: u8,
+}
+
+impl FromStr for Sweep {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Sweep, String> {
+        let parts = || {
+            let (name, rest) = text.split_once('=')?;
+            let (range, count) = rest.rsplit_once(':')?;
+            let (first, last) = range.split_once("..")?;
+            let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+            Some((name.trim().to_string(), [number(first)?, number(last)?], count.trim().parse::<u8>().ok()?))
+        };
+        match parts() {
+            Some((name, ends, count)) if !name.is_empty() && (2..=64).contains(&count) => Ok(Sweep { name, ends, count }),
+            _ => Err("a sweep is a parameter with its first and last value and how many, 2 to 64, such as relief=200..2000:9".into()),
+        }
+    }
+}
+
+impl Sweep {
+    fn values(&self) -> impl Iterator<Item = f64> + '_ {
+        let [first, last] = self.ends;
+        let steps = f64::from(self.count - 1);
+        // The last value is the one that was asked for, not a sum.
+        (0..self.count)
+            .map(move |k| if k + 1 == self.count { last } else { first + (last - first) * f64::from(k) / steps })
+    }
+}
+
+/// One picture to make.
+struct Asked {
+    label: String,
+    seed: Option<u64>,
+    set: Option<(String, f64)>,
+}
+
+/// Draws the sheet.
+pub fn run(args: &Args) -> Result<(), Failure> {
+    if !is_stdout(&args.out) && Format::of(&args.out, Format::ALL).map_err(Failure::Usage)? != Format::Png {
+        return Err(Failure::Usage("the sheet is a picture; name a file that ends in .png".into()));
+    }
+    let source = Source::find(&args.recipe)?;
+    if let Source::Dem(path) = &source {
+        return Err(Failure::Usage(format!(
+            "{} is a file of heights, which has no variants; name a recipe",
+            path.display()
+        )));
+    }
+    let budget = args.limits.budget();
+    let recipe = source.read(&budget, &args.arguments)?;
+    let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)))?;
+    let asked = asked(args, &recipe)?;
+    let (bar, progress) = Bar::new(args.quiet);
+    let stopped = |failure: Failure| interrupt::explain(failure, "nothing was written");
+    let [making, writing] = progress.parts([19.0, 1.0]);
+    making.expect(asked.len() as f64);
+    let (mut variants, mut held) = (Vec::with_capacity(asked.len()), Vec::with_capacity(asked.len()));
+    for one in asked {
+        let (variant, memory) = make(args, &source, one, &budget, &making.part(1.0)).map_err(stopped)?;
+        variants.push(variant);
+        held.push(memory);
+    }
+    let words = words(args, &recipe);
+    let sheet = Sheet {
+        title: title(&args.recipe),
+        about: recipe.about.clone(),
+        footer: words,
+        sea_level: recipe.world.sea_level,
+    };
+    let columns = args.columns.map(usize::from);
+    let [width, height] = contact::size(&variants, columns);
+    let page = budget.reserve((3 * width * height) as u64)?;
+    let canvas = contact::draw(&sheet, &variants, columns)?;
+    let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+    sink.write(|out| canvas.write_png(out, &[("Software", &software)]))?;
+    writing.finish();
+    drop((bar, page, held));
+    sink.tell(args.quiet, &format!("{}: {} pictures, {width} x {height} pixels\n", args.out.display(), variants.len()))
+}
+
+/// What the pictures are of.
+fn asked(args: &Args, recipe: &Recipe) -> Result<Vec<Asked>, Failure> {
+    let Some(sweep) = &args.sweep else {
+        let first = args.seed.unwrap_or(recipe.world.seed);
+        let count = u64::from(args.seeds.unwrap_or(DEFAULT_SEEDS));
+        let seeds = (0..count).map(|k| first.wrapping_add(k) & i64::MAX as u64);
+        return Ok(seeds.map(|seed| Asked { label: format!("seed {seed}"), seed: Some(seed), set: None }).collect());
+    };
+    let unit = recipe
+        .parameters()
+        .iter()
+        .find(|parameter| parameter.name == sweep.name)
+        .map(|parameter| parameter.unit.clone());
+    let unit = unit.unwrap_or_default();
+    let asked = sweep.values().map(|value| Asked {
+        label: format!("{} {} {unit}", sweep.name, orogen::words::number(value)).trim_end().to_string(),
+        seed: args.seed,
+        set: Some((sweep.name.clone(), value)),
+    });
+    Ok(asked.collect())
+}
+
+/// Makes one.
+fn make(
+    args: &Args,
+    source: &Source,
+    asked: Asked,
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<(Variant, Reservation), Failure> {
+    let mut recipe = source.read(budget, &args.arguments.with(asked.set))?;
+    recipe.world.seed = asked.seed.unwrap_or(recipe.world.seed);
+    let world = args.limits.open(recipe, budget)?;
+    let window = window(&world, usize::from(args.size))?;
+    let plan = world.plan(&[HEIGHT], &window)?;
+    let grid = world.run(&plan, progress)?.pop().unwrap_or_else(|| Grid::filled(window, 0.0));
+    finite::check(HEIGHT, &grid)?;
+    let held = budget.charge(4 * grid.data().len() as u64);
+    Ok((Variant { label: asked.label, grid }, held))
+}
+
+/// The whole world, or as much of one without bounds as other commands show.
+fn window(world: &World, samples: usize) -> Result<Window, Failure> {
+    match world.recipe().world.size {
+        Some(_) => Ok(world.window_fitting(samples)?),
+        None => Ok(Window::new(samples, samples, world.recipe().world.cell * UNBOUNDED / samples as f64)),
+    }
+}
+
+/// The command that makes the sheet again.
+fn words(args: &Args, recipe: &Recipe) -> String {
+    let name = if is_stdout(&args.recipe) { Path::new("-") } else { &args.recipe };
+    let what = match &args.sweep {
+        Some(Sweep { name, ends, count }) => format!("--sweep {name}={}..{}:{count}", ends[0], ends[1]),
+        None => {
+            format!("--seed {} --seeds {}", args.seed.unwrap_or(recipe.world.seed), args.seeds.unwrap_or(DEFAULT_SEEDS))
+        }
+    };
+    format!("Orogen {}: orogen variants {} {what}", env!("CARGO_PKG_VERSION"), name.display())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sweeps() {
+        let sweep: Sweep = "relief=200..2000:3".parse().unwrap();
+        assert_eq!(sweep.values().collect::<Vec<f64>>(), [200.0, 1100.0, 2000.0]);
+        let sweep: Sweep = "a = 1 .. -0.7 : 2".parse().unwrap();
+        assert_eq!((sweep.name.as_str(), sweep.values().last()), ("a", Some(-0.7)));
+        for text in [
+            "relief",
+            "relief=1",
+            "relief=1..2",
+            "relief=1..2:1",
+            "relief=1..2:65",
+            "relief=1..x:3",
+            "=1..2:3",
+            "a=1..inf:3",
+        ] {
+            assert!(text.parse::<Sweep>().is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! The page of `orogen variants`: pictures of worlds side by side, in the same colors and the same light.
+
+use orogen::map::canvas::{Canvas, Ink};
+use orogen::map::paint::Painter;
+use orogen::map::text::{BuiltinFont, Face, Style};
+use orogen::words::shortened;
+use orogen::{Grid, Window};
+
+const PAPER: Ink = [253, 252, 249];
+const INK: Ink = [28; 3];
+const SOFT: Ink = [97; 3];
+const LINE: Ink = [194; 3];
+
+/// Measures in pixels.
+const MARGIN: usize = 44;
+const GUTTER: usize = 20;
+const HEADER: usize = 74;
+const CAPTION: usize = 46;
+const FOOTER: usize = 34;
+
+/// What the page says beside its pictures.
+pub struct Sheet {
+    /// Its heading.
+    pub title: String,
+    /// What stands below that.
+    pub about: String,
+    /// What stands at its foot.
+    pub footer: String,
+    /// Height of the sea's surface.
+    pub sea_level: f64,
+}
+
+/// One of the pictures.
+pub struct Variant {
+    /// What is different about it.
+    pub label: String,
+    /// Its heights.
+    pub grid: Grid,
+}
+
+/// Pictures a row, and the size of the largest.
+struct Layout {
+    columns: usize,
+    rows: usize,
+    cell: [usize; 2],
+}
+
+fn layout(variants: &[Variant], columns: Option<usize>) -> Layout {
+    let count = variants.len().max(1);
+    let square = (1..=count).find(|columns| columns * columns >= count).unwrap_or(1);
+    let columns = columns.unwrap_or(square).min(count);
+    let largest = |side: fn(&Grid) -> usize| variants.iter().map(|variant| side(&variant.grid)).max().unwrap_or(1);
+    Layout { columns, rows: count.div_ceil(columns), cell: [largest(Grid::width), largest(Grid::height)] }
+}
+
+/// The size of the page.
+pub fn size(variants: &[Variant], columns: Option<usize>) -> [usize; 2] {
+    let Layout { columns, rows, cell } = layout(variants, columns);
+    [2 * MARGIN + columns * cell[0] + (columns - 1) * GUTTER, 2 * MARGIN + HEADER + rows * (cell[1] + CAPTION) + FOOTER]
+}
+
+/// Draws the page.
+///
+/// # Errors
+/// If there is no font.
+pub fn draw(sheet: &Sheet, variants: &[Variant], columns: Option<usize>) -> orogen::Result<Canvas> {
+    let [width, height] = size(variants, columns);
+    let layout = layout(variants, columns);
+    let font = BuiltinFont::new()?;
+    let mut canvas = Canvas::new(width, height, PAPER);
+    let style = |face, size: f32, ink| Style { face, size, ink };
+    let (bold, plain) = (style(Face::Bold, 15.0, INK), style(Face::Regular, 13.0, SOFT));
+    let fitted = |text: &str, style: Style, room: usize| shortened(text, room as f32, |text| font.width(text, style));
+    let inner = width - 2 * MARGIN;
+    let heading = style(Face::Bold, 28.0, INK);
+    let about = style(Face::Regular, 15.0, SOFT);
+    font.write(&mut canvas, MARGIN as f32, (MARGIN + 22) as i64, &fitted(&sheet.title, heading, inner), heading);
+    font.write(&mut canvas, MARGIN as f32, (MARGIN + 48) as i64, &fitted(&sheet.about, about, inner), about);
+    let painter = Painter::fit(&together(variants), sheet.sea_level);
+    for (k, Variant { label, grid, .. }) in variants.iter().enumerate() {
+        let (row, column) = (k / layout.columns, k % layout.columns);
+        let left = MARGIN + column * (layout.cell[0] + GUTTER);
+        let top = MARGIN + HEADER + row * (layout.cell[1] + CAPTION);
+        picture(&mut canvas, &painter, grid, [left, top]);
+        let baseline = top + grid.height();
+        let label = fitted(label, bold, grid.width());
+        let end = font.write(&mut canvas, left as f32, (baseline + 21) as i64, &label, bold);
+        let heights = heights(grid, sheet.sea_level);
+        let room = grid.width() as f32 - font.width(&heights, plain);
+        // Beside the label where there is room, else below it.
+        match end - left as f32 + 12.0 <= room {
+            true => font.write(&mut canvas, left as f32 + room, (baseline + 21) as i64, &heights, plain),
+            false => {
+                let heights = fitted(&heights, plain, grid.width());
+                font.write(&mut canvas, left as f32, (baseline + 38) as i64, &heights, plain)
+            }
+        };
+    }
+    let foot = height - MARGIN / 2;
+    canvas.fill(MARGIN as i64..(width - MARGIN) as i64, (foot - 24) as i64..(foot - 23) as i64, LINE);
+    let small = style(Face::Regular, 12.0, SOFT);
+    font.write(&mut canvas, MARGIN as f32, foot as i64, &fitted(&sheet.footer, small, inner), small);
+    Ok(canvas)
+}
+
+/// Some rows of every world, one after another: what colors and light are fitted to.
+fn together(variants: &[Variant]) -> Grid {
+    let width = variants.iter().map(|variant| variant.grid.width()).min().unwrap_or(1);
+    let rows: usize = variants.iter().map(|variant| variant.grid.height()).sum();
+    let cell = variants.first().map_or(1.0, |variant| variant.grid.window().cell);
+    let mut all = Grid::filled(Window::new(width, rows.max(1), cell), 0.0f32);
+    let samples =
+        variants.iter().flat_map(|variant| (0..variant.grid.height()).flat_map(|j| &variant.grid.row(j)[..width]));
+    all.data_mut().iter_mut().zip(samples).for_each(|(to, from)| *to = *from);
+    all
+}
+
+fn picture(canvas: &mut Canvas, painter: &Painter, grid: &Grid, [left, top]: [usize; 2]) {
+    let mut bytes = vec![0; 3 * grid.width() * grid.height()];
+    painter.paint(grid, 0..grid.height(), &mut bytes);
+    for (k, pixel) in bytes.chunks_exact(3).enumerate() {
+        let (i, j) = (k % grid.width(), k / grid.width());
+        canvas.set((left + i) as i64, (top + j) as i64, [pixel[0], pixel[1], pixel[2]]);
+    }
+}
+
+/// The lowest and the highest height, and how much of the world is land where there is sea.
+fn heights(grid: &Grid, sea_level: f64) -> String {
+    let finite = || grid.data().iter().copied().filter(|height| height.is_finite());
+    let (low, high) =
+        finite().fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), height| (low.min(height), high.max(height)));
+    if low > high {
+        return String::new();
+    }
+    let land = finite().filter(|height| f64::from(*height) > sea_level).count() as f64 / grid.data().len() as f64;
+    let sea = if land < 0.995 { format!(", {:.0} % land", land * 100.0) } else { String::new() };
+    format!("{low:.0} to {high:.0} m{sea}").replace('-', "\u{2212}")
+}

@@ -1,0 +1,89 @@
+//! `--set`: on every command that takes a recipe.
+
+use crate::commands::{WRITERS, prepare, workplace};
+use crate::harness::Folder;
+
+const RECIPE: &str = r#"
+orogen = 1
+[parameters.relief]
+default = 100
+unit = "m"
+range = [1, 1000]
+help = "Height of the hills"
+[world]
+size = [600, 400]
+cell = 5
+[nodes.noise]
+op = "fbm"
+wavelength = 200
+[nodes.land]
+op = "expr"
+expr = "noise * relief"
+[outputs]
+height = "land"
+"#;
+
+#[test]
+fn every_command_that_takes_a_recipe_takes_values_for_it() {
+    let folder = workplace();
+    let with_recipe = |arguments: &[&str]| ["small.toml", "rivers.toml", "hills"].contains(&arguments[1]);
+    let mut tried = 0;
+    let writers = WRITERS.iter().filter(|writer| with_recipe(writer.arguments));
+    let talkers = [&["explain", "small.toml"][..], &["check", "small.toml"]];
+    for writer in writers.clone() {
+        prepare(&folder, writer);
+    }
+    for arguments in writers.map(|writer| writer.arguments).chain(talkers) {
+        let arguments: Vec<&str> = arguments.iter().copied().chain(["--set", "no_such=1"]).collect();
+        folder.bad(&arguments, 1, "there is no parameter `no_such`");
+        tried += 1;
+    }
+    assert!(tried > 20, "{tried}");
+}
+
+#[test]
+fn variants_on_one_sheet() {
+    let folder = Folder::new();
+    folder.write("a.toml", RECIPE);
+    let size = |name: &str| {
+        let bytes = std::fs::read(folder.path(name)).unwrap();
+        [16, 20].map(|at| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap()))
+    };
+    folder.good(&["variants", "a.toml", "--seeds", "4", "--size", "96", "-o", "seeds.png", "-q"]);
+    folder.good(&["variants", "a.toml", "--sweep", "relief=100..900:6", "--size", "96", "-o", "sweep.png", "-q"]);
+    // Two by two, and three by two, of 96 x 64 samples.
+    assert_eq!((size("seeds.png")[0], size("sweep.png")[0]), (88 + 2 * 96 + 20, 88 + 3 * 96 + 2 * 20));
+    assert_eq!(size("seeds.png")[1], size("sweep.png")[1]);
+    folder.good(&["variants", "a.toml", "--seeds", "4", "--size", "96", "-o", "again.png", "-q", "--threads", "1"]);
+    assert_eq!(std::fs::read(folder.path("seeds.png")).unwrap(), std::fs::read(folder.path("again.png")).unwrap());
+    folder.bad(&["variants", "a.toml", "--sweep", "relif=100..900:6"], 1, "did you mean `relief`?");
+    folder.bad(&["variants", "a.toml", "--sweep", "relief=100..9000:6"], 1, "from 1 to 1000");
+    folder.bad(&["variants", "a.toml", "--sweep", "relief=100"], 2, "relief=200..2000:9");
+    folder.bad(&["variants", "a.toml", "--seeds", "4", "--sweep", "relief=1..9:3"], 2, "cannot be used with");
+    folder.bad(&["variants", "a.toml", "-o", "a.tif"], 2, "known are");
+}
+
+#[test]
+fn values_change_what_is_made() {
+    let folder = Folder::new();
+    folder.write("a.toml", RECIPE);
+    let low = folder.good(&["analyze", "a.toml", "--json"]).text().to_string();
+    let high = folder.good(&["analyze", "a.toml", "--json", "--set", "relief=500"]).text().to_string();
+    assert_ne!(low, high);
+    folder.good(&["generate", "a.toml", "-o", "made", "--set", "relief=500", "-q"]);
+    let written = std::fs::read_to_string(folder.path("made/recipe.toml")).unwrap();
+    assert!(written.contains("[parameters.relief]\ndefault = 500.0\n"), "{written}");
+    let again = folder.good(&["analyze", "made/recipe.toml", "--json"]).text().to_string();
+    let measures =
+        |text: &str| text.lines().filter(|line| !line.contains("toml")).map(str::to_string).collect::<Vec<_>>();
+    assert_eq!(measures(&again), measures(&high));
+    let explained = folder.good(&["explain", "a.toml"]).text().to_string();
+    assert!(explained.contains("relief  100 m  1 to 1000         Height of the hills"), "{explained}");
+    folder.bad(
+        &["explain", "a.toml", "--set", "relief=5000"],
+        1,
+        "`relief` must be a finite number from 1 to 1000 (m), not 5000",
+    );
+    folder.bad(&["explain", "a.toml", "--set", "relief"], 2, "by its name and a number");
+    folder.bad(&["explain", "a.toml", "--set", "relief=high"], 2, "is a number");
+}
