@@ -154,6 +154,30 @@ mod tests {
     use super::*;
 
     #[test]
+    fn recipes_that_are_used_are_watched() {
+        let folder = std::env::temp_dir().join(format!("orogen-watch-used-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let part = |octaves: u32| {
+            let text = format!("orogen = 1\n[nodes.n]\nop = \"fbm\"\noctaves = {octaves}\n[outputs]\nheight = \"n\"\n");
+            std::fs::write(folder.join("part.toml"), text).unwrap();
+        };
+        let top = folder.join("top.toml");
+        std::fs::write(&top, "orogen = 1\n[use.part]\nrecipe = \"part.toml\"\n[outputs]\nheight = \"part\"\n").unwrap();
+        part(3);
+        let mut seen = Seen::look(&top);
+        assert_eq!(seen.0.len(), 2);
+        assert!(!seen.changed());
+        // A fault in the part, and its end.
+        part(99);
+        assert!(seen.changed());
+        seen.settle(&top);
+        assert!(!seen.changed());
+        part(4);
+        assert!(seen.changed() && !seen.changed());
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
     fn only_other_content_is_a_change() {
         let path = std::env::temp_dir().join(format!("orogen-watch-{}.toml", std::process::id()));
         std::fs::write(&path, "a").unwrap();

@@ -235,7 +235,7 @@ fn world(nodes: &str) -> World {
 /// The instructions that make the height, without their registers: functions by name, all else by kind.
 fn instructions(world: &World) -> Vec<String> {
     let plan = world.plan(&["height"], &Window::new(64, 64, 10.0)).unwrap();
-    let [Step::Fill { program, .. }] = plan.steps.as_slice() else { panic!("one fill") };
+    let [Step::Fill { program, .. }] = plan.steps() else { panic!("one fill") };
     let mut names: Vec<String> = (program.instructions.iter())
         .map(|instruction| match instruction {
             Instruction::Apply { function, .. } => function.name().to_string(),
