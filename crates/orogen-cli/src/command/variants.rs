@@ -200,12 +200,16 @@ fn window(world: &World, samples: usize) -> Result<Window, Failure> {
 fn words(args: &Args, recipe: &Recipe) -> String {
     let name = if is_stdout(&args.recipe) { Path::new("-") } else { &args.recipe };
     let what = match &args.sweep {
-        Some(Sweep { name, ends, count }) => format!("--sweep {name}={}..{}:{count}", ends[0], ends[1]),
+        Some(Sweep { name, ends, count }) => {
+            let seed = args.seed.map_or_else(String::new, |seed| format!("--seed {seed} "));
+            format!("{seed}--sweep {name}={}..{}:{count}", ends[0], ends[1])
+        }
         None => {
             format!("--seed {} --seeds {}", args.seed.unwrap_or(recipe.world.seed), args.seeds.unwrap_or(DEFAULT_SEEDS))
         }
     };
-    format!("Orogen {}: orogen variants {} {what}", env!("CARGO_PKG_VERSION"), name.display())
+    let set: String = args.arguments.values().iter().map(|(name, value)| format!(" --set {name}={value}")).collect();
+    format!("Orogen {}: orogen variants {} {what}{set} --size {}", env!("CARGO_PKG_VERSION"), name.display(), args.size)
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use super::text::{Text, too_long};
 use super::{json, surface, toml};
 use crate::declare::Input;
 use crate::error::{Diagnostic, Error, ErrorKind, Result};
+use crate::expression::formula::place_of;
 use crate::field::expr::Expr;
 use crate::node::Node;
 use crate::open;
@@ -438,7 +439,7 @@ impl Walk<'_> {
                 match node.set_param(i, &value.value) {
                     Ok(()) => {
                         self.remember(&mut node, value);
-                        sound &= self.expression(&node, value);
+                        sound &= self.expression(index, &node, value);
                     }
                     Err(message) => {
                         self.complain(&value.span, message);
@@ -464,9 +465,16 @@ impl Walk<'_> {
     }
 
     /// Complains of what is wrong within an expression, where it is wrong.
-    fn expression(&mut self, node: &Node, value: &Spanned<Value>) -> bool {
+    fn expression(&mut self, index: usize, node: &Node, value: &Spanned<Value>) -> bool {
         let (Node::Expr(Expr { expr, .. }), Value::Text(text)) = (node, &value.value) else { return true };
-        let Some(fault) = expr.fault() else { return true };
+        let Some(fault) = expr.fault() else {
+            // What a name stands for is wrong where the name stands, unless a key says what it is.
+            for name in expr.names() {
+                let span = self.text.within(&value.span, text, &place_of(text, name));
+                self.places.insert((index, name.clone()), span);
+            }
+            return true;
+        };
         let span = self.text.within(&value.span, text, &fault.span);
         self.complain(&span, fault.message.clone());
         false
