@@ -129,7 +129,7 @@ impl Seen {
     /// Looks again: whether there is something else than before.
     fn changed(&mut self) -> bool {
         // Every file is looked at, so that each is up to date.
-        self.0.iter_mut().fold(false, |changed, file| file.changed() || changed)
+        self.0.iter_mut().filter_map(|file| file.changed().then_some(())).count() > 0
     }
 }
 
