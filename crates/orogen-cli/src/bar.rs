@@ -15,14 +15,14 @@ use crate::{interrupt, say};
 /// How progress is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum Mode {
-    /// A bar where standard error is a terminal, nothing elsewhere
+    /// A bar if standard error is a terminal, otherwise nothing
     #[default]
     Auto,
-    /// A line on standard error each second: "12 %, 34 s left"
+    /// A line on standard error every second: "12 %, 34 s left"
     Plain,
-    /// A line of JSON on standard error ten times a second: share (0 to 1), seconds so far, and seconds left or null
+    /// A line of JSON on standard error ten times per second: share done (0 to 1), elapsed seconds, and remaining seconds or null
     Json,
-    /// Nothing
+    /// No progress
     None,
 }
 

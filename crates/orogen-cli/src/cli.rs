@@ -1,4 +1,4 @@
-//! What the command line may say.
+//! The command line.
 
 use clap::{CommandFactory, Parser, Subcommand};
 
@@ -11,70 +11,70 @@ use crate::command::{
 };
 use crate::failure::Failure;
 
-/// Procedural terrain: a recipe describes a world, orogen makes it.
+/// Procedural terrain generator: makes terrain from recipes.
 ///
-/// Begin with `orogen generate`: it makes the default preset into the folder `out`. `orogen presets` lists what else there is,
-/// `orogen new NAME` writes a recipe of your own to change.
+/// `orogen generate` makes the default preset in the folder `out`. `orogen presets` lists the other presets, and `orogen new NAME` writes a
+/// recipe to edit.
 #[derive(Debug, Parser)]
 #[command(name = "orogen", version, max_term_width = 100)]
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// How progress is shown: a bar on a terminal, or lines on standard error
+    /// How progress is shown; `auto` shows a bar on a terminal and nothing elsewhere
     #[arg(long, global = true, value_name = "HOW", default_value = "auto")]
     progress: Mode,
 }
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Make a terrain: heights, a map and a summary in a folder.
+    /// Make a terrain: heights, a map and a summary in a folder
     Generate(generate::Args),
-    /// Write one layer, or a window of it, to a file.
+    /// Write one layer, or a window of it, to a file
     Export(export::Args),
-    /// Build a world of any size into a GeoTIFF, a Zarr or a folder of tiles, and go on where it was interrupted.
+    /// Build a world of any size as a GeoTIFF, a Zarr group or a folder of tiles; interrupted builds can be resumed
     Build(build::Args),
-    /// Measure a terrain: a table beside what real land is like, and a page with its charts.
+    /// Measure a terrain: a table with reference values of real land, and a page of charts
     Analyze(analyze::Args),
-    /// Find a recipe whose land is like a real place, without holding the place.
+    /// Find a recipe whose terrain is statistically similar to a real place
     Fit(fit::Args),
-    /// Draw a terrain growing: frames of uplift and erosion as a moving picture.
+    /// Draw the growth of a terrain: frames of uplift and erosion as an animation
     Grow(grow::Args),
-    /// Draw a terrain as it would be seen: a perspective picture with sun, shadows, sky and water.
+    /// Render a perspective view with sun, shadows, sky and water
     Render(render::Args),
-    /// Draw a map sheet: relief, contours, rivers, lakes, scale and legend, as a picture, SVG or PDF.
+    /// Draw a map sheet with relief, contours, rivers, lakes, scale and legend, as PNG, SVG or PDF
     Map(map::Args),
-    /// Draw variants of a recipe side by side: other seeds, or a parameter from one value to another.
+    /// Draw variants of a recipe side by side: several seeds, or a range of values of a parameter
     Variants(variants::Args),
-    /// Write a new recipe to start from.
+    /// Write a new recipe as a starting point
     New(new::Args),
-    /// List the built-in presets.
+    /// List the built-in presets
     Presets,
-    /// List the ops that recipes are made of, or tell all about one.
+    /// List the ops of recipes, or describe one
     Ops(ops::Args),
-    /// Draw one noise without a recipe: a picture, an array, an animation or a block.
+    /// Draw a noise without a recipe: a picture, an array, an animation or a volume
     Noise(noise::Args),
-    /// Draw the noises side by side on one page, as heights and as hillshade.
+    /// Draw all noises side by side on one page, as heights and as hillshade
     Compare(compare::Args),
-    /// List the palettes for maps, or draw them all on one page.
+    /// List the palettes, or draw them on one page
     Palettes(palettes::Args),
-    /// Print the JSON Schema of recipes, for editors.
+    /// Print the JSON Schema of recipes, for editors
     Schema,
-    /// Show how a recipe would be made: its nodes in order, and the memory it takes.
+    /// Print the plan of a recipe: its nodes in order and the memory needed
     Explain(explain::Args),
-    /// Check recipes and tell every fault, without making anything.
+    /// Check recipes and report all errors, without making anything
     Check(check::Args),
-    /// Draw a recipe's graph: its nodes as boxes, and the wires between them.
+    /// Draw the graph of a recipe: its nodes and the connections between them
     Graph(graph::Args),
-    /// List or clear the solutions that are kept for later runs.
+    /// List or remove the solutions stored for later runs
     Cache(cache::Args),
-    /// Print the completion script of a shell.
+    /// Print a shell completion script
     Completions(completions::Args),
 }
 
 impl Cli {
-    /// Does what was asked.
+    /// Runs the command.
     pub fn run(self) -> Result<(), Failure> {
-        // Somebody who forces a level is hunting a difference between levels: never quietly take another.
+        // A forced level is used to find differences between levels: an unknown level must be an error.
         Level::environment().map_err(|wrong| Failure::Usage(format!("OROGEN_SIMD: {wrong}")))?;
         set_mode(self.progress);
         match self.command {

@@ -33,7 +33,7 @@ pub fn afford(path: &Path, needed: u64, free: Option<u64>) -> Result<(), Error> 
         Some(free) if needed > free => Err(Error::new(
             ErrorKind::File,
             format!(
-                "this needs up to {} of disk where {} is, and there is room for {}: make room, or name another place",
+                "not enough disk space for {1}: up to {0} needed, {2} free; free some space, or write to another disk",
                 words::bytes(needed),
                 path.display(),
                 words::bytes(free)

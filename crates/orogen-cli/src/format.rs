@@ -33,15 +33,19 @@ impl Format {
     /// The one of `formats` that the extension of `path` tells, or a message that says why it tells none.
     pub fn of(path: &Path, formats: &[Format]) -> Result<Format, String> {
         let Some(extension) = path.extension() else {
-            return Err(format!("{} has no extension to tell its format; known are {}", path.display(), list(formats)));
+            return Err(format!(
+                "{} has no file extension that determines its format; known extensions: {}",
+                path.display(),
+                list(formats)
+            ));
         };
         let extension = extension.to_string_lossy();
         formats.iter().copied().find(|format| format.has(&extension)).ok_or_else(|| {
             let hint = match nearest(&extension, formats.iter().map(|format| format.name())) {
                 Some(near) => format!("did you mean .{near}?"),
-                None => format!("known are {}", list(formats)),
+                None => format!("known extensions: {}", list(formats)),
             };
-            format!("the format .{extension} is not known; {hint}")
+            format!("unknown format .{extension}; {hint}")
         })
     }
 }

@@ -30,7 +30,7 @@ impl AnimationTarget {
         }
         let name = out.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
         let extension = out.extension().map(|extension| extension.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let help = "frames go into a .png that moves, a .gif, or files of their own such as view-%03d.png";
+        let help = "frames are written to an animated .png, a .gif, or one file each, such as view-%03d.png";
         match (name.split_once('%'), extension.as_str()) {
             (Some((before, rest)), "png") => {
                 let number = rest.split_once('d').and_then(|(digits, after)| {
@@ -39,12 +39,12 @@ impl AnimationTarget {
                 });
                 match number.filter(|(_, after)| !after.contains('%')) {
                     Some((digits, after)) => Ok(AnimationTarget::Frames(before.into(), digits, after.into())),
-                    None => Err(format!("{name} has a % that is no number's place; {help}")),
+                    None => Err(format!("{name} has a % that is not a frame number such as %03d; {help}")),
                 }
             }
             (None, "png") => Ok(AnimationTarget::Apng),
             (None, "gif") => Ok(AnimationTarget::Gif),
-            (_, "") => Err(format!("{} has no extension to tell its format; {help}", out.display())),
+            (_, "") => Err(format!("{} has no file extension that determines its format; {help}", out.display())),
             (_, other) => Err(format!("frames cannot be written as .{other}; {help}")),
         }
     }
@@ -146,12 +146,12 @@ mod tests {
             assert_eq!(AnimationTarget::of(Path::new(name)), Ok(expect), "{name}");
         }
         for (name, message) in [
-            ("a", "no extension"),
+            ("a", "no file extension"),
             ("a.mp4", ".mp4"),
-            ("a%.png", "no number's place"),
-            ("a%03x.png", "no number's place"),
-            ("a%d%d.png", "no number's place"),
-            ("a%99d.png", "no number's place"),
+            ("a%.png", "not a frame number"),
+            ("a%03x.png", "not a frame number"),
+            ("a%d%d.png", "not a frame number"),
+            ("a%99d.png", "not a frame number"),
             ("a%03d.gif", ".gif"),
         ] {
             let error = AnimationTarget::of(Path::new(name)).unwrap_err();

@@ -1,4 +1,4 @@
-//! Options that several commands share.
+//! Options shared by several commands.
 
 use std::path::PathBuf;
 
@@ -9,28 +9,28 @@ use crate::failure::Failure;
 use crate::memory;
 use crate::size::Bytes;
 
-/// What the work may use.
+/// Limits of threads and memory, and the cache.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Limits and cache")]
 pub struct Limits {
-    /// Threads to work with, at most as many as there are cores [default: all there are]
+    /// Number of threads, at most the number of cores [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
-    /// Memory limit of the whole process, such as 512MiB or 2GiB [default: half of what is free]
+    /// Memory limit of the whole process, such as 512MiB or 2GiB [default: half of the free memory]
     #[arg(long, value_name = "BYTES")]
     pub memory: Option<Bytes>,
-    /// Folder in which slow solutions are kept for later runs [default: $OROGEN_CACHE, else the system's folder for caches]
+    /// Folder of the cache, where slow solutions are stored for later runs [default: $OROGEN_CACHE, else the system's cache folder]
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
-    /// Size limit of that folder; the least recently used solutions are removed first [default: 10GiB]
+    /// Size limit of the cache; the least recently used solutions are removed first [default: 10GiB]
     #[arg(long, value_name = "BYTES")]
     pub cache_limit: Option<Bytes>,
-    /// Do not read or write that folder
+    /// Do not read or write the cache
     #[arg(long, conflicts_with_all = ["cache", "cache_limit"])]
     pub no_cache: bool,
 }
 
-/// Names the cache's folder; set but empty, it means none.
+/// The cache's folder; set but empty, it disables the cache.
 const CACHE_VARIABLE: &str = "OROGEN_CACHE";
 
 impl Limits {

@@ -21,5 +21,5 @@ pub fn find(argument: &Path) -> Result<Palette, Failure> {
         Some(near) => format!("did you mean `{near}`?"),
         None => "`orogen palettes` lists them".into(),
     };
-    Err(Failure::Usage(format!("there is no palette and no file `{name}`; {hint}")))
+    Err(Failure::Usage(format!("no palette or file is called `{name}`; {hint}")))
 }

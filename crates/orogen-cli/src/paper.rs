@@ -41,7 +41,7 @@ impl FromStr for Paper {
         match sides.map(|(width, height)| (number(width), number(height))) {
             Some((Some(width), Some(height))) => Ok(Paper([width, height])),
             _ => Err(format!(
-                "paper is a0 to a5, letter, legal, or WxHmm such as 300x200mm, each side from {} to {} mm",
+                "the paper size must be a0 to a5, letter, legal, or WxHmm such as 300x200mm, with sides from {} to {} mm",
                 SIDES[0], SIDES[1]
             )),
         }

@@ -13,7 +13,8 @@ pub enum Rectangle {
     Metres([f64; 4]),
 }
 
-const RECTANGLE: &str = "a window is X,Y,W,H in samples, such as 0,0,512,512, or in metres, such as 0m,500m,2km,2km";
+const RECTANGLE: &str =
+    "a window must be X,Y,W,H in samples, such as 0,0,512,512, or in metres, such as 0m,500m,2km,2km";
 
 impl FromStr for Rectangle {
     type Err = String;
@@ -29,7 +30,7 @@ impl FromStr for Rectangle {
             }
             return match numbers {
                 [_, _, width, height] if width > 0.0 && height > 0.0 => Ok(Rectangle::Metres(numbers)),
-                _ => Err("a window is more than 0 metres wide and high".into()),
+                _ => Err("the width and height of a window must be greater than 0 m".into()),
             };
         }
         if metres > 0 {
@@ -38,7 +39,7 @@ impl FromStr for Rectangle {
         let corner = |text: &str| {
             // Beyond this, positions in metres would lose the cell.
             let number = text.parse::<i64>().ok().filter(|n| n.abs() <= 1 << 52);
-            number.ok_or_else(|| format!("`{text}` is not the column or row of a sample; {RECTANGLE}"))
+            number.ok_or_else(|| format!("`{text}` is not a column or row of samples; {RECTANGLE}"))
         };
         Ok(Rectangle::Samples(corner(x)?, corner(y)?, samples(width)?, samples(height)?))
     }
@@ -104,7 +105,7 @@ pub fn place(text: &str) -> Result<[f64; 2], String> {
     let parts: Option<Vec<f64>> = text.split(',').map(|part| finite(part).ok()).collect();
     match parts.as_deref() {
         Some(&[east, north]) => Ok([east, north]),
-        _ => Err("a place is EAST,NORTH, such as 600000,5200000".into()),
+        _ => Err("a position must be EAST,NORTH, such as 600000,5200000".into()),
     }
 }
 

@@ -4,14 +4,14 @@ use std::path::Path;
 
 use orogen::file::{Existing, OutputPolicy};
 
-/// The options.
+/// The options `--force` and `--no-clobber`.
 #[derive(Debug, Clone, Copy, clap::Args)]
 #[command(next_help_heading = "Output")]
 pub struct Replace {
-    /// Replace a file of any kind, not only one of the kind that is written
+    /// Replace existing files of any kind, not only files of the kind that is written
     #[arg(long)]
     pub force: bool,
-    /// Replace nothing: stop if a file is there already
+    /// Do not replace existing files: fail if a file exists
     #[arg(short = 'n', long, conflicts_with = "force")]
     pub no_clobber: bool,
 }

@@ -29,15 +29,15 @@ impl FromStr for Seeds {
             };
             if first > last {
                 return Err(format!(
-                    "the seeds {first}..{last} are none; the lower one comes first, as in {last}..{first}"
+                    "the range of seeds {first}..{last} is empty; write the lower seed first: {last}..{first}"
                 ));
             }
             if last - first >= MAX_SEEDS || seeds.len() as u64 + (last - first) >= MAX_SEEDS {
-                return Err(format!("there may be up to {MAX_SEEDS} seeds"));
+                return Err(format!("at most {MAX_SEEDS} seeds are allowed"));
             }
             for seed in first..=last {
                 if seeds.contains(&seed) {
-                    return Err(format!("the seed {seed} is there twice"));
+                    return Err(format!("the seed {seed} is listed twice"));
                 }
                 seeds.push(seed);
             }
@@ -61,12 +61,12 @@ impl Seeds {
     ) -> Result<(), Failure> {
         let marked = out.is_some_and(|out| out.to_string_lossy().contains(MARK));
         match asked {
-            None if marked => Err(Failure::Usage(format!(
-                "{MARK} in the name of the output is for --seed: say which, such as --seed 1..9"
-            ))),
+            None if marked => {
+                Err(Failure::Usage(format!("{MARK} in the output name needs --seed, such as --seed 1..9")))
+            }
             None => work(None, out.map(Path::to_path_buf)),
             Some(Seeds(seeds)) if seeds.len() > 1 && out == Some(Path::new("-")) => Err(Failure::Usage(format!(
-                "the outputs of {} seeds do not go into one stream; name files with -o",
+                "the outputs of {} seeds cannot be written to one stream; name a file with -o",
                 seeds.len()
             ))),
             Some(Seeds(seeds)) => seeds.iter().try_for_each(|&seed| {
@@ -104,13 +104,13 @@ mod tests {
             ("4..6,9", Ok(vec![4, 5, 6, 9])),
             ("1..=3", Ok(vec![1, 2, 3])),
             ("5..5", Ok(vec![5])),
-            ("9..1", Err("the lower one comes first")),
-            ("1..4,2", Err("the seed 2 is there twice")),
-            ("0..9999999", Err("up to 10000")),
-            ("0..9999,5", Err("up to 10000")),
-            ("1,,2", Err("a seed is a whole number")),
-            ("-1", Err("a seed is a whole number")),
-            ("", Err("a seed is a whole number")),
+            ("9..1", Err("write the lower seed first")),
+            ("1..4,2", Err("the seed 2 is listed twice")),
+            ("0..9999999", Err("at most 10000")),
+            ("0..9999,5", Err("at most 10000")),
+            ("1,,2", Err("a seed must be a whole number")),
+            ("-1", Err("a seed must be a whole number")),
+            ("", Err("a seed must be a whole number")),
         ] {
             match (text.parse::<Seeds>(), expect) {
                 (Ok(Seeds(seeds)), Ok(expect)) => assert_eq!(seeds, expect, "{text}"),
@@ -137,7 +137,7 @@ mod tests {
         assert_eq!(names(Some("7,8"), "x/a.tif").unwrap(), ["Some(7) x/a-7.tif", "Some(8) x/a-8.tif"]);
         assert_eq!(names(Some("7"), "{seed}/a-{seed}.tif").unwrap(), ["Some(7) 7/a-7.tif"]);
         assert_eq!(names(Some("1..2"), "out").unwrap(), ["Some(1) out-1", "Some(2) out-2"]);
-        assert!(names(None, "{seed}.png").unwrap_err().contains("say which"));
+        assert!(names(None, "{seed}.png").unwrap_err().contains("needs --seed"));
         assert!(names(Some("1,2"), "-").unwrap_err().contains("one stream"));
     }
 }

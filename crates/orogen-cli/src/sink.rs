@@ -35,7 +35,7 @@ impl Sink {
         match is_stdout(out) {
             false => Ok(Sink::File(policy.output(out)?)),
             true if io::stdout().is_terminal() => Err(Failure::Usage(
-                "standard output is a terminal, which cannot show binary data; name a file with -o, or pipe it on"
+                "standard output is a terminal, which cannot show binary data; name a file with -o, or redirect the output"
                     .into(),
             )),
             true => Ok(Sink::Stdout),
@@ -57,7 +57,7 @@ impl Sink {
                 // What is left in the buffer after a failure must not be tried again on the way out.
                 let (piped, _) = out.into_parts();
                 written.map_err(|cause| match (interrupt::asked(), piped.broken) {
-                    (true, _) => Failure::Interrupted("stopped: what was written is cut short".to_string()),
+                    (true, _) => Failure::Interrupted("interrupted: the output is incomplete".to_string()),
                     (false, true) => Failure::BrokenPipe,
                     (false, false) => Failure::stdout(&cause),
                 })
@@ -102,13 +102,13 @@ pub fn kind<K: Copy + PartialEq>(
 ) -> Result<K, Failure> {
     if is_stdout(out) {
         let first = kinds.first().map(|(kind, _)| *kind);
-        return asked.or(first).ok_or_else(|| Failure::Usage("say --format".into()));
+        return asked.or(first).ok_or_else(|| Failure::Usage("standard output needs --format".into()));
     }
     let extension = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let told = kinds.iter().find(|(_, names)| names.contains(&extension.as_str())).map(|(kind, _)| *kind);
     match (asked, told) {
         (Some(asked), Some(told)) if asked != told => {
-            Err(Failure::Usage(format!("--format and the extension of {} contradict each other", out.display())))
+            Err(Failure::Usage(format!("--format does not match the extension of {}", out.display())))
         }
         (Some(kind), _) | (None, Some(kind)) => Ok(kind),
         (None, None) => {

@@ -29,23 +29,23 @@ impl FromStr for Size {
 pub fn samples(text: &str) -> Result<usize, String> {
     match text.trim().parse::<u64>() {
         Ok(n) if (1..=MOST).contains(&n) => Ok(n as usize),
-        Ok(n) => Err(format!("a side has 1 to {MOST} samples, not {n}")),
-        Err(_) => Err("a size is a number of samples, such as 1024 or 1024x768".into()),
+        Ok(n) => Err(format!("a side must have 1 to {MOST} samples, not {n}")),
+        Err(_) => Err("a size must be a number of samples, such as 1024 or 1024x768".into()),
     }
 }
 
 /// `--seed`: what a recipe may say too, so that the one written reads back.
 pub fn seed(text: &str) -> Result<u64, String> {
     let seed = text.trim().parse().ok().filter(|&seed| seed <= i64::MAX as u64);
-    seed.ok_or_else(|| format!("a seed is a whole number from 0 to {}", i64::MAX))
+    seed.ok_or_else(|| format!("a seed must be a whole number from 0 to {}", i64::MAX))
 }
 
 /// `--cell`: metres from one sample to the next.
 pub fn cell(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(cell) if cell.is_finite() && cell > 0.0 => Ok(cell),
-        Ok(_) => Err("a cell is more than 0 metres".into()),
-        Err(_) => Err("a cell is a number of metres, such as 10 or 2.5".into()),
+        Ok(_) => Err("a cell size must be greater than 0 m".into()),
+        Err(_) => Err("a cell size must be a number of metres, such as 10 or 2.5".into()),
     }
 }
 
@@ -53,25 +53,31 @@ pub fn cell(text: &str) -> Result<f64, String> {
 pub fn wavelength(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(wavelength) if wavelength.is_finite() && wavelength > 0.0 => Ok(wavelength),
-        Ok(_) => Err("a wavelength is more than 0 samples".into()),
-        Err(_) => Err("a wavelength is a number of samples, such as 64 or 2.5".into()),
+        Ok(_) => Err("a wavelength must be greater than 0 samples".into()),
+        Err(_) => Err("a wavelength must be a number of samples, such as 64 or 2.5".into()),
     }
 }
 
 /// Any number that is one.
 pub fn finite(text: &str) -> Result<f64, String> {
     let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-    number.ok_or_else(|| "it is a number, such as 2 or 0.5".into())
+    number.ok_or_else(|| "the value must be a number, such as 2 or 0.5".into())
 }
 
 /// A number above 0.
 pub fn positive(text: &str) -> Result<f64, String> {
-    finite(text).ok().filter(|&number| number > 0.0).ok_or_else(|| "it is a number above 0, such as 2 or 0.5".into())
+    finite(text)
+        .ok()
+        .filter(|&number| number > 0.0)
+        .ok_or_else(|| "the value must be greater than 0, such as 2 or 0.5".into())
 }
 
 /// A number from 0 up.
 pub fn not_negative(text: &str) -> Result<f64, String> {
-    finite(text).ok().filter(|&number| number >= 0.0).ok_or_else(|| "it is 0 or a number above, such as 1.5".into())
+    finite(text)
+        .ok()
+        .filter(|&number| number >= 0.0)
+        .ok_or_else(|| "the value must be 0 or greater, such as 1.5".into())
 }
 
 /// A few numbers with commas between them: a place, or a direction.
@@ -86,7 +92,7 @@ impl FromStr for Numbers {
             .map(finite)
             .collect::<Result<Vec<f64>, String>>()
             .map(Numbers)
-            .map_err(|_| format!("`{text}` is not numbers with commas between them, such as 200,24"))
+            .map_err(|_| format!("`{text}` is not a list of numbers separated by commas, such as 200,24"))
     }
 }
 
@@ -94,7 +100,7 @@ impl FromStr for Numbers {
 pub fn clock(text: &str) -> Result<f64, String> {
     let number = |text: &str, end: u32| text.trim().parse::<u32>().ok().filter(|n| *n < end).map(f64::from);
     let time = text.split_once(':').and_then(|(hour, minute)| Some(number(hour, 24)? + number(minute, 60)? / 60.0));
-    time.ok_or_else(|| "a time goes from 00:00 to 23:59, such as 17:30".into())
+    time.ok_or_else(|| "a time must be from 00:00 to 23:59, such as 17:30".into())
 }
 
 /// `--memory`: bytes, with or without a unit.
@@ -127,12 +133,12 @@ impl FromStr for Bytes {
         let unit = text[digits..].trim().to_lowercase();
         let unit = UNITS.iter().find(|(name, _)| *name == unit);
         let (Ok(number), Some((_, unit))) = (text[..digits].parse::<f64>(), unit) else {
-            return Err("memory is a number of bytes, such as 512MiB, 2GiB or 1.5GB".into());
+            return Err("the memory limit must be a number of bytes, such as 512MiB, 2GiB or 1.5GB".into());
         };
         match number * *unit as f64 {
             bytes if bytes >= 1.0 && bytes < u64::MAX as f64 => Ok(Bytes(bytes as u64)),
-            bytes if bytes < 1.0 => Err("memory is at least a byte".into()),
-            _ => Err("no machine has that much memory".into()),
+            bytes if bytes < 1.0 => Err("the memory limit must be at least 1 byte".into()),
+            _ => Err("the memory limit is too large".into()),
         }
     }
 }

@@ -104,7 +104,7 @@ fn piped(set: &[(String, f64)]) -> Result<Recipe, Failure> {
         Err(_) => Err(Error::new(
             ErrorKind::Recipe,
             format!(
-                "{STDIN} is not a recipe: a recipe is TOML or JSON, and heights are read from files, by their names"
+                "{STDIN} is not a recipe (TOML or JSON); files of heights cannot be read from standard input, name the file instead"
             ),
         )
         .into()),
@@ -121,7 +121,7 @@ pub fn title(argument: &Path) -> String {
 
 /// The preset called `name`, or the message that says what there is.
 pub fn preset(name: &str) -> Result<&'static Preset, Failure> {
-    presets::find(name).ok_or_else(|| Failure::Usage(format!("there is no preset `{name}`; {}", hint(name))))
+    presets::find(name).ok_or_else(|| Failure::Usage(format!("no preset is called `{name}`; {}", hint(name))))
 }
 
 fn looks_like_a_path(argument: &Path) -> bool {
@@ -133,19 +133,16 @@ fn unknown(argument: &Path) -> String {
     for extension in ["toml", "json"] {
         let file = argument.with_extension(extension);
         if file.is_file() {
-            return format!(
-                "there is no preset and no file `{name}`, but there is {0}: give that name in full",
-                file.display()
-            );
+            return format!("no preset or file is called `{name}`; did you mean `{0}`?", file.display());
         }
     }
-    format!("there is no preset and no file `{name}`; {}", hint(&name))
+    format!("no preset or file is called `{name}`; {}", hint(&name))
 }
 
 fn hint(name: &str) -> String {
     let names = || presets::all().iter().map(|preset| preset.name);
     match nearest(name, names()) {
         Some(near) => format!("did you mean `{near}`?"),
-        None => format!("the presets are {}", names().collect::<Vec<_>>().join(", ")),
+        None => format!("available presets: {}", names().collect::<Vec<_>>().join(", ")),
     }
 }

@@ -1,5 +1,5 @@
-//! Which samples of which world: the options for seed, size, cell, part and place on a map that all commands share, and the window
-//! that they ask for. None of it but the seed changes the world, only the samples taken of it.
+//! Which samples of which world: the options for seed, size, cell, window and georeference shared by all commands, and the window that they
+//! define. Apart from the seed, they only change which samples are taken; the world stays the same.
 
 use clap::Args;
 use orogen::format::crs::registry::Crs;
@@ -17,29 +17,29 @@ use crate::size::{Size, cell};
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "World and window")]
 pub struct View {
-    /// Seed of the world, instead of the recipe's; several, such as 1,2,3 or 1..9, make an output each, named by its seed
-    /// (NAME-7.png, or wherever the name has {seed})
+    /// Seed of the world, instead of the recipe's. Several seeds, such as 1,2,3 or 1..9, make one output each, named by its seed
+    /// (NAME-7.png, or at {seed} in the name)
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seed: Option<Seeds>,
     #[command(flatten)]
     pub arguments: Arguments,
-    /// Metres from one sample to the next [default: the world's cell]
+    /// Cell size in metres [default: the world's cell]
     #[arg(long, value_name = "M", value_parser = cell, allow_negative_numbers = true)]
     pub cell: Option<f64>,
-    /// Part of the world: its first column and row, its width and height, in samples at the cell asked for; or in metres, such as 0m,500m,2km,2km
+    /// Window of the world: column and row of its first sample, width and height, in samples; or in metres, such as 0m,500m,2km,2km
     #[arg(long, value_name = "X,Y,W,H", conflicts_with_all = ["bounds", "projwin"], allow_hyphen_values = true)]
     pub window: Option<Rectangle>,
-    /// Part of the world in the coordinates of its map, or of a world without one in metres east and north of its north-west corner
-    /// (what lies south of it is negative)
+    /// Window of the world in map coordinates; in a world without a CRS, metres east and north of its north-west corner (coordinates south
+    /// of it are negative)
     #[arg(long, value_name = "W,S,E,N", conflicts_with = "projwin", allow_hyphen_values = true)]
     pub bounds: Option<Bounds>,
-    /// The same by its upper left and lower right corner, as gdal_translate takes it
+    /// Window given by its upper left and lower right corner, as in gdal_translate
     #[arg(long, value_names = ["ULX", "ULY", "LRX", "LRY"], num_args = 4, allow_negative_numbers = true)]
     pub projwin: Option<Vec<f64>>,
-    /// Coordinate reference system of the world, such as EPSG:32632, for GeoTIFFs and other files with coordinates
+    /// Coordinate reference system of the world, such as EPSG:32632, for GeoTIFF and other georeferenced files
     #[arg(long, value_name = "EPSG:N")]
     pub crs: Option<Crs>,
-    /// Position of the world's north-west corner in that system: easting and northing, or longitude and latitude
+    /// Position of the world's north-west corner in the CRS: easting and northing, or longitude and latitude
     #[arg(long, value_name = "E,N", value_parser = place, allow_hyphen_values = true)]
     pub origin: Option<[f64; 2]>,
 }
@@ -51,7 +51,7 @@ pub struct SizedView {
     /// What it is a size of.
     #[command(flatten)]
     pub view: View,
-    /// Samples of the longer side, or of both (of the same aspect): of the world, or of the part asked for
+    /// Samples along the longer side, or along both (with the same aspect ratio), of the world or of the window
     #[arg(long, value_name = "N|WxH", allow_negative_numbers = true)]
     pub size: Option<Size>,
 }
@@ -109,7 +109,7 @@ impl View {
     /// the edges of a GeoTIFF's pixels hold the same pixels as gdal_translate takes.
     pub fn part(&self, world: &World, size: Option<Size>, cell: f64) -> Result<Option<Window>, Failure> {
         if size.is_some() && self.cell.is_some() {
-            let message = "--size and --cell both say how far apart samples are; leave out one of them";
+            let message = "--size and --cell both set the cell size; leave out one of them";
             return Err(Failure::Usage(message.into()));
         }
         let bounds = match (&self.projwin, self.bounds) {
@@ -160,7 +160,7 @@ impl View {
         let (counts, cell) = match size {
             Some(size) => {
                 let [width, height] = extent.map(number);
-                let (width, height, cell) = fit(extent, size, &format!("the part of {width} x {height} m"))?;
+                let (width, height, cell) = fit(extent, size, &format!("the window of {width} x {height} m"))?;
                 (Some([width, height]), cell)
             }
             None => (None, cell),
@@ -170,7 +170,7 @@ impl View {
         let [width, height] = counts.unwrap_or([right - x, bottom - y].map(|count| count.max(0.0) as usize));
         if width == 0 || height == 0 {
             return Err(Failure::Usage(format!(
-                "there is no sample in the part of {} x {} m at a cell of {} m; ask for more of the world, or a smaller --cell",
+                "the window of {} x {} m contains no sample at a cell size of {} m; use a larger window or a smaller --cell",
                 number(extent[0]),
                 number(extent[1]),
                 number(cell)
@@ -185,13 +185,13 @@ fn reach(map: Option<Georeference>, [width, height]: [f64; 2]) -> String {
     let Some(map) = map else {
         let [width, height] = [width, height].map(number);
         return format!(
-            "reaches from (0, 0) to {width} m east and {height} m south of it: as --bounds 0,-{height},{width},0"
+            "extends {width} m to the east and {height} m to the south of (0, 0): --bounds 0,-{height},{width},0"
         );
     };
     let ([west, north], [east, south]) = (map.at(0.0, 0.0), map.at(width, height));
     let [west, south, east, north] = [west, south, east, north].map(coordinate(&map));
     let name = map.epsg().map_or(String::new(), |code| format!(" in EPSG:{code}"));
-    format!("reaches over {west},{south},{east},{north}{name}")
+    format!("extends over {west},{south},{east},{north}{name}")
 }
 
 /// A coordinate, to about a centimetre.
@@ -217,7 +217,7 @@ fn fit(extent: [f64; 2], size: Size, what: &str) -> Result<(usize, usize, f64), 
     match if is_wide { fitting[1] == height } else { fitting[0] == width } {
         true => Ok((width, height, longer / if is_wide { width } else { height } as f64)),
         false => Err(Failure::Usage(format!(
-            "--size {width}x{height} has another aspect than {what}; the nearest that fit are {width}x{} and {}x{height}",
+            "--size {width}x{height} does not have the aspect ratio of {what}; the nearest sizes that do are {width}x{} and {}x{height}",
             fitting[1], fitting[0]
         ))),
     }
@@ -322,9 +322,9 @@ mod tests {
         assert_eq!(halves[0].width + halves[1].width, 800);
         for (world, asked, expect) in [
             (local, part("", "0,0,100,100", &[]), "--bounds 0,-4000,8000,0"),
-            (mapped, part("", "11,46,12,47", &[]), "reaches over 600000,5196000,608000,5200000 in EPSG:32632"),
+            (mapped, part("", "11,46,12,47", &[]), "extends over 600000,5196000,608000,5200000 in EPSG:32632"),
             (local, part("0m,0m,9km,1km", "", &[]), "the window is not inside the world"),
-            (local, part("", "1001,-700,1009,-500", &[]), "there is no sample in the part of 8 x 200 m"),
+            (local, part("", "1001,-700,1009,-500", &[]), "the window of 8 x 200 m contains no sample"),
             (local, part("", "", &[1.0, 2.0, 0.0, 1.0]), "--projwin: the west, 1, must be less"),
             (local, SizedView { size: Some(Size::Longer(9)), ..part("0,0,5,5", "", &[]) }, "leave out --size"),
         ] {

@@ -92,7 +92,7 @@ impl Budget {
     pub fn afford(&self, needed: u64) -> Result<()> {
         match self.left() {
             Some(left) if needed > left => {
-                Err(self.refusal("this", needed, "ask for fewer samples at once, or allow more"))
+                Err(self.refusal("this", needed, "use fewer samples, or raise the memory limit"))
             }
             _ => Ok(()),
         }
@@ -154,7 +154,8 @@ impl Budget {
     pub fn refusal(&self, what: &str, needed: u64, instead: &str) -> Error {
         let all = needed.saturating_add(self.shared.lock().held);
         let limit = self.limit.unwrap_or(u64::MAX);
-        let message = format!("{what} needs up to {} of memory and {} is allowed: {instead}", bytes(all), bytes(limit));
+        let message =
+            format!("{what} needs up to {} of memory, and {} is allowed; {instead}", bytes(all), bytes(limit));
         Error::new(ErrorKind::Memory, message)
     }
 }

@@ -484,17 +484,17 @@ macro_rules! op {
             $(#[doc = $doc])+
             pub struct $name = $op, $locality, revision $revision;
             params {
-                /// The noise that the octaves are made of.
+                /// Noise basis of the octaves.
                 basis: orogen_noise::Basis = orogen_noise::Basis::Perlin;
-                /// Seed of its own, hashed with the world's: two nodes of one seed are the same noise.
+                /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
                 seed: u64 = 0;
-                /// Wavelength of the first octave: about the distance between its hills.
+                /// Wavelength of the first octave, which is about the distance between its hills.
                 wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
-                /// How many octaves, each finer than the one before.
+                /// Number of octaves. Each octave is finer than the one before.
                 octaves: u32 = 6, range 1 to orogen_noise::MAX_OCTAVES;
-                /// Frequency ratio from one octave to the next.
+                /// Frequency ratio between successive octaves.
                 lacunarity: f64 = 2.0, range 1.0 to 16.0;
-                /// Amplitude ratio from one octave to the next (also called persistence).
+                /// Amplitude ratio between successive octaves (also called persistence).
                 gain: f64 = 0.5, range 0.0 to 1.0;
                 $($($params)*)?
             }

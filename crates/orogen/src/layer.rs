@@ -27,9 +27,9 @@ impl LayerKind {
     /// What it means, for a reader of the reference.
     pub fn about(self) -> &'static str {
         match self {
-            LayerKind::Height => "interpolated smoothly",
-            LayerKind::Label => "the nearest sample",
-            LayerKind::Flow => "interpolated between logarithms",
+            LayerKind::Height => "cubic interpolation",
+            LayerKind::Label => "nearest sample",
+            LayerKind::Flow => "interpolation of logarithms",
         }
     }
 }

@@ -38,7 +38,7 @@ fn open(path: &Path, doing: &str, inherited: bool) -> Result<File> {
     }
     let why = match kind.is_dir() {
         true => "it is a folder",
-        false => "it is a pipe or a device; save what comes from there in a file",
+        false => "it is a pipe or a device; save its content to a file first",
     };
     Err(Error::new(ErrorKind::File, format!("cannot {doing} {}: {why}", path.display())))
 }

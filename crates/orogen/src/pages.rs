@@ -142,10 +142,10 @@ impl Pages {
         let Some(sum) = self.sums.get(index).copied().flatten() else { return Ok(vec![0.0; SIDE * SIDE]) };
         let mut bytes = vec![0; BYTES];
         let read = self.file.read(self.base + (index * BYTES) as u64, &mut bytes);
-        read.map_err(|cause| Error::file("read what was put aside in", &self.file.path, &cause))?;
+        read.map_err(|cause| Error::file("read the spilled data in", &self.file.path, &cause))?;
         if checksum(&bytes) != sum {
             let path = self.file.path.display();
-            let message = format!("what was put aside in {path} has been damaged since; start again");
+            let message = format!("the spilled data in {path} are damaged; start again");
             return Err(Error::new(ErrorKind::File, message));
         }
         Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
@@ -180,7 +180,7 @@ impl Pages {
             let samples = page.into_data();
             let bytes: Vec<u8> = samples.iter().flat_map(|sample| sample.to_le_bytes()).collect();
             let written = self.file.write(self.base + (index * BYTES) as u64, &bytes);
-            written.map_err(|cause| Error::file("put anything more aside in", &self.file.path, &cause))?;
+            written.map_err(|cause| Error::file("spill more data to", &self.file.path, &cause))?;
             self.sums[index] = Some(checksum(&bytes));
             self.keep(index, &Arc::new(samples));
         }

@@ -111,8 +111,12 @@ impl<W: Borrow<World>> Sampler<W> {
     /// If a point is not finite or is outside of the world, or the lengths differ.
     pub fn points(&self, x: &[f64], y: &[f64], out: &mut [f32]) -> Result<()> {
         if x.len() != y.len() || x.len() != out.len() {
-            let message =
-                format!("{} eastings, {} southings and room for {} values do not pair", x.len(), y.len(), out.len());
+            let message = format!(
+                "{} eastings, {} southings and a buffer of {} values do not have the same length",
+                x.len(),
+                y.len(),
+                out.len()
+            );
             return Err(Error::new(ErrorKind::Request, message));
         }
         x.iter().zip(y).try_for_each(|(x, y)| self.world().check_point(*x, *y))?;

@@ -246,7 +246,7 @@ impl<'w> Tiles<'w> {
                             let what = format!("a tile of {side} x {side} samples");
                             let own = self.tiling.memory.map(Budget::of);
                             let budget = own.as_ref().unwrap_or(self.world.budget());
-                            return Err(budget.refusal(&what, needed, "ask for smaller tiles, or allow more"));
+                            return Err(budget.refusal(&what, needed, "use smaller tiles, or raise the memory limit"));
                         }
                     }
                     _ => return Ok(at_once),

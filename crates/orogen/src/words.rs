@@ -44,8 +44,8 @@ pub fn suggestion<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str> 
         None => {
             let all: Vec<&str> = candidates.into_iter().collect();
             match all.len() {
-                0 => "there is none to choose from".to_string(),
-                _ => format!("there is {}", list(all)),
+                0 => "none is available".to_string(),
+                _ => format!("available: {}", list(all)),
             }
         }
     }

@@ -94,7 +94,7 @@ impl World {
         let graph = Graph::resolve(&recipe).map_err(Graph::error)?;
         recipe.load(session.budget.left().unwrap_or(DEFAULT_MEMORY))?;
         if recipe.outputs().next().is_none() {
-            let message = "the recipe has no outputs: name at least one, such as `height`";
+            let message = "the recipe has no outputs; add at least one, such as `height`";
             return Err(Error::new(ErrorKind::Recipe, message));
         }
         Ok(World::new(recipe, graph, session))
@@ -182,7 +182,7 @@ impl World {
         let fault = |why: &str, other: &str| {
             let [width, height] = size;
             let message = format!(
-                "the world of {} x {} m has {why} at a cell of {} m; ask for a {other} cell",
+                "the world of {} x {} m has {why} at a cell size of {} m; use a {other} cell",
                 number(width),
                 number(height),
                 number(cell)
@@ -190,7 +190,7 @@ impl World {
             Err(Error::new(ErrorKind::Request, message))
         };
         if !samples.iter().all(|samples| *samples >= 1.0) {
-            return fault("no sample to show", "smaller");
+            return fault("no samples", "smaller");
         }
         if samples.iter().any(|samples| *samples > MAX_SAMPLES) {
             return fault("more than 2^31 samples along a side", "larger");
@@ -213,7 +213,7 @@ impl World {
     }
 
     fn bounds(&self) -> Result<[f64; 2]> {
-        let message = "this world has no bounds: say which window of it is wanted";
+        let message = "this world is unbounded; specify a window";
         self.world_params.size.ok_or_else(|| Error::new(ErrorKind::Request, message))
     }
 
@@ -356,7 +356,7 @@ impl World {
         let plan = self.planned(&[self.target(layer)?], *window, false)?;
         self.session.budget.afford(self.memory_of(&plan).saturating_add(beside))?;
         let mut grids = self.run(&plan, progress)?;
-        grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "nothing was asked for"))
+        grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "no layer was requested"))
     }
 
     /// Makes one layer over a window.
@@ -365,7 +365,7 @@ impl World {
     /// As [`World::plan`] and [`World::run`].
     pub fn window(&self, layer: &str, window: &Window) -> Result<Grid> {
         let mut grids = self.grids(&[layer], window, &Progress::none())?;
-        grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "nothing was asked for"))
+        grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "no layer was requested"))
     }
 
     /// The height at x metres east and y metres south of the origin.
@@ -385,7 +385,7 @@ impl World {
         let target = self.target(layer)?;
         let fault = |message: String| Error::new(ErrorKind::Request, message);
         if x.len() != y.len() {
-            return Err(fault(format!("{} eastings do not pair with {} southings", x.len(), y.len())));
+            return Err(fault(format!("{} eastings and {} southings do not have the same length", x.len(), y.len())));
         }
         x.iter().zip(y).try_for_each(|(x, y)| self.check_point(*x, *y))?;
         if x.is_empty() {
@@ -414,11 +414,11 @@ impl World {
     pub(crate) fn check_point(&self, x: f64, y: f64) -> Result<()> {
         let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
         if !(x.is_finite() && y.is_finite()) {
-            return fault(format!("({x}, {y}) is no position: coordinates must be finite"));
+            return fault(format!("({x}, {y}) is not a position: coordinates must be finite"));
         }
         match self.world_params.size {
             Some([w, h]) if !((0.0..=w).contains(&x) && (0.0..=h).contains(&y)) => {
-                fault(format!("({x}, {y}) is outside the world, which reaches from (0, 0) to ({w}, {h}) metres"))
+                fault(format!("({x}, {y}) is outside the world, which extends from (0, 0) to ({w}, {h}) metres"))
             }
             _ => Ok(()),
         }
@@ -469,7 +469,7 @@ impl World {
         }
         Graph::find(&self.recipe, layer).map(Link::Node).map_err(|why| {
             let message = match layer.contains('.') {
-                true => format!("there is no layer `{layer}`: {why}"),
+                true => format!("unknown layer `{layer}`: {why}"),
                 false => format!("the recipe has no layer `{layer}`; {}", suggestion(layer, self.recipe.outputs())),
             };
             Error::new(ErrorKind::Request, message)
@@ -480,13 +480,10 @@ impl World {
     pub(crate) fn check(&self, window: &Window) -> Result<()> {
         let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
         if !(window.cell.is_finite() && window.cell >= 1e-6) {
-            return fault(format!(
-                "a cell of {} m is not possible: it must be a number of at least 0.000001",
-                window.cell
-            ));
+            return fault(format!("the cell size must be at least 0.000001 m, not {}", window.cell));
         }
         if window.is_empty() {
-            return fault(format!("a window of {} x {} samples holds nothing", window.width, window.height));
+            return fault(format!("a window of {} x {} samples is empty", window.width, window.height));
         }
         const FAR: i64 = 1 << 53;
         let inside = |start: i64, count: usize| {
@@ -494,7 +491,7 @@ impl World {
         };
         if !(inside(window.x, window.width) && inside(window.y, window.height)) {
             return fault(
-                "the window lies beyond 2^53 samples from the origin, farther than positions are exact".to_string(),
+                "the window is more than 2^53 samples from the origin, where positions are no longer exact".to_string(),
             );
         }
         if let Some(size) = self.world_params.size {

@@ -238,7 +238,7 @@ fn warps_within_warps_are_refused_before_they_explode() {
     }
     recipe.output("height", "n39");
     let error = open(&recipe, 1).window("height", &Window::new(8, 8, 10.0)).unwrap_err();
-    assert!(error.to_string().contains("warps of warps multiply"), "{error}");
+    assert!(error.to_string().contains("nested warps multiply"), "{error}");
 }
 
 #[test]

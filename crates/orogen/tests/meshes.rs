@@ -554,7 +554,7 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
     for (name, given, window, expect) in [
         ("x.glb", &[][..], Window::new(1, 9, 20.0), "at least 2 x 2 samples, and there are 1 x 9"),
         ("x.obj", &[("height-curve", "0:0,0:1")], window, "0 comes after 0"),
-        ("x.ply", &[("color", "texture")], window, "holds no picture: say --color vertex"),
+        ("x.ply", &[("color", "texture")], window, "cannot hold a texture; use --color vertex"),
     ] {
         let why = export(&world, window, &folder.join(name), given).unwrap_err();
         assert!(why.contains(expect), "{why}");

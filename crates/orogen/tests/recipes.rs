@@ -65,7 +65,7 @@ fn wrong_recipes_are_told_where_and_what() {
     complains(&node("op = \"blur\""), "2:8", &["`source`", "missing"]);
     complains(&node("op = \"blur\"\nsource = \"b\""), "4:10", &["no node `b`", "`a`"]);
     complains(&node("op = \"blur\"\nsource = nan"), "4:10", &["finite number"]);
-    complains(&node("op = \"blur\"\nsource = 1e300"), "4:10", &["no number that a sample can hold"]);
+    complains(&node("op = \"blur\"\nsource = 1e300"), "4:10", &["not a valid sample value"]);
     complains(&node("op = \"blur\"\nsource = [1]"), "4:10", &["must name a node"]);
     complains(&node("op = \"blur\"\nsource = \"a\""), "4:10", &["reads itself"]);
     complains(&node("op = \"blur\"\nsource = 1\nmask = \"a\""), "5:8", &["reads itself"]);
@@ -74,8 +74,8 @@ fn wrong_recipes_are_told_where_and_what() {
     complains(&node("op = \"remap\"\nsource = 1\nfrom = [1, 1]"), "5:8", &["must differ"]);
     complains(&node("op = \"curve\"\nsource = 1\npoints = [[0, 0], [0, 1]]"), "5:10", &["greater than"]);
     complains(&node("op = \"curve\"\nsource = 1\npoints = [[0, 0]]"), "5:10", &["at least two"]);
-    complains(&node("op = \"normalise\"\nsource = 1"), "2:8", &["no bounds", "`size`"]);
-    complains(&node("op = \"edge\""), "2:8", &["no bounds", "`size`"]);
+    complains(&node("op = \"normalise\"\nsource = 1"), "2:8", &["unbounded", "`size`"]);
+    complains(&node("op = \"edge\""), "2:8", &["unbounded", "`size`"]);
     complains(
         "orogen = 1\n[nodes.\"a b\"]\nop = \"fbm\"\n[outputs]\nheight = 1\n",
         "2:8",
@@ -97,7 +97,7 @@ fn wrong_json_is_told_too() {
     complains(
         "{\"orogen\": 1, \"nodes\": {\"a\": {\"op\": \"fbm\"}, \"a\": {\"op\": \"fbm\"}}}",
         "1:45",
-        &["two nodes named `a`"],
+        &["two nodes are named `a`"],
     );
     complains("{\"orogen\": 1, \"nodes\": {\"a\": null}}", "1:30", &["must be a table", "null"]);
     complains("{\"orogen\": 1, // a comment\n\"outputs\": {}}", "1:", &["not JSON"]);

@@ -113,7 +113,7 @@ fn a_stream_ends_after_what_went_wrong() {
     let errors: Vec<ErrorKind> = tiles.by_ref().filter_map(|tile| tile.err().map(|error| error.kind())).collect();
     assert_eq!(errors, [ErrorKind::Cancelled]);
     for (layers, window, tiling, said) in [
-        (["height"], Window::new(9, 9, 10.0), Tiling::of(0), "side of at least 1"),
+        (["height"], Window::new(9, 9, 10.0), Tiling::of(0), "size must be at least 1"),
         (["height"], Window::new(9, 9, 10.0), Tiling { overlap: 5, ..Tiling::of(4) }, "cannot overlap"),
         (["hight"], Window::new(9, 9, 10.0), Tiling::of(4), "did you mean `height`"),
         (["height"], Window::new(999, 9, 10.0), Tiling::of(4), "not inside the world"),

@@ -25,17 +25,17 @@ use crate::source::{Source, title};
 use crate::view::{SizedView, View};
 use crate::{finite, interrupt, say};
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Args {
-    /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
+    /// A recipe file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
     #[command(flatten)]
     samples: SizedView,
     /// Layer to measure
     #[arg(long, value_name = "L", default_value = orogen::world::HEIGHT)]
     layer: String,
-    /// Picture of one page to write, a .png
+    /// Page of charts to write (.png)
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -45,7 +45,7 @@ pub struct Args {
     /// Print all numbers as JSON instead of a table
     #[arg(long)]
     json: bool,
-    /// Show neither progress nor the table
+    /// Print no progress and no table
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
@@ -63,7 +63,7 @@ fn measure(args: &Args) -> Result<(), Failure> {
         && !is_stdout(out)
         && Format::of(out, Format::ALL) != Ok(Format::Png)
     {
-        return Err(Failure::Usage("the page is a picture; name a file that ends in .png".into()));
+        return Err(Failure::Usage("the page is written as PNG; use the extension .png".into()));
     }
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();
@@ -152,8 +152,7 @@ impl Held {
             return Ok(Held::InMemory(plan, reserved));
         }
         if u32::try_from(window.len()).is_err() {
-            let message =
-                "more than 2^32 samples cannot be measured at once; choose a smaller window, or a coarser cell";
+            let message = "at most 2^32 samples can be measured at once; use a smaller window or a larger cell";
             return Err(Error::new(ErrorKind::Request, message));
         }
         // The page is drawn when all is measured.
@@ -180,7 +179,7 @@ fn shown(
     progress: &Progress,
 ) -> Result<(Measures, Option<Canvas>), Error> {
     let measures = measures.ok_or_else(|| {
-        let message = "there is too little land to measure: it takes 64 x 64 samples, a hundredth of them above the sea, and some relief";
+        let message = "there is too little land to measure: at least 64 x 64 samples are needed, 1 % of them above sea level, and some relief";
         Error::new(ErrorKind::Request, message)
     })?;
     let title = Title { name: title(&args.recipe), about: about(args, world) };

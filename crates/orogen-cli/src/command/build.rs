@@ -21,49 +21,49 @@ use crate::source::Source;
 use crate::view::{SizedView, View};
 use crate::{disk, finite, interrupt, say};
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Args {
-    /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
+    /// A recipe file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
-    /// What to build: NAME.tif a Cloud-Optimised GeoTIFF, NAME.zarr a Zarr v3 group, NAME a folder of --tiles
+    /// Output: NAME.tif is a Cloud-Optimised GeoTIFF, NAME.zarr a Zarr v3 group, NAME a folder of --tiles
     #[arg(short, long, value_name = "OUT")]
     out: PathBuf,
-    /// What the tiles of a folder are
+    /// Kind of the tiles in a folder
     #[arg(long)]
     tiles: Option<Tiles>,
-    /// Layers to build, with commas between them
+    /// Layers to build, separated by commas
     #[arg(long, value_name = "A,B", value_delimiter = ',', default_value = orogen::world::HEIGHT)]
     layers: Vec<String>,
     #[command(flatten)]
     samples: SizedView,
-    /// Samples along a tile's side [default: 512; 513 for tiles that share their edges; 256 for an XYZ tree]
+    /// Samples along each side of a tile [default: 512; 513 for tiles that share their edges; 256 for an XYZ tree]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65536), allow_negative_numbers = true)]
     tile: Option<u32>,
-    /// Go on with a build that was interrupted, and make again what of it is damaged
+    /// Resume an interrupted build, and repair damaged parts of a finished one
     #[arg(long, conflicts_with_all = ["force", "no_clobber"])]
     resume: bool,
     #[command(flatten)]
     replace: Replace,
     #[command(flatten)]
     limits: Limits,
-    /// Show neither needs, nor progress, nor the closing words
+    /// Print no requirements, no progress and no summary
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
 
-/// What the tiles of a folder are.
+/// Kinds of tiles in a folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Tiles {
-    /// 16-bit grey pictures over the range of all tiles, which share their edges
+    /// 16-bit grey PNG over the value range of all tiles; adjacent tiles share their edge samples
     Png,
-    /// Headerless u16, little-endian, over the range of all tiles, which share their edges
+    /// Headerless u16, little-endian, over the value range of all tiles; adjacent tiles share their edge samples
     R16,
-    /// Headerless f32, little-endian; the tiles share their edges
+    /// Headerless f32, little-endian; adjacent tiles share their edge samples
     R32,
-    /// An XYZ tree of Terrarium pictures with TileJSON, for web maps
+    /// XYZ tree of Terrarium PNG tiles with TileJSON, for web maps
     Terrarium,
-    /// An XYZ tree of Terrain-RGB pictures with TileJSON, for web maps
+    /// XYZ tree of Terrain-RGB PNG tiles with TileJSON, for web maps
     TerrainRgb,
 }
 
@@ -78,7 +78,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 fn build(args: &Args) -> Result<(), Failure> {
     if is_stdout(&args.out) {
-        let message = "a build goes on where it was interrupted, which standard output cannot; name a file, or use `orogen export`";
+        let message = "a build cannot be written to standard output, because it could not be resumed; name a file, or use `orogen export`";
         return Err(Failure::Usage(message.into()));
     }
     let begun = Instant::now();
@@ -102,12 +102,15 @@ fn build(args: &Args) -> Result<(), Failure> {
     let report = build.run(start, &progress);
     drop(bar);
     let report =
-        report.map_err(|error| interrupt::explain(error.into(), "the same command with --resume goes on from here"))?;
+        report.map_err(|error| interrupt::explain(error.into(), "run the same command with --resume to continue"))?;
     finite::tell(&args.layers.join("`, `"), report.samples)?;
     if !report.foreign.is_empty() {
         let names: Vec<String> = report.foreign.iter().map(|path| path.display().to_string()).collect();
         let list = words::list(names.iter().map(String::as_str));
-        say::error(&format!("note: {} also holds {list}, which no build has made; left as it was", args.out.display()));
+        say::error(&format!(
+            "note: {} also holds {list}, which were not made by a build and are left unchanged",
+            args.out.display()
+        ));
     }
     if args.quiet { Ok(()) } else { say::out(&closing(args, &spec, &report, begun.elapsed().as_secs_f64())) }
 }
@@ -126,10 +129,10 @@ fn form(args: &Args) -> Result<Form, Failure> {
         (Some(form), None) => Ok(form),
         (None, Some(tiles)) => Ok(tiles),
         (Some(_), Some(_)) => Err(Failure::Usage(format!(
-            "--tiles makes a folder, and {out} has the extension of a file: leave out one of them"
+            "--tiles writes a folder, but {out} has the extension of a file; leave out one of them"
         ))),
         (None, None) => Err(Failure::Usage(format!(
-            "{out} does not tell what to build: name a .tif or a .zarr, or say --tiles png, r16, r32, terrarium or terrain-rgb"
+            "{out} does not determine what to build: use the extension .tif or .zarr, or --tiles png, r16, r32, terrarium or terrain-rgb"
         ))),
     }
 }
@@ -145,7 +148,7 @@ fn window(args: &Args, world: &World, form: Form) -> Result<Window, Failure> {
         _ => world.recipe().world.cell,
     });
     if let (Form::Xyz(_), Some(_)) = (form, size) {
-        return Err(Failure::Usage("an XYZ tree has cells of its own; leave out --size, or say --cell".into()));
+        return Err(Failure::Usage("an XYZ tree has fixed cell sizes; leave out --size, or use --cell".into()));
     }
     if let Some(part) = view.part(world, *size, cell)? {
         return Ok(part);
@@ -170,7 +173,7 @@ fn needs(args: &Args, build: &Build, start: Start) -> Result<(), Failure> {
         let (tiles, samples) = build.tiles();
         let way = match disk.scratch {
             0 => String::new(),
-            scratch => format!(", and until it is finished {} in {}", bytes(scratch), build.beside().display()),
+            scratch => format!(", and temporarily {} in {}", bytes(scratch), build.beside().display()),
         };
         let free = free.map_or(String::new(), |free| format!("; {} are free", bytes(free)));
         say::error(&format!(
@@ -189,11 +192,11 @@ fn needs(args: &Args, build: &Build, start: Start) -> Result<(), Failure> {
 fn closing(args: &Args, spec: &BuildSpec, report: &Report, seconds: f64) -> String {
     let Window { width, height, cell, .. } = spec.window;
     let made = match report {
-        Report { made: 0, .. } => "everything was there and sound".to_string(),
+        Report { made: 0, .. } => "all parts were complete and valid".to_string(),
         Report { made, kept: 0, .. } => format!("{} made", count(*made, "tile")),
         Report { made, kept, again: 0, .. } => format!("{} made, {kept} kept", count(*made, "tile")),
         Report { made, kept, again, .. } => {
-            format!("{} made, {kept} kept, {again} of them computed again to make it of", count(*made, "tile"))
+            format!("{} made, {kept} kept ({again} of them computed again as input)", count(*made, "tile"))
         }
     };
     format!(

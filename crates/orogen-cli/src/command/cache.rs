@@ -14,7 +14,7 @@ use crate::options::cache_folder;
 use crate::say;
 use crate::size::Bytes;
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(subcommand)]
@@ -23,16 +23,16 @@ pub struct Args {
 
 #[derive(Debug, clap::Subcommand)]
 enum Action {
-    /// List the solutions that are kept: what they hold, their size, and when they were last used
+    /// List the stored solutions: content, size and time of last use
     List(List),
-    /// Remove kept solutions: all, those not used for a while, or the longest unused beyond a size
+    /// Remove stored solutions: all, those not used for a time, or the least recently used beyond a size
     Clear(Clear),
 }
 
 /// `orogen cache list`.
 #[derive(Debug, clap::Args)]
 struct List {
-    /// The folder [default: $OROGEN_CACHE, else the system's folder for caches]
+    /// The cache folder [default: $OROGEN_CACHE, else the system's cache folder]
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
     /// Print the list as JSON
@@ -43,16 +43,16 @@ struct List {
 /// `orogen cache clear`.
 #[derive(Debug, clap::Args)]
 struct Clear {
-    /// The folder [default: $OROGEN_CACHE, else the system's folder for caches]
+    /// The cache folder [default: $OROGEN_CACHE, else the system's cache folder]
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
-    /// Only what has not been used for so long, such as 30d, 12h or 90m
+    /// Remove only solutions not used for this time, such as 30d, 12h or 90m
     #[arg(long, value_name = "AGE")]
     older_than: Option<Age>,
-    /// Keep so many bytes, those used last
+    /// Keep this many bytes of the most recently used solutions
     #[arg(long, value_name = "BYTES")]
     keep: Option<Bytes>,
-    /// Leave out the closing words
+    /// Print no summary
     #[arg(short, long)]
     quiet: bool,
 }
@@ -72,7 +72,7 @@ impl FromStr for Age {
             number.checked_mul(*seconds)
         });
         age.map(|seconds| Age(Duration::from_secs(seconds)))
-            .ok_or_else(|| "an age is a number of s, m, h, d or w, such as 30d".into())
+            .ok_or_else(|| "an age must be a number with a unit of s, m, h, d or w, such as 30d".into())
     }
 }
 
@@ -85,8 +85,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn cache(asked: Option<&PathBuf>) -> Result<Cache, Failure> {
-    let folder = cache_folder(asked)
-        .ok_or_else(|| Failure::Usage("no folder for solutions is known; name one by --cache".into()))?;
+    let folder =
+        cache_folder(asked).ok_or_else(|| Failure::Usage("no cache folder is known; name one with --cache".into()))?;
     Ok(Cache::new(folder))
 }
 
@@ -178,7 +178,7 @@ fn ago(age: Duration) -> String {
 /// What it holds.
 fn holds(stored: &Stored) -> String {
     match stored.layers.as_deref() {
-        None => "damaged; it is made again when it is needed".into(),
+        None => "damaged; it is computed again when needed".into(),
         Some([]) => "numbers".into(),
         Some([first, ..]) => format!(
             "{} of {} x {} samples of {} m",

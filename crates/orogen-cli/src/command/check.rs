@@ -14,7 +14,7 @@ use crate::size::Bytes;
 use crate::source::Source;
 use crate::{memory, say};
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Recipes to check: files, names of presets, files of heights, or - for standard input
@@ -22,18 +22,18 @@ pub struct Args {
     recipes: Vec<PathBuf>,
     #[command(flatten)]
     arguments: Arguments,
-    /// Most memory that the files of heights in them may take, such as 512MiB or 2GiB [default: half of what is free]
+    /// Memory limit for the files of heights that recipes read, such as 512MiB or 2GiB [default: half of the free memory]
     #[arg(long, value_name = "BYTES")]
     memory: Option<Bytes>,
-    /// Print what was found as JSON, the faults too
+    /// Print the results as JSON, including errors
     #[arg(long)]
     json: bool,
-    /// Print nothing about recipes without a fault
+    /// Print nothing about valid recipes
     #[arg(short, long)]
     quiet: bool,
 }
 
-/// Checks each, and tells every fault of every one.
+/// Checks each recipe, and reports all errors of all recipes.
 pub fn run(args: &Args) -> Result<(), Failure> {
     let found: Vec<(&Path, Result<World, Failure>)> =
         args.recipes.iter().map(|recipe| (recipe.as_path(), check(recipe, args))).collect();
@@ -70,7 +70,7 @@ fn words(recipe: &Path, world: &World) -> String {
     let outputs: Vec<&str> = world.recipe().outputs().collect();
     let outputs =
         if outputs.len() == 1 { format!("output {}", outputs[0]) } else { format!("outputs {}", outputs.join(", ")) };
-    format!("{}: no fault, {}, {outputs}\n", recipe.display(), count(world.recipe().nodes().len(), "node"))
+    format!("{}: valid, {}, {outputs}\n", recipe.display(), count(world.recipe().nodes().len(), "node"))
 }
 
 fn described(recipe: &Path, found: &Result<World, Failure>) -> Value {
@@ -94,7 +94,7 @@ fn described(recipe: &Path, found: &Result<World, Failure>) -> Value {
     }
 }
 
-/// A fault with its place: line and column from 1, and how many characters are meant.
+/// An error with its position: line and column from 1, and the number of characters.
 fn fault(Diagnostic { message, place }: &Diagnostic) -> Value {
     match place {
         None => json!({ "message": message }),

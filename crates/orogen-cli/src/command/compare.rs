@@ -12,25 +12,25 @@ use crate::sheet::{page, row};
 use crate::sink::{Sink, is_stdout};
 use crate::size::{Bytes, seed};
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Picture to write, a .png
+    /// Picture to write (.png)
     #[arg(short, long, value_name = "FILE", default_value = "compare.png")]
     out: PathBuf,
     /// Seed of all noises
     #[arg(long, value_name = "N", value_parser = seed, default_value = "4", allow_negative_numbers = true)]
     seed: u64,
-    /// Samples a side of each picture on the page; the page grows with it
+    /// Samples along each side of each picture on the page; it sets the size of the page
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(120..=4000), default_value = "200",
           allow_negative_numbers = true)]
     size: u16,
-    /// Most memory that the program may take, such as 512MiB or 2GiB [default: half of what is free]
+    /// Memory limit of the program, such as 512MiB or 2GiB [default: half of the free memory]
     #[arg(long, value_name = "BYTES")]
     memory: Option<Bytes>,
     #[command(flatten)]
     replace: Replace,
-    /// Leave out the closing words
+    /// Print no summary
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
@@ -38,7 +38,7 @@ pub struct Args {
 /// Draws the page.
 pub fn run(args: &Args) -> Result<(), Failure> {
     if !is_stdout(&args.out) && Format::of(&args.out, Format::ALL).map_err(Failure::Usage)? != Format::Png {
-        return Err(Failure::Usage("the page is a picture; name a file that ends in .png".into()));
+        return Err(Failure::Usage("the page is written as PNG; use the extension .png".into()));
     }
     let sink = Sink::new(&args.out, &args.replace.anywhere())?;
     let (rows, side) = (row::rows(args.seed), usize::from(args.size));

@@ -5,7 +5,7 @@ use clap_complete::Shell;
 use crate::failure::Failure;
 use crate::say;
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The shell

@@ -11,15 +11,15 @@ use crate::seeds::Seeds;
 use crate::source::Source;
 use crate::view::{SizedView, View};
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Args {
-    /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
+    /// A recipe file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     #[arg(default_value = orogen::recipe::presets::DEFAULT)]
     recipe: PathBuf,
     #[command(flatten)]
     samples: SizedView,
-    /// The layer to explain [default: all]
+    /// The layer to explain [default: all layers]
     #[arg(long, value_name = "L")]
     layer: Option<String>,
     #[command(flatten)]

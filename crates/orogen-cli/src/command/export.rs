@@ -25,16 +25,16 @@ use crate::source::Source;
 use crate::view::{SizedView, View};
 use crate::{finite, interrupt, say};
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_long_help = layers(), after_help = "`orogen export --help` lists the layers derived from the heights.")]
 pub struct Args {
-    /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
+    /// A recipe file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
-    /// File to write; its extension says the format; - is standard output
+    /// Output file; its extension determines the format; - is standard output
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
-    /// Format, if the file's extension does not say [default: npy]
+    /// Format, if the file extension does not determine it [default: npy]
     #[arg(long, value_parser = NameOf::format())]
     format: Option<&'static str>,
     /// Layer to write: an output, `node.layer`, or a layer derived from the heights, listed below
@@ -42,11 +42,11 @@ pub struct Args {
     layer: String,
     #[command(flatten)]
     samples: SizedView,
-    /// Engine to write for: sets format, scale, order of rows and sizes, and prints what to enter in its import dialog. --size counts the samples
-    /// of a side, of each tile if there are several [default: as many as the world has]
+    /// Game engine to write for: sets format, scale, row order and sizes, and prints the settings for its import dialog. --size is the
+    /// number of samples along each side, of each tile if there are several [default: as many as the world has]
     #[arg(long, help_heading = "Engines", value_name = "ENGINE", value_parser = NameOf::engine(), conflicts_with = "format")]
     target: Option<&'static str>,
-    /// Number of tiles for the engine, east and south; neighbours share the samples along their common edge
+    /// Number of tiles for the engine, east and south; adjacent tiles share the samples along their common edge
     #[arg(long, help_heading = "Engines", value_name = "NxM", requires = "target")]
     tiles: Option<Size>,
     #[command(flatten)]
@@ -62,7 +62,7 @@ pub struct Args {
     layer_options: LayerOptions,
 }
 
-/// The layers that follow from the heights, for the help.
+/// The derived layers, for the help text.
 fn layers() -> String {
     let widest = list::all().iter().map(|layer| layer.name.len()).max().unwrap_or_default();
     let lines = list::all().iter().map(|layer| {
@@ -188,10 +188,10 @@ fn for_engine(
     policy: &OutputPolicy,
 ) -> Result<(), Failure> {
     if is_stdout(&args.out) {
-        return Err(Failure::Usage("an engine's files have names: give one with -o".into()));
+        return Err(Failure::Usage("--target cannot write to standard output; name a file with -o".into()));
     }
     if let Some(option) = args.options.read()?.names().next() {
-        return Err(Failure::Usage(format!("--target {} sets --{option} itself: leave it out", target.name)));
+        return Err(Failure::Usage(format!("--target {} sets --{option}; leave it out", target.name)));
     }
     let SizedView { view, size } = &args.samples;
     let side = match size {
@@ -199,7 +199,10 @@ fn for_engine(
         Some(Size::Longer(side)) => Some(*side),
         Some(Size::Both(width, height)) if width == height => Some(*width),
         Some(Size::Both(width, height)) => {
-            return Err(Failure::Usage(format!("{} takes squares, not {width} x {height} samples", target.name)));
+            return Err(Failure::Usage(format!(
+                "{} only takes square terrains, not {width} x {height} samples",
+                target.name
+            )));
         }
     };
     let cell = view.cell.unwrap_or(world.recipe().world.cell);
@@ -241,13 +244,13 @@ fn format(args: &Args) -> Result<&'static Format, Failure> {
     }
     match (named, registry::of_path(&args.out)) {
         (Some(format), Ok(other)) if other.name != format.name => Err(Failure::Usage(format!(
-            "--format {} and the extension of {} contradict each other",
+            "--format {} does not match the extension of {}",
             format.name,
             args.out.display()
         ))),
         (Some(format), _) => Ok(format),
         (None, Ok(format)) => Ok(format),
-        (None, Err(why)) if args.out.extension().is_none() => Err(Failure::Usage(format!("{why}, or say --format"))),
+        (None, Err(why)) if args.out.extension().is_none() => Err(Failure::Usage(format!("{why}, or use --format"))),
         (None, Err(why)) => Err(Failure::Usage(why.to_string())),
     }
 }

@@ -23,22 +23,22 @@ use crate::size::seed;
 use crate::source::preset;
 use crate::{finite, interrupt, say};
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// A file of heights (GeoTIFF, .asc, .hgt, ...)
     place: PathBuf,
-    /// Recipe to write, a .toml, or - for standard output; never over one that was written or changed by hand
+    /// Recipe to write (.toml), or - for standard output; files that were written or edited by hand are not replaced
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
-    /// Seed of the search and of the world found
+    /// Seed of the search and of the resulting world
     #[arg(long, value_name = "N", value_parser = seed, default_value = "1", allow_negative_numbers = true)]
     seed: u64,
-    /// How many settings are tried
+    /// Number of parameter sets to try
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(12..=10_000), default_value = "120",
           allow_negative_numbers = true)]
     tries: u32,
-    /// How many worlds of other seeds are compared with the place in the end
+    /// Number of worlds with other seeds that are compared with the place at the end
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100), default_value = "2",
           allow_negative_numbers = true)]
     judges: u32,
@@ -49,7 +49,7 @@ pub struct Args {
     /// Print the report as JSON
     #[arg(long)]
     json: bool,
-    /// Show neither progress nor the report
+    /// Print no progress and no report
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
@@ -60,7 +60,10 @@ const MEASURED: u64 = 64;
 /// Finds a recipe, judges it by worlds of other seeds beside the default preset, and writes it.
 pub fn run(args: &Args) -> Result<(), Failure> {
     if !is_stdout(&args.out) && args.out.extension().is_none_or(|extension| extension != "toml") {
-        return Err(Failure::Usage(format!("{} is no name for a recipe: let it end in .toml", args.out.display())));
+        return Err(Failure::Usage(format!(
+            "{} is not a name for a recipe; use the extension .toml",
+            args.out.display()
+        )));
     }
     let sink = Sink::new(&args.out, &args.replace.policy([&args.place]))?;
     let budget = args.limits.budget();
@@ -86,7 +89,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let found = search(&target, &effort, &options, &searching).map_err(stopped)?;
     searching.finish();
     let name = args.place.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let about = format!("Synthetic terrain with the statistics of {name}; it holds none of its heights");
+    let about = format!("Synthetic terrain with the statistics of {name}; it contains none of its heights");
     let recipe = found.recipe(&target, args.seed, &about);
     let mut lands = [windows(&place.grid, &target), Vec::new(), Vec::new()];
     // Judged by worlds that the search has not seen.

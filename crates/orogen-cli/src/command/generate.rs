@@ -18,15 +18,15 @@ use crate::source::Source;
 use crate::view::{SizedView, View};
 use crate::{finite, interrupt, say, watch};
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Args {
-    /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
+    /// A recipe file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     #[arg(default_value = orogen::recipe::presets::DEFAULT)]
     recipe: PathBuf,
     #[command(flatten)]
     samples: SizedView,
-    /// Folder to write into; made if it is not there
+    /// Output folder; it is created if needed
     #[arg(short, long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     #[command(flatten)]
@@ -36,10 +36,10 @@ pub struct Args {
     /// Print no progress and no summary
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
-    /// Print the summary as JSON instead of in words
+    /// Print the summary as JSON instead of text
     #[arg(long)]
     json: bool,
-    /// Stay, and make the terrain again whenever the recipe's file changes
+    /// Keep running, and make the terrain again whenever the recipe file changes
     #[arg(long)]
     watch: bool,
 }
@@ -59,7 +59,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 fn generate(args: &Args) -> Result<(), Failure> {
     if is_stdout(&args.out) {
         return Err(Failure::Usage(
-            "several files are written: name a folder, or use `orogen export` for one file".into(),
+            "`generate` writes several files: name a folder with -o, or use `orogen export` for a single file".into(),
         ));
     }
     let source = Source::find(&args.recipe)?;
@@ -67,14 +67,14 @@ fn generate(args: &Args) -> Result<(), Failure> {
     match (&source, args.watch) {
         (Source::File(path), true) => watch::watch(path, args.quiet, again),
         (Source::Dem(path), true) => Err(Failure::Usage(format!(
-            "--watch waits for changes of a recipe, and {} holds heights; name it in a recipe's node with op = \"dem\"",
+            "--watch needs a recipe, and {} is a file of heights; use it in a recipe, in a node with op = \"dem\"",
             path.display()
         ))),
         (Source::Stdin, true) => {
-            Err(Failure::Usage("--watch waits for changes of a file, and standard input is none; name the file".into()))
+            Err(Failure::Usage("--watch needs a recipe file, not standard input; name the file".into()))
         }
         (Source::Preset(preset), true) => Err(Failure::Usage(format!(
-            "--watch waits for changes of a file, and `{0}` is a preset; `orogen new NAME --preset {0}` makes a file of it",
+            "--watch needs a recipe file, and `{0}` is a preset; `orogen new NAME --preset {0}` writes it to a file",
             preset.name
         ))),
         (_, false) => {
@@ -127,7 +127,7 @@ fn words(report: &Report, folder: &Path) -> String {
         share if *share >= 1.0 => String::new(),
         share => format!(", {:.0} % land", share * 100.0),
     };
-    let flat = if height_min == height_max { "; it is flat, so the grey pictures are all black" } else { "" };
+    let flat = if height_min == height_max { "; the terrain is flat, so the grey pictures are black" } else { "" };
     format!(
         "{}: {}\n{width} x {height} samples of {} m, {:.1} x {:.1} km, seed {seed}\nheights {height_min:.1} to \
          {height_max:.1} m, {height_mean:.1} m on average{sea}{flat}\nmade in {seconds:.1} s\n",

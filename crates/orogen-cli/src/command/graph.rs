@@ -17,29 +17,29 @@ use crate::sink::{Sink, kind};
 use crate::size::Bytes;
 use crate::source::{Source, title};
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A recipe's file, the name of a preset, or - for standard input
+    /// A recipe file, the name of a preset, or - for standard input
     #[arg(default_value = orogen::recipe::presets::DEFAULT)]
     recipe: PathBuf,
     /// File to write: .svg, .pdf, .png, or .dot for Graphviz; - is standard output
     #[arg(short, long, value_name = "FILE", default_value = "graph.svg")]
     out: PathBuf,
-    /// Format, if the file's extension does not say [default: svg]
+    /// Format, if the file extension does not determine it [default: svg]
     #[arg(long)]
     format: Option<Kind>,
-    /// Pixels an inch of a .png
+    /// Resolution of a .png, in pixels per inch
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=1200), default_value = "150")]
     dpi: u16,
     #[command(flatten)]
     arguments: Arguments,
-    /// Most memory that the program may take, such as 512MiB or 2GiB [default: half of what is free]
+    /// Memory limit of the program, such as 512MiB or 2GiB [default: half of the free memory]
     #[arg(long, value_name = "BYTES")]
     memory: Option<Bytes>,
     #[command(flatten)]
     replace: Replace,
-    /// Leave out the closing words
+    /// Print no summary
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
@@ -47,13 +47,13 @@ pub struct Args {
 /// The kinds of files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Kind {
-    /// A drawing for browsers
+    /// Vector drawing
     Svg,
-    /// A page
+    /// PDF page
     Pdf,
-    /// A picture
+    /// Picture
     Png,
-    /// A text for Graphviz
+    /// Graphviz source
     Dot,
 }
 
@@ -80,7 +80,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         sink.write(|out| out.write_all(text.as_bytes()))?;
     } else if blocks > MAX_BLOCKS {
         return Err(Failure::Usage(format!(
-            "a drawing of {blocks} boxes is more than anybody reads ({MAX_BLOCKS} are the most); write a .dot for Graphviz"
+            "a drawing has at most {MAX_BLOCKS} boxes, and this one needs {blocks}; write a .dot file for Graphviz instead"
         )));
     } else {
         let scene = draw::draw(&diagram, &title)?;
@@ -91,7 +91,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
                 let dpi = f32::from(args.dpi) / 25.4;
                 if scene.size[0] * scene.size[1] * dpi * dpi > MAX_PIXELS {
                     return Err(Failure::Usage(
-                        "the picture would be too large; ask for fewer --dpi, or a .svg".into(),
+                        "the picture would be too large; use a lower --dpi, or write a .svg".into(),
                     ));
                 }
                 let page = raster::draw(&scene, f64::from(args.dpi));

@@ -27,28 +27,29 @@ use crate::source::Source;
 use crate::view::{SizedView, View};
 use crate::{finite, interrupt};
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Args {
-    /// A recipe's file or the name of a preset, with a node `stream-power`
+    /// A recipe file or the name of a preset, with a node `stream-power`
     recipe: PathBuf,
     #[command(flatten)]
     samples: SizedView,
-    /// Picture to write: a .png that moves (APNG), a .gif, or a file for each frame such as grow-%03d.png
+    /// Output: an animated .png (APNG), a .gif, or a file for each frame such as grow-%03d.png
     #[arg(short, long, value_name = "FILE", default_value = "grow.png")]
     out: PathBuf,
-    /// How many frames, from the beginning to the terrain itself. Where a node has fewer steps than that, heights between two of them are mixed
+    /// Number of frames, from the initial to the final terrain. If a node has fewer steps than frames, heights between steps are
+    /// interpolated
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=1000), default_value = "25",
           allow_negative_numbers = true)]
     frames: u16,
-    /// Years that each node `stream-power` goes on for [default: those of the recipe]
+    /// Simulated years of each node `stream-power` [default: as in the recipe]
     #[arg(long, value_name = "YR", allow_negative_numbers = true)]
     years: Option<f64>,
-    /// Make every frame from the whole recipe. By default, frames of a node `stream-power` that another one follows are made at twice the cell, and
-    /// their finest detail comes from the frame at its end, which is several times faster
+    /// Compute every frame from the whole recipe. By default, frames of a node `stream-power` that another one follows are made at twice the cell size,
+    /// and their finest detail comes from the last frame, which is several times faster
     #[arg(long)]
     exact: bool,
-    /// How long each frame is shown, in milliseconds
+    /// Duration of each frame, in milliseconds
     #[arg(long, value_name = "MS", default_value = "120")]
     delay: u16,
     #[command(flatten)]
@@ -72,7 +73,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 fn grow(args: &Args) -> Result<(), Failure> {
     let target = AnimationTarget::of(&args.out).map_err(Failure::Usage)?;
     if let Some(years) = args.years.filter(|years| !(0.0..=1e9).contains(years)) {
-        return Err(Failure::Usage(format!("--years is {years}; it goes from 0 to 1e9")));
+        return Err(Failure::Usage(format!("--years must be from 0 to 1e9, not {years}")));
     }
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();
@@ -87,7 +88,7 @@ fn grow(args: &Args) -> Result<(), Failure> {
     }
     if !recipe.nodes().iter().any(|named| matches!(named.node, Node::StreamPower(_))) {
         return Err(Failure::Usage(format!(
-            "nothing grows in {}: it has no node with op = \"stream-power\", which lifts land and cuts rivers into it",
+            "{} has no node with op = \"stream-power\", whose steps `grow` draws; add one, or choose another recipe",
             args.recipe.display()
         )));
     }
@@ -130,7 +131,7 @@ fn write(
     })?;
     let land = Land { heights: RefCell::new(heights.into_inner().unwrap_or_else(PoisonError::into_inner)) };
     let last =
-        land.at(growth.steps()).map_err(|cause| Error::file("read back what was put aside for", &args.out, &cause))?;
+        land.at(growth.steps()).map_err(|cause| Error::file("read back the spilled data of", &args.out, &cause))?;
     finite::check(HEIGHT, &last)?;
     let painter = Painter::fit(&last, sea_level);
     let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));

@@ -32,56 +32,56 @@ use crate::source::{Source, title};
 use crate::view::View;
 use crate::{finite, interrupt, palette, say};
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Args {
-    /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
+    /// A recipe file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
-    /// File to write: .png, .svg or .pdf; - is standard output
+    /// Output file: .png, .svg or .pdf; - is standard output
     #[arg(short, long, value_name = "FILE")]
     out: PathBuf,
-    /// Format, if the file's extension does not say [default: png]
+    /// Format, if the file extension does not determine it [default: png]
     #[arg(long)]
     format: Option<Kind>,
-    /// Layer that the colours show: an output, `node.layer`, or a layer derived from the heights (`orogen export --help` lists them)
+    /// Layer to colour: an output, `node.layer`, or a layer derived from the heights (`orogen export --help` lists them)
     #[arg(long, value_name = "L", default_value = HEIGHT)]
     layer: String,
-    /// What the colours show: a layer by a palette, or the surfaces of the ground
+    /// What the colours show: a layer with a palette, or the surfaces of the ground
     #[arg(long, value_name = "WHAT", default_value = "palette", aliases = ["colors", "colour", "colours"])]
     color: ColorOf,
-    /// How the layer's values become colours [default: log for amounts of water, labels for numbered areas, else linear]
+    /// How values are mapped to colours [default: log for drainage areas and similar, labels for numbered areas, else linear]
     #[arg(long, value_name = "HOW")]
     ramp: Option<Ramp>,
-    /// Values at the ends of the palette, the same for several maps [default: the lowest and the highest of this one]
+    /// Values at the ends of the palette, for example to use the same range for several maps [default: the minimum and maximum of this map]
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
     range: Option<Numbers>,
-    /// Colours: the name of a palette (`orogen palettes` lists them) or a file (.cpt, .gpl, .toml, or gdaldem's) [default: hypsometric;
-    /// of a layer one of its name, else viridis]
+    /// Palette: a name (`orogen palettes` lists them) or a file (.cpt, .gpl, .toml, or gdaldem) [default: hypsometric for heights; for
+    /// other layers the palette with the layer's name, else viridis]
     #[arg(long, value_name = "NAME|FILE")]
     palette: Option<PathBuf>,
-    /// How the relief is shaded
+    /// Relief shading
     #[arg(long, value_name = "HOW", default_value = "multi")]
     shade: Shade,
-    /// Contour interval in metres [default: a round number that suits the relief and the scale]
+    /// Contour interval in metres [default: a round number that suits relief and scale]
     #[arg(long, value_name = "M", value_parser = positive, allow_negative_numbers = true)]
     contours: Option<f64>,
     /// Title [default: the recipe's name]
     #[arg(long, value_name = "TEXT")]
     title: Option<String>,
-    /// Paper size: a0 to a5, letter, legal or WxHmm [default: as large as the map needs]
+    /// Paper size: a0 to a5, letter, legal or WxHmm [default: the size of the map]
     #[arg(long, value_name = "PAPER")]
     paper: Option<Paper>,
-    /// Landscape orientation of the paper
+    /// Landscape orientation
     #[arg(long, requires = "paper")]
     landscape: bool,
-    /// Pixels per inch of a .png, and of the relief in a .svg or .pdf [default: 220; of a .png without --paper 150]
+    /// Pixels per inch of a .png, and of the relief in a .svg or .pdf [default: 220; 150 for a .png without --paper]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=1200), allow_negative_numbers = true)]
     dpi: Option<u16>,
-    /// Pixels along the page's longer side, in place of --dpi
+    /// Pixels along the longer side of the page, instead of --dpi
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..=30000), conflicts_with = "dpi",
           allow_negative_numbers = true)]
     size: Option<u32>,
-    /// Write nothing beside a .png: no world file, no .prj and no .aux.xml, by which GIS programs lay it on its map
+    /// Do not write georeferencing files beside a .png (world file, .prj, .aux.xml)
     #[arg(long)]
     no_sidecar: bool,
     #[command(flatten)]
@@ -103,88 +103,88 @@ pub struct Args {
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Parts to leave out")]
 struct Without {
-    /// The title and the lines below it
+    /// Title and subtitle
     #[arg(long)]
     no_title: bool,
-    /// The coordinates along the sides
+    /// Coordinates along the edges
     #[arg(long)]
     no_axes: bool,
-    /// The contours and their labels
+    /// Contours and their labels
     #[arg(long)]
     no_contours: bool,
-    /// The labels of the contours
+    /// Labels of the contours
     #[arg(long)]
     no_labels: bool,
-    /// The summits and their heights
+    /// Summits and their heights
     #[arg(long)]
     no_summits: bool,
-    /// The rivers
+    /// Rivers
     #[arg(long)]
     no_rivers: bool,
-    /// The lakes (maps of a file of heights have none)
+    /// Lakes (maps of a file of heights have none)
     #[arg(long)]
     no_lakes: bool,
-    /// The shading of the relief, as --shade none
+    /// Relief shading, as --shade none
     #[arg(long, conflicts_with = "shade")]
     no_shade: bool,
-    /// The legend
+    /// Legend
     #[arg(long)]
     no_legend: bool,
-    /// The color bar, or the list of surfaces
+    /// Colour bar, or the list of surfaces
     #[arg(long, aliases = ["no-colors", "no-colour", "no-colours"])]
     no_color: bool,
-    /// The scale bar
+    /// Scale bar
     #[arg(long)]
     no_scale: bool,
-    /// The north arrow
+    /// North arrow
     #[arg(long)]
     no_north: bool,
-    /// The profiles in the free space of --paper
+    /// Profiles in the free space of --paper
     #[arg(long)]
     no_profile: bool,
 }
 
-/// How relief is shaded.
+/// Relief shading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Shade {
-    /// Hillshade of one light from the north-west
+    /// Hillshade with one light from the north-west
     Single,
-    /// Hillshade of three lights
+    /// Hillshade with three lights
     Multi,
-    /// Three lights, lowlands soft and hazy, summits crisp
+    /// Three lights, with soft hazy lowlands and crisp summits
     Swiss,
-    /// None
+    /// No shading
     None,
 }
 
 /// What the colours show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum ColorOf {
-    /// The heights or the --layer, by a palette
+    /// The heights or the --layer, with a palette
     Palette,
     /// The recipe's surfaces, or the standard ones: grass, sand, scree, rock, snow, river beds
     Surfaces,
 }
 
-/// How values become colours.
+/// How values are mapped to colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Ramp {
-    /// Evenly
+    /// Linear scale
     Linear,
-    /// By their logarithms, for amounts over orders of magnitude
+    /// Logarithmic scale, for quantities over orders of magnitude
     Log,
-    /// A colour of its own for each number
+    /// A different colour for each number
     Labels,
 }
 
 /// The kinds of files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Kind {
-    /// A picture
+    /// Picture
     Png,
-    /// A vector drawing
+    /// Vector drawing
     Svg,
-    /// A page to print
+    /// PDF page
     Pdf,
 }
 
@@ -270,7 +270,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     if !sheet.lacking.is_empty() {
         let letters: String = sheet.lacking.iter().collect();
         say::error(&format!(
-            "note: no font on this machine has the letters {letters}; they are left out (install one that has, such as Noto)"
+            "note: no installed font has the letters {letters}; they are left out (install a font that has them, such as Noto)"
         ));
     }
     let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
@@ -333,12 +333,12 @@ fn on_page(samples: &Affine, window: &Window, sheet: &Sheet) -> Affine {
 /// `--range` as two values.
 fn range(args: &Args) -> Result<Option<[f32; 2]>, Failure> {
     if args.layer == HEIGHT && args.ramp.is_some() {
-        return Err(Failure::Usage("--ramp is for another --layer than height".into()));
+        return Err(Failure::Usage("--ramp needs a --layer other than height".into()));
     }
     match args.range.as_ref().map(|range| range.0.as_slice()) {
         None => Ok(None),
         Some(&[low, high]) if low < high => Ok(Some([low as f32, high as f32])),
-        Some(_) => Err(Failure::Usage("--range is LOW,HIGH, the lower value first, such as 0,45".into())),
+        Some(_) => Err(Failure::Usage("--range must be LOW,HIGH with the lower value first, such as 0,45".into())),
     }
 }
 
@@ -353,7 +353,7 @@ fn layer(
     let mut source = LayerSource::new(world, &args.layer, *window, progress)?;
     if source.channels() != 1 {
         return Err(Failure::Usage(format!(
-            "`{}` has {} channels, and a map shows one value at each place",
+            "`{}` has {} channels, but a map shows a layer with one channel",
             args.layer,
             source.channels()
         )));
@@ -451,7 +451,7 @@ fn drawing(options: &Options, window: &Window, args: &Args) -> Result<u64, Failu
     let side = pixels(options).sqrt();
     if side * side > MOST {
         return Err(Failure::Usage(format!(
-            "a page of {:.0} pixels a side is more than there is memory for; ask for fewer --dpi or a smaller --paper",
+            "there is not enough memory for a page of {:.0} pixels per side; use a lower --dpi or a smaller --paper",
             side
         )));
     }

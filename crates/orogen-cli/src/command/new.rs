@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::sink::is_stdout;
 use crate::{say, source};
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Name of the new recipe: NAME.toml is written; - is standard output
@@ -28,7 +28,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let path = path(args)?;
     if path.symlink_metadata().is_ok() {
-        let message = format!("{} already exists and is left as it is; choose another name", path.display());
+        let message = format!("{} already exists and is left unchanged; choose another name", path.display());
         return Err(Error::new(ErrorKind::File, message).into());
     }
     let output = OutputPolicy::new(Existing::Keep).output(&path)?;
@@ -44,7 +44,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 /// NAME.toml, in the folder the name may carry.
 fn path(args: &Args) -> Result<PathBuf, Failure> {
     let Some(name) = args.name.file_name() else {
-        return Err(Failure::Usage(format!("`{}` is no name for a file", args.name.display())));
+        return Err(Failure::Usage(format!("`{}` is not a file name", args.name.display())));
     };
     if args.name.extension().is_some_and(|extension| extension == "toml") {
         return Ok(args.name.clone());

@@ -36,64 +36,66 @@ const BAND: usize = 1 << 22;
 /// Most bytes of an array file before its samples.
 const HEADER: u64 = 256;
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Sample (i, j) is the noise at (i, j), exactly as the library orogen-noise gives it for the \
+#[command(
+    after_help = "Sample (i, j) is the noise at (i, j), exactly as the library orogen-noise computes it for the \
                         Fractal of these parameters (also with one octave); with --tileable the whole of it is a period, as \
-                        its method tiled gives it. -1 is black and 1 is white.")]
+                        its method tiled gives it. -1 is black and 1 is white."
+)]
 pub struct Args {
-    /// The noise
+    /// Noise basis
     #[arg(value_parser = basis())]
     basis: Basis,
-    /// File to write, .png or .npy [default: noise.png, or noise.npy for a block]
+    /// Output file, .png or .npy [default: noise.png, or noise.npy for a volume]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Samples of the picture, or of each side
+    /// Samples of the picture, along both sides or WxH
     #[arg(long, value_name = "N|WxH", default_value = "512", allow_negative_numbers = true)]
     size: Size,
     /// Seed of the noise
     #[arg(long, value_name = "N", value_parser = seed, default_value = "0", allow_negative_numbers = true)]
     seed: u64,
-    /// Samples from one hill to the next, more or less [default: 64; a texture has its own]
+    /// Wavelength in samples: the approximate distance between hills [default: 64; textures have their own]
     #[arg(long, value_name = "N", value_parser = wavelength, allow_negative_numbers = true)]
     wavelength: Option<f64>,
-    /// Octaves, each finer and weaker than the one before [default: 1, with --fractal 6; a texture has its own]
+    /// Number of octaves, each finer and weaker than the one before [default: 1, with --fractal 6; textures have their own]
     #[arg(long, value_name = "N", value_parser = octaves(), allow_negative_numbers = true)]
     octaves: Option<u32>,
-    /// Amplitude from one octave to the next
+    /// Amplitude ratio between successive octaves
     #[arg(long, value_name = "G", value_parser = finite, default_value = "0.5", allow_negative_numbers = true)]
     gain: f64,
-    /// Frequency from one octave to the next
+    /// Frequency ratio between successive octaves
     #[arg(long, value_name = "L", value_parser = positive, default_value = "2", allow_negative_numbers = true)]
     lacunarity: f64,
     #[command(flatten)]
     sum: sum::Options,
-    /// Make it repeat without a seam, across and down, and through the frames or the slices of a block: steps are lengthened or
-    /// shortened a little so that a whole number of wavelengths fits
+    /// Make the noise tileable horizontally and vertically, and through the frames or the slices of a volume. Wavelengths are adjusted
+    /// slightly so that a whole number of them fits
     #[arg(long)]
     tileable: bool,
-    /// Draw the noise in space, cut at this depth (in samples), instead of the noise of the plane
+    /// Draw a slice of 3D noise at this depth (in samples) instead of 2D noise
     #[arg(long, value_name = "Z", value_parser = finite, allow_negative_numbers = true)]
     z: Option<f64>,
-    /// Draw the slope instead: a normal map of ground a quarter of a wavelength high, red east, green north (up), blue up;
-    /// as .npy, the slopes along x and y per sample, of shape (2, H, W)
+    /// Draw the slope as a normal map of ground a quarter of a wavelength high: red is east, green is north (up), blue is up. As .npy: the
+    /// slopes along x and y per sample, of shape (2, H, W)
     #[arg(long, conflicts_with_all = ["texture", "volume"])]
     gradient: bool,
-    /// Draw a material made of the noise, as the textbooks do
+    /// Draw a textbook texture made from the noise
     #[arg(long, conflicts_with = "volume")]
     texture: Option<Texture>,
-    /// Bits of each grey, or of each part of a normal
+    /// Bits per grey value, or per component of a normal
     #[arg(long, value_name = "8|16", value_parser = ["8", "16"], default_value = "8")]
     bits: String,
-    /// Write an animation of so many frames (.png that moves, .gif, or files such as noise-%03d.png): each a slice of the noise in space, forth from --z and back, slowing
-    /// where it turns, so that it repeats without a jump; with --tileable onwards all the way
+    /// Write an animation of N frames (animated .png, .gif, or files such as noise-%03d.png). Each frame is a slice of 3D noise: from --z
+    /// forward and back, slowing down at the turns, so that it loops smoothly; with --tileable it moves forward all the time
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true,
           conflicts_with = "volume")]
     frames: Option<u32>,
-    /// Write a block of so many slices one sample apart from --z on, as .npy of shape (N, H, W)
+    /// Write a volume of N slices, one sample apart, starting at --z, as .npy of shape (N, H, W)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MOST), allow_negative_numbers = true)]
     volume: Option<u64>,
-    /// Most memory that the program may take, such as 512MiB or 2GiB [default: half of what is free]
+    /// Memory limit of the program, such as 512MiB or 2GiB [default: half of the free memory]
     #[arg(long, value_name = "BYTES")]
     memory: Option<Bytes>,
     #[command(flatten)]
@@ -193,23 +195,25 @@ impl Task<'_> {
         let (png, deep) = (self.format == Format::Png, self.deep());
         let wrong = match () {
             () if *gradient && *basis == Basis::White => {
-                "white is made of squares of one value each and has no slope to draw".into()
+                "white noise has no slope; leave out --gradient, or choose another noise".into()
             }
             () if *gradient && !basis.has_gradient() => {
                 format!(
-                    "the slope of {} is not worked out; take perlin, value or simplex, or draw its values",
+                    "the slope of {} is not implemented; use perlin, value or simplex, or leave out --gradient",
                     basis.name()
                 )
             }
-            () if volume.is_some() && png => "--volume makes an array; name a file that ends in .npy".into(),
-            () if frames.is_some() && !png => "--frames makes pictures; name a file that ends in .png".into(),
-            () if texture.is_some() && !png => "--texture makes a picture; name a file that ends in .png".into(),
-            () if texture.is_some() && deep => "--bits 16 is for greys and normals; a texture is in colours".into(),
-            () if !png && deep => "--bits is for pictures; an array holds f32".into(),
+            () if volume.is_some() && png => "--volume writes an array; use the extension .npy".into(),
+            () if frames.is_some() && !png => "--frames writes pictures; use the extension .png or .gif".into(),
+            () if texture.is_some() && !png => "--texture writes a picture; use the extension .png".into(),
+            () if texture.is_some() && deep => {
+                "--bits 16 applies to grey pictures and normal maps, not to textures".into()
+            }
+            () if !png && deep => "--bits applies to pictures; arrays are f32".into(),
             () => match self.look.made_of(&self.slice(None)).tiled() {
                 Ok(_) => return Ok(()),
                 Err(TileError::Slanted) => format!(
-                    "{} cannot be made to repeat: its lattice of triangles closes along slanted axes only; take perlin, value \
+                    "{} cannot be tileable: its triangular lattice repeats only along slanted axes; use perlin, value \
                      or worley",
                     basis.name()
                 ),
@@ -294,7 +298,7 @@ impl Task<'_> {
     fn write_frames(&self, target: &AnimationTarget, outputs: &[Sink], frames: u32) -> Result<(), Failure> {
         let drawing = self.drawing();
         if *target == AnimationTarget::Gif && self.deep() {
-            return Err(Failure::Usage("a GIF holds 8 bits; leave --bits 16 out, or name a .png".into()));
+            return Err(Failure::Usage("a GIF has 8 bits; leave out --bits 16, or write a .png".into()));
         }
         let (software, description) = (format!("Orogen {}", env!("CARGO_PKG_VERSION")), self.description());
         let notes = [("Software", software.as_str()), ("Description", description.as_str())];
@@ -420,7 +424,7 @@ impl Task<'_> {
             (false, true) => depth,
             (true, true) => format!("{plane}; {depth}"),
         };
-        Some(format!("note: a wavelength of {asked} does not fit a whole number of times; {rounded}"))
+        Some(format!("note: the size is not a multiple of the wavelength {asked}; {rounded}"))
     }
 
     fn words(&self) -> String {

@@ -7,10 +7,10 @@ use orogen::words::suggestion;
 use crate::failure::Failure;
 use crate::say;
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The op to tell all about
+    /// The op to describe
     op: Option<String>,
     /// Print the reference of all ops as Markdown
     #[arg(long, conflicts_with = "op")]

@@ -10,17 +10,17 @@ use crate::replace::Replace;
 use crate::say;
 use crate::sink::{Sink, is_stdout};
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Palettes from files to show as well: .cpt, .gpl, .toml, or colour files of gdaldem
+    /// Palette files to show as well: .cpt, .gpl, .toml, or gdaldem colour files
     files: Vec<PathBuf>,
-    /// Picture of all palettes to write, a .png
+    /// Picture of all palettes to write (.png)
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
     #[command(flatten)]
     replace: Replace,
-    /// Leave out the list
+    /// Do not print the list
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
@@ -31,7 +31,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         && !is_stdout(out)
         && !out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
     {
-        return Err(Failure::Usage("the page is a picture; name a file that ends in .png".into()));
+        return Err(Failure::Usage("the page is written as PNG; use the extension .png".into()));
     }
     let policy = args.replace.policy(&args.files);
     let sink = args.out.as_ref().map(|out| Sink::new(out, &policy)).transpose()?;
@@ -57,6 +57,6 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let mark = if *safe { "*" } else { " " };
         text.push_str(&format!("{:longest$} {mark} {about}\n", palette.name));
     }
-    text.push_str("\n* colour-blind people can tell its heights apart\n");
+    text.push_str("\n* distinguishable by colour-blind readers\n");
     say::out(&text)
 }

@@ -5,7 +5,7 @@ use orogen::recipe::presets;
 use crate::failure::Failure;
 use crate::say;
 
-/// Prints the presets, one a line: the name, then what it is.
+/// Prints the presets, one per line: name and description.
 pub fn run() -> Result<(), Failure> {
     let longest = presets::all().iter().map(|preset| preset.name.len()).max().unwrap_or(0);
     let mut text = String::new();

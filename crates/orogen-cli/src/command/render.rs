@@ -30,60 +30,60 @@ use crate::source::Source;
 use crate::view::View;
 use crate::{finite, interrupt, palette, say};
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     after_help = "Nothing but the processor draws, and the picture has the same bytes on every machine. Grain finer than the \
                         world's samples is made up by the picture; heights, shadows and outlines are the world's own."
 )]
 pub struct Args {
-    /// A recipe's file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
+    /// A recipe file, the name of a preset, or a file of heights (GeoTIFF, .asc, .hgt, ...)
     recipe: PathBuf,
-    /// Picture to write, a .png; with --turntable also a .gif, or a file for each frame such as view-%03d.png
+    /// Output picture (.png); with --turntable also a .gif, or a file for each frame such as view-%03d.png
     #[arg(short, long, value_name = "FILE", default_value = "view.png")]
     out: PathBuf,
-    /// Pixels of the picture
+    /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "1920x1080", allow_negative_numbers = true)]
     size: Size,
-    /// Where the camera stands: AZIMUTH,ELEVATION[,DISTANCE] around the middle of the land (degrees clockwise from north, degrees
-    /// above the horizon, metres), or with --look X,Y,HEIGHT in the world's metres [default: 200,24 and as far as shows all]
+    /// Camera position: AZIMUTH,ELEVATION[,DISTANCE] around the centre of the land (degrees clockwise from north, degrees above the
+    /// horizon, metres), or with --look X,Y,HEIGHT in the world's metres [default: 200,24 at the distance that shows everything]
     #[arg(long, value_name = "A,E[,D]|X,Y,H", allow_hyphen_values = true)]
     camera: Option<Numbers>,
-    /// Point that the camera looks at, metres east and south; --camera is then a position, too
+    /// Point that the camera looks at, in metres east and south; --camera is then a position, too
     #[arg(long, value_name = "X,Y", requires = "camera", allow_hyphen_values = true)]
     look: Option<Numbers>,
-    /// Angle of view along the picture's longer side, in degrees
+    /// Field of view along the longer side of the picture, in degrees
     #[arg(long, value_name = "DEG", value_parser = positive, default_value = "40", allow_negative_numbers = true)]
     fov: f64,
-    /// The sun: AZIMUTH,ELEVATION, degrees clockwise from north and above the horizon [default: 265,27]
+    /// Position of the sun: AZIMUTH,ELEVATION, in degrees clockwise from north and above the horizon [default: 265,27]
     #[arg(long, value_name = "A,E", conflicts_with = "time", allow_hyphen_values = true)]
     sun: Option<Numbers>,
-    /// Position of the sun at this solar time (highest at 12:00), in place of --sun
+    /// Solar time (12:00 is noon) that determines the position of the sun, instead of --sun
     #[arg(long, value_name = "HH:MM", value_parser = clock)]
     time: Option<f64>,
-    /// Latitude for --time, in degrees, south negative [default: 45]
+    /// Latitude for --time, in degrees; negative in the south [default: 45]
     #[arg(long, value_name = "DEG", requires = "time", allow_negative_numbers = true)]
     latitude: Option<f64>,
-    /// Day of the year for --time [default: 172, the longest in the north]
+    /// Day of the year for --time [default: 172, the June solstice]
     #[arg(long, value_name = "N", requires = "time", value_parser = clap::value_parser!(u16).range(1..=366),
           allow_negative_numbers = true)]
     day: Option<u16>,
-    /// How thick the haze is: 0 is none, 1 a clear day, more is more
+    /// Density of the haze: 0 is none, 1 is a clear day, higher values are denser
     #[arg(long, value_name = "N", value_parser = not_negative, default_value = "1", allow_negative_numbers = true)]
     haze: f64,
     /// Vertical exaggeration
     #[arg(long, value_name = "N", value_parser = positive, default_value = "1", allow_negative_numbers = true)]
     exaggeration: f64,
-    /// What is shown beyond the edge of the land [default: haze where most of the edge lies in the sea, else cut]
+    /// What is shown beyond the edge of the land [default: haze if most of the edge is sea, else cut]
     #[arg(long)]
     edge: Option<Ends>,
     /// Colours of the ground
     #[arg(long, aliases = ["colors", "colour", "colours"], value_enum, default_value_t = Dress::Natural)]
     color: Dress,
-    /// Height above which snow lies, in metres [default: three fifths up the relief, none on low land]
+    /// Height of the snow line in metres [default: three fifths of the relief, no snow on low land]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     snow_line: Option<f64>,
-    /// Samples per pixel, against jagged edges
+    /// Samples per pixel (antialiasing)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), default_value = "5",
           allow_negative_numbers = true)]
     samples: u32,
@@ -91,10 +91,10 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=3600), conflicts_with = "look",
           allow_negative_numbers = true)]
     turntable: Option<u32>,
-    /// How long each frame is shown, in milliseconds
+    /// Duration of each frame, in milliseconds
     #[arg(long, value_name = "MS", default_value = "60", requires = "turntable")]
     delay: u16,
-    /// Palette of --color map, by name or a file (.cpt, .gpl, .toml, gdaldem's .txt) [default: the relief map's]
+    /// Palette of --color map: a name or a file (.cpt, .gpl, .toml, gdaldem .txt) [default: that of the relief map]
     #[arg(long, value_name = "NAME|FILE")]
     palette: Option<PathBuf>,
     #[command(flatten)]
@@ -113,7 +113,7 @@ pub struct Args {
 enum Ends {
     /// A block cut out of the land, on a table
     Cut,
-    /// The open sea, or the land mirrored on and on until haze hides it
+    /// Open sea, or the land mirrored repeatedly until haze hides it
     Haze,
 }
 
@@ -122,13 +122,13 @@ enum Ends {
 enum Dress {
     /// Forest, meadow, scree, rock and snow
     Natural,
-    /// Red and yellow beds of rock, sand
+    /// Red and yellow rock layers, sand
     Desert,
     /// The recipe's surfaces, or the standard ones: grass, sand, scree, rock, snow, river beds
     Surfaces,
-    /// The tints of the relief map
+    /// The colours of the relief map
     Map,
-    /// A model of clay
+    /// Uniform clay
     Clay,
 }
 
@@ -154,14 +154,14 @@ fn render(args: &Args) -> Result<(), Failure> {
             AnimationTarget::Apng
         }
         None => {
-            let message = format!("a view is one picture; name a file that ends in .png, not {}", args.out.display());
-            return Err(Failure::Usage(message + ", or ask for frames by --turntable"));
+            let message = format!("a view is written as PNG; use the extension .png instead of {}", args.out.display());
+            return Err(Failure::Usage(message + ", or write frames with --turntable"));
         }
     };
     let [width, height] = size(args)?;
     let palette = args.palette.as_deref().map(palette::find).transpose()?;
     if palette.is_some() && !matches!(args.color, Dress::Map) {
-        return Err(Failure::Usage("--palette is for --color map".into()));
+        return Err(Failure::Usage("--palette applies to --color map".into()));
     }
     let (style, shot) = (style(args, palette.as_ref())?, shot(args)?);
     let source = Source::find(&args.recipe)?;
@@ -199,7 +199,7 @@ fn size(args: &Args) -> Result<[usize; 2], Failure> {
     match width.max(height) <= 32_768 {
         true => Ok([width, height]),
         false => Err(Failure::Usage(format!(
-            "a picture of {width} x {height} pixels is too large; a side has 32768 at most"
+            "a picture of {width} x {height} pixels is too large; a side may have at most 32768 pixels"
         ))),
     }
 }
@@ -208,16 +208,16 @@ fn size(args: &Args) -> Result<[usize; 2], Failure> {
 fn style<'a>(args: &Args, palette: Option<&'a Palette>) -> Result<Style<'a>, Failure> {
     let usage = |message: String| Err(Failure::Usage(message));
     if !(1.0..=150.0).contains(&args.fov) {
-        return usage(format!("--fov is {}; an angle of view goes from 1 to 150 degrees", args.fov));
+        return usage(format!("--fov must be from 1 to 150 degrees, not {}", args.fov));
     }
     if !(0.01..=100.0).contains(&args.exaggeration) {
-        return usage(format!("--exaggeration is {}; it goes from 0.01 to 100", args.exaggeration));
+        return usage(format!("--exaggeration must be from 0.01 to 100, not {}", args.exaggeration));
     }
     if args.haze > 100.0 {
-        return usage(format!("--haze is {}; it goes from 0 to 100", args.haze));
+        return usage(format!("--haze must be from 0 to 100, not {}", args.haze));
     }
     if args.snow_line.is_some_and(|line| !line.is_finite()) {
-        return usage("--snow-line is a height in metres, such as 2400".into());
+        return usage("--snow-line must be a height in metres, such as 2400".into());
     }
     Ok(Style {
         exaggeration: args.exaggeration,
@@ -247,7 +247,7 @@ fn sun(args: &Args) -> Result<[f64; 2], Failure> {
     if let Some(hour) = args.time {
         let latitude = args.latitude.unwrap_or(45.0);
         if !(-90.0..=90.0).contains(&latitude) {
-            return usage(format!("--latitude is {latitude}; it goes from -90 to 90 degrees"));
+            return usage(format!("--latitude must be from -90 to 90 degrees, not {latitude}"));
         }
         let moment = Moment { latitude, day: args.day.unwrap_or(172), hour };
         let sun = moment.sun();
@@ -271,7 +271,7 @@ fn sun(args: &Args) -> Result<[f64; 2], Failure> {
             "--sun says that it stands at an elevation of {elevation} degrees; it goes from {LOWEST_SUN}, when the last light \
              fades, to 90"
         )),
-        Some(_) => usage("--sun is AZIMUTH,ELEVATION in degrees, such as 290,30".into()),
+        Some(_) => usage("--sun must be AZIMUTH,ELEVATION in degrees, such as 290,30".into()),
     }
 }
 
@@ -290,33 +290,33 @@ fn shot(args: &Args) -> Result<Shot, Failure> {
     if let Some(Numbers(look)) = &args.look {
         return match (camera, look.as_slice()) {
             (Some(&[x, y, height]), &[to_x, to_y]) if x == to_x && y == to_y => usage(format!(
-                "the camera stands at {x},{y} and looks there too, from a height of {height}: move one of them"
+                "the camera is directly above the point that it looks at ({x},{y}, from a height of {height} m); move one of them"
             )),
             (Some(&[x, y, height]), &[to_x, to_y]) => Ok(Shot::At { eye: [x, y, height], look: [to_x, to_y] }),
-            (_, &[_, _]) => usage("with --look, --camera is X,Y,HEIGHT in metres, such as 2000,9000,1500".into()),
-            _ => usage("--look is X,Y in metres, such as 5000,5000".into()),
+            (_, &[_, _]) => usage("with --look, --camera must be X,Y,HEIGHT in metres, such as 2000,9000,1500".into()),
+            _ => usage("--look must be X,Y in metres, such as 5000,5000".into()),
         };
     }
     let (azimuth, elevation, distance) = match camera {
         None => (CAMERA[0], CAMERA[1], None),
         Some(&[azimuth, elevation]) => (azimuth, elevation, None),
         Some(&[azimuth, elevation, distance]) => (azimuth, elevation, Some(distance)),
-        Some(_) => return usage("--camera is AZIMUTH,ELEVATION[,DISTANCE], such as 200,24".into()),
+        Some(_) => return usage("--camera must be AZIMUTH,ELEVATION[,DISTANCE], such as 200,24".into()),
     };
     if !(-90.0..=90.0).contains(&elevation) {
         return usage(format!(
-            "--camera says that it stands at an elevation of {elevation} degrees; that goes from -90 to 90 (with --look, \
-             --camera is a place)"
+            "the elevation of --camera must be from -90 to 90 degrees, not {elevation} (with --look, \
+             --camera is a position)"
         ));
     }
     if elevation < 0.0 {
         return usage(format!(
-            "--camera says that it stands {} degrees below the horizon, under the ground",
+            "the elevation of --camera must be above the horizon, not {} degrees below it",
             -elevation
         ));
     }
     match distance.filter(|distance| *distance <= 0.0) {
-        Some(distance) => usage(format!("--camera says that it stands {distance} m away; that is a number above 0")),
+        Some(distance) => usage(format!("the distance of --camera must be greater than 0 m, not {distance}")),
         None => Ok(Shot::Around { azimuth, elevation, distance }),
     }
 }
@@ -426,7 +426,7 @@ fn draw(
     }
     let camera = camera(shot);
     if let (Some(metres), false) = (camera.lifted(), args.quiet) {
-        say::error(&format!("note: the camera stood underground; it is lifted by {metres:.0} m, to just above it"));
+        say::error(&format!("note: the camera was below the ground and was raised by {metres:.0} m"));
     }
     painting.expect(height as f64);
     outputs[0].write(|out| {

@@ -1,32 +1,33 @@
-//! How octaves become one number, as the command line says it.
+//! How octaves are combined, as given on the command line.
 
 use clap::ValueEnum;
 use orogen_noise::Kind;
 
 use crate::size::{finite, not_negative};
 
-/// What it value_kind: the kind of fractal, and the parameters of some kinds.
+/// The kind of fractal, and the parameters of some kinds.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// How octaves become one number [default: fbm]
+    /// Kind of fractal [default: fbm]
     #[arg(long, conflicts_with = "texture")]
     fractal: Option<Sum>,
-    /// How strongly slope damps the octaves of weighted [default: 1]
+    /// How strongly slope damps the octaves of `weighted` [default: 1]
     #[arg(long, value_name = "K", value_parser = not_negative, allow_negative_numbers = true)]
     k: Option<f64>,
-    /// The shape of that damping, m being the squared slope [default: reciprocal]
+    /// Damping function of `weighted`, with m the squared slope [default: reciprocal]
     #[arg(long)]
     falloff: Option<Falloff>,
-    /// How often ping-pong folds the noise, 2 S - 1 times: 0.5 not at all, 1 like ridged, 4 in many bands [default: 2]
+    /// How often `ping-pong` folds the noise (2 S - 1 times): 0.5 not at all, 1 like ridged, 4 in many bands [default: 2]
     #[arg(long, value_name = "S", value_parser = not_negative, allow_negative_numbers = true)]
     strength: Option<f64>,
-    /// Added to the noise of hybrid and hetero: where the sum is small, ground is smooth [default: 0.7]
+    /// Value added to the noise of `hybrid` and `hetero`: where the sum is small, ground is smooth [default: 0.7]
     #[arg(long, value_name = "O", value_parser = finite, allow_negative_numbers = true)]
     offset: Option<f64>,
-    /// How far slopes move what comes after, in first wavelengths (swiss) or cells of the octave (jordan) [default: 0.15; 0.35]
+    /// How far slopes displace later octaves, in wavelengths of the first octave (`swiss`) or in cells of the octave (`jordan`) [default:
+    /// 0.15; 0.35]
     #[arg(long, value_name = "W", value_parser = finite, allow_negative_numbers = true)]
     warp: Option<f64>,
-    /// How much slopes let the finer octaves of jordan through; 0 leaves the first one alone [default: 0.8]
+    /// How far slopes let the finer octaves of `jordan` through; 0 leaves only the first octave [default: 0.8]
     #[arg(long, value_name = "D", value_parser = not_negative, allow_negative_numbers = true)]
     damp: Option<f64>,
 }
@@ -34,21 +35,21 @@ pub struct Options {
 /// How octaves are summed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Sum {
-    /// Fractional Brownian motion: the plain sum
+    /// Fractional Brownian motion: the weighted sum of octaves
     Fbm,
-    /// Sharp crests
+    /// Sharp crests, round valleys
     Ridged,
-    /// Round hills between sharp valleys
+    /// Round hills, sharp valleys
     Billow,
-    /// Each octave damped by the slope of those before
+    /// Each octave is damped by the slope of those before it
     Weighted,
     /// Contour bands, as in agate
     PingPong,
-    /// Hybrid multifractal: lowlands smooth, heights rough
+    /// Hybrid multifractal: smooth lowlands, rough heights
     Hybrid,
-    /// Heterogeneous terrain: rougher the higher it is
+    /// Heterogeneous terrain: the higher, the rougher
     Hetero,
-    /// Swiss turbulence: crests that branch
+    /// Swiss turbulence: branching crests
     Swiss,
     /// Jordan turbulence: rounded massifs with worn flanks
     Jordan,
@@ -63,7 +64,7 @@ enum Falloff {
     Exponential,
     /// 1 / (1 + k sqrt m)
     SquareRoot,
-    /// 1 - smoothstep(k m): nothing beyond k m = 1
+    /// 1 - smoothstep(k m): 0 beyond k m = 1
     Smoothstep,
 }
 

@@ -16,11 +16,11 @@ use super::slice::Slice;
 /// A material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Texture {
-    /// Fbm through a curve: below a threshold blue sky, above it ever denser white
+    /// Clouds: fBm mapped to blue sky below a threshold and to increasingly dense white above it
     Clouds,
-    /// A sine across the picture, distorted by turbulence: the sum of the octaves' sizes
+    /// Marble: a sine wave distorted by turbulence, the sum of the octaves' absolute values
     Marble,
-    /// LodConfig: the fractional part of a noise that has been counted up and drawn out, and a fine grain
+    /// Wood: rings from the fractional part of a multiplied and stretched noise, with a fine grain
     Wood,
 }
 

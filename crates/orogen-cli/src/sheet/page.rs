@@ -164,12 +164,12 @@ impl Layout<'_> {
         baseline += self.at(26.0);
         let style = self.style(Face::Regular, 13.0, INK);
         let words = [
-            "Heights: black is low and white is high, over the range that each noise fills.".to_string(),
+            "Heights: black is low and white is high, over the range of each noise.".to_string(),
             "Hillshade: the same ground in light from the north-west, half way up the sky. What is white stands an eighth \
              of the picture’s width above what is black."
                 .to_string(),
             format!("Each picture is {SIDE} wide; wavelengths and distances are in the same unit. The seed is {seed}."),
-            "fBm is fractional Brownian motion: octaves of noise, each finer and weaker than the one before.".to_string(),
+            "fBm is fractional Brownian motion: a sum of octaves of noise, each finer and weaker than the one before.".to_string(),
         ];
         for paragraph in words {
             for line in self.font.wrap(&paragraph, style, width as f32) {

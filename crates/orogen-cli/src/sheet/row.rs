@@ -122,7 +122,7 @@ pub fn rows(seed: u64) -> Vec<Row> {
     vec![
         Row {
             title: "One octave",
-            about: "random numbers, and five ways to make hills of them",
+            about: "random numbers, and five ways to make smooth noise from them",
             noises: vec![
                 plain("White noise", "a number a square, 4 wide", single(Basis::White, 4.0)),
                 plain("Value noise", "wavelength 50", single(Basis::Value, 50.0)),
@@ -134,7 +134,7 @@ pub fn rows(seed: u64) -> Vec<Row> {
         },
         Row {
             title: "Cells",
-            about: "Worley noise: points at random, one in each square 40 wide, and how far away the nearest are",
+            about: "Worley noise: one random point in each square 40 wide, and the distance to the nearest points",
             noises: vec![
                 cells("Worley F1", "the nearest point", Feature::F1),
                 cells("Worley F2", "the second nearest", Feature::F2),
@@ -146,7 +146,7 @@ pub fn rows(seed: u64) -> Vec<Row> {
         },
         Row {
             title: "Six octaves",
-            about: "from wavelength 100 down, each half as long and half as high; Perlin noise, but for the last",
+            about: "from wavelength 100 down, each with half the wavelength and half the amplitude; Perlin noise except for the last",
             noises: vec![
                 plain("fBm", "the sum", summed(Kind::Fbm)),
                 plain("Ridged fBm", "the sum of 1 − 2 |noise|", summed(Kind::Ridged)),
@@ -160,7 +160,7 @@ pub fn rows(seed: u64) -> Vec<Row> {
             title: "Weighted by slope",
             about: "each octave damped by a falloff of k m, where m is the squared slope of the sum so far",
             noises: vec![
-                plain("Weighted fBm, k = 0", "the plain sum", weighted(0.0, Falloff::Reciprocal)),
+                plain("Weighted fBm, k = 0", "no damping", weighted(0.0, Falloff::Reciprocal)),
                 plain("Weighted fBm, k = 1", "1 / (1 + k m)", weighted(1.0, Falloff::Reciprocal)),
                 plain("Weighted fBm, k = 10", "1 / (1 + k m)", weighted(10.0, Falloff::Reciprocal)),
                 plain("Exponential, k = 1", "exp(−k m)", weighted(1.0, Falloff::Exponential)),
@@ -177,14 +177,14 @@ pub fn rows(seed: u64) -> Vec<Row> {
                     "gain 0.8: rough heights",
                     Fractal { gain: 0.8, ..summed(Kind::Hybrid { offset: 0.7 }) },
                 ),
-                plain("Heterogeneous", "rougher the higher it is", summed(Kind::Hetero { offset: 0.7 })),
-                plain("Swiss turbulence", "crests that branch", summed(Kind::Swiss { warp: 0.15 })),
+                plain("Heterogeneous", "the higher, the rougher", summed(Kind::Hetero { offset: 0.7 })),
+                plain("Swiss turbulence", "branching crests", summed(Kind::Swiss { warp: 0.15 })),
                 plain("Jordan turbulence", "worn massifs", summed(Kind::Jordan { warp: 0.35, damp: 0.8 })),
             ],
         },
         Row {
             title: "Aggregates",
-            about: "no noise: walkers wander until they touch what has grown, and stick",
+            about: "diffusion-limited aggregates: random walkers attach to the aggregate when they touch it",
             noises: vec![
                 shown("Aggregate", "grown from the middle", Noise::Aggregate(seed)),
                 shown("DLA mountains", "at six scales, by way to tips", Noise::Peaks(seed)),

@@ -20,10 +20,14 @@ fn a_folder_that_is_a_file() {
 #[test]
 fn a_folder_that_takes_no_files() {
     let folder = Folder::with_small();
-    folder.bad(&["generate", "small.toml", "-o", "/proc"], 1, "cannot write into /proc: it takes no new files");
+    folder.bad(&["generate", "small.toml", "-o", "/proc"], 1, "cannot write into /proc: it does not allow new files");
     folder.bad(&["generate", "small.toml", "-o", "/proc/new"], 1, "cannot make the folder /proc/new: ");
-    folder.bad(&["export", "small.toml", "-o", "/proc/a.npy"], 1, "cannot write into /proc: it takes no new files");
-    folder.bad(&["new", "/proc/a"], 1, "cannot write into /proc: it takes no new files");
+    folder.bad(
+        &["export", "small.toml", "-o", "/proc/a.npy"],
+        1,
+        "cannot write into /proc: it does not allow new files",
+    );
+    folder.bad(&["new", "/proc/a"], 1, "cannot write into /proc: it does not allow new files");
 }
 
 #[test]

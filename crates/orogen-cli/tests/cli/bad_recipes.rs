@@ -167,7 +167,7 @@ fn nothing_is_echoed_that_nobody_reads() {
     };
     for (text, expect) in [
         (text(&name, "20", &name), "nnn...nnn"),
-        (text("a", "20", &name), "there is no node `nnn"),
+        (text("a", "20", &name), "unknown node `nnn"),
         (text(&name, "20", "a"), "nnn...nnn"),
         (text("a", "1e308", "a"), "1e308"),
         (text("a", "1e-308", "a"), "1e-308"),

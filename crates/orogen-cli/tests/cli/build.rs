@@ -54,7 +54,11 @@ fn what_is_built_and_what_is_said() {
         assert!(outcome.text().contains(" tiles made in "), "{}", outcome.text());
         let again = folder.good(&arguments(name, asked, &["--resume", "-q"]));
         assert!(again.out.is_empty() && again.err.is_empty());
-        folder.bad(&arguments(name, asked, &["-q"]), 1, "is finished: --resume checks it, --force builds it anew");
+        folder.bad(
+            &arguments(name, asked, &["-q"]),
+            1,
+            "is already complete; use --resume to check it, or --force to build it again",
+        );
         folder.bad(
             &arguments(name, asked, &["-q", "--resume", "--seed", "99"]),
             1,
@@ -74,10 +78,10 @@ fn what_is_built_and_what_is_said() {
 fn what_cannot_be_built_is_usage() {
     let folder = Folder::with_small();
     for (options, code, expect) in [
-        (&["-o", "a"][..], 2, "a does not tell what to build: name a .tif or a .zarr, or say --tiles"),
-        (&["-o", "a.tif", "--tiles", "png"], 2, "--tiles makes a folder, and a.tif has the extension of a file"),
+        (&["-o", "a"][..], 2, "a does not determine what to build: use the extension .tif or .zarr, or --tiles"),
+        (&["-o", "a.tif", "--tiles", "png"], 2, "--tiles writes a folder, but a.tif has the extension of a file"),
         (&["-o", "a", "--tiles", "bmp"], 2, "invalid value"),
-        (&["-o", "a.tif", "--layers", "height,noise"], 2, "a GeoTIFF holds one layer and 2 are asked for"),
+        (&["-o", "a.tif", "--layers", "height,noise"], 2, "a GeoTIFF holds one layer, and 2 were chosen"),
         (&["-o", "a.zarr", "--layers", "hieght"], 2, "did you mean `height`?"),
         (&["-o", "a.zarr", "--window", "60,0,10,10"], 2, "not inside the world"),
         (&["-o", "a.zarr", "--tile", "0"], 2, "invalid value"),
@@ -91,7 +95,11 @@ fn what_cannot_be_built_is_usage() {
         assert_eq!(folder.names(""), ["small.toml"], "{options:?}");
     }
     folder.write("wide.toml", crate::harness::SMALL.replace("size = [640, 480]", "size = [1e9, 1e9]"));
-    folder.bad(&["build", "wide.toml", "-q", "-o", "a.zarr", "--cell", "1"], 1, "of disk where a.zarr is, and ");
+    folder.bad(
+        &["build", "wide.toml", "-q", "-o", "a.zarr", "--cell", "1"],
+        1,
+        "not enough disk space for a.zarr: up to ",
+    );
     assert_eq!(folder.names(""), ["small.toml", "wide.toml"]);
 }
 
@@ -176,7 +184,7 @@ fn ctrl_c_stops_cleanly() {
         let output = child.wait_with_output().unwrap();
         let err = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(130), "{err}");
-        assert!(err.ends_with("stopped: the same command with --resume goes on from here\n"), "{err}");
+        assert!(err.ends_with("stopped: run the same command with --resume to continue\n"), "{err}");
         fs::remove_dir_all(folder.path("a.zarr")).unwrap();
     }
     for arguments in [
@@ -222,12 +230,12 @@ fn two_builds_do_not_work_on_one_place() {
         std::thread::sleep(Duration::from_millis(5));
     }
     for more in [&["-q"][..], &["-q", "--resume"], &["-q", "--force"]] {
-        folder.bad(&arguments("a.zarr", &asked, more), 1, "another build is at work on ");
+        folder.bad(&arguments("a.zarr", &asked, more), 1, "another build of ");
     }
     child.kill().unwrap();
     child.wait().unwrap();
     // The lock went with the process that held it.
-    folder.bad(&arguments("a.zarr", &asked, &["-q"]), 1, "was begun and not finished: --resume goes on with it");
+    folder.bad(&arguments("a.zarr", &asked, &["-q"]), 1, "is an unfinished build; use --resume to continue it");
 }
 
 #[test]
@@ -246,7 +254,7 @@ fn force_removes_a_builds_own_files_and_no_others() {
         }
         let outcome = folder.good(&arguments(name, asked, &["--force"]));
         assert!(
-            outcome.err.contains("notes.txt") && outcome.err.contains("which no build has made"),
+            outcome.err.contains("notes.txt") && outcome.err.contains("which were not made by a build"),
             "{}",
             outcome.err
         );
@@ -262,7 +270,7 @@ fn force_removes_a_builds_own_files_and_no_others() {
             folder.bad(
                 &arguments(name, &other, &["--force", "-q"]),
                 1,
-                "was not made by a build and is in the way of this one",
+                "was not made by a build and would be overwritten",
             );
             assert_eq!(files(&folder.path(name)).len(), expect.len() + 1, "nothing was removed");
             fs::remove_file(folder.path("png/height_x0_y0.r16")).unwrap();
@@ -282,7 +290,7 @@ fn force_removes_a_builds_own_files_and_no_others() {
     folder.bad(
         &["build", "small.toml", "-o", "b.zarr", "--force", "-q"],
         1,
-        "b.zarr.build holds thesis.txt, which no build has made",
+        "b.zarr.build holds thesis.txt, which was not made by a build",
     );
     assert_eq!(folder.names("b.zarr.build"), ["thesis.txt"]);
 }
@@ -299,6 +307,6 @@ fn resuming_after_damage_says_what_was_made() {
     let top = expect.keys().min_by_key(zoom).unwrap();
     fs::write(folder.path(name).join(top), "tampered").unwrap();
     let told = folder.good(&arguments(name, asked, &["--resume"])).text().to_string();
-    assert!(told.contains(&format!("1 tile made, {0} kept, {0} of them computed again", tiles - 1)), "{told}");
+    assert!(told.contains(&format!("1 tile made, {0} kept ({0} of them computed again", tiles - 1)), "{told}");
     assert!(files(&folder.path(name)) == expect);
 }

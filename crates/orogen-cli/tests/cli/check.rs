@@ -10,7 +10,7 @@ use crate::harness::{Folder, Outcome, SMALL, png};
 fn every_fault_of_every_recipe_is_told() {
     let folder = Folder::with_small();
     let told = folder.good(&["check", "small.toml", "alpine"]).text().to_string();
-    assert!(told.starts_with("small.toml: no fault, 2 nodes, outputs height, noise\nalpine: no fault, "), "{told}");
+    assert!(told.starts_with("small.toml: valid, 2 nodes, outputs height, noise\nalpine: no fault, "), "{told}");
     folder.write(
         "bad.toml",
         "orogen = 1\n[nodes.a]\nop = \"fbm\"\nwavelenght = 5\n[nodes.b]\nop = \"fmb\"\n[outputs]\nheight = \"a\"\n",
@@ -18,13 +18,13 @@ fn every_fault_of_every_recipe_is_told() {
     folder.write("dem.toml", "orogen = 1\n[nodes.a]\nop = \"dem\"\npath = \"gone.tif\"\n[outputs]\nheight = \"a\"\n");
     let outcome = folder.run(&["check", "bad.toml", "small.toml", "dem.toml", "none"]);
     assert_eq!(outcome.code, 1);
-    assert_eq!(outcome.text(), "small.toml: no fault, 2 nodes, outputs height, noise\n");
+    assert_eq!(outcome.text(), "small.toml: valid, 2 nodes, outputs height, noise\n");
     for expect in [
         "bad.toml:4:1: ",
         "did you mean `wavelength`?",
         "bad.toml:6:6: unknown op `fmb`",
         "gone.tif",
-        "no preset and no file `none`",
+        "no preset or file is called `none`",
     ] {
         assert!(outcome.err.contains(expect), "{expect}: {}", outcome.err);
     }
@@ -78,7 +78,7 @@ fn recipes_come_from_standard_input() {
         assert!(outcome.code == 1 && outcome.err.contains(expect), "{}", outcome.err);
     }
     let outcome = piped(&folder, &["generate", "-", "--watch"], SMALL.as_bytes());
-    assert!(outcome.code == 2 && outcome.err.contains("standard input is none"), "{}", outcome.err);
+    assert!(outcome.code == 2 && outcome.err.contains("not standard input"), "{}", outcome.err);
 }
 
 #[test]

@@ -26,11 +26,11 @@ fn what_cannot_be_drawn_is_a_sentence_and_leaves_nothing() {
     for (arguments, code, expect) in [
         (&["--size", "0"][..], 2, "120..=4000"),
         (&["--size", "5000"], 2, "120..=4000"),
-        (&["--seed", "-1"], 2, "a seed is a whole number"),
-        (&["-o", "a.npy"], 2, "ends in .png"),
+        (&["--seed", "-1"], 2, "a seed must be a whole number"),
+        (&["-o", "a.npy"], 2, "the extension .png"),
         (&["-o", "a.pgn"], 2, "did you mean .png?"),
         (&["-o", "none/a.png"], 1, "the folder does not exist"),
-        (&["--memory", "1MB"], 1, "of memory and 977 KiB is allowed"),
+        (&["--memory", "1MB"], 1, "of memory, and 977 KiB is allowed"),
         (&["perlin"], 2, "unexpected argument"),
     ] {
         folder.bad(&[&["compare"][..], arguments].concat(), code, expect);

@@ -51,7 +51,7 @@ fn what_does_not_fit_in_memory_is_written_as_it_is_made() {
     folder.good(&[&asked[..], &["-o", "a.npy"]].concat());
     folder.good(&[&asked[..], &["-o", "b.npy", "--memory", "26MiB"]].concat());
     assert!(folder.read("a.npy") == folder.read("b.npy"));
-    folder.bad(&[&asked[..], &["-o", "c.npy", "--memory", "1kB"]].concat(), 1, "of memory and 1000 bytes is allowed");
+    folder.bad(&[&asked[..], &["-o", "c.npy", "--memory", "1kB"]].concat(), 1, "of memory, and 1000 bytes is allowed");
     let streamed = folder.run(&[&asked[..], &["-o", "-", "--memory", "26MiB"]].concat());
     assert!(streamed.out == folder.read("a.npy"));
     assert_eq!(folder.names(""), ["a.npy", "b.npy", "small.toml"]);
@@ -222,7 +222,7 @@ fn layers_that_follow_from_the_heights() {
         assert!(up[0] == down[0] && up[2] == down[2] && (i32::from(up[1]) + i32::from(down[1]) - 255).abs() <= 1);
     }
     folder.bad(&["export", "small.toml", "-o", "c.png", "--layer", "slop"], 2, "did you mean `slope`");
-    folder.bad(&["export", "small.toml", "-o", "c.tif", "--layer", "normal"], 2, "those that hold it: exr, npy, png");
+    folder.bad(&["export", "small.toml", "-o", "c.tif", "--layer", "normal"], 2, "formats for it: exr, npy, png");
     folder.bad(&["export", "small.toml", "-o", "c.png", "--normal", "opengl"], 2, "--normal is for the layer `normal`");
     folder.bad(&["export", "small.toml", "-o", "-", "--format", "png", "--layer", "splat"], 2, "name a file with -o");
 }
@@ -400,26 +400,26 @@ fn what_cannot_be_asked_for_is_usage() {
     let folder = Folder::with_small();
     for (options, expect) in [
         (&["-o", "a.npz"][..], "did you mean .npy?"),
-        (&["-o", "a.qqqqqq"], "known are ."),
+        (&["-o", "a.qqqqqq"], "known extensions: ."),
         (&["-o", "a.tig"], "did you mean .tif?"),
-        (&["-o", "a"], "no extension"),
+        (&["-o", "a"], "no file extension"),
         (&["-o", "a.png", "--format", "npy"], "contradict"),
         (&["-o", "a.npy", "--format", "bmp"], "invalid value"),
-        (&["-o", "a.npy", "--bits", "8"], "--bits is no option of the format npy; those that know it: .pgm and .png"),
-        (&["-o", "a.png", "--bits", "12"], "`12` is no value of --bits: it is 8 or 16"),
+        (&["-o", "a.npy", "--bits", "8"], "--bits does not apply to the format npy; it applies to: .pgm and .png"),
+        (&["-o", "a.png", "--bits", "12"], "`12` is not a value for --bits: it must be 8 or 16"),
         (&["-o", "a.png", "--range", "9,3"], "the lower first"),
         (&["-o", "a.png", "--encoding", "terrarium", "--range", "1,2"], "leave out --range"),
-        (&["-o", "a.hgt"], "these are 64 x 48: the nearest is --cell 0.4 --window 0,0,1201,1201"),
+        (&["-o", "a.hgt"], "not 64 x 48; the nearest is --cell 0.4 --window 0,0,1201,1201"),
         (&["-o", "a.npy", "--layer", "hieght"], "did you mean `height`?"),
         (&["-o", "a.npy", "--layer", "qqqqqq"], "`height` and `noise`"),
-        (&["-o", "a.npy", "--layer", "rivers"], "`rivers` is made of vector features, which .npy does not hold"),
+        (&["-o", "a.npy", "--layer", "rivers"], "`rivers` consists of vector features, which .npy cannot hold"),
         (&["-o", "a.npy", "--window", "60,0,10,10"], "not inside the world"),
         (&["-o", "a.npy", "--window", "-1,0,10,10"], "not inside the world"),
         (&["-o", "a.npy", "--window", "0,0,10"], "X,Y,W,H"),
         (&["-o", "a.npy", "--window", "0,0,0,10"], "1 to 1000000000 samples"),
         (&["-o", "a.npy", "--window", "99999999999999,0,5,5"], "not inside the world"),
-        (&["-o", "a.npy", "--window", "9223372036854775807,0,5,5"], "not the column or row"),
-        (&["-o", "a.npy", "--cell", "-2"], "more than 0 metres"),
+        (&["-o", "a.npy", "--window", "9223372036854775807,0,5,5"], "not a column or row"),
+        (&["-o", "a.npy", "--cell", "-2"], "greater than 0 m"),
         (&[], "--out <FILE>"),
     ] {
         folder.bad(&[&["export", "small.toml"][..], options].concat(), 2, expect);
@@ -461,8 +461,8 @@ fn contours_are_lines_of_the_heights_asked_for() {
     folder.good(&["export", "small.toml", "-o", "a.svg", "-q"]);
     assert!(folder.text("a.svg").starts_with("<svg xmlns=") && folder.text("a.svg").contains("id=\"h100\""));
     for (given, expect) in [
-        (["--interval", "0"], "`0` is no value of --interval"),
-        (["--levels", "1,two"], "`two` in --levels is no height"),
+        (["--interval", "0"], "`0` is not a value for --interval"),
+        (["--levels", "1,two"], "`two` in --levels is not a height"),
         (["--smooth", "9"], "a whole number from 0 to 6"),
     ] {
         folder.bad(&[&["export", "small.toml", "-o", "c.geojson"][..], &given].concat(), 2, expect);
@@ -470,7 +470,7 @@ fn contours_are_lines_of_the_heights_asked_for() {
     folder.bad(
         &["export", "small.toml", "-o", "c.npy", "--interval", "5"],
         2,
-        "those that know it: .fgb, .geojson, .gpkg and .svg",
+        "it applies to: .fgb, .geojson, .gpkg and .svg",
     );
     assert!(!folder.path("c.geojson").exists());
 }
@@ -533,13 +533,13 @@ fn what_a_layer_cannot_do_is_a_sentence() {
         (
             "small.toml",
             &["--layer", "slope", "--day", "5"][..],
-            "--day is no option of the layer slope; those that know it: insolation",
+            "--day does not apply to the layer slope; it applies to: insolation",
         ),
-        ("small.toml", &["--day", "5"], "--day is no option of the layer height"),
-        ("small.toml", &["--layer", "viewshed"], "a viewshed needs an observer: --observer X,Y"),
-        ("small.toml", &["--layer", "viewshed", "--observer", "9e9,0"], "stands outside the world"),
+        ("small.toml", &["--day", "5"], "--day does not apply to the layer height"),
+        ("small.toml", &["--layer", "viewshed"], "the layer viewshed needs --observer X,Y"),
+        ("small.toml", &["--layer", "viewshed", "--observer", "9e9,0"], "is outside the world"),
         ("small.toml", &["--layer", "insolation", "--day", "366"], "a whole number from 1 to 365"),
-        ("small.toml", &["--layer", "insolation", "--day", "5", "--season", "winter"], "contradict each other"),
+        ("small.toml", &["--layer", "insolation", "--day", "5", "--season", "winter"], "does not match the extension"),
         ("endless.toml", &["--layer", "wetness"], "the layer wetness needs a world with bounds"),
     ] {
         let mut arguments = vec!["export", recipe, "-o", "x.npy"];

@@ -118,16 +118,16 @@ fn sizes_and_cells_choose_the_samples() {
 fn what_cannot_be_asked_for_is_usage() {
     let folder = Folder::with_small();
     for (options, expect) in [
-        (&["--size", "32x32"][..], "another aspect"),
+        (&["--size", "32x32"][..], "does not have the aspect ratio"),
         (&["--size", "32", "--cell", "5"], "leave out one of them"),
         (&["--size", "0"], "1 to 1000000000 samples"),
-        (&["--size", "-5"], "a size is a number of samples"),
+        (&["--size", "-5"], "a size must be a number of samples"),
         (&["--size", "99999999999"], "1 to 1000000000 samples"),
-        (&["--size", "many"], "a size is a number of samples"),
-        (&["--cell", "0"], "more than 0 metres"),
-        (&["--cell", "-1"], "more than 0 metres"),
-        (&["--cell", "nan"], "more than 0 metres"),
-        (&["--cell", "inf"], "more than 0 metres"),
+        (&["--size", "many"], "a size must be a number of samples"),
+        (&["--cell", "0"], "greater than 0 m"),
+        (&["--cell", "-1"], "greater than 0 m"),
+        (&["--cell", "nan"], "greater than 0 m"),
+        (&["--cell", "inf"], "greater than 0 m"),
         (&["--cell", "5000"], "smaller cell"),
         (&["--cell", "1e-9"], "larger cell"),
         (&["--seed", "-1"], "a whole number from 0"),
@@ -135,7 +135,7 @@ fn what_cannot_be_asked_for_is_usage() {
         (&["--seed", "1.5"], "a whole number from 0"),
         (&["--threads", "0"], "1..=1024"),
         (&["--memory", "lots"], "such as 512MiB"),
-        (&["--memory", "0"], "at least a byte"),
+        (&["--memory", "0"], "at least 1 byte"),
         (&["--colour"], "unexpected argument"),
     ] {
         folder.bad(&[&["generate", "small.toml"][..], options].concat(), 2, expect);
@@ -146,7 +146,7 @@ fn what_cannot_be_asked_for_is_usage() {
 #[test]
 fn what_exceeds_memory_is_refused_with_what_it_needs() {
     let folder = Folder::with_small();
-    folder.bad(&["generate", "small.toml", "--memory", "10kB"], 1, "of memory and 9.8 KiB is allowed");
+    folder.bad(&["generate", "small.toml", "--memory", "10kB"], 1, "of memory, and 9.8 KiB is allowed");
     folder.bad(&["generate", "small.toml", "--size", "100000000"], 1, "PiB of memory");
     assert_eq!(folder.names(""), ["small.toml"]);
 }
@@ -200,7 +200,7 @@ fn a_flat_world_says_so_and_is_black() {
         "orogen = 1\n[world]\nsize = [90, 90]\n[nodes.a]\nop = \"constant\"\nvalue = 5\n[outputs]\nheight = \"a\"\n",
     );
     let outcome = folder.good(&["generate", "flat.toml"]);
-    assert!(outcome.text().contains("it is flat"), "{}", outcome.text());
+    assert!(outcome.text().contains("the terrain is flat"), "{}", outcome.text());
     assert!(png(&folder.read("out/height.png")).grey16().iter().all(|&level| level == 0));
 }
 

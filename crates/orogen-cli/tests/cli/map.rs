@@ -55,13 +55,13 @@ fn what_cannot_be_drawn_is_a_sentence_and_leaves_nothing() {
     for (arguments, code, expect) in [
         (&["-o", "a.jpg"][..], 2, "a map is a .png, .svg or .pdf"),
         (&["-o", "a"], 2, "a map is a .png, .svg or .pdf"),
-        (&["-o", "a.png", "--paper", "a9"], 2, "paper is a0 to a5"),
+        (&["-o", "a.png", "--paper", "a9"], 2, "the paper size must be a0 to a5"),
         (&["-o", "a.png", "--landscape"], 2, "--paper"),
-        (&["-o", "a.png", "--contours", "0"], 2, "a number above 0"),
-        (&["-o", "a.png", "--contours", "0.0001"], 2, "take a larger one"),
+        (&["-o", "a.png", "--contours", "0"], 2, "greater than 0"),
+        (&["-o", "a.png", "--contours", "0.0001"], 2, "use a larger interval"),
         (&["-o", "a.png", "--size", "500", "--memory", "1MB"], 1, "of memory"),
-        (&["-o", "a.png", "--paper", "2000x2000mm", "--dpi", "1200"], 2, "fewer --dpi"),
-        (&["-o", "a.png", "--window", "0,0,1,1"], 2, "there is nothing to map"),
+        (&["-o", "a.png", "--paper", "2000x2000mm", "--dpi", "1200"], 2, "lower --dpi"),
+        (&["-o", "a.png", "--window", "0,0,1,1"], 2, "a map needs at least 2 x 2 finite heights"),
         (&["-o", "none/a.png", "--size", "200"], 1, "the folder does not exist"),
     ] {
         folder.bad(&[&["map", "small.toml"][..], arguments].concat(), code, expect);
@@ -104,14 +104,14 @@ fn any_layer_colours_a_map() {
     for (options, expect) in [
         (&["--layer", "nothing"][..], "nothing"),
         (&["--layer", "normal"], "`normal` has 3 channels"),
-        (&["--layer", "slope", "--range", "5"], "--range is LOW,HIGH"),
+        (&["--layer", "slope", "--range", "5"], "--range must be LOW,HIGH"),
         (&["--layer", "slope", "--range", "9,5"], "the lower value first"),
         (&["--color", "surfaces", "--layer", "slope"], "takes no --layer, --palette or --range"),
         (&["--color", "surfaces", "--palette", "viridis"], "takes no --layer, --palette or --range"),
         (&["--color", "surfaces", "--range", "0,5"], "takes no --layer, --palette or --range"),
-        (&["--ramp", "log"], "for another --layer than height"),
-        (&["--layer", "noise", "--ramp", "log", "--range", "-1,1"], "a logarithmic ramp begins above 0"),
-        (&["--layer", "slope", "--palette", "hypsometric"], "made for heights"),
+        (&["--ramp", "log"], "needs a --layer other than height"),
+        (&["--layer", "noise", "--ramp", "log", "--range", "-1,1"], "a logarithmic ramp needs values above 0"),
+        (&["--layer", "slope", "--palette", "hypsometric"], "applies to heights only"),
     ] {
         folder.bad(&[&["map", "wet.toml", "-o", "x.png", "--size", "300"][..], options].concat(), 2, expect);
     }

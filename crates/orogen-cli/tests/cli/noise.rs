@@ -184,7 +184,7 @@ fn wavelengths_are_rounded_to_fit_and_it_is_said() {
     let outcome = folder.good(&[&["noise", "perlin", "--wavelength", "30"], &size[..]].concat());
     assert_eq!(
         outcome.err,
-        "note: a wavelength of 30 does not fit a whole number of times; it is 32 x 25, so that 4 x 2 fit\n"
+        "note: the size is not a multiple of the wavelength 30; it is 32 x 25, so that 4 x 2 fit\n"
     );
     assert!(outcome.text().contains("wavelength 32 x 25, seed 0, repeating"), "{}", outcome.text());
     let tiled = Fractal { wavelength: 1.0, octaves: 1, ..Fractal::default() }.tiled([4, 2]).unwrap();
@@ -273,14 +273,14 @@ fn what_cannot_be_drawn_is_a_sentence_and_leaves_nothing() {
         (&["perlin", "--size", "0"], 2, "1 to 1000000000 samples, not 0"),
         (&["perlin", "--size", "5x0"], 2, "1 to 1000000000 samples, not 0"),
         (&["perlin", "--size", "1000000000"], 1, "of memory"),
-        (&["perlin", "--size", "4000", "--frames", "2", "--memory", "100MB"], 1, "of memory and 95 MiB is allowed"),
-        (&["perlin", "--wavelength", "0"], 2, "a wavelength is more than 0 samples"),
-        (&["perlin", "--wavelength", "nan"], 2, "a wavelength is more than 0 samples"),
+        (&["perlin", "--size", "4000", "--frames", "2", "--memory", "100MB"], 1, "of memory, and 95 MiB is allowed"),
+        (&["perlin", "--wavelength", "0"], 2, "a wavelength must be greater than 0 samples"),
+        (&["perlin", "--wavelength", "nan"], 2, "a wavelength must be greater than 0 samples"),
         (&["perlin", "--wavelength", "long"], 2, "such as 64"),
         (&["perlin", "--octaves", "0"], 2, "1..=32"),
         (&["perlin", "--octaves", "33"], 2, "1..=32"),
-        (&["perlin", "--gain", "inf"], 2, "it is a number"),
-        (&["perlin", "--lacunarity", "0"], 2, "a number above 0"),
+        (&["perlin", "--gain", "inf"], 2, "must be a number"),
+        (&["perlin", "--lacunarity", "0"], 2, "greater than 0"),
         (&["perlin", "--k", "1"], 2, "--k is for --fractal weighted, not for fbm"),
         (&["perlin", "--fractal", "ridged", "--falloff", "smoothstep"], 2, "--falloff is for --fractal weighted"),
         (
@@ -291,9 +291,9 @@ fn what_cannot_be_drawn_is_a_sentence_and_leaves_nothing() {
         (&["perlin", "--offset", "1"], 2, "--offset is for --fractal hybrid or --fractal hetero, not for fbm"),
         (&["perlin", "--warp", "1"], 2, "--warp is for --fractal swiss or --fractal jordan"),
         (&["perlin", "--fractal", "swiss", "--damp", "1"], 2, "--damp is for --fractal jordan"),
-        (&["perlin", "--fractal", "jordan", "--damp", "-1"], 2, "0 or a number above"),
-        (&["simplex", "--tileable"], 2, "simplex cannot be made to repeat: its lattice of triangles"),
-        (&["opensimplex2-smooth", "--tileable"], 2, "take perlin, value or worley"),
+        (&["perlin", "--fractal", "jordan", "--damp", "-1"], 2, "0 or greater"),
+        (&["simplex", "--tileable"], 2, "simplex cannot be tileable: its triangular lattice"),
+        (&["opensimplex2-smooth", "--tileable"], 2, "use perlin, value or worley"),
         (
             &["perlin", "--tileable", "--octaves", "3", "--lacunarity", "1.9"],
             2,
@@ -302,24 +302,24 @@ fn what_cannot_be_drawn_is_a_sentence_and_leaves_nothing() {
         (&["perlin", "--tileable", "--octaves", "32"], 2, "--tileable: octave"),
         (&["perlin", "--tileable", "--wavelength", "1e-300"], 2, "--tileable: octave 0 would have to repeat after"),
         (&["worley", "--gradient"], 2, "the slope of worley is not worked out"),
-        (&["perlin", "--fractal", "weighted", "--k", "-1"], 2, "0 or a number above"),
+        (&["perlin", "--fractal", "weighted", "--k", "-1"], 2, "0 or greater"),
         (&["perlin", "--fractal", "rigded"], 2, "ridged"),
-        (&["perlin", "--z", "deep"], 2, "it is a number"),
+        (&["perlin", "--z", "deep"], 2, "must be a number"),
         (&["perlin", "--frames", "0"], 2, "1..=1000000"),
-        (&["perlin", "--frames", "3", "-o", "a.npy"], 2, "ends in .png"),
+        (&["perlin", "--frames", "3", "-o", "a.npy"], 2, "the extension .png"),
         (&["perlin", "--volume", "0"], 2, "1..=1000000000"),
-        (&["perlin", "--volume", "3", "-o", "a.png"], 2, "ends in .npy"),
+        (&["perlin", "--volume", "3", "-o", "a.png"], 2, "the extension .npy"),
         (&["perlin", "--volume", "3", "--frames", "3"], 2, "cannot be used with"),
         (&["perlin", "--bits", "12"], 2, "possible values: 8, 16"),
-        (&["perlin", "--bits", "16", "-o", "a.npy"], 2, "--bits is for pictures"),
-        (&["perlin", "--texture", "marble", "-o", "a.npy"], 2, "ends in .png"),
-        (&["perlin", "--texture", "marble", "--bits", "16"], 2, "a texture is in colours"),
+        (&["perlin", "--bits", "16", "-o", "a.npy"], 2, "--bits applies to pictures"),
+        (&["perlin", "--texture", "marble", "-o", "a.npy"], 2, "the extension .png"),
+        (&["perlin", "--texture", "marble", "--bits", "16"], 2, "not to textures"),
         (&["perlin", "--texture", "marble", "--fractal", "fbm"], 2, "cannot be used with"),
-        (&["white", "--gradient"], 2, "white is made of squares of one value each and has no slope"),
-        (&["perlin", "-o", "a.jpg"], 2, "known are .npy and .png"),
-        (&["perlin", "-o", "a.tif"], 2, "known are .npy and .png"),
+        (&["white", "--gradient"], 2, "white noise has no slope"),
+        (&["perlin", "-o", "a.jpg"], 2, "known extensions: .npy and .png"),
+        (&["perlin", "-o", "a.tif"], 2, "known extensions: .npy and .png"),
         (&["perlin", "-o", "a.npz"], 2, "did you mean .npy?"),
-        (&["perlin", "-o", "a"], 2, "has no extension"),
+        (&["perlin", "-o", "a"], 2, "has no file extension"),
         (&["perlin", "-o", "none/a.png"], 1, "cannot write into none: the folder does not exist"),
     ] {
         folder.bad(&[&["noise"][..], arguments].concat(), code, expect);

@@ -33,11 +33,7 @@ fn no_finite_height_is_an_error_of_every_command() {
         let folder = workplace();
         folder.write("small.toml", recipe(true));
         prepare(&folder, writer);
-        folder.bad(
-            &[writer.arguments, &["-q"]].concat(),
-            2,
-            "no sample of the layer `height` is a finite number: all ",
-        );
+        folder.bad(&[writer.arguments, &["-q"]].concat(), 2, "the layer `height` has no finite sample: all ");
         assert!(writer.files.iter().all(|file| !folder.path(file).exists()), "{:?}", folder.names(""));
     }
 }
@@ -48,7 +44,7 @@ fn derived_layers_tell_of_the_heights_beneath() {
     let folder = Folder::new();
     for layer in ["slope", "hillshade", "normal", "splat", "occlusion"] {
         folder.write("small.toml", recipe(true));
-        folder.bad(&["export", "small.toml", "--layer", layer, "-o", "a.png"], 2, "is a finite number: all 3072 are");
+        folder.bad(&["export", "small.toml", "--layer", layer, "-o", "a.png"], 2, "has no finite sample: all 3072 are");
         assert_eq!(folder.names(""), ["small.toml"], "{layer}");
         folder.write("small.toml", recipe(false));
         let told = folder.good(&["export", "small.toml", "--layer", layer, "-o", "a.png", "-q"]).err;
@@ -65,7 +61,7 @@ fn some_that_are_not_finite_are_told_by_every_command() {
         let folder = workplace();
         folder.write("small.toml", recipe(false));
         if writer.arguments.contains(&"a.stl") {
-            folder.bad(writer.arguments, 2, "samples are missing, and a solid with holes cannot be printed");
+            folder.bad(writer.arguments, 2, "samples are nodata, and a solid must not have holes");
             continue;
         }
         let outcome = folder.good(&[writer.arguments, &["-q"]].concat());

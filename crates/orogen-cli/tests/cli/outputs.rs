@@ -146,7 +146,7 @@ fn a_users_recipe_in_the_folder_of_the_result_is_kept() {
     let mine = format!("# My own comment.\n{SMALL}");
     folder.write("w/recipe.toml", &mine);
     folder.bad(&["generate", "w/recipe.toml", "-o", "w"], 1, "this command reads that file");
-    folder.bad(&["generate", "hills", "--size", "16", "-o", "w", "--force"], 1, "written or changed by hand");
+    folder.bad(&["generate", "hills", "--size", "16", "-o", "w", "--force"], 1, "written or edited by hand");
     assert_eq!(folder.text("w/recipe.toml"), mine);
     assert_eq!(folder.names("w"), ["recipe.toml"]);
     // One that Orogen wrote is its own until somebody changes it.
@@ -154,7 +154,7 @@ fn a_users_recipe_in_the_folder_of_the_result_is_kept() {
     folder.good(&["generate", "w/recipe.toml", "-o", "v", "-q"]);
     let changed = folder.text("v/recipe.toml").replace("octaves = 4", "octaves = 5");
     folder.write("v/recipe.toml", &changed);
-    folder.bad(&["generate", "w/recipe.toml", "-o", "v", "-q"], 1, "written or changed by hand");
+    folder.bad(&["generate", "w/recipe.toml", "-o", "v", "-q"], 1, "written or edited by hand");
     assert_eq!(folder.text("v/recipe.toml"), changed);
 }
 

@@ -8,7 +8,7 @@ fn a_list_and_a_page_with_ones_from_files() {
     let outcome = folder.good(&["palettes"]);
     assert!(outcome.text().starts_with("hypsometric"), "{}", outcome.text());
     assert!(
-        outcome.text().contains("viridis     * dark blue over green") && outcome.text().contains("\nturbo         ")
+        outcome.text().contains("viridis     * dark blue through green") && outcome.text().contains("\nturbo         ")
     );
     folder.write("own.toml", "name = \"Autumn\"\nstops = [[0, \"#2c5f2d\"], [1800, \"white\"]]\n");
     folder.write("relief.txt", "0% 10 20 30\n100% white\n");
@@ -26,10 +26,10 @@ fn what_cannot_be_read_is_a_sentence() {
     folder.write("bytes.gpl", [0xff, 0xfe, 0x00]);
     for (file, expect) in [
         ("bad.cpt", "cannot read the palette bad.cpt: line 1: `blurple` is no colour"),
-        ("bytes.gpl", "not a text in UTF-8"),
+        ("bytes.gpl", "not UTF-8 text"),
         ("none.txt", "cannot read none.txt: no such file"),
     ] {
         folder.bad(&["palettes", file], 1, expect);
     }
-    folder.bad(&["palettes", "-o", "a.jpg"], 2, "ends in .png");
+    folder.bad(&["palettes", "-o", "a.jpg"], 2, "the extension .png");
 }

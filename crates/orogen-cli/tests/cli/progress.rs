@@ -60,7 +60,11 @@ fn every_command_reports_one_share_that_only_grows_to_the_end() {
 #[test]
 fn arrays_that_no_disk_holds_are_refused_before_they_are_begun() {
     let folder = Folder::new();
-    folder.bad(&["noise", "perlin", "--volume", "100000000", "--size", "4096", "-o", "block.npy"], 1, "of disk where");
+    folder.bad(
+        &["noise", "perlin", "--volume", "100000000", "--size", "4096", "-o", "block.npy"],
+        1,
+        "not enough disk space",
+    );
     assert_eq!(folder.names(""), [] as [&str; 0]);
 }
 

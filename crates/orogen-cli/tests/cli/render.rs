@@ -54,22 +54,22 @@ fn every_choice_makes_another_picture() {
 fn an_underground_camera_is_lifted_with_a_note() {
     let folder = Folder::with_small();
     let outcome = folder.good(&with(&["--camera", "300,300,-900", "--look", "500,200"]));
-    assert!(outcome.err.contains("note: the camera stood underground; it is lifted by"), "{}", outcome.err);
+    assert!(outcome.err.contains("note: the camera was below the ground and was raised by"), "{}", outcome.err);
 }
 
 #[test]
 fn what_cannot_be_is_a_sentence_and_leaves_nothing() {
     let folder = Folder::with_small();
     for (wrong, message) in [
-        (&["-o", "a.jpg"][..], "ends in .png"),
+        (&["-o", "a.jpg"][..], "the extension .png"),
         (&["--camera", "1"], "AZIMUTH,ELEVATION[,DISTANCE]"),
         (&["--camera", "1,2,3,4"], "AZIMUTH,ELEVATION[,DISTANCE]"),
-        (&["--camera", "1,100"], "that goes from -90 to 90"),
-        (&["--camera", "1,-5"], "under the ground"),
+        (&["--camera", "1,100"], "must be from -90 to 90"),
+        (&["--camera", "1,-5"], "must be above the horizon"),
         (&["--camera", "1,5,0"], "above 0"),
-        (&["--camera", "a,b"], "not numbers"),
+        (&["--camera", "a,b"], "not a list of numbers"),
         (&["--camera", "1,2", "--look", "3,4"], "X,Y,HEIGHT"),
-        (&["--camera", "1,2,3", "--look", "1,2"], "looks there too"),
+        (&["--camera", "1,2,3", "--look", "1,2"], "directly above the point that it looks at"),
         (&["--sun", "290"], "AZIMUTH,ELEVATION"),
         (&["--sun", "290,91"], "to 90"),
         (&["--time", "25:00"], "23:59"),
@@ -108,10 +108,10 @@ fn a_turntable_goes_into_one_file_or_many() {
     let frames: Vec<Vec<u8>> = (0..4).map(|k| png(&folder.read(&format!("turn-0{k}.png"))).data).collect();
     assert!((1..4).all(|k| frames[k] != frames[0]) && png(&folder.read("turn.png")).data == frames[0]);
     assert!(folder.read("turn.gif").starts_with(b"GIF89a"));
-    folder.bad(&with(&["-o", "turn.gif"]), 2, "or ask for frames by --turntable");
+    folder.bad(&with(&["-o", "turn.gif"]), 2, "or write frames with --turntable");
     folder.bad(&with(&["--turntable", "4", "-o", "turn.mp4"]), 2, "cannot be written as .mp4");
     folder.bad(&with(&["--turntable", "4", "-o", "none/a-%d.png"]), 1, "cannot write into none");
-    folder.bad(&with(&["--colors", "natural", "--palette", "viridis"]), 2, "--palette is for --color map");
+    folder.bad(&with(&["--colors", "natural", "--palette", "viridis"]), 2, "--palette applies to --color map");
     folder.bad(&with(&["--colors", "map", "--palette", "viridos"]), 2, "did you mean `viridis`?");
     folder.good(&with(&["--colors", "map", "--palette", "viridis", "-o", "palette.png"]));
 }
@@ -122,6 +122,6 @@ fn noises_move_in_a_gif_too() {
     folder.good(&["noise", "perlin", "--size", "16", "--frames", "3", "-o", "a.gif"]);
     folder.good(&["noise", "perlin", "--size", "16", "--frames", "3", "--texture", "marble", "-o", "b-%d.png"]);
     assert_eq!(folder.names(""), ["a.gif", "b-0.png", "b-1.png", "b-2.png"]);
-    folder.bad(&["noise", "perlin", "--frames", "3", "--bits", "16", "-o", "c.gif"], 2, "a GIF holds 8 bits");
+    folder.bad(&["noise", "perlin", "--frames", "3", "--bits", "16", "-o", "c.gif"], 2, "a GIF has 8 bits");
     folder.bad(&["noise", "perlin", "-o", "c.gif"], 2, ".gif");
 }

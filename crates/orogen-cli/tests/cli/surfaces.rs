@@ -113,7 +113,7 @@ fn meshes_wear_them() {
     folder.bad(
         &["export", "a.toml", "-o", "b.glb", "--surfaces", "--color", "vertex"],
         2,
-        "--surfaces makes a texture",
+        "--surfaces writes a texture",
     );
 }
 
@@ -134,7 +134,7 @@ fn a_render_shows_them_and_what_is_wrong_is_told_at_its_place() {
         "this command reads that file",
     );
     folder.write("c.toml", RECIPE.replace("height = [200, 500]", "height = [500, 200]"));
-    let error = folder.bad(&["export", "c.toml", "-o", "x.png", "--layer", "albedo"], 1, "lower end of `height`").err;
+    let error = folder.bad(&["export", "c.toml", "-o", "x.png", "--layer", "albedo"], 1, "lower bound of `height`").err;
     assert!(error.contains("c.toml:28:10"), "{error}");
     assert!(!folder.names("").iter().any(|name| name.starts_with('x')));
 }

@@ -13,7 +13,7 @@ fn export_in_a_size_of_its_own() {
     folder.bad(
         &["export", "small.toml", "-o", "c.npy", "--size", "30x30"],
         2,
-        "the nearest that fit are 30x23 and 40x30",
+        "the nearest sizes that do are 30x23 and 40x30",
     );
     // An engine's size is that of a side.
     folder.bad(
@@ -48,10 +48,13 @@ fn one_part_in_samples_metres_and_coordinates() {
         (&["--window", "0,0,5,5", "--size", "10"], "leave out --size"),
         (&["--window", "0,0,5m,5m"], "mixes samples and metres"),
         (&["--window", "60,0,9,9"], "is not inside the world"),
-        (&["--bounds", "0,0,100,100"], "not inside the world, which reaches from (0, 0) to 640 m east and 480 m south"),
+        (
+            &["--bounds", "0,0,100,100"],
+            "not inside the world, which extends 640 m to the east and 480 m to the south of (0, 0)",
+        ),
         (&["--bounds", "100,0,0,100"], "the west, 100, must be less than the east, 0"),
         (&["--projwin", "0", "0", "100"], "4 values required"),
-        (&["--bounds", "1,-9,9,-1"], "there is no sample in the part of 8 x 8 m at a cell of 10 m"),
+        (&["--bounds", "1,-9,9,-1"], "the window of 8 x 8 m contains no sample at a cell size of 10 m"),
     ] {
         folder.bad(&[&["export", "small.toml", "-o", "c.npy"][..], options].concat(), 2, expect);
     }
@@ -97,9 +100,9 @@ fn a_world_on_a_map_carries_its_coordinates() {
         ("a.tif", &["--crs", "EPSG:32632", "--origin", "1,2"], 1, "leave out `origin`"),
         ("small.toml", &["--crs", "EPSG:32632"], 1, "give `origin`"),
         ("small.toml", &["--origin", "1,2"], 1, "give `crs`"),
-        ("small.toml", &["--crs", "EPSG:1"], 2, "there is no coordinate reference system EPSG:1"),
+        ("small.toml", &["--crs", "EPSG:1"], 2, "unknown coordinate reference system EPSG:1"),
         ("small.toml", &["--crs", "utm"], 2, "write its EPSG code"),
-        ("small.toml", &["--origin", "north"], 2, "a place is EAST,NORTH"),
+        ("small.toml", &["--origin", "north"], 2, "a position must be EAST,NORTH"),
     ] {
         folder.bad(&[&["export", recipe, "-o", "x.tif"][..], options].concat(), code, expect);
     }
@@ -136,10 +139,10 @@ fn several_seeds_make_an_output_each() {
         assert!(folder.path(name).exists(), "{name}");
     }
     for (arguments, expect) in [
-        (&["--seed", "1,1", "-o", "x.npy"][..], "the seed 1 is there twice"),
-        (&["--seed", "1,2", "-o", "-"], "do not go into one stream"),
-        (&["-o", "x-{seed}.npy"], "say which, such as --seed 1..9"),
-        (&["--seed", "3..1", "-o", "x.npy"], "the lower one comes first"),
+        (&["--seed", "1,1", "-o", "x.npy"][..], "the seed 1 is listed twice"),
+        (&["--seed", "1,2", "-o", "-"], "cannot be written to one stream"),
+        (&["-o", "x-{seed}.npy"], "needs --seed, such as --seed 1..9"),
+        (&["--seed", "3..1", "-o", "x.npy"], "write the lower seed first"),
     ] {
         folder.bad(&[&["export", "small.toml"][..], arguments].concat(), 2, expect);
     }

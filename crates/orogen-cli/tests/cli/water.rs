@@ -48,17 +48,17 @@ fn meshes_carry_water() {
 fn what_cannot_be_is_refused() {
     let folder = Folder::new();
     for (args, expect) in [
-        (&["-o", "x.tif", "--layer", "rivers"][..], "made of vector features, which .tif does not hold"),
+        (&["-o", "x.tif", "--layer", "rivers"][..], "consists of vector features, which .tif cannot hold"),
         (&["-o", "x.tif", "--layer", "rivers,lakes"], "those that do: .fgb, .geojson, .gpkg, .svg"),
         (&["-o", "x.fgb", "--layer", "rivers,lakes"], "holds one layer"),
         (&["-o", "x.gpkg", "--layer", "rivers,puddles"], "rivers,puddles"),
         (
             &["-o", "x.gpkg", "--layer", "rivers", "--interval", "20"],
-            "--interval changes nothing here; it is for contours",
+            "--interval has no effect here; it applies to contours",
         ),
         (&["-o", "x.gpkg", "--layer", "summits", "--runoff", "2"], "it is for lakes, rivers, watersheds"),
-        (&["-o", "x.tif", "--river-area", "2"], "no option of the format tif"),
-        (&["-o", "x.glb", "--layer", "slope", "--water"], "--water lies on the layer `height`"),
+        (&["-o", "x.tif", "--river-area", "2"], "does not apply to the format tif"),
+        (&["-o", "x.glb", "--layer", "slope", "--water"], "--water applies to the layer `height`"),
         (&["-o", "x.gpkg", "--layer", "rivers", "--memory", "1MiB"], "memory"),
     ] {
         let outcome = folder.run(&[&["export", "island", "--cell", "80"], args].concat());

@@ -36,14 +36,13 @@ impl FiniteCount {
             missing if missing == samples => Err(Error::new(
                 ErrorKind::Request,
                 format!(
-                    "no sample of {what} is a finite number: all {samples} are NaN or infinite. A number somewhere is larger than 3.4e38, or two \
-                     such were subtracted: look for factors that are too large"
+                    "{what} has no finite sample: all {samples} are NaN or infinite. Values have exceeded 3.4e38; look for factors in the recipe that are too large"
                 ),
             )),
             missing => {
                 let share = percent(missing, samples);
                 Ok(Some(format!(
-                    "{missing} of {samples} samples of {what} ({share}) are NaN or infinite; summaries and colours are those of the others"
+                    "{missing} of {samples} samples of {what} ({share}) are NaN or infinite; summaries and colours ignore them"
                 )))
             }
         }
@@ -61,7 +60,7 @@ mod tests {
         assert_eq!(check(&[1.0, -2.0, 0.0]), Ok(None));
         assert_eq!(check(&[]), Ok(None));
         assert!(check(&[1.0, nan, -inf]).unwrap().unwrap().starts_with("2 of 3 samples of it (66.67 %) are NaN"));
-        assert!(check(&[inf, nan]).unwrap_err().starts_with("no sample of it is a finite number: all 2 are"));
+        assert!(check(&[inf, nan]).unwrap_err().starts_with("it has no finite sample: all 2 are"));
         let many = FiniteCount { samples: 1_000_000, finite: 999_999 };
         assert!(many.check("it").unwrap().unwrap().contains("(less than 0.01 %)"));
         assert_eq!(many.and(FiniteCount::of(&[nan])), FiniteCount { samples: 1_000_001, finite: 999_999 });

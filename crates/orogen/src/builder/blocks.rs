@@ -35,7 +35,7 @@ impl Block {
         let mut block = of(1, 1)?;
         let allowed = world.memory_limit().unwrap_or(u64::MAX);
         if block.memory > allowed {
-            let instead = "ask for smaller tiles, or allow more";
+            let instead = "use smaller tiles, or raise the memory limit";
             return Err(world.budget().refusal("making one tile", block.memory, instead));
         }
         let enough = TILES_A_THREAD * world.threads();

@@ -42,7 +42,7 @@ impl Folder {
     pub fn new(identity: &Identity, samples: Samples, about: &str, sea_level: f64) -> Result<Folder> {
         if !(2..=LARGEST).contains(&identity.tile) {
             let message = format!(
-                "tiles that share their edges have 2 to {LARGEST} samples a side, not {}: 513 and 1025 are usual",
+                "tiles that share their edges must have 2 to {LARGEST} samples per side, not {}; 513 and 1025 are typical",
                 identity.tile
             );
             return Err(Error::new(ErrorKind::Request, message));

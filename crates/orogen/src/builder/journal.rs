@@ -62,7 +62,7 @@ impl JournalState {
         let mut lines = bytes.split(|byte| *byte == b'\n').map(parse);
         let Some(Some(Line::Begun(identity))) = lines.next() else {
             let message = format!(
-                "{} is damaged where it says what is being built; nothing can go on from it: --force begins anew",
+                "the header of {} is damaged, so the build cannot be resumed; use --force to start again",
                 path.display()
             );
             return Err(Error::new(ErrorKind::File, message));
@@ -209,7 +209,7 @@ mod tests {
         }
         for end in 0..first {
             fs::write(&path, &bytes[..end]).unwrap();
-            assert!(JournalState::read(&path).unwrap_err().to_string().contains("--force begins anew"), "{end}");
+            assert!(JournalState::read(&path).unwrap_err().to_string().contains("use --force to start again"), "{end}");
         }
         // A flipped bit takes its own line away and nothing else.
         for at in first + 1..bytes.len() {

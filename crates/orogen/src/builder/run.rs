@@ -187,21 +187,21 @@ impl<'a> Build<'a> {
         let out = self.work_dir.out().display();
         match (start, state) {
             (Start::Fresh, Some(JournalState { finished: Some(_), .. })) => {
-                refuse(format!("{out} is finished: --resume checks it, --force builds it anew"))
+                refuse(format!("{out} is already complete; use --resume to check it, or --force to build it again"))
             }
-            (Start::Fresh, Some(_)) => refuse(format!(
-                "a build of {out} was begun and not finished: --resume goes on with it, --force begins anew"
-            )),
+            (Start::Fresh, Some(_)) => {
+                refuse(format!("{out} is an unfinished build; use --resume to continue it, or --force to start again"))
+            }
             (Start::Fresh | Start::Resume, None) if self.work_dir.is_taken() => match start {
-                Start::Fresh => refuse(format!("{out} is there already: --force replaces it")),
+                Start::Fresh => refuse(format!("{out} already exists; use --force to replace it")),
                 _ => refuse(format!(
-                    "{out} is there, but no journal of its build ({}): nothing tells what it is; --force builds it anew",
+                    "{out} exists, but the journal of its build ({}) is missing, so it cannot be resumed; use --force to build it again",
                     self.work_dir.journal().display()
                 )),
             },
             (_, Some(state)) => match self.identity.difference(&state.identity) {
                 Some(difference) => refuse(format!(
-                    "{out} cannot be resumed: it was begun {difference}; ask for the same, or begin anew with --force"
+                    "{out} cannot be resumed: it was started {difference}; use the same arguments, or start again with --force"
                 )),
                 None => {
                     let sound = self.world.install(|| self.sound(&state, progress))?;
@@ -335,7 +335,7 @@ impl<'a> Build<'a> {
         group.par_iter().try_for_each(|&(row, column)| {
             let window = self.target.window(row, column);
             let tiles: Option<Vec<Grid>> = grids.iter().map(|grid| grid.crop(&window)).collect();
-            let tiles = tiles.ok_or_else(|| Error::new(ErrorKind::Request, "a tile lies outside of its block"))?;
+            let tiles = tiles.ok_or_else(|| Error::new(ErrorKind::Request, "a tile is outside its block"))?;
             self.make_one(Job { stage: 0, row, column }, &tiles, store, progress)
         })?;
         Ok(grids.iter().fold(FiniteCount::default(), |count, grid| count.and(FiniteCount::of(grid.data()))))

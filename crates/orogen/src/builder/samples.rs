@@ -27,7 +27,7 @@ pub fn read(store: &OutputStore, place: &JobFile, count: usize) -> Result<Vec<f3
 /// What there is to say of a file that is not as it was written.
 pub fn changed(store: &OutputStore, place: &JobFile) -> Error {
     let path = store.path(place);
-    let message = format!("{} is not as it was written: resume the build to make it again", path.display());
+    let message = format!("{} has been changed or damaged; resume the build to make it again", path.display());
     Error::new(ErrorKind::File, message)
 }
 

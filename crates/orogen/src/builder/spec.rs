@@ -115,11 +115,11 @@ impl BuildSpec {
     pub fn check(&self) -> Result<()> {
         let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
         if self.layers.is_empty() {
-            return refuse("no layer was chosen: name at least one".into());
+            return refuse("no layer was chosen; name at least one with --layers".into());
         }
         if self.layers.len() > 1 && !self.form.holds_many() {
             return refuse(format!(
-                "{} holds one layer and {} are asked for: name one, or build a .zarr or a folder of tiles",
+                "{} holds one layer, and {} were chosen; choose one, or build a .zarr or a folder of tiles",
                 match self.form {
                     Form::Cog => "a GeoTIFF",
                     _ => "an XYZ tree",
@@ -129,19 +129,18 @@ impl BuildSpec {
         }
         for (i, layer) in self.layers.iter().enumerate() {
             if self.layers[..i].contains(layer) {
-                return refuse(format!("the layer `{layer}` is asked for twice"));
+                return refuse(format!("the layer `{layer}` is listed twice"));
             }
             let plain = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '.');
             let named = self.form.holds_many();
             if named && (layer.starts_with(['.', '_']) || layer.len() > LONGEST_NAME || !layer.chars().all(plain)) {
                 return refuse(format!(
-                    "the layer `{layer}` cannot name files: that takes letters, digits, `-`, `_` and `.`, at most {LONGEST_NAME}, \
-                     and begins with a letter or digit; rename the output in the recipe"
+                    "`{layer}` cannot be used in file names: at most {LONGEST_NAME} letters, digits, `-`, `_` and `.` are allowed, starting with a letter or digit; rename the output in the recipe"
                 ));
             }
             if self.form == Form::Zarr && matches!(layer.as_str(), "x" | "y") {
                 return refuse(format!(
-                    "the layer `{layer}` would have the name of a coordinate in a .zarr: rename the output in the recipe"
+                    "the layer `{layer}` has the name of a coordinate array of a .zarr; rename the output in the recipe"
                 ));
             }
         }

@@ -153,7 +153,10 @@ fn too_little_memory_is_refused_before_anything_is_written() {
     let world = world(Some(10_000), 1);
     let error = Build::new(&world, &spec(Form::Zarr), &output(&folder.out())).err().unwrap();
     assert_eq!(error.kind(), ErrorKind::Memory);
-    assert!(error.to_string().contains("and 9.8 KiB is allowed: ask for smaller tiles, or allow more"), "{error}");
+    assert!(
+        error.to_string().contains("and 9.8 KiB is allowed; use smaller tiles, or raise the memory limit"),
+        "{error}"
+    );
     assert_eq!(files(&folder.0), BTreeMap::new());
 }
 
@@ -311,12 +314,12 @@ fn what_is_there_is_not_overwritten() {
     let expect = result(&folder.out());
     assert_eq!(
         build(&spec, Start::Fresh).unwrap_err(),
-        "~/out is finished: --resume checks it, --force builds it anew"
+        "~/out is already complete; use --resume to check it, or --force to build it again"
     );
     let other = BuildSpec { tile: Some(64), ..spec.clone() };
     assert_eq!(
         build(&other, Start::Resume).unwrap_err(),
-        "~/out cannot be resumed: it was begun with tiles of 40, not 64; ask for the same, or begin anew with --force"
+        "~/out cannot be resumed: it was started with tiles of 40, not 64; use the same arguments, or start again with --force"
     );
     assert!(result(&folder.out()) == expect);
     build(&other, Start::Force).unwrap();
@@ -324,15 +327,19 @@ fn what_is_there_is_not_overwritten() {
     build(&spec, Start::Force).unwrap();
     assert!(result(&folder.out()) == expect, "and nothing is left of the other");
     fs::write(folder.0.join("out.build/journal"), "nonsense").unwrap();
-    assert!(build(&spec, Start::Resume).unwrap_err().contains("is damaged where it says what is being built"));
+    assert!(build(&spec, Start::Resume).unwrap_err().contains("is damaged, so the build cannot be resumed"));
     fs::remove_file(folder.0.join("out.build/journal")).unwrap();
-    assert_eq!(build(&spec, Start::Fresh).unwrap_err(), "~/out is there already: --force replaces it");
-    assert!(build(&spec, Start::Resume).unwrap_err().contains("nothing tells what it is; --force builds it anew"));
+    assert_eq!(build(&spec, Start::Fresh).unwrap_err(), "~/out already exists; use --force to replace it");
+    assert!(
+        build(&spec, Start::Resume)
+            .unwrap_err()
+            .contains("is missing, so it cannot be resumed; use --force to build it again")
+    );
     // What no build has made is safe even from --force.
     fs::remove_dir_all(folder.out()).unwrap();
     fs::create_dir_all(folder.out()).unwrap();
     fs::write(folder.out().join("diary"), "mine").unwrap();
-    assert!(build(&spec, Start::Force).unwrap_err().contains("--force does not remove those"));
+    assert!(build(&spec, Start::Force).unwrap_err().contains("which --force does not remove"));
     assert_eq!(result(&folder.out()).len(), 1);
 }
 
@@ -345,7 +352,7 @@ fn a_begun_build_is_not_begun_again() {
     assert!(build.run(Start::Fresh, &Progress::none()).is_err());
     let error =
         Build::new(&world, &spec, &output(&folder.out())).unwrap().run(Start::Fresh, &Progress::none()).unwrap_err();
-    assert!(error.to_string().contains("was begun and not finished: --resume goes on with it"), "{error}");
+    assert!(error.to_string().contains("is an unfinished build; use --resume to continue it"), "{error}");
     let other = BuildSpec { window: spec.window.at(0, 0), ..spec };
     let error =
         Build::new(&world, &other, &output(&folder.out())).unwrap().run(Start::Resume, &Progress::none()).unwrap_err();
@@ -361,7 +368,7 @@ fn only_one_builds_at_a_time() {
     let held = work_dir.hold().unwrap();
     for start in [Start::Fresh, Start::Resume, Start::Force] {
         let error = build.run(start, &Progress::none()).unwrap_err();
-        assert!(error.to_string().contains("another build is at work on"), "{error}");
+        assert!(error.to_string().contains("another build of"), "{error}");
     }
     drop(held);
     build.run(Start::Fresh, &Progress::none()).unwrap();
@@ -378,9 +385,9 @@ fn impossible_orders_are_sentences() {
         assert!(error.contains(expect), "{error} / {expect}");
     };
     check(Form::Zarr, window, None, &[], "no layer was chosen");
-    check(Form::Zarr, window, None, &["height", "height"], "asked for twice");
+    check(Form::Zarr, window, None, &["height", "height"], "listed twice");
     check(Form::Zarr, window, None, &["hieght"], "did you mean `height`?");
-    check(Form::Cog, window, None, &["height", "rough"], "a GeoTIFF holds one layer and 2 are asked for");
+    check(Form::Cog, window, None, &["height", "rough"], "a GeoTIFF holds one layer, and 2 were chosen");
     check(Form::Xyz(Encoding::Terrarium), window, None, &["height", "rough"], "an XYZ tree holds one layer");
     check(Form::Cog, window, Some(100), &["height"], "a multiple of 16, not 100");
     check(Form::Xyz(Encoding::Terrarium), window, Some(100), &["height"], "256 or 512 samples a side, not 100");
@@ -390,5 +397,5 @@ fn impossible_orders_are_sentences() {
     let folder = Folder::new();
     fs::write(folder.out(), "a file").unwrap();
     let error = Build::new(&world, &spec(Form::Zarr), &output(&folder.out())).err().unwrap().to_string();
-    assert!(error.contains("it is a file, and a folder has to be there"), "{error}");
+    assert!(error.contains("it is a file, and a folder is needed"), "{error}");
 }

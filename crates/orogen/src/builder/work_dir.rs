@@ -83,9 +83,9 @@ impl WorkDir {
         };
         match fs::metadata(&real) {
             Ok(there) if is_file && there.is_dir() => return refuse("it is a folder"),
-            Ok(there) if is_file && !there.is_file() => return refuse("it is neither a file nor free to become one"),
+            Ok(there) if is_file && !there.is_file() => return refuse("it is not a regular file"),
             Ok(there) if is_file && there.permissions().readonly() => return refuse("it is marked read-only"),
-            Ok(there) if !is_file && !there.is_dir() => return refuse("it is a file, and a folder has to be there"),
+            Ok(there) if !is_file && !there.is_dir() => return refuse("it is a file, and a folder is needed"),
             _ => {}
         }
         let mut beside = name.to_os_string();
@@ -144,7 +144,7 @@ impl WorkDir {
         };
         if let Some(foreign) = self.foreign_beside() {
             let message = format!(
-                "{} holds {}, which no build has made, and a build of {} works in that folder: move it away, or name another place",
+                "{} holds {}, which was not made by a build, and a build of {} needs that folder; move it away, or choose another output",
                 self.beside.display(),
                 foreign.to_string_lossy(),
                 self.out.display()
@@ -159,7 +159,7 @@ impl WorkDir {
             Err(TryLockError::WouldBlock) => Err(Error::new(
                 ErrorKind::File,
                 format!(
-                    "another build is at work on {}: wait until it ends, or name another place",
+                    "another build of {} is running; wait until it ends, or choose another output",
                     self.out.display()
                 ),
             )),
@@ -195,7 +195,7 @@ impl WorkDir {
             let refuse = |message: String| Err(Error::new(ErrorKind::File, message));
             if !known && !MARKS.iter().any(|mark| self.out.join(mark).is_file()) {
                 return refuse(format!(
-                    "{} holds files that no build has made, and --force does not remove those: empty it, or name another place",
+                    "{} holds files that were not made by a build, which --force does not remove; empty the folder, or choose another output",
                     self.out.display()
                 ));
             }
@@ -205,7 +205,7 @@ impl WorkDir {
                 files.into_iter().partition(|path| old.contains(path) && !policy.is_input(&self.out.join(path)));
             if let Some(path) = others.iter().find(|path| new.contains(*path)) {
                 return refuse(format!(
-                    "{} was not made by a build and is in the way of this one: move it away, or name another place",
+                    "{} was not made by a build and would be overwritten; move it away, or choose another output",
                     self.out.join(path).display()
                 ));
             }
@@ -292,7 +292,7 @@ impl WorkDir {
         };
         std::thread::scope(|scope| {
             let threads: Vec<_> = (0..SYNCS.min(paths.len())).map(|_| scope.spawn(work)).collect();
-            let lost = || Error::new(ErrorKind::File, "a thread that synced files has died");
+            let lost = || Error::new(ErrorKind::File, "a thread that synchronises files failed");
             threads.into_iter().try_for_each(|thread| thread.join().map_err(|_| lost())?)
         })?;
         let mut folders = BTreeSet::new();

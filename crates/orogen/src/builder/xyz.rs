@@ -66,7 +66,7 @@ impl Tree {
         let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
         let (window, tile) = (identity.window, identity.tile);
         if !matches!(tile, 256 | 512) {
-            return refuse(format!("the tiles of an XYZ tree have 256 or 512 samples a side, not {tile}"));
+            return refuse(format!("the tiles of an XYZ tree must have 256 or 512 samples per side, not {tile}"));
         }
         let zoom = zoom_near(window.cell, tile);
         let most = (tile as u64) << zoom;
@@ -77,8 +77,7 @@ impl Tree {
         };
         let (Some(across), Some(down)) = (side(window.x, window.width), side(window.y, window.height)) else {
             return refuse(format!(
-                "the window does not fit on a map whose zoom {zoom} has {most} x {most} samples, the origin in their middle: ask for a \
-                 smaller window, or a larger cell"
+                "the window does not fit on the map, which has {most} x {most} samples at zoom {zoom} with the origin in the middle; use a smaller window or a larger cell"
             ));
         };
         let mut tree = Tree {

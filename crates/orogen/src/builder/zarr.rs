@@ -37,7 +37,8 @@ impl Zarr {
     /// If no chunk can have such a side.
     pub fn new(identity: &Identity, about: &str) -> Result<Zarr> {
         if !(1..=LARGEST).contains(&identity.tile) {
-            let message = format!("the tiles of a .zarr have 1 to {LARGEST} samples a side, not {}", identity.tile);
+            let message =
+                format!("the tiles of a .zarr must have 1 to {LARGEST} samples per side, not {}", identity.tile);
             return Err(Error::new(ErrorKind::Request, message));
         }
         let tiling = Tiling::of(identity.tile);
@@ -203,5 +204,5 @@ impl BuildTarget for Zarr {
 fn pack<const SIZE: usize>(numbers: impl Iterator<Item = [u8; SIZE]>) -> Result<Vec<u8>> {
     let bytes: Vec<u8> = numbers.flatten().collect();
     blosc::pack(&bytes, SIZE as u8)
-        .ok_or_else(|| Error::new(ErrorKind::Request, "a chunk of more than 2 GiB: ask for smaller tiles"))
+        .ok_or_else(|| Error::new(ErrorKind::Request, "a chunk would be larger than 2 GiB; use smaller tiles"))
 }

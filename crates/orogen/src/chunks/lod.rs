@@ -51,36 +51,35 @@ impl LodConfig {
     pub fn check(&self) -> Result<()> {
         let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
         if !(2..=4096).contains(&self.cells) || self.cells % 2 == 1 {
-            return fault(format!("chunks of {} cells are not possible: an even number from 2 to 4096 is", self.cells));
-        }
-        if !(self.cell.is_finite() && self.cell >= 1e-6) {
             return fault(format!(
-                "a cell of {} m is not possible: it must be a number of at least 0.000001",
-                self.cell
+                "the number of cells of a chunk must be even and from 2 to 4096, not {}",
+                self.cells
             ));
         }
+        if !(self.cell.is_finite() && self.cell >= 1e-6) {
+            return fault(format!("the cell size must be at least 0.000001 m, not {}", self.cell));
+        }
         if !(1..=24).contains(&self.levels) {
-            return fault(format!("{} levels of detail are not possible: 1 to 24 are", self.levels));
+            return fault(format!("the number of levels of detail must be from 1 to 24, not {}", self.levels));
         }
         if !(0.0..=1.0).contains(&self.slack) {
-            return fault(format!("a slack of {} is not possible: 0 to 1 is", self.slack));
+            return fault(format!("the slack must be from 0 to 1, not {}", self.slack));
         }
         if !(1.0 + self.slack..=16.0).contains(&self.detail) {
             return fault(format!(
-                "a detail of {} is not possible: it goes from 1 + slack = {} to 16, or neighbours would differ by more than a level",
+                "the detail must be from 1 + slack = {1} to 16, not {0}; otherwise neighbours could differ by more than one level",
                 self.detail,
                 1.0 + self.slack
             ));
         }
         if !(self.range.is_finite() && self.range > 0.0) {
-            return fault(format!("a range of {} m is not possible: it must be a number above 0", self.range));
+            return fault(format!("the range must be greater than 0 m, not {}", self.range));
         }
         let across = 2.0 * self.range / self.side(self.levels - 1);
         match across <= MAX_ACROSS {
             true => Ok(()),
             false => fault(format!(
-                "a range of {} m is {across:.0} of the coarsest chunks across and {MAX_ACROSS} are possible: use more levels, or \
-                 see less far",
+                "a range of {} m spans {across:.0} chunks of the coarsest level, and at most {MAX_ACROSS} are supported; use more levels or a smaller range",
                 self.range
             )),
         }

@@ -134,9 +134,9 @@ impl Chunks {
         let farthest = (1u64 << 52) as f64 * self.lod.cell;
         if !(x.abs() <= farthest && y.abs() <= farthest) {
             let message = match x.is_finite() && y.is_finite() {
-                false => format!("({x}, {y}) is no position: coordinates must be finite"),
+                false => format!("({x}, {y}) is not a position: coordinates must be finite"),
                 true => format!(
-                    "({x}, {y}) lies beyond 2^52 cells of {} m from the origin, farther than positions are exact",
+                    "({x}, {y}) is more than 2^52 cells of {} m from the origin, where positions are no longer exact",
                     self.lod.cell
                 ),
             };

@@ -12,7 +12,7 @@ pub const MOST: usize = 65_000;
 pub fn every(interval: f64, low: f64, high: f64) -> Result<Vec<f64>> {
     let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
     if !(interval > 0.0 && interval.is_finite()) {
-        return fault(format!("contours {interval} m apart are none: an interval is more than 0 metres"));
+        return fault(format!("the contour interval must be greater than 0 m, not {interval}"));
     }
     if !(low.is_finite() && high > low) {
         return Ok(Vec::new());
@@ -20,7 +20,7 @@ pub fn every(interval: f64, low: f64, high: f64) -> Result<Vec<f64>> {
     let (first, last) = ((low / interval).floor() + 1.0, (high / interval).floor());
     if last - first + 1.0 > MOST as f64 || first.abs().max(last.abs()) > 9e15 {
         return fault(format!(
-            "an interval of {interval} m makes {:.0} levels between {low} and {high} m, and {MOST} is the most: take a larger one",
+            "an interval of {interval} m gives {:.0} contours between {low} and {high} m, and at most {MOST} are supported; use a larger interval",
             last - first + 1.0
         ));
     }
@@ -35,13 +35,13 @@ pub fn every(interval: f64, low: f64, high: f64) -> Result<Vec<f64>> {
 pub fn given(levels: &[f64]) -> Result<Vec<f64>> {
     let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
     if let Some(level) = levels.iter().find(|level| !level.is_finite()) {
-        return fault(format!("{level} is no height that a contour can have"));
+        return fault(format!("{level} is not a valid contour height"));
     }
     let mut levels = levels.to_vec();
     levels.sort_by(f64::total_cmp);
     levels.dedup();
     match levels.len() > MOST {
-        true => fault(format!("{} levels are too many: {MOST} is the most", levels.len())),
+        true => fault(format!("there are {} contour heights, and at most {MOST} are supported", levels.len())),
         false => Ok(levels),
     }
 }
@@ -81,7 +81,7 @@ mod tests {
         for interval in [0.0, -5.0, f64::NAN, f64::INFINITY] {
             assert!(every(interval, 0.0, 1.0).unwrap_err().to_string().contains("more than 0 metres"));
         }
-        assert!(every(1e-3, 0.0, 3000.0).unwrap_err().to_string().contains("take a larger one"));
+        assert!(every(1e-3, 0.0, 3000.0).unwrap_err().to_string().contains("use a larger interval"));
         assert!(every(1e-300, 0.0, 1.0).is_err());
     }
 

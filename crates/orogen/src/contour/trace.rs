@@ -62,7 +62,7 @@ fn joined(bands: Vec<Band>) -> Result<Band> {
     let total: usize = bands.iter().map(|band| band.own).sum();
     if total >= NONE as usize {
         let message = format!(
-            "the contours would have {total} points, more than 4 294 967 294: take fewer levels or a larger cell"
+            "the contours would have {total} points, and at most 4 294 967 294 are supported; use fewer contours or a larger cell"
         );
         return Err(Error::new(ErrorKind::Request, message));
     }

@@ -53,7 +53,7 @@ pub fn folder(folder: &Path, request: Request) -> Result<Dem> {
     let name = folder.display().to_string();
     let tiles = tiles(folder)?;
     if tiles.len() > MAX_FILES {
-        return Err(refused(&name, format!("it holds {} tiles, and at most {MAX_FILES} are supported", tiles.len())));
+        return Err(refused(&name, format!("it has {} tiles, and at most {MAX_FILES} are supported", tiles.len())));
     }
     let heads: Vec<(PathBuf, [usize; 2], Placement)> = tiles
         .into_iter()
@@ -93,12 +93,12 @@ fn layout(tiles: &[(PathBuf, [usize; 2], Placement)]) -> std::result::Result<Lay
         let pair = format!("{} and {}", called(first), called(path));
         if system(place) != system(own) || place.unit != own.unit {
             return Err(format!(
-                "{pair} are in different coordinate systems: bring them into one, for example with gdalwarp"
+                "{pair} are in different coordinate systems; reproject them to one, for example with gdalwarp"
             ));
         }
         if (0..2).any(|k| (place.step[k] - own.step[k]).abs() > 1e-6 * own.step[k]) {
             return Err(format!(
-                "{pair} have different cells, {} x {} and {} x {}: bring them to one, for example with gdalwarp",
+                "{pair} have different cell sizes, {} x {} and {} x {}; resample them to one, for example with gdalwarp",
                 own.step[0], own.step[1], place.step[0], place.step[1]
             ));
         }
@@ -110,7 +110,7 @@ fn layout(tiles: &[(PathBuf, [usize; 2], Placement)]) -> std::result::Result<Lay
         let at = [(place.origin[0] - west) / own.step[0], (north - place.origin[1]) / own.step[1]];
         if at.iter().any(|at| (at - at.round()).abs() > BESIDE || *at > 1e9) {
             return Err(format!(
-                "{} lies between the samples of the others: lay them on one lattice, for example with gdalwarp -tap",
+                "the samples of {} are not aligned with those of the others; align them, for example with gdalwarp -tap",
                 called(path)
             ));
         }
@@ -177,7 +177,7 @@ fn place(read: &Virtual) -> std::result::Result<Option<Placement>, String> {
     let Some(affine) = read.affine else { return Ok(None) };
     let lattice = Affine::lattice(&affine, read.size[1] as usize)?;
     if lattice.from_south {
-        return Err("its rows go north; lay it north up first, for example with gdalwarp".into());
+        return Err("its rows run from south to north; convert it to north-up first, for example with gdalwarp".into());
     }
     let keys = match read.system.as_deref() {
         None => None,

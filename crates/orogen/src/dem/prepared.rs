@@ -57,7 +57,10 @@ impl PreparedDem {
     pub fn picture(path: &Path, allowed: u64) -> Result<PreparedDem> {
         let name = path.display().to_string();
         if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-            return Err(refused(&name, "pictures are read from .png; heights of other formats by the op `dem`"));
+            return Err(refused(
+                &name,
+                "the op `image` only reads .png; use the op `dem` for heights in other formats",
+            ));
         }
         let mut file = regular(path, "read")?;
         let greys = Sidecar { low: Some(0.0), high: Some(1.0), cell: Some(1.0), ..Sidecar::default() };
@@ -74,11 +77,11 @@ impl PreparedDem {
             (Some(cell), _) => [cell; 2],
             (None, Some(place)) => steps(place, dem.height),
             (None, None) => {
-                return Err("its sample spacing is unknown: give it as `cell`, in metres".into());
+                return Err("its cell size is unknown; set `cell`, in metres".into());
             }
         };
         if !steps.iter().all(|step| (1e-3..=1e6).contains(step)) {
-            return Err(format!("its samples stand {} x {} m apart, which no terrain has", steps[0], steps[1]));
+            return Err(format!("its cell size of {} x {} m is out of range", steps[0], steps[1]));
         }
         let layout = Layout::new([dem.width, dem.height], steps);
         afford(layout.size[0] as u64, layout.size[1] as u64, allowed)?;
@@ -91,13 +94,13 @@ impl PreparedDem {
         let missing = fill(&mut dem.heights, dem.width, dem.height);
         if missing > 0 {
             let (holes, share) = (count(missing, "sample"), percent(missing as u64, samples as u64));
-            notes.push(format!("filled {holes} without height ({share}) from the heights around"));
+            notes.push(format!("filled {holes} without height ({share}) from the surrounding heights"));
         }
         let degrees = dem.place.as_ref().is_some_and(|place| place.unit == Unit::Degrees) && cell.is_none();
         if !layout.is_square() {
             let what = if degrees { "its degrees, at the middle latitude cells" } else { "its cells" };
             notes.push(format!(
-                "{what} of {:.2} x {:.2} m, were laid on squares of {:.2} m",
+                "{what} of {:.2} x {:.2} m, were resampled to squares of {:.2} m",
                 steps[0], steps[1], layout.cell
             ));
         }
@@ -107,7 +110,7 @@ impl PreparedDem {
             // Degrees stay degrees where nothing tells their datum.
             keys: place.keys.clone().or((place.unit == Unit::Degrees).then(|| keys::of_epsg(USER_DEFINED, true))),
         });
-        let grid = layout.apply(dem).ok_or("it has another number of samples than it says")?;
+        let grid = layout.apply(dem).ok_or("its number of samples differs from its header")?;
         let hash = hash(&grid);
         Ok(PreparedDem { grid, missing, samples, georeference, notes, hash })
     }

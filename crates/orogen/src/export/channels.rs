@@ -20,7 +20,7 @@ use crate::spool::Spool;
 pub const NORMAL: OptionSpec = OptionSpec {
     name: "normal",
     value: "WAY",
-    about: "Where green points in a normal map: opengl, up the picture, or directx, down [default: opengl]",
+    about: "Direction of green in a normal map: opengl (up) or directx (down) [default: opengl]",
     value_kind: ValueKind::Word(&["opengl", "directx"]),
 };
 
@@ -28,7 +28,7 @@ pub const NORMAL: OptionSpec = OptionSpec {
 pub const WEIGHTS: OptionSpec = OptionSpec {
     name: "weights",
     value: "HOW",
-    about: "Weights of a splat map: rgba, four in a picture (NAME.png, NAME_2.png, ...), or layers, a grey picture each (NAME_grass.png, ...) \
+    about: "Weights of a splat map: rgba, four per picture (NAME.png, NAME_2.png, ...), or layers, one grey picture each (NAME_grass.png, ...) \
             [default: rgba]",
     value_kind: ValueKind::Word(&["rgba", "layers"]),
 };
@@ -94,7 +94,7 @@ pub fn write_color(source: &mut LayerSource, files: &mut Files) -> io::Result<St
 /// Fails as the subject and the files do, and on a stream, which takes one file alone.
 pub fn write_weights(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     let Some(path) = files.path().map(Path::to_path_buf) else {
-        return refuse("weights take several files, and standard output is one: name a file with -o".into());
+        return refuse("weights are written to several files, not to standard output; name a file with -o".into());
     };
     let (window, names) = (*source.window(), source.channel_names());
     let mut spool = files.spool();

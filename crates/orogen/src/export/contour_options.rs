@@ -8,7 +8,7 @@ use crate::error::{Error, ErrorKind, Result};
 pub const INTERVAL: OptionSpec = OptionSpec {
     name: "interval",
     value: "M",
-    about: "Metres from one contour to the next [default: a round number that makes 10 to 25]",
+    about: "Contour interval in metres [default: a round number that gives 10 to 25 contours]",
     value_kind: ValueKind::Number(1e-6, 1e6),
 };
 
@@ -16,7 +16,7 @@ pub const INTERVAL: OptionSpec = OptionSpec {
 pub const LEVELS: OptionSpec = OptionSpec {
     name: "levels",
     value: "A,B,...",
-    about: "Heights of contours, instead of an interval",
+    about: "Contour heights, instead of an interval",
     value_kind: ValueKind::Text,
 };
 
@@ -24,7 +24,7 @@ pub const LEVELS: OptionSpec = OptionSpec {
 pub const SMOOTH: OptionSpec = OptionSpec {
     name: "smooth",
     value: "N",
-    about: "How often the corners of lines are cut, each time doubling their points, and rivers are evened out \
+    about: "Passes of corner cutting for lines, each doubling their points, and of smoothing for rivers \
             [default: 0 for contours, 1 for shores and watersheds, 3 for rivers]",
     value_kind: ValueKind::Whole(0, 6),
 };
@@ -35,7 +35,7 @@ pub const SMOOTH: OptionSpec = OptionSpec {
 /// If not.
 pub fn check(options: &Options) -> Result<()> {
     if options.has(INTERVAL.name) && options.has(LEVELS.name) {
-        let message = "--interval and --levels contradict each other: give one of them";
+        let message = "--interval and --levels exclude each other; leave out one of them";
         return Err(Error::new(ErrorKind::Request, message));
     }
     options.text(LEVELS.name).map_or(Ok(()), |text| parse(text).map(drop))
@@ -49,7 +49,7 @@ pub fn parse(text: &str) -> Result<Vec<f64>> {
     let numbers = text.split(',').map(|part| {
         part.trim().parse::<f64>().map_err(|_| {
             let message =
-                format!("`{part}` in --levels is no height; they are numbers with commas, such as 0,250.5,500");
+                format!("`{part}` in --levels is not a height; write numbers separated by commas, such as 0,250.5,500");
             Error::new(ErrorKind::Request, message)
         })
     });

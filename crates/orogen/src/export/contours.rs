@@ -60,7 +60,7 @@ impl Contours {
             .interval
             .map_or(String::new(), |interval| format!(", one each {} {unit}", number(interval)).trim_end().to_string());
         match levels {
-            0 => "no contours: no level is crossed".into(),
+            0 => "no contours: the heights cross no level".into(),
             _ => format!("{} of {}{apart}", count(lines, "contour line"), count(levels, "height")),
         }
     }

@@ -62,8 +62,8 @@ impl<'w> LayerSource<'w> {
                         .chain(vector_list::all().iter().map(|layer| layer.name))
                         .collect();
                     let hint = match nearest(layer, names.iter().copied()) {
-                        Some(near) => format!("did you mean `{near}`, which follows from the heights?"),
-                        None => format!("the heights also give {}", names.join(", ")),
+                        Some(near) => format!("did you mean `{near}`, which is derived from the heights?"),
+                        None => format!("layers derived from the heights: {}", names.join(", ")),
                     };
                     return Err(Error::new(ErrorKind::Request, format!("{error}; {hint}")));
                 }

@@ -27,7 +27,7 @@ use crate::words::{count, number};
 pub const MAX_ERROR: OptionSpec = OptionSpec {
     name: "max-error",
     value: "M",
-    about: "Adaptive mesh: no sample is further than M metres above or below its triangles [default: a full grid, two triangles per cell]",
+    about: "Adaptive mesh with a vertical error of at most M metres at every sample [default: a full grid, two triangles per cell]",
     value_kind: ValueKind::Number(0.0, 1e9),
 };
 
@@ -35,7 +35,7 @@ pub const MAX_ERROR: OptionSpec = OptionSpec {
 pub const EXAGGERATION: OptionSpec = OptionSpec {
     name: "exaggeration",
     value: "F",
-    about: "Vertical exaggeration, a factor [default: 1]",
+    about: "Vertical exaggeration factor [default: 1]",
     value_kind: ValueKind::Number(0.001, 1000.0),
 };
 
@@ -43,7 +43,7 @@ pub const EXAGGERATION: OptionSpec = OptionSpec {
 pub const HEIGHT_CURVE: OptionSpec = OptionSpec {
     name: "height-curve",
     value: "A:B,...",
-    about: "Bend the heights: a curve from 0:0, the lowest of the window, to 1:1, the highest, such as 0:0,0.5:0.2,1:1",
+    about: "Curve applied to the heights, from 0:0 (lowest of the window) to 1:1 (highest), such as 0:0,0.5:0.2,1:1",
     value_kind: ValueKind::Text,
 };
 
@@ -51,7 +51,7 @@ pub const HEIGHT_CURVE: OptionSpec = OptionSpec {
 pub const COLOR: OptionSpec = OptionSpec {
     name: "color",
     value: "HOW",
-    about: "The map's colours, without its shading: texture (a picture), vertex or none [default: texture; ply: vertex]",
+    about: "Map colours without shading, stored as texture (a picture), vertex or none [default: texture; ply: vertex]",
     value_kind: ValueKind::Word(&["texture", "vertex", "none"]),
 };
 

@@ -21,7 +21,7 @@ use crate::recipe::surface::expand::expand;
 pub const SURFACES: OptionSpec = OptionSpec {
     name: "surfaces",
     value: "",
-    about: "Color by the recipe's surfaces, or the standard ones, in place of the map's colors; in glb with roughness, occlusion, and normal maps of meshes with few triangles",
+    about: "Use the colors of the recipe's surfaces (or of the standard ones) instead of map colors; in glb with roughness, occlusion, and normal maps for meshes with few triangles",
     value_kind: ValueKind::Nothing,
 };
 
@@ -56,7 +56,7 @@ pub fn of(source: &LayerSource, options: &Options, packed: bool) -> io::Result<O
         return Ok(None);
     }
     if options.word(COLOR.name).is_some_and(|color| color != "texture") {
-        return refuse("--surfaces makes a texture: leave out --color, or say --color texture".into());
+        return refuse("--surfaces writes a texture; leave out --color, or use --color texture".into());
     }
     if source.world().recipe().expanded().is_empty() {
         return refuse("the surfaces of this recipe were not prepared before its world was opened".into());

@@ -13,7 +13,7 @@ use crate::world::World;
 pub const COLOR_RANGE: OptionSpec = OptionSpec {
     name: "color-range",
     value: "LOW,HIGH",
-    about: "Heights at the ends of the map's colors [default: about the lowest and the highest of the world, the same for all its windows]",
+    about: "Heights at the ends of the color scale [default: approximate minimum and maximum of the world, the same for all its windows]",
     value_kind: ValueKind::Range,
 };
 

@@ -17,7 +17,7 @@ use crate::world::HEIGHT;
 pub const WATER: OptionSpec = OptionSpec {
     name: "water",
     value: "",
-    about: "Rivers as ribbons, lakes and the sea as level surfaces: translucent meshes in nodes of their own",
+    about: "Add water: rivers as ribbons, lakes and the sea as level surfaces, as translucent meshes in separate nodes",
     value_kind: ValueKind::Nothing,
 };
 
@@ -45,7 +45,7 @@ pub fn of(source: &LayerSource, mesh: &Prepared, options: &Options, reserved: u6
         return Ok(Vec::new());
     }
     if source.layer() != HEIGHT {
-        return refuse(format!("--water lies on the layer `{HEIGHT}`, not on `{}`", source.layer()));
+        return refuse(format!("--water applies to the layer `{HEIGHT}`, not to `{}`", source.layer()));
     }
     let none = Options::default();
     let wanted = FeatureOptions::new(&none, source.world().recipe())?;

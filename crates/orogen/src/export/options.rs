@@ -56,23 +56,23 @@ impl OptionSpec {
             ValueKind::Nothing => Ok(Value::Given),
             ValueKind::Whole(from, to) => match text.parse::<u64>() {
                 Ok(n) if (from..=to).contains(&n) => Ok(Value::Whole(n)),
-                _ => Err(format!("it is a whole number from {from} to {to}")),
+                _ => Err(format!("it must be a whole number from {from} to {to}")),
             },
             ValueKind::Number(from, to) => match number(text) {
                 Some(n) if (from..=to).contains(&n) => Ok(Value::Number(n)),
-                _ => Err(format!("it is a number from {from} to {to}")),
+                _ => Err(format!("it must be a number from {from} to {to}")),
             },
             ValueKind::Range => match text.split_once(',').map(|(low, high)| (number(low), number(high))) {
                 Some((Some(low), Some(high))) if low < high => Ok(Value::Range([low, high])),
-                _ => Err("it is two numbers, the lower first, such as -500,4500".into()),
+                _ => Err("it must be two numbers, the lower first, such as -500,4500".into()),
             },
             ValueKind::Point => match text.split_once(',').map(|(x, y)| (number(x), number(y))) {
                 Some((Some(x), Some(y))) => Ok(Value::Point([x, y])),
-                _ => Err("it is two numbers with a comma between them, such as 1200,850".into()),
+                _ => Err("it must be two numbers separated by a comma, such as 1200,850".into()),
             },
             ValueKind::Word(words) => match words.iter().find(|word| word.eq_ignore_ascii_case(text)) {
                 Some(word) => Ok(Value::Word(word)),
-                None => Err(format!("it is {}", one_of(words))),
+                None => Err(format!("it must be {}", one_of(words))),
             },
             ValueKind::Text => Ok(Value::Text(text.to_string())),
         }
@@ -100,7 +100,7 @@ impl Options {
     /// If it is no value that the option has.
     pub fn give(&mut self, spec: &OptionSpec, text: &str) -> Result<()> {
         let value = spec.parse(text).map_err(|why| {
-            let message = format!("`{}` is no value of --{}: {why}", text.escape_debug(), spec.name);
+            let message = format!("`{}` is not a value for --{}: {why}", text.escape_debug(), spec.name);
             Error::new(ErrorKind::Request, message)
         })?;
         self.given.insert(spec.name, value);
@@ -195,7 +195,7 @@ mod tests {
     #[test]
     fn what_is_no_value_is_a_sentence() {
         for (value_kind, text, expect) in [
-            (ValueKind::Whole(1, 9), "10", "`10` is no value of --x: it is a whole number from 1 to 9"),
+            (ValueKind::Whole(1, 9), "10", "`10` is not a value for --x: it must be a whole number from 1 to 9"),
             (ValueKind::Number(0.0, 1.0), "nan", "a number from 0 to 1"),
             (ValueKind::Range, "7,-5", "the lower first"),
             (ValueKind::Range, "7", "two numbers"),

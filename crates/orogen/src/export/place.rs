@@ -91,7 +91,7 @@ fn check(path: &Path, beside: &Path, bytes: &[u8]) -> Result<()> {
         return Ok(());
     }
     let message = format!(
-        "cannot write {}: {} is there and gives another location, with which it would be read; write to another name, or say --{} or --force",
+        "cannot write {}: {} exists and gives another location, which readers would use; write to another name, or use --{} or --force",
         path.display(),
         beside.display(),
         NO_SIDECAR.name

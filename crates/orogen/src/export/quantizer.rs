@@ -15,7 +15,7 @@ use crate::spool::Spool;
 pub const RANGE: OptionSpec = OptionSpec {
     name: "range",
     value: "LOW,HIGH",
-    about: "Values of the least and the greatest level, one scale for many windows [default: the lowest and the highest of this one]",
+    about: "Values of the lowest and the highest level, to use the same scale for several windows [default: minimum and maximum of this window]",
     value_kind: ValueKind::Range,
 };
 
@@ -23,7 +23,7 @@ pub const RANGE: OptionSpec = OptionSpec {
 pub const FIRST_ROW: OptionSpec = OptionSpec {
     name: "first-row",
     value: "SIDE",
-    about: "Side that the first row lies on, north or south [default: north]",
+    about: "Side of the first row, north or south [default: north]",
     value_kind: ValueKind::Word(&["north", "south"]),
 };
 
@@ -31,7 +31,7 @@ pub const FIRST_ROW: OptionSpec = OptionSpec {
 pub const BITS: OptionSpec = OptionSpec {
     name: "bits",
     value: "N",
-    about: "Bits of a sample, 8 or 16 [default: 16, of normals 8]",
+    about: "Bits per sample, 8 or 16 [default: 16, for normals 8]",
     value_kind: ValueKind::Word(&["8", "16"]),
 };
 
@@ -133,7 +133,7 @@ pub fn natural(source: &LayerSource, most: u16) -> io::Result<Levels> {
     let levels = source.levels();
     match source.kind() {
         LayerKind::Label if levels.low() < 0.0 || levels.high() > f32::from(most) => refuse(format!(
-            "`{}` names things by numbers from {} to {}, which do not fit 0 to {most}: choose npy, r32, exr or tif, or say --range",
+            "the numbers of `{}`, {} to {}, do not fit in 0 to {most}; use npy, r32, exr or tif, or set --range",
             source.layer(),
             levels.low(),
             levels.high()

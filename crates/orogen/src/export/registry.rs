@@ -27,7 +27,11 @@ pub fn named(name: &str) -> Option<&'static Format> {
 pub fn of_path(path: &Path) -> Result<&'static Format> {
     let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
     let Some(extension) = path.extension() else {
-        return refuse(format!("{} has no extension to tell its format; known are {}", path.display(), known(ALL)));
+        return refuse(format!(
+            "{} has no file extension that determines its format; known extensions: {}",
+            path.display(),
+            known(ALL)
+        ));
     };
     let extension = extension.to_string_lossy();
     match named(&extension) {
@@ -35,9 +39,9 @@ pub fn of_path(path: &Path) -> Result<&'static Format> {
         None => {
             let hint = match nearest(&extension, ALL.iter().flat_map(|format| format.extensions())) {
                 Some(near) => format!("did you mean .{near}?"),
-                None => format!("known are {}", known(ALL)),
+                None => format!("known extensions: {}", known(ALL)),
             };
-            refuse(format!("the format .{extension} is not known; {hint}"))
+            refuse(format!("unknown format .{extension}; {hint}"))
         }
     }
 }
@@ -64,7 +68,7 @@ pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static Format>)> {
 pub fn check(format: &Format, given: &Options) -> Result<()> {
     let Some(name) = given.names().find(|name| !format.knows(name)) else { return Ok(()) };
     let who: Vec<&Format> = ALL.iter().copied().filter(|format| format.knows(name)).collect();
-    let message = format!("--{name} is no option of the format {}; those that know it: {}", format.name, known(&who));
+    let message = format!("--{name} does not apply to the format {}; it applies to: {}", format.name, known(&who));
     Err(Error::new(ErrorKind::Request, message))
 }
 
@@ -105,7 +109,9 @@ mod tests {
     fn extensions_tell_formats() {
         assert_eq!(of_path(Path::new("a/b.PNG")).unwrap().name, "png");
         assert_eq!(of_path(Path::new("b.tiff")).unwrap().name, "tif");
-        for (path, expect) in [("a.npz", "did you mean .npy?"), ("a.qqqqqq", "known are ."), ("a", "no extension")] {
+        for (path, expect) in
+            [("a.npz", "did you mean .npy?"), ("a.qqqqqq", "known extensions: ."), ("a", "no file extension")]
+        {
             let Err(error) = of_path(Path::new(path)) else { panic!("{path}") };
             assert!(error.to_string().contains(expect), "{error}");
         }

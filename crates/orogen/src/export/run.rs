@@ -45,7 +45,7 @@ pub fn source<'w>(
                 .map(|format| format!(".{}", format.name))
                 .collect();
             let message = format!(
-                "`{layers}` is made of vector features, which .{} does not hold; those that do: {}",
+                "`{layers}` consists of vector features, which .{} cannot hold; formats that can: {}",
                 format.name,
                 holds.join(", ")
             );
@@ -126,7 +126,7 @@ fn prepare(format: &Format, source: &mut LayerSource, options: &Options) -> Resu
             .map(|other| other.name)
             .collect();
         let message = format!(
-            "`{}` has {} channels and the format {} holds {}; those that hold it: {}",
+            "`{}` has {} channels, and the format {} holds {}; formats for it: {}",
             source.layer(),
             source.channels(),
             format.name,

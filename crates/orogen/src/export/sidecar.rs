@@ -17,7 +17,7 @@ use crate::format::sidecar::own;
 pub const NO_SIDECAR: OptionSpec = OptionSpec {
     name: "no-sidecar",
     value: "",
-    about: "Write nothing beside the file: no NAME.json, which tells size, cell, range, seed and the like, no .prj, no world file and no .aux.xml with its georeferencing",
+    about: "Do not write files beside the output: no NAME.json (size, cell size, range, seed and other metadata), no .prj, no world file and no .aux.xml",
     value_kind: ValueKind::Nothing,
 };
 

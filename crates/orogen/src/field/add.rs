@@ -1,16 +1,16 @@
-//! Sum of two.
+//! Sum of two fields.
 
 use crate::expression::function::Function;
 use crate::expression::term::Term;
 use crate::op::Field;
 
 op! {
-    /// a + b, in the unit the two share.
+    /// The sum a + b. Both terms must have the same unit.
     pub struct Add = "add", field, revision 1;
     inputs {
-        /// One.
+        /// First term.
         a: required,
-        /// The other.
+        /// Second term.
         b: required,
     }
 }

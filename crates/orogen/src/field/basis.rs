@@ -1,4 +1,4 @@
-//! The noises that fields are made of, as a choice in recipes.
+//! Noise bases of fractals, as a choice in recipes.
 
 use crate::declare::{Param, Shape};
 use crate::value::Value;
@@ -21,53 +21,52 @@ impl Param for Basis {
 
 fn about(basis: Basis) -> &'static str {
     match basis {
-        Basis::White => "An independent value per square.",
-        Basis::Value => "Random values on a lattice, blended.",
-        Basis::Perlin => "Perlin's gradient noise over a hashed lattice: never repeats.",
-        Basis::ClassicDiagonal => "Perlin's 2002 table, four diagonal gradients, as most textbooks have it.",
+        Basis::White => "White noise: an independent value for each square.",
+        Basis::Value => "Value noise: random values on a lattice, interpolated.",
+        Basis::Perlin => "Perlin's gradient noise on a hashed lattice; it has no period.",
+        Basis::ClassicDiagonal => "Perlin's 2002 table, four diagonal gradients, as in most textbooks.",
         Basis::ClassicEight => "Perlin's 2002 table, eight gradients.",
         Basis::ClassicAngle => "Perlin's 2002 table, unit gradients at 256 angles.",
-        Basis::Simplex => "Perlin's Simplex noise: gradients on the corners of triangles.",
-        Basis::OpenSimplex2 => "OpenSimplex2, fast: Simplex noise with more directions.",
-        Basis::OpenSimplex2Smooth => "OpenSimplex2, smooth: wider, rounder kernels.",
-        Basis::Worley => "Worley's cellular noise: the distance to the nearest point.",
-        Basis::WorleyEdge => "Worley's cellular noise: the distance to the nearest edge of a cell.",
+        Basis::Simplex => "Perlin's Simplex noise: gradients at the corners of a triangular lattice.",
+        Basis::OpenSimplex2 => "OpenSimplex2, fast variant: Simplex noise with more gradient directions.",
+        Basis::OpenSimplex2Smooth => "OpenSimplex2, smooth variant: wider and rounder kernels.",
+        Basis::Worley => "Worley's cellular noise: distance to the nearest feature point.",
+        Basis::WorleyEdge => "Worley's cellular noise: distance to the nearest cell edge.",
     }
 }
 
-/// A block of noise. The engine's blocks always have the length of their points; were one ever wrong, it would be NaN and
-/// seen, not the noise of another place.
+/// A block of noise. The engine's blocks always have the length of their points. If a length were wrong, the block would be NaN, so that
+/// the error is visible.
 pub(super) fn fill(out: &mut [f32], noise: impl FnOnce(&mut [f32]) -> Result<(), LengthMismatch>) {
     if noise(out).is_err() {
         out.fill(f32::NAN);
     }
 }
 
-/// How many nanoseconds a sample takes.
+/// Nanoseconds per sample.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cost {
-    /// Anywhere.
+    /// At arbitrary positions.
     pub anywhere: f64,
-    /// Where samples stand in columns and rows.
+    /// On a lattice of columns and rows.
     pub in_rows: f64,
 }
 
 impl Cost {
-    /// Of so many octaves.
+    /// With this number of octaves.
     pub(super) fn octaves(self, octaves: u32) -> Cost {
         let octaves = f64::from(octaves);
         Cost { anywhere: octaves * self.anywhere, in_rows: octaves * self.in_rows }
     }
 
-    /// Of octaves that move those after them: then a row is no row any more. What they are moved by takes its time, too.
+    /// With octaves whose positions are displaced by earlier octaves, so that rows share nothing. The displacement costs time, too.
     pub(super) fn moved(self) -> Cost {
         let each = self.anywhere + 1.1;
         Cost { anywhere: each, in_rows: each }
     }
 }
 
-/// What an octave over a basis takes, measured like the figures of `plan/cost.rs`: 512 x 512 samples, wavelength 100 samples,
-/// 6 octaves.
+/// Cost of one octave of a basis, measured like the figures of `plan/cost.rs`: 512 x 512 samples, wavelength 100 samples, 6 octaves.
 pub(super) fn cost(basis: Basis) -> Cost {
     let (anywhere, in_rows) = match basis {
         Basis::White => (0.4, 0.06),

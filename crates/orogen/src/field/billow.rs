@@ -5,7 +5,7 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
 op! {
-    /// Billows: octaves of 2 |noise| - 1 summed, in -1 ..= 1. Round hills with sharp valleys between them.
+    /// Billow noise: the sum of octaves of 2 |noise| - 1, in -1 ..= 1. It gives round hills with sharp valleys between them.
     pub struct Billow = "billow", field, revision 1;
     octaves;
 }

@@ -1,25 +1,25 @@
-//! Cutting values off.
+//! Limits values to a range.
 
 use crate::expression::function::Function;
 use crate::expression::term::Term;
 use crate::op::Field;
 
 op! {
-    /// The source, cut off below `low` and above `high`.
+    /// The source limited to the range from `low` to `high`: lower values become `low`, higher values become `high`.
     pub struct Clamp = "clamp", field, revision 1;
     inputs {
-        /// What is cut.
+        /// The values to limit.
         source: required,
     }
     params {
-        /// Lowest value left, in the source's unit.
+        /// Lower limit, in the source's unit.
         low: f64 = 0.0, range -1e9 to 1e9;
-        /// Highest value left, in the source's unit.
+        /// Upper limit, in the source's unit.
         high: f64 = 1.0, range -1e9 to 1e9;
     }
     check |op| match op.low <= op.high {
         true => Ok(()),
-        false => Err(("low", format!("`low` ({}) must not be above `high` ({})", op.low, op.high))),
+        false => Err(("low", format!("`low` ({}) must not be greater than `high` ({})", op.low, op.high))),
     };
 }
 

@@ -1,17 +1,17 @@
-//! Perlin noise as the textbooks have it.
+//! Classic Perlin noise, as in textbooks.
 
 use super::basis::fill;
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 choice! {
-    /// The gradients of the classic noise in 2D.
+    /// The gradient set of classic Perlin noise in 2D.
     pub enum Variant {
-        /// Four diagonals, each twice, as most textbook ports have it.
+        /// Four diagonals, each listed twice, as in most textbook implementations.
         Diagonal = "diagonal",
-        /// Four diagonals and four axes.
+        /// Four diagonals and four axis directions.
         Eight = "eight",
-        /// Unit vectors at 256 angles, times the root of 2.
+        /// Unit vectors at 256 angles, times the square root of 2.
         Angle = "angle",
     }
 }
@@ -27,14 +27,14 @@ impl Variant {
 }
 
 op! {
-    /// Perlin's improved noise over the permutation table of his 2002 reference; it repeats every 256 lattice points.
+    /// Perlin's improved noise with the permutation table of his 2002 reference implementation. It repeats every 256 lattice points.
     pub struct Classic = "classic", field, revision 1;
     params {
-        /// Seed of its own, hashed with the world's unless both are 0: then it is the noise as published.
+        /// Seed of the node, hashed with the world's seed. If both are 0, the permutation table is used as published.
         seed: u64 = 0;
         /// Distance between lattice points.
         wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
-        /// The set of gradients.
+        /// The gradient set.
         variant: Variant = Variant::Diagonal;
     }
 }

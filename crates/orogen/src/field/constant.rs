@@ -1,13 +1,13 @@
-//! The same number everywhere.
+//! A constant value.
 
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
-    /// The same number everywhere.
+    /// The same value everywhere.
     pub struct Constant = "constant", field, revision 1;
     params {
-        /// The number, in whatever unit its readers take it for.
+        /// The value, in the unit that the nodes reading it expect.
         value: f64 = 0.0, range -1e9 to 1e9;
     }
 }

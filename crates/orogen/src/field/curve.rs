@@ -4,23 +4,23 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
-    /// The source mapped through a smooth curve that passes through all control points and never overshoots between them.
+    /// The source mapped through a smooth monotone curve through the control points. The curve does not overshoot between points.
     ///
-    /// Below the first and above the last point the curve stays level. Two points of the same height make a level stretch
-    /// between them: `points = [[-1, 0], [0.4, 0], [1, 1]]` puts everything below 0.4 at 0. Cubic Hermite interpolation with
-    /// the tangents of Fritsch and Carlson (1980).
+    /// Below the first point and above the last point the result is constant. Two points of equal height give a constant segment: `points =
+    /// [[-1, 0], [0.4, 0], [1, 1]]` maps all values below 0.4 to 0. Method: cubic Hermite interpolation with the tangents of Fritsch and
+    /// Carlson (1980).
     pub struct Curve = "curve", field, revision 1;
     inputs {
-        /// What is mapped.
+        /// The values to map.
         source: required,
     }
     params {
-        /// Control points [[from, to], ...], each `from` greater than the one before.
+        /// Control points [[from, to], ...]; each `from` must be greater than the one before.
         points: Vec<[f64; 2]> = vec![[-1.0, -1.0], [1.0, 1.0]], range -1e9 to 1e9;
     }
 }
 
-/// One stretch from a control point to the next: to(x) = a + t (b + t (c + t d)) with t = x - start.
+/// One segment between two control points: to(x) = a + t (b + t (c + t d)) with t = x - start.
 #[derive(Clone, Copy, Default)]
 struct Segment {
     start: f32,
@@ -30,21 +30,21 @@ struct Segment {
     d: f32,
 }
 
-/// A control point's tangent, and what follows it.
+/// A control point's tangent and the segment that follows it.
 #[derive(Clone, Copy, Default)]
 struct Knot {
-    /// Of the straight line to the next point.
+    /// Slope of the straight line to the next point.
     secant: f64,
     tangent: f64,
-    /// The stretch to the next point.
+    /// The segment to the next point.
     piece: Segment,
 }
 
-/// Curves of so many points need no memory beside the stack: evaluating a block then asks for none.
+/// Curves with at most this number of points are evaluated without heap memory.
 const FEW: usize = 32;
 
 impl Curve {
-    /// Works out `knots`, one for each point. The last has no stretch.
+    /// Computes `knots`, one for each point. The last one has no segment.
     fn tie(&self, knots: &mut [Knot]) {
         let points = &self.points;
         let count = points.len();

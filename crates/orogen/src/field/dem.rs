@@ -1,4 +1,4 @@
-//! A real place, from a file.
+//! Heights from a digital elevation model in a file.
 
 use crate::dem::file_ref::FileRef;
 use crate::format::dem::Georeference;
@@ -8,54 +8,57 @@ use crate::resample::{self, NOWHERE};
 use orogen_noise::Points;
 
 choice! {
-    /// What of a file of heights is shown.
+    /// What the field shows of a file of heights.
     pub enum Shows {
         /// The heights, in metres.
         Height = "height",
-        /// 1 over the file's ground, 0 beyond it, between them over the width of `fade`: a mask for mixing it with invented terrain.
+        /// A mask of the file's extent: 1 inside, 0 outside, with a transition of width `fade`. Use it to mix the file with generated
+        /// terrain.
         Inside = "inside",
     }
 }
 
 op! {
-    /// The heights of a real place: a digital elevation model from a file, as a field that any recipe can go on from.
+    /// Heights of a digital elevation model (DEM), read from a file.
     ///
-    /// Read are GeoTIFF (.tif), ESRI ASCII grids (.asc), SRTM tiles (.hgt), virtual rasters (.vrt), Zarr arrays, folders of tiles (.tif, .hgt or .asc),
-    /// OpenEXR (.exr), NumPy arrays (.npy), 16-bit grey pictures (.png) and headerless samples (.r16, .r32), the last five with the measures that they
-    /// lack beside them: in a file NAME.json or NAME.toml (`width`, `height`, `cell`, `low`, `high`, `byte_order`, `nodata`), a world file and a .prj. What is in the file, not its name, decides which solutions of earlier runs are still
-    /// good. It is held in memory.
+    /// Supported formats: GeoTIFF (.tif), ESRI ASCII grid (.asc), SRTM tile (.hgt), virtual raster (.vrt), Zarr array, folder of tiles
+    /// (.tif, .hgt or .asc), OpenEXR (.exr), NumPy array (.npy), 16-bit grey PNG (.png) and headerless samples (.r16, .r32). Files of the
+    /// last five kinds lack metadata: it is read from NAME.json or NAME.toml beside the file (`width`, `height`, `cell`, `low`, `high`,
+    /// `byte_order`, `nodata`), from a world file and from a .prj. Stored solutions are reused as long as the content of the file is the
+    /// same; its name does not matter. The heights are kept in memory.
     ///
-    /// The file's first sample, its north-west corner, stands at `at`. Between its samples the interpolating cubic is read (Catmull
-    /// and Rom 1974). Degrees become metres by the length of a degree at the file's middle latitude (WGS 84), one factor each way for
-    /// the whole file; cells that are not square are laid on squares of their shorter side. Samples without a height are filled
-    /// smoothly from around them. Beyond the file's edges the border's heights go on; with a `fade` they pass into `outside`.
+    /// The file's first sample, its north-west corner, is placed at `at`. Between samples the heights are interpolated by a cubic (Catmull
+    /// and Rom 1974). Geographic coordinates are converted to metres with the length of a degree at the file's middle latitude (WGS 84),
+    /// with one factor per axis for the whole file. Cells that are not square are resampled to squares of their shorter side. Nodata
+    /// samples are filled smoothly from their surroundings. Beyond the file's extent the heights of its border continue; with a `fade` they
+    /// change gradually to `outside`.
     pub struct Dem = "dem", field, revision 1;
     params {
-        /// The file; a relative path counts from the folder of the recipe.
+        /// Path of the file. A relative path is resolved against the folder of the recipe.
         path: FileRef = FileRef::default();
-        /// The band of a file of several, from 1; 0 is the only one.
+        /// Band of a multi-band file, counted from 1. 0 stands for the only band of a single-band file.
         band: u32 = 0, range 0.0 to 65535.0;
-        /// What is shown: the heights, or where there are any.
+        /// What the field shows: heights, or a mask of the file's extent.
         shows: Shows = Shows::Height;
-        /// Where the file's north-west corner stands, east and south.
+        /// Position of the file's north-west corner: metres east, metres south.
         at: [f64; 2] = [0.0, 0.0], unit "m", range -1e9 to 1e9;
-        /// Factor of the heights.
+        /// Factor applied to the heights.
         scale: f64 = 1.0, range -1e4 to 1e4;
-        /// Added to the heights after that.
+        /// Value added to the heights after `scale`.
         offset: f64 = 0.0, unit "m", range -1e6 to 1e6;
-        /// Height far outside the file, where there is a `fade`.
+        /// Height far outside the file's extent. It is used only if `fade` is above 0.
         outside: f64 = 0.0, unit "m", range -1e6 to 1e6;
-        /// Over how far the border's heights pass into `outside`; 0 lets them go on for ever.
+        /// Distance over which the border's heights change to `outside`. With 0 the border's heights continue without end.
         fade: f64 = 0.0, unit "m", range 0.0 to 1e9;
     }
     check |dem| match dem.path.is_empty() {
-        true => Err(("path", "`path` names no file: write the path of a .tif, .asc, .hgt, .vrt, .exr, .npy, .png, .r16 or .r32, of a folder of tiles or of a Zarr array".to_string())),
+        true => Err(("path", "`path` is empty; write the path of a .tif, .asc, .hgt, .vrt, .exr, .npy, .png, .r16 or .r32, of a folder of tiles or of a Zarr array".to_string())),
         false => Ok(()),
     };
 }
 
 impl Dem {
-    /// How far towards `outside` a position in the file's own metres is, 0 to 1.
+    /// The share of `outside`, 0 to 1, at a position in the file's own metres.
     fn beyond(&self, x: f64, y: f64, [width, height]: [f64; 2]) -> f64 {
         let past = |at: f64, end: f64| (-at).max(at - end).max(0.0);
         let (east, south) = (past(x, width), past(y, height));

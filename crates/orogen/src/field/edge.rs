@@ -1,4 +1,4 @@
-//! Falling off towards the world's edges.
+//! Falloff towards the world's edges.
 
 use super::positions::{each, smoothstep};
 use crate::op::{Field, Inputs, WorldParams};
@@ -7,20 +7,20 @@ use orogen_noise::Points;
 choice! {
     /// How two edges meet in a corner.
     pub enum Corners {
-        /// The corner is rounded: distance is measured to a rounded rectangle.
+        /// Distance is measured to a rectangle with rounded corners.
         Round = "round",
-        /// The nearest edge alone counts.
+        /// Distance is measured to the nearest edge.
         Square = "square",
     }
 }
 
 op! {
-    /// 0 at the world's edges, rising smoothly to 1 at `width` from them.
+    /// A mask that is 0 at the world's edges and rises smoothly to 1 at the distance `width` from them.
     ///
     /// Multiply a height by it, or use it as a mask, to make an island of a bounded world.
     pub struct Edge = "edge", field, revision 1;
     params {
-        /// Distance from the edges over which it rises.
+        /// Distance from the edges at which the mask reaches 1.
         width: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
         /// How edges meet in the corners.
         corners: Corners = Corners::Round;

@@ -5,10 +5,10 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
 op! {
-    /// Fractional Brownian motion: octaves of noise summed, in -1 ..= 1.
+    /// Fractional Brownian motion (fBm): a sum of octaves of noise, in -1 ..= 1.
     ///
-    /// sum of gain^i n_i(p lacunarity^i / wavelength), divided by the sum of the amplitudes. Every octave has a seed and an
-    /// offset of its own. Mandelbrot and Van Ness 1968; Musgrave 1989.
+    /// The sum of gain^i n_i(p lacunarity^i / wavelength), divided by the sum of the amplitudes. Each octave has its own seed and offset.
+    /// Mandelbrot and Van Ness 1968; Musgrave 1989.
     pub struct Fbm = "fbm", field, revision 1;
     octaves;
 }

@@ -1,4 +1,4 @@
-//! Gullies down the slopes of any field.
+//! Gullies on the slopes of any source.
 
 use super::basis::fill;
 use super::powers::raise;
@@ -6,53 +6,54 @@ use crate::op::{Field, Inputs, Stencil, WorldParams};
 use orogen_noise::{Phacelle, Points};
 
 op! {
-    /// The source with gullies running down its slopes: the erosion filter, as a field.
+    /// The source with gullies running down its slopes, made by a field without simulation (erosion filter).
     ///
-    /// Phacelle noise draws stripes down the slope; the flank of each turns the stripes of the next octave, so that small gullies
-    /// branch off large ones. With g the slope, m the mask and t the fade, starting at (slope of the source, softened |g| `onset`,
-    /// `fade`), an octave of wavelength w and strength s adds s w mix(t, c `weight`, m), c and n being the cosine and sine of the
-    /// stripes along g; then g -= sign(n) 2 pi s `weight` side, t = what was added, m = (1 - (1 - m)^`detail`) * softened |n| `sharpness`. It
-    /// knows nothing of other places, so its gullies have hollows that no water leaves, and valleys do not gather their
-    /// rivers: some steps of `stream-power` mend both. The slope is that between positions `step` metres to each side, and the source
-    /// is made at these, too: that is five times, each as fast as it is by itself. What the source is, is all the same: a field, a
-    /// filter, a solver. R. Skovbo Johansen, "Phacelle noise" (2025).
+    /// Phacelle noise makes stripes that run down the slope. The flanks of the stripes turn the stripes of the next octave, so small
+    /// gullies branch off large ones. Let g be the slope, m the mask and t the fade; they start as the slope of the source, softened |g|
+    /// `onset` and `fade`. An octave of wavelength w and strength s adds s w mix(t, c `weight`, m), where c and n are the cosine and sine
+    /// of the stripes along g. Then g -= sign(n) 2 pi s `weight` side, t becomes the added value, and m = (1 - (1 - m)^`detail`) * softened
+    /// |n| `sharpness`. The method is local: some gullies end in closed depressions, and valleys do not collect tributaries. A few steps of
+    /// `stream-power` after it correct both. The slope is taken between positions `step` metres to each side, so the source is evaluated
+    /// five times per sample. The source may be a field, a filter or a solver. R. Skovbo Johansen, "Phacelle noise" (2025).
     pub struct Gullies = "gullies", field, revision 1;
     inputs {
         /// The heights, in metres.
         source: required,
-        /// -1 where gullies end in a valley's floor, 1 where they end in a crest, 0 in between (as everywhere, if left out): what shows where
-        /// it is too flat for gullies.
+        /// Value shown where the ground is too flat for gullies: -1 where gullies end in a valley floor, 1 where they end on a crest, 0 in
+        /// between. Default: 0 everywhere.
         fade: optional,
     }
     params {
-        /// Seed of its own, hashed with the world's: two nodes of one seed are the same noise.
+        /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
         /// Distance between the largest gullies.
         wavelength: f64 = 1500.0, unit "m", range 1e-3 to 1e9;
-        /// How many octaves, each finer than the one before.
+        /// Number of octaves. Each octave is finer than the one before.
         octaves: u32 = 5, range 1.0 to 16.0;
-        /// Frequency ratio from one octave to the next.
+        /// Frequency ratio between successive octaves.
         lacunarity: f64 = 2.0, range 1.0 to 16.0;
-        /// Ratio of the depth from one octave to the next.
+        /// Depth ratio between successive octaves.
         gain: f64 = 0.5, range 0.0 to 1.0;
-        /// Depth of the largest gullies, in their wavelengths.
+        /// Depth of the largest gullies, as a multiple of their wavelength.
         strength: f64 = 0.22, range 0.0 to 10.0;
-        /// How much of the strength is gullies; the rest fades crests up and valleys down. More also turns finer gullies more.
+        /// Share of the strength that goes into gullies; the rest raises crests and lowers valleys according to the fade. Higher values
+        /// also turn finer gullies more.
         weight: f64 = 0.5, range 0.0 to 1.0;
-        /// How far finer gullies reach onto the crests and floors of larger ones: 1 only their flanks, 3 nearly everywhere.
+        /// How far finer gullies extend onto the crests and floors of larger ones: with 1 they cover only the flanks, with 3 nearly
+        /// everything.
         detail: f64 = 1.5, range 0.1 to 10.0;
-        /// How soon gullies begin as ground becomes steeper: they have their whole depth where the slope is 1.5 / `onset`.
+        /// How quickly gullies set in with steepness: they have their full depth where the slope is 1.5 / `onset`.
         onset: f64 = 3.0, range 0.01 to 1000.0;
-        /// How soon finer gullies begin on the flanks of larger ones: 1.25 leaves crests and floors round, more makes them sharp.
+        /// How quickly finer gullies set in on the flanks of larger ones: 1.25 gives round crests and floors, higher values make them
+        /// sharp.
         sharpness: f64 = 1.25, range 0.01 to 1000.0;
-        /// The slope that the finer gullies take the ground to have; 0 takes the true one. Finer gullies branch off all the more the
-        /// gentler it is.
+        /// Slope that finer gullies assume for the ground; 0 uses the true slope. The lower the value, the more finer gullies branch off.
         assumed_slope: f64 = 0.7, range 0.0 to 100.0;
-        /// Side of the noise's cells in wavelengths: how far a gully goes before it may end.
+        /// Side of the noise's cells in wavelengths. It limits the length of a gully.
         cell: f64 = 0.7, range 0.1 to 10.0;
-        /// How far stripes that cancel each other are made deeper, 0 (not at all) to 1 (to full depth).
+        /// How far stripes that cancel each other are restored in depth, from 0 (not at all) to 1 (to full depth).
         normalisation: f64 = 0.5, range 0.0 to 1.0;
-        /// How far to each side the source is read for its slope.
+        /// Sampling distance for the source's slope, to each side.
         step: f64 = 30.0, unit "m", range 1e-3 to 1e6;
     }
 }
@@ -102,7 +103,7 @@ impl Field for Gullies {
     }
 }
 
-/// Samples worked on together: few enough to stay on the stack.
+/// Samples processed together: few enough to stay on the stack.
 const CHUNK: usize = 256;
 
 impl Gullies {
@@ -172,7 +173,7 @@ impl Gullies {
     }
 }
 
-/// From 0 at 0, at first as a square, to 1 at 1.5 and beyond, where it comes in level.
+/// A smooth step from 0 at 0, quadratic at first, to 1 at 1.5 and beyond, where its slope is 0.
 fn soft(t: f32) -> f32 {
     let started = if t < 1.0 { 0.5 * t * t } else { t - 0.5 };
     let left = (1.0 - started).max(0.0);

@@ -5,15 +5,15 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
 op! {
-    /// Hybrid multifractal: an octave counts as much as the product of those before it, so valleys stay smooth and heights grow
-    /// rough. In -1 ..= 1.
+    /// Hybrid multifractal: each octave is scaled by the product of those before it, so valleys stay smooth and high ground is rough. In -1
+    /// ..= 1.
     ///
-    /// s_i = gain^i (n_i + offset); height += w s_i; w = clamp(w s_i, 0, 1), starting at 1. Divided by the greatest the sum could be, which it
-    /// seldom comes near: `normalise` or `remap` it. Musgrave in Ebert et al., "Texturing and Modeling" (1994).
+    /// s_i = gain^i (n_i + offset); height += w s_i; w = clamp(w s_i, 0, 1), starting at 1. The result is divided by the largest possible
+    /// sum, which is rarely approached: use `normalise` or `remap` after it. Musgrave in Ebert et al., "Texturing and Modeling" (1994).
     pub struct Hybrid = "hybrid", field, revision 1;
     octaves;
     params {
-        /// Added to the noise: at 0.7 lowlands are plains; higher, detail is everywhere.
+        /// Value added to the noise. With 0.7 lowlands are plains; with higher values detail is everywhere.
         offset: f64 = 0.7, range -4.0 to 4.0;
     }
 }

@@ -1,4 +1,4 @@
-//! A picture, laid over the ground.
+//! A grey picture as a field.
 
 use super::positions::each;
 use crate::dem::file_ref::Picture;
@@ -8,31 +8,32 @@ use crate::resample;
 use orogen_noise::Points;
 
 op! {
-    /// A grey picture as a field: 0 where it is black, 1 where it is white. Made to be a mask: a painted coast, a forest, a road.
+    /// A grey picture as a field: black is 0, white is 1. Use it as a mask, for example a painted coast, a forest or a road.
     ///
-    /// Read are .png of 8 or 16 bits of grey. Pixels are square and stand at points: the first, in the north-west corner, at `at`, the last of a row
-    /// `width` metres east of it. Between them the interpolating cubic is read (Catmull and Rom 1974), cut off at 0 and 1. What is in the
-    /// file, not its name, decides which solutions of earlier runs are still good. It is held in memory. Heights come from `dem`.
+    /// Supported format: grey PNG (.png) of 8 or 16 bits. Pixels are square and represent points: the first one, in the north-west corner,
+    /// is placed at `at`, the last one of a row `width` metres east of it. Between pixels the values are interpolated by a cubic (Catmull
+    /// and Rom 1974) and limited to 0 ..= 1. Stored solutions are reused as long as the content of the file is the same; its name does not
+    /// matter. The picture is kept in memory. For heights use `dem`.
     pub struct Image = "image", field, revision 1;
     params {
-        /// The file; a relative path counts from the folder of the recipe.
+        /// Path of the file. A relative path is resolved against the folder of the recipe.
         path: Picture = Picture::default();
-        /// Where the picture's north-west corner stands, east and south.
+        /// Position of the picture's north-west corner: metres east, metres south.
         at: [f64; 2] = [0.0, 0.0], unit "m", range -1e9 to 1e9;
-        /// How wide the picture is laid out.
+        /// Width of the picture on the ground.
         width: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
-        /// The value beyond the picture.
+        /// Value outside the picture.
         outside: f64 = 0.0, range 0.0 to 1.0;
     }
     check |image| match image.path.0.is_empty() {
-        true => Err(("path", "`path` names no file: write the path of a .png of greys".to_string())),
+        true => Err(("path", "`path` is empty; write the path of a grey .png file".to_string())),
         false => Ok(()),
     };
 }
 
 impl Field for Image {
     fn eval(&self, at: &Points, _: &Inputs, _: &WorldParams, out: &mut [f32]) {
-        // A world is not opened without its files; a plan that runs without a world has nothing to show.
+        // A world is not opened without its files. A plan that runs without a world has no values here.
         let Some(picture) = self.path.0.ground() else { return out.fill(self.outside as f32) };
         let columns = (picture.grid.width() as f64 - 1.0).max(1.0);
         let last = [picture.grid.width(), picture.grid.height()].map(|pixels| pixels as f64 - 1.0);

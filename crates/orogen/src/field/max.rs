@@ -1,23 +1,23 @@
-//! The greater of two, with a rounded seam if asked.
+//! The maximum of two fields, with an optional rounded seam.
 
 use crate::expression::function::Function;
 use crate::expression::term::Term;
 use crate::op::Field;
 
 op! {
-    /// The greater of a and b; with `smooth` above 0 the seam between them is rounded.
+    /// The maximum of a and b. With `smooth` above 0 the seam between them is rounded.
     ///
-    /// The rounded form is the quadratic polynomial: with h = max(0, smooth - |a - b|) / smooth, the result is
-    /// max(a, b) + h^2 smooth / 4 (Quilez, "Smooth minimum").
+    /// Rounded form (quadratic polynomial): max(a, b) + h^2 smooth / 4 with h = max(0, smooth - |a - b|) / smooth (Quilez, "Smooth
+    /// minimum").
     pub struct Max = "max", field, revision 1;
     inputs {
-        /// One.
+        /// First value.
         a: required,
-        /// The other.
+        /// Second value.
         b: required,
     }
     params {
-        /// Difference of the two up to which their seam is rounded, in their unit.
+        /// Difference of a and b below which the seam is rounded, in their unit.
         smooth: f64 = 0.0, range 0.0 to 1e9;
     }
 }

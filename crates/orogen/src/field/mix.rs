@@ -1,20 +1,20 @@
-//! From one to another.
+//! Linear interpolation between two fields.
 
 use crate::expression::function::Function;
 use crate::expression::term::Term;
 use crate::op::Field;
 
 op! {
-    /// a where `amount` is 0, b where it is 1, and in between in proportion: a + (b - a) * amount.
+    /// Linear interpolation from a to b: a + (b - a) * amount.
     ///
-    /// The amount is cut to 0 ..= 1.
+    /// The amount is limited to 0 ..= 1.
     pub struct Mix = "mix", field, revision 1;
     inputs {
-        /// Shows where the amount is 0.
+        /// Result where the amount is 0.
         a: required,
-        /// Shows where the amount is 1.
+        /// Result where the amount is 1.
         b: required,
-        /// How much of b.
+        /// Share of b, 0 to 1.
         amount: required,
     }
 }

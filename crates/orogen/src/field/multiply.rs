@@ -1,16 +1,16 @@
-//! Product of two.
+//! Product of two fields.
 
 use crate::expression::function::Function;
 use crate::expression::term::Term;
 use crate::op::Field;
 
 op! {
-    /// a * b: scales one by the other.
+    /// The product a * b.
     pub struct Multiply = "multiply", field, revision 1;
     inputs {
-        /// One.
+        /// First factor.
         a: required,
-        /// The other.
+        /// Second factor.
         b: required,
     }
 }

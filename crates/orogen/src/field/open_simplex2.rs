@@ -5,11 +5,11 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Basis, Points};
 
 choice! {
-    /// How far the corners of OpenSimplex2 reach.
+    /// Variant of OpenSimplex2.
     pub enum Smoothness {
-        /// As few corners to a sample as there can be.
+        /// The smallest number of lattice points per sample.
         Fast = "fast",
-        /// Wider, rounder kernels and more of them: softer noise.
+        /// More lattice points per sample with wider, rounder kernels: softer noise.
         Smooth = "smooth",
     }
 }
@@ -24,16 +24,16 @@ impl Smoothness {
 }
 
 op! {
-    /// OpenSimplex2 noise, in -1 ..= 1: Simplex noise with more directions, 24 in the plane, and a smooth variant.
+    /// OpenSimplex2 noise, in -1 ..= 1: Simplex noise with 24 gradient directions, and a smooth variant.
     ///
-    /// K. Spencer's lattice, gradients and wide kernels, over our own hash.
+    /// Lattice, gradients and wide kernels by K. Spencer, with the engine's own hash.
     pub struct OpenSimplex2 = "opensimplex2", field, revision 1;
     params {
-        /// Seed of its own, hashed with the world's: two nodes of one seed are the same noise.
+        /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
-        /// Side of the squares that the triangles are skewed from.
+        /// Side of the squares that are skewed into the triangular lattice.
         wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
-        /// How far corners reach.
+        /// Fast or smooth variant.
         smoothness: Smoothness = Smoothness::Fast;
     }
 }

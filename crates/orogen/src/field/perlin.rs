@@ -5,12 +5,12 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
-    /// Perlin's gradient noise (2002) over a hashed lattice, in -1 ..= 1: smooth, without repetition.
+    /// Perlin's gradient noise (2002) on a hashed lattice, in -1 ..= 1. It is smooth and has no period.
     pub struct Perlin = "perlin", field, revision 1;
     params {
-        /// Seed of its own, hashed with the world's: two nodes of one seed are the same noise.
+        /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
-        /// Distance between lattice points: about that between hills.
+        /// Distance between lattice points, which is about the distance between hills.
         wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
     }
 }

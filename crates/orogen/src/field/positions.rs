@@ -1,4 +1,4 @@
-//! Going through positions, whichever way they are given.
+//! Iteration over positions in every representation.
 
 use crate::resample::NOWHERE;
 use orogen_noise::Points;

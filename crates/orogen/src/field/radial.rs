@@ -1,20 +1,20 @@
-//! A round hill: the simplest island.
+//! A round hill, the simplest island.
 
 use super::positions::{each, smoothstep};
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
-    /// 1 around a centre, falling smoothly to 0 at `radius`.
+    /// A round hill: 1 at the centre, falling smoothly to 0 at `radius`.
     ///
-    /// The fall is Hermite's smooth step 3t^2 - 2t^3 of t = (radius - distance) / (radius - inner).
+    /// The falloff is the smoothstep 3t^2 - 2t^3 of t = (radius - distance) / (radius - inner).
     pub struct Radial = "radial", field, revision 1;
     params {
-        /// The centre, east and south.
+        /// Position of the centre: metres east, metres south.
         center: [f64; 2] = [0.0, 0.0], unit "m", range -1e12 to 1e12;
-        /// Distance from the centre from which on it is 0.
+        /// Distance from the centre beyond which the value is 0.
         radius: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
-        /// Distance from the centre up to which it is 1; less than the radius.
+        /// Distance from the centre up to which the value is 1; it must be less than `radius`.
         inner: f64 = 0.0, unit "m", range 0.0 to 1e9;
     }
     check |op| match op.inner < op.radius {

@@ -5,16 +5,16 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
-    /// A plane: 0 at the origin, rising by 1 every `length` metres in the direction of `azimuth`.
+    /// An inclined plane: 0 at `origin`, rising by 1 every `length` metres in the direction `azimuth`.
     ///
-    /// With `azimuth = 90` it is x / length (east), with 180 it is y / length (south).
+    /// With `azimuth = 90` the value is x / length (rising to the east), with 180 it is y / length (rising to the south).
     pub struct Ramp = "ramp", field, revision 1;
     params {
-        /// Direction in which the ramp rises, clockwise from north.
+        /// Direction of the rise, clockwise from north.
         azimuth: f64 = 90.0, unit "deg", range -360.0 to 360.0;
-        /// Distance over which it rises by 1.
+        /// Distance over which the value rises by 1.
         length: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
-        /// Where it is 0, east and south.
+        /// Position where the value is 0: metres east, metres south.
         origin: [f64; 2] = [0.0, 0.0], unit "m", range -1e12 to 1e12;
     }
 }

@@ -1,21 +1,21 @@
-//! One range stretched to another.
+//! Maps one range to another.
 
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
-    /// The source with the range `from` stretched linearly to the range `to`; [1, 0] as either turns it upside down.
+    /// The source with the range `from` mapped linearly to the range `to`. With [1, 0] as either range the source is inverted.
     pub struct Remap = "remap", field, revision 1;
     inputs {
-        /// What is stretched.
+        /// The values to map.
         source: required,
     }
     params {
-        /// The two values of the source that become the two of `to`; they must differ.
+        /// Two source values that are mapped to the two values of `to`. They must differ.
         from: [f64; 2] = [-1.0, 1.0], range -1e9 to 1e9;
-        /// What they become.
+        /// The values that they are mapped to.
         to: [f64; 2] = [0.0, 1.0], range -1e9 to 1e9;
-        /// Whether values beyond `from` are cut off, or continue the line.
+        /// Whether results beyond `to` are limited to it. Otherwise the mapping continues linearly.
         clamp: bool = false;
     }
     check |op| match op.from[0] != op.from[1] && (op.from[1] - op.from[0]).abs() >= 1e-9 {

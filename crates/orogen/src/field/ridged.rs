@@ -5,7 +5,7 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
 op! {
-    /// Ridges: octaves of 1 - 2 |noise| summed, in -1 ..= 1. Sharp crests, round valleys. Musgrave 1994.
+    /// Ridged noise: the sum of octaves of 1 - 2 |noise|, in -1 ..= 1. It gives sharp crests and round valleys. Musgrave 1994.
     pub struct Ridged = "ridged", field, revision 1;
     octaves;
 }

@@ -5,24 +5,23 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
-    /// A mask: 1 where a drainage area lies within a range, falling to 0 below and above it, smoothly in its logarithm.
+    /// A mask by drainage area: 1 inside a range, falling smoothly to 0 below and above it, on a logarithmic scale.
     ///
-    /// For the layer `flow` of `drainage`, `rivers`, `stream-power` or `local-stream-power`: brooks, rivers, or the crests where water only begins to
-    /// gather.
+    /// Use it with the layer `flow` of `drainage`, `rivers`, `stream-power` or `local-stream-power` to select brooks, rivers or crests.
     pub struct SelectFlow = "select-flow", field, revision 1;
     inputs {
-        /// The drainage areas.
+        /// Drainage areas, in m^2.
         source: required,
     }
     params {
-        /// The smallest and the largest area that are wholly selected.
+        /// Smallest and largest drainage area where the mask is 1.
         range: [f64; 2] = [1e6, 1e18], unit "m^2", range 0.0 to 1e18;
-        /// In how many powers of ten below and above the range it falls to 0; 0 is a sharp end.
+        /// Width of the transition below and above the range, in powers of ten. 0 gives a sharp boundary.
         falloff: [f64; 2] = [1.0, 1.0], range 0.0 to 20.0;
     }
     check |op| match op.range[0] <= op.range[1] {
         true => Ok(()),
-        false => Err(("range", format!("the first number of `range` ({}) must not be above the second ({})", op.range[0], op.range[1]))),
+        false => Err(("range", format!("the first value of `range` ({}) must not be greater than the second ({})", op.range[0], op.range[1]))),
     };
 }
 

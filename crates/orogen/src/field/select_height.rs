@@ -5,23 +5,23 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
-    /// A mask: 1 where the source lies within a range, falling smoothly to 0 below and above it.
+    /// A mask by height: 1 inside a range of values, falling smoothly to 0 below and above it.
     ///
-    /// For heights, or any other values: the layer of a filter or solver, a noise.
+    /// The source may have any unit: heights, a layer of a filter or solver, or noise.
     pub struct SelectHeight = "select-height", field, revision 1;
     inputs {
-        /// What is selected by: heights.
+        /// The values to select by, for example heights.
         source: required,
     }
     params {
-        /// The lowest and the highest value that are wholly selected, in the source's unit.
+        /// Lowest and highest value where the mask is 1, in the source's unit.
         range: [f64; 2] = [500.0, 1500.0], range -1e9 to 1e9;
-        /// How far below and above the range it falls to 0, in the source's unit; 0 is a sharp end.
+        /// Width of the transition below and above the range, in the source's unit. 0 gives a sharp boundary.
         falloff: [f64; 2] = [100.0, 100.0], range 0.0 to 1e9;
     }
     check |op| match op.range[0] <= op.range[1] {
         true => Ok(()),
-        false => Err(("range", format!("the first number of `range` ({}) must not be above the second ({})", op.range[0], op.range[1]))),
+        false => Err(("range", format!("the first value of `range` ({}) must not be greater than the second ({})", op.range[0], op.range[1]))),
     };
 }
 

@@ -5,15 +5,15 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Basis, Points};
 
 op! {
-    /// Perlin's Simplex noise (2001), in -1 ..= 1: gradients on the corners of triangles, so no lines along the axes.
+    /// Perlin's Simplex noise (2001), in -1 ..= 1: gradients at the corners of a triangular lattice. It has no artefacts along the axes.
     ///
     /// Features are about 0.7 times as wide as those of `perlin` at the same wavelength. Gustavson, "Simplex noise demystified"
     /// (2005).
     pub struct Simplex = "simplex", field, revision 1;
     params {
-        /// Seed of its own, hashed with the world's: two nodes of one seed are the same noise.
+        /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
-        /// Side of the squares that the triangles are skewed from.
+        /// Side of the squares that are skewed into the triangular lattice.
         wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
     }
 }

@@ -1,24 +1,23 @@
-//! Steps: mesas and rice fields.
+//! Terraces, for mesas and rice fields.
 
 use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
-    /// The source pressed into steps: level treads with smooth risers between them.
+    /// The source quantised into terraces: level treads with smooth risers between them.
     ///
-    /// With t the share of the way from one step to the next, the riser takes the middle (1 - sharpness) of it as a smooth
-    /// step, so 0 leaves gentle waves and 1 makes cliffs.
+    /// Within each step the riser takes the middle share (1 - `sharpness`) as a smoothstep: 0 gives gentle waves, 1 gives vertical cliffs.
     pub struct Terrace = "terrace", field, revision 1;
     inputs {
-        /// What is stepped.
+        /// The values to terrace.
         source: required,
     }
     params {
         /// Height of a step, in the source's unit.
         step: f64 = 0.1, range 1e-6 to 1e9;
-        /// How steep the risers are.
+        /// Steepness of the risers, from 0 (gentle) to 1 (vertical).
         sharpness: f64 = 0.7, range 0.0 to 1.0;
-        /// A height that lies on a tread, in the source's unit.
+        /// Height of one of the treads, in the source's unit.
         offset: f64 = 0.0, range -1e9 to 1e9;
     }
 }

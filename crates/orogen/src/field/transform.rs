@@ -1,24 +1,24 @@
-//! Looking elsewhere on the infinite map.
+//! Translation, scaling and rotation of a field.
 
 use super::ramp::sin_cos_degrees;
 use crate::op::{Affine, CoordMap, Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
-    /// The source moved, scaled and turned: the value at p is the source's at turn(p) / scale + offset.
+    /// The source translated, scaled and rotated: the value at p is the source's value at rotate(p) / scale + offset.
     ///
-    /// Offset and scale keep the fast path of lattice noise; a turn leaves it.
+    /// Offset and scale keep the fast path of lattice noise; a rotation does not.
     pub struct Transform = "transform", field, revision 1;
     inputs {
-        /// What is looked at.
+        /// The field to transform.
         source: required,
     }
     params {
-        /// How far east and south of the origin to look.
+        /// Offset of the position that is read: metres east, metres south.
         offset: [f64; 2] = [0.0, 0.0], unit "m", range -1e12 to 1e12;
-        /// How many times larger the source's features appear.
+        /// Factor by which the source's features become larger.
         scale: f64 = 1.0, range 1e-6 to 1e6;
-        /// Angle by which the source appears turned, clockwise as seen on a map.
+        /// Angle by which the source appears rotated, clockwise on a map.
         angle: f64 = 0.0, unit "deg", range -360.0 to 360.0;
     }
 }

@@ -5,13 +5,13 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 choice! {
-    /// How value noise blends from one lattice point to the next.
+    /// Interpolation between the lattice points of value noise.
     pub enum Fade {
-        /// 6 t^5 - 15 t^4 + 10 t^3: no creases in the slope.
+        /// 6 t^5 - 15 t^4 + 10 t^3: continuous first and second derivatives.
         Quintic = "quintic",
-        /// 3 t^2 - 2 t^3: no creases.
+        /// 3 t^2 - 2 t^3: continuous first derivative.
         Cubic = "cubic",
-        /// t: creases along the lattice.
+        /// t: linear interpolation, with creases along the lattice lines.
         Linear = "linear",
     }
 }
@@ -27,14 +27,14 @@ impl Fade {
 }
 
 op! {
-    /// Value noise: random values in -1 ..= 1 on a square lattice, blended in between.
+    /// Value noise: random values in -1 ..= 1 on a square lattice, interpolated between the lattice points.
     pub struct Value = "value", field, revision 1;
     params {
-        /// Seed of its own, hashed with the world's: two nodes of one seed are the same noise.
+        /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
         /// Distance between lattice points.
         wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
-        /// The blend from one lattice point to the next.
+        /// Interpolation between lattice points.
         fade: Fade = Fade::Quintic;
     }
 }

@@ -1,24 +1,24 @@
-//! Domain warp: the source read elsewhere.
+//! Domain warp: reads the source at displaced positions.
 
 use crate::op::{CoordMap, Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
-    /// Domain warp: the value at p is the source's at p + strength * (x, y).
+    /// Domain warp: the value at p is the source's value at p + strength * (x, y).
     ///
-    /// `x` and `y` are usually noises in -1 ..= 1; displacements beyond `strength` along an axis are cut to it, so that the
-    /// engine knows how far the source is read. Source: Perlin 1985 ("An Image Synthesizer"); Quilez, "Domain warping".
+    /// `x` and `y` are usually noise in -1 ..= 1. Displacements beyond `strength` along an axis are limited to it, so that the engine knows
+    /// how far from p the source is read. Sources: Perlin 1985 ("An Image Synthesizer"); Quilez, "Domain warping".
     pub struct Warp = "warp", field, revision 1;
     inputs {
-        /// What is read elsewhere.
+        /// The field to warp.
         source: required,
-        /// Moves the reading east.
+        /// Displacement to the east, in units of `strength`.
         x: required,
-        /// Moves the reading south.
+        /// Displacement to the south, in units of `strength`.
         y: required,
     }
     params {
-        /// Distance moved where an input is 1.
+        /// Displacement where an input is 1.
         strength: f64 = 100.0, unit "m", range 0.0 to 1e6;
     }
 }

@@ -5,7 +5,7 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::{Kind, Points};
 
 choice! {
-    /// How slope damps an octave of weighted fbm; m is the squared slope so far, without unit.
+    /// How slope damps an octave of weighted fBm. m is the squared slope of the octaves so far (dimensionless).
     pub enum Falloff {
         /// 1 / (1 + k m).
         Reciprocal = "reciprocal",
@@ -13,7 +13,7 @@ choice! {
         Exponential = "exponential",
         /// 1 / (1 + k sqrt m).
         SquareRoot = "square-root",
-        /// 1 - smoothstep(k m): nothing beyond k m = 1.
+        /// 1 - smoothstep(k m): 0 beyond k m = 1.
         Smoothstep = "smoothstep",
     }
 }
@@ -30,17 +30,17 @@ impl Falloff {
 }
 
 op! {
-    /// Weighted fbm: octaves of noise, each damped by the slope of those before. Steep ground stays smooth, as if loose ground
-    /// had slid, and detail gathers on flats and crests. In -1 ..= 1.
+    /// Weighted fBm: octaves of noise, each damped by the slope of the octaves before it. Steep ground stays smooth; detail concentrates on
+    /// flats and crests. In -1 ..= 1.
     ///
-    /// d += (gain lacunarity)^i grad n_i; height += gain^i n_i falloff(k |d|^2), divided by the sum of the amplitudes.
-    /// Quilez, "Value noise derivatives" (2008).
+    /// d += (gain lacunarity)^i grad n_i; height += gain^i n_i falloff(k |d|^2), divided by the sum of the amplitudes. Quilez, "Value noise
+    /// derivatives" (2008).
     pub struct WeightedFbm = "weighted-fbm", field, revision 1;
     octaves;
     params {
-        /// How strongly slope damps the octaves above: 0 is plain fbm, 1 usual, 10 leaves bare pyramids.
+        /// How strongly slope damps later octaves: 0 gives plain fBm, 1 is typical, 10 leaves bare pyramids.
         k: f64 = 1.0, range 0.0 to 1e6;
-        /// The shape of the damping, for m the squared slope.
+        /// Damping function, with m the squared slope.
         falloff: Falloff = Falloff::Reciprocal;
     }
 }

@@ -5,10 +5,10 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 op! {
-    /// White noise: an independent value in -1 ..= 1 for every square of `wavelength`.
+    /// White noise: an independent value in -1 ..= 1 for each square of side `wavelength`.
     pub struct White = "white", field, revision 1;
     params {
-        /// Seed of its own, hashed with the world's: two nodes of one seed are the same noise.
+        /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
         /// Side of a square.
         wavelength: f64 = 10.0, unit "m", range 1e-3 to 1e9;

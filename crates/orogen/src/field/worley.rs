@@ -5,31 +5,31 @@ use crate::op::{Field, Inputs, WorldParams};
 use orogen_noise::Points;
 
 choice! {
-    /// What cellular noise tells about the points near a sample.
+    /// The feature of cellular noise: what is computed from the points near a sample.
     pub enum Feature {
-        /// The distance to the nearest point: dimples.
+        /// Distance to the nearest point (F1): dimples.
         F1 = "f1",
-        /// The distance to the second nearest point.
+        /// Distance to the second nearest point (F2).
         F2 = "f2",
-        /// F2 - F1: zero on the edges between cells.
+        /// F2 - F1: 0 on the edges between cells.
         Difference = "difference",
         /// F1 * F2.
         Product = "product",
-        /// A value of its own for each cell.
+        /// A constant random value for each cell.
         Value = "value",
-        /// The distance to the nearest edge between cells: cracks.
+        /// Distance to the nearest edge between cells: cracks.
         Edge = "edge",
     }
 }
 
 choice! {
-    /// How cellular noise measures distance.
+    /// Distance metric of cellular noise.
     pub enum Distance {
-        /// The straight line: round cells.
+        /// Straight-line distance: round cells.
         Euclidean = "euclidean",
-        /// The sum along the axes: cells with slanted sides.
+        /// Sum of the distances along the axes: cells with slanted sides.
         Manhattan = "manhattan",
-        /// The greatest along the axes: square cells.
+        /// Maximum of the distances along the axes: square cells.
         Chebyshev = "chebyshev",
     }
 }
@@ -58,22 +58,24 @@ impl Distance {
 }
 
 op! {
-    /// Worley's cellular noise, in -1 ..= 1: one point at random in each cell of a lattice, and how far the nearest of them are.
+    /// Worley's cellular noise, in -1 ..= 1: each cell of a lattice holds one random point, and the value follows from the distances to the
+    /// nearest points.
     ///
-    /// A distance d becomes 2 d / greatest - 1, with the greatest there can be for the feature: F1 is -1 on the points, `edge` -1 on
-    /// the edges between cells. No nearer point is ever missed, so there are no breaks. Worley, "A cellular texture basis function"
-    /// (1996).
+    /// A distance d becomes 2 d / maximum - 1, where the maximum is the largest possible distance of the feature. F1 is -1 at the points,
+    /// `edge` is -1 on the edges between cells. The search covers all cells that can hold a nearest point, so the noise has no
+    /// discontinuities from missed points. Worley, "A cellular texture basis function" (1996).
     pub struct Worley = "worley", field, revision 1;
     params {
-        /// Seed of its own, hashed with the world's: two nodes of one seed are the same noise.
+        /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
         seed: u64 = 0;
-        /// Side of a cell: about the distance between points.
+        /// Side of a cell, which is about the distance between points.
         wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
-        /// What is told about the points near a sample.
+        /// The feature to compute.
         feature: Feature = Feature::F1;
-        /// How distance is measured.
+        /// Distance metric.
         distance: Distance = Distance::Euclidean;
-        /// How much of its cell a point may be in along each axis: 0 is its middle, a regular lattice; 1 all of it.
+        /// Share of its cell, along each axis, in which a point is placed: 0 places it in the middle (a regular lattice), 1 anywhere in the
+        /// cell.
         jitter: f64 = 1.0, range 0.0 to 1.0;
     }
 }

@@ -65,7 +65,7 @@ pub fn check_folder(folder: &Path) -> Result<()> {
         Ok(_) => match Temporary::create(folder) {
             Ok(_) => Ok(()),
             // What /proc and its like answer: the folder is there, but nothing can be made in it.
-            Err(cause) if cause.kind() == io::ErrorKind::NotFound => Err(refuse("it takes no new files")),
+            Err(cause) if cause.kind() == io::ErrorKind::NotFound => Err(refuse("it does not allow new files")),
             Err(cause) => Err(Error::file("write into", folder, &cause)),
         },
         Err(cause) if cause.kind() == io::ErrorKind::NotFound => Err(refuse("the folder does not exist")),

@@ -78,7 +78,7 @@ const KINDS: &[Kind] = &[
 ];
 
 /// Kinds of text that people write by hand, and what a file of Orogen's says of itself.
-const SIGNED: &[(&str, &str)] = &[("json", "JSON of Orogen"), ("obj", "a mesh of Orogen")];
+const SIGNED: &[(&str, &str)] = &[("json", "JSON of Orogen"), ("obj", "an Orogen mesh")];
 
 /// Kinds without a signature: numbers and nothing else.
 const HEADERLESS: &[&str] = &["r16", "r32", "raw", "hgt"];

@@ -101,15 +101,15 @@ impl Output {
         // What is no file is refused or written through by whoever opens it.
         let Some(there) = FileId::of(path) else { return Ok(()) };
         if self.policy.inputs.iter().any(|input| input.is(&there)) {
-            return refuse("this command reads that file; name another one".into());
+            return refuse("this command reads that file; choose another name".into());
         }
         if self.policy.existing == Existing::Keep {
-            return refuse("it already exists, and --no-clobber replaces nothing; name another file".into());
+            return refuse("it already exists, and --no-clobber is set; choose another name".into());
         }
         let found = Found::at(path).map_err(|cause| Error::file("write", path, &cause))?;
         if found == Found::Recipe {
             return refuse(
-                "it is a recipe that was written or changed by hand, which is never replaced; name another place, or move it away"
+                "it is a recipe that was written or edited by hand, which is never replaced; choose another name, or move it away"
                     .into(),
             );
         }
@@ -119,7 +119,7 @@ impl Output {
         let new = new.and_then(|new| Found::at(new).ok());
         match found.differs(path, new) {
             Some(kind) => refuse(format!(
-                "there is {} in its place, not {kind}; name another file, or replace it with --force",
+                "it exists and is {}, not {kind}; choose another name, or replace it with --force",
                 found.name()
             )),
             None => Ok(()),
@@ -216,7 +216,7 @@ mod tests {
         let folder = Folder::new("meanwhile");
         for (existing, content, expect) in [
             (Existing::Keep, &b"\x93NUMPY"[..], "already exists"),
-            (Existing::SameKind, b"notes", "there is text in its place, not a NumPy array"),
+            (Existing::SameKind, b"notes", "it exists and is text, not a NumPy array"),
         ] {
             let path = folder.0.join("a.npy");
             let _ = fs::remove_file(&path);
@@ -239,7 +239,7 @@ mod tests {
         };
         write(b"\x93NUMPY 1").unwrap();
         write(b"\x93NUMPY 2").unwrap();
-        assert!(write(b"a text").unwrap_err().to_string().contains("there is a NumPy array in its place, not text"));
+        assert!(write(b"a text").unwrap_err().to_string().contains("it exists and is a NumPy array, not text"));
         assert_eq!(fs::read(folder.0.join("data")).unwrap(), b"\x93NUMPY 2");
     }
 }

@@ -6,13 +6,13 @@ use crate::op::{Context, Filter};
 use rayon::prelude::*;
 
 op! {
-    /// Gaussian blur: every sample becomes the mean of those around it, weighted by exp(-d^2 / 2 radius^2).
+    /// Gaussian blur: the mean of the surrounding samples, weighted by exp(-d^2 / 2 radius^2).
     ///
-    /// The kernel is cut at three radii and its weights sum to 1. Rows first, then columns; each sum has a fixed order. Cost
-    /// grows with radius / cell.
+    /// The kernel is truncated at three standard deviations and its weights sum to 1. It is applied to rows, then to columns; each sum has
+    /// a fixed order. The time grows with radius / cell.
     pub struct Blur = "blur", filter, revision 1;
     inputs {
-        /// What is blurred.
+        /// The values to blur.
         source: required,
     }
     params {
@@ -21,7 +21,7 @@ op! {
     }
 }
 
-/// Most samples a kernel may reach: what is wider would never end, and no memory holds its halo.
+/// Maximum reach of the kernel in samples. A wider kernel would take too long, and its halo would not fit in memory.
 const FARTHEST: f64 = 16_384.0;
 
 impl Blur {
@@ -91,13 +91,13 @@ impl Filter for Blur {
 /// Columns of a tile.
 const TILE: usize = 256;
 
-/// Rows of a band: so many that those which two bands share weigh little.
+/// Rows of a band: enough that the rows shared by two bands do not matter.
 fn band(reach: usize) -> usize {
     (4 * reach).max(256)
 }
 
-/// Each of `out` becomes the weighted sum of as many samples as there are weights, `step` apart, the first of them at its own place in
-/// `from`. Sums run in the order of the weights, many side by side in registers.
+/// Each value of `out` becomes the weighted sum of as many samples of `from` as there are weights, `step` apart, starting at the same
+/// index. Sums run in the order of the weights, many side by side in registers.
 fn weigh(out: &mut [f32], weights: &[f32], from: &[f32], step: usize) {
     const ABREAST: usize = 32;
     let (registers, rest) = out.as_chunks_mut::<ABREAST>();

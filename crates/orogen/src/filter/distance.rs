@@ -1,4 +1,4 @@
-//! How far it is to something.
+//! Distance to the nearest sample above a threshold.
 
 use crate::analysis::distance::nearest;
 use crate::analysis::selection::Selection;
@@ -7,30 +7,30 @@ use crate::grid::{Grid, Window};
 use crate::op::{Context, Filter};
 
 op! {
-    /// The distance to the nearest sample at which the source reaches a threshold, and a mask of what is near.
+    /// The distance to the nearest sample at which the source reaches a threshold, and a mask of its surroundings.
     ///
-    /// To a river (`drainage.flow` from an area on), a lake, the sea, another mask. Exact between samples (Meijster, Roerdink and Hesselink 2000), up to
-    /// `reach`; the window is made with so much more on each side. About 15 ns a sample, whatever the reach.
+    /// Use it for the distance to a river (`drainage.flow` above a threshold), a lake, the sea or a mask. Distances between samples are
+    /// exact (Meijster, Roerdink and Hesselink 2000) up to `reach`; the halo is `reach`. About 15 ns per sample, for any reach.
     pub struct Distance = "distance", filter, revision 1;
     inputs {
-        /// What is looked for.
+        /// The values to compare with `threshold`.
         source: required,
     }
     params {
-        /// The value of the source from which on a sample counts.
+        /// Samples with a value of at least this are targets.
         threshold: f64 = 0.5, range -1e18 to 1e18;
-        /// How far it looks; what is farther is so far.
+        /// Largest distance measured. Samples farther from any target get this distance.
         reach: f64 = 500.0, unit "m", range 0.0 to 1e6;
     }
     layers {
-        /// The distance.
+        /// Distance to the nearest target.
         distance: height, unit "m";
-        /// 1 where the source reaches the threshold, falling smoothly to 0 at `reach`.
+        /// 1 at targets, falling smoothly to 0 at the distance `reach`.
         near: height;
     }
 }
 
-/// Most samples that it may look.
+/// Maximum reach in samples.
 const FARTHEST: f64 = 16_384.0;
 
 impl Filter for Distance {

@@ -1,4 +1,4 @@
-//! Drops of rain cut gullies and lay down fans.
+//! Hydraulic erosion by droplets.
 
 use crate::erosion::droplets::Droplets as Law;
 use crate::error::Result;
@@ -6,46 +6,47 @@ use crate::grid::{Grid, Window};
 use crate::op::{Context, Filter};
 
 op! {
-    /// Hydraulic erosion by droplets: each runs downhill, cuts where it is fast and lays down where it slows: gullies on slopes, sediment in hollows.
+    /// Hydraulic erosion by droplets. Each droplet runs downhill, erodes where it is fast and deposits where it slows down. It makes
+    /// gullies on slopes and deposits in hollows.
     ///
-    /// After Beyer, "Implementation of a method for hydraulic erosion" (2015), with lengths in metres. A droplet goes a cell at a time and
-    /// can carry capacity * max(slope, least_slope) * speed * water; it gains speed by v^2 = v^2 + gravity * drop. It cuts no deeper than the
-    /// drop ahead of it, and in the end lays down all that it carries: mass is kept to rounding.
+    /// After Beyer, "Implementation of a method for hydraulic erosion" (2015), with lengths in metres. A droplet moves one cell per step
+    /// and can carry capacity * max(slope, least_slope) * speed * water; its speed changes by v^2 = v^2 + gravity * drop. It erodes no
+    /// deeper than the height difference ahead of it, and at the end it deposits all that it carries: mass is conserved up to rounding.
     ///
-    /// Droplets that follow one another make what comes out depend on their order. Here they start at hashed places, in batches: all of a batch see
-    /// the same ground, what they do is summed in fixed point, so tiles and threads make the same bits. After each batch what was laid down slides
-    /// apart in 16 passes, or all that end in one hollow would pile up. A batch looks lifetime + radius and 18 cells far, and the
-    /// window is made with so much more on each side for each. More batches make longer, deeper gullies. What comes out depends
-    /// on the cell. About a microsecond a droplet of 30 cells.
+    /// If droplets ran one after another, the result would depend on their order. Here they start at hashed positions, in batches: all
+    /// droplets of a batch see the same ground and their changes are summed in fixed point, so the result does not depend on tiles or
+    /// threads. After each batch the deposits slide apart in 16 passes, so that droplets that end in one hollow do not pile up. The halo is
+    /// lifetime + radius + 18 cells per batch. More batches make longer and deeper gullies. The result depends on the cell size. About a
+    /// microsecond per droplet of 30 cells.
     pub struct Droplets = "droplets", filter, revision 1;
     inputs {
-        /// The ground to begin with.
+        /// The initial heights.
         source: required,
     }
     params {
-        /// How many droplets, in all batches together.
+        /// Number of droplets per area, over all batches.
         density: f64 = 5000.0, unit "1/km^2", range 0.0 to 1e9;
-        /// In how many batches.
+        /// Number of batches.
         batches: u32 = 4, range 1.0 to 1000.0;
-        /// How far a droplet goes at most.
+        /// Maximum path length of a droplet.
         lifetime: f64 = 300.0, unit "m", range 0.0 to 1e6;
-        /// How wide a droplet cuts.
+        /// Radius within which a droplet erodes.
         radius: f64 = 30.0, unit "m", range 0.0 to 1e5;
-        /// The share of its direction that a droplet keeps at each cell: 0 follows the slope, near 1 runs straight on.
+        /// Share of its direction that a droplet keeps at each cell: 0 follows the slope, values near 1 run straight on.
         inertia: f64 = 0.05, range 0.0 to 0.99;
-        /// Ground carried down a sheer slope for each m/s, as a depth over the land that the droplet stands for.
+        /// Capacity on a vertical slope for each m/s of speed, as a depth over the area that the droplet stands for.
         capacity: f64 = 0.4, unit "s", range 0.0 to 1000.0;
-        /// The slope (rise over run) that capacity counts at least.
+        /// Minimum slope (rise over run) in the capacity.
         least_slope: f64 = 0.01, range 0.0 to 10.0;
-        /// The share of what could still be carried that is cut at each cell.
+        /// Share of the free capacity that is eroded at each cell.
         erosion: f64 = 0.3, range 0.0 to 1.0;
-        /// The share of what is too much to carry that is laid down at each cell.
+        /// Share of the excess sediment that is deposited at each cell.
         deposition: f64 = 0.3, range 0.0 to 1.0;
-        /// The share of its water that a droplet loses each metre.
+        /// Share of its water that a droplet loses per metre.
         evaporation: f64 = 0.001, unit "1/m", range 0.0 to 1.0;
-        /// How fast droplets become quick.
+        /// Acceleration of droplets by the height difference.
         gravity: f64 = 4.0, unit "m/s^2", range 0.0 to 1000.0;
-        /// Which droplets.
+        /// Seed of the droplets' start positions.
         seed: u64 = 0;
     }
 }
@@ -56,7 +57,7 @@ impl Filter for Droplets {
     }
 
     fn scratch(&self, window: &Window) -> u64 {
-        // The heights twice, two sums of eight bytes, four planes while what was laid down slides.
+        // The heights twice, two sums of eight bytes, and four planes while the deposits slide.
         40 * window.grown(self.halo(window.cell)).len() as u64
     }
 

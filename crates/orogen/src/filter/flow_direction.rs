@@ -1,4 +1,4 @@
-//! Directions of flow as other programs number them.
+//! Flow directions in the encodings of other programs.
 
 use crate::error::Result;
 use crate::grid::{Grid, Window};
@@ -6,34 +6,34 @@ use crate::hydrology::direction::Convention;
 use crate::op::{Context, Filter};
 
 choice! {
-    /// How directions are numbered.
+    /// Encoding of flow directions.
     pub enum Codes {
-        /// ArcGIS and pysheds: 1 east, 2 south-east, 4 south, 8 south-west, 16 west, 32 north-west, 64 north, 128 north-east; 0 where water leaves.
+        /// ArcGIS and pysheds: 1 east, 2 south-east, 4 south, 8 south-west, 16 west, 32 north-west, 64 north, 128 north-east; 0 at outlets.
         Esri = "esri",
-        /// GRASS (r.watershed): from 1 north-east counter-clockwise to 8 east; 0 where water leaves.
+        /// GRASS (r.watershed): from 1 north-east counter-clockwise to 8 east; 0 at outlets.
         Grass = "grass",
-        /// TauDEM: from 1 east counter-clockwise to 8 south-east; 0 where water leaves.
+        /// TauDEM: from 1 east counter-clockwise to 8 south-east; 0 at outlets.
         Taudem = "taudem",
-        /// WhiteboxTools: 1 north-east, 2 east, 4 south-east, 8 south, 16 south-west, 32 west, 64 north-west, 128 north; 0 where water leaves.
+        /// WhiteboxTools: 1 north-east, 2 east, 4 south-east, 8 south, 16 south-west, 32 west, 64 north-west, 128 north; 0 at outlets.
         Whitebox = "whitebox",
-        /// PCRaster: a numeric keypad, 7 north-west to 3 south-east; 5 where water leaves.
+        /// PCRaster: numeric keypad, 7 north-west to 3 south-east; 5 at outlets.
         Pcraster = "pcraster",
     }
 }
 
 op! {
-    /// Directions of flow, `drainage.receiver`, renumbered as another program numbers them.
+    /// Flow directions (`drainage.receiver`), converted to the encoding of another program.
     pub struct FlowDirection = "flow-direction", filter, revision 1;
     inputs {
-        /// Directions as `drainage.receiver` numbers them: clockwise from the east (0) to the north-east (7), 8 where water leaves.
+        /// Flow directions as `drainage.receiver` encodes them: clockwise from east (0) to north-east (7), 8 at outlets.
         source: required,
     }
     params {
-        /// How they are numbered.
+        /// The target encoding.
         codes: Codes = Codes::Esri;
     }
     layers {
-        /// The direction.
+        /// The flow direction.
         direction: label;
     }
 }

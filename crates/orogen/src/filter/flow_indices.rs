@@ -1,4 +1,4 @@
-//! Indices of how much water comes to the ground and how steep it is.
+//! Indices of wetness and erosion from drainage area and slope.
 
 use rayon::prelude::*;
 
@@ -11,8 +11,8 @@ use crate::op::{Context, Filter};
 op! {
     /// Topographic wetness index, stream power index and LS factor, from the drainage area and the slope.
     ///
-    /// a is the specific catchment area: the drainage area over the cell's width, at least one cell's. b is the slope angle by Horn's 3 x 3 method; tan b is
-    /// taken as at least `least_slope`, or level ground would be infinitely wet.
+    /// a is the specific catchment area: the drainage area divided by the cell size, at least one cell's. b is the slope angle by Horn's 3
+    /// x 3 method. tan b is limited to at least `least_slope`, because the wetness of level ground would be infinite.
     pub struct FlowIndices = "flow-indices", filter, revision 1;
     inputs {
         /// The heights.
@@ -21,7 +21,7 @@ op! {
         flow: required,
     }
     params {
-        /// The least slope that counts, rise over run.
+        /// Minimum slope, rise over run.
         least_slope: f64 = 1e-3, range 1e-9 to 1.0;
     }
     layers {

@@ -1,4 +1,4 @@
-//! What form the ground has.
+//! Landforms by geomorphons.
 
 use crate::analysis::geomorphons::{Level, Look, geomorphons};
 use crate::error::Result;
@@ -6,40 +6,42 @@ use crate::grid::{Grid, Window};
 use crate::op::{Context, Filter};
 
 choice! {
-    /// When a direction counts as level.
+    /// The test for a level direction.
     pub enum Comparison {
-        /// If neither its highest nor its lowest line of sight is steeper than `flat`; else the steeper of the two counts, as in r.geomorphon of GRASS.
+        /// A direction is level if neither its highest nor its lowest line of sight is steeper than `flat`; otherwise the steeper one
+        /// counts, as in r.geomorphon of GRASS.
         Steepest = "steepest",
-        /// If its angles from zenith and nadir differ by no more than `flat`, as in the paper.
+        /// A direction is level if its zenith and nadir angles differ by no more than `flat`, as in the paper.
         Difference = "difference",
     }
 }
 
 op! {
-    /// Landforms of the source by geomorphons: which of the eight directions lead up and which down, as far as one looks (Jasiewicz and Stepinski 2013).
+    /// Landforms by geomorphons (Jasiewicz and Stepinski 2013): the ground is classified by which of the eight directions lead up and which
+    /// lead down.
     ///
-    /// Along each direction the highest and the lowest line of sight within `reach` are compared. Between cells of different size forms agree best at the same
-    /// `reach`. Time grows with the reach.
+    /// Along each direction the highest and the lowest line of sight within `reach` are compared. For different cell sizes the landforms
+    /// agree best at the same `reach`. The time grows with the reach.
     pub struct Geomorphons = "geomorphons", filter, revision 2;
     inputs {
         /// The heights.
         source: required,
     }
     params {
-        /// How far one looks; at least a sample, at most 1024.
+        /// Search radius; at least 1 sample, at most 1024 samples.
         reach: f64 = 500.0, unit "m", range 0.0 to 1e6;
-        /// Ground that rises or falls by less is level.
+        /// Flatness threshold: smaller angles count as level.
         flat: f64 = 1.0, unit "degrees", range 0.0 to 45.0;
-        /// What `flat` is compared with.
+        /// The test for a level direction.
         comparison: Comparison = Comparison::Steepest;
     }
     layers {
-        /// The form: 1 flat, 2 peak, 3 ridge, 4 shoulder, 5 spur, 6 slope, 7 hollow, 8 footslope, 9 valley, 10 pit.
+        /// The landform: 1 flat, 2 peak, 3 ridge, 4 shoulder, 5 spur, 6 slope, 7 hollow, 8 footslope, 9 valley, 10 pit.
         form: label;
     }
 }
 
-/// Most samples one looks.
+/// Maximum search radius in samples.
 const FARTHEST: f64 = 1024.0;
 
 impl Filter for Geomorphons {

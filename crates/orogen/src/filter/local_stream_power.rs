@@ -1,4 +1,4 @@
-//! Rivers cut and lay down, by what neighbours know of each other.
+//! Stream power erosion with a finite halo.
 
 use crate::erosion::local_stream_power::{AREA, HEIGHT, LocalStreamPower as Law, RADIUS, SEDIMENT};
 use crate::erosion::planes::Planes;
@@ -7,49 +7,51 @@ use crate::grid::{Grid, Window};
 use crate::op::{Context, Filter};
 
 op! {
-    /// The stream power law without end of the world: valleys and gullies cut by running water, with sediment laid down, by a finite halo.
+    /// The stream power law as a filter: water erodes valleys and gullies and deposits sediment, with a finite halo. It also works in
+    /// unbounded worlds.
     ///
-    /// dh/dt = U - K A^m S^n + G Q / A, after Schott et al. (2023) and, for the sediment, Yuan et al. (2019). In each iteration all cells look
-    /// at the one before: drainage areas A and sediment Q come from higher neighbours, shared by the fourth power of their slopes; S is the upwind gradient,
-    /// so there are no grooves along the grid. Steps are stable however long; no cell is cut below its lowest neighbour. Soil creeps as in `stream-power`.
+    /// dh/dt = U - K A^m S^n + G Q / A, after Schott et al. (2023) and, for the sediment, Yuan et al. (2019). Each iteration reads the
+    /// result of the one before: drainage areas A and sediment Q come from higher neighbours, shared in proportion to the fourth power of
+    /// the slope. S is the upwind gradient, so there are no grooves along the grid. Steps of any length are stable; no cell is eroded below
+    /// its lowest neighbour. Soil creep works as in `stream-power`.
     ///
-    /// Water comes a cell farther an iteration: rivers from beyond are unknown unless `flow` tells of them (`drainage.flow` or `stream-power.flow` of a coarser
-    /// solution). So it is for detail: the solver `stream-power` shapes the land, this filter cuts gullies into it at any cell. Sediment's mass is
-    /// kept only nearly, as it comes an iteration late. Each iteration looks two cells far, and the window is made with so much more on each
-    /// side. What comes out depends on the cell. About 4 ns a sample and iteration.
+    /// Water moves one cell per iteration, so rivers that start outside the window are unknown unless `flow` provides them (`drainage.flow`
+    /// or `stream-power.flow` of a coarser solution). Use this filter for detail: the solver `stream-power` shapes the land, this filter
+    /// adds gullies at any cell size. The mass of the sediment is conserved only approximately, because it arrives one iteration late. The
+    /// halo is two cells per iteration. The result depends on the cell size. About 4 ns per sample and iteration.
     pub struct LocalStreamPower = "local-stream-power", filter, revision 1;
     inputs {
-        /// The heights to begin with.
+        /// The initial heights.
         source: required,
-        /// Drainage areas to begin with, in m^2; a cell's own if left out.
+        /// Initial drainage areas, in m^2. Default: the area of each cell.
         flow: optional,
     }
     params {
-        /// How long it goes on.
+        /// Simulated time.
         years: f64 = 1e5, unit "yr", range 0.0 to 1e9;
-        /// In how many iterations.
+        /// Number of iterations.
         iterations: u32 = 50, range 1.0 to 10000.0;
-        /// K: how easily water cuts, for m = 0.45 from 1e-6 (granite) to 5e-5 (mudstone).
+        /// K: erodibility; for m = 0.45 from 1e-6 (granite) to 5e-5 (mudstone).
         erodibility: f64 = 2e-5, unit "m^(1-2m)/yr", range 0.0 to 1.0;
-        /// m: how much more a larger stream cuts.
+        /// m: exponent of the drainage area.
         area_exponent: f64 = 0.45, range 0.0 to 2.0;
-        /// n: how much more a steeper stream cuts.
+        /// n: exponent of the slope.
         slope_exponent: f64 = 1.0, range 0.2 to 5.0;
-        /// U: how fast the land rises.
+        /// U: uplift rate.
         uplift: f64 = 0.0, unit "mm/yr", range 0.0 to 100.0;
-        /// G: how much of what a stream carries it lays down again. 0 lays down nothing, 1 is common in nature.
+        /// G: deposition coefficient. 0 deposits nothing; values around 1 are common in nature.
         deposition: f64 = 0.5, range 0.0 to 100.0;
-        /// How fast soil creeps: widens the gullies. At most what is stable, a fifth of a cell's square an iteration.
+        /// Diffusivity of soil creep. It widens the gullies. It is limited to the stable value, a fifth of a cell's area per iteration.
         creep: f64 = 0.005, unit "m^2/yr", range 0.0 to 100.0;
-        /// Whether the ground at or below sea level stays as it is.
+        /// Whether ground at or below sea level keeps its height.
         sea: bool = true;
     }
     layers {
-        /// The heights in the end.
+        /// The final heights.
         height: height, unit "m";
-        /// The drainage areas that are known of.
+        /// The drainage areas.
         flow: flow, unit "m^2";
-        /// The sediment that leaves a cell.
+        /// The sediment that leaves each cell.
         sediment: flow, unit "m^3/yr";
     }
 }

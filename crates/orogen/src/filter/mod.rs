@@ -1,4 +1,4 @@
-//! Filters: ops that look at a finite halo.
+//! Filters: ops that read a finite halo.
 
 // The list below is written by `cargo xtask codegen`.
 pub mod blur;

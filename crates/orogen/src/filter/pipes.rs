@@ -1,4 +1,4 @@
-//! Running water cuts and lays down.
+//! Hydraulic erosion with virtual pipes.
 
 use crate::erosion::pipe_rows::{BED, DEPTH, SEDIMENT};
 use crate::erosion::pipes::{Pipes as Law, RADIUS, Wet};
@@ -7,64 +7,65 @@ use crate::grid::{Grid, Window};
 use crate::op::{Context, Filter};
 
 op! {
-    /// Hydraulic erosion by rain on a grid of virtual pipes: water runs off, cuts gullies, gathers and lays down what it carries.
+    /// Hydraulic erosion by rain on a grid of virtual pipes: water runs off, erodes gullies, collects, and deposits sediment.
     ///
-    /// After Mei, Decaudin and Hu (2007) and Stava et al. (2008). Water flows between neighbouring cells as the difference of its
-    /// surfaces pulls; it can carry sin(slope) times its discharge times `capacity`, cuts where it carries less and lays down where it
-    /// carries more. Sediment moves with the water that crosses each side (not along the velocity as in Mei), so mass is kept to
-    /// rounding. What is cut or laid down is shared over 3 x 3 cells, no cut is deeper than half way to the lowest neighbour, nothing laid down
-    /// higher than the neighbours' mean and a quarter of the water: no grooves along the grid, no pits, no spikes.
+    /// After Mei, Decaudin and Hu (2007) and Stava et al. (2008). Water flows between neighbouring cells according to the difference of the
+    /// water surfaces. It can carry sin(slope) times its discharge times `capacity`; it erodes where it carries less and deposits where it
+    /// carries more. Sediment moves with the water that crosses each side of a cell (not along the velocity as in Mei), so mass is
+    /// conserved up to rounding. Erosion and deposition are spread over 3 x 3 cells. Erosion stops half way to the lowest neighbour;
+    /// deposition stops at the neighbours' mean height plus a quarter of the water depth. This avoids grooves along the grid, pits and
+    /// spikes.
     ///
-    /// The storm is a quick one, rain and erosion far above nature's: what counts is rain times iterations. Water comes no farther than
-    /// a cell an iteration; each looks three cells far, and the window is made with so much more on each side. `bake` long ones. What
-    /// comes out depends on the cell. About 4 ns a sample and iteration.
+    /// The simulated storm is short, with far more rain and erosion than in nature: the product of rain and iterations matters. Water moves
+    /// at most one cell per iteration. The halo is three cells per iteration; put a `bake` after a filter with many iterations. The result
+    /// depends on the cell size. About 4 ns per sample and iteration.
     pub struct Pipes = "pipes", filter, revision 1;
     inputs {
-        /// The ground to begin with, dry.
+        /// The initial heights, without water.
         source: required,
     }
     params {
-        /// How many iterations.
+        /// Number of iterations.
         iterations: u32 = 100, range 0.0 to 10000.0;
-        /// How much rain falls each second.
+        /// Rainfall rate.
         rain: f64 = 2.0, unit "mm/s", range 0.0 to 1000.0;
-        /// The share of the water that goes into the air each second.
+        /// Share of the water that evaporates per second.
         evaporation: f64 = 0.01, unit "1/s", range 0.0 to 1.0;
-        /// How much sediment, as metres of ground, 1 m^2/s of water carries down a sheer slope.
+        /// Sediment, in metres of ground, that 1 m^2/s of water carries down a vertical slope.
         capacity: f64 = 2.0, unit "s/m", range 0.0 to 1000.0;
-        /// The share of what could still be carried that is cut each second.
+        /// Share of the free capacity that is eroded per second.
         erosion: f64 = 0.3, unit "1/s", range 0.0 to 10.0;
-        /// The share of what is too much to carry that is laid down each second.
+        /// Share of the excess sediment that is deposited per second.
         deposition: f64 = 0.3, unit "1/s", range 0.0 to 10.0;
-        /// The area of a pipe for each metre of a cell's side: the depth whose waves run as fast as the model's.
+        /// Cross-section of a pipe per metre of the cell's side. It equals the water depth at which real waves have the model's wave speed.
         pipe: f64 = 1.0, unit "m", range 1e-3 to 1000.0;
-        /// The share of a pipe's flow that is lost each second.
+        /// Share of a pipe's flow that is lost per second.
         friction: f64 = 0.05, unit "1/s", range 0.0 to 10.0;
-        /// The pull of the earth.
+        /// Gravitational acceleration.
         gravity: f64 = 9.81, unit "m/s^2", range 1e-3 to 1000.0;
-        /// How long an iteration is. What would not be stable, cell / (2 sqrt(gravity pipe)), takes its place if it is less.
+        /// Duration of an iteration. It is limited to the stable value, cell / (2 sqrt(gravity pipe)).
         time_step: f64 = 1.0, unit "s", range 1e-6 to 1e6;
     }
     layers {
-        /// The ground in the end.
+        /// The final ground.
         height: height, unit "m";
-        /// How deep the water is.
+        /// Water depth.
         water: height, unit "m";
-        /// What the water still carries, as metres of ground.
+        /// Suspended sediment, in metres of ground.
         sediment: height, unit "m";
-        /// How fast the water runs.
+        /// Flow velocity.
         velocity: height, unit "m/s";
     }
 }
 
 impl Filter for Pipes {
     fn halo(&self, _: f64) -> usize {
-        // One more for the velocity, which is between a cell's sides.
+        // One more for the velocity, which is defined between the sides of a cell.
         RADIUS * self.iterations as usize + 1
     }
 
     fn scratch(&self, window: &Window) -> u64 {
-        // Five planes, before, after, and in bands.
+        // Five planes before and after, and the bands.
         60 * window.grown(self.halo(window.cell) + 1).len() as u64
     }
 
@@ -96,7 +97,7 @@ impl Filter for Pipes {
     }
 }
 
-/// The sediment; where there is none, it may be off by the rounding of the bed.
+/// The sediment. Where there is none it may differ from 0 by the rounding of the bed's height.
 fn carried(wet: &Wet) -> Grid {
     let mut carried = wet.plane(SEDIMENT);
     carried.data_mut().iter_mut().for_each(|metres| *metres = metres.max(0.0));

@@ -1,4 +1,4 @@
-//! How rugged the ground is.
+//! Terrain ruggedness index.
 
 use crate::analysis::roughness::riley;
 use crate::error::Result;
@@ -6,10 +6,10 @@ use crate::grid::{Grid, Window};
 use crate::op::{Context, Filter};
 
 op! {
-    /// The terrain ruggedness index of the source: the square root of the sum of squared height differences to the eight neighbours (Riley, DeGloria and
-    /// Elliot 1999).
+    /// Terrain ruggedness index (TRI): the square root of the sum of squared height differences to the eight neighbours (Riley, DeGloria
+    /// and Elliot 1999).
     ///
-    /// It is a difference between samples: on a coarser cell the same ground has a higher index.
+    /// The index depends on the cell size: the same ground has a higher index at a larger cell size.
     pub struct Ruggedness = "ruggedness", filter, revision 1;
     inputs {
         /// The heights.

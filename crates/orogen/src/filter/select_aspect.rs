@@ -1,4 +1,4 @@
-//! A mask by the way the ground faces.
+//! A mask by aspect.
 
 use crate::analysis::aspect::aspect_of;
 use crate::analysis::selection::Selection;
@@ -9,23 +9,23 @@ use crate::op::{Context, Filter};
 use rayon::prelude::*;
 
 op! {
-    /// A mask: 1 where the ground faces a direction, falling smoothly to 0 away from it.
+    /// A mask by aspect: 1 where the ground faces a direction, falling smoothly to 0 away from it.
     ///
-    /// For snow on northern slopes, or rain from the west. Aspect is the direction downhill by Horn's method (1981). Level ground faces nowhere:
-    /// the mask fades with slopes below `least_slope`.
+    /// Use it for snow on northern slopes or rain from the west. Aspect is the downhill direction by Horn's method (1981). Level ground has
+    /// no aspect: the mask falls to 0 for slopes below `least_slope`.
     pub struct SelectAspect = "select-aspect", filter, revision 1;
     inputs {
         /// The heights.
         source: required,
     }
     params {
-        /// The direction: 0 is north, 90 east.
+        /// The direction: 0 is north, 90 is east.
         direction: f64 = 0.0, unit "deg", range -360.0 to 360.0;
-        /// How far to each side of it is wholly selected.
+        /// Angle to each side of the direction within which the mask is 1.
         width: f64 = 30.0, unit "deg", range 0.0 to 180.0;
-        /// How far beyond that it falls to 0; 0 is a sharp end.
+        /// Width of the transition beyond `width`. 0 gives a sharp boundary.
         falloff: f64 = 60.0, unit "deg", range 0.0 to 180.0;
-        /// The slope from which on the direction counts in full.
+        /// Slope above which the mask is not reduced.
         least_slope: f64 = 5.0, unit "deg", range 0.0 to 89.0;
     }
 }
@@ -50,7 +50,7 @@ impl Filter for SelectAspect {
             context.progress.check()?;
             gradients_between([source.row(j), source.row(j + 1), source.row(j + 2)], window.cell, |i, gradient| {
                 let off = (aspect_of(gradient) - direction).abs() % 360.0;
-                // The shorter way round. Level ground, which is off by no number, is not selected.
+                // The smaller of the two angles. Level ground, whose aspect is not a number, is not selected.
                 let off = if off > 180.0 { 360.0 - off } else { off };
                 row[i] = directions.of(off) * slopes.of(libm::atanf(gradient.steepness()).to_degrees());
             });

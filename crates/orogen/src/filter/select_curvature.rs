@@ -1,4 +1,4 @@
-//! A mask by how the ground bends.
+//! A mask by curvature.
 
 use crate::analysis::curvature::{Curvature, bend};
 use crate::analysis::selection::Selection;
@@ -8,44 +8,45 @@ use crate::op::{Context, Filter};
 use rayon::prelude::*;
 
 choice! {
-    /// Which way the ground is looked at.
+    /// Kind of curvature.
     pub enum Bend {
-        /// All ways together: convex on tops and crests, concave in hollows.
+        /// Mean curvature: convex on summits and crests, concave in hollows.
         Total = "total",
-        /// Down the slope: convex on brows, concave at the foot.
+        /// Profile curvature, along the slope: convex at the upper edge of a slope, concave at its foot.
         Profile = "profile",
-        /// Along the contour: convex on spurs, where water spreads, concave in valleys, where it gathers.
+        /// Contour curvature: convex on spurs, where water diverges, concave in valleys, where it converges.
         Plan = "plan",
     }
 }
 
 op! {
-    /// A mask: 1 where the ground's curvature lies within a range, falling smoothly to 0 below and above it.
+    /// A mask by curvature: 1 inside a range, falling smoothly to 0 below and above it.
     ///
-    /// The curvature is that of the quadric through nine heights (Zevenbergen and Thorne 1987) `scale` apart: positive where the ground is convex,
-    /// one over the radius. A large scale sees ridges and valleys, a small one every stone; less than half a cell is a cell.
+    /// The curvature is that of the quadric through nine heights `scale` apart (Zevenbergen and Thorne 1987). It is positive where the
+    /// ground is convex; its unit is 1 over the radius of curvature. A large scale selects ridges and valleys, a small one selects details.
+    /// A scale below half a cell counts as one cell.
     pub struct SelectCurvature = "select-curvature", filter, revision 1;
     inputs {
         /// The heights.
         source: required,
     }
     params {
-        /// Which way the ground is looked at.
+        /// Kind of curvature.
         kind: Bend = Bend::Total;
-        /// How far apart the heights are, to the nearest sample.
+        /// Distance between the heights, rounded to whole samples.
         scale: f64 = 50.0, unit "m", range 0.0 to 1e6;
-        /// The least and the greatest curvature that are wholly selected: negative where the ground is concave.
+        /// Lowest and highest curvature where the mask is 1. Concave ground has negative curvature.
         range: [f64; 2] = [1e-3, 1e3], unit "1/m", range -1e3 to 1e3;
-        /// How far below and above the range it falls to 0; 0 is a sharp end.
+        /// Width of the transition below and above the range. 0 gives a sharp boundary.
         falloff: [f64; 2] = [1e-3, 1e-3], unit "1/m", range 0.0 to 1e3;
     }
     check |op| match op.range[0] <= op.range[1] {
         true => Ok(()),
-        false => Err(("range", format!("the first number of `range` ({}) must not be above the second ({})", op.range[0], op.range[1]))),
+        false => Err(("range", format!("the first value of `range` ({}) must not be greater than the second ({})", op.range[0], op.range[1]))),
     };
 }
 
-/// Most samples that heights may be apart.
+/// Maximum distance between the heights, in samples.
 const FARTHEST: f64 = 16_384.0;
 
 impl Filter for SelectCurvature {

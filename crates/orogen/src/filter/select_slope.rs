@@ -1,4 +1,4 @@
-//! A mask by steepness.
+//! A mask by slope.
 
 use crate::analysis::selection::Selection;
 use crate::analysis::slope::gradients_between;
@@ -8,23 +8,23 @@ use crate::op::{Context, Filter};
 use rayon::prelude::*;
 
 op! {
-    /// A mask: 1 where the slope lies within a range, falling smoothly to 0 below and above it.
+    /// A mask by slope: 1 inside a range, falling smoothly to 0 below and above it.
     ///
-    /// The slope is Horn's (1981), as in `slope`: between samples, so on a coarser cell the same ground is gentler.
+    /// The slope is Horn's (1981), as in `slope`. It depends on the cell size: the same ground is gentler at a larger cell size.
     pub struct SelectSlope = "select-slope", filter, revision 1;
     inputs {
         /// The heights.
         source: required,
     }
     params {
-        /// The gentlest and the steepest slope that are wholly selected.
+        /// Lowest and highest slope where the mask is 1.
         range: [f64; 2] = [30.0, 90.0], unit "deg", range 0.0 to 90.0;
-        /// How far below and above the range it falls to 0; 0 is a sharp end.
+        /// Width of the transition below and above the range. 0 gives a sharp boundary.
         falloff: [f64; 2] = [10.0, 10.0], unit "deg", range 0.0 to 90.0;
     }
     check |op| match op.range[0] <= op.range[1] {
         true => Ok(()),
-        false => Err(("range", format!("the first number of `range` ({}) must not be above the second ({})", op.range[0], op.range[1]))),
+        false => Err(("range", format!("the first value of `range` ({}) must not be greater than the second ({})", op.range[0], op.range[1]))),
     };
 }
 

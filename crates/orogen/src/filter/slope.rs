@@ -1,4 +1,4 @@
-//! How steep it is.
+//! Slope and its components.
 
 use crate::analysis::slope::{Gradient, gradients_between};
 use crate::error::Result;
@@ -7,9 +7,9 @@ use crate::op::{Context, Filter};
 use rayon::prelude::*;
 
 choice! {
-    /// What a slope is told in.
+    /// Unit of a slope.
     pub enum SlopeUnit {
-        /// The angle to the horizontal, 0 to 90.
+        /// Angle to the horizontal, 0 to 90 degrees.
         Degrees = "degrees",
         /// Rise over run: the tangent of the angle.
         Ratio = "ratio",
@@ -17,25 +17,25 @@ choice! {
 }
 
 op! {
-    /// Steepness of the source taken as heights in metres, by Horn's 3 x 3 method (1981).
+    /// Slope of the source, taken as heights in metres, by Horn's 3 x 3 method (1981).
     ///
-    /// It is the slope between samples: on a coarser cell the same ground is gentler. Its parts along the axes are layers of
-    /// their own: they say which way the ground faces, and move what reads them along it.
+    /// The slope depends on the cell size: the same ground is gentler at a larger cell size. The components along the axes are layers: they
+    /// tell the direction that the ground faces, and can displace other fields along it.
     pub struct Slope = "slope", filter, revision 1;
     inputs {
         /// The heights.
         source: required,
     }
     params {
-        /// What the slope is told in.
+        /// Unit of the slope.
         unit: SlopeUnit = SlopeUnit::Degrees;
     }
     layers {
-        /// How steep it is, in degrees or as a ratio.
+        /// The slope, in degrees or as a ratio.
         slope: height;
-        /// Rise per metre towards the east: negative where the ground falls eastward.
+        /// Rise per metre to the east; negative where the ground falls to the east.
         east: height;
-        /// Rise per metre towards the south.
+        /// Rise per metre to the south; negative where the ground falls to the south.
         south: height;
     }
 }

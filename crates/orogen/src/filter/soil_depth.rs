@@ -1,4 +1,4 @@
-//! How deep the soil is.
+//! Steady-state soil depth.
 
 use crate::analysis::soil::Soil;
 use crate::error::Result;
@@ -6,34 +6,35 @@ use crate::grid::{Grid, Window};
 use crate::op::{Context, Filter};
 
 op! {
-    /// Depth of the soil on the source where production from bedrock keeps up with creep.
+    /// Steady-state soil depth: the depth at which soil production from bedrock balances soil creep.
     ///
-    /// Rock turns into soil at P0 exp(-h / h*) (Heimsath and others 1997), soil creeps downhill by K S / (1 - (S / Sc)^2) (Roering, Kirchner and Dietrich
-    /// 1999); h = h* ln(ratio P0 / div q) is the depth at which both are equal (Pelletier and Rasmussen 2009). Crests have thin soil, the sharper the
-    /// thinner; where more is carried away than bare rock makes, and from Sc on, there is none. Hollows and feet of slopes, to which soil is brought, have
-    /// no such depth and get `deepest`. Fluxes are taken through the sides of each cell, from 3 x 3 heights: noise in the heights becomes noise in the depth,
-    /// so blur rough ground first.
+    /// Rock turns into soil at the rate P0 exp(-h / h*) (Heimsath and others 1997). Soil creeps downhill with the flux q = K S / (1 - (S /
+    /// Sc)^2) (Roering, Kirchner and Dietrich 1999). h = h* ln(ratio P0 / div q) is the depth at which both are equal (Pelletier and
+    /// Rasmussen 2009). Soil is thin on crests, and thinner the sharper they are. There is none where more is removed than bare rock
+    /// produces, and none on slopes of Sc and above. Hollows and foot slopes, where soil accumulates, have no steady-state depth and get
+    /// `deepest`. Fluxes are taken through the sides of each cell, from 3 x 3 heights: noise in the heights becomes noise in the depth, so
+    /// blur rough ground first.
     pub struct SoilDepth = "soil-depth", filter, revision 1;
     inputs {
         /// The heights.
         source: required,
     }
     params {
-        /// P0: production of soil from bare rock. 77 m in a million years at Tennessee Valley (Heimsath and others 1997).
+        /// P0: soil production rate of bare rock. 77 m per million years was measured at Tennessee Valley (Heimsath and others 1997).
         production: f64 = 7.7e-5, unit "m/yr", range 1e-9 to 1.0;
-        /// h*: depth over which production falls by a factor e.
+        /// h*: depth over which production falls by the factor e.
         decay: f64 = 0.43, unit "m", range 1e-3 to 100.0;
-        /// K: how fast soil creeps.
+        /// K: diffusivity of soil creep.
         creep: f64 = 0.005, unit "m^2/yr", range 1e-9 to 1e3;
-        /// Sc: slope, rise over run, on which no soil stays.
+        /// Sc: critical slope, rise over run, from which on there is no soil.
         critical_slope: f64 = 1.25, range 1e-3 to 100.0;
-        /// Density of rock over that of soil.
+        /// Ratio of rock density to soil density.
         density_ratio: f64 = 2.0, range 0.1 to 10.0;
-        /// The greatest depth.
+        /// Maximum depth.
         deepest: f64 = 2.0, unit "m", range 0.0 to 1000.0;
     }
     layers {
-        /// The depth.
+        /// The soil depth.
         depth: height, unit "m";
     }
 }

@@ -1,4 +1,4 @@
-//! Slopes slide to the talus angle.
+//! Thermal weathering: slopes slide to the talus angle.
 
 use crate::erosion::thermal::Thermal as Law;
 use crate::error::Result;
@@ -6,24 +6,24 @@ use crate::grid::{Grid, Window};
 use crate::op::{Context, Filter};
 
 op! {
-    /// Thermal weathering: what is steeper than the talus angle slides down and piles up below, in straight scree slopes.
+    /// Thermal weathering: ground steeper than the talus angle slides down and accumulates below as straight scree slopes.
     ///
-    /// After Musgrave, Kolb and Mace (1989). In each pass the material that crosses the side between two cells is a share of
-    /// (1 - T / |g|) g, with g the slope there and T the talus angle's: the same in all directions, where comparing a cell with its
-    /// eight neighbours makes octagonal cones. Mass is kept. Material moves one cell a pass, so cliffs of n cells need some n^2
-    /// passes to become scree to their foot, and the window is made with one sample more on each side for every pass; where that grows
-    /// too large, `bake` it. What comes out depends on the cell.
+    /// After Musgrave, Kolb and Mace (1989). In each pass the material that crosses the side between two cells is a share of (1 - T / |g|)
+    /// g, where g is the slope there and T the tangent of the talus angle. This is the same in all directions; comparing a cell with its
+    /// eight neighbours would make octagonal cones. Mass is conserved. Material moves one cell per pass, so a cliff of n cells needs about
+    /// n^2 passes to become scree down to its foot. The halo is one sample per pass; where it grows too large, use `bake`. The result
+    /// depends on the cell size.
     pub struct Thermal = "thermal", filter, revision 1;
     inputs {
         /// The heights.
         source: required,
     }
     params {
-        /// The steepest slope that stands: 30 to 40 for loose rock, 25 for soil.
+        /// Maximum stable slope: 30 to 40 for loose rock, 25 for soil.
         talus_angle: f64 = 35.0, unit "deg", range 0.0 to 89.0;
-        /// How many passes.
+        /// Number of passes.
         iterations: u32 = 50, range 0.0 to 10000.0;
-        /// The share of the fastest stable rate.
+        /// Rate of movement, as a share of the fastest stable rate.
         rate: f64 = 1.0, range 0.0 to 1.0;
     }
 }
@@ -34,7 +34,7 @@ impl Filter for Thermal {
     }
 
     fn scratch(&self, window: &Window) -> u64 {
-        // All rows before and after some passes, and bands of them.
+        // All rows before and after some passes, and the bands.
         12 * window.grown(self.iterations as usize).len() as u64
     }
 

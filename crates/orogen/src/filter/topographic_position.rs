@@ -1,4 +1,4 @@
-//! How high a sample lies among those around it.
+//! Topographic position index.
 
 use crate::analysis::position::{class, positions};
 use crate::analysis::slope::degrees;
@@ -7,11 +7,13 @@ use crate::grid::{Grid, Window};
 use crate::op::{Context, Filter};
 
 op! {
-    /// Topographic position index of the source: its height above the mean of a disc, and the slope position that follows from it (Weiss 2001).
+    /// Topographic position index (TPI): the height above the mean of a surrounding disc, and the slope position derived from it (Weiss
+    /// 2001).
     ///
-    /// The disc holds all samples within `radius`, the middle one included; a radius below a cell is a cell. Weiss measures the index in standard deviations
-    /// of the index over the map; here it is in standard deviations of the heights in the disc (Wilson and Gallant 2000), so that no sample depends on ground
-    /// out of reach. Heights are counted in 256ths of a metre. Time grows with the radius.
+    /// The disc holds all samples within `radius`, including the centre; a radius below one cell counts as one cell. Weiss divides the
+    /// index by its standard deviation over the map. Here it is divided by the standard deviation of the heights in the disc (Wilson and
+    /// Gallant 2000), so that each sample depends only on the ground within the radius. Heights are rounded to 1/256 m. The time grows with
+    /// the radius.
     pub struct TopographicPosition = "topographic-position", filter, revision 1;
     inputs {
         /// The heights.
@@ -24,15 +26,15 @@ op! {
     layers {
         /// Height above the mean of the disc.
         position: height, unit "m";
-        /// The same in standard deviations of the heights in the disc; 0 on level ground.
+        /// Height above the mean in standard deviations of the heights in the disc; 0 on level ground.
         deviation: height;
-        /// Slope position: 1 ridge (deviation above 1), 2 upper slope (above 0.5), 3 middle slope, 4 flat (the same, up to 5 degrees steep), 5 lower slope (below -0.5), 6 valley
-        /// (below -1).
+        /// Slope position: 1 ridge (deviation above 1), 2 upper slope (above 0.5), 3 middle slope, 4 flat (deviation as for 3, but a slope
+        /// of up to 5 degrees), 5 lower slope (below -0.5), 6 valley (below -1).
         class: label;
     }
 }
 
-/// Most samples of a radius.
+/// Maximum radius in samples.
 const FARTHEST: f64 = 1024.0;
 
 impl Filter for TopographicPosition {

@@ -53,7 +53,8 @@ impl FitTarget {
             .filter_map(|window| Measures::of(&place.crop(&window)?, None))
             .collect();
         if measures.is_empty() {
-            let message = "the place is too small or too flat to be like: it takes 64 x 64 samples and some relief";
+            let message =
+                "the place is too small or too flat for a fit; at least 64 x 64 samples and some relief are needed";
             return Err(Error::new(ErrorKind::Request, message));
         }
         let middle = FeatureVector::middle(&features);
@@ -242,7 +243,7 @@ impl Trial<'_> {
                 best = Some(Found { values, stretch, distance, tried: 0 });
             }
         }
-        let best = best.ok_or_else(|| Error::new(ErrorKind::Request, "no values was tried"))?;
+        let best = best.ok_or_else(|| Error::new(ErrorKind::Request, "no parameter set was tried"))?;
         Ok(Found { tried: self.tried, ..best })
     }
 
@@ -259,7 +260,8 @@ impl Trial<'_> {
         let plain = Stretch { from: [0.0, 1.0], to: [0.0, 1.0], bend: 0.0 };
         let (world, inside) = trial_world(self.target, values, seed, across, self.options)?;
         let mut grids = world.grids(&["soft"], &inside, progress)?;
-        let soft = grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "the world has no middle"))?;
+        let soft =
+            grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "no window of the world could be measured"))?;
         let from = [quantile(&soft, 0.001), quantile(&soft, 0.999)];
         let windows: Vec<Grid> = inside.tiles(side).filter_map(|window| soft.crop(&window)).collect();
         if from[1] - from[0] < 1e-3 {

@@ -41,10 +41,10 @@ impl Affine {
     pub fn lattice(&self, rows: usize) -> Result<Lattice, String> {
         let [a, b, c, d, e, f] = self.0;
         if !self.0.iter().all(|number| number.is_finite()) || a <= 0.0 || e == 0.0 {
-            return Err("what it says of its place is not a lattice that a map can have".into());
+            return Err("its georeference is not a valid lattice".into());
         }
         if b.abs() > 1e-9 * a.abs() || d.abs() > 1e-9 * e.abs() {
-            return Err("its rows are turned against east; lay it north up first, for example with gdalwarp".into());
+            return Err("its rows are rotated; convert it to north-up first, for example with gdalwarp".into());
         }
         let from_south = e > 0.0;
         let north = if from_south { f + e * (rows as f64 - 1.0) } else { f };

@@ -111,17 +111,17 @@ fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String>
     let mut next = first;
     while heights.len() < count {
         let Some(word) = next else {
-            return Err(format!("it ends after {} heights: its head promises {columns} x {rows}", heights.len()));
+            return Err(format!("it ends after {} heights; its header declares {columns} x {rows}", heights.len()));
         };
         let height = number(&word).ok_or_else(|| {
             let (row, column) = (heights.len() as u64 / columns + 1, heights.len() as u64 % columns + 1);
-            format!("`{}` in row {row}, column {column} is no number", word.escape_debug())
+            format!("`{}` in row {row}, column {column} is not a number", word.escape_debug())
         })?;
         heights.push(if head.nodata == Some(height) { f32::NAN } else { height as f32 });
         next = if heights.len() < count { words.next()? } else { None };
     }
     if let Some(word) = words.next()? {
-        return Err(format!("it goes on with `{}` after its {columns} x {rows} heights", word.escape_debug()));
+        return Err(format!("it continues with `{}` after its {columns} x {rows} heights", word.escape_debug()));
     }
     let place = head.place(rows);
     Dem::new([columns as usize, rows as usize], heights, place)
@@ -134,10 +134,15 @@ fn number(word: &str) -> Option<f64> {
 
 impl Head {
     fn take(&mut self, key: &str, value: &str) -> std::result::Result<(), String> {
-        let number = number(value).ok_or_else(|| format!("`{key}` is `{}`, no number", value.escape_debug()))?;
+        let number =
+            number(value).ok_or_else(|| format!("`{key}` is `{}`, which is not a number", value.escape_debug()))?;
         let whole = || {
             let sound = (1.0..1e15).contains(&number) && number.fract() == 0.0;
-            if sound { Ok(Some(number as u64)) } else { Err(format!("`{key}` is {number}, no number of samples")) }
+            if sound {
+                Ok(Some(number as u64))
+            } else {
+                Err(format!("`{key}` is {number}, which is not a number of samples"))
+            }
         };
         match key {
             "ncols" => self.columns = whole()?,
@@ -150,10 +155,10 @@ impl Head {
             "dx" => self.step[0] = Some(number),
             "dy" => self.step[1] = Some(number),
             "nodata_value" => self.nodata = Some(number),
-            _ => return Err(format!("its head has an unknown key `{}`", key.escape_debug())),
+            _ => return Err(format!("its header has an unknown key `{}`", key.escape_debug())),
         }
         if matches!(key, "cellsize" | "dx" | "dy") && !(number.is_finite() && number > 0.0) {
-            return Err(format!("`{key}` is {number}; a cell is above 0"));
+            return Err(format!("`{key}` is {number}, and must be greater than 0"));
         }
         Ok(())
     }
@@ -195,7 +200,7 @@ impl Words<'_> {
             let ended = letters < rest.len();
             self.input.consume(blanks + letters);
             if self.word.len() > LONGEST_WORD || self.word.iter().any(|byte| !(0x20..0x7f).contains(byte)) {
-                return Err("it is not an ASCII grid: it holds something else than words and numbers".into());
+                return Err("it is not an ASCII grid: it contains more than words and numbers".into());
             }
             if ended && !self.word.is_empty() {
                 break;
@@ -248,13 +253,13 @@ mod tests {
         for (text, expect) in [
             ("", "has no ncols"),
             ("ncols 2\nnrows", "ends after `nrows`"),
-            ("ncols 2\nnrows 2\n1 2 3", "ends after 3 heights: its head promises 2 x 2"),
-            ("ncols 2\nnrows 2\n1 2 3 4 5", "goes on with `5`"),
+            ("ncols 2\nnrows 2\n1 2 3", "ends after 3 heights; its header declares 2 x 2"),
+            ("ncols 2\nnrows 2\n1 2 3 4 5", "continues with `5`"),
             ("ncols 2\nnrows 2\n1 2 x 4", "`x` in row 2, column 1"),
             ("ncols 4000000000\nnrows 4\n1", "4000000000 x 4 samples"),
             ("ncols -2\nnrows 2\n1", "`ncols` is -2"),
-            ("ncols 2\nnrows 2\ncellsize 0\n1 2 3 4", "a cell is above 0"),
-            ("ncols 2\nnrows 1\nnodata_value -9999\n-9999 -9999", "holds no height"),
+            ("ncols 2\nnrows 2\ncellsize 0\n1 2 3 4", "must be greater than 0"),
+            ("ncols 2\nnrows 1\nnodata_value -9999\n-9999 -9999", "samples are nodata"),
             ("colour 2\n", "unknown key `colour`"),
             ("\u{89}PNG\r\n", "not an ASCII grid"),
         ] {

@@ -39,11 +39,11 @@ impl Request {
     pub fn choose(&self, bands: usize) -> Result<usize, String> {
         match self.band {
             Some(band) if band >= 1 && band as usize <= bands => Ok(band as usize - 1),
-            Some(band) if bands == 1 => Err(format!("it has one band, and no band {band}")),
-            Some(band) => Err(format!("it has {bands} bands, and no band {band}")),
+            Some(band) if bands == 1 => Err(format!("it has one band, not a band {band}")),
+            Some(band) => Err(format!("it has {bands} bands, not a band {band}")),
             None if bands == 1 => Ok(0),
             None => Err(format!(
-                "it has {bands} bands, and heights are one: choose it by `band = 1` in the node, or by FILE:1 on the command line"
+                "it has {bands} bands; choose one with `band = 1` in the node, or with FILE:1 on the command line"
             )),
         }
     }
@@ -176,7 +176,7 @@ impl Dem {
         }
         match found {
             true => Ok(Dem { width, height, heights, place, notes: Vec::new() }),
-            false => Err(format!("all of its {width} x {height} samples are missing: it holds no height")),
+            false => Err(format!("all of its {width} x {height} samples are nodata")),
         }
     }
 
@@ -197,13 +197,12 @@ pub fn refused(name: &str, why: impl AsRef<str>) -> Error {
 /// A message with both figures.
 pub fn afford(width: u64, height: u64, allowed: u64) -> Result<usize, String> {
     if width == 0 || height == 0 {
-        return Err(format!("it says that it has {width} x {height} samples: there are none"));
+        return Err(format!("its header declares {width} x {height} samples, which is empty"));
     }
     let needed = width.saturating_mul(height).saturating_mul(4);
     match needed > allowed || needed > isize::MAX as u64 {
         true => Err(format!(
-            "it says that it has {width} x {height} samples, whose heights take {}, and {} is allowed: cut a part out of it, or \
-             allow more memory",
+            "its {width} x {height} samples need {} of memory, and {} is allowed; cut out a part of it, or raise the memory limit",
             bytes(needed),
             bytes(allowed)
         )),
@@ -222,8 +221,7 @@ pub fn afford_beside(count: usize, beside: u64, allowed: u64) -> Result<(), Stri
     let needed = (count as u64).saturating_mul(4).saturating_add(beside);
     match beside > BUFFER && needed > allowed {
         true => Err(format!(
-            "reading it takes {}, its heights and what is unpacked at once, and {} is allowed: save it in smaller blocks, or \
-             allow more memory",
+            "reading it needs {} of memory for its heights and one decompressed block, and {} is allowed; save it with smaller blocks, or raise the memory limit",
             bytes(needed),
             bytes(allowed)
         )),

@@ -74,16 +74,16 @@ impl Writer {
         let refuse = |why: String| Err(io::Error::new(io::ErrorKind::InvalidInput, why));
         for side in [picture.width, picture.height] {
             if !(1..=i32::MAX as usize).contains(&side) {
-                return refuse(format!("an EXR picture has 1 to 2147483647 samples a side, not {side}"));
+                return refuse(format!("an EXR picture must have 1 to 2147483647 samples per side, not {side}"));
             }
         }
         let mut order: Vec<usize> = (0..picture.channels.len()).collect();
         order.sort_by(|a, b| picture.channels[*a].cmp(&picture.channels[*b]));
         if order.is_empty() || order.windows(2).any(|pair| picture.channels[pair[0]] == picture.channels[pair[1]]) {
-            return refuse("the channels of an EXR picture need names that differ".into());
+            return refuse("the channels of an EXR picture must have different names".into());
         }
         if picture.channels.iter().any(|name| !(1..=31).contains(&name.len()) || name.contains('\0')) {
-            return refuse("the name of an EXR channel has 1 to 31 bytes".into());
+            return refuse("the name of an EXR channel must have 1 to 31 bytes".into());
         }
         Ok(Writer { picture, order, spool, waiting: Vec::new(), blocks: Vec::new(), rows: 0 })
     }

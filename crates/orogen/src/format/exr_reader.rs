@@ -61,7 +61,7 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, request: Request) -> std::resu
     let version = int(&mut rest)? as u32;
     if version & 0xff != 2 || version & 0x1a00 != 0 {
         return Err(
-            "it is an OpenEXR picture of tiles, of several parts or of deep samples; save it as one part of scan lines"
+            "tiled, multi-part and deep OpenEXR pictures are not supported; save it as a single part with scan lines"
                 .into(),
         );
     }
@@ -149,7 +149,7 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, request: Request) -> std::resu
 }
 
 fn other(method: &str) -> String {
-    format!("its samples are compressed with {method}; known are none, RLE, ZIPS and ZIP: save it as ZIP")
+    format!("its compression {method} is not supported; save it with ZIP (supported: none, RLE, ZIPS and ZIP)")
 }
 
 fn seek(input: &mut dyn Input, at: u64) -> std::result::Result<(), String> {

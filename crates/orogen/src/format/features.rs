@@ -83,7 +83,7 @@ pub struct Feature {
 pub struct FeatureLayer {
     /// Its name.
     pub name: &'static str,
-    /// One message about it.
+    /// One sentence about it.
     pub about: &'static str,
     /// The type of its geometries.
     pub geometry: GeometryType,

@@ -171,7 +171,7 @@ pub fn write_animation(
     };
     let (wide, high) = (side(width)?, side(height)?);
     if animation.frames == 0 {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "an animation without a frame shows nothing"));
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "an animation needs at least one frame"));
     }
     out.write_all(b"GIF89a")?;
     out.write_all(&[wide[0], wide[1], high[0], high[1]])?;

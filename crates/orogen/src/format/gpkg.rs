@@ -92,7 +92,7 @@ fn spatial_ref_sys(database: &mut Database, srs: i64, definition: &Definition) -
     if !matches!(srs, LOCAL | GEOGRAPHIC | 4326) {
         rows.push(match definition {
             Definition::Wkt(wkt) => {
-                row("Coordinate system of the input", srs, "NONE", wkt, "a system without EPSG code")
+                row("Coordinate system of the input", srs, "NONE", wkt, "coordinate system without EPSG code")
             }
             // Readers look a code up rather than read its definition.
             Definition::Epsg(_, Some(wkt)) => row(&name, srs, "EPSG", wkt, "as the EPSG registry defines it"),

@@ -19,7 +19,7 @@ pub fn read(input: &mut dyn Input, name: &str, sidecar: &Sidecar, allowed: u64) 
 fn open(input: &mut dyn Input, sidecar: &Sidecar, allowed: u64) -> std::result::Result<Dem, String> {
     let broken = |fault: DecodingError| match fault {
         DecodingError::LimitsExceeded => {
-            "it takes more memory than a picture of its size should: it is damaged".to_string()
+            "it needs more memory than a picture of its size should; it is damaged".to_string()
         }
         other => format!("it is not a valid PNG ({other})"),
     };
@@ -33,10 +33,14 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, allowed: u64) -> std::result::
     let size = match (color, depth) {
         (ColorType::Grayscale, BitDepth::Eight) => 1,
         (ColorType::Grayscale, BitDepth::Sixteen) => 2,
-        _ => return Err(format!("its pixels are {color:?} of {depth:?} bits; heights are grey, of 8 or 16 bits")),
+        _ => {
+            return Err(format!(
+                "its pixels are {color:?} with {depth:?} bits; only grey with 8 or 16 bits is supported"
+            ));
+        }
     };
     if reader.info().interlaced {
-        return Err("it is interlaced; save it without".into());
+        return Err("it is interlaced; save it without interlacing".into());
     }
     let [low, high] = sidecar.range()?;
     let most = if size == 1 { 255.0 } else { 65535.0 };

@@ -52,7 +52,7 @@ fn size(input: &mut dyn Input) -> std::result::Result<[usize; 2], String> {
     let bytes = length(input)?;
     SIZES.into_iter().find(|[columns, rows]| (2 * columns * rows) as u64 == bytes).ok_or_else(|| {
         format!(
-            "an .hgt has 1201 x 1201 samples of two bytes (2884802 bytes) or 3601 x 3601 (25934402); this has {bytes} bytes"
+            "an .hgt must have 1201 x 1201 samples of two bytes (2884802 bytes) or 3601 x 3601 (25934402 bytes), not {bytes} bytes"
         )
     })
 }
@@ -129,7 +129,10 @@ mod tests {
         }
         let void = [0x80, 0].repeat(1201 * 1201);
         assert!(
-            read(&mut Cursor::new(&void), "N00E000.hgt", 1 << 30).unwrap_err().to_string().contains("holds no height")
+            read(&mut Cursor::new(&void), "N00E000.hgt", 1 << 30)
+                .unwrap_err()
+                .to_string()
+                .contains("samples are nodata")
         );
     }
 }

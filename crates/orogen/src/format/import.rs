@@ -54,8 +54,8 @@ pub fn head(path: &Path) -> Result<([usize; 2], Option<Placement>)> {
 pub fn read(path: &Path, request: impl Into<Request>) -> Result<Dem> {
     let name = path.display().to_string();
     if !is_dem(path) {
-        let known = "known are .tif, .asc, .hgt, .png, .r16, .r32, .npy, .exr and .vrt, and folders of .tif, .hgt or .asc or of Zarr";
-        return Err(refused(&name, format!("its extension is not that of a height format; {known}")));
+        let known = "supported are .tif, .asc, .hgt, .png, .r16, .r32, .npy, .exr and .vrt, folders of .tif, .hgt or .asc, and Zarr";
+        return Err(refused(&name, format!("its extension is not that of a format for heights; {known}")));
     }
     let mut file = open::regular(path, "read")?;
     let sidecar = Sidecar::beside(path)?;

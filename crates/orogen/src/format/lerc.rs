@@ -26,7 +26,7 @@ pub fn unpack(packed: &[u8], [width, height]: [usize; 2], bands: usize, size: us
     // The last strip of a file may be packed as long as it is.
     if columns != width || rows > height || head.bands != bands || SIZES[head.kind] != size {
         return Err(format!(
-            "a block compressed with LERC holds {columns} x {rows} pixels of {} bands of {} bytes, instead of {width} x {height} of {bands} of {size}",
+            "a block compressed with LERC holds {columns} x {rows} pixels with {} bands of {} bytes instead of {width} x {height} with {bands} of {size}",
             head.bands, SIZES[head.kind]
         ));
     }
@@ -103,11 +103,11 @@ struct Head {
 impl Head {
     fn read(input: &mut Input, packed: &[u8]) -> Result<Head, String> {
         if input.take(6)? != b"Lerc2 " {
-            return Err("a block is compressed with another LERC than Lerc2".into());
+            return Err("a block is compressed with a LERC other than Lerc2, which is not supported".into());
         }
         let version = input.int()?;
         if !(3..=6).contains(&version) {
-            return Err(format!("a block is compressed with version {version} of LERC; 3 to 6 are known"));
+            return Err(format!("a block is compressed with LERC version {version}; versions 3 to 6 are supported"));
         }
         let checksum = input.whole(4)?;
         let before = packed.len() - input.bytes.len();

@@ -124,10 +124,12 @@ fn read_header(input: &mut dyn Read) -> std::result::Result<Header, String> {
             read_exactly(input, &mut length, "header")?;
             u32::from_le_bytes(length) as usize
         }
-        version => return Err(format!("it is a .npy file of version {version}.{}; 1 to 3 are known", start[7])),
+        version => {
+            return Err(format!("it is a .npy file of version {version}.{}; versions 1 to 3 are supported", start[7]));
+        }
     };
     if length > LONGEST_HEADER {
-        return Err(format!("its header claims {length} bytes; no array of heights needs more than {LONGEST_HEADER}"));
+        return Err(format!("its header declares {length} bytes; at most {LONGEST_HEADER} are supported"));
     }
     let mut text = vec![0; length];
     read_exactly(input, &mut text, "header")?;
@@ -145,7 +147,7 @@ fn parse_header(text: &str) -> std::result::Result<Header, String> {
         match key {
             "descr" => {
                 descr = Some(rest.string().map_err(|_| {
-                    "its samples are records of several values; only plain numbers can be heights".to_string()
+                    "its samples are records of several values; only plain numbers are supported".to_string()
                 })?);
             }
             "fortran_order" => fortran = Some(rest.boolean()?),
@@ -181,7 +183,7 @@ fn parse_header(text: &str) -> std::result::Result<Header, String> {
 }
 
 fn sample_type(descr: &str) -> std::result::Result<(Kind, usize, bool), String> {
-    let unknown = || format!("its samples are of type '{descr}'; known are f4, f8, i1, i2, i4, u1, u2 and u4");
+    let unknown = || format!("its samples are of type '{descr}'; supported are f4, f8, i1, i2, i4, u1, u2 and u4");
     let (order, kind) = descr.split_at_checked(1).ok_or_else(unknown)?;
     let (kind, size) = match kind {
         "f4" => (Kind::Float, 4),
@@ -210,13 +212,13 @@ fn read_samples(input: &mut dyn Read, header: &Header) -> std::result::Result<Ve
     while samples.len() < count {
         let piece = (count - samples.len()).min(PIECE / header.size) * header.size;
         read_exactly(input, &mut bytes[..piece], "samples")
-            .map_err(|why| format!("{why}: its header promises {} x {} of them", header.shape[0], header.shape[1]))?;
+            .map_err(|why| format!("{why}; its header declares {} x {}", header.shape[0], header.shape[1]))?;
         samples.extend(bytes[..piece].chunks_exact(header.size).map(|sample| convert(sample, header)));
     }
     match input.read(&mut bytes[..1]) {
         Ok(0) => Ok(samples),
         Ok(_) => Err(format!(
-            "it goes on after its samples: its header promises {} x {} of them",
+            "it continues after its samples; its header declares {} x {}",
             header.shape[0], header.shape[1]
         )),
         Err(cause) => Err(cause.to_string()),
@@ -405,7 +407,7 @@ mod tests {
             assert!(error.starts_with("cannot read a.npy: it "), "{n}: {error}");
         }
         bytes.push(0);
-        assert!(read_bytes(&bytes).unwrap_err().to_string().contains("goes on after"));
+        assert!(read_bytes(&bytes).unwrap_err().to_string().contains("continues after"));
     }
 
     #[test]
@@ -418,7 +420,7 @@ mod tests {
             format!("{{'descr': {descr}, 'fortran_order': {order}, 'shape': {shape}, }}")
         };
         let shape = |shape: &str| header("'<f4'", "False", shape);
-        check(&shape("(1000000, 1000000)"), "it ends within its samples: its header promises 1000000 x 1000000");
+        check(&shape("(1000000, 1000000)"), "it ends within its samples; its header declares 1000000 x 1000000");
         check(&shape("(18446744073709551615, 2)"), "impossibly large");
         check(&shape("(99999999999999999999999, 2)"), "cannot be understood near \"9999");
         check(&shape("(-1, 2)"), "cannot be understood near \"-1");

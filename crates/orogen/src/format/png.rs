@@ -176,7 +176,7 @@ fn side(samples: usize) -> io::Result<u32> {
         Ok(n) if n > 0 && n <= i32::MAX as u32 => Ok(n),
         _ => Err(io::Error::new(
             io::ErrorKind::InvalidInput,
-            format!("a PNG picture has 1 to 2147483647 pixels a side, not {samples}"),
+            format!("a PNG picture must have 1 to 2147483647 pixels per side, not {samples}"),
         )),
     }
 }

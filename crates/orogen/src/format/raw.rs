@@ -65,7 +65,7 @@ fn open(input: &mut dyn Input, sample: Sample, sidecar: &Sidecar, allowed: u64) 
     let there = length(input)?;
     if there != count as u64 * size {
         return Err(format!(
-            "{width} x {height} samples of {size} bytes are {} bytes, and it has {there}",
+            "{width} x {height} samples of {size} bytes need {} bytes, and it has {there}",
             count as u64 * size
         ));
     }

@@ -106,9 +106,9 @@ impl Sidecar {
             true => toml::from_str(text).map_err(|fault| fault.message().to_string()),
             false => serde_json::from_str(text).map_err(|fault| fault.to_string()),
         };
-        let sidecar = read.map_err(|fault| format!("it is no sidecar of heights: {fault}"))?;
+        let sidecar = read.map_err(|fault| format!("it is not a valid sidecar for heights: {fault}"))?;
         if sidecar.cell.is_some_and(|cell| !(cell.is_finite() && cell > 0.0)) {
-            return Err("its `cell` is not above 0".into());
+            return Err("its `cell` is not greater than 0".into());
         }
         if [sidecar.low, sidecar.high].into_iter().flatten().any(|number| !number.is_finite()) {
             return Err("its `low` and `high` are not both numbers".into());
@@ -157,7 +157,7 @@ impl Sidecar {
     pub fn range(&self) -> std::result::Result<[f64; 2], String> {
         match (self.low, self.high) {
             (Some(low), Some(high)) => Ok([low, high]),
-            _ => Err(needs("low and high, the metres of its least and greatest sample")),
+            _ => Err(needs("low and high, the heights in metres of its lowest and highest sample value")),
         }
     }
 
@@ -219,7 +219,7 @@ pub fn own(path: &Path) -> PathBuf {
 
 /// The message for a file that does not tell enough.
 pub fn needs(what: &str) -> String {
-    format!("it does not say {what}: give them in a file of the same name that ends in .json or .toml")
+    format!("it lacks {what}; write them to a file of the same name with the extension .json or .toml")
 }
 
 #[cfg(test)]
@@ -269,8 +269,8 @@ mod tests {
     #[test]
     fn wrong_ones_are_sentences() {
         for (text, expect) in [
-            ("width = 'a'", "no sidecar of heights"),
-            ("= 3", "no sidecar of heights"),
+            ("width = 'a'", "not a valid sidecar for heights"),
+            ("= 3", "not a valid sidecar for heights"),
             ("cell = 0", "`cell` is not above 0"),
             ("low = nan", "not both numbers"),
         ] {

@@ -106,7 +106,7 @@ impl Database {
             varint(payload.len() as u64, &mut cell);
             cell.extend_from_slice(&payload);
             if !tree.fits(&cell, PAGE) {
-                return Err(io::Error::other(format!("more keys of {table} than a page holds")));
+                return Err(io::Error::other(format!("too many keys of {table} for a page")));
             }
             tree.cells.push(cell);
         }

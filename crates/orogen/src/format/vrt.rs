@@ -48,10 +48,10 @@ pub fn parse(text: &str) -> Result<Virtual, String> {
     let document = Document::parse(text).map_err(|fault| format!("it is not valid XML ({fault})"))?;
     let root = document.root_element();
     if !root.has_tag_name("VRTDataset") {
-        return Err("it is no virtual raster: its root is not VRTDataset".into());
+        return Err("it is not a virtual raster: its root is not VRTDataset".into());
     }
     if let Some(kind) = root.attribute("subClass") {
-        return Err(format!("it is a {kind}, which computes its samples: make a GeoTIFF of it by gdal_translate"));
+        return Err(format!("it is a {kind}, which is not supported; convert it to GeoTIFF with gdal_translate"));
     }
     let side =
         |name: &str| root.attribute(name).and_then(|text| text.trim().parse().ok()).ok_or(format!("it has no {name}"));
@@ -68,7 +68,7 @@ pub fn parse(text: &str) -> Result<Virtual, String> {
 /// What a band is composed of.
 fn sources(band: Node) -> Result<Vec<Source>, String> {
     if let Some(kind) = band.attribute("subClass") {
-        return Err(format!("it has a {kind}, which computes its samples: make a GeoTIFF of it by gdal_translate"));
+        return Err(format!("it has a {kind}, which is not supported; convert it to GeoTIFF with gdal_translate"));
     }
     let all = band.children().filter(|node| node.is_element() && node.tag_name().name().ends_with("Source"));
     all.map(source).collect()
@@ -77,20 +77,23 @@ fn sources(band: Node) -> Result<Vec<Source>, String> {
 fn source(node: Node) -> Result<Source, String> {
     let name = node.tag_name().name();
     if !matches!(name, "SimpleSource" | "ComplexSource") {
-        return Err(format!("it has a {name}, which changes samples: make a GeoTIFF of it by gdal_translate"));
+        return Err(format!("it has a {name}, which is not supported; convert it to GeoTIFF with gdal_translate"));
     }
     let child = |name: &str| node.children().find(|node| node.has_tag_name(name));
     if let Some(other) = ["ScaleOffset", "ScaleRatio", "LUT", "Exponent", "ColorTableComponent", "UseMaskBand"]
         .into_iter()
         .find(|name| child(name).is_some())
     {
-        return Err(format!("a source has a {other}, which changes samples: make a GeoTIFF of it by gdal_translate"));
+        return Err(format!(
+            "a source has a {other}, which is not supported; convert it to GeoTIFF with gdal_translate"
+        ));
     }
-    let file = child("SourceFilename").ok_or("a source names no file")?;
-    let path = file.text().map(str::trim).filter(|path| !path.is_empty()).ok_or("a source names no file")?.to_string();
+    let file = child("SourceFilename").ok_or("a source has no file name")?;
+    let path =
+        file.text().map(str::trim).filter(|path| !path.is_empty()).ok_or("a source has no file name")?.to_string();
     let relative = matches!(file.attribute("relativeToVRT"), Some("1" | "true" | "TRUE"));
     let band = match child("SourceBand").and_then(|node| node.text()) {
-        Some(text) => text.trim().parse().map_err(|_| format!("a source takes the band `{}`", text.escape_debug()))?,
+        Some(text) => text.trim().parse().map_err(|_| format!("a source uses the band `{}`", text.escape_debug()))?,
         None => 1,
     };
     let (from, to) = (rectangle(child("SrcRect"))?, rectangle(child("DstRect"))?);
@@ -101,7 +104,7 @@ fn source(node: Node) -> Result<Source, String> {
         (None, Some((to, size))) => ([0; 2], to, Some(size)),
         _ => {
             return Err(format!(
-                "it lays `{path}` with other cells than it has: make a GeoTIFF of it by gdalwarp or gdal_translate"
+                "it resamples `{path}`, which is not supported; convert it to GeoTIFF with gdalwarp or gdal_translate"
             ));
         }
     };
@@ -122,7 +125,7 @@ fn rectangle(node: Option<Node>) -> Result<Option<Rectangle>, String> {
     };
     match (number("xOff"), number("yOff"), number("xSize"), number("ySize")) {
         (Some(x), Some(y), Some(width), Some(height)) if width > 0 && height > 0 => Ok(Some(([x, y], [width, height]))),
-        _ => Err("it lays a source between its columns and rows: make a GeoTIFF of it by gdalwarp".into()),
+        _ => Err("a source is not aligned with its samples; convert it to GeoTIFF with gdalwarp".into()),
     }
 }
 
@@ -165,12 +168,14 @@ mod tests {
         };
         let (five, ten) =
             ("xOff=\"0\" yOff=\"0\" xSize=\"5\" ySize=\"5\"", "xOff=\"0\" yOff=\"0\" xSize=\"10\" ySize=\"10\"");
-        assert!(rect(five, ten).unwrap_err().contains("other cells"));
+        assert!(rect(five, ten).unwrap_err().contains("it resamples"));
         assert!(
-            rect(five, "xOff=\"0.5\" yOff=\"0\" xSize=\"5\" ySize=\"5\"").unwrap_err().contains("between its columns")
+            rect(five, "xOff=\"0.5\" yOff=\"0\" xSize=\"5\" ySize=\"5\"")
+                .unwrap_err()
+                .contains("not aligned with its samples")
         );
         assert!(with("<KernelFilteredSource/>").unwrap_err().contains("KernelFilteredSource"));
-        assert!(with("<SimpleSource/>").unwrap_err().contains("names no file"));
+        assert!(with("<SimpleSource/>").unwrap_err().contains("has no file name"));
         assert!(parse("<a/>").unwrap_err().contains("no virtual raster"));
         assert!(parse("II*").unwrap_err().contains("not valid XML"));
     }

@@ -25,7 +25,7 @@ pub fn parse(text: &str) -> Result<Affine, String> {
     let numbers: Option<Vec<f64>> = text.split_whitespace().map(|word| word.replace(',', ".").parse().ok()).collect();
     match numbers.as_deref() {
         Some([a, d, b, e, c, f]) => Ok(Affine([*a, *b, *c, *d, *e, *f])),
-        _ => Err("a world file holds six numbers".into()),
+        _ => Err("a world file must have six numbers".into()),
     }
 }
 

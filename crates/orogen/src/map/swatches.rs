@@ -19,7 +19,7 @@ pub struct Swatch {
     pub palette: Palette,
     /// What it looks like and whose it is.
     pub about: String,
-    /// Whether colour-blind people can tell its heights apart.
+    /// Whether distinguishable by colour-blind readers.
     pub safe: bool,
 }
 
@@ -54,10 +54,10 @@ pub fn draw(swatches: &[Swatch]) -> Result<Canvas> {
     let style = |face, size, ink| Style { face, size, ink };
     page.font.write(&mut page.canvas, MARGIN as f32, 54, "Palettes", style(Face::Bold, 30.0, INK));
     let x = (MARGIN + 146) as f32;
-    let note = "each as a bar from the lowest to the highest, and on an island";
+    let note = "each as a bar from lowest to highest, and on an island";
     let end = page.font.write(&mut page.canvas, x, 54, note, style(Face::Regular, 15.0, SOFT));
     page.dot(end as i64 + 30, 49);
-    let told = "colour-blind people can tell its heights apart";
+    let told = "distinguishable by colour-blind readers";
     page.font.write(&mut page.canvas, end + 42.0, 54, told, style(Face::Regular, 15.0, SOFT));
     for (k, swatch) in swatches.iter().enumerate() {
         // Down the first column, then down the second.

@@ -37,13 +37,12 @@ pub fn adaptive_with(grid: &Grid, max_error: f64, progress: &Progress) -> Result
     enough(grid)?;
     let refuse = |why: String| Err(Error::new(ErrorKind::Request, why));
     if !(max_error >= 0.0 && max_error.is_finite()) {
-        return refuse(format!("the greatest error of a mesh must be zero or more metres, not {max_error}"));
+        return refuse(format!("the maximum error of a mesh must be at least 0 m, not {max_error}"));
     }
     let holes = grid.data().par_iter().filter(|height| !height.is_finite()).count();
     if holes > 0 {
         return refuse(format!(
-            "{holes} of {} samples are missing, and an adaptive mesh needs them all: ask for the full grid, which leaves out the \
-             triangles that touch a hole",
+            "{holes} of {} samples are nodata, and an adaptive mesh needs all samples; write the full grid instead (without --max-error), which leaves out triangles at nodata samples",
             grid.data().len()
         ));
     }
@@ -236,7 +235,7 @@ mod tests {
         };
         says(&land(1, 50), 1.0, "at least 2 x 2 samples, and there are 1 x 50");
         says(&land(50, 1), 1.0, "50 x 1");
-        says(&land(5, 5), -1.0, "zero or more metres, not -1");
+        says(&land(5, 5), -1.0, "at least 0 m, not -1");
         says(&land(5, 5), f64::NAN, "not NaN");
         let mut holes = land(5, 5);
         holes.row_mut(2)[3] = f32::NAN;

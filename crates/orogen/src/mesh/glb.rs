@@ -54,8 +54,7 @@ pub fn write(out: &mut dyn Write, model: &Model) -> io::Result<()> {
     let length = 12 + 8 + json.len() as u64 + 8 + document.length;
     if length > u64::from(u32::MAX) {
         let message = format!(
-            "a .glb file holds at most 4 GiB, and this mesh would take {}: make it adaptive (--max-error), or ask for a smaller \
-             window or a larger cell",
+            "a .glb file holds at most 4 GiB, and this mesh needs {}; use --max-error, a smaller window or a larger cell",
             crate::words::bytes(length)
         );
         return Err(Error::new(ErrorKind::Request, message).into());

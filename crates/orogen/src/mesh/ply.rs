@@ -16,8 +16,7 @@ pub fn write(out: &mut dyn Write, surface: &Surface, comments: &[String]) -> io:
     let [corners, triangles] = [surface.shape.corners(), surface.shape.triangles()];
     if corners > i32::MAX as usize || triangles > i32::MAX as usize {
         let message = format!(
-            "a .ply file numbers at most 2147483647 corners and triangles, and this mesh has {triangles} triangles: make it \
-             adaptive (--max-error), or ask for a smaller window or a larger cell"
+            "a .ply file holds at most 2147483647 vertices and triangles, and this mesh has {triangles} triangles; use --max-error, a smaller window or a larger cell"
         );
         return Err(Error::new(ErrorKind::Request, message).into());
     }

@@ -25,8 +25,7 @@ impl HeightCurve {
     pub fn parse(text: &str) -> Result<HeightCurve> {
         let refuse = |why: String| {
             let message = format!(
-                "`{}` is no curve of heights: {why}; it is two or more points such as 0:0,0.5:0.2,1:1, from the lowest (0) to the \
-                 highest (1)",
+                "`{}` is not a valid height curve: {why}; write two or more points such as 0:0,0.5:0.2,1:1, from the lowest (0) to the highest (1)",
                 text.escape_debug()
             );
             Err(Error::new(ErrorKind::Request, message))
@@ -37,18 +36,15 @@ impl HeightCurve {
             match pair.split_once(':').map(|(from, to)| (number(from), number(to))) {
                 Some((Some(from), Some(to))) => points.push([from, to]),
                 _ => {
-                    return refuse(format!(
-                        "`{}` is not two numbers with a colon between them",
-                        pair.trim().escape_debug()
-                    ));
+                    return refuse(format!("`{}` is not two numbers separated by a colon", pair.trim().escape_debug()));
                 }
             }
         }
         if points.len() < 2 {
-            return refuse("one point is no curve".into());
+            return refuse("a curve needs at least two points".into());
         }
         match points.windows(2).find(|pair| pair[0][0] >= pair[1][0]) {
-            Some(pair) => refuse(format!("{} comes after {}, which is not less", pair[1][0], pair[0][0])),
+            Some(pair) => refuse(format!("{} follows {}, which is not less", pair[1][0], pair[0][0])),
             None => Ok(HeightCurve { points }),
         }
     }
@@ -107,7 +103,7 @@ mod tests {
     fn what_is_no_curve_is_a_sentence() {
         for (text, expect) in [
             ("", "`` is not two numbers"),
-            ("0:0", "one point is no curve"),
+            ("0:0", "a curve needs at least two points"),
             ("0:0,1", "`1` is not two numbers"),
             ("0:0,nan:1", "`nan:1` is not"),
             ("0:0,0.5:1,0.5:2", "0.5 comes after 0.5"),

@@ -120,7 +120,7 @@ impl Shape {
         if triangles.is_empty() {
             return Err(Error::new(
                 ErrorKind::Request,
-                "no three neighbouring samples are finite, so there is no triangle: nothing to make a mesh of",
+                "the mesh would be empty: no three neighbouring samples are finite",
             ));
         }
         Ok(Shape { kind: Kind::Listed { samples, triangles } })
@@ -284,7 +284,7 @@ pub(super) fn enough(grid: &Grid) -> Result<()> {
         true => Err(Error::new(
             ErrorKind::Request,
             format!(
-                "a mesh needs at least 2 x 2 samples, and there are {} x {}: ask for a larger window",
+                "a mesh needs at least 2 x 2 samples, and there are {} x {}; use a larger window",
                 grid.width(),
                 grid.height()
             ),
@@ -299,7 +299,7 @@ fn numbered(corners: u64) -> Result<()> {
         true => Err(Error::new(
             ErrorKind::Request,
             format!(
-                "a mesh numbers at most {} corners, and this one has {corners}: ask for a smaller window or a larger cell",
+                "a mesh holds at most {} vertices, and this one has {corners}; use a smaller window or a larger cell",
                 u32::MAX - 1
             ),
         )),

@@ -28,7 +28,7 @@ pub fn write(out: &mut dyn Write, surface: &Surface, print: &Print) -> io::Resul
     let holes = grid.data().iter().filter(|height| !height.is_finite()).count();
     if holes > 0 {
         let message = format!(
-            "{holes} of {} samples are missing, and a solid with holes cannot be printed: choose a window or a layer without any",
+            "{holes} of {} samples are nodata, and a solid must not have holes; choose a window or a layer without nodata",
             grid.data().len()
         );
         return Err(Error::new(ErrorKind::Request, message).into());
@@ -38,8 +38,7 @@ pub fn write(out: &mut dyn Write, surface: &Surface, print: &Print) -> io::Resul
     let triangles = surface.shape.triangles() as u64 + 3 * border.len() as u64;
     let count = u32::try_from(triangles).map_err(|_| {
         let message = format!(
-            "an .stl file counts at most 4294967295 triangles, and this solid has {triangles}: make it adaptive (--max-error), or \
-             ask for a smaller window or a larger cell"
+            "an .stl file holds at most 4294967295 triangles, and this solid has {triangles}; use --max-error, a smaller window or a larger cell"
         );
         Error::new(ErrorKind::Request, message)
     })?;

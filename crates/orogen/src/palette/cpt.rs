@@ -85,7 +85,7 @@ fn color_model(text: &str) -> Result<(Model, Mix), String> {
         "HSV" => Ok((Model::Hsv, Mix::Rgb)),
         "+HSV" => Ok((Model::Hsv, Mix::Hsv)),
         "CMYK" | "+CMYK" => Ok((Model::Cmyk, Mix::Rgb)),
-        _ => Err(format!("the colour model {text} is not known; there are RGB, HSV and CMYK")),
+        _ => Err(format!("unknown colour model {text}; supported are RGB, HSV and CMYK")),
     }
 }
 
@@ -103,14 +103,13 @@ fn slice(words: &[&str], model: Model) -> Result<[(f64, Rgb); 2], String> {
         words => words,
     };
     if words.len() < 4 || words.len() % 2 == 1 {
-        let message =
-            "a line has a height and its colour, then a higher one and its colour; lists of categories are not read";
+        let message = "each line must have a height and its colour, then a greater height and its colour; categorical palettes are not supported";
         return Err(message.into());
     }
     let (start, end) = words.split_at(words.len() / 2);
     let stop = |words: &[&str]| {
         let height = words[0].parse::<f64>().ok().filter(|height| height.abs() <= 1e9);
-        let height = height.ok_or_else(|| format!("`{}` is no height", words[0]))?;
+        let height = height.ok_or_else(|| format!("`{}` is not a height", words[0]))?;
         Ok::<(f64, Rgb), String>((height, colors(&words[1..], model)?))
     };
     Ok([stop(start)?, stop(end)?])
@@ -118,7 +117,7 @@ fn slice(words: &[&str], model: Model) -> Result<[(f64, Rgb); 2], String> {
 
 fn colors(words: &[&str], model: Model) -> Result<Rgb, String> {
     let text = words.join(" ");
-    let wrong = || format!("`{text}` is no colour");
+    let wrong = || format!("`{text}` is not a colour");
     if let [word] = words
         && let Some(color) = hexadecimal(word).or_else(|| named(word))
     {

@@ -31,7 +31,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
             Some(percent) => number_of(percent).map(|percent| Position::Share(percent / 100.0)),
             None => number_of(at).map(Position::Value),
         };
-        let at = at.ok_or_else(|| format!("line {number}: `{}` is no height, no percentage and not nv", words[0]))?;
+        let at = at.ok_or_else(|| format!("line {number}: `{}` is not a height, a percentage or nv", words[0]))?;
         palette.stops.push(Stop { at, color });
     }
     match palette.stops.is_empty() {
@@ -42,16 +42,18 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
 
 fn color(words: &[&str]) -> Result<Rgb, String> {
     match words {
-        [name] => named(name).ok_or_else(|| format!("`{name}` is no colour: it takes a name or three numbers")),
+        [name] => named(name).ok_or_else(|| format!("`{name}` is not a colour; write a name or three numbers")),
         [red, green, blue] | [red, green, blue, _] => {
             let mut color = [0; 3];
             for (part, text) in color.iter_mut().zip([red, green, blue]) {
                 let value = text.parse::<f64>().ok().filter(|value| (0.0..=255.0).contains(value));
-                *part = value.ok_or_else(|| format!("`{text}` is no part of a colour: a number from 0 to 255"))? as u8;
+                *part = value
+                    .ok_or_else(|| format!("`{text}` is not a colour component; write a number from 0 to 255"))?
+                    as u8;
             }
             Ok(color)
         }
-        _ => Err("after the height come a colour's name or its red, green and blue".into()),
+        _ => Err("the height must be followed by a colour name or by red, green and blue".into()),
     }
 }
 

@@ -21,7 +21,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
             let mut parts = line.split_whitespace();
             let mut part = || parts.next().and_then(|word| word.parse::<u8>().ok());
             let color = part().zip(part()).zip(part()).map(|((red, green), blue)| [red, green, blue]);
-            let wrong = || format!("line {number}: it does not begin with red, green and blue from 0 to 255");
+            let wrong = || format!("line {number}: it does not start with red, green and blue from 0 to 255");
             colors.push(color.ok_or_else(wrong)?);
         }
     }

@@ -33,7 +33,7 @@ pub fn read(path: &Path, count: usize) -> Result<Vec<Light>> {
 pub fn parse(input: impl BufRead + Seek, count: usize) -> std::result::Result<Vec<Light>, String> {
     let mut decoder = ::png::Decoder::new(input);
     decoder.set_transformations(::png::Transformations::EXPAND | ::png::Transformations::STRIP_16);
-    let mut reader = decoder.read_info().map_err(|cause| format!("it is no PNG picture: {cause}"))?;
+    let mut reader = decoder.read_info().map_err(|cause| format!("it is not a PNG picture: {cause}"))?;
     let (color, _) = reader.output_color_type();
     let channels = color.samples();
     let light: Vec<f32> = (0..=255).map(decode).collect();

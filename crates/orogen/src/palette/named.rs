@@ -41,7 +41,7 @@ pub const DEFAULT: &str = "hypsometric";
 const ALL: &[Named] = &[
     Named {
         name: "hypsometric",
-        about: "green lowlands to brown, grey and white; a sea that darkens; follows the relief",
+        about: "green lowlands to brown, grey and white; sea darkens with depth; adapts to the relief",
         span: Span::Sea,
         safe: false,
         stops: &[
@@ -83,7 +83,7 @@ const ALL: &[Named] = &[
     },
     Named {
         name: "swiss",
-        about: "pale, under strong shading: cool lowlands, warm light heights",
+        about: "pale, for use with strong shading: cool lowlands, warm light heights",
         span: Span::Sea,
         safe: false,
         stops: &[
@@ -98,7 +98,7 @@ const ALL: &[Named] = &[
     },
     Named {
         name: "temperate",
-        about: "as seen from above: meadows and forest to rock and snow",
+        about: "aerial view: meadows and forest to rock and snow",
         span: Span::Sea,
         safe: false,
         stops: &[
@@ -183,14 +183,14 @@ const ALL: &[Named] = &[
     },
     Named {
         name: "parchment",
-        about: "an old map",
+        about: "colours of an old map",
         span: Span::Sea,
         safe: false,
         stops: &[(-1.0, 0x9aa690), (0.0, 0xd5d5b6), (0.0, 0xf3e8c9), (0.4, 0xe3cf9f), (0.7, 0xc8a674), (1.0, 0x94704a)],
     },
     Named {
         name: "whittaker",
-        about: "biomes up a mountain, rain forest to ice, in hard steps (after R. Whittaker)",
+        about: "biomes by elevation, rain forest to ice, in discrete steps (after R. Whittaker)",
         span: Span::Sea,
         safe: false,
         stops: &[
@@ -218,7 +218,7 @@ const ALL: &[Named] = &[
     },
     Named {
         name: "slope",
-        about: "degrees of slope: pale flats to dark cliffs",
+        about: "slope in degrees: pale flats to dark cliffs",
         span: Span::Degrees,
         safe: false,
         stops: &[
@@ -248,7 +248,7 @@ const ALL: &[Named] = &[
     },
     Named {
         name: "viridis",
-        about: "dark blue over green to yellow (S. van der Walt and N. Smith, CC0)",
+        about: "dark blue through green to yellow (S. van der Walt and N. Smith, CC0)",
         span: Span::Range,
         safe: true,
         stops: &[
@@ -270,7 +270,7 @@ const ALL: &[Named] = &[
     },
     Named {
         name: "magma",
-        about: "black over purple to cream (S. van der Walt and N. Smith, CC0)",
+        about: "black through purple to cream (S. van der Walt and N. Smith, CC0)",
         span: Span::Range,
         safe: true,
         stops: &[
@@ -291,7 +291,7 @@ const ALL: &[Named] = &[
     },
     Named {
         name: "inferno",
-        about: "black over red to pale yellow (S. van der Walt and N. Smith, CC0)",
+        about: "black through red to pale yellow (S. van der Walt and N. Smith, CC0)",
         span: Span::Range,
         safe: true,
         stops: &[
@@ -319,7 +319,7 @@ const ALL: &[Named] = &[
     },
     Named {
         name: "turbo",
-        about: "rainbow of even brightness steps (A. Mikhailov, Google, Apache-2.0)",
+        about: "rainbow with even brightness steps (A. Mikhailov, Google, Apache-2.0)",
         span: Span::Range,
         safe: false,
         stops: &[
@@ -348,7 +348,7 @@ const ALL: &[Named] = &[
     },
     Named {
         name: "batlow",
-        about: "dark blue over olive to pink (F. Crameri, MIT)",
+        about: "dark blue through olive to pink (F. Crameri, MIT)",
         span: Span::Range,
         safe: true,
         stops: &[
@@ -415,7 +415,7 @@ const ALL: &[Named] = &[
     },
     Named {
         name: "bands",
-        about: "blue, yellow, green, brown and white in hard steps at .3, .4, .7 and .9",
+        about: "blue, yellow, green, brown and white in discrete steps at .3, .4, .7 and .9",
         span: Span::Range,
         safe: false,
         stops: &[
@@ -433,7 +433,7 @@ const ALL: &[Named] = &[
     },
     Named {
         name: "planet",
-        about: "deep blue over gold and grey-brown to white",
+        about: "deep blue through gold and grey-brown to white",
         span: Span::Range,
         safe: false,
         stops: &[

@@ -37,13 +37,13 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
         "m" => Position::Value,
         "range" => Position::Share,
         "sea" => Position::Sea,
-        other => return Err(format!("unit = \"{other}\" is not known; there are \"m\", \"range\" and \"sea\"")),
+        other => return Err(format!("unknown unit \"{other}\"; supported are \"m\", \"range\" and \"sea\"")),
     };
     let mix = match file.mix.as_deref() {
         None | Some("oklab") => Mix::Oklab,
         Some("rgb") => Mix::Rgb,
         Some("hsv") => Mix::Hsv,
-        Some(other) => return Err(format!("mix = \"{other}\" is not known; there are \"oklab\", \"rgb\" and \"hsv\"")),
+        Some(other) => return Err(format!("unknown mix \"{other}\"; supported are \"oklab\", \"rgb\" and \"hsv\"")),
     };
     if file.stops.is_empty() {
         return Err("it has no stops, such as stops = [[0, \"#2c5f2d\"], [1800, \"white\"]]".into());
@@ -51,7 +51,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     let mut stops = Vec::new();
     for (at, text) in &file.stops {
         if !(-1e9..=1e9).contains(at) {
-            return Err(format!("no colour can stand at {at}"));
+            return Err(format!("{at} is not a valid position of a colour"));
         }
         stops.push(Stop { at: place(*at), color: color(text)? });
     }
@@ -72,7 +72,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
 
 fn color(text: &str) -> Result<Rgb, String> {
     let found = hexadecimal(text).or_else(|| named(text));
-    found.ok_or_else(|| format!("`{text}` is no colour: it takes #rrggbb or a name such as white"))
+    found.ok_or_else(|| format!("`{text}` is not a colour; write #rrggbb or a name such as white"))
 }
 
 #[cfg(test)]

@@ -18,9 +18,9 @@ pub fn read(path: &Path) -> Result<Palette> {
     let refused =
         |why: String| Error::new(ErrorKind::File, format!("cannot read the palette {}: {why}", path.display()));
     let Some(bytes) = open::bytes(path, "read", MOST)? else {
-        return Err(refused(format!("it has more than {MOST} bytes, which no palette has")));
+        return Err(refused(format!("it has more than {MOST} bytes, the maximum for a palette")));
     };
-    let text = String::from_utf8(bytes).map_err(|_| refused("it is not a text in UTF-8".into()))?;
+    let text = String::from_utf8(bytes).map_err(|_| refused("it is not UTF-8 text".into()))?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     parse(&name, &extension, &text).map_err(refused)

@@ -106,8 +106,7 @@ impl<'a> Compiler<'a> {
         while let Some(work) = stack.pop() {
             if self.instructions.len() > MAX_INSTRUCTIONS {
                 let message = format!(
-                    "this recipe would take more than {MAX_INSTRUCTIONS} evaluations a sample: each warp makes its whole source \
-                     at positions of its own, and gullies at five, so warps of warps multiply; bake some of them"
+                    "this recipe would need more than {MAX_INSTRUCTIONS} evaluations per sample. A warp evaluates its source at displaced positions, and gullies at five positions, so nested warps multiply; put a `bake` between them"
                 );
                 return Err(Error::new(ErrorKind::Recipe, message));
             }

@@ -15,7 +15,7 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
     let mut text = String::new();
     let cell = plan.window.cell;
     let longest = recipe.nodes().iter().map(|node| node.name.chars().count()).max().unwrap_or(4).clamp(4, 24);
-    let _ = writeln!(text, "nodes, in the order they are made, at {} m a sample", number(cell));
+    let _ = writeln!(text, "nodes, in the order of evaluation, at a cell size of {} m", number(cell));
     let _ = writeln!(text, "  {:longest$}  {:12}  {:8}  {:18}  what it does", "name", "op", "locality", "looks at");
     const SHOWN: usize = 200;
     for &index in graph.order.iter().take(SHOWN) {
@@ -47,7 +47,7 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
     }
     let _ = writeln!(
         text,
-        "\nwhat is done for {} x {} samples at ({}, {})",
+        "\nsteps for {} x {} samples at ({}, {})",
         plan.window.width, plan.window.height, plan.window.x, plan.window.y
     );
     let name = |node: usize| recipe.nodes().get(node).map_or("a constant", |named| named.name.as_str());
@@ -91,12 +91,12 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
     }
     let _ = writeln!(
         text,
-        "\nmemory: {} at most, with {}",
+        "\nmemory: at most {}, with {}",
         bytes(memory::needed(plan, recipe, threads)),
         count(threads, "thread")
     );
     if let disk @ 1.. = memory::disk(plan) {
-        let _ = writeln!(text, "disk: {} while it runs", bytes(disk));
+        let _ = writeln!(text, "disk: {} temporarily", bytes(disk));
     }
     let solving = plan.solves.iter().fold(0u64, |sum, solve| sum.saturating_add(solve.samples));
     let solved = if solving > 0 { format!(", and {} to solve the world once", about(solving)) } else { String::new() };
@@ -106,7 +106,11 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
         None => writeln!(text, "time: less than 0.1 s"),
         Some(one) => {
             let all = duration(nanoseconds / threads as f64).unwrap_or_else(|| "less than 0.1 s".to_string());
-            writeln!(text, "time: about {one} of one core, {all} with {}; machines differ", count(threads, "thread"))
+            writeln!(
+                text,
+                "time: about {one} of one core, {all} with {}; it varies between machines",
+                count(threads, "thread")
+            )
         }
     };
     text

@@ -103,7 +103,7 @@ pub struct NamedNode {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Recipe {
-    /// One message about it, or empty.
+    /// A short description, or empty.
     pub about: String,
     /// The world.
     pub world: WorldSpec,
@@ -333,27 +333,25 @@ impl Recipe {
         let place = self.place();
         let message = match (&place, self.world.crs, self.world.origin) {
             (Some(place), _, Some(_)) if place.is_on_map() => {
-                "the file of heights already says where it lies: leave out `origin`".to_string()
+                "the file of heights is georeferenced; leave out `origin`".to_string()
             }
             (Some(place), Some(crs), None) if place.is_on_map() && place.epsg() != Some(crs.code()) => format!(
-                "the file of heights is in {}, and `crs` is EPSG:{}; heights are not reprojected: leave out `crs`, or reproject the \
-                 file first, for example with gdalwarp",
+                "the file of heights is in {}, but `crs` is EPSG:{}; heights are not reprojected. Leave out `crs`, or reproject the file first, for example with gdalwarp",
                 place.epsg().map_or("a CRS without an EPSG code".into(), |code| format!("EPSG:{code}")),
                 crs.code()
             ),
             (Some(place), Some(crs), None) if !place.is_on_map() && !place.fits(&crs) => format!(
-                "the coordinates of the file of heights were read as {}, and EPSG:{} ({}) counts otherwise",
+                "the coordinates of the file of heights were read as {}, but EPSG:{} ({}) has other units",
                 if place.counts_degrees() { "degrees" } else { "metres" },
                 crs.code(),
                 crs.name()
             ),
             (None, Some(crs), None) => format!(
-                "`crs` is EPSG:{}, but nothing says where in it the world lies: give `origin`, east and north of its north-west corner",
+                "`crs` is EPSG:{}, but `origin` is missing; set it to the easting and northing of the world's north-west corner",
                 crs.code()
             ),
             (_, None, Some(_)) => {
-                "`origin` is a place on a map, but nothing says on which: give `crs`, such as \"EPSG:32632\""
-                    .to_string()
+                "`origin` is set, but `crs` is missing; set it, for example to \"EPSG:32632\"".to_string()
             }
             _ => return Ok(()),
         };

@@ -81,14 +81,14 @@ fn is_path(name: &str) -> bool {
     name.split('/').count() <= MAX_DEPTH + 1 && name.split('/').all(is_name)
 }
 
-const NAME_RULE: &str = "names are 1 to 64 letters, digits, `_` and `-` and do not begin with a digit";
+const NAME_RULE: &str = "a name must have 1 to 64 letters, digits, `_` and `-`, and must not start with a digit";
 
 impl Graph {
     /// Resolves names, checks every value and finds an order, or says what is wrong: all of it, up to [`MAX_FAULTS`].
     pub fn resolve(recipe: &Recipe) -> Result<Graph, Vec<GraphDiagnostic>> {
         let nodes = recipe.nodes();
         if nodes.len() > MAX_NODES {
-            let message = format!("the recipe has {} nodes, the most there may be is {MAX_NODES}", nodes.len());
+            let message = format!("the recipe has {} nodes; at most {MAX_NODES} are allowed", nodes.len());
             return Err(vec![GraphDiagnostic { at: At::Node(MAX_NODES, String::new()), message }]);
         }
         let mut resolver = Resolver { recipe, names: HashMap::with_capacity(nodes.len()), diagnostics: Vec::new() };
@@ -166,7 +166,7 @@ impl Graph {
             .position(|link| matches!(link, Link::Node(target) if target.node == source))
             .map_or("mask", |i| inputs[i].name);
         let message = if cycle.len() == 1 {
-            format!("node `{}`, `{key}`: the node reads itself; it can only read others", name(reader))
+            format!("node `{}`, `{key}`: the node reads itself; it must read another node", name(reader))
         } else {
             const SHOWN: usize = 8;
             let mut names: Vec<&str> = cycle.iter().take(SHOWN).map(|&node| name(node)).collect();
@@ -174,10 +174,7 @@ impl Graph {
                 names.push("...");
             }
             names.push(name(reader));
-            format!(
-                "these nodes read each other in a circle: {}; one of them must read something else",
-                names.join(" -> ")
-            )
+            format!("these nodes form a cycle: {}; one of them must read something else", names.join(" -> "))
         };
         GraphDiagnostic { at: At::Node(reader, key.to_string()), message }
     }
@@ -220,7 +217,7 @@ fn named(recipe: &Recipe, text: &str, find: impl Fn(&str) -> Option<usize>) -> R
     let Some(index) = find(node) else {
         let shown: String = node.chars().take(SHOWN).collect();
         let names = recipe.nodes().iter().map(|node| node.name.as_str());
-        return Err(format!("there is no node `{shown}`; {}", suggestion(node, names)));
+        return Err(format!("unknown node `{shown}`; {}", suggestion(node, names)));
     };
     let Some(layer) = layer else { return Ok(LayerRef { node: index, layer: 0 }) };
     let layers = recipe.nodes()[index].node.layers();
@@ -266,13 +263,13 @@ impl<'a> Resolver<'a> {
         let most = width.max(height) / world.cell;
         if most > MAX_SAMPLES {
             let message = format!(
-                "the world would have {most:.0} samples along a side, the most is {MAX_SAMPLES:.0}: raise `cell`"
+                "the world would have {most:.0} samples along a side; at most {MAX_SAMPLES:.0} are allowed. Raise `cell`"
             );
             self.diagnostic(At::World, message);
         }
         if width.min(height) < world.cell {
             let message = format!(
-                "the world is {width} by {height} metres, less than one `cell` of {}: raise `size` or lower `cell`",
+                "the world is {width} x {height} m, less than one `cell` of {} m; raise `size` or lower `cell`",
                 world.cell
             );
             self.diagnostic(At::World, message);
@@ -292,12 +289,12 @@ impl<'a> Resolver<'a> {
         self.check_params(index, &named.node);
         let needs_bounds = match named.node.op() {
             Op::Solver(_) => Some("looks at the whole world"),
-            Op::Field(field) if field.needs_bounds() => Some("needs the world's edges"),
+            Op::Field(field) if field.needs_bounds() => Some("needs the edges of the world"),
             _ => None,
         };
         if let (Some(needs), None) = (needs_bounds, self.recipe.world.size) {
             let message = format!(
-                "node `{name}`: the op `{}` {needs}, and this world has no bounds: give `world` a `size`, or leave the node out",
+                "node `{name}`: the op `{}` {needs}, and this world is unbounded; set `size` in `world`, or remove the node",
                 named.node.spec().op
             );
             self.diagnostic(At::Node(index, String::new()), message);
@@ -344,7 +341,7 @@ impl<'a> Resolver<'a> {
                 self.diagnostic(At::Output(index), format!("`{name}` cannot be an output's name: {NAME_RULE}"));
             }
             if !seen.insert(name) {
-                self.diagnostic(At::Output(index), format!("there are two outputs named `{name}`: rename one"));
+                self.diagnostic(At::Output(index), format!("two outputs are named `{name}`; rename one"));
             }
             links.push(self.link(input, true).unwrap_or_else(|message| {
                 self.diagnostic(At::Output(index), format!("output `{name}`: {message}"));
@@ -358,10 +355,10 @@ impl<'a> Resolver<'a> {
     /// What an input resolves to, or what is wrong with it.
     fn link(&self, input: &Input, required: bool) -> Result<Link, String> {
         match input {
-            Input::None if required => Err("it is missing: name the node to read, or give a number".to_string()),
+            Input::None if required => Err("it is missing; name the node to read, or set a number".to_string()),
             Input::None => Ok(Link::None),
             Input::Value(value) if value.is_finite() && (*value as f32).is_finite() => Ok(Link::Value(*value as f32)),
-            Input::Value(value) => Err(format!("{value} is no number that a sample can hold")),
+            Input::Value(value) => Err(format!("{value} is not a valid sample value")),
             Input::Node(name) => named(self.recipe, name, |node| self.names.get(node).copied()).map(Link::Node),
         }
     }

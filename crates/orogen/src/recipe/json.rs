@@ -13,7 +13,7 @@ const DEEPEST: usize = 64;
 /// Reads the whole text; the first thing that is not JSON is the error.
 pub fn read(text: &Text) -> Result<Spanned<Value>> {
     if let Some(at) = too_deep(text.text) {
-        return Err(text.error(&(at..at + 1), format!("this is nested more than {DEEPEST} levels deep; no recipe is")));
+        return Err(text.error(&(at..at + 1), format!("the JSON is nested more than {DEEPEST} levels deep")));
     }
     // Plain JSON: comments or loose strings would hide brackets from the count above.
     let options = ParseOptions {
@@ -101,6 +101,6 @@ fn number_value(text: &str) -> Value {
     match (text.parse::<i64>(), text.parse::<f64>()) {
         (Ok(integer), _) => Value::Integer(integer),
         (_, Ok(number)) => Value::Number(number),
-        _ => Value::Other("an unreadable number"),
+        _ => Value::Other("an invalid number"),
     }
 }

@@ -111,7 +111,7 @@ pub(super) fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Orig
         return Err(Error::new(
             ErrorKind::Recipe,
             format!(
-                "{name} is empty: a recipe begins with `orogen = {VERSION}`; `orogen new NAME` writes one to start from"
+                "{name} is empty; a recipe starts with `orogen = {VERSION}`. `orogen new NAME` writes a recipe to edit"
             ),
         ));
     }
@@ -164,7 +164,7 @@ impl Walk<'_> {
 
     fn recipe(mut self, mut tree: Spanned<Value>, set: &[(String, f64)], origin: &Origin) -> Result<Recipe> {
         let Value::Table(top) = &tree.value else {
-            return Err(self.text.error(&tree.span, "a recipe is a table of keys"));
+            return Err(self.text.error(&tree.span, "a recipe must be a table of keys"));
         };
         self.version(top)?;
         let resolved = resolve(&mut tree, self.text, set)
@@ -213,7 +213,7 @@ impl Walk<'_> {
         if recipe.output_inputs().is_empty() && self.is_sound() {
             self.complain(
                 &(0..0),
-                "the recipe has no outputs: add a table `[outputs]` with a line such as `height = \"NODE\"`",
+                "the recipe has no outputs; add a table `[outputs]` with a line such as `height = \"NODE\"`",
             );
         }
         if self.is_sound()
@@ -302,16 +302,16 @@ impl Walk<'_> {
         match top.iter().find(|(key, _)| key.value == "orogen") {
             None => Err(self.text.error(
                 &(0..0),
-                format!("this is no recipe yet: it must begin with `orogen = {VERSION}`, the version of recipes it is written in"),
+                format!("this is not a recipe: the line `orogen = {VERSION}`, the version of the recipe format, is missing"),
             )),
             Some((_, Spanned { value: Value::Integer(VERSION), .. })) => Ok(()),
             Some((_, Spanned { value: Value::Integer(version), span })) if *version > VERSION => Err(self.text.error(
                 span,
-                format!("this recipe is of version {version}, this program reads version {VERSION}: use a newer Orogen"),
+                format!("this recipe has the format version {version}, and this program reads version {VERSION}; use a newer Orogen"),
             )),
             Some((_, value)) => Err(self.text.error(
                 &value.span,
-                format!("`orogen` is the version of recipes and must be {VERSION}, not {}", value.value.describe()),
+                format!("`orogen` is the version of the recipe format and must be {VERSION}, not {}", value.value.describe()),
             )),
         }
     }
@@ -319,7 +319,7 @@ impl Walk<'_> {
     /// Complains of a key that stands twice in a table (TOML's parser refuses it itself, JSON's does not).
     fn repeated<'k>(&mut self, seen: &mut HashSet<&'k str>, key: &'k Spanned<String>) -> bool {
         if !seen.insert(key.value.as_str()) {
-            self.complain(&key.span, format!("the key `{}` stands twice in this table", key.value));
+            self.complain(&key.span, format!("the key `{}` appears twice in this table", key.value));
             return true;
         }
         false
@@ -367,13 +367,13 @@ impl Walk<'_> {
         if entries.len() > MAX_NODES {
             return Err(self.text.error(
                 &entries[MAX_NODES].0.span,
-                format!("this recipe has {} nodes, the most there may be is {MAX_NODES}", entries.len()),
+                format!("this recipe has {} nodes; at most {MAX_NODES} are allowed", entries.len()),
             ));
         }
         let mut names: HashSet<&str> = HashSet::with_capacity(entries.len());
         for (name, value) in entries {
             if !names.insert(&name.value) {
-                self.complain(&name.span, format!("there are two nodes named `{}`: rename one", name.value));
+                self.complain(&name.span, format!("two nodes are named `{}`; rename one", name.value));
                 continue;
             }
             let index = recipe.nodes().len();
@@ -396,7 +396,7 @@ impl Walk<'_> {
         let Some((_, op)) = entries.iter().find(|(key, _)| key.value == "op") else {
             self.complain(
                 &name.span,
-                format!("the node `{}` has no `op`: add a line such as `op = \"fbm\"`", name.value),
+                format!("the node `{}` has no `op`; add a line such as `op = \"fbm\"`", name.value),
             );
             return None;
         };
@@ -543,7 +543,7 @@ impl Walk<'_> {
             let names: Vec<&str> = recipe.nodes().iter().map(|node| node.name.as_str()).collect();
             self.complain(
                 &value.span,
-                format!("`outputs` is empty: name a layer, such as `height`, after {}", list(names)),
+                format!("`outputs` is empty; add a layer such as `height`, which shows {}", list(names)),
             );
         }
     }

@@ -18,7 +18,7 @@ pub fn overview() -> String {
     text
 }
 
-/// The first message of an op's doc.
+/// The first sentence of an op's doc.
 pub fn first_sentence(spec: &Spec) -> String {
     let doc = short(spec.doc);
     match doc.find(". ") {
@@ -61,7 +61,7 @@ pub fn describe(node: &Node) -> String {
         }
     }
     if names_layers(spec) {
-        text.push_str("\nlayers, the first also read as the node itself\n");
+        text.push_str("\nlayers; the first one is also the node's own value\n");
         let longest = spec.layers.iter().map(|layer| layer.name.len()).max().unwrap_or(0);
         for layer in spec.layers {
             let _ = writeln!(text, "  {:longest$}  {}", layer.name, short(layer.doc));
@@ -92,15 +92,15 @@ fn between(layer: &Layer) -> String {
 pub fn markdown() -> String {
     let mut text = String::from(
         "<!-- Written by `cargo xtask codegen` from the declarations in crates/orogen/src. Do not edit. -->\n\n# The ops\n\n\
-         A node of a recipe names its `op`. An input takes the name of a node, of one of its layers (`node.layer`; the node's name \
-         alone is its first), or a number. \
-         Every node also takes `mask`, a node or number from 0 to 1: where it is 0 the node's first input shows instead (or 0, \
-         if it has none). Lengths are metres; noise is in -1 ..= 1.\n",
+         Each node of a recipe has an `op`. The value of an input is the name of a node, the name of one of its layers (`node.layer`; \
+         the node's name alone is its first layer), or a number. \
+         Every node also has an optional input `mask`, from 0 to 1: the result is mixed with the node's first input (or with 0, \
+         if it has none), so that 0 shows the input and 1 the result. Lengths are in metres; noise is in -1 ..= 1.\n",
     );
     for (locality, about) in [
-        ("field", "look at one position and the seed: any point, at any resolution, for itself"),
-        ("filter", "look at a finite halo around each sample"),
-        ("solver", "look at the whole bounded world, once"),
+        ("field", "evaluated at each point independently, at any resolution"),
+        ("filter", "each sample depends on a finite halo around it"),
+        ("solver", "solved once over the whole bounded world"),
     ] {
         let _ = write!(text, "\n## {}s: {about}\n", capital(locality));
         for node in Node::all().iter().filter(|node| node.spec().locality.name() == locality) {
@@ -118,7 +118,7 @@ fn section(text: &mut String, node: &Node) {
     }
     keys(text, node);
     if names_layers(spec) {
-        text.push_str("\n| layer | what it is | between samples |\n|---|---|---|\n");
+        text.push_str("\n| layer | description | between samples |\n|---|---|---|\n");
         for layer in spec.layers {
             let _ = writeln!(text, "| `{}` | {} | {} |", layer.name, short(layer.doc), between(layer));
         }
@@ -131,7 +131,7 @@ fn keys(text: &mut String, node: &Node) {
     if spec.inputs.is_empty() && spec.params.is_empty() {
         return;
     }
-    text.push_str("\n| key | what it is | takes | default |\n|---|---|---|---|\n");
+    text.push_str("\n| key | description | values | default |\n|---|---|---|---|\n");
     for input in spec.inputs {
         let needed = if input.required { "required" } else { "none" };
         let _ = writeln!(text, "| `{}` | {} | input | {needed} |", input.name, short(input.doc));

@@ -8,7 +8,7 @@ use crate::words::respelled;
 use serde_json::{Map, Value as Json, json};
 use std::collections::BTreeMap;
 
-/// What `world` can be told.
+/// Parameters of `world`.
 pub static WORLD: &[ParamSpec] = &[
     ParamSpec {
         name: "seed",
@@ -21,8 +21,8 @@ pub static WORLD: &[ParamSpec] = &[
     ParamSpec {
         name: "size",
         alias: "",
-        doc: "Extent of the world east and south, [width, height], or one number for a square. Left out: a world without \
-              bounds, which solvers cannot work in.",
+        doc: "Extent of the world to the east and south, [width, height], or one number for a square. Without it the world is \
+              unbounded, and solvers cannot be used.",
         unit: "m",
         shape: Shape::Pair,
         range: [1e-3, 1e9],
@@ -30,25 +30,18 @@ pub static WORLD: &[ParamSpec] = &[
     ParamSpec {
         name: "cell",
         alias: "",
-        doc: "From one sample to the next of the world's own lattice, on which solvers work. Left out: a 1024th of the longer \
-              side, or 10 m in a world without bounds.",
+        doc: "Cell size of the world's own lattice, on which solvers work. Default: 1/1024 of the longer side, or 10 m in an \
+              unbounded world.",
         unit: "m",
         shape: Shape::Number,
         range: [1e-4, 1e7],
     },
-    ParamSpec {
-        name: "sea_level",
-        alias: "",
-        doc: "Height of the sea's surface.",
-        unit: "m",
-        shape: Shape::Number,
-        range: [-1e6, 1e6],
-    },
+    ParamSpec { name: "sea_level", alias: "", doc: "Sea level.", unit: "m", shape: Shape::Number, range: [-1e6, 1e6] },
     ParamSpec {
         name: "crs",
         alias: "",
-        doc: "The coordinate reference system that the world lies in, by its EPSG code, with `origin`: GeoTIFF, GeoJSON and other files with \
-              coordinates carry it. Left out: metres of the world's own, or the system of the heights that a node `dem` reads.",
+        doc: "Coordinate reference system of the world, as an EPSG code; it needs `origin`. It is written to GeoTIFF, GeoJSON and other \
+              georeferenced files. Default: the system of the file that a node `dem` reads, else local metres.",
         unit: "",
         shape: Shape::Crs,
         range: [f64::NEG_INFINITY, f64::INFINITY],
@@ -56,7 +49,7 @@ pub static WORLD: &[ParamSpec] = &[
     ParamSpec {
         name: "origin",
         alias: "",
-        doc: "East and north of the world's north-west corner in the units of `crs`; longitude and latitude where these are degrees.",
+        doc: "Easting and northing of the world's north-west corner in the units of `crs`; longitude and latitude if these are degrees.",
         unit: "",
         shape: Shape::Pair,
         range: [-1e9, 1e9],
@@ -110,7 +103,7 @@ pub fn json_schema() -> Json {
     let mut schema = json!({
         "$schema": "http://json-schema.org/draft-07/schema#",
         "title": "Orogen recipe",
-        "description": "A world: its nodes and what it offers.",
+        "description": "A world: its nodes and its outputs.",
         "type": "object",
         "required": ["orogen", "outputs"],
         "additionalProperties": false,
@@ -121,7 +114,7 @@ pub fn json_schema() -> Json {
             "parameters": parameters_schema(&name),
             "world": {
                 "type": "object",
-                "description": "The world's seed and measures.",
+                "description": "Seed, size and cell size of the world.",
                 "additionalProperties": false,
                 "properties": world,
             },
@@ -134,8 +127,8 @@ pub fn json_schema() -> Json {
             "use": uses_schema(&name),
             "outputs": {
                 "type": "object",
-                "description": "What the world offers: layer names with the node (or node.layer) they show. `height` is what maps \
-                                are made from.",
+                "description": "Outputs of the world: layer names with the node (or node.layer) that they show. Maps are made from \
+                                `height`.",
                 "minProperties": 1,
                 "propertyNames": name,
                 "additionalProperties": { "$ref": "#/definitions/input" },

@@ -76,7 +76,7 @@ pub fn too_long(name: &str) -> Error {
     Error::new(
         ErrorKind::Recipe,
         format!(
-            "{name} is not a recipe: it is longer than {}, the most a recipe may be",
+            "{name} is not a recipe: it is longer than {}, the maximum length of a recipe",
             crate::words::bytes(LONGEST_TEXT)
         ),
     )

@@ -42,7 +42,7 @@ fn convert(value: DeValue) -> Value {
             Ok(value) => Value::Integer(value),
             Err(_) => Value::Other("a whole number beyond 64 bits"),
         },
-        DeValue::Float(float) => float.as_str().parse().map_or(Value::Other("an unreadable number"), Value::Number),
+        DeValue::Float(float) => float.as_str().parse().map_or(Value::Other("an invalid number"), Value::Number),
         DeValue::Datetime(_) => Value::Other("a date"),
         DeValue::Array(items) => Value::List(
             items

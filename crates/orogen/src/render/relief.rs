@@ -65,17 +65,15 @@ impl Relief {
         let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
         let (columns, rows) = (window.width, window.height);
         if columns < 2 || rows < 2 {
-            return fault(format!(
-                "{columns} x {rows} samples make no ground to stand in a picture; it takes 2 x 2 or more"
-            ));
+            return fault(format!("a picture needs at least 2 x 2 samples of ground, not {columns} x {rows}"));
         }
         if [land.surface, land.flow].into_iter().flatten().any(|layer| *layer.window() != window) {
-            return fault("water and heights of a picture must lie over one window".into());
+            return fault("water and heights of a picture must have the same window".into());
         }
         let mut heights: Vec<f32> =
             land.heights.data().iter().map(|&height| if height.is_finite() { height } else { f32::NAN }).collect();
         if fill(&mut heights, columns, rows) == heights.len() {
-            return fault("there is no height in the window that is a number: nothing can be drawn".into());
+            return fault("the window has no finite heights, so nothing can be drawn".into());
         }
         let datum = f64::from(heights.iter().copied().fold(f32::INFINITY, f32::min));
         let mut relief = Relief {

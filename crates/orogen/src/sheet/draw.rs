@@ -39,7 +39,7 @@ pub fn draw(heights: &Grid, options: &Options, progress: &Progress) -> Result<Sh
     let window = heights.window();
     if window.width < 2 || window.height < 2 || heights.data().iter().all(|height| !height.is_finite()) {
         let message = format!(
-            "there is nothing to map: it takes 2 x 2 heights, and there are {} x {}, {} of them finite",
+            "a map needs at least 2 x 2 finite heights, and there are {} x {}, {} of them finite",
             window.width,
             window.height,
             heights.data().iter().filter(|height| height.is_finite()).count()

@@ -44,7 +44,7 @@ impl Ramp {
         let name = &layer.name;
         if palette.follows_relief {
             return fault(format!(
-                "the palette {} is made for heights; choose another for `{name}`, such as viridis",
+                "the palette {} applies to heights only; choose another for `{name}`, such as viridis",
                 palette.name
             ));
         }
@@ -58,7 +58,7 @@ impl Ramp {
             }
             if !(ends[0] > 0.0 && ends[1] >= ends[0]) {
                 return fault(format!(
-                    "a logarithmic ramp begins above 0, and `{name}` goes from {} to {}",
+                    "a logarithmic ramp needs values above 0, and `{name}` ranges from {} to {}",
                     number(ends[0]),
                     number(ends[1])
                 ));
@@ -184,7 +184,7 @@ impl Desk<'_> {
                 self.scene.block(part, color);
                 self.scene.frame(part, 0.15, INK);
             }
-            self.small(&format!("{named}, a colour each"), [left, top + 7.4], Align::Start);
+            self.small(&format!("{named}, one colour each"), [left, top + 7.4], Align::Start);
             return;
         }
         let pixels = (0..STEPS).flat_map(|k| {
@@ -260,8 +260,8 @@ mod tests {
     #[test]
     fn what_has_no_ramp_is_a_sentence() {
         for (scale, data, palette, expect) in [
-            (Scale::Log, vec![0.0, -1.0], "viridis", "begins above 0"),
-            (Scale::Linear, vec![0.0, 1.0], named::DEFAULT, "made for heights"),
+            (Scale::Log, vec![0.0, -1.0], "viridis", "needs values above 0"),
+            (Scale::Linear, vec![0.0, 1.0], named::DEFAULT, "applies to heights only"),
         ] {
             let error = Ramp::new(&layer(scale, data), &named::find(palette).unwrap().palette()).err().unwrap();
             assert!(error.to_string().contains(expect), "{error}");

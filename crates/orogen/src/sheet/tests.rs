@@ -79,7 +79,7 @@ fn all_is_on_the_page_whatever_the_world() {
         }
     }
     let none = Grid::filled(Window::new(5, 5, 1.0), f32::NAN);
-    assert!(draw(&none, &options()).err().unwrap().to_string().contains("nothing to map"));
+    assert!(draw(&none, &options()).err().unwrap().to_string().contains("a map needs at least 2 x 2"));
     assert!(draw(&hills(1, 9), &options()).is_err());
 }
 

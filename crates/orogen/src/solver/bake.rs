@@ -1,25 +1,25 @@
-//! Any part of the graph, made once over the world and read ever after.
+//! Evaluates a part of the graph once over the world and stores it.
 
 use crate::error::Result;
 use crate::op::{Context, Solution, Solver, Sources};
 
 op! {
-    /// The source made once over the whole world, at a cell of its own, and read between its samples ever after.
+    /// The source, evaluated once over the whole world at a fixed cell size and stored. Readers interpolate between the stored samples.
     ///
-    /// Bake what is dear, what must not change with the resolution asked for (a filter looks different at another cell), or
-    /// what would need a halo larger than a tile. Read between samples as its source's layer is (heights by the interpolating
-    /// cubic); on its own lattice a reader gets the sample itself, bit for bit. Finer detail than the cell is lost.
+    /// Bake what is expensive, what must not change with the requested resolution (a filter gives different results at different cell
+    /// sizes), or what would need a halo larger than a tile. Values between samples are interpolated as the source's layer is (heights by a
+    /// cubic). At the samples themselves readers get the stored values bit for bit. Detail finer than the cell is lost.
     pub struct Bake = "bake", solver, revision 1;
     inputs {
-        /// What is made once.
+        /// The values to store.
         source: required,
     }
     params {
-        /// From one baked sample to the next; 0 takes the world's cell.
+        /// Cell size of the stored samples; 0 uses the world's cell.
         cell: f64 = 0.0, unit "m", range 0.0 to 1e6;
     }
     layers {
-        /// The source as it was made.
+        /// The stored source.
         baked: source;
     }
 }

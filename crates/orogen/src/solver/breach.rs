@@ -1,4 +1,4 @@
-//! Depressions cut open.
+//! Depression breaching.
 
 use crate::error::Result;
 use crate::grid::Window;
@@ -9,41 +9,42 @@ use crate::hydrology::{breach, drainage};
 use crate::op::{Context, Solution, Solver, Sources};
 
 choice! {
-    /// Where channels are cut.
+    /// Route of the breach channels.
     pub enum Way {
-        /// Along the ground's own valleys, from the depression's bottom over its lowest rim (Cordonnier, Bovy and Braun 2019).
+        /// Along the valleys of the ground, from the bottom of the depression over its lowest spill point (Cordonnier, Bovy and Braun
+        /// 2019).
         Valley = "valley",
-        /// Wherever it takes the least digging to come to lower ground: through a thin dam rather than around it (Lindsay 2016).
+        /// Along the path with the least excavation to lower ground, for example through a thin dam rather than around it (Lindsay 2016).
         LeastCost = "least-cost",
     }
 }
 
 op! {
-    /// The source with every depression drained by a channel cut through its lowest rim, or filled where that would be too deep.
+    /// The source with every depression drained by a channel cut through its rim, or filled where the channel would be too deep.
     ///
-    /// Channels follow the ground's own valleys from the depression's bottom over its pass (Cordonnier, Bovy and Braun 2019), or go where it
-    /// takes the least digging (Lindsay 2016). What they would have to cut more than `deepest` for is filled first (`way = "valley"`) or filled
-    /// to the brim (`"least-cost"`). Water then nowhere runs uphill; channels' beds and filled ground are level. Time and memory grow with
-    /// the world, 30 bytes a cell along valleys and 60 at least cost.
+    /// Channels follow the valleys of the ground from the bottom of the depression over its spill point (Cordonnier, Bovy and Braun 2019),
+    /// or the path of least excavation (Lindsay 2016). Where the cut would be deeper than `deepest`, the depression is first filled as far
+    /// as necessary (`way = "valley"`) or filled completely (`"least-cost"`). In the result water never runs uphill; channel beds and
+    /// filled ground are level. Time and memory grow with the world: 30 bytes per cell for `"valley"`, 60 for `"least-cost"`.
     pub struct Breach = "breach", solver, revision 1;
     inputs {
         /// The heights.
         source: required,
     }
     params {
-        /// The deepest cut; 0 only fills.
+        /// Maximum depth of a cut. 0 only fills.
         deepest: f64 = 50.0, unit "m", range 0.0 to 1e6;
-        /// Where channels are cut.
+        /// Route of the breach channels.
         way: Way = Way::Valley;
-        /// The longest channel of least cost.
+        /// Maximum length of a channel with `way = "least-cost"`.
         longest: f64 = 3000.0, unit "m", range 0.0 to 1e6;
-        /// Whether water also leaves where the ground is at or below sea level.
+        /// Whether cells at or below sea level are outlets.
         sea: bool = true;
     }
     layers {
-        /// The drained heights.
+        /// The heights without depressions.
         height: height, unit "m";
-        /// How much higher the ground is than the source: below 0 where it was cut, above where filled.
+        /// Height difference to the source: negative where the ground was cut, positive where it was filled.
         change: height, unit "m";
     }
 }

@@ -1,4 +1,4 @@
-//! Mountains whose ridges branch as an aggregate does.
+//! Mountains from diffusion-limited aggregation.
 
 use crate::aggregate::relief::{self, Ridges};
 use crate::error::Result;
@@ -6,37 +6,38 @@ use crate::grid::{Grid, Window};
 use crate::op::{Context, Solution, Solver, Sources};
 
 op! {
-    /// Mountains whose ridges are a branching aggregate: diffusion-limited aggregation (Witten and Sander 1981) at many scales.
+    /// Mountains with branching ridges, made by diffusion-limited aggregation (Witten and Sander 1981) at many scales.
     ///
-    /// On a grid of 12 cells walkers wander until they stick to what grew from the world's middle; each finer grid takes the figure over, bent a
-    /// little, and lets it grow on, so that coarse branches become ranges and fine ones their spurs. At every scale a ridge stands the higher
-    /// the farther it is from its tip, by 1 - 1 / (1 + d / `taper`); the scales are added, coarse ones smoothed at each refinement. The grids halve
-    /// from the world's longer side down to its cell, so a finer cell adds finer spurs and moves nothing. It has no valleys carved by water:
-    /// follow it by `stream-power`. Time grows with the world, about 0.3 microseconds a cell of it; memory is up to 120 bytes a cell.
+    /// On a grid of 12 cells random walkers move until they attach to the aggregate that grows from the world's centre. Each finer grid
+    /// takes over the aggregate, slightly bent, and continues the growth, so that coarse branches become ranges and fine ones their spurs.
+    /// At each scale the height of a ridge grows with the distance d from its tip, by 1 - 1 / (1 + d / `taper`). The scales are added;
+    /// coarse ones are smoothed at each refinement. The grid spacing halves from the world's longer side down to its cell, so a smaller
+    /// cell adds finer spurs and leaves the rest in place. The result has no valleys carved by water: put `stream-power` after it. Time
+    /// grows with the world, about 0.3 microseconds per cell; memory is up to 120 bytes per cell.
     pub struct Dla = "dla", solver, revision 1;
     params {
-        /// How high the highest summit is.
+        /// Height of the highest summit.
         height: f64 = 2500.0, unit "m", range 0.0 to 1e6;
-        /// How far it grows from the middle, as a share of the way to the world's edges.
+        /// Extent of the aggregate from the centre, as a share of the distance to the world's edges.
         reach: f64 = 0.95, range 0.05 to 1.0;
-        /// The share of the ground that ridges cover at every scale: more is a denser net of spurs.
+        /// Share of the ground covered by ridges at each scale. Higher values give a denser network of spurs.
         density: f64 = 0.2, range 0.01 to 0.6;
-        /// How high spurs half as long are, beside the ridges they grow on.
+        /// Height of spurs relative to ridges twice as long.
         gain: f64 = 0.65, range 0.0 to 1.0;
-        /// How far from its tip a ridge has half its height, in cells of its scale.
+        /// Distance from its tip at which a ridge has half its height, in cells of its scale.
         taper: f64 = 8.0, range 0.1 to 1000.0;
-        /// Which chances.
+        /// Seed of the random choices.
         seed: u64 = 0;
     }
     layers {
-        /// The heights, from about 0 between the ridges.
+        /// The heights. They are about 0 between the ridges.
         height: height, unit "m";
     }
 }
 
 impl Solver for Dla {
     fn scratch(&self, padded: &Window) -> u64 {
-        // Its grid is up to twice as fine each way as the world.
+        // The grid is up to twice as fine as the world in each direction.
         padded.len() as u64 * 4 * 30
     }
 
@@ -59,7 +60,7 @@ impl Solver for Dla {
         let samples = map.into_iter().map(|h| h * factor).collect();
         let map = Grid::from_data(Window::new(across, down, 1.0), samples)
             .unwrap_or_else(|| Grid::filled(Window::new(1, 1, 1.0), 0.0));
-        // Cells of the relief to one of the world, from middle to middle.
+        // Cells of the relief per cell of the world, from centre to centre.
         let along = |i: i64, count: usize| ((i as f64 / longest * fine) - 0.5).clamp(0.0, count as f64 - 1.0);
         let rows: Vec<f64> = (0..padded.height).map(|j| along(padded.y + j as i64 - world.y, down)).collect();
         let columns: Vec<f64> = (0..padded.width).map(|i| along(padded.x + i as i64 - world.x, across)).collect();
@@ -76,7 +77,7 @@ impl Solver for Dla {
     }
 }
 
-/// Between the samples, bilinear.
+/// Bilinear interpolation between the samples.
 fn between(map: &Grid, x: f64, y: f64) -> f32 {
     let (i, j) = (x as usize, y as usize);
     let (u, v) = ((x - i as f64) as f32, (y - j as f64) as f32);

@@ -1,4 +1,4 @@
-//! Which way water runs, and how much.
+//! Drainage: flow directions, drainage areas, watersheds and stream order.
 
 use crate::error::Result;
 use crate::grid::{Grid, Window};
@@ -12,46 +12,46 @@ use crate::large::tiling::Tiling;
 use crate::op::{Context, Solution, Solver, Sources};
 
 choice! {
-    /// What water runs over where the ground has depressions.
+    /// Flow routing through depressions.
     pub enum Over {
-        /// The ground as it lies: through depressions along their own valleys to the pit, and from there back up to the pass
-        /// (Cordonnier, Bovy and Braun 2019).
+        /// Carving: flow crosses a depression along its valleys to the pit and from there back up to the spill point (Cordonnier, Bovy and
+        /// Braun 2019).
         Bed = "bed",
-        /// The filled ground: over level water by two integer gradients, away from high ground and towards the outlet (Barnes,
-        /// Lehman and Mulla 2014), hashed choices between equals.
+        /// Filling: flow is routed on the filled ground. On level water it follows two integer gradients, away from higher ground and
+        /// towards the outlet (Barnes, Lehman and Mulla 2014); ties are broken by a hash.
         Surface = "surface",
     }
 }
 
 op! {
-    /// Drainage of the source by D8: each cell drains to its steepest lower neighbour (O'Callaghan and Mark 1984).
+    /// Drainage of the source by steepest descent (D8): each cell drains to its steepest lower neighbour (O'Callaghan and Mark 1984).
     ///
-    /// Every cell drains to the sea or to the world's border; equal choices are hashed from the cell's place. Areas are counted
-    /// in whole cells, so they are exact. Time grows with the world, and so does memory, 54 bytes a cell; where there is less, water is led
-    /// tile by tile on disk (Barnes 2016).
+    /// Every cell drains to the sea or to the world's border. Ties are broken by a hash of the cell's position. Areas are counted in whole
+    /// cells, so they are exact. Time and memory grow with the world, 54 bytes per cell; with less memory available, flow is routed tile by
+    /// tile on disk (Barnes 2016).
     pub struct Drainage = "drainage", solver, revision 1;
     inputs {
         /// The heights.
         source: required,
     }
     params {
-        /// What water runs over where the ground has depressions.
+        /// Flow routing through depressions: carving (`bed`) or filling (`surface`).
         over: Over = Over::Bed;
-        /// Drainage area from which on there is a stream: what `strahler` counts.
+        /// Drainage area from which on a cell is a stream, for the layer `strahler`.
         stream: f64 = 1e6, unit "m^2", range 0.0 to 1e15;
-        /// Whether water also leaves where the ground is at or below sea level.
+        /// Whether cells at or below sea level are outlets.
         sea: bool = true;
     }
     layers {
-        /// The drainage area: how much ground lies upstream, the cell itself included.
+        /// Drainage area, including the cell itself.
         flow: flow, unit "m^2";
-        /// The direction water takes, clockwise from the east (0) to the north-east (7); 8 where it leaves.
+        /// Flow direction, clockwise from east (0) to north-east (7); 8 at outlets.
         receiver: label;
-        /// The ground that drains to one outlet, numbered from 1; 0 for the sea.
+        /// Number of the watershed, from 1: all cells that drain to one outlet. 0 in the sea.
         watershed: label;
-        /// Strahler's order of the stream; 0 where there is none.
+        /// Strahler order of the stream; 0 outside streams.
         strahler: label;
-        /// The heights with depressions filled.
+        /// The heights with filled depressions.
         filled: height, unit "m";
     }
 }
@@ -118,7 +118,7 @@ impl Solver for Drainage {
 }
 
 impl Drainage {
-    /// The least number of cells that a stream drains.
+    /// The minimum number of cells that a stream drains.
     fn threshold(&self, window: &Window) -> u32 {
         (self.stream / (window.cell * window.cell)).ceil().min(f64::from(u32::MAX)) as u32
     }

@@ -1,4 +1,4 @@
-//! Depressions filled to the brim.
+//! Depression filling.
 
 use crate::error::Result;
 use crate::grid::{Grid, Window};
@@ -10,25 +10,25 @@ use crate::large::tiling::Tiling;
 use crate::op::{Context, Solution, Solver, Sources};
 
 op! {
-    /// The source with every depression filled to the level at which it spills.
+    /// The source with every depression filled to the level of its spill point.
     ///
-    /// The lowest surface from which water needs no way up to reach the sea or the world's border: what Priority-Flood makes
-    /// (Barnes, Lehman and Mulla 2014, without an epsilon), bit for bit, found by flooding the graph of basins (Cordonnier,
-    /// Bovy and Braun 2019). Filled ground is level. Time grows with the world, and so does memory, 24 bytes a cell; where there is less, it is
-    /// filled tile by tile on disk (Barnes 2016).
+    /// The result is the lowest surface on which water reaches the sea or the world's border without running uphill. It equals that of
+    /// Priority-Flood without an epsilon (Barnes, Lehman and Mulla 2014) bit for bit and is computed by flooding the graph of basins
+    /// (Cordonnier, Bovy and Braun 2019). Filled ground is level. Time and memory grow with the world, 24 bytes per cell; with less memory
+    /// available, filling works tile by tile on disk (Barnes 2016).
     pub struct Fill = "fill", solver, revision 1;
     inputs {
         /// The heights.
         source: required,
     }
     params {
-        /// Whether water also leaves where the ground is at or below sea level.
+        /// Whether cells at or below sea level are outlets.
         sea: bool = true;
     }
     layers {
         /// The filled heights.
         filled: height, unit "m";
-        /// How deep water or sediment stands on the source.
+        /// Depth of the fill above the source.
         depth: height, unit "m";
     }
 }
@@ -87,7 +87,7 @@ impl Fill {
     }
 }
 
-/// `a` less `b`, in `b`'s memory.
+/// `a` minus `b`, in `b`'s memory.
 fn difference(a: &Grid, mut b: Grid) -> Grid {
     b.data_mut().iter_mut().zip(a.data()).for_each(|(b, a)| *b = a - *b);
     b

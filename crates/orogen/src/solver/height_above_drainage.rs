@@ -1,4 +1,4 @@
-//! How high and how far the ground lies above the streams.
+//! Height above nearest drainage and distance to streams.
 
 use crate::analysis::distance::nearest_in_whole;
 use crate::error::Result;
@@ -11,28 +11,29 @@ use crate::hydrology::{drainage, fill};
 use crate::op::{Context, Solution, Solver, Sources};
 
 op! {
-    /// Height above nearest drainage (HAND), and the distance to the nearest stream: along the flow, and as the crow flies.
+    /// Height above nearest drainage (HAND), and the distance to the nearest stream along the flow and in a straight line.
     ///
-    /// Water takes the way of `drainage` (D8, depressions drained along their bed); streams are the cells that drain `stream` or more. The height is that of the
-    /// source with depressions filled, less that of the first stream cell downstream (Rennó and others 2008, Nobre and others 2011), so it is never below 0.
-    /// Ground that reaches the sea or the world's border before a stream is measured down to there. Time and memory grow with the world, 56 bytes a cell.
+    /// Flow is routed as in `drainage` (D8, carving through depressions). Streams are the cells with a drainage area of at least `stream`.
+    /// The height is that of the filled source minus that of the first stream cell downstream (Rennó and others 2008, Nobre and others
+    /// 2011), so it is never negative. Ground that reaches the sea or the world's border before a stream is measured down to that outlet.
+    /// Time and memory grow with the world, 56 bytes per cell.
     pub struct HeightAboveDrainage = "height-above-drainage", solver, revision 1;
     inputs {
         /// The heights.
         source: required,
     }
     params {
-        /// Drainage area from which on there is a stream.
+        /// Drainage area from which on a cell is a stream.
         stream: f64 = 1e6, unit "m^2", range 0.0 to 1e15;
-        /// Whether water also leaves where the ground is at or below sea level.
+        /// Whether cells at or below sea level are outlets.
         sea: bool = true;
     }
     layers {
         /// Height above the stream that the ground drains to; 0 in streams.
         height: height, unit "m";
-        /// Length of the way that water takes to it, diagonal steps counted as the square root of 2; 0 in streams.
+        /// Length of the flow path to that stream, with diagonal steps counted as the square root of 2 cells; 0 in streams.
         flow_distance: height, unit "m";
-        /// Distance to the nearest stream in a straight line; in a world without streams the length of its diagonal.
+        /// Straight-line distance to the nearest stream. In a world without streams it is the length of the world's diagonal.
         distance: height, unit "m";
     }
 }

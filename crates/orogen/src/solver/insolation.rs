@@ -1,4 +1,4 @@
-//! How much light of the sun the ground gets.
+//! Solar energy that the ground receives.
 
 use crate::analysis::clear_sky::ClearSky;
 use crate::analysis::insolation::{Period, insolation};
@@ -7,27 +7,28 @@ use crate::grid::Window;
 use crate::op::{Context, Solution, Solver, Sources};
 
 op! {
-    /// The sun's energy that comes to the source on an average day of a period under a clear sky: direct, from the sky and reflected by the ground around, with
-    /// the shadows that the ground casts.
+    /// Solar energy on the source, on an average day of a period, under a clear sky: direct, diffuse and reflected light, with cast
+    /// shadows.
     ///
-    /// The clear sky of the European Solar Radiation Atlas (Rigollier, Bauer and Wald 2000) with Muneer's model (1990) of the sky's light on slopes. The sun stands
-    /// where Spencer's series (1971) puts it, by true solar time; one day stands for at most 30, and a moment in the middle of each `step` for the step. A shadow reaches
-    /// as far as it is long; the earth is taken as flat. Time grows with the world and the number of suns: about 25 a day, 300 for a year. Memory is 28 bytes a cell.
+    /// Clear-sky model of the European Solar Radiation Atlas (Rigollier, Bauer and Wald 2000), with Muneer's model (1990) of diffuse light
+    /// on slopes. The sun's position follows Spencer's series (1971), in true solar time. One day represents at most 30 days, and the
+    /// middle of each `step` represents the step. Shadows have no maximum length; the earth's curvature is neglected. Time grows with the
+    /// world and the number of sun positions: about 25 per day, 300 for a year. Memory is 28 bytes per cell.
     pub struct Insolation = "insolation", solver, revision 1;
     inputs {
-        /// The heights, above sea level.
+        /// Heights above sea level.
         source: required,
     }
     params {
-        /// Degrees north of the equator.
+        /// Latitude; positive north of the equator.
         latitude: f64 = 45.0, unit "degrees", range -90.0 to 90.0;
-        /// The first and the last day of the year, 1 to 365; a first one after the last runs over the turn of the year.
+        /// First and last day of the year, 1 to 365. If the first is greater than the last, the period includes the turn of the year.
         days: [f64; 2] = [1.0, 365.0], range 1.0 to 365.0;
-        /// The longest step through a day.
+        /// Maximum time step within a day.
         step: f64 = 0.5, unit "h", range 0.01 to 6.0;
-        /// Linke's turbidity of the air: 1 clean and dry, 3 usual, 6 hazy.
+        /// Linke turbidity of the air: 1 clean and dry, 3 typical, 6 hazy.
         turbidity: f64 = 3.0, range 1.0 to 10.0;
-        /// Share of the light that the ground around reflects.
+        /// Share of the light that the surrounding ground reflects.
         albedo: f64 = 0.2, range 0.0 to 1.0;
     }
     layers {
@@ -51,7 +52,7 @@ impl Solver for Insolation {
     }
 
     fn cost(&self) -> f64 {
-        // One sun costs about 20 ns a sample.
+        // One sun position costs about 20 ns per sample.
         let [first, last] = self.days;
         let days = if last >= first { last - first } else { last - first + 365.0 };
         20.0 * ((days + 1.0) / 30.0).ceil() * 12.0 / self.step

@@ -1,4 +1,4 @@
-//! Lakes in the depressions of the land.
+//! Lakes in depressions.
 
 use crate::error::Result;
 use crate::grid::{Grid, Window};
@@ -8,30 +8,30 @@ use crate::hydrology::{drainage, lakes};
 use crate::op::{Context, Solution, Solver, Sources};
 
 op! {
-    /// Depressions of the source filled with water to where it spills; small ones filled with ground.
+    /// Depressions of the source filled with water up to their spill point. Small depressions are filled with ground instead.
     ///
-    /// Every lake has an outlet that drains, and all other land drains to a lake, the sea or the world's border: ground in
-    /// depressions too small for a lake is raised, as gently as sediment lies, until water runs off it (1 in 10 000). Time and
-    /// memory grow with the world, 35 bytes a cell.
+    /// Every lake has an outlet that drains, and all other land drains to a lake, the sea or the world's border. Ground in depressions too
+    /// small for a lake is raised to a gentle slope of 1 in 10 000 until water runs off. Time and memory grow with the world, 35 bytes per
+    /// cell.
     pub struct Lakes = "lakes", solver, revision 1;
     inputs {
         /// The heights.
         source: required,
     }
     params {
-        /// How large a lake is at least; it covers no fewer than 4 cells.
+        /// Minimum area of a lake. A lake always covers at least 4 cells.
         smallest: f64 = 20000.0, unit "m^2", range 0.0 to 1e15;
-        /// Whether water also leaves where the ground is at or below sea level.
+        /// Whether cells at or below sea level are outlets.
         sea: bool = true;
     }
     layers {
-        /// The ground: beds of lakes as they were, depressions too small for a lake raised.
+        /// The ground: unchanged under lakes, raised in depressions too small for a lake.
         height: height, unit "m";
-        /// How deep the water is; 0 on land.
+        /// Water depth; 0 on land.
         depth: height, unit "m";
-        /// The lakes' surface, and the ground where there is none.
+        /// Water surface of lakes, and the ground elsewhere.
         surface: height, unit "m";
-        /// Which lake it is, numbered from 1; 0 on land.
+        /// Number of the lake, from 1; 0 on land.
         lake: label;
     }
 }

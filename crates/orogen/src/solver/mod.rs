@@ -1,4 +1,4 @@
-//! Solvers: ops that look at the whole bounded world.
+//! Solvers: ops that read the whole bounded world.
 
 // The list below is written by `cargo xtask codegen`.
 pub mod bake;

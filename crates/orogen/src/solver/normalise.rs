@@ -1,4 +1,4 @@
-//! The source stretched to a range of heights over the world.
+//! Scales the source to a range of heights over the world.
 
 use crate::error::Result;
 use crate::grid::Grid;
@@ -6,19 +6,19 @@ use crate::op::{Context, Reading, Solution, Solver, Sources};
 use rayon::prelude::*;
 
 op! {
-    /// The source stretched linearly so that over the whole world its lowest sample becomes `low` and its highest `high`.
+    /// The source scaled linearly so that its minimum over the whole world becomes `low` and its maximum becomes `high`.
     ///
-    /// Lowest and highest are taken on the world's own lattice, once; every tile at any resolution is stretched by the same
-    /// two numbers. A source without relief becomes `low`. Samples that are not finite are passed over.
+    /// Minimum and maximum are computed once, on the world's own lattice; all tiles at all resolutions are scaled by the same two values. A
+    /// source without relief becomes `low`. Samples that are not finite are ignored.
     pub struct Normalise = "normalise", solver, revision 1;
     inputs {
-        /// What is stretched.
+        /// The values to scale.
         source: required,
     }
     params {
-        /// What the world's lowest sample becomes.
+        /// Result for the world's minimum.
         low: f64 = 0.0, unit "m", range -1e6 to 1e6;
-        /// What the world's highest sample becomes.
+        /// Result for the world's maximum.
         high: f64 = 1000.0, unit "m", range -1e6 to 1e6;
     }
 }
@@ -58,15 +58,14 @@ impl Solver for Normalise {
     }
 }
 
-/// Lowest and highest of no samples.
+/// Minimum and maximum of zero samples.
 const NOTHING: (f32, f32) = (f32::INFINITY, f32::NEG_INFINITY);
 
 fn join(a: (f32, f32), b: (f32, f32)) -> (f32, f32) {
     (a.0.min(b.0), a.1.max(b.1))
 }
 
-/// Lowest and highest finite sample. Minimum and maximum do not depend on the order they are taken in, so the rows may be
-/// looked at side by side.
+/// Minimum and maximum of the finite samples. They do not depend on the order of the samples, so the rows may be processed in parallel.
 fn range_of(tile: &Grid) -> (f32, f32) {
     const SAMPLES: usize = 1 << 16;
     let range = |samples: &[f32]| {

@@ -10,38 +10,38 @@ use crate::hydrology::{breach, drainage, strahler};
 use crate::op::{Context, Solution, Solver, Sources};
 
 op! {
-    /// Rivers wherever enough ground drains, with beds cut into the source that fall all the way downstream.
+    /// Rivers where the drainage area is large enough, with beds cut into the source that descend all the way downstream.
     ///
-    /// Depressions are drained first as `breach` does. A river of discharge Q (m^3/s) is `width` Q^0.5 metres wide and `depth`
-    /// Q^0.4 deep (Leopold and Maddock 1953); its bed is cut by that depth into the cells it runs through, whatever its width.
-    /// Time and memory grow with the world, 40 bytes a cell.
+    /// Depressions are drained first, as by `breach`. A river with discharge Q (m^3/s) is `width` Q^0.5 metres wide and `depth` Q^0.4
+    /// metres deep (Leopold and Maddock 1953). Its bed is cut by that depth into the cells that it crosses, whatever its width. Time and
+    /// memory grow with the world, 40 bytes per cell.
     pub struct Rivers = "rivers", solver, revision 1;
     inputs {
         /// The heights.
         source: required,
     }
     params {
-        /// Drainage area from which on there is a river.
+        /// Drainage area from which on a cell is a river.
         stream: f64 = 5e6, unit "m^2", range 0.0 to 1e15;
-        /// Water that runs off the ground.
+        /// Runoff from the ground.
         runoff: f64 = 0.5, unit "m/yr", range 0.0 to 1000.0;
         /// Width of a river of 1 m^3/s.
         width: f64 = 5.0, unit "m", range 0.0 to 1000.0;
         /// Depth of a river of 1 m^3/s.
         depth: f64 = 0.3, unit "m", range 0.0 to 1000.0;
-        /// The deepest cut through the rim of a depression; what lies deeper is filled.
+        /// Maximum depth of a cut through the rim of a depression. Deeper depressions are filled first.
         deepest: f64 = 50.0, unit "m", range 0.0 to 1e6;
-        /// Whether water also leaves where the ground is at or below sea level.
+        /// Whether cells at or below sea level are outlets.
         sea: bool = true;
     }
     layers {
-        /// The ground with the rivers' beds.
+        /// The ground with river beds.
         height: height, unit "m";
-        /// The drainage area: how much ground lies upstream.
+        /// Drainage area.
         flow: flow, unit "m^2";
-        /// How wide the river is; 0 where there is none.
+        /// Width of the river; 0 outside rivers.
         width: label, unit "m";
-        /// Strahler's order of the river; 0 where there is none.
+        /// Strahler order of the river; 0 outside rivers.
         strahler: label;
     }
 }

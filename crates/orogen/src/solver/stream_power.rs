@@ -1,4 +1,4 @@
-//! Mountains that rivers cut while they rise.
+//! Stream power erosion with uplift.
 
 use crate::declare::Declared;
 use crate::error::Result;
@@ -9,63 +9,62 @@ use crate::hydrology::stream_power::{StreamPower as Law, Substrate};
 use crate::op::{Context, Solution, Solver, Sources};
 
 op! {
-    /// The source eroded by rivers while it is lifted: the stream power law, dh/dt = U - K A^m S^n, with landslides and creep.
+    /// The source eroded by rivers under uplift: the stream power law, dh/dt = U - K A^m S^n, with landslides and soil creep.
     ///
-    /// U is the uplift, K the erodibility, A the drainage area and S the slope. In every step water finds its way anew (over
-    /// the bed of depressions, see `drainage`), then the heights are solved implicitly from the outlets up (Braun and Willett
-    /// 2013), which is stable however long the step; what is steeper than the talus angle slides; then soil creeps by linear
-    /// diffusion (Culling 1960). The sea and the world's border stay as they are. In the end every cell is higher than the
-    /// one it drains to: no depressions, no flats. Ten steps turn any relief into valleys; some hundred bring it to where uplift and
-    /// erosion balance. Rock and uplift that differ from place to place (`erodibility_factor`, `uplift_factor`) make it look real. What comes out
-    /// depends on the cell it is solved at. Time grows with the world and the steps; memory is 45 bytes
-    /// a cell, and 16 more if `jitter`.
+    /// U is the uplift rate, K the erodibility, A the drainage area and S the slope. Each time step routes the flow (carving through
+    /// depressions, see `drainage`), then solves the heights implicitly from the outlets upstream (Braun and Willett 2013), which is stable
+    /// for any step length. Then slopes above the talus angle slide, and soil creeps by linear diffusion (Culling 1960). The sea and the
+    /// world's border keep their heights. At the end every cell is higher than its receiver: there are no depressions and no flats. Ten
+    /// steps turn any relief into valleys; a few hundred reach the balance of uplift and erosion. Use `erodibility_factor` and
+    /// `uplift_factor` to vary rock and uplift over the world; uniform values look less real. The result depends on the cell size. Time
+    /// grows with the world and the number of steps; memory is 45 bytes per cell, and 16 more if `jitter` is above 0.
     pub struct StreamPower = "stream-power", solver, revision 2;
     inputs {
-        /// The heights to begin with.
+        /// The initial heights.
         source: required,
-        /// A factor of the erodibility, 1 if left out: small where rock is hard. Less than 0 counts as 0.
+        /// Factor of the erodibility, smaller where rock is harder. Negative values count as 0. Default: 1.
         erodibility_factor: optional, alias "softness",
-        /// A factor of the uplift, 1 if left out.
+        /// Factor of the uplift rate. Default: 1.
         uplift_factor: optional, alias "rise",
     }
     params {
-        /// How long it goes on.
+        /// Simulated time.
         years: f64 = 3e5, unit "yr", range 0.0 to 1e9;
-        /// In how many steps.
+        /// Number of time steps.
         steps: u32 = 10, range 1.0 to 10000.0;
-        /// K: how easily rivers cut, for m = 0.45 from 1e-6 (granite) to 5e-5 (mudstone).
+        /// K: erodibility; for m = 0.45 from 1e-6 (granite) to 5e-5 (mudstone).
         erodibility: f64 = 2e-5, unit "m^(1-2m)/yr", range 0.0 to 1.0;
-        /// m: how much more a larger river cuts.
+        /// m: exponent of the drainage area.
         area_exponent: f64 = 0.45, range 0.0 to 2.0;
-        /// n: how much more a steeper river cuts.
+        /// n: exponent of the slope.
         slope_exponent: f64 = 1.0, range 0.2 to 5.0;
-        /// U: how fast the land rises.
+        /// U: uplift rate.
         uplift: f64 = 0.2, unit "mm/yr", range 0.0 to 100.0;
-        /// The steepest slope that stands.
+        /// Maximum stable slope.
         talus_angle: f64 = 50.0, unit "deg", range 1.0 to 89.0;
-        /// How fast soil creeps: the diffusivity. Rounds crests, and widens hills to sqrt(creep * time).
+        /// Diffusivity of soil creep. It rounds crests, and widens hills to about sqrt(creep * time).
         creep: f64 = 0.01, unit "m^2/yr", range 0.0 to 100.0;
-        /// Whether water that runs between two of a grid's eight directions takes one of them by chance (Rho8, Fairfield and
-        /// Leymarie 1991), another in each step, where `jitter` is 0. Without both, slopes show straight parallel grooves.
+        /// Whether flow that falls between two of the eight grid directions takes one of them at random (Rho8, Fairfield and Leymarie
+        /// 1991), with a new choice in each step. It only has an effect if `jitter` is 0. Without both, slopes show straight parallel
+        /// grooves.
         random_receivers: bool = true, alias "scatter";
-        /// How far the points at which heights are solved stand off the grid's own: by up to half of this share of a cell to each
-        /// side. The valleys and the slopes at the talus angle then do not line up with the grid. In the end the heights are carried
-        /// over to it.
+        /// Displacement of the solution points from the grid, as a share of the cell: up to half of this share to each side. It prevents
+        /// valleys and slopes at the talus angle from aligning with the grid. At the end the heights are interpolated back to the grid.
         jitter: f64 = 1.0, range 0.0 to 1.0, alias "irregular";
         /// Seed of the random choices.
         seed: u64 = 0;
-        /// Whether the ground at or below sea level stays as it is, and water ends there.
+        /// Whether ground at or below sea level keeps its height and is an outlet.
         sea: bool = true;
-        /// From one sample that it is solved on to the next; 0 takes the world's cell. Four times the cell is a sixteenth of the work:
-        /// make the large valleys so, in many steps, and the small ones by a second one that erodes what the first has made.
+        /// Cell size of the solution; 0 uses the world's cell. A cell four times as large takes a sixteenth of the time: solve large
+        /// valleys at a large cell with many steps, then add small valleys with a second `stream-power` at the world's cell.
         cell: f64 = 0.0, unit "m", range 0.0 to 1e6;
     }
     layers {
-        /// The heights in the end.
+        /// The final heights.
         height: height, unit "m";
-        /// The drainage area: how much ground lies upstream.
+        /// Drainage area.
         flow: flow, unit "m^2";
-        /// How much higher the ground is than the source: below 0 where more was cut than rose.
+        /// Height difference to the source: negative where erosion exceeds uplift.
         change: height, unit "m";
     }
 }
@@ -148,7 +147,7 @@ impl Solver for StreamPower {
     }
 }
 
-/// The layers of heights that began as `source`.
+/// The layers of heights that started as `source`.
 fn solution(sources: &dyn Sources, heights: Grid, drained: &Accumulation, source: Grid) -> Result<Solution> {
     let window = *heights.window();
     let mut change = source;

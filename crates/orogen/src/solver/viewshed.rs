@@ -1,4 +1,4 @@
-//! What is seen from a point.
+//! Viewshed of an observer.
 
 use crate::analysis::viewshed::{BEYOND, Observer, hidden, sinking};
 use crate::error::Result;
@@ -6,34 +6,34 @@ use crate::grid::Window;
 use crate::op::{Context, Solution, Solver, Sources};
 
 op! {
-    /// What an observer sees of the source: where the ground is visible, and how high one must rise where it is not.
+    /// Viewshed: which ground an observer sees, and how far a target must rise to be seen where the ground is hidden.
     ///
-    /// Exact lines of sight from the eye to every sample, over ground that is linear between the samples where a line crosses a column or a row, whichever
-    /// there are more of (R3; Franklin and Ray 1994). Time grows with the world and a little more: squares of ground that cannot be seen are skipped. Memory is
-    /// 24 bytes a cell.
+    /// Exact lines of sight from the eye to every sample (R3; Franklin and Ray 1994). The ground is linear between samples along the
+    /// columns or rows that a line crosses, whichever are more. Time grows slightly faster than the world; blocks of hidden ground are
+    /// skipped. Memory is 24 bytes per cell.
     pub struct Viewshed = "viewshed", solver, revision 1;
     inputs {
         /// The heights.
         source: required,
     }
     params {
-        /// Where the observer stands, east and south of the world's origin.
+        /// Position of the observer: metres east and south of the world's origin.
         observer: [f64; 2] = [0.0, 0.0], unit "m", range -1e9 to 1e9;
         /// Height of the eye above the ground.
         observer_height: f64 = 1.75, unit "m", range 0.0 to 1e6;
-        /// Height above the ground of what is looked at.
+        /// Height of the target above the ground.
         target_height: f64 = 0.0, unit "m", range 0.0 to 1e6;
-        /// How far the observer looks.
+        /// Maximum distance.
         radius: f64 = 1e9, unit "m", range 0.0 to 1e9;
-        /// Whether the earth is curved (mean radius 6371 km).
+        /// Whether the earth's curvature is taken into account (mean radius 6371 km).
         curvature: bool = false;
-        /// With `curvature`: by how large a share of it the air bends lines of sight.
+        /// With `curvature`: refraction coefficient, the share of the curvature that refraction compensates.
         refraction: f64 = 0.13, range 0.0 to 1.0;
     }
     layers {
-        /// 1 where it is visible, else 0.
+        /// 1 where the target is visible, else 0.
         visible: label;
-        /// How far above the ground a target must be to be seen: 0 where the ground is seen; -1 beyond the radius.
+        /// Height above the ground at which a target becomes visible: 0 where the ground is visible, -1 beyond the radius.
         hidden: height, unit "m";
     }
 }

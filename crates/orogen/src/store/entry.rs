@@ -119,7 +119,7 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn fault(&self, why: &str) -> Error {
-        Error::new(ErrorKind::File, format!("{} is no stored solution: {why}", self.path.display()))
+        Error::new(ErrorKind::File, format!("{} is not a stored solution: {why}", self.path.display()))
     }
 
     fn bytes(&mut self, count: usize) -> Result<Vec<u8>> {
@@ -136,12 +136,12 @@ impl Reader<'_> {
         }
         let [scalars, layers] = [48, 56].map(|at| usize::try_from(word(&bytes, at)).unwrap_or(usize::MAX));
         if scalars > MOST || layers > MOST {
-            return Err(self.fault("it names too many layers"));
+            return Err(self.fault("it declares too many layers"));
         }
         bytes.extend(self.bytes(scalars * 8 + layers * 40)?);
         let sum = self.bytes(4)?;
         if checksum(&bytes).to_le_bytes() != sum[..] {
-            return Err(self.fault("its head has been damaged"));
+            return Err(self.fault("its header is damaged"));
         }
         let numbers = |from: usize, count: usize| (0..count).map(move |i| from + i * 8);
         let scalars_at = 64;
@@ -170,7 +170,7 @@ impl Reader<'_> {
         let bytes = self.bytes(pages * 4)?;
         let sum = self.bytes(4)?;
         if checksum(&bytes).to_le_bytes() != sum[..] {
-            return Err(self.fault("its checksums have been damaged"));
+            return Err(self.fault("its checksums are damaged"));
         }
         Ok(bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
     }

@@ -216,7 +216,7 @@ fn drainage(sheet: &mut Sheet, shown: &Shown, sea_level: Option<f32>, measures: 
 fn hypsometry(sheet: &mut Sheet, measures: &Measures, area: [f64; 4]) {
     let low = measures.heights[0];
     let frame = Frame { area, x: Axis::linear(0.0, 100.0), y: Axis::linear(low, measures.heights[2].max(low + 1.0)) };
-    sheet.axes(&frame, "Hypsometric curve", ["share of the land above, %", "m"]);
+    sheet.axes(&frame, "Hypsometric curve", ["share of the land above this height, %", "m"]);
     let steps = measures.hypsometry.len().saturating_sub(1).max(1) as f64;
     let points: Vec<(f32, f32)> = measures
         .hypsometry
@@ -297,7 +297,7 @@ fn rose(sheet: &mut Sheet, measures: &Measures, [x, y]: [f64; 2], radius: f64, r
         x,
         y + radius + 34.0,
         0.5,
-        &format!("outer ring: {:.1} % of the slopes in 10\u{b0}", 100.0 * most),
+        &format!("outer ring: {:.1} % of the slopes per 10\u{b0}", 100.0 * most),
         small(),
     );
 }
@@ -316,7 +316,7 @@ fn forms(sheet: &mut Sheet, measures: &Measures, [left, top, width]: [f64; 3]) {
 
 fn table(sheet: &mut Sheet, measures: &Measures, top: f64) {
     sheet.text(MARGIN, top, 0.0, "Compared with real land", bold(16.0));
-    let note = format!("the band: from 10 % to 90 % of {SOURCE}");
+    let note = format!("band: 10th to 90th percentile of {SOURCE}");
     sheet.text(WIDTH - MARGIN, top, 1.0, &note, small());
     let rows = FIGURES.len().div_ceil(2);
     let column = (WIDTH - 2.0 * MARGIN - 50.0) / 2.0;

@@ -38,7 +38,7 @@ pub static FIGURES: &[Figure] = figures![
     "relief", "relief", "m", 0, [683.0, 1022.0, 2264.0], |m| m.relief;
     "hypsometric_integral", "hypsometric integral", "", 3, [0.26, 0.432, 0.705], |m| m.hypsometric_integral;
     "slope_mean", "mean slope", "deg", 1, [7.09, 16.5, 24.0], |m| m.slope_mean;
-    "slope_p90", "slope a tenth exceeds", "deg", 1, [14.5, 30.2, 36.7], |m| m.slope_p90;
+    "slope_p90", "slope, 90th percentile", "deg", 1, [14.5, 30.2, 36.7], |m| m.slope_p90;
     "slope_spread", "spread of slopes", "", 3, [0.396, 0.647, 0.889], |m| m.slope_spread;
     "slope_patches", "patchiness of slopes", "", 3, [0.16, 0.322, 0.597], |m| m.slope_patches;
     "ruggedness", "ruggedness", "m", 1, [8.73, 10.4, 32.0], |m| m.ruggedness;

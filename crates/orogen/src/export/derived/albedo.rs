@@ -7,7 +7,7 @@ use crate::recipe::surface::expand::expand;
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "albedo",
-    about: "color of the ground by the recipe's surfaces, unlit: an albedo or base color map",
+    about: "albedo or base color map: unlit color of the ground by the recipe's surfaces",
     palette: "",
     options: &[],
     made: Made::Rows(RowLayer {

@@ -10,7 +10,7 @@ use crate::solver::drainage::Drainage;
 pub const STREAM: OptionSpec = OptionSpec {
     name: "stream",
     value: "AREA",
-    about: "Drainage area from which on there is a stream, in m^2 [default: 1e6]",
+    about: "Minimum drainage area of streams, in m^2 [default: 1e6]",
     value_kind: ValueKind::Number(0.0, 1e15),
 };
 

@@ -6,7 +6,7 @@ use crate::analysis::aspect::aspect;
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "aspect",
-    about: "direction downhill in degrees clockwise from north; NaN on level ground",
+    about: "aspect: downhill direction in degrees clockwise from north; NaN on level ground",
     palette: "aspect",
     options: &[],
     made: Made::Rows(RowLayer {

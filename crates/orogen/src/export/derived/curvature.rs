@@ -6,7 +6,7 @@ use crate::analysis::curvature::{Curvature, curvature};
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "curvature",
-    about: "total curvature in 1/m, above 0 on tops and below 0 in hollows (Zevenbergen and Thorne)",
+    about: "total curvature in 1/m, positive on summits and negative in hollows (Zevenbergen and Thorne)",
     palette: "oleron",
     options: &[],
     made: Made::Rows(RowLayer {

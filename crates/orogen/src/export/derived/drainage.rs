@@ -9,14 +9,14 @@ use crate::filter::flow_direction::{Codes, FlowDirection};
 const CODES: OptionSpec = OptionSpec {
     name: "codes",
     value: "WHOSE",
-    about: "Numbers of directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster [default: esri]",
+    about: "Encoding of flow directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster [default: esri]",
     value_kind: ValueKind::Word(&["esri", "grass", "taudem", "whitebox", "pcraster"]),
 };
 
 /// How much ground lies upstream.
 pub static AREA: Derived = Derived {
     name: "drainage-area",
-    about: "flow accumulation: the area that drains through a cell, itself included, in m^2 (D8)",
+    about: "flow accumulation: drainage area of each cell including itself, in m^2 (D8)",
     palette: "viridis",
     options: &[],
     made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(to.drainage().layer("flow")) }),
@@ -25,7 +25,7 @@ pub static AREA: Derived = Derived {
 /// Which way water takes.
 pub static DIRECTION: Derived = Derived {
     name: "flow-direction",
-    about: "direction of flow (D8), numbered as another program does (--codes)",
+    about: "flow direction (D8), in the encoding of another program (--codes)",
     palette: "",
     options: &[CODES],
     made: Made::Nodes(NodeLayer {
@@ -47,7 +47,7 @@ pub static DIRECTION: Derived = Derived {
 /// The order of the stream.
 pub static STRAHLER: Derived = Derived {
     name: "strahler",
-    about: "Strahler's order of the stream; 0 where there is none",
+    about: "Strahler order of streams; 0 elsewhere",
     palette: "viridis",
     options: &[STREAM],
     made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(to.drainage().layer("strahler")) }),
@@ -56,7 +56,7 @@ pub static STRAHLER: Derived = Derived {
 /// What drains to one outlet.
 pub static WATERSHED: Derived = Derived {
     name: "watershed",
-    about: "watersheds: the ground that drains to one outlet, numbered from 1; 0 for the sea",
+    about: "watersheds: the ground that drains to each outlet, numbered from 1; 0 in the sea",
     palette: "",
     options: &[],
     made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(to.drainage().layer("watershed")) }),

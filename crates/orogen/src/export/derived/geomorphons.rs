@@ -8,7 +8,7 @@ use crate::filter::geomorphons::Geomorphons;
 const REACH: OptionSpec = OptionSpec {
     name: "reach",
     value: "M",
-    about: "How far geomorphons look, in metres [default: 500]",
+    about: "Search radius of geomorphons, in metres [default: 500]",
     value_kind: ValueKind::Number(0.0, 1e6),
 };
 
@@ -16,14 +16,14 @@ const REACH: OptionSpec = OptionSpec {
 const FLAT: OptionSpec = OptionSpec {
     name: "flat",
     value: "DEG",
-    about: "Ground that rises or falls by less is level, in degrees [default: 1]",
+    about: "Flatness threshold of geomorphons, in degrees [default: 1]",
     value_kind: ValueKind::Number(0.0, 45.0),
 };
 
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "landforms",
-    about: "geomorphons: 1 flat, 2 peak, 3 ridge, 4 shoulder, 5 spur, 6 slope, 7 hollow, 8 footslope, 9 valley, 10 pit",
+    about: "landforms (geomorphons): 1 flat, 2 peak, 3 ridge, 4 shoulder, 5 spur, 6 slope, 7 hollow, 8 footslope, 9 valley, 10 pit",
     palette: "turbo",
     options: &[REACH, FLAT],
     made: Made::Nodes(NodeLayer {

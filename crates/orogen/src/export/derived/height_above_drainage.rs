@@ -22,7 +22,7 @@ pub static HEIGHT_ABOVE: Derived = Derived {
 /// Length of the way to the stream.
 pub static FLOW_DISTANCE: Derived = Derived {
     name: "flow-distance",
-    about: "length of the way that water takes to the nearest stream, in m",
+    about: "length of the flow path to the stream that the ground drains to, in m",
     palette: "viridis",
     options: &[STREAM],
     made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(append(to).layer("flow_distance")) }),
@@ -31,7 +31,7 @@ pub static FLOW_DISTANCE: Derived = Derived {
 /// Distance to the nearest stream.
 pub static STREAM_DISTANCE: Derived = Derived {
     name: "stream-distance",
-    about: "distance to the nearest stream in a straight line, in m",
+    about: "straight-line distance to the nearest stream, in m",
     palette: "viridis",
     options: &[STREAM],
     made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(append(to).layer("distance")) }),

@@ -6,7 +6,7 @@ use crate::analysis::hillshade::{Light, hillshade};
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "hillshade",
-    about: "shaded relief: light from the north-west, 45 degrees high, on ground of Horn's slope; 1 is full light, 0 none",
+    about: "hillshade: light from the north-west at 45 degrees elevation, slope by Horn's method; 1 is full light, 0 none",
     palette: "grey",
     options: &[],
     made: Made::Rows(RowLayer {

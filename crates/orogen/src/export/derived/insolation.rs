@@ -11,7 +11,7 @@ use crate::solver::insolation::Insolation;
 const DAY: OptionSpec = OptionSpec {
     name: "day",
     value: "N",
-    about: "Day of the year that the sun shines on, 1 to 365 [default: the whole year]",
+    about: "Day of the year for insolation, 1 to 365 [default: the whole year]",
     value_kind: ValueKind::Whole(1, 365),
 };
 
@@ -19,7 +19,7 @@ const DAY: OptionSpec = OptionSpec {
 const SEASON: OptionSpec = OptionSpec {
     name: "season",
     value: "WHEN",
-    about: "Season that the sun shines in, from equinox to solstice or solstice to equinox at the latitude: spring, summer, autumn or winter",
+    about: "Season for insolation, from equinox to solstice or solstice to equinox at the latitude: spring, summer, autumn or winter",
     value_kind: ValueKind::Word(&["spring", "summer", "autumn", "winter"]),
 };
 
@@ -30,7 +30,7 @@ const STEP_OF_A_DAY: f64 = 0.1;
 const LATITUDE: OptionSpec = OptionSpec {
     name: "latitude",
     value: "DEG",
-    about: "Degrees north of the equator [default: that of a file of heights, else 45]",
+    about: "Latitude in degrees, positive in the north [default: that of a file of heights, else 45]",
     value_kind: ValueKind::Number(-90.0, 90.0),
 };
 
@@ -38,7 +38,7 @@ const LATITUDE: OptionSpec = OptionSpec {
 const TURBIDITY: OptionSpec = OptionSpec {
     name: "turbidity",
     value: "T",
-    about: "Linke's turbidity of the air: 1 clean and dry, 6 hazy [default: 3]",
+    about: "Linke turbidity of the air: 1 clean and dry, 6 hazy [default: 3]",
     value_kind: ValueKind::Number(1.0, 10.0),
 };
 
@@ -49,7 +49,7 @@ const SEASONS: [(&str, [f64; 2]); 4] =
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "insolation",
-    about: "energy of the sun on an average day under a clear sky, in kWh/m^2: direct, from the sky and reflected, with the shadows of mountains",
+    about: "insolation: solar energy on an average day under a clear sky, in kWh/m^2: direct, diffuse and reflected, with cast shadows",
     palette: "inferno",
     options: &[DAY, SEASON, LATITUDE, TURBIDITY],
     made: Made::Nodes(NodeLayer {
@@ -76,7 +76,7 @@ pub static LAYER: Derived = Derived {
 fn days(to: &Appended, latitude: f64) -> Result<Option<[f64; 2]>> {
     match (to.options().whole(DAY.name), to.options().word(SEASON.name)) {
         (Some(_), Some(_)) => {
-            Err(Error::new(ErrorKind::Request, "--day and --season contradict each other: give one of them"))
+            Err(Error::new(ErrorKind::Request, "--day and --season exclude each other; leave out one of them"))
         }
         (Some(day), None) => Ok(Some([day as f64; 2])),
         (None, Some(season)) => {

@@ -80,7 +80,7 @@ pub fn prepare(recipe: &mut Recipe, layer: &str, options: &Options) -> Result<()
             .filter(|other| other.options.iter().any(|spec| spec.name == name))
             .map(|other| other.name)
             .collect();
-        let message = format!("--{name} is no option of the layer {layer}; those that know it: {}", layers.join(", "));
+        let message = format!("--{name} does not apply to the layer {layer}; it applies to: {}", layers.join(", "));
         return Err(Error::new(ErrorKind::Request, message));
     }
     let heights = recipe.output_inputs().iter().find(|(name, _)| name == HEIGHT).map(|(_, heights)| heights.clone());
@@ -89,7 +89,7 @@ pub fn prepare(recipe: &mut Recipe, layer: &str, options: &Options) -> Result<()
     match &derived.made {
         Made::Rows(rows) => (rows.prepare)(recipe),
         Made::Nodes(nodes) if nodes.bounded && !bounded => {
-            let message = format!("the layer {layer} needs a world with bounds: set `size` in [world]");
+            let message = format!("the layer {layer} needs a bounded world; set `size` in [world]");
             return Err(Error::new(ErrorKind::Request, message));
         }
         Made::Nodes(nodes) => {

@@ -7,7 +7,7 @@ use crate::grid::Grid;
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "normal",
-    about: "upward normal, its parts east, north and up: a normal map",
+    about: "normal map: components of the surface normal to the east, north and up",
     palette: "",
     options: &[],
     made: Made::Rows(RowLayer {

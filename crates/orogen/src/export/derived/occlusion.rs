@@ -14,7 +14,7 @@ fn reach(cell: f64) -> usize {
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "occlusion",
-    about: "ambient occlusion: the share of the sky that is seen, up to 1000 m or 128 samples around, 1 on open ground",
+    about: "ambient occlusion: visible share of the sky within 1000 m or 128 samples; 1 on open ground",
     palette: "grey",
     options: &[],
     made: Made::Rows(RowLayer {

@@ -7,7 +7,7 @@ use crate::recipe::surface::expand::expand;
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "roughness",
-    about: "roughness of the ground by the recipe's surfaces, 0 a mirror to 1 matt: a roughness map",
+    about: "roughness map: roughness of the ground by the recipe's surfaces, from 0 (mirror) to 1 (matt)",
     palette: "grey",
     options: &[],
     made: Made::Rows(RowLayer {

@@ -6,7 +6,7 @@ use crate::analysis::slope::degrees;
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "slope",
-    about: "steepness in degrees, by Horn's 3 x 3 method",
+    about: "slope in degrees, by Horn's 3 x 3 method",
     palette: "slope",
     options: &[],
     made: Made::Rows(RowLayer {

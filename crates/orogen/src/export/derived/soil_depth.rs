@@ -6,7 +6,7 @@ use crate::filter::soil_depth::SoilDepth;
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "soil-depth",
-    about: "depth of soil in m where production keeps up with creep (Heimsath and others 1997)",
+    about: "steady-state soil depth in m, where production balances creep (Heimsath and others 1997)",
     palette: "batlow",
     options: &[],
     made: Made::Nodes(NodeLayer {

@@ -7,7 +7,7 @@ use crate::recipe::surface::expand::expand;
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "splat",
-    about: "weights of the recipe's surfaces, or of grass, sand, scree, rock, snow and river bed: a splat map",
+    about: "splat map: weights of the recipe's surfaces, or of grass, sand, scree, rock, snow and river bed",
     palette: "",
     options: &[],
     made: Made::Rows(RowLayer {

@@ -9,7 +9,7 @@ use crate::solver::viewshed::Viewshed;
 const OBSERVER: OptionSpec = OptionSpec {
     name: "observer",
     value: "X,Y",
-    about: "Where the observer of a viewshed stands: metres east and south of the world's north-west corner",
+    about: "Position of the observer of a viewshed: metres east and south of the world's north-west corner",
     value_kind: ValueKind::Point,
 };
 
@@ -25,7 +25,7 @@ const OBSERVER_HEIGHT: OptionSpec = OptionSpec {
 const TARGET_HEIGHT: OptionSpec = OptionSpec {
     name: "target-height",
     value: "M",
-    about: "Height above the ground of what the observer looks at, in metres [default: 0]",
+    about: "Height of the target above the ground, in metres [default: 0]",
     value_kind: ValueKind::Number(0.0, 1e6),
 };
 
@@ -33,7 +33,7 @@ const TARGET_HEIGHT: OptionSpec = OptionSpec {
 const RADIUS: OptionSpec = OptionSpec {
     name: "radius",
     value: "M",
-    about: "How far the observer looks, in metres [default: over the whole world]",
+    about: "Maximum distance of a viewshed, in metres [default: the whole world]",
     value_kind: ValueKind::Number(0.0, 1e9),
 };
 
@@ -41,14 +41,14 @@ const RADIUS: OptionSpec = OptionSpec {
 const REFRACTION: OptionSpec = OptionSpec {
     name: "refraction",
     value: "K",
-    about: "The observer stands on a curved earth, and the air bends lines of sight by this share of its curvature, such as 0.13 [default: a flat earth]",
+    about: "Take the earth's curvature into account, with this refraction coefficient, such as 0.13 [default: a flat earth]",
     value_kind: ValueKind::Number(0.0, 1.0),
 };
 
 /// The layer.
 pub static LAYER: Derived = Derived {
     name: "viewshed",
-    about: "what an observer sees: 1 where the ground is visible, else 0; --observer says from where",
+    about: "viewshed: 1 where the observer (--observer) sees the ground, else 0",
     palette: "grey",
     options: &[OBSERVER, OBSERVER_HEIGHT, TARGET_HEIGHT, RADIUS, REFRACTION],
     made: Made::Nodes(NodeLayer {
@@ -59,14 +59,14 @@ pub static LAYER: Derived = Derived {
             let size = to.recipe().world.size.unwrap_or_default();
             let Some(observer) = options.point(OBSERVER.name) else {
                 let message = format!(
-                    "a viewshed needs an observer: --observer X,Y, metres east and south of the world's north-west corner; the world is {} x {} m",
+                    "the layer viewshed needs --observer X,Y, in metres east and south of the world's north-west corner; the world is {} x {} m",
                     size[0], size[1]
                 );
                 return Err(Error::new(ErrorKind::Request, message));
             };
             if !(0..2).all(|axis| (0.0..=size[axis]).contains(&observer[axis])) {
                 let message = format!(
-                    "the observer at {},{} stands outside the world, which is {} x {} m",
+                    "the observer at {},{} is outside the world, which is {} x {} m",
                     observer[0], observer[1], size[0], size[1]
                 );
                 return Err(Error::new(ErrorKind::Request, message));

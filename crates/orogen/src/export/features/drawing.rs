@@ -83,8 +83,7 @@ impl Drawing {
         match self.layers.as_slice() {
             [(layer, _)] => Ok(layer),
             _ => {
-                let message =
-                    format!("a .{format} file holds one layer: name one with --layer, or write all into a .gpkg");
+                let message = format!("a .{format} file holds one layer; choose one with --layer, or write a .gpkg");
                 Err(Error::new(ErrorKind::Request, message).into())
             }
         }
@@ -115,7 +114,7 @@ fn check(layers: &[&VectorLayer], options: &Options) -> Result<()> {
                 .filter(|layer| layer.options.contains(&name))
                 .map(|layer| layer.name)
                 .collect();
-            let message = format!("--{name} changes nothing here; it is for {}", knows.join(", "));
+            let message = format!("--{name} has no effect here; it applies to {}", knows.join(", "));
             return Err(Error::new(ErrorKind::Request, message));
         }
     }

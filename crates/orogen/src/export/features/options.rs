@@ -11,7 +11,7 @@ use crate::recipe::document::Recipe;
 pub const RIVER_AREA: OptionSpec = OptionSpec {
     name: "river-area",
     value: "M2",
-    about: "Drainage area in m^2 from which on there is a river [default: the recipe's, else 1000000, at least 32 samples]",
+    about: "Minimum drainage area of rivers in m^2 [default: the recipe's, else 1000000, at least 32 samples]",
     value_kind: ValueKind::Number(0.0, 1e15),
 };
 
@@ -19,7 +19,7 @@ pub const RIVER_AREA: OptionSpec = OptionSpec {
 pub const LAKE_AREA: OptionSpec = OptionSpec {
     name: "lake-area",
     value: "M2",
-    about: "Area in m^2 from which on water in a depression is a lake [default: the recipe's, else 20000, at least 4 samples]",
+    about: "Minimum area of lakes in m^2 [default: the recipe's, else 20000, at least 4 samples]",
     value_kind: ValueKind::Number(0.0, 1e15),
 };
 
@@ -27,7 +27,7 @@ pub const LAKE_AREA: OptionSpec = OptionSpec {
 pub const RUNOFF: OptionSpec = OptionSpec {
     name: "runoff",
     value: "M",
-    about: "Water that runs off the ground, in metres a year: gives discharges and widths [default: the recipe's, else 0.5]",
+    about: "Runoff in metres per year, for discharges and widths [default: the recipe's, else 0.5]",
     value_kind: ValueKind::Number(0.0, 1000.0),
 };
 
@@ -35,7 +35,7 @@ pub const RUNOFF: OptionSpec = OptionSpec {
 pub const PROMINENCE: OptionSpec = OptionSpec {
     name: "prominence",
     value: "M",
-    about: "Metres that a summit stands above the way to a higher one at least [default: a 25th of the relief]",
+    about: "Minimum prominence of summits in metres [default: 1/25 of the relief]",
     value_kind: ValueKind::Number(0.0, 1e6),
 };
 

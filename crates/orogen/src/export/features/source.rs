@@ -55,8 +55,10 @@ impl FeatureSource {
         let all = extent(world, window);
         let samples = (all.width as u64).saturating_mul(all.height as u64);
         if samples > u64::from(u32::MAX) {
-            let message =
-                format!("water is found on at most 2^32 samples, and there are {} x {}", all.width, all.height);
+            let message = format!(
+                "rivers and lakes can be found on at most 2^32 samples, and there are {} x {}; use a larger cell",
+                all.width, all.height
+            );
             return Err(Error::new(ErrorKind::Request, message));
         }
         // The heights are counted by the plan that makes them.

@@ -14,7 +14,7 @@ use crate::format::asc;
 pub static FORMAT: Format = Format {
     name: "asc",
     aliases: &[],
-    about: "ESRI ASCII grid: numbers as text, in local metres or on the map of a real place, with NAME.prj",
+    about: "ESRI ASCII grid (text), in local metres or georeferenced with NAME.prj",
     options: &[NO_SIDECAR],
     channels: 1,
     features: false,

@@ -17,7 +17,7 @@ use crate::recipe::surface::document::MAX_SURFACES;
 pub static FORMAT: Format = Format {
     name: "exr",
     aliases: &[],
-    about: "OpenEXR of f32 in the layer's own unit (metres for heights), one channel Y, ZIP",
+    about: "OpenEXR of f32 in the layer's unit (metres for heights), one channel Y, ZIP compression",
     options: &[HALF, RGB, NO_SIDECAR],
     channels: MAX_SURFACES,
     features: false,
@@ -29,7 +29,7 @@ pub static FORMAT: Format = Format {
 pub const HALF: OptionSpec = OptionSpec {
     name: "half",
     value: "",
-    about: "Floats of 16 bits instead of 32: steps of 2 m from 2048 m up",
+    about: "16-bit floats instead of 32-bit; above 2048 m the resolution is 2 m",
     value_kind: ValueKind::Nothing,
 };
 
@@ -37,7 +37,7 @@ pub const HALF: OptionSpec = OptionSpec {
 pub const RGB: OptionSpec = OptionSpec {
     name: "rgb",
     value: "",
-    about: "The samples in each of the channels R, G and B instead of in Y",
+    about: "Write the samples to the channels R, G and B instead of Y",
     value_kind: ValueKind::Nothing,
 };
 

@@ -15,7 +15,7 @@ use crate::format::fgb;
 pub static FORMAT: Format = Format {
     name: "fgb",
     aliases: &[],
-    about: "Contour lines or vector features, one layer with its index: FlatGeobuf",
+    about: "FlatGeobuf: contour lines or vector features, one layer with a spatial index",
     options: OPTIONS,
     channels: 1,
     features: true,

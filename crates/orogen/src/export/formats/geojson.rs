@@ -15,7 +15,7 @@ use crate::format::geojson;
 pub static FORMAT: Format = Format {
     name: "geojson",
     aliases: &[],
-    about: "Contour lines or vector features, in local metres, or in the coordinates of a real place",
+    about: "GeoJSON: contour lines or vector features, in local metres or georeferenced",
     options: OPTIONS,
     channels: 1,
     features: true,

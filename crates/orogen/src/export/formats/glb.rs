@@ -20,7 +20,7 @@ use crate::mesh::surface::Surface;
 const LODS: OptionSpec = OptionSpec {
     name: "lods",
     value: "N",
-    about: "Levels of detail: every second, fourth, ... sample, or twice, four times ... the error of --max-error [default: 1]",
+    about: "Number of levels of detail: each halves the samples, or doubles the error of --max-error [default: 1]",
     value_kind: ValueKind::Whole(1, 12),
 };
 
@@ -28,7 +28,7 @@ const LODS: OptionSpec = OptionSpec {
 pub static FORMAT: Format = Format {
     name: "glb",
     aliases: &[],
-    about: "glTF 2.0 mesh in one file: metres, Y up, normals, texture",
+    about: "glTF 2.0 mesh in one binary file: metres, Y up, normals, texture",
     options: &[MAX_ERROR, LODS, COLOR, COLOR_RANGE, EXAGGERATION, HEIGHT_CURVE, WATER, SURFACES],
     channels: 1,
     features: false,

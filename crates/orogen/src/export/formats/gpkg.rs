@@ -15,7 +15,7 @@ use crate::format::gpkg;
 pub static FORMAT: Format = Format {
     name: "gpkg",
     aliases: &[],
-    about: "Contour lines or vector features, any number of layers with their indexes: GeoPackage",
+    about: "GeoPackage: contour lines or vector features, any number of layers with spatial indexes",
     options: OPTIONS,
     channels: 1,
     features: true,

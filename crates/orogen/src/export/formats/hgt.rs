@@ -14,7 +14,7 @@ use crate::grid::Window;
 pub static FORMAT: Format = Format {
     name: "hgt",
     aliases: &[],
-    about: "SRTM tile of 1201 x 1201 or 3601 x 3601 samples: whole metres, rounded to the nearest, big-endian",
+    about: "SRTM tile of 1201 x 1201 or 3601 x 3601 samples: heights rounded to whole metres, big-endian",
     options: &[],
     channels: 1,
     features: false,
@@ -35,8 +35,7 @@ fn write(source: &mut LayerSource, _: &Options, files: &mut Files) -> io::Result
         let finer = if cell == window.cell { String::new() } else { format!("--cell {cell} ") };
         let [x, y] = [window.x, window.y].map(|at| (at as f64 * window.cell / cell).round());
         return refuse(format!(
-            "an .hgt has 1201 x 1201 or 3601 x 3601 samples, and these are {width} x {height}: the nearest is \
-             {finer}--window {x},{y},{square},{square}"
+            "an .hgt must have 1201 x 1201 or 3601 x 3601 samples, not {width} x {height}; the nearest is {finer}--window {x},{y},{square},{square}"
         ));
     }
     let name = files.path().map(|path| path.to_string_lossy().into_owned()).unwrap_or_default();
@@ -44,10 +43,10 @@ fn write(source: &mut LayerSource, _: &Options, files: &mut Files) -> io::Result
     let levels = source.levels();
     let place = match hgt::corner(&name) {
         Some(corner) if source.map().is_some_and(|map| !lies_at(&map, &window, corner)) => {
-            "its name tells a place where it does not lie, and readers will believe it".to_string()
+            "its name gives a south-west corner that is not its position; readers use the name".to_string()
         }
         Some([south, west]) => format!("its south-west corner at {south} north, {west} east"),
-        None => "no place: a name such as N46E007.hgt tells readers its south-west corner".to_string(),
+        None => "no georeference; readers take the south-west corner from a name such as N46E007.hgt".to_string(),
     };
     Ok(format!("{} to {}, rounded to whole metres; {place}", levels.low(), levels.high()))
 }

@@ -14,7 +14,7 @@ use crate::format::npy;
 pub static FORMAT: Format = Format {
     name: "npy",
     aliases: &[],
-    about: "NumPy array of f32, the layer's own unit (metres for heights); several channels as the last axis",
+    about: "NumPy array of f32 in the layer's unit (metres for heights); channels are the last axis",
     options: &[NO_SIDECAR],
     channels: 8,
     features: false,

@@ -16,7 +16,7 @@ use crate::mesh::obj;
 pub static FORMAT: Format = Format {
     name: "obj",
     aliases: &[],
-    about: "Wavefront mesh, text: metres, y up, normals; NAME.mtl and NAME-texture.png beside it",
+    about: "Wavefront OBJ mesh (text): metres, Y up, normals, with NAME.mtl and NAME-texture.png",
     options: &[MAX_ERROR, COLOR, COLOR_RANGE, EXAGGERATION, HEIGHT_CURVE, SURFACES],
     channels: 1,
     features: false,

@@ -17,7 +17,7 @@ use crate::format::pgm;
 pub static FORMAT: Format = Format {
     name: "pgm",
     aliases: &[],
-    about: "Netpbm's grey picture of 16 or 8 bits, over the range of the window",
+    about: "Netpbm grey picture (PGM) of 16 or 8 bits, scaled to the range of the window",
     options: &[BITS, RANGE, FIRST_ROW, NO_SIDECAR],
     channels: 1,
     features: false,

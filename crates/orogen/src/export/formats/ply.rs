@@ -15,7 +15,7 @@ use crate::mesh::ply;
 pub static FORMAT: Format = Format {
     name: "ply",
     aliases: &[],
-    about: "Stanford polygon mesh, binary: metres, z up, normals, colours or texture coordinates",
+    about: "Stanford PLY mesh (binary): metres, Z up, normals, colours or texture coordinates",
     options: &[MAX_ERROR, COLOR, COLOR_RANGE, EXAGGERATION, HEIGHT_CURVE],
     channels: 1,
     features: false,
@@ -26,7 +26,7 @@ pub static FORMAT: Format = Format {
 fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     let color = color(options, "vertex", files, false);
     if color == "texture" {
-        let message = "a .ply file holds no picture: say --color vertex, or none, or write .glb or .obj";
+        let message = "a .ply file cannot hold a texture; use --color vertex or none, or write .glb or .obj";
         return Err(Error::new(ErrorKind::Request, message).into());
     }
     let colors = color == "vertex";

@@ -21,7 +21,7 @@ use crate::recipe::surface::document::MAX_SURFACES;
 pub static FORMAT: Format = Format {
     name: "png",
     aliases: &[],
-    about: "Grey picture of 16 or 8 bits, black the lowest and white the highest; or heights in its colours (--encoding); normals; weights; colors",
+    about: "Grey PNG of 16 or 8 bits (black is the lowest value, white the highest), heights encoded as colours (--encoding), normals, weights or colors",
     options: &[BITS, RANGE, FIRST_ROW, ENCODING, NORMAL, WEIGHTS, NO_SIDECAR],
     channels: MAX_SURFACES,
     features: false,
@@ -33,7 +33,7 @@ pub static FORMAT: Format = Format {
 const ENCODING: OptionSpec = OptionSpec {
     name: "encoding",
     value: "NAME",
-    about: "Heights in red, green and blue instead of grey: terrarium, in steps of 1/256 m, or terrain-rgb, of 1/10 m",
+    about: "Heights encoded in red, green and blue: terrarium, in steps of 1/256 m, or terrain-rgb, in steps of 1/10 m",
     value_kind: ValueKind::Word(&["terrarium", "terrain-rgb"]),
 };
 
@@ -48,7 +48,7 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
         (BITS.name, fits(Nature::Numbers) || fits(Nature::Normal), "plain numbers and normals"),
     ] {
         if options.has(option) && !holds {
-            return refuse(format!("--{option} is for {what}: leave it out for `{}`", source.layer()));
+            return refuse(format!("--{option} applies to {what}; leave it out for `{}`", source.layer()));
         }
     }
     match source.nature() {
@@ -96,7 +96,7 @@ fn write_encoded(
     encoding: Encoding,
 ) -> io::Result<String> {
     if let Some(other) = ["bits", "range"].into_iter().find(|name| options.has(name)) {
-        return refuse(format!("--encoding {} has bits and a range of its own: leave out --{other}", encoding.name()));
+        return refuse(format!("--encoding {} sets bits and range; leave out --{other}", encoding.name()));
     }
     let window = *source.window();
     let about = format!("heights in metres as {} colours; {} metres a sample", encoding.name(), window.cell);

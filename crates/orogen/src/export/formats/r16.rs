@@ -16,7 +16,7 @@ use crate::format::raw;
 pub static FORMAT: Format = Format {
     name: "r16",
     aliases: &["raw"],
-    about: "Headerless whole numbers of 16 bits, little-endian, over the range of the window, told in NAME.json",
+    about: "Headerless u16, little-endian, scaled to the range of the window; NAME.json holds the range",
     options: &[RANGE, FIRST_ROW, NO_SIDECAR],
     channels: 1,
     features: false,

@@ -16,7 +16,7 @@ use crate::format::raw;
 pub static FORMAT: Format = Format {
     name: "r32",
     aliases: &[],
-    about: "Headerless f32, little-endian, the layer's own unit, the size told in NAME.json",
+    about: "Headerless f32, little-endian, in the layer's unit; NAME.json holds the size",
     options: &[FIRST_ROW, NO_SIDECAR],
     channels: 1,
     features: false,

@@ -12,14 +12,14 @@ use crate::mesh::stl::{Print, write as write_solid};
 const PRINT_SIZE: OptionSpec = OptionSpec {
     name: "print-size",
     value: "MM",
-    about: "Millimetres of the longer side [default: 150]",
+    about: "Length of the longer side in millimetres [default: 150]",
     value_kind: ValueKind::Number(1.0, 1e5),
 };
 
 const BASE: OptionSpec = OptionSpec {
     name: "base",
     value: "MM",
-    about: "Millimetres of material below the lowest sample [default: 3]",
+    about: "Thickness of the base below the lowest sample, in millimetres [default: 3]",
     value_kind: ValueKind::Number(0.1, 1e4),
 };
 
@@ -27,7 +27,7 @@ const BASE: OptionSpec = OptionSpec {
 pub static FORMAT: Format = Format {
     name: "stl",
     aliases: &[],
-    about: "Solid to print, with walls and a base, binary: millimetres, z up",
+    about: "STL solid for 3D printing (binary), with walls and a base: millimetres, Z up",
     options: &[MAX_ERROR, EXAGGERATION, HEIGHT_CURVE, PRINT_SIZE, BASE],
     channels: 1,
     features: false,

@@ -16,7 +16,7 @@ use crate::export::options::Options;
 pub static FORMAT: Format = Format {
     name: "svg",
     aliases: &[],
-    about: "Contour lines or vector features as a vector drawing in metres",
+    about: "SVG drawing of contour lines or vector features, in metres",
     options: OPTIONS,
     channels: 1,
     features: true,

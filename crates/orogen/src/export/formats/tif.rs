@@ -15,7 +15,7 @@ use crate::grid::Window;
 pub static FORMAT: Format = Format {
     name: "tif",
     aliases: &["tiff"],
-    about: "Cloud-Optimised GeoTIFF of f32 with overviews, in local metres or on the map of a real place",
+    about: "Cloud-Optimised GeoTIFF of f32 with overviews, in local metres or georeferenced",
     options: &[],
     channels: 1,
     features: false,

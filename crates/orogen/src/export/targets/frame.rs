@@ -44,10 +44,10 @@ impl Frame {
     pub fn new(target: &EngineTarget, world: &World, asked: &Asked) -> Result<Frame> {
         let tiles = asked.tiles.unwrap_or([1, 1]);
         if asked.tiles.is_some() && target.tile.is_none() {
-            return refuse(format!("{} takes one file and cuts it itself: leave out --tiles", target.name));
+            return refuse(format!("{} imports a single file and splits it itself; leave out --tiles", target.name));
         }
         if tiles.contains(&0) || tiles.iter().any(|count| *count > 100) {
-            return refuse("there are 1 to 100 tiles along a side, such as --tiles 2x2".into());
+            return refuse("--tiles must be 1 to 100 tiles per side, such as --tiles 2x2".into());
         }
         let spec = &world.recipe().world;
         let cell = asked.cell.unwrap_or(spec.cell);
@@ -62,12 +62,15 @@ impl Frame {
                     ((side - 1) * tiles[axis] + 1 != samples).then_some((side, samples))
                 }) {
                     return refuse(format!(
-                        "{samples} samples are not a whole number of tiles that share their edges: ask for {}",
+                        "{samples} samples cannot be divided into tiles that share their edges; use {}",
                         (nearest(target, side) - 1) * tiles[0] + 1
                     ));
                 }
                 if sides[0].0 != sides[1].0 {
-                    return refuse(format!("{} takes squares: a window of {1} x {1} samples", target.name, sides[0].1));
+                    return refuse(format!(
+                        "{} only takes squares; use a window of {1} x {1} samples",
+                        target.name, sides[0].1
+                    ));
                 }
                 allowed(target, sides[0].0)?
             }
@@ -99,7 +102,7 @@ impl Frame {
                 }
                 if left {
                     note.push(format!(
-                        "of the world's {} x {} m these are the first {} x {} m: the engine takes squares",
+                        "of the world's {} x {} m the first {} x {} m are written, because the engine only takes squares",
                         number(size[0]),
                         number(size[1]),
                         number(covered[0]),
@@ -134,7 +137,7 @@ fn allowed(target: &EngineTarget, side: usize) -> Result<usize> {
         false => {
             let sides: Vec<String> = target.sides.iter().map(usize::to_string).collect();
             refuse(format!(
-                "{} takes no {side} x {side} samples; the nearest is {}, and all are {}",
+                "{} does not support {side} x {side} samples; the nearest is {}; supported sizes: {}",
                 target.name,
                 nearest(target, side),
                 sides.join(", ")
@@ -205,7 +208,7 @@ mod tests {
             (
                 "unity",
                 Asked { window: Some(Window::new(512, 512, 10.0)), tiles: Some([2, 2]), ..Asked::default() },
-                "share their edges: ask for 513",
+                "share their edges; use 513",
             ),
         ] {
             let why = frame(target, square, asked).unwrap_err();

@@ -1,6 +1,6 @@
 //! HTerrain, for Godot 3 and 4 (godot_heightmap_plugin).
 //!
-//! Its height map is an EXR of one channel in half floats, 2^n + 1 samples a side, metres as they are; its splat maps have the size without the last row and
+//! Its height map is an EXR with one channel of half floats, 2^n + 1 samples a side, metres as they are; its splat maps have the size without the last row and
 //! column.
 
 use super::target::EngineTarget;
@@ -10,7 +10,7 @@ use crate::format::levels::Levels;
 /// The target.
 pub static TARGET: EngineTarget = EngineTarget {
     name: "hterrain",
-    about: "HTerrain for Godot: EXR of one channel in half floats, 2^n + 1 samples",
+    about: "HTerrain for Godot: EXR with one channel of half floats, 2^n + 1 samples",
     sides: &[65, 129, 257, 513, 1025, 2049, 4097],
     formats: &[exr::FORMAT.name],
     tile: None,
@@ -23,12 +23,7 @@ pub static TARGET: EngineTarget = EngineTarget {
 
 fn import(side: usize, cell: f64, levels: &Levels) -> Vec<String> {
     vec![
-        format!(
-            "Terrain > Import Maps > Heightmap: {0} x {0}, metres {1} to {2} as they are",
-            side,
-            levels.low(),
-            levels.high()
-        ),
+        format!("Terrain > Import Maps > Heightmap: {0} x {0}, metres, {1} to {2}", side, levels.low(), levels.high()),
         format!("HTerrain > Map Scale {cell}, 1, {cell}"),
         "rows grow south, which is +Z: nothing is flipped".to_string(),
     ]

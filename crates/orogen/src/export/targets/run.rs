@@ -58,7 +58,7 @@ pub fn export(
     let known: &[&str] = if layer == HEIGHT { target.formats } else { &["png"] };
     if !known.contains(&format.name) {
         let list: Vec<String> = known.iter().map(|name| format!(".{name}")).collect();
-        let message = format!("{} takes `{layer}` as {}, not as .{}", target.name, list.join(" or "), format.name);
+        let message = format!("{} imports `{layer}` as {}, not as .{}", target.name, list.join(" or "), format.name);
         return Err(Error::new(ErrorKind::Request, message));
     }
     // What may not be replaced is refused before the first tile is made.

@@ -10,7 +10,7 @@ use crate::format::levels::Levels;
 /// The target.
 pub static TARGET: EngineTarget = EngineTarget {
     name: "terrain3d",
-    about: "Terrain3D for Godot 4: EXR of f32 in metres, red, green and blue, whole regions of 1024 samples",
+    about: "Terrain3D for Godot 4: EXR of f32 in metres with channels R, G and B, whole regions of 1024 samples",
     sides: &[256, 512, 1024, 2048, 4096, 8192, 16384],
     formats: &[exr::FORMAT.name],
     tile: None,

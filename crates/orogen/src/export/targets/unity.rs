@@ -11,7 +11,7 @@ use crate::format::levels::Levels;
 /// The target.
 pub static TARGET: EngineTarget = EngineTarget {
     name: "unity",
-    about: "Unity terrains: r16 little-endian from the south, 2^n + 1 samples, tiles _x_z",
+    about: "Unity terrains: r16, little-endian, first row in the south, 2^n + 1 samples, tiles _x_z",
     sides: &[33, 65, 129, 257, 513, 1025, 2049, 4097],
     formats: &[r16::FORMAT.name],
     // Columns and rows from the south-west, as its Terrain Toolbox counts them.

@@ -11,7 +11,7 @@ use crate::format::levels::Levels;
 /// The target.
 pub static TARGET: EngineTarget = EngineTarget {
     name: "unreal",
-    about: "Unreal Engine landscapes: 16-bit PNG or r16, 32768 is 0 m, tiles _x0_y0",
+    about: "Unreal Engine landscapes: 16-bit PNG or r16 (32768 is 0 m), tiles _x0_y0",
     sides: &[127, 253, 505, 1009, 2017, 4033, 8129],
     formats: &[png::FORMAT.name, r16::FORMAT.name],
     tile: Some(|column, row, _| format!("_x{column}_y{row}")),

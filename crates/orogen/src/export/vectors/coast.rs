@@ -18,9 +18,9 @@ pub static LAYER: VectorLayer = VectorLayer {
 
 const FIELDS: &[Field] = &[
     Field { name: "id", kind: FieldType::Integer, about: "number of the line, from 1" },
-    Field { name: "elevation", kind: FieldType::Real, about: "height of the sea, m" },
+    Field { name: "elevation", kind: FieldType::Real, about: "sea level, m" },
     Field { name: "length", kind: FieldType::Real, about: "length, m" },
-    Field { name: "closed", kind: FieldType::Boolean, about: "whether the line ends where it begins" },
+    Field { name: "closed", kind: FieldType::Boolean, about: "whether the line is closed" },
 ];
 
 fn make(ground: &FeatureSource, _: &FeatureOptions) -> Result<FeatureLayer> {

@@ -20,11 +20,7 @@ pub static LAYER: VectorLayer = VectorLayer {
 
 const FIELDS: &[Field] = &[
     Field { name: "elevation", kind: FieldType::Real, about: "height, m" },
-    Field {
-        name: "index",
-        kind: FieldType::Boolean,
-        about: "whether it is an index contour: every fifth of an interval",
-    },
+    Field { name: "index", kind: FieldType::Boolean, about: "whether it is an index contour (every fifth contour)" },
 ];
 
 fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer> {

@@ -21,12 +21,12 @@ const FIELDS: &[Field] = &[
     Field { name: "id", kind: FieldType::Integer, about: "number of the lake, from 1" },
     Field { name: "level", kind: FieldType::Real, about: "height of the surface, m" },
     Field { name: "area", kind: FieldType::Real, about: "area of the surface, m^2" },
-    Field { name: "depth", kind: FieldType::Real, about: "greatest depth, m" },
+    Field { name: "depth", kind: FieldType::Real, about: "maximum depth, m" },
     Field { name: "volume", kind: FieldType::Real, about: "volume of the water, m^3" },
     Field {
         name: "outlet",
         kind: FieldType::Integer,
-        about: "id of the reach that leaves it; none if the water that leaves makes no river",
+        about: "id of the reach that leaves it; none if the outflow is too small for a river",
     },
 ];
 

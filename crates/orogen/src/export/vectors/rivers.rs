@@ -10,7 +10,7 @@ use crate::hydrography::rivers::{Mouth, Source};
 /// The layer.
 pub static LAYER: VectorLayer = VectorLayer {
     name: "rivers",
-    about: "reaches of rivers, from spring, confluence or lake to confluence, lake, sea or border",
+    about: "river reaches, from spring, confluence or lake to confluence, lake, sea or border",
     options: WATER,
     style: Style { stroke: "#3f7fb5", width: 1.0, by: Some("discharge"), fill: "none" },
     make,
@@ -21,18 +21,18 @@ const FIELDS: &[Field] = &[
     Field {
         name: "downstream",
         kind: FieldType::Integer,
-        about: "id of the reach that the water flows on in, behind a lake if the reach ends in one",
+        about: "id of the next reach downstream; if the reach ends in a lake, the reach that leaves the lake",
     },
     Field { name: "strahler", kind: FieldType::Integer, about: "Strahler order" },
-    Field { name: "drainage_area", kind: FieldType::Real, about: "area that drains to the end of the reach, m^2" },
+    Field { name: "drainage_area", kind: FieldType::Real, about: "drainage area at the end of the reach, m^2" },
     Field { name: "discharge", kind: FieldType::Real, about: "mean discharge at the end of the reach, m^3/s" },
     Field { name: "width", kind: FieldType::Real, about: "width at the end of the reach, m" },
-    Field { name: "length", kind: FieldType::Real, about: "length in the plane, m" },
+    Field { name: "length", kind: FieldType::Real, about: "horizontal length, m" },
     Field { name: "bed_start", kind: FieldType::Real, about: "height of the first point, m" },
     Field { name: "bed_end", kind: FieldType::Real, about: "height of the last point, m" },
-    Field { name: "source", kind: FieldType::Text, about: "what it begins in: land, lake or border" },
-    Field { name: "source_lake", kind: FieldType::Integer, about: "id of the lake that it leaves" },
-    Field { name: "mouth", kind: FieldType::Text, about: "what it ends in: reach, lake, sea or border" },
+    Field { name: "source", kind: FieldType::Text, about: "start of the reach: land, lake or border" },
+    Field { name: "source_lake", kind: FieldType::Integer, about: "id of the lake that it starts from" },
+    Field { name: "mouth", kind: FieldType::Text, about: "end of the reach: reach, lake, sea or border" },
     Field { name: "mouth_lake", kind: FieldType::Integer, about: "id of the lake that it ends in" },
 ];
 

@@ -22,9 +22,13 @@ const FIELDS: &[Field] = &[
     Field {
         name: "prominence",
         kind: FieldType::Real,
-        about: "metres down to the key col; of the highest, to the sea or the lowest ground",
+        about: "prominence, m: height above the key col; for the highest summit, above the sea or the lowest ground",
     },
-    Field { name: "key_col", kind: FieldType::Real, about: "height of the highest pass to higher ground, m" },
+    Field {
+        name: "key_col",
+        kind: FieldType::Real,
+        about: "height of the key col, the highest pass to higher ground, m",
+    },
 ];
 
 /// The prominence of a summit at least, as a share of the relief.

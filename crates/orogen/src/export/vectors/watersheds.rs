@@ -13,7 +13,7 @@ use crate::hydrography::watersheds::watersheds;
 /// The layer.
 pub static LAYER: VectorLayer = VectorLayer {
     name: "watersheds",
-    about: "the ground that drains to one river mouth, and what of the land lies between; they tile the land",
+    about: "watersheds: the land that drains to each river mouth, and the land between them; they cover all land without overlaps",
     options: WATER,
     style: Style { stroke: "#b0413e", width: 0.8, by: None, fill: "none" },
     make,
@@ -24,12 +24,12 @@ const FIELDS: &[Field] = &[
     Field {
         name: "river",
         kind: FieldType::Integer,
-        about: "id of the last reach of its river; none where none drains it",
+        about: "id of the last reach of its river; none if no river drains it",
     },
     Field { name: "area", kind: FieldType::Real, about: "area of its samples, m^2" },
-    Field { name: "mouth", kind: FieldType::Text, about: "what its river ends in: sea or border" },
+    Field { name: "mouth", kind: FieldType::Text, about: "end of its river: sea or border" },
     Field { name: "lowest", kind: FieldType::Real, about: "lowest height, m" },
-    Field { name: "highest", kind: FieldType::Real, about: "greatest height, m" },
+    Field { name: "highest", kind: FieldType::Real, about: "highest height, m" },
     Field { name: "mean", kind: FieldType::Real, about: "mean height, m" },
 ];
 

@@ -130,7 +130,7 @@ pub fn of_wkt(wkt: &str) -> Result<GeoKeys, String> {
     let text = format!("{ESRI_TEXT}{wkt}|");
     // A bar would end the text, and nothing but ASCII is a text of GeoTIFF.
     if wkt.contains('|') || !wkt.is_ascii() {
-        return Err("its well-known text holds letters that a coordinate system has not".into());
+        return Err("its well-known text contains invalid characters".into());
     }
     let length = text.len() as u16;
     let directory = match geographic {

@@ -46,7 +46,7 @@ impl Crs {
     pub fn from_epsg(code: u16) -> Result<Crs, String> {
         let wkt = match crs_definitions::from_code(code) {
             Some(definition) => definition.wkt,
-            None => return Err(format!("there is no coordinate reference system EPSG:{code}")),
+            None => return Err(format!("unknown coordinate reference system EPSG:{code}")),
         };
         let kind = wkt.split('[').next().unwrap_or_default();
         let unit = match kind {
@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn others_are_refused_by_name() {
         for (text, expect) in [
-            ("EPSG:1", "there is no coordinate reference system EPSG:1"),
+            ("EPSG:1", "unknown coordinate reference system EPSG:1"),
             ("EPSG:4978", "neither a projected CRS nor a geographic one"),
             ("EPSG:4807", "NTF (Paris)"),
             ("utm32", "`utm32` is not a CRS"),

@@ -40,7 +40,7 @@ impl Node {
     /// A message if it is no well-known text.
     pub fn parse(text: &str) -> Result<Node, String> {
         if text.len() > MAX_LENGTH {
-            return Err(format!("a coordinate system takes no {} bytes", text.len()));
+            return Err(format!("the definition of its coordinate system has {} bytes, which is too long", text.len()));
         }
         let mut reader = Reader { bytes: text.as_bytes(), at: 0 };
         let keyword = reader.word();
@@ -48,7 +48,7 @@ impl Node {
         reader.blanks();
         match reader.at == reader.bytes.len() {
             true => Ok(node),
-            false => Err("its well-known text goes on after its last bracket".into()),
+            false => Err("its well-known text continues after its last bracket".into()),
         }
     }
 
@@ -244,7 +244,7 @@ impl Reader<'_> {
     fn node(&mut self, keyword: String, depth: usize) -> Result<Node, String> {
         let known = !keyword.is_empty() && keyword.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
         if !known || depth > MAX_DEPTH || !self.eat(b"[(") {
-            return Err("it is no well-known text of a coordinate system".into());
+            return Err("it is not the well-known text of a coordinate system".into());
         }
         let mut values = Vec::new();
         loop {

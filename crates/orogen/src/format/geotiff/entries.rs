@@ -66,7 +66,7 @@ impl<'a> Tiff<'a> {
     pub fn bytes(&mut self, at: u64, count: u64, what: &str) -> Fallible<Vec<u8>> {
         if at.checked_add(count).is_none_or(|end| end > self.length) {
             return Err(format!(
-                "it ends within its {what}: that is said to reach byte {}, and the file has {}",
+                "it ends within its {what}, which should reach byte {}; the file has {}",
                 at.saturating_add(count),
                 self.length
             ));
@@ -95,7 +95,7 @@ impl<'a> Tiff<'a> {
         let (count_size, word) = if self.big { (8, 8) } else { (2, 4) };
         let count = self.number(at, count_size)?;
         if count > MAX_ENTRIES {
-            return Err(format!("its directory claims {count} entries; it is damaged"));
+            return Err(format!("its directory declares {count} entries; it is damaged"));
         }
         let each = 4 + 2 * word;
         let first = at + count_size;

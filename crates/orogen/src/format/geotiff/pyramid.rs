@@ -33,7 +33,9 @@ impl Pyramid {
             return refuse(format!("a GeoTIFF cannot have cells of {} m", window.cell));
         }
         if !(16..=8192).contains(&tile) || !tile.is_multiple_of(16) {
-            return refuse(format!("a GeoTIFF's tiles have 16 to 8192 samples a side, a multiple of 16, not {tile}"));
+            return refuse(format!(
+                "the tiles of a GeoTIFF must have 16 to 8192 samples per side, a multiple of 16, not {tile}"
+            ));
         }
         let description = Description { window: *window, tile, nodata: options.nodata, map: options.map.clone() };
         Ok(Pyramid { description, big: options.big, sizes: sizes(window, tile).collect() })

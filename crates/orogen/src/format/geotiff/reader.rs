@@ -27,7 +27,7 @@ pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Pla
         let tiff = &mut Tiff::open(input)?;
         let size = [side(tiff, 256, "width")?, side(tiff, 257, "height")?];
         let [width, height] = size.map(usize::try_from);
-        let (Ok(width), Ok(height)) = (width, height) else { return Err("its size is no size".to_string()) };
+        let (Ok(width), Ok(height)) = (width, height) else { return Err("its width or height is invalid".to_string()) };
         Ok(([width, height], place::find(tiff, height)?.place))
     };
     read(input).map_err(|why| refused(name, why))
@@ -86,13 +86,13 @@ fn open(input: &mut dyn Input, request: Request) -> std::result::Result<Dem, Str
         for column in 0..across {
             let k = samples.plane + row * across as usize + column as usize;
             let (Some(&at), Some(&packed)) = (blocks.offsets.get(k), blocks.lengths.get(k)) else {
-                return Err(format!("it tells of {} blocks and has more", blocks.offsets.len()));
+                return Err(format!("it declares {} blocks but has more", blocks.offsets.len()));
             };
             let lines = if blocks.tiled { blocks.height } else { rows };
             let length = full.saturating_mul(lines);
             let there = packed > 0 && at > 0;
             if there && length > packed.saturating_mul(samples.packing.max_growth()).min(largest) {
-                return Err(format!("a block of {packed} bytes is said to hold {length}: it is damaged"));
+                return Err(format!("a block of {packed} bytes should decompress to {length}; it is damaged"));
             }
             afford_beside(count, length.saturating_add(packed), request.allowed)?;
             let mut bytes = match there {
@@ -136,7 +136,7 @@ const MAX_BANDS: u64 = 4096;
 fn samples(tiff: &mut Tiff, request: Request) -> std::result::Result<Samples, String> {
     let bands = tiff.one(277)?.unwrap_or(1);
     if !(1..=MAX_BANDS).contains(&bands) {
-        return Err(format!("it has {bands} bands; 1 to {MAX_BANDS} are read"));
+        return Err(format!("it has {bands} bands; 1 to {MAX_BANDS} are supported"));
     }
     let band = request.choose(bands as usize)?;
     let all_bits = tiff.wholes(258)?.unwrap_or_else(|| vec![1]);
@@ -149,7 +149,7 @@ fn samples(tiff: &mut Tiff, request: Request) -> std::result::Result<Samples, St
         1 => Kind::Unsigned,
         2 => Kind::Signed,
         3 => Kind::Float,
-        other => return Err(format!("its samples are of the format {other}; heights are whole numbers or floats")),
+        other => return Err(format!("its sample format is {other}; only integers and floats are supported")),
     };
     let sound = match kind {
         Kind::Float => matches!(bits, 32 | 64),
@@ -160,11 +160,11 @@ fn samples(tiff: &mut Tiff, request: Request) -> std::result::Result<Samples, St
         return Err(format!("its samples have {bits} bits; {what}"));
     }
     if tiff.one(266)?.unwrap_or(1) != 1 {
-        return Err("its bytes have their lowest bit first (tag 266), which no heights have".into());
+        return Err("its fill order is lowest bit first (tag 266), which is not supported".into());
     }
     let predictor = tiff.one(317)?.unwrap_or(1);
     if !(1..=3).contains(&predictor) || predictor == 3 && kind != Kind::Float {
-        return Err(format!("it has the predictor {predictor}, which such samples cannot have"));
+        return Err(format!("its predictor {predictor} is invalid for its samples"));
     }
     let nodata = tiff.text(42113)?.and_then(|text| text.trim().parse().ok());
     let [scale, offset] = scale_and_offset(&tiff.text(42112)?.unwrap_or_default(), band);
@@ -217,7 +217,7 @@ fn blocks(tiff: &mut Tiff, [width, height]: [u64; 2]) -> std::result::Result<Blo
     };
     // Tiles are multiples of 16; 2^16 a side is far beyond any.
     if block_width == 0 || block_height == 0 || tiled && block_width.max(block_height) > 1 << 16 {
-        return Err(format!("its blocks are said to have {block_width} x {block_height} samples: it is damaged"));
+        return Err(format!("its block size of {block_width} x {block_height} samples is invalid"));
     }
     let (Some(offsets), Some(lengths)) = (offsets, lengths) else {
         return Err("its directory has no offsets of strips or tiles".into());
@@ -226,7 +226,7 @@ fn blocks(tiff: &mut Tiff, [width, height]: [u64; 2]) -> std::result::Result<Blo
     let needed = width.div_ceil(block_width).saturating_mul(height.div_ceil(block_height));
     if (offsets.len() as u64) < needed || (lengths.len() as u64) < needed {
         let there = offsets.len().min(lengths.len());
-        return Err(format!("it tells of {there} blocks, and {width} x {height} samples take {needed}"));
+        return Err(format!("it declares {there} blocks, and {width} x {height} samples need {needed}"));
     }
     Ok(Blocks { width: block_width, height: block_height, offsets, lengths, tiled })
 }

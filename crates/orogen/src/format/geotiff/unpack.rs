@@ -72,7 +72,7 @@ impl Packing {
 
 fn other(method: &str) -> String {
     format!(
-        "it is compressed with {method}; known are none, LZW, deflate, PackBits, Zstandard, LZMA and LERC: compress it again, for example with \
+        "it is compressed with {method}, which is not supported (supported: none, LZW, deflate, PackBits, Zstandard, LZMA and LERC); compress it again, for example with \
          gdal_translate -co COMPRESS=DEFLATE"
     )
 }

@@ -140,7 +140,7 @@ fn version3(folder: &Path, value: &Value) -> std::result::Result<Array, String> 
         _ => return Err(format!("its samples are of the type {}", value["data_type"])),
     };
     if value["chunk_grid"]["name"] != "regular" {
-        return Err("its chunks are not of one size".into());
+        return Err("its chunks have different sizes".into());
     }
     let (mut codecs, mut big_endian) = (Vec::new(), false);
     for codec in value["codecs"].as_array().map(Vec::as_slice).unwrap_or_default() {
@@ -188,10 +188,10 @@ fn version2(folder: &Path, value: &Value, attributes: Value) -> std::result::Res
         _ => return Err(unknown()),
     };
     if value["order"] == "F" {
-        return Err("its chunks are in Fortran's order".into());
+        return Err("its chunks are in Fortran order, which is not supported".into());
     }
     if value["filters"].as_array().is_some_and(|filters| !filters.is_empty()) {
-        return Err("its chunks went through filters, which are not supported".into());
+        return Err("its chunks use filters, which are not supported".into());
     }
     let codecs =
         match value["compressor"]["id"].as_str() {
@@ -228,11 +228,11 @@ fn check(array: Array) -> std::result::Result<Array, String> {
     }
     let bytes = chunk.iter().try_fold(*size as u64, |bytes, side| bytes.checked_mul(*side));
     if chunk.len() != shape.len() || shape.iter().any(|side| *side > MAX_SIDE) {
-        return Err("its shape and its chunks contradict each other".into());
+        return Err("its shape and its chunk shape do not match".into());
     }
     match bytes {
         Some(1..=MAX_CHUNK) => Ok(array),
-        _ => Err(format!("its chunks are said to have {chunk:?} samples")),
+        _ => Err(format!("its chunk shape {chunk:?} is invalid")),
     }
 }
 
@@ -372,7 +372,8 @@ fn find(folder: &Path) -> std::result::Result<Array, ReadFault> {
         1 => Ok(maps.swap_remove(0)),
         _ => {
             let names: Vec<String> = maps.iter().map(name).collect();
-            Err(format!("it is a Zarr group of the arrays {}: name one of their folders", names.join(", ")).into())
+            Err(format!("it is a Zarr group with the arrays {}; name the folder of one of them", names.join(", "))
+                .into())
         }
     }
 }

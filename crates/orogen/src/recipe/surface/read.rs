@@ -76,7 +76,7 @@ impl Reader {
                 let mut seen = HashSet::new();
                 for (key, _) in entries {
                     if !seen.insert(key.value.as_str()) {
-                        self.diagnostic(&key.span, format!("the key `{}` stands twice in this table", key.value));
+                        self.diagnostic(&key.span, format!("the key `{}` appears twice in this table", key.value));
                     }
                 }
                 Some(entries)
@@ -124,7 +124,7 @@ impl Reader {
             });
             if let Some((key, _)) = limits {
                 let message = format!(
-                    "the first surface lies everywhere and takes no `{}`; list the one that covers the rest first",
+                    "the first surface is everywhere and cannot have `{}`; list the base surface first",
                     key.value
                 );
                 self.diagnostic(&key.span, message);
@@ -144,7 +144,7 @@ impl Reader {
                 if let Some((key, _)) = entries.iter().find(|(key, _)| follows(&key.value)) {
                     self.diagnostic(
                         &key.span,
-                        format!("`{}` belongs to a `gradient` or a `picture`, not to one `color`", key.value),
+                        format!("`{}` applies to a `gradient` or a `picture`, not to a `color`", key.value),
                     );
                 }
                 Coloring::Plain(self.color(value).unwrap_or([128; 3]))
@@ -180,7 +180,7 @@ impl Reader {
             [_, (second, _), ..] => {
                 self.diagnostic(
                     &second.span,
-                    "a surface takes one of `color`, `gradient` and `picture`; remove the others",
+                    "a surface can have only one of `color`, `gradient` and `picture`; remove the others",
                 );
                 Coloring::Plain([128; 3])
             }
@@ -193,7 +193,8 @@ impl Reader {
             _ => None,
         };
         if color.is_none() {
-            let message = format!("a color is \"#rrggbb\" or a name such as \"khaki\", not {}", value.value.describe());
+            let message =
+                format!("a color must be \"#rrggbb\" or a name such as \"khaki\", not {}", value.value.describe());
             self.diagnostic(&value.span, message);
         }
         color
@@ -221,12 +222,15 @@ impl Reader {
         };
         match (along.as_str(), find("span"), find("grain")) {
             ("noise", Some((key, _)), _) => {
-                self.diagnostic(&key.span, "`span` belongs to `along = \"height\"`, \"slope\" or a node; noise takes `grain`, its wavelength in metres");
+                self.diagnostic(&key.span, "`span` applies to `along = \"height\"`, \"slope\" or a node; for noise use `grain`, its wavelength in metres");
                 Along::default()
             }
             ("noise", ..) => Along::Noise(grain),
             (_, _, Some((key, _))) => {
-                self.diagnostic(&key.span, "`grain` is the wavelength of noise; this gradient follows something else");
+                self.diagnostic(
+                    &key.span,
+                    "`grain` is the wavelength of noise, but this gradient does not follow noise",
+                );
                 Along::default()
             }
             (_, None, _) => {
@@ -311,10 +315,7 @@ impl Reader {
                 .collect();
         }
         if key == "flow" && !self.bounded {
-            self.diagnostic(
-                &value.span,
-                "`flow` needs a world with bounds: give the world a `size`, or leave `flow` out",
-            );
+            self.diagnostic(&value.span, "`flow` needs a bounded world; set `size` in `world`, or remove `flow`");
         }
         let (of, bounds) = match key {
             "height" => (Quantity::Height, HEIGHTS),
@@ -350,7 +351,10 @@ impl Reader {
             }
         }
         if condition.min.zip(condition.max).is_some_and(|(min, max)| min > max) {
-            self.diagnostic(&value.span, format!("the lower end of `{key}` must not be above its upper end"));
+            self.diagnostic(
+                &value.span,
+                format!("the lower bound of `{key}` must not be greater than its upper bound"),
+            );
             condition.max = condition.min;
         }
         if condition.min.is_none() && condition.max.is_none() {

@@ -10,30 +10,30 @@ pub fn list() -> Json {
     let name = json!({ "type": "string", "pattern": "^[A-Za-z0-9_-]{1,64}$" });
     let mut properties = conditions();
     let own = json!({
-        "name": { "description": "Name of the surface and of its weight map. Surfaces of one name share a weight map.", "allOf": [name] },
+        "name": { "description": "Name of the surface and of its weight map. Surfaces with the same name share a weight map.", "allOf": [name] },
         "color": color,
         "gradient": {
             "type": "array", "minItems": 2, "maxItems": MAX_COLORS, "items": color,
-            "description": "Colors, mixed in Oklab along noise, the height, the slope or a layer.",
+            "description": "Colors of a gradient over noise, height, slope or a layer, mixed in Oklab.",
         },
         "picture": {
             "type": "string",
-            "description": "Path of a .png, such as a satellite picture: its colors are used as often as they occur in it.",
+            "description": "Path of a .png, such as a satellite picture. Its colors are used in proportion to their frequency in the picture.",
         },
-        "along": { "type": "string", "default": "noise", "description": "What a gradient follows: noise, height, slope, or a node's name." },
+        "along": { "type": "string", "default": "noise", "description": "Quantity of the gradient: `noise`, `height`, `slope` or the name of a node." },
         "span": {
             "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "number" },
-            "description": "Values of the first and the last color, in the unit of what the gradient follows.",
+            "description": "Values of the first and the last color, in the unit of the gradient's quantity.",
         },
-        "grain": { "type": "number", "minimum": 1e-3, "maximum": 1e9, "default": DEFAULT_GRAIN, "description": "Wavelength of the noise that the gradient follows. Unit: m." },
+        "grain": { "type": "number", "minimum": 1e-3, "maximum": 1e9, "default": DEFAULT_GRAIN, "description": "Wavelength of the gradient's noise. Unit: m." },
         "roughness": { "type": "number", "minimum": 0, "maximum": 1, "default": DEFAULT_ROUGHNESS, "description": "0 is a mirror, 1 is matt." },
-        "opacity": { "type": "number", "minimum": 0, "maximum": 1, "default": 1, "description": "Greatest share of the surface." },
+        "opacity": { "type": "number", "minimum": 0, "maximum": 1, "default": 1, "description": "Maximum share of the surface." },
         "any": {
             "type": "array", "minItems": 1, "maxItems": MAX_ALTERNATIVES,
             "items": { "type": "object", "additionalProperties": false, "minProperties": 1, "properties": conditions() },
-            "description": "Alternatives: the one that holds best counts.",
+            "description": "Alternatives: the largest share of them is used.",
         },
-        "mask": { "description": "A node, a layer or a number that the share is multiplied with.", "allOf": [{ "$ref": "#/definitions/input" }] },
+        "mask": { "description": "A node, a layer or a number that multiplies the share.", "allOf": [{ "$ref": "#/definitions/input" }] },
     });
     if let (Some(all), Some(own)) = (properties.as_object_mut(), own.as_object()) {
         all.extend(own.clone());
@@ -41,7 +41,7 @@ pub fn list() -> Json {
     json!({
         "type": "array",
         "maxItems": MAX_SURFACES,
-        "description": "What covers the ground, bottom to top: each surface covers those before it where its conditions hold; the first lies everywhere.",
+        "description": "Surfaces that cover the ground, from bottom to top. Each covers those before it where its conditions hold; the first one is everywhere.",
         "items": {
             "type": "object",
             "required": ["name"],
@@ -57,9 +57,9 @@ fn conditions() -> Json {
         let number = json!({ "type": "number" });
         let pair = json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": number });
         let mut properties = json!({
-            "min": { "type": "number", "description": "Lower end." },
-            "max": { "type": "number", "description": "Upper end." },
-            "fade": { "anyOf": [number, pair], "description": "How far outside the range the share falls to 0: one number, or [below, above]." },
+            "min": { "type": "number", "description": "Lower bound." },
+            "max": { "type": "number", "description": "Upper bound." },
+            "fade": { "anyOf": [number, pair], "description": "Width of the transition outside the range: one number, or [below, above]." },
         });
         if let (Some(all), Some(more)) = (properties.as_object_mut(), more.as_object()) {
             all.extend(more.clone());
@@ -72,12 +72,12 @@ fn conditions() -> Json {
         "octaves": { "type": "integer", "minimum": 1, "maximum": 32, "default": 4 },
         "seed": { "type": "integer", "minimum": 0, "default": 0, "description": "Hashed with the world's seed." },
     });
-    let scale = json!({ "scale": { "type": "number", "minimum": 0, "maximum": 1e6, "default": 50, "description": "Metres between the heights it is taken from." } });
+    let scale = json!({ "scale": { "type": "number", "minimum": 0, "maximum": 1e6, "default": 50, "description": "Distance between the heights that the curvature is computed from. Unit: m." } });
     json!({
         "height": range("Height above the sea. Unit: m.", json!({})),
         "slope": range("Slope. Unit: degrees.", json!({})),
         "curvature": range("Total curvature, positive where the ground is convex. Unit: 1/m.", scale),
-        "flow": range("Drainage area; its fade is in powers of ten. Unit: m^2.", json!({})),
+        "flow": range("Drainage area. `fade` is in powers of ten. Unit: m^2.", json!({})),
         "noise": range("Fractal noise, -1 to 1.", noise),
         "layers": {
             "type": "object",

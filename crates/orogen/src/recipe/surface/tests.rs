@@ -57,10 +57,10 @@ fn surfaces_read_back_as_they_were_written() {
 #[test]
 fn faults_stand_at_their_keys() {
     for (from, to, column, expect) in [
-        ("\"#4d5a2a\"", "\"#4d5\"\nslope = [0, 5]", "slope", "the first surface lies everywhere and takes no `slope`"),
+        ("\"#4d5a2a\"", "\"#4d5\"\nslope = [0, 5]", "slope", "the first surface is everywhere and cannot have `slope`"),
         ("name = \"rock\"", "name = \"r k\"", "\"r k\"", "`name` must be 1 to 64 letters"),
         ("name = \"rock\"\n", "", "[[surface]]", "a surface needs a `name`"),
-        ("\"gray80\"", "\"gray180\"", "\"gray180\"", "a color is \"#rrggbb\" or a name"),
+        ("\"gray80\"", "\"gray180\"", "\"gray180\"", "a color must be \"#rrggbb\" or a name"),
         ("span = [0, 1000]", "span = [3, 3]", "[3, 3]", "two different numbers"),
         ("span = [0, 1000]\n", "", "along", "needs `span = [FROM, TO]`"),
         ("opacity = 0.9", "opacity = 1.9", "1.9", "`opacity` must be a number from 0.0 to 1.0"),
