@@ -46,7 +46,7 @@ pub struct Args {
     #[arg(long, value_name = "YR", allow_negative_numbers = true)]
     years: Option<f64>,
     /// Compute every frame from the whole recipe. By default, frames of a node `stream-power` that another one follows are made at twice the cell size,
-    /// and their finest detail comes from the last frame, which is several times faster
+    /// and their finest detail comes from the frame at the end of that node, which is several times faster
     #[arg(long)]
     exact: bool,
     /// Duration of each frame, in milliseconds

@@ -85,10 +85,8 @@ impl<'w> Growth<'w> {
             }
         }
         if stages.is_empty() {
-            let message = format!(
-                "nothing grows in the layer `{layer}`: it reads no node with op = \"stream-power\", which lifts land and cuts \
-                 rivers into it"
-            );
+            let message =
+                format!("the layer `{layer}` reads no node with op = \"stream-power\", whose steps `grow` draws");
             return Err(Error::new(ErrorKind::Request, message));
         }
         // Labels and flows cannot be mixed as heights are.
