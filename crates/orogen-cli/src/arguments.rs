@@ -8,7 +8,7 @@ use clap::Args;
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "World and window")]
 pub struct Arguments {
-    /// Value of one of the recipe's parameters, instead of its default; may be given several times. `orogen explain RECIPE` lists them
+    /// Value of a parameter of the recipe, instead of its default; can be given several times. `orogen explain RECIPE` lists the parameters
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     set: Vec<Assignment>,
 }
@@ -35,12 +35,12 @@ impl FromStr for Assignment {
 
     fn from_str(text: &str) -> Result<Assignment, String> {
         let Some((name, value)) = text.split_once('=') else {
-            return Err("a parameter is set by its name and a number, such as relief=1500".into());
+            return Err("a parameter must be set as a name and a number, such as relief=1500".into());
         };
         let (name, value) = (name.trim(), value.trim());
         match value.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(Assignment(name.to_string(), number)),
-            _ => Err(format!("the value of `{name}` is a number, such as {name}=1500")),
+            _ => Err(format!("the value of `{name}` must be a number, such as {name}=1500")),
         }
     }
 }
@@ -54,11 +54,11 @@ mod tests {
         for (text, expect) in [
             ("relief=1500", Ok(("relief", 1500.0))),
             ("a = -2.5e3", Ok(("a", -2500.0))),
-            ("relief", Err("by its name and a number")),
-            ("relief=", Err("is a number")),
-            ("relief=high", Err("is a number")),
-            ("relief=nan", Err("is a number")),
-            ("relief=inf", Err("is a number")),
+            ("relief", Err("as a name and a number")),
+            ("relief=", Err("must be a number")),
+            ("relief=high", Err("must be a number")),
+            ("relief=nan", Err("must be a number")),
+            ("relief=inf", Err("must be a number")),
         ] {
             match (text.parse::<Assignment>(), expect) {
                 (Ok(Assignment(name, value)), Ok(expect)) => assert_eq!((name.as_str(), value), expect, "{text}"),

@@ -175,7 +175,7 @@ fn what_is_wrong_is_told_where_it_is_wrong() {
         ("", "op = \"expr\"\nexpr = \"smothstep(0, 1, a)\"", 9, 9, 9, "did you mean `smoothstep`?"),
         ("", "op = \"expr\"\nexpr = \"\"\"\na +\n  sin(1, 2)\"\"\"", 11, 3, 3, "takes 1 argument"),
         ("", "op = \"expr\"\nexpr = \"a + \\u00e9\"", 9, 8, 12, "means nothing"),
-        ("", "op = \"expr\"\nexpr = \"a + b\"", 9, 13, 1, "there is no node `b`"),
+        ("", "op = \"expr\"\nexpr = \"a + b\"", 9, 13, 1, "unknown node `b`"),
         ("", "op = \"expr\"\nexpr = \"a\"\nb = 3", 10, 1, 1, "unknown key `b`"),
         ("", "op = \"expr\"\nexpr = 3", 9, 8, 1, "an expression in quotes"),
         ("", "op = \"expr\"", 7, 8, 1, "the expression is empty"),

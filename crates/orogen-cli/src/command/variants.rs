@@ -19,37 +19,37 @@ use crate::size::seed;
 use crate::source::{Source, title};
 use crate::{finite, interrupt};
 
-/// What it takes.
+/// Arguments of the command.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A recipe's file, or the name of a preset
+    /// A recipe file, or the name of a preset
     #[arg(default_value = orogen::recipe::presets::DEFAULT)]
     recipe: PathBuf,
-    /// Show so many seeds, from the recipe's (or --seed) on [default: 9]
+    /// Number of seeds to show, starting with the recipe's seed or --seed [default: 9]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64), conflicts_with = "sweep")]
     seeds: Option<u8>,
     /// Show N values of a parameter, evenly spaced from A to B, such as relief=200..2000:9
     #[arg(long, value_name = "NAME=A..B:N", allow_hyphen_values = true)]
     sweep: Option<Sweep>,
-    /// The first seed, or the seed of all, instead of the recipe's
+    /// The first seed, or with --sweep the seed of all pictures [default: the recipe's]
     #[arg(long, value_name = "N", value_parser = seed, allow_negative_numbers = true)]
     seed: Option<u64>,
     #[command(flatten)]
     arguments: Arguments,
-    /// Picture to write, a .png
+    /// Picture to write (.png)
     #[arg(short, long, value_name = "FILE", default_value = "variants.png")]
     out: PathBuf,
-    /// Samples of the longer side of each picture
+    /// Samples along the longer side of each picture
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(64..=2048), default_value = "320", allow_negative_numbers = true)]
     size: u16,
-    /// Pictures in a row [default: about as many as there are rows]
+    /// Pictures per row [default: about the number of rows]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
     columns: Option<u8>,
     #[command(flatten)]
     replace: Replace,
     #[command(flatten)]
     limits: Limits,
-    /// Leave out the progress and the closing words
+    /// Print no progress and no summary
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
 }
@@ -81,7 +81,7 @@ impl FromStr for Sweep {
         };
         match parts() {
             Some((name, ends, count)) if !name.is_empty() && (2..=64).contains(&count) => Ok(Sweep { name, ends, count }),
-            _ => Err("a sweep is a parameter with its first and last value and how many, 2 to 64, such as relief=200..2000:9".into()),
+            _ => Err("a sweep must be a parameter with its first and last value and a number of values from 2 to 64, such as relief=200..2000:9".into()),
         }
     }
 }
@@ -106,7 +106,7 @@ struct Asked {
 /// Draws the sheet.
 pub fn run(args: &Args) -> Result<(), Failure> {
     if !is_stdout(&args.out) && Format::of(&args.out, Format::ALL).map_err(Failure::Usage)? != Format::Png {
-        return Err(Failure::Usage("the sheet is a picture; name a file that ends in .png".into()));
+        return Err(Failure::Usage("the sheet is written as PNG; use the extension .png".into()));
     }
     let source = Source::find(&args.recipe)?;
     if let Source::Dem(path) = &source {

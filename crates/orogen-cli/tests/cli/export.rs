@@ -147,7 +147,7 @@ fn a_sidecar_takes_nobodys_place() {
 #[test]
 fn labels_and_masks_keep_their_numbers() {
     let folder = Folder::new();
-    let text = crate::harness::SMALL.replace("[outputs]", "[nodes.rain]\nop = \"drainage\"\nsource = \"land\"\n[nodes.steep]\n\
+    let text = SMALL.replace("[outputs]", "[nodes.rain]\nop = \"drainage\"\nsource = \"land\"\n[nodes.steep]\n\
         op = \"select-slope\"\nsource = \"land\"\nrange = [10, 90]\n[outputs]\nsteep = \"steep\"\nwatershed = \"rain.watershed\"");
     folder.write("rivers.toml", text);
     for layer in ["steep", "watershed"] {

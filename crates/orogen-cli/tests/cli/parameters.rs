@@ -60,7 +60,7 @@ fn variants_on_one_sheet() {
     folder.bad(&["variants", "a.toml", "--sweep", "relief=100..9000:6"], 1, "from 1 to 1000");
     folder.bad(&["variants", "a.toml", "--sweep", "relief=100"], 2, "relief=200..2000:9");
     folder.bad(&["variants", "a.toml", "--seeds", "4", "--sweep", "relief=1..9:3"], 2, "cannot be used with");
-    folder.bad(&["variants", "a.toml", "-o", "a.tif"], 2, "known are");
+    folder.bad(&["variants", "a.toml", "-o", "a.tif"], 2, "known extensions");
 }
 
 #[test]
@@ -84,6 +84,6 @@ fn values_change_what_is_made() {
         1,
         "`relief` must be a finite number from 1 to 1000 (m), not 5000",
     );
-    folder.bad(&["explain", "a.toml", "--set", "relief"], 2, "by its name and a number");
+    folder.bad(&["explain", "a.toml", "--set", "relief"], 2, "as a name and a number");
     folder.bad(&["explain", "a.toml", "--set", "relief=high"], 2, "is a number");
 }

@@ -1,4 +1,4 @@
-//! Arithmetic in a line of text.
+//! Arithmetic expressions.
 
 use crate::declare::{Input, set_named};
 use crate::expression::term::{Expression, Term};
@@ -7,15 +7,15 @@ use crate::op::Field;
 op! {
     /// The value of an expression, such as "a * smoothstep(0, 1, b) + height^0.5".
     ///
-    /// A name in it is an input: a key of the node of that name says what it reads, and without one it is the parameter or else the node (or
-    /// `node.layer`) of that name. Operators, from loose to tight: `< <= > >= == !=` (1 where they hold, else 0), `+ -`, `* / %` (`%` is the remainder of
-    /// a division rounded down), a sign, and `^` (from the right). `pi` and `tau` are numbers. The functions are
-    /// `min max clamp mix lerp smoothstep step smin smax abs sign floor ceil round fract sqrt exp log log2 log10 pow sin cos tan asin acos atan atan2 tanh hypot`;
-    /// angles are radians.
+    /// Each name in the expression is an input. If the node has a key of that name, the key's value is the input; otherwise the input is
+    /// the parameter, the node or the layer (`node.layer`) of that name. Operators, from lowest to highest precedence: `< <= > >= == !=` (1
+    /// if true, else 0), `+ -`, `* / %` (`%` is the remainder of floored division), unary sign, and `^` (right-associative). `pi` and `tau`
+    /// are constants. Functions: `min max clamp mix lerp smoothstep step smin smax abs sign floor ceil round fract sqrt exp log log2 log10
+    /// pow sin cos tan asin acos atan atan2 tanh hypot`; angles are in radians.
     ///
-    /// An expression is made of the same instructions as the ops `add`, `multiply`, `mix`, `min`, `max` and `clamp`: the same bits in the same time.
-    /// Powers with the exponents 0.5, 2, 3 and 4 are roots and products. Numbers are f32; a division by 0 is infinite, the root of a negative number
-    /// is no number.
+    /// Expressions compile to the same instructions as the ops `add`, `multiply`, `mix`, `min`, `max` and `clamp`, with the same bits and
+    /// the same cost. Powers with the exponents 0.5, 2, 3 and 4 are computed as roots and products. Values are f32; a division by 0 is
+    /// infinite, and the root of a negative number is NaN.
     pub struct Expr = "expr", field, revision 1;
     inputs of expr;
     params {
@@ -24,7 +24,7 @@ op! {
     }
     check |op| match (op.expr.fault(), op.inputs.iter().find(|(name, _)| !op.expr.names().contains(name))) {
         (Some(fault), _) => Err(("expr", fault.message.clone())),
-        (None, Some((name, _))) => Err(("expr", format!("`{name}` is given, but the expression does not name it"))),
+        (None, Some((name, _))) => Err(("expr", format!("`{name}` is set, but the expression does not use it"))),
         (None, None) => Ok(()),
     };
 }

@@ -1,16 +1,16 @@
-//! Where a recipe that is used by another reads what it is given.
+//! Inputs of a recipe that another recipe uses.
 
 use crate::expression::term::Term;
 use crate::op::Field;
 
 op! {
-    /// An input of the recipe: its source, or what a recipe that uses this one gives.
+    /// An input of the recipe: its source, or the node that another recipe passes in with `[use.NAME]`.
     ///
-    /// A recipe with `[use.NAME]` and `inputs = { this = "hills" }` has its node `hills` in place of the source of the node `this`. It computes nothing: reading it is reading
-    /// its source.
+    /// If a recipe has `[use.NAME]` with `inputs = { this = "hills" }`, its node `hills` replaces the source of the node `this`. The op
+    /// computes nothing: reading it is reading its source.
     pub struct GraphInput = "input", field, revision 1;
     inputs {
-        /// What it is where nothing is given; without it, 0.
+        /// Value of the input if nothing is passed in. Default: 0.
         source: optional,
     }
 }
