@@ -26,7 +26,7 @@ pub mod open_simplex2;
 pub mod perlin;
 pub mod ping_pong;
 pub mod positions;
-mod powers;
+pub mod powers;
 pub mod radial;
 pub mod ramp;
 pub mod remap;
