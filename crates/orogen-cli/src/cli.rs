@@ -11,7 +11,7 @@ use crate::command::{
 };
 use crate::failure::Failure;
 
-/// Procedural terrain generator: makes terrain from recipes.
+/// Procedural terrain from recipes.
 ///
 /// `orogen generate` makes the default preset in the folder `out`. `orogen presets` lists the other presets, and `orogen new NAME` writes a
 /// recipe to edit.
@@ -20,7 +20,7 @@ use crate::failure::Failure;
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// How progress is shown; `auto` shows a bar on a terminal and nothing elsewhere
+    /// How progress is shown
     #[arg(long, global = true, value_name = "HOW", default_value = "auto")]
     progress: Mode,
 }
