@@ -28,7 +28,7 @@ Builds `orogen` for release, installs what is missing and runs every client, or 
             aarch64-unknown-linux-gnu and wasm32-unknown-unknown
   neon      the tests of every SIMD level, built for ARM, in QEMU: the bits of NEON are the committed ones
   presets   every preset against golden/presets.txt, on one thread and two, at every SIMD level of this machine
-  wasm      the libraries built for WebAssembly, without threads; every preset under node, with vectors and without
+  wasm      the libraries built for WebAssembly, without threads; every preset under node
   asan      the tests of the SIMD levels under AddressSanitizer: no kernel reads or writes beside its slices
   numpy     NumPy reads .npy: the numbers of summary.json, and which way is east
   pillow    Pillow reads the pictures: what a grey value stands for, what is sea; animations

@@ -1,4 +1,4 @@
-//! The libraries built for WebAssembly without a system, and every preset made by them under node: the golden bits with vectors and without.
+//! The libraries built for WebAssembly without a system, and every preset made by them under node: the golden bits.
 
 use super::install;
 use crate::failure::{Failure, Result};
@@ -22,7 +22,7 @@ pub fn install() -> Result {
     })
 }
 
-/// Builds without threads, with vectors, and makes every preset at both levels.
+/// Builds without threads, with 128-bit vectors, and makes every preset.
 pub fn check() -> Result {
     let folder = super::folder().join("wasm");
     let mut build =
@@ -40,7 +40,7 @@ pub fn check() -> Result {
     run.arg(shell::root().join("xtask/clients/run_wasm.mjs")).arg(module);
     match run.status().map_err(|cause| Failure::new(format!("cannot run node: {cause}")))?.code() {
         Some(0) => {
-            println!("    every preset at the levels simd128 and scalar: all as in golden/presets.txt");
+            println!("    every preset at the level simd128: all as in golden/presets.txt");
             Ok(())
         }
         Some(number @ 1..=200) => Err(Failure::new(format!("preset number {number} differs from golden/presets.txt"))),

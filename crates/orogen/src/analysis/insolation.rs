@@ -9,6 +9,7 @@ use super::slope::gradients_between;
 use super::sun::Moment;
 use crate::error::Result;
 use crate::grid::Grid;
+use crate::progress::Progress;
 
 /// When and where the sun shines.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,9 +21,6 @@ pub struct Period {
     /// The longest step through a day, in hours.
     pub step: f64,
 }
-
-/// Asks whether the work is still wanted; fails if it is not.
-pub type Check<'a> = &'a (dyn Fn() -> Result<()> + Sync);
 
 /// Days that one stands for at most.
 const DAYS: usize = 30;
@@ -66,8 +64,8 @@ impl Period {
 /// sample beside the heights. Costs O(samples) a sun.
 ///
 /// # Errors
-/// As `check` does, which is asked again and again whether the work is still wanted.
-pub fn insolation(heights: &Grid, period: &Period, sky: &ClearSky, check: Check) -> Result<Grid> {
+/// If `progress` is cancelled.
+pub fn insolation(heights: &Grid, period: &Period, sky: &ClearSky, progress: &Progress) -> Result<Grid> {
     let window = *heights.window();
     let mut out = Grid::filled(window, 0.0f32);
     if window.is_empty() {
@@ -81,9 +79,18 @@ pub fn insolation(heights: &Grid, period: &Period, sky: &ClearSky, check: Check)
     let ends = if ends[0] <= ends[1] { ends.map(f64::from) } else { [0.0, 0.0] };
     let beyond = Halo::default();
     let shadows = Shadows::new(heights.data(), window.width, window.cell);
-    for suns in period.suns(sky, ends).chunks(AT_ONCE) {
-        check()?;
-        let lit: Vec<Vec<bool>> = suns.par_iter().map(|(sun, _)| shadows.lit(sun.towards)).collect();
+    let suns = period.suns(sky, ends);
+    // Shadows take about as long as the light.
+    progress.expect(2.0 * suns.len() as f64);
+    for suns in suns.chunks(AT_ONCE) {
+        let lit = suns.par_iter().map(|(sun, _)| {
+            progress.check()?;
+            let lit = shadows.lit(sun.towards);
+            progress.advance(1.0);
+            Ok(lit)
+        });
+        let lit: Vec<Vec<bool>> = lit.collect::<Result<_>>()?;
+        progress.check()?;
         out.data_mut().par_chunks_mut(window.width).enumerate().for_each_init(Vec::new, |wide, (j, row)| {
             gradients_between(beyond.rows(heights, j, wide), window.cell, |i, gradient| {
                 let facet = Facet::new(f64::from(gradient.east), -f64::from(gradient.north));
@@ -93,6 +100,7 @@ pub fn insolation(heights: &Grid, period: &Period, sky: &ClearSky, check: Check)
                 row[i] += (suns.iter().zip(&lit).map(of).sum::<f64>() * 1e-3) as f32;
             });
         });
+        progress.advance(suns.len() as f64);
     }
     Ok(out)
 }
@@ -107,7 +115,7 @@ mod tests {
     fn made(period: &Period, f: impl Fn(usize, usize) -> f32) -> Grid {
         let data = (0..40 * 40).map(|k| f(k % 40, k / 40)).collect();
         let heights = Grid::from_data(Window::new(40, 40, 30.0), data).unwrap();
-        insolation(&heights, period, &SKY, &|| Ok(())).unwrap()
+        insolation(&heights, period, &SKY, &Progress::none()).unwrap()
     }
 
     #[test]

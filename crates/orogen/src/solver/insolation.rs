@@ -46,7 +46,7 @@ impl Solver for Insolation {
         let heights = sources.whole(0, sources.padded())?;
         let period = Period { latitude: self.latitude, days: self.days.map(|day| day.round() as u16), step: self.step };
         let sky = ClearSky { turbidity: self.turbidity, albedo: self.albedo };
-        let energy = insolation(&heights, &period, &sky, &|| context.progress.check())?;
+        let energy = insolation(&heights, &period, &sky, context.progress)?;
         drop(heights);
         Ok(Solution { layers: vec![sources.keep(energy)?], scalars: Vec::new() })
     }
