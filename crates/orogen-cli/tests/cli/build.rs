@@ -62,7 +62,7 @@ fn what_is_built_and_what_is_said() {
         folder.bad(
             &arguments(name, asked, &["-q", "--resume", "--seed", "99"]),
             1,
-            "it was begun from another recipe or seed",
+            "it was started from another recipe or seed",
         );
     }
     folder.good(&["export", "small.toml", "--cell", "0.7", "-o", "b.tif"]);

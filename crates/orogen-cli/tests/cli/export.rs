@@ -35,7 +35,7 @@ fn a_file_of_heights_is_a_recipe() {
     assert!((0..20).all(|j| (0..20).all(|i| part.get(i, j) == all.get(i + 10, j + 5))));
     std::fs::write(folder.path("cut.tif"), &folder.read("a.tif")[..900]).unwrap();
     folder.bad(&["generate", "cut.tif"], 1, "cannot read cut.tif: it ends within its");
-    folder.bad(&["generate", "a.tif", "--watch"], 2, "a.tif holds heights");
+    folder.bad(&["generate", "a.tif", "--watch"], 2, "a.tif is a file of heights");
     folder.bad(&["generate", "gone.tif"], 1, "cannot read gone.tif: no such file");
     // A height picture with the summary beside it.
     folder.good(&["generate", "small.toml", "-o", "made", "-q"]);
@@ -223,7 +223,7 @@ fn layers_that_follow_from_the_heights() {
     }
     folder.bad(&["export", "small.toml", "-o", "c.png", "--layer", "slop"], 2, "did you mean `slope`");
     folder.bad(&["export", "small.toml", "-o", "c.tif", "--layer", "normal"], 2, "formats for it: exr, npy, png");
-    folder.bad(&["export", "small.toml", "-o", "c.png", "--normal", "opengl"], 2, "--normal is for the layer `normal`");
+    folder.bad(&["export", "small.toml", "-o", "c.png", "--normal", "opengl"], 2, "--normal applies to the layer `normal`");
     folder.bad(&["export", "small.toml", "-o", "-", "--format", "png", "--layer", "splat"], 2, "name a file with -o");
 }
 
@@ -327,7 +327,7 @@ fn engines_get_what_they_ask_for() {
 
     for (options, code, expect) in [
         (&["-o", "x.png", "--target", "unreal", "--size", "1024"][..], 2, "the nearest is 1009"),
-        (&["-o", "x.tif", "--target", "unreal"], 2, "unreal takes `height` as .png or .r16, not as .tif"),
+        (&["-o", "x.tif", "--target", "unreal"], 2, "unreal imports `height` as .png or .r16, not as .tif"),
         (&["-o", "x.r16", "--target", "unity", "--first-row", "north"], 2, "sets --first-row itself"),
         (&["-o", "x.exr", "--target", "terrain3d", "--tiles", "2x2"], 2, "leave out --tiles"),
         (&["-o", "x.r16", "--target", "unity", "--size", "4097", "--cell", "10"], 2, "not inside the world"),
@@ -403,7 +403,7 @@ fn what_cannot_be_asked_for_is_usage() {
         (&["-o", "a.qqqqqq"], "known extensions: ."),
         (&["-o", "a.tig"], "did you mean .tif?"),
         (&["-o", "a"], "no file extension"),
-        (&["-o", "a.png", "--format", "npy"], "contradict"),
+        (&["-o", "a.png", "--format", "npy"], "does not match the extension"),
         (&["-o", "a.npy", "--format", "bmp"], "invalid value"),
         (&["-o", "a.npy", "--bits", "8"], "--bits does not apply to the format npy; it applies to: .pgm and .png"),
         (&["-o", "a.png", "--bits", "12"], "`12` is not a value for --bits: it must be 8 or 16"),
@@ -539,7 +539,7 @@ fn what_a_layer_cannot_do_is_a_sentence() {
         ("small.toml", &["--layer", "viewshed"], "the layer viewshed needs --observer X,Y"),
         ("small.toml", &["--layer", "viewshed", "--observer", "9e9,0"], "is outside the world"),
         ("small.toml", &["--layer", "insolation", "--day", "366"], "a whole number from 1 to 365"),
-        ("small.toml", &["--layer", "insolation", "--day", "5", "--season", "winter"], "does not match the extension"),
+        ("small.toml", &["--layer", "insolation", "--day", "5", "--season", "winter"], "--day and --season exclude each other"),
         ("endless.toml", &["--layer", "wetness"], "the layer wetness needs a world with bounds"),
     ] {
         let mut arguments = vec!["export", recipe, "-o", "x.npy"];

@@ -206,7 +206,7 @@ fn tileable_animations_blocks_slopes_and_materials_close() {
     // A block of 20 slices holds one wavelength of 20 along its depth.
     let outcome =
         folder.good(&[&["noise", "perlin", "--volume", "20", "--z", "3", "-o", "a.npy"], &options[..]].concat());
-    assert!(outcome.err.ends_with("times; through the slices it is 20, so that 1 fit\n"), "{}", outcome.err);
+    assert!(outcome.err.ends_with("wavelength 16; through the slices it is 20, so that 1 fit\n"), "{}", outcome.err);
     let (values, _) = array(&folder.read("a.npy"), 48 * 48 * 20);
     let tiled = Fractal { wavelength: 16.0, octaves: 1, ..Fractal::default() }.tiled([3, 3, 1]).unwrap();
     for k in (0..values.len()).step_by(97) {
@@ -301,7 +301,7 @@ fn what_cannot_be_drawn_is_a_sentence_and_leaves_nothing() {
         ),
         (&["perlin", "--tileable", "--octaves", "32"], 2, "--tileable: octave"),
         (&["perlin", "--tileable", "--wavelength", "1e-300"], 2, "--tileable: octave 0 would have to repeat after"),
-        (&["worley", "--gradient"], 2, "the slope of worley is not worked out"),
+        (&["worley", "--gradient"], 2, "the slope of worley is not implemented"),
         (&["perlin", "--fractal", "weighted", "--k", "-1"], 2, "0 or greater"),
         (&["perlin", "--fractal", "rigded"], 2, "ridged"),
         (&["perlin", "--z", "deep"], 2, "must be a number"),

@@ -79,7 +79,7 @@ fn completions_for_every_shell() {
 fn the_layers_in_the_help_hang_below_each_other() {
     let help = Folder::new().good(&["export", "--help"]).text().to_string();
     let (_, layers) = help.split_once("Layers derived from the heights:\n").unwrap();
-    let column = layers.lines().next().unwrap().find("steepness").unwrap();
+    let column = layers.lines().next().unwrap().find("slope in degrees").unwrap();
     assert!(layers.lines().count() > 30, "{layers}");
     for line in layers.lines() {
         assert!(line.chars().count() <= 80 && line.is_char_boundary(column), "{line}");
@@ -107,7 +107,7 @@ fn names_that_are_nothing_are_answered() {
         let check = |name, code, expect: &str| folder.bad(&[command, &[name]].concat(), code, expect);
         check("alpin", 2, "did you mean `alpine`?");
         check("zzz", 2, "available presets: alpine, ");
-        check("small", 2, "there is small.toml");
+        check("small", 2, "did you mean `small.toml`?");
         check("missing.toml", 1, "cannot read the recipe missing.toml: no such file or directory");
         check(".", 1, "it is a folder");
         check("", 2, "a value is required");

@@ -85,5 +85,5 @@ fn values_change_what_is_made() {
         "`relief` must be a finite number from 1 to 1000 (m), not 5000",
     );
     folder.bad(&["explain", "a.toml", "--set", "relief"], 2, "as a name and a number");
-    folder.bad(&["explain", "a.toml", "--set", "relief=high"], 2, "is a number");
+    folder.bad(&["explain", "a.toml", "--set", "relief=high"], 2, "must be a number");
 }

@@ -19,7 +19,7 @@ fn export_in_a_size_of_its_own() {
     folder.bad(
         &["export", "small.toml", "-o", "c.png", "--size", "33x65", "--target", "unity"],
         2,
-        "unity takes squares",
+        "unity only takes square terrains",
     );
     // Numbers are rounded for people.
     let told = folder.good(&["export", "small.toml", "-o", "d.npy", "--size", "3"]).text().to_string();
@@ -95,7 +95,7 @@ fn a_world_on_a_map_carries_its_coordinates() {
     folder.good(&["export", "made/recipe.toml", "-q", "-o", "f.tif", "--cell", "10"]);
     assert!(folder.read("f.tif") == folder.read("a.tif"));
     for (recipe, options, code, expect) in [
-        ("a.tif", &["--bounds", "11,46,12,47"][..], 2, "reaches over 600000,5199520,600640,5200000 in EPSG:32632"),
+        ("a.tif", &["--bounds", "11,46,12,47"][..], 2, "extends over 600000,5199520,600640,5200000 in EPSG:32632"),
         ("a.tif", &["--crs", "EPSG:32633"], 1, "the file of heights is in EPSG:32632, and `crs` is EPSG:32633"),
         ("a.tif", &["--crs", "EPSG:32632", "--origin", "1,2"], 1, "leave out `origin`"),
         ("small.toml", &["--crs", "EPSG:32632"], 1, "give `origin`"),

@@ -49,14 +49,14 @@ fn what_cannot_be_is_refused() {
     let folder = Folder::new();
     for (args, expect) in [
         (&["-o", "x.tif", "--layer", "rivers"][..], "consists of vector features, which .tif cannot hold"),
-        (&["-o", "x.tif", "--layer", "rivers,lakes"], "those that do: .fgb, .geojson, .gpkg, .svg"),
+        (&["-o", "x.tif", "--layer", "rivers,lakes"], "formats that can: .fgb, .geojson, .gpkg, .svg"),
         (&["-o", "x.fgb", "--layer", "rivers,lakes"], "holds one layer"),
         (&["-o", "x.gpkg", "--layer", "rivers,puddles"], "rivers,puddles"),
         (
             &["-o", "x.gpkg", "--layer", "rivers", "--interval", "20"],
             "--interval has no effect here; it applies to contours",
         ),
-        (&["-o", "x.gpkg", "--layer", "summits", "--runoff", "2"], "it is for lakes, rivers, watersheds"),
+        (&["-o", "x.gpkg", "--layer", "summits", "--runoff", "2"], "it applies to lakes, rivers, watersheds"),
         (&["-o", "x.tif", "--river-area", "2"], "does not apply to the format tif"),
         (&["-o", "x.glb", "--layer", "slope", "--water"], "--water applies to the layer `height`"),
         (&["-o", "x.gpkg", "--layer", "rivers", "--memory", "1MiB"], "memory"),
