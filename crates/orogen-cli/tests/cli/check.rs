@@ -184,5 +184,5 @@ fn the_cache_is_listed_and_cleared_and_foreign_files_stay() {
     assert_eq!(Outcome::of(&outcome).code, 0);
     assert_eq!(folder.names("kept"), ["mine.txt", "short.solved"]);
     folder.bad(&["cache", "clear", "--older-than", "5"], 2, "an age must be a number with a unit of s, m, h, d or w");
-    folder.bad(&["cache", "list"], 2, "name one by --cache");
+    folder.bad(&["cache", "list"], 2, "name one with --cache");
 }

@@ -223,7 +223,11 @@ fn layers_that_follow_from_the_heights() {
     }
     folder.bad(&["export", "small.toml", "-o", "c.png", "--layer", "slop"], 2, "did you mean `slope`");
     folder.bad(&["export", "small.toml", "-o", "c.tif", "--layer", "normal"], 2, "formats for it: exr, npy, png");
-    folder.bad(&["export", "small.toml", "-o", "c.png", "--normal", "opengl"], 2, "--normal applies to the layer `normal`");
+    folder.bad(
+        &["export", "small.toml", "-o", "c.png", "--normal", "opengl"],
+        2,
+        "--normal applies to the layer `normal`",
+    );
     folder.bad(&["export", "small.toml", "-o", "-", "--format", "png", "--layer", "splat"], 2, "name a file with -o");
 }
 
@@ -328,7 +332,7 @@ fn engines_get_what_they_ask_for() {
     for (options, code, expect) in [
         (&["-o", "x.png", "--target", "unreal", "--size", "1024"][..], 2, "the nearest is 1009"),
         (&["-o", "x.tif", "--target", "unreal"], 2, "unreal imports `height` as .png or .r16, not as .tif"),
-        (&["-o", "x.r16", "--target", "unity", "--first-row", "north"], 2, "sets --first-row itself"),
+        (&["-o", "x.r16", "--target", "unity", "--first-row", "north"], 2, "sets --first-row"),
         (&["-o", "x.exr", "--target", "terrain3d", "--tiles", "2x2"], 2, "leave out --tiles"),
         (&["-o", "x.r16", "--target", "unity", "--size", "4097", "--cell", "10"], 2, "not inside the world"),
         (&["-o", "x.png", "--target", "cryengine"], 2, "invalid value"),
@@ -539,8 +543,12 @@ fn what_a_layer_cannot_do_is_a_sentence() {
         ("small.toml", &["--layer", "viewshed"], "the layer viewshed needs --observer X,Y"),
         ("small.toml", &["--layer", "viewshed", "--observer", "9e9,0"], "is outside the world"),
         ("small.toml", &["--layer", "insolation", "--day", "366"], "a whole number from 1 to 365"),
-        ("small.toml", &["--layer", "insolation", "--day", "5", "--season", "winter"], "--day and --season exclude each other"),
-        ("endless.toml", &["--layer", "wetness"], "the layer wetness needs a world with bounds"),
+        (
+            "small.toml",
+            &["--layer", "insolation", "--day", "5", "--season", "winter"],
+            "--day and --season exclude each other",
+        ),
+        ("endless.toml", &["--layer", "wetness"], "the layer wetness needs a bounded world"),
     ] {
         let mut arguments = vec!["export", recipe, "-o", "x.npy"];
         arguments.extend(options);

@@ -80,7 +80,7 @@ fn what_cannot_be_is_a_sentence_and_leaves_nothing() {
         (&["--exaggeration", "1000"], "0.01 to 100"),
         (&["--haze", "1000"], "0 to 100"),
         (&["--size", "99999x5"], "32768"),
-        (&["--window", "0,0,1,9"], "1 x 9 samples"),
+        (&["--window", "0,0,1,9"], "not 1 x 9"),
         (&["--memory", "1kB"], "memory"),
     ] {
         let arguments: Vec<&str> = match wrong.contains(&"--size") {

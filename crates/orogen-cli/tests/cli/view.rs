@@ -96,10 +96,10 @@ fn a_world_on_a_map_carries_its_coordinates() {
     assert!(folder.read("f.tif") == folder.read("a.tif"));
     for (recipe, options, code, expect) in [
         ("a.tif", &["--bounds", "11,46,12,47"][..], 2, "extends over 600000,5199520,600640,5200000 in EPSG:32632"),
-        ("a.tif", &["--crs", "EPSG:32633"], 1, "the file of heights is in EPSG:32632, and `crs` is EPSG:32633"),
+        ("a.tif", &["--crs", "EPSG:32633"], 1, "the file of heights is in EPSG:32632, but `crs` is EPSG:32633"),
         ("a.tif", &["--crs", "EPSG:32632", "--origin", "1,2"], 1, "leave out `origin`"),
-        ("small.toml", &["--crs", "EPSG:32632"], 1, "give `origin`"),
-        ("small.toml", &["--origin", "1,2"], 1, "give `crs`"),
+        ("small.toml", &["--crs", "EPSG:32632"], 1, "`origin` is missing"),
+        ("small.toml", &["--origin", "1,2"], 1, "`crs` is missing"),
         ("small.toml", &["--crs", "EPSG:1"], 2, "unknown coordinate reference system EPSG:1"),
         ("small.toml", &["--crs", "utm"], 2, "write its EPSG code"),
         ("small.toml", &["--origin", "north"], 2, "a position must be EAST,NORTH"),
