@@ -4,7 +4,7 @@
 //! command line's help and a user interface's sliders.
 
 use crate::dem::file_ref::{FileRef, Picture};
-use crate::expression::term::Expression;
+use crate::expression::text::Expression;
 use crate::layer::Layer;
 use crate::value::{Spanned, Value};
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,8 @@
 //! Formulas: expressions of parameters, computed once in f64.
 
+use super::error::ExpressionError;
 use super::parse::is_taken;
-use super::term::{Expression, Fault};
+use super::text::Expression;
 use super::token::{Token, tokens};
 use crate::value::Span;
 
@@ -21,23 +22,26 @@ pub fn value(
     text: &str,
     value_of: impl Fn(&str) -> Option<f64>,
     unknown: impl Fn(&str) -> String,
-) -> Result<f64, Fault> {
+) -> Result<f64, ExpressionError> {
     let expression = Expression::from(text);
-    if let Some(fault) = expression.fault() {
+    if let Some(fault) = expression.error() {
         return Err(fault.clone());
     }
     let mut values = Vec::with_capacity(expression.names().len());
     for name in expression.names() {
         match value_of(name) {
             Some(value) => values.push(value),
-            None => return Err(Fault::new(place_of(text, name), unknown(name))),
+            None => return Err(ExpressionError::new(place_of(text, name), unknown(name))),
         }
     }
     match expression.value(&values) {
         Some(value) if value.is_finite() => Ok(value),
         value => {
             let value = value.unwrap_or(f64::NAN);
-            Err(Fault::new(0..text.len(), format!("the value of this formula is {value}, which is no finite number")))
+            Err(ExpressionError::new(
+                0..text.len(),
+                format!("the value of this formula is {value}, which is no finite number"),
+            ))
         }
     }
 }

@@ -4,12 +4,15 @@
 //! - [`token`]: a text as tokens
 //! - [`parse`]: tokens as terms, without recursion deeper than a bound
 //! - [`term`]: an expression as a list of terms, each after those that it reads
+//! - [`text`]: an expression with its text
 //! - [`formula`]: an expression of parameters, computed once in f64
 
+pub mod error;
 pub mod formula;
 pub mod function;
 mod parse;
 pub mod term;
+pub mod text;
 mod token;
 
 #[cfg(test)]

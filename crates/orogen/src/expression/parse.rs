@@ -3,8 +3,9 @@
 //! From loose to tight: comparisons, `+ -`, `* / %`, the signs `- +`, `^` (from the right). The same term is made once, however often it is
 //! written.
 
+use super::error::ExpressionError;
 use super::function::{Function, MAX_ARGUMENTS};
-use super::term::{Fault, MAX_DEPTH, MAX_LENGTH, MAX_NAMES, MAX_TERMS, Term};
+use super::term::{MAX_DEPTH, MAX_LENGTH, MAX_NAMES, MAX_TERMS, Term};
 use super::token::{Token, tokens};
 use crate::value::Span;
 use crate::words::{count, suggestion};
@@ -14,14 +15,14 @@ use std::collections::HashMap;
 const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("tau", std::f64::consts::TAU)];
 
 /// Reads an expression: its names and its terms.
-pub fn parse(text: &str) -> Result<(Vec<String>, Vec<Term>), Fault> {
+pub fn parse(text: &str) -> Result<(Vec<String>, Vec<Term>), ExpressionError> {
     if text.len() > MAX_LENGTH {
         let message = format!("the expression has {} bytes, the most it may have is {MAX_LENGTH}", text.len());
-        return Err(Fault::new(0..1, message));
+        return Err(ExpressionError::new(0..1, message));
     }
     let tokens = tokens(text)?;
     if tokens.is_empty() {
-        return Err(Fault::new(0..text.len(), "the expression is empty; an example is \"a * 2 + b\""));
+        return Err(ExpressionError::new(0..text.len(), "the expression is empty; an example is \"a * 2 + b\""));
     }
     let mut parser = Parser {
         tokens: &tokens,
@@ -39,11 +40,15 @@ pub fn parse(text: &str) -> Result<(Vec<String>, Vec<Term>), Fault> {
             parser.terms.truncate(value + 1);
             Ok((parser.names, parser.terms))
         }
-        Some((Token::Sign(")"), span)) => Err(Fault::new(span.clone(), "there is no `(` that this `)` closes")),
-        Some((Token::Sign(","), span)) => {
-            Err(Fault::new(span.clone(), "a comma stands between the arguments of a function only"))
+        Some((Token::Sign(")"), span)) => {
+            Err(ExpressionError::new(span.clone(), "there is no `(` that this `)` closes"))
         }
-        Some((_, span)) => Err(Fault::new(span.clone(), "an operator such as `+` or `*` is missing before this")),
+        Some((Token::Sign(","), span)) => {
+            Err(ExpressionError::new(span.clone(), "a comma stands between the arguments of a function only"))
+        }
+        Some((_, span)) => {
+            Err(ExpressionError::new(span.clone(), "an operator such as `+` or `*` is missing before this"))
+        }
     }
 }
 
@@ -82,7 +87,7 @@ impl<'t> Parser<'t> {
         }
     }
 
-    fn push(&mut self, term: Term) -> Result<usize, Fault> {
+    fn push(&mut self, term: Term) -> Result<usize, ExpressionError> {
         let same = match term {
             Term::Number(number) => Same::Number(number.to_bits()),
             Term::Name(name) => Same::Name(name),
@@ -92,7 +97,7 @@ impl<'t> Parser<'t> {
             return Ok(*known);
         }
         if self.terms.len() >= MAX_TERMS {
-            return Err(Fault::new(
+            return Err(ExpressionError::new(
                 self.here(),
                 format!("the expression has more than {MAX_TERMS} terms; make several nodes of it"),
             ));
@@ -102,16 +107,19 @@ impl<'t> Parser<'t> {
         Ok(self.terms.len() - 1)
     }
 
-    fn apply(&mut self, function: Function, arguments: &[usize]) -> Result<usize, Fault> {
+    fn apply(&mut self, function: Function, arguments: &[usize]) -> Result<usize, ExpressionError> {
         let mut all = [0; MAX_ARGUMENTS];
         all.iter_mut().zip(arguments).for_each(|(to, from)| *to = *from);
         self.push(Term::Apply(function, all))
     }
 
     /// Runs a part one level deeper.
-    fn deeper(&mut self, part: impl FnOnce(&mut Self) -> Result<usize, Fault>) -> Result<usize, Fault> {
+    fn deeper(
+        &mut self,
+        part: impl FnOnce(&mut Self) -> Result<usize, ExpressionError>,
+    ) -> Result<usize, ExpressionError> {
         if self.depth >= MAX_DEPTH {
-            return Err(Fault::new(
+            return Err(ExpressionError::new(
                 self.here(),
                 format!("this is nested more than {MAX_DEPTH} levels deep; make several nodes of it"),
             ));
@@ -122,18 +130,18 @@ impl<'t> Parser<'t> {
         Ok(term)
     }
 
-    fn comparison(&mut self) -> Result<usize, Fault> {
+    fn comparison(&mut self) -> Result<usize, ExpressionError> {
         let left = self.sum()?;
         let Some(function) = self.sign().and_then(comparison) else { return Ok(left) };
         self.at += 1;
         let right = self.sum()?;
         if self.sign().and_then(comparison).is_some() {
-            return Err(Fault::new(self.here(), "comparisons do not chain: write `(a < b) * (b < c)`"));
+            return Err(ExpressionError::new(self.here(), "comparisons do not chain: write `(a < b) * (b < c)`"));
         }
         self.apply(function, &[left, right])
     }
 
-    fn sum(&mut self) -> Result<usize, Fault> {
+    fn sum(&mut self) -> Result<usize, ExpressionError> {
         let mut left = self.product()?;
         while let Some(function) = match self.sign() {
             Some("+") => Some(Function::Add),
@@ -147,7 +155,7 @@ impl<'t> Parser<'t> {
         Ok(left)
     }
 
-    fn product(&mut self) -> Result<usize, Fault> {
+    fn product(&mut self) -> Result<usize, ExpressionError> {
         let mut left = self.signed()?;
         while let Some(function) = match self.sign() {
             Some("*") => Some(Function::Multiply),
@@ -162,7 +170,7 @@ impl<'t> Parser<'t> {
         Ok(left)
     }
 
-    fn signed(&mut self) -> Result<usize, Fault> {
+    fn signed(&mut self) -> Result<usize, ExpressionError> {
         match self.sign() {
             Some("-") => {
                 self.at += 1;
@@ -183,7 +191,7 @@ impl<'t> Parser<'t> {
         }
     }
 
-    fn power(&mut self) -> Result<usize, Fault> {
+    fn power(&mut self) -> Result<usize, ExpressionError> {
         let base = self.primary()?;
         if self.sign() != Some("^") {
             return Ok(base);
@@ -194,7 +202,7 @@ impl<'t> Parser<'t> {
     }
 
     /// A power. Those with an exponent that multiplication or a root computes are made of these, which are exact and much faster.
-    fn raised(&mut self, base: usize, exponent: usize) -> Result<usize, Fault> {
+    fn raised(&mut self, base: usize, exponent: usize) -> Result<usize, ExpressionError> {
         match self.terms.get(exponent) {
             Some(Term::Number(1.0)) => Ok(base),
             Some(Term::Number(2.0)) => self.apply(Function::Multiply, &[base, base]),
@@ -215,9 +223,12 @@ impl<'t> Parser<'t> {
         }
     }
 
-    fn primary(&mut self) -> Result<usize, Fault> {
+    fn primary(&mut self) -> Result<usize, ExpressionError> {
         let Some((token, span)) = self.tokens.get(self.at) else {
-            return Err(Fault::new(self.here(), "the expression ends too early: a number, a name or a `(` is missing"));
+            return Err(ExpressionError::new(
+                self.here(),
+                "the expression ends too early: a number, a name or a `(` is missing",
+            ));
         };
         match token {
             Token::Number(number) => {
@@ -230,9 +241,10 @@ impl<'t> Parser<'t> {
                 self.close(span)?;
                 Ok(term)
             }
-            Token::Sign(sign) => {
-                Err(Fault::new(span.clone(), format!("a number, a name or a `(` is missing before this `{sign}`")))
-            }
+            Token::Sign(sign) => Err(ExpressionError::new(
+                span.clone(),
+                format!("a number, a name or a `(` is missing before this `{sign}`"),
+            )),
             Token::Name(name) => {
                 self.at += 1;
                 match self.sign() {
@@ -243,32 +255,35 @@ impl<'t> Parser<'t> {
         }
     }
 
-    fn close(&mut self, opened: &Span) -> Result<(), Fault> {
+    fn close(&mut self, opened: &Span) -> Result<(), ExpressionError> {
         match self.tokens.get(self.at) {
             Some((Token::Sign(")"), _)) => {
                 self.at += 1;
                 Ok(())
             }
             Some((Token::Sign(","), span)) => {
-                Err(Fault::new(span.clone(), "a comma stands between the arguments of a function only"))
+                Err(ExpressionError::new(span.clone(), "a comma stands between the arguments of a function only"))
             }
-            Some((_, span)) => Err(Fault::new(span.clone(), "an operator or a `)` is missing before this")),
-            None => Err(Fault::new(opened.clone(), "the `)` that closes this is missing")),
+            Some((_, span)) => Err(ExpressionError::new(span.clone(), "an operator or a `)` is missing before this")),
+            None => Err(ExpressionError::new(opened.clone(), "the `)` that closes this is missing")),
         }
     }
 
-    fn name(&mut self, name: &'t str, span: &Span) -> Result<usize, Fault> {
+    fn name(&mut self, name: &'t str, span: &Span) -> Result<usize, ExpressionError> {
         if let Some((_, number)) = CONSTANTS.iter().find(|(constant, _)| *constant == name) {
             return self.push(Term::Number(*number));
         }
         if let Some(function) = Function::named(name) {
-            return Err(Fault::new(span.clone(), format!("`{name}` is a function: write `{}`", function.usage())));
+            return Err(ExpressionError::new(
+                span.clone(),
+                format!("`{name}` is a function: write `{}`", function.usage()),
+            ));
         }
         let index = match self.names.iter().position(|known| known == name) {
             Some(index) => index,
             None if self.names.len() >= MAX_NAMES => {
                 let message = format!("the expression has more than {MAX_NAMES} names; make several nodes of it");
-                return Err(Fault::new(span.clone(), message));
+                return Err(ExpressionError::new(span.clone(), message));
             }
             None => {
                 self.names.push(name.to_string());
@@ -279,10 +294,10 @@ impl<'t> Parser<'t> {
     }
 
     /// A function's arguments, from its `(` on.
-    fn call(&mut self, name: &str, span: &Span) -> Result<usize, Fault> {
+    fn call(&mut self, name: &str, span: &Span) -> Result<usize, ExpressionError> {
         let Some(function) = Function::named(name) else {
             let hint = suggestion(name, Function::functions().map(Function::name));
-            return Err(Fault::new(span.clone(), format!("there is no function `{name}`; {hint}")));
+            return Err(ExpressionError::new(span.clone(), format!("there is no function `{name}`; {hint}")));
         };
         let opened = self.here();
         self.at += 1;
@@ -303,7 +318,7 @@ impl<'t> Parser<'t> {
                 function.usage(),
                 arguments.len()
             );
-            return Err(Fault::new(span.clone(), message));
+            return Err(ExpressionError::new(span.clone(), message));
         }
         match (function, arguments.as_slice()) {
             (Function::Power, [base, exponent]) => self.raised(*base, *exponent),

@@ -1,10 +1,11 @@
 use super::formula::{is_parameter_name, renamed, value};
 use super::function::{Argument, Function};
-use super::term::{Expression, MAX_DEPTH, MAX_NAMES, MAX_TERMS, Term};
+use super::term::{MAX_DEPTH, MAX_NAMES, MAX_TERMS, Term};
+use super::text::Expression;
 
 fn of(text: &str, names: &[f64]) -> f64 {
     let expression = Expression::from(text);
-    assert_eq!(expression.fault(), None, "{text}");
+    assert_eq!(expression.error(), None, "{text}");
     expression.value(names).unwrap()
 }
 
@@ -83,7 +84,7 @@ fn what_is_wrong_and_where() {
         ("max(1, )", 7, "before this `)`"),
     ] {
         let expression = Expression::from(text);
-        let fault = expression.fault().unwrap_or_else(|| panic!("{text} is fine"));
+        let fault = expression.error().unwrap_or_else(|| panic!("{text} is fine"));
         assert_eq!(fault.span.start, at, "{text}: {}", fault.message);
         assert!(fault.message.contains(expect), "{text}: {}", fault.message);
     }
@@ -107,13 +108,13 @@ fn what_is_too_large_is_refused_quickly() {
         (many_numbers.join("*a+"), "more than 4096 terms"),
     ] {
         let expression = Expression::from(text.as_str());
-        let fault = expression.fault().unwrap();
+        let fault = expression.error().unwrap();
         assert!(fault.message.contains(expect), "{}", fault.message);
     }
     // The same term is made once, so length alone is no harm.
-    assert!(Expression::from(wide("a", 30_000).as_str()).fault().is_some());
-    assert!(Expression::from(wide("a*b", 1000).as_str()).fault().is_none());
-    assert!(Expression::from(("(".repeat(MAX_DEPTH) + "1" + &")".repeat(MAX_DEPTH)).as_str()).fault().is_none());
+    assert!(Expression::from(wide("a", 30_000).as_str()).error().is_some());
+    assert!(Expression::from(wide("a*b", 1000).as_str()).error().is_none());
+    assert!(Expression::from(("(".repeat(MAX_DEPTH) + "1" + &")".repeat(MAX_DEPTH)).as_str()).error().is_none());
     assert!(begun.elapsed().as_secs() < 5, "{:?}", begun.elapsed());
 }
 
@@ -134,7 +135,7 @@ fn random_texts() {
         let length = random(9);
         let text: String = (0..length).map(|_| pieces[random(pieces.len())]).collect();
         let expression = Expression::from(text.as_str());
-        match expression.fault() {
+        match expression.error() {
             Some(fault) => {
                 assert!(fault.span.start <= fault.span.end && fault.span.end <= text.len().max(1) + 1, "{text:?}");
                 assert!(text.is_char_boundary(fault.span.start.min(text.len())), "{text:?}");

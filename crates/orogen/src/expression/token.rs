@@ -1,6 +1,6 @@
 //! A text as tokens, each with its place.
 
-use super::term::Fault;
+use super::error::ExpressionError;
 use crate::value::Span;
 
 /// What a text is made of.
@@ -29,7 +29,7 @@ const FOREIGN: [(&str, &str); 7] = [
 ];
 
 /// All tokens of a text.
-pub fn tokens(text: &str) -> Result<Vec<(Token<'_>, Span)>, Fault> {
+pub fn tokens(text: &str) -> Result<Vec<(Token<'_>, Span)>, ExpressionError> {
     let bytes = text.as_bytes();
     let (mut tokens, mut at) = (Vec::new(), 0);
     while let Some(&byte) = bytes.get(at) {
@@ -48,11 +48,11 @@ pub fn tokens(text: &str) -> Result<Vec<(Token<'_>, Span)>, Fault> {
                 .iter()
                 .find(|(sign, _)| rest.starts_with(sign) && !rest.starts_with("==") && !rest.starts_with("!="))
             {
-                return Err(Fault::new(at..at + sign.len(), format!("`{sign}` means nothing here: {why}")));
+                return Err(ExpressionError::new(at..at + sign.len(), format!("`{sign}` means nothing here: {why}")));
             }
             let Some(sign) = SIGNS.iter().find(|sign| rest.starts_with(**sign)) else {
                 let found = rest.chars().next().unwrap_or(' ');
-                return Err(Fault::new(
+                return Err(ExpressionError::new(
                     at..at + found.len_utf8(),
                     format!("`{}` means nothing here", found.escape_debug()),
                 ));
@@ -62,8 +62,8 @@ pub fn tokens(text: &str) -> Result<Vec<(Token<'_>, Span)>, Fault> {
             let written = &text[at..end];
             match written.parse::<f64>() {
                 Ok(number) if number.is_finite() => (Token::Number(number), at..end),
-                Ok(_) => return Err(Fault::new(at..end, format!("{written} is more than a number can be"))),
-                Err(_) => return Err(Fault::new(at..end, format!("`{written}` is no number"))),
+                Ok(_) => return Err(ExpressionError::new(at..end, format!("{written} is more than a number can be"))),
+                Err(_) => return Err(ExpressionError::new(at..end, format!("`{written}` is no number"))),
             }
         } else {
             (Token::Name(&text[at..end]), at..end)

@@ -1,7 +1,8 @@
 //! Arithmetic expressions.
 
 use crate::declare::{Input, set_named};
-use crate::expression::term::{Expression, Term};
+use crate::expression::term::Term;
+use crate::expression::text::Expression;
 use crate::op::Field;
 
 op! {
@@ -22,7 +23,7 @@ op! {
         /// The expression.
         expr: Expression = Expression::default();
     }
-    check |op| match (op.expr.fault(), op.inputs.iter().find(|(name, _)| !op.expr.names().contains(name))) {
+    check |op| match (op.expr.error(), op.inputs.iter().find(|(name, _)| !op.expr.names().contains(name))) {
         (Some(fault), _) => Err(("expr", fault.message.clone())),
         (None, Some((name, _))) => Err(("expr", format!("`{name}` is set, but the expression does not use it"))),
         (None, None) => Ok(()),

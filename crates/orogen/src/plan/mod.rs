@@ -9,4 +9,3 @@ pub mod memory;
 pub mod planner;
 pub mod program;
 pub mod steps;
-mod stored;

@@ -1,5 +1,7 @@
 //! A recipe in memory: the world, its nodes and its outputs.
 
+pub use super::text::LONGEST_TEXT;
+
 use crate::declare::Input;
 use crate::dem::file_ref::FileRef;
 use crate::dem::open;
@@ -26,9 +28,6 @@ pub const VERSION: i64 = 1;
 
 /// Most nodes a recipe may have.
 pub const MAX_NODES: usize = 65_536;
-
-/// Longest text of a recipe, in bytes.
-pub const LONGEST_TEXT: u64 = 16 << 20;
 
 /// What a recipe says of its world. Lengths are metres.
 #[derive(Debug, Clone, Copy, PartialEq)]

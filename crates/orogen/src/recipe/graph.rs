@@ -1,7 +1,6 @@
 //! A recipe's nodes as a graph: names resolved, order found, keys computed.
 
 use super::document::{MAX_NODES, Recipe};
-use super::subgraph::MAX_DEPTH;
 use crate::declare::Input;
 use crate::error::{Diagnostic, Error, ErrorKind};
 use crate::layer::{Interpolation, LayerKind};
@@ -9,6 +8,9 @@ use crate::node::Node;
 use crate::op::Op;
 use crate::words::suggestion;
 use std::collections::{BTreeSet, HashMap, HashSet};
+
+/// Deepest nesting of recipes in recipes.
+pub const MAX_USE_DEPTH: usize = 16;
 
 /// Most samples along a side of a world's own lattice.
 pub const MAX_SAMPLES: f64 = (1u64 << 31) as f64;
@@ -78,7 +80,7 @@ pub(super) fn is_name(name: &str) -> bool {
 
 /// Whether a name can be a node's: a name, behind those of the recipes that it was taken from.
 fn is_path(name: &str) -> bool {
-    name.split('/').count() <= MAX_DEPTH + 1 && name.split('/').all(is_name)
+    name.split('/').count() <= MAX_USE_DEPTH + 1 && name.split('/').all(is_name)
 }
 
 const NAME_RULE: &str = "a name must have 1 to 64 letters, digits, `_` and `-`, and must not start with a digit";

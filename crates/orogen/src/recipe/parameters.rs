@@ -4,8 +4,8 @@
 //! stood is remembered, so that a recipe that is written back keeps them.
 
 use super::text::Text;
+use crate::expression::error::ExpressionError;
 use crate::expression::formula::{self, formula, is_parameter_name};
-use crate::expression::term::Fault;
 use crate::node::Node;
 use crate::value::{Span, Spanned, Value, toml_key, toml_string};
 use crate::words::{number, respelled, suggestion};
@@ -18,7 +18,7 @@ pub const MAX_PARAMETERS: usize = 256;
 /// Most formulas a recipe may have.
 const MAX_FORMULAS: usize = 65_536;
 
-/// The keys of a parameter, for complaints.
+/// The keys of a parameter, for diagnostics.
 const KEYS: [&str; 4] = ["default", "unit", "range", "help"];
 
 /// A number that a recipe offers.
@@ -106,7 +106,7 @@ impl Parameters {
     }
 
     /// The value of a formula of them.
-    pub fn evaluate(&self, text: &str) -> Result<f64, Fault> {
+    pub fn evaluate(&self, text: &str) -> Result<f64, ExpressionError> {
         let names = self.list.iter().map(|parameter| parameter.name.as_str());
         formula::value(
             text,
@@ -203,7 +203,7 @@ fn follow<'t>(at: &'t Spanned<Value>, step: &Step) -> Option<&'t Spanned<Value>>
 }
 
 /// What is wrong at a part of the text.
-type Complaints = Vec<(Span, String)>;
+type Diagnostics = Vec<(Span, String)>;
 
 /// What became of the formulas in a recipe.
 #[derive(Default)]
@@ -211,7 +211,7 @@ pub struct Resolved {
     /// The parameters, and where formulas stood.
     pub parameters: Parameters,
     /// What is wrong.
-    pub complaints: Complaints,
+    pub diagnostics: Diagnostics,
     /// Formulas that have no value: nothing more is to be said of them.
     pub failed: Vec<Span>,
 }
@@ -224,10 +224,10 @@ pub fn resolve(tree: &mut Spanned<Value>, text: &Text, set: &[(String, f64)]) ->
     let mut resolved = Resolved::default();
     let Value::Table(top) = &mut tree.value else { return Ok(resolved) };
     if let Some((_, value)) = top.iter().find(|(key, _)| key.value == "parameters") {
-        read(value, &mut resolved.parameters.list, &mut resolved.complaints);
+        read(value, &mut resolved.parameters.list, &mut resolved.diagnostics);
     }
     // Formulas of parameters that could not be read would only repeat that.
-    let silent = !resolved.complaints.is_empty();
+    let silent = !resolved.diagnostics.is_empty();
     if !silent {
         resolved.parameters.set(set)?;
     }
@@ -273,7 +273,7 @@ impl Resolver<'_> {
             }
             Value::Text(text) => {
                 let Some(text) = formula(text).map(str::to_string) else { return };
-                let Resolved { parameters, complaints, failed } = &mut *self.resolved;
+                let Resolved { parameters, diagnostics, failed } = &mut *self.resolved;
                 let (span, message) = match parameters.evaluate(&text) {
                     Ok(number) if parameters.formulas.len() < MAX_FORMULAS => {
                         value.value = plain(number);
@@ -284,7 +284,7 @@ impl Resolver<'_> {
                 };
                 failed.push(value.span.clone());
                 if !self.silent {
-                    complaints.push((span, message));
+                    diagnostics.push((span, message));
                 }
             }
             _ => {}
@@ -302,48 +302,48 @@ fn plain(number: f64) -> Value {
 }
 
 /// Reads `[parameters]`.
-fn read(value: &Spanned<Value>, parameters: &mut Vec<Parameter>, complaints: &mut Complaints) {
+fn read(value: &Spanned<Value>, parameters: &mut Vec<Parameter>, diagnostics: &mut Diagnostics) {
     let Value::Table(entries) = &value.value else {
-        complaints.push((
+        diagnostics.push((
             value.span.clone(),
             format!("`parameters` must be a table of parameters, not {}", value.value.describe()),
         ));
         return;
     };
     if let Some((key, _)) = entries.get(MAX_PARAMETERS) {
-        complaints.push((key.span.clone(), format!("the recipe has more than {MAX_PARAMETERS} parameters")));
+        diagnostics.push((key.span.clone(), format!("the recipe has more than {MAX_PARAMETERS} parameters")));
         return;
     }
     let mut seen = HashSet::new();
     for (name, value) in entries {
         if !seen.insert(name.value.as_str()) {
-            complaints
+            diagnostics
                 .push((name.span.clone(), format!("there are two parameters named `{}`: rename one", name.value)));
         } else if !is_parameter_name(&name.value) {
             let message = format!(
                 "`{}` cannot be a parameter's name: names are 1 to 64 letters, digits and `_`, do not begin with a digit, and are no function or constant",
                 name.value
             );
-            complaints.push((name.span.clone(), message));
-        } else if let Some(parameter) = one(name, value, complaints) {
+            diagnostics.push((name.span.clone(), message));
+        } else if let Some(parameter) = one(name, value, diagnostics) {
             parameters.push(parameter);
         }
     }
 }
 
 /// Reads one parameter: a number, or a table with its default and more.
-fn one(name: &Spanned<String>, value: &Spanned<Value>, complaints: &mut Complaints) -> Option<Parameter> {
+fn one(name: &Spanned<String>, value: &Spanned<Value>, diagnostics: &mut Diagnostics) -> Option<Parameter> {
     let range = [f64::NEG_INFINITY, f64::INFINITY];
     let mut parameter =
         Parameter { name: name.value.clone(), help: String::new(), unit: String::new(), range, value: 0.0 };
-    let before = complaints.len();
+    let before = diagnostics.len();
     let mut default = None;
     match &value.value {
         Value::Table(entries) => {
             let mut seen = HashSet::new();
             for (key, value) in entries {
                 if !seen.insert(key.value.as_str()) {
-                    complaints.push((key.span.clone(), format!("the key `{}` stands twice in this table", key.value)));
+                    diagnostics.push((key.span.clone(), format!("the key `{}` stands twice in this table", key.value)));
                     continue;
                 }
                 match (key.value.as_str(), &value.value) {
@@ -355,18 +355,18 @@ fn one(name: &Spanned<String>, value: &Spanned<Value>, complaints: &mut Complain
                     }
                     ("unit" | "help", other) => {
                         let message = format!("`{}` must be a string, not {}", key.value, other.describe());
-                        complaints.push((value.span.clone(), message));
+                        diagnostics.push((value.span.clone(), message));
                     }
                     ("range", other) => {
                         let message = format!(
                             "`range` must be two numbers, the lower one first, such as [0, 100], not {}",
                             other.describe()
                         );
-                        complaints.push((value.span.clone(), message));
+                        diagnostics.push((value.span.clone(), message));
                     }
                     (unknown, _) => {
                         let hint = suggestion(unknown, KEYS);
-                        complaints.push((
+                        diagnostics.push((
                             key.span.clone(),
                             format!("unknown key `{unknown}` in the parameter `{}`; {hint}", name.value),
                         ));
@@ -374,7 +374,7 @@ fn one(name: &Spanned<String>, value: &Spanned<Value>, complaints: &mut Complain
                 }
             }
             if default.is_none() {
-                complaints.push((name.span.clone(), format!("the parameter `{}` has no `default`", name.value)));
+                diagnostics.push((name.span.clone(), format!("the parameter `{}` has no `default`", name.value)));
             }
         }
         _ => default = Some(value),
@@ -393,10 +393,10 @@ fn one(name: &Spanned<String>, value: &Spanned<Value>, complaints: &mut Complain
         )),
     };
     // A range that could not be read says nothing about the default.
-    if complaints.len() == before {
-        complaints.extend(fault.map(|message| (default.span.clone(), message)));
+    if diagnostics.len() == before {
+        diagnostics.extend(fault.map(|message| (default.span.clone(), message)));
     }
-    (complaints.len() == before).then_some(parameter)
+    (diagnostics.len() == before).then_some(parameter)
 }
 
 /// Two numbers, the lower one first; either may be infinite.

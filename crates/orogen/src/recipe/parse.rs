@@ -1,10 +1,10 @@
 //! From a tree of values to a recipe, with every diagnostic at its own key.
 
-use super::document::{LONGEST_TEXT, MAX_NODES, Recipe, VERSION, WorldSpec};
+use super::document::{MAX_NODES, Recipe, VERSION, WorldSpec};
 use super::graph::{At, Graph, MAX_FAULTS};
 use super::parameters::{Formula, Parameters, Step, resolve};
-use super::subgraph::{Complaint, Origin, Shared, Uses, take_in};
-use super::text::{Text, too_long};
+use super::subgraph::{Origin, Shared, UseDiagnostic, Uses, take_in};
+use super::text::{LONGEST_TEXT, Text, text_of, too_long};
 use super::{json, surface, toml};
 use crate::declare::Input;
 use crate::error::{Diagnostic, Error, ErrorKind, Result};
@@ -60,13 +60,13 @@ impl Recipe {
         let Some(bytes) = open::bytes(path, doing, LONGEST_TEXT)? else {
             return Err(too_long(&path.display().to_string()));
         };
-        let shared = Shared::default();
+        let shared = Shared::new(parse);
         parse(&text_of(bytes, path)?, &path.display().to_string(), set, &Origin::file(path, &shared))
     }
 
     /// Reads a preset.
     pub(super) fn parse_preset(name: &str, text: &str, set: &[(String, f64)]) -> Result<Recipe> {
-        let shared = Shared::default();
+        let shared = Shared::new(parse);
         parse(text, &format!("recipes/{name}.toml"), set, &Origin::preset(name, &shared))
     }
 
@@ -83,27 +83,13 @@ impl Recipe {
     /// # Errors
     /// As [`Recipe::parse`], and if a parameter is not there or may not have that value.
     pub fn parse_with(text: &str, name: &str, set: &[(String, f64)]) -> Result<Recipe> {
-        let shared = Shared::default();
+        let shared = Shared::new(parse);
         parse(text, name, set, &Origin::text(&shared))
     }
 }
 
-/// What a file holds, if it is text.
-pub(super) fn text_of(content: Vec<u8>, path: &Path) -> Result<String> {
-    String::from_utf8(content).map_err(|fault| {
-        Error::new(
-            ErrorKind::Recipe,
-            format!(
-                "{} is not a recipe: byte {} is not UTF-8 text; a recipe is a TOML or JSON file",
-                path.display(),
-                fault.utf8_error().valid_up_to()
-            ),
-        )
-    })
-}
-
 /// Reads a recipe, with those that it uses.
-pub(super) fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Result<Recipe> {
+fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Result<Recipe> {
     if text.len() as u64 > LONGEST_TEXT {
         return Err(too_long(name));
     }
@@ -169,7 +155,7 @@ impl Walk<'_> {
         self.version(top)?;
         let resolved = resolve(&mut tree, self.text, set)
             .map_err(|message| Error::new(ErrorKind::Recipe, format!("{}: {message}", self.text.name)))?;
-        resolved.complaints.into_iter().for_each(|(span, message)| self.complain(&span, message));
+        resolved.diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
         self.parameters = resolved.parameters;
         self.failed = resolved.failed.into_iter().collect();
         let Value::Table(top) = &tree.value else {
@@ -255,10 +241,10 @@ impl Walk<'_> {
     /// Takes in the recipes that this one uses.
     fn uses(&mut self, value: &Spanned<Value>, recipe: &mut Recipe, origin: &Origin) -> Uses {
         let mut uses = take_in(value, recipe, &mut self.parameters, origin);
-        for complaint in std::mem::take(&mut uses.complaints) {
+        for complaint in std::mem::take(&mut uses.diagnostics) {
             match complaint {
-                Complaint::Here(span, message) => self.complain(&span, message),
-                Complaint::There(error) => {
+                UseDiagnostic::Here(span, message) => self.complain(&span, message),
+                UseDiagnostic::There(error) => {
                     let room = MAX_FAULTS.saturating_sub(self.elsewhere.len());
                     self.elsewhere.extend(error.diagnostics().iter().take(room).cloned());
                 }
@@ -467,7 +453,7 @@ impl Walk<'_> {
     /// Complains of what is wrong within an expression, where it is wrong.
     fn expression(&mut self, index: usize, node: &Node, value: &Spanned<Value>) -> bool {
         let (Node::Expr(Expr { expr, .. }), Value::Text(text)) = (node, &value.value) else { return true };
-        let Some(fault) = expr.fault() else {
+        let Some(fault) = expr.error() else {
             // What a name stands for is wrong where the name stands, unless a key says what it is.
             for name in expr.names() {
                 let span = self.text.within(&value.span, text, &place_of(text, name));

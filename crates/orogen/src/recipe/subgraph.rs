@@ -1,13 +1,14 @@
 //! Recipes within recipes: `[use.NAME]` takes the nodes of another recipe, named `NAME/node`, and makes them nodes of this one.
 
-use super::document::{LONGEST_TEXT, MAX_NODES, Recipe};
-use super::graph::is_name;
+use super::document::{MAX_NODES, Recipe};
+use super::graph::{MAX_USE_DEPTH, is_name};
 use super::parameters::{Formula, Parameters, Step};
 use super::presets;
+use super::text::{LONGEST_TEXT, text_of};
 use crate::declare::{Input, Shape};
 use crate::error::{Error, ErrorKind, Result};
 use crate::expression::formula::renamed;
-use crate::expression::term::Expression;
+use crate::expression::text::Expression;
 use crate::node::Node;
 use crate::open;
 use crate::value::{Span, Spanned, Value};
@@ -18,9 +19,6 @@ use std::path::{Path, PathBuf};
 
 /// Most recipes that a recipe may use, those that these use counted, too.
 pub const MAX_USES: usize = 256;
-
-/// Deepest nesting of recipes in recipes.
-pub const MAX_DEPTH: usize = 16;
 
 /// The keys of a used recipe, for diagnostics.
 const KEYS: [&str; 4] = ["recipe", "inputs", "parameters", "seed"];
@@ -35,15 +33,21 @@ pub struct Origin<'a> {
     shared: &'a Shared,
 }
 
-/// What is left to read.
+/// Reads a recipe from a text: what it is called, other values for parameters, and where it comes from.
+pub type Parse = fn(&str, &str, &[(String, f64)], &Origin) -> Result<Recipe>;
+
+/// What all recipes of one reading share: what is left to read, and how.
 pub struct Shared {
     uses: Cell<usize>,
     bytes: Cell<u64>,
+    /// Given from outside: used recipes are read as the first one is.
+    parse: Parse,
 }
 
-impl Default for Shared {
-    fn default() -> Shared {
-        Shared { uses: Cell::new(MAX_USES), bytes: Cell::new(LONGEST_TEXT) }
+impl Shared {
+    /// Nothing is read yet.
+    pub fn new(parse: Parse) -> Shared {
+        Shared { uses: Cell::new(MAX_USES), bytes: Cell::new(LONGEST_TEXT), parse }
     }
 }
 
@@ -79,8 +83,8 @@ impl<'a> Origin<'a> {
             let circle: Vec<&str> = self.chain[first..].iter().chain([&known]).map(String::as_str).collect();
             return fault(format!("these recipes use each other in a circle: {}", circle.join(" -> ")));
         }
-        if self.chain.len() >= MAX_DEPTH {
-            return fault(format!("recipes are used more than {MAX_DEPTH} levels deep"));
+        if self.chain.len() >= MAX_USE_DEPTH {
+            return fault(format!("recipes are used more than {MAX_USE_DEPTH} levels deep"));
         }
         let Some(uses) = self.shared.uses.get().checked_sub(1) else {
             return fault(format!("more than {MAX_USES} recipes are used, those counted that used recipes use"));
@@ -94,15 +98,15 @@ impl<'a> Origin<'a> {
                 let Some(left) = left.checked_sub(preset.text.len() as u64) else { return fault(too_long()) };
                 self.shared.bytes.set(left);
                 let origin = Origin { folder: None, chain, shared: self.shared };
-                let recipe = super::parse::parse(preset.text, &format!("recipes/{}.toml", preset.name), set, &origin)?;
+                let recipe = (self.shared.parse)(preset.text, &format!("recipes/{}.toml", preset.name), set, &origin)?;
                 Ok((recipe, None))
             }
             None => {
                 let Some(content) = open::bytes(&path, "read the recipe", left)? else { return fault(too_long()) };
                 self.shared.bytes.set(left - (content.len() as u64).min(left));
                 let origin = Origin { folder: Some(folder_of(&path)), chain, shared: self.shared };
-                let text = super::parse::text_of(content, &path)?;
-                Ok((super::parse::parse(&text, &path.display().to_string(), set, &origin)?, Some(path)))
+                let text = text_of(content, &path)?;
+                Ok(((self.shared.parse)(&text, &path.display().to_string(), set, &origin)?, Some(path)))
             }
         }
     }
@@ -122,7 +126,7 @@ fn looks_like_a_path(name: &str) -> bool {
 }
 
 /// What is wrong, and where: at a part of the text, or in the recipe that is used.
-pub enum Complaint {
+pub enum UseDiagnostic {
     /// In this text.
     Here(Span, String),
     /// In another.
@@ -133,7 +137,7 @@ pub enum Complaint {
 #[derive(Default)]
 pub struct Uses {
     /// What is wrong.
-    pub complaints: Vec<Complaint>,
+    pub diagnostics: Vec<UseDiagnostic>,
     /// What `name` and `name.output` stand for.
     pub outputs: BTreeMap<String, Input>,
     /// Where the name stands of the recipe that each node came from, by the nodes' indices.
@@ -159,19 +163,19 @@ pub fn take_in(value: &Spanned<Value>, recipe: &mut Recipe, parameters: &mut Par
     let mut uses = Uses::default();
     let Value::Table(entries) = &value.value else {
         let message = format!("`use` must be a table of recipes by name, not {}", value.value.describe());
-        uses.complaints.push(Complaint::Here(value.span.clone(), message));
+        uses.diagnostics.push(UseDiagnostic::Here(value.span.clone(), message));
         return uses;
     };
     let mut names: HashSet<String> = recipe.nodes().iter().map(|named| named.name.clone()).collect();
     for (name, value) in entries {
-        let here = |message: String| Complaint::Here(name.span.clone(), message);
+        let here = |message: String| UseDiagnostic::Here(name.span.clone(), message);
         if !is_name(&name.value) || name.value.contains('/') {
-            uses.complaints.push(here(format!("`{}` cannot be the name of a used recipe: names are 1 to 64 letters, digits, `_` and `-` and do not begin with a digit", name.value)));
+            uses.diagnostics.push(here(format!("`{}` cannot be the name of a used recipe: names are 1 to 64 letters, digits, `_` and `-` and do not begin with a digit", name.value)));
         } else if !names.insert(name.value.clone()) {
-            uses.complaints
+            uses.diagnostics
                 .push(here(format!("there is already a node or a used recipe named `{}`: rename one", name.value)));
-        } else if let Err(complaint) = one(name, value, recipe, parameters, origin, &mut uses) {
-            uses.complaints.push(complaint);
+        } else if let Err(diagnostic) = one(name, value, recipe, parameters, origin, &mut uses) {
+            uses.diagnostics.push(diagnostic);
         }
     }
     uses
@@ -186,8 +190,8 @@ struct Asked<'v> {
     seed: u64,
 }
 
-fn asked<'v>(name: &Spanned<String>, value: &'v Spanned<Value>) -> std::result::Result<Asked<'v>, Complaint> {
-    let here = |span: &Span, message: String| Complaint::Here(span.clone(), message);
+fn asked<'v>(name: &Spanned<String>, value: &'v Spanned<Value>) -> std::result::Result<Asked<'v>, UseDiagnostic> {
+    let here = |span: &Span, message: String| UseDiagnostic::Here(span.clone(), message);
     let Value::Table(entries) = &value.value else {
         let message =
             format!("the used recipe `{}` must be a table with a `recipe`, not {}", name.value, value.value.describe());
@@ -270,18 +274,18 @@ fn one(
     parameters: &mut Parameters,
     origin: &Origin,
     uses: &mut Uses,
-) -> std::result::Result<(), Complaint> {
+) -> std::result::Result<(), UseDiagnostic> {
     let asked = asked(name, value)?;
     let (used, file) = origin.read(asked.file, &asked.set).map_err(|error| {
         // Without a place of its own it is about what is asked for here.
         match error.diagnostics() {
-            [one] if one.place.is_none() => Complaint::Here(asked.recipe.span.clone(), one.message.clone()),
-            _ => Complaint::There(error),
+            [one] if one.place.is_none() => UseDiagnostic::Here(asked.recipe.span.clone(), one.message.clone()),
+            _ => UseDiagnostic::There(error),
         }
     })?;
     if recipe.nodes().len() + used.nodes().len() > MAX_NODES {
         let message = format!("with this recipe there would be more than {MAX_NODES} nodes");
-        return Err(Complaint::Here(name.span.clone(), message));
+        return Err(UseDiagnostic::Here(name.span.clone(), message));
     }
     for (key, _) in &asked.inputs {
         let inputs = used
@@ -294,7 +298,7 @@ fn one(
                 None => format!("{} has no inputs, which are nodes of the op `input`", asked.file),
                 Some(_) => format!("{} has no input `{}`; {}", asked.file, key.value, suggestion(&key.value, inputs)),
             };
-            return Err(Complaint::Here(key.span.clone(), message));
+            return Err(UseDiagnostic::Here(key.span.clone(), message));
         }
     }
     let prefixed = |input: &Input| match input {

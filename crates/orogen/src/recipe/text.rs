@@ -1,9 +1,12 @@
 //! A recipe's text and the places in it.
 
-use super::document::LONGEST_TEXT;
-use crate::error::{Diagnostic, Error, ErrorKind, Location};
+use crate::error::{Diagnostic, Error, ErrorKind, Location, Result};
 use crate::value::Span;
 use crate::words::count;
+use std::path::Path;
+
+/// Longest text of a recipe, in bytes.
+pub const LONGEST_TEXT: u64 = 16 << 20;
 
 /// A text and what diagnostics call it.
 pub struct Text<'a> {
@@ -80,4 +83,18 @@ pub fn too_long(name: &str) -> Error {
             crate::words::bytes(LONGEST_TEXT)
         ),
     )
+}
+
+/// What a file holds, if it is text.
+pub fn text_of(content: Vec<u8>, path: &Path) -> Result<String> {
+    String::from_utf8(content).map_err(|fault| {
+        Error::new(
+            ErrorKind::Recipe,
+            format!(
+                "{} is not a recipe: byte {} is not UTF-8 text; a recipe is a TOML or JSON file",
+                path.display(),
+                fault.utf8_error().valid_up_to()
+            ),
+        )
+    })
 }
