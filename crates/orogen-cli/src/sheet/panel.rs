@@ -59,7 +59,7 @@ mod tests {
             let Pictures { heights, shade } = draw(shown, 100);
             assert_eq!((heights.len(), shade.len()), (10_000, 10_000));
             assert!(heights.iter().min() <= Some(&3) && heights.iter().max() >= Some(&252), "{}", shown.name);
-            // PreparedDem that rises to the south-east faces the light.
+            // Ground that rises to the south-east faces the light.
             let rising = |k: usize| i32::from(heights[k + 101]) - i32::from(heights[k - 101]);
             let inner = (101..9_899).filter(|k| !matches!(k % 100, 0 | 99));
             let agree: i64 = inner.map(|k| i64::from(rising(k)) * (i64::from(shade[k]) - 180)).sum();

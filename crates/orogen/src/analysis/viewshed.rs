@@ -35,7 +35,7 @@ pub const BEYOND: f32 = -1.0;
 /// How many metres above the ground of each sample something must rise to be seen; 0 where the ground itself is seen, [`BEYOND`] past the radius.
 ///
 /// Exact lines of sight (R3; Franklin and Ray, "Higher isn't necessarily better: visibility algorithms and experiments", 1994): from the eye to every sample,
-/// the ground taken as linear between the samples wherever the line crosses a column (or a row, whichever there are more of). MaxPyramid that cannot rise above
+/// the ground taken as linear between the samples wherever the line crosses a column (or a row, whichever there are more of). Ground that cannot rise above
 /// what was passed is skipped in squares of which the highest sample is known, which changes no result. Holds 15 bytes a sample. Rows side by side.
 ///
 /// # Errors

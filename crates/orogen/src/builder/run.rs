@@ -61,7 +61,7 @@ pub struct Report {
 ///
 /// ```
 /// use orogen::builder::run::{Build, Start};
-/// use orogen::builder::order::{Form, BuildSpec};
+/// use orogen::builder::spec::{BuildSpec, Form};
 /// use orogen::file::OutputPolicy;
 /// use orogen::{Progress, Window, World};
 ///

@@ -7,14 +7,14 @@
 //!
 //! ```
 //! use orogen::file::OutputPolicy;
-//! use orogen::export::{options::Options, registry, run, subject::LayerSource};
+//! use orogen::export::{layer_source::LayerSource, options::Options, registry, run};
 //! use orogen::{Progress, Window, World};
 //!
 //! let world = World::open(orogen::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
 //! let path = std::env::temp_dir().join(format!("orogen-doc-{}.npy", std::process::id()));
 //! let progress = Progress::none();
-//! let subject = LayerSource::new(&world, "height", Window::new(100, 80, 20.0), &progress)?;
-//! run::to_file(registry::of_path(&path)?, subject, &Options::default(), &OutputPolicy::default().output(&path)?)?;
+//! let source = LayerSource::new(&world, "height", Window::new(100, 80, 20.0), &progress)?;
+//! run::to_file(registry::of_path(&path)?, source, &Options::default(), &OutputPolicy::default().output(&path)?)?;
 //! # std::fs::remove_file(&path).ok();
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -9,7 +9,7 @@ use crate::error::{Error, ErrorKind, Result};
 pub struct OptionSpec {
     /// Its name, in lower case with hyphens: `bits` for `--bits`.
     pub name: &'static str,
-    /// What a help calls its value: `N`; empty where it value_kind none.
+    /// What a help calls its value: `N`; empty where takes none.
     pub value: &'static str,
     /// One line for the help, with unit and default.
     pub about: &'static str,

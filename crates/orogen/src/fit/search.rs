@@ -200,7 +200,7 @@ struct Trial<'a> {
 }
 
 impl Trial<'_> {
-    /// How far a values's land is from the target.
+    /// How far the land of these values is from the target.
     fn distance(&mut self, values: &ParamValues) -> Result<f64> {
         self.tried += 1;
         let (_, distance) = self.look(values, self.effort.seed, 1)?;
@@ -247,7 +247,7 @@ impl Trial<'_> {
         Ok(Found { tried: self.tried, ..best })
     }
 
-    /// The windows of a world of a values, stretched so that the middle ones of their hypsometric integrals and mean slopes are the
+    /// The windows of a world of these values, stretched so that the middle ones of their hypsometric integrals and mean slopes are the
     /// target's.
     fn make(
         &self,
@@ -294,7 +294,7 @@ impl Trial<'_> {
     }
 }
 
-/// A world of a values, `across` windows wide, and its samples that are looked at.
+/// A world of these values, `across` windows wide, and its samples that are looked at.
 fn trial_world(
     target: &FitTarget,
     values: &ParamValues,

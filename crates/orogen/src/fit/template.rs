@@ -135,7 +135,7 @@ impl View {
     }
 }
 
-/// The recipe of a values, in a world of so many cells, up to whose edges rivers have cut. Its node `soft` is the land before it is stretched.
+/// The recipe of these values, in a world of so many cells, up to whose edges rivers have cut. Its node `soft` is the land before it is stretched.
 pub fn recipe(values: &ParamValues, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64) -> Recipe {
     written(values, stretch, size, cell, seed, Some(View::new(size, cell, MARGIN)))
 }

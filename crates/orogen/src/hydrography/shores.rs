@@ -17,7 +17,7 @@ const HARDLY: f32 = 1e-3;
 /// the left of the coast of the sea.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Shores {
-    /// LodConfig, whose last point repeats their first; coasts of the sea may be open.
+    /// Rings, whose last point repeats their first; coasts of the sea may be open.
     pub lines: Vec<Path>,
     /// What each is the shore of: the number of a lake, or 0 for the sea.
     pub waters: Vec<u32>,
@@ -115,7 +115,7 @@ fn wet_beside([x, y]: [f64; 2], labels: &Grid<u32>) -> Option<u32> {
     [there(west, north), there(east, south)].into_iter().flatten().find(|label| *label > 0)
 }
 
-/// LodConfig as parts: each outer ring with the holes that lie in it, the largest first.
+/// Rings as parts: each outer ring with the holes that lie in it, the largest first.
 pub fn nested(rings: Vec<&Path>) -> Vec<Vec<Path>> {
     let (outer, holes): (Vec<&Path>, Vec<&Path>) = rings.into_iter().partition(|ring| twice_area(ring) > 0.0);
     let mut parts: Vec<Vec<Path>> = outer.into_iter().map(|ring| vec![ring.clone()]).collect();

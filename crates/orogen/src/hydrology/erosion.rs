@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn slopes_between_irregular_points_do_not_face_the_grids_directions() {
-        // Substrate that rises until it stands at the talus angle all over.
+        // Ground that rises until it stands at the talus angle all over.
         let heights = samples::hills(160, 160, 3);
         let aligned = |jitter: f64| {
             let law = StreamPower { uplift: 1.0, erodibility: 1e-6, max_slope: 0.8, ..StreamPower::default() };

@@ -92,7 +92,7 @@ impl Sky {
         const RINGS: usize = 24;
         const SECTORS: usize = 24;
         for k in 0..RINGS {
-            // LodConfig of equal parts of sin^2: each gives level ground as much.
+            // Rings of equal parts of sin^2: each gives level ground as much.
             let sin = ((k as f64 + 0.5) / RINGS as f64).sqrt();
             let elevation = libm::asin(sin).to_degrees();
             for a in 0..SECTORS {

@@ -21,7 +21,7 @@ use crate::progress::Progress;
 pub struct Sheet {
     /// What is on it.
     pub scene: Scene,
-    /// FontSet of its title that no font at hand has; they are left out.
+    /// Letters of its title that no font at hand has; they are left out.
     pub lacking: Vec<char>,
     /// Metres from one contour to the next, if there are contours.
     pub interval: Option<f64>,

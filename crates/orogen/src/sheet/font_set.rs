@@ -13,7 +13,7 @@ pub struct FontSet {
     faces: [FontRef<'static>; 3],
     /// A font of the system, for letters that the built-in one lacks.
     other: Option<FontVec>,
-    /// FontSet that no font has.
+    /// Letters that no font has.
     lacking: Vec<char>,
 }
 
@@ -65,7 +65,7 @@ impl FontSet {
         Ok(FontSet { faces, other, lacking })
     }
 
-    /// FontSet that neither the built-in font nor any of the system's has; they are left out.
+    /// Letters that neither the built-in font nor any of the system's has; they are left out.
     pub fn lacking(&self) -> &[char] {
         &self.lacking
     }

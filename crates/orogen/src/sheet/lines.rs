@@ -14,7 +14,7 @@ const CLOSEST: f64 = 0.5;
 const FEWEST: f64 = 8.0;
 const MOST: f64 = 60.0;
 
-/// LodConfig shorter than this are left out, in millimetres.
+/// Rings shorter than this are left out, in millimetres.
 const SHORTEST: f64 = 3.0;
 
 /// Round distances between contours, as maps have them.
