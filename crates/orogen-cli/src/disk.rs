@@ -61,7 +61,7 @@ mod tests {
         let free = free_at(&folder.join("not/yet/there"));
         assert!(free.is_some_and(|free| free > 0), "{free:?}");
         assert_eq!(free.is_some(), free_at(Path::new("x")).is_some());
-        assert!(afford(&folder, 2, Some(1)).unwrap_err().to_string().contains("there is room for 1 byte"));
+        assert!(afford(&folder, 2, Some(1)).unwrap_err().to_string().contains("1 byte free"));
         // Of the file system that a path is on, as the system's own tool tells: of all that are mounted, those in memory among them.
         #[cfg(unix)]
         for mounted in ["/", "/dev/shm", "/run", "/tmp", "."] {

@@ -192,7 +192,7 @@ fn files_that_lie_otherwise_are_understood_or_refused() {
     let webp = Request { band: Some(1), allowed: 1 << 20 };
     let why = import::read(&corpus().join("webp.tif"), webp).unwrap_err().to_string();
     assert!(why.contains("compressed with WebP"), "{why}");
-    assert!(refused("all-nodata.tif").contains("37 x 23 samples are missing"));
+    assert!(refused("all-nodata.tif").contains("37 x 23 samples are nodata"));
     let sparse = read("sparse.tif");
     assert_eq!((sparse.width, sparse.height, sparse.missing()), (64, 48, 64 * 48 - 256));
     assert_eq!(sparse.heights[20 * 64 + 20], 7.0);

@@ -331,7 +331,7 @@ fn layers_are_read_by_name_and_only_those_wanted_are_made() {
     let error = open("s.sout").err().unwrap().to_string();
     assert!(error.contains("has no layer `sout`; did you mean `south`?"), "{error}");
     let error = open("a.flow").err().unwrap().to_string();
-    assert!(error.contains("has no layer `flow`; there is `height`"), "{error}");
+    assert!(error.contains("has no layer `flow`; available: `height`"), "{error}");
     let error = world.window("s.est", &window).unwrap_err().to_string();
     assert!(error.contains("did you mean `east`?"), "{error}");
 }
@@ -419,9 +419,9 @@ fn windows_and_points_that_are_not_there_are_named() {
     for (window, said) in [
         (window(-1, 0, 5, 5, 10.0), "not inside the world"),
         (window(0, 70, 5, 12, 10.0), "(0, 0) to (96, 80)"),
-        (window(0, 0, 0, 5, 10.0), "holds nothing"),
-        (window(0, 0, 5, 5, 0.0), "cell of 0"),
-        (window(0, 0, 5, 5, f64::NAN), "cell of NaN"),
+        (window(0, 0, 0, 5, 10.0), "is empty"),
+        (window(0, 0, 5, 5, 0.0), "not 0"),
+        (window(0, 0, 5, 5, f64::NAN), "not NaN"),
         (window(i64::MAX - 3, 0, 5, 5, 10.0), "2^53"),
         (window(0, 0, usize::MAX, 5, 10.0), "2^53"),
     ] {

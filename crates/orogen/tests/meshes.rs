@@ -424,7 +424,7 @@ fn holes_are_left_out_or_refused() {
     assert_eq!(glb.mesh(0).triangles, mesh.triangles);
     let print = Print { size: 100.0, base: 1.0 };
     let error = stl::write(&mut Vec::new(), &surface(&grid, &shape), &print).unwrap_err().to_string();
-    assert!(error.contains("1 of 400 samples are missing"), "{error}");
+    assert!(error.contains("1 of 400 samples are nodata"), "{error}");
 }
 
 /// ValueKind `left` bytes, then fails.
@@ -553,7 +553,7 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
 
     for (name, given, window, expect) in [
         ("x.glb", &[][..], Window::new(1, 9, 20.0), "at least 2 x 2 samples, and there are 1 x 9"),
-        ("x.obj", &[("height-curve", "0:0,0:1")], window, "0 comes after 0"),
+        ("x.obj", &[("height-curve", "0:0,0:1")], window, "0 follows 0"),
         ("x.ply", &[("color", "texture")], window, "cannot hold a texture; use --color vertex"),
     ] {
         let why = export(&world, window, &folder.join(name), given).unwrap_err();

@@ -165,7 +165,14 @@ fn recipe(parameters: &str, node: &str) -> String {
 #[test]
 fn what_is_wrong_is_told_where_it_is_wrong() {
     for (parameters, node, line, column, length, expect) in [
-        ("", "op = \"fbm\"\nwavelength = \"= 2 * relief\"", 9, 21, 6, "there is no parameter `relief`; there is none"),
+        (
+            "",
+            "op = \"fbm\"\nwavelength = \"= 2 * relief\"",
+            9,
+            21,
+            6,
+            "there is no parameter `relief`; none is available",
+        ),
         ("parameters.relief = 3", "op = \"fbm\"\nwavelength = \"= 2 * relif\"", 9, 21, 5, "did you mean `relief`?"),
         ("parameters.a = 3", "op = \"fbm\"\nwavelength = '= 2 * (a'", 9, 21, 1, "the `)` that closes this"),
         ("parameters.a = 3", "op = \"fbm\"\nwavelength = \"= a - 3\"", 9, 14, 9, "`wavelength` must be"),

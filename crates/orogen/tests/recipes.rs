@@ -46,7 +46,7 @@ fn wrong_recipes_are_told_where_and_what() {
     complains(
         &format!("orogen = 1\n[world]\nsize = 1e9\ncell = 0.001\n[nodes.a]\nop = \"fbm\"\n{OUT}"),
         "2:2",
-        &["samples along a side", "raise `cell`"],
+        &["samples along a side", "Raise `cell`"],
     );
     complains(&format!("orogen = 1\n[world]\nsize = 5\ncell = 10\n[nodes.a]\nop = \"fbm\"\n{OUT}"), "2:2", &["`cell`"]);
     complains(&format!("orogen = 1\nnodes = 1\n{OUT}"), "2:9", &["`nodes` must be a table"]);
@@ -63,7 +63,7 @@ fn wrong_recipes_are_told_where_and_what() {
     complains(&node("op = \"fbm\"\ngain = nan"), "4:8", &["finite", "nan"]);
     complains(&node("op = \"fbm\"\nbasis = \"perln\""), "4:9", &["one of", "did you mean \"perlin\"?"]);
     complains(&node("op = \"blur\""), "2:8", &["`source`", "missing"]);
-    complains(&node("op = \"blur\"\nsource = \"b\""), "4:10", &["no node `b`", "`a`"]);
+    complains(&node("op = \"blur\"\nsource = \"b\""), "4:10", &["unknown node `b`", "`a`"]);
     complains(&node("op = \"blur\"\nsource = nan"), "4:10", &["finite number"]);
     complains(&node("op = \"blur\"\nsource = 1e300"), "4:10", &["not a valid sample value"]);
     complains(&node("op = \"blur\"\nsource = [1]"), "4:10", &["must name a node"]);
@@ -83,17 +83,17 @@ fn wrong_recipes_are_told_where_and_what() {
     );
     complains("orogen = 1\n[nodes.a]\nop = \"fbm\"\n[nodes.a]\nop = \"fbm\"\n", "4:", &["not TOML", "duplicate"]);
     complains("orogen = 1\n[nodes.a]\nop = \"fbm\"\n[outputs]\n", "4:1", &["`outputs` is empty"]);
-    complains("orogen = 1\n[nodes.a]\nop = \"fbm\"\n[outputs]\nheight = \"b\"\n", "5:10", &["no node `b`", "`a`"]);
+    complains("orogen = 1\n[nodes.a]\nop = \"fbm\"\n[outputs]\nheight = \"b\"\n", "5:10", &["unknown node `b`", "`a`"]);
     let cycle = "orogen = 1\n[nodes.a]\nop = \"blur\"\nsource = \"c\"\n[nodes.b]\nop = \"blur\"\nsource = \"a\"\n\
                  [nodes.c]\nop = \"blur\"\nsource = \"b\"\n[outputs]\nheight = \"a\"\n";
-    complains(cycle, "", &["circle", "a", "b", "c"]);
+    complains(cycle, "", &["cycle", "a", "b", "c"]);
 }
 
 #[test]
 fn wrong_json_is_told_too() {
     complains("{", "1:", &["not JSON"]);
     complains("{}", "1:1", &["orogen = 1"]);
-    complains("{\"orogen\": 1, \"orogen\": 1}", "1:15", &["stands twice"]);
+    complains("{\"orogen\": 1, \"orogen\": 1}", "1:15", &["appears twice"]);
     complains(
         "{\"orogen\": 1, \"nodes\": {\"a\": {\"op\": \"fbm\"}, \"a\": {\"op\": \"fbm\"}}}",
         "1:45",
@@ -126,7 +126,7 @@ fn depth_and_size_have_bounds() {
         missing.push_str(&format!("[nodes.n{i}]\nop=\"blur\"\nsource=\"m{i}\"\n"));
     }
     missing.push_str("[outputs]\nheight = 1\n");
-    complains(&missing, "4:8", &["no node `m0`"]);
+    complains(&missing, "4:8", &["unknown node `m0`"]);
 }
 
 #[test]

@@ -116,7 +116,7 @@ fn memory_disk_and_folder_make_the_same_bits() {
                 moved += on_disk;
                 assert!(memory.is_none_or(|memory| world.memory_of(&plan) <= memory), "{}", world.explain(&plan));
                 assert_eq!(world.disk_of(&plan) > 0, on_disk > 0);
-                assert_eq!(world.explain(&plan).contains("MiB while it runs"), on_disk > 0);
+                assert_eq!(world.explain(&plan).contains("MiB temporarily"), on_disk > 0);
                 same(&name, &whole, &layers(&world, part));
             }
             assert_eq!(moved > 0, memory.is_some(), "{name}");

@@ -229,7 +229,7 @@ fn what_is_wrong_with_a_use() {
         assert_eq!((place.line, place.column), (line, column), "{node}\n{error}");
     }
     folder.write("top.toml", &format!("orogen = 1\n[use.part]\n{hills}\n[outputs]\nheight = \"part.deep\"\n"));
-    assert!(folder.read("top.toml").unwrap_err().contains("no node `part`"));
+    assert!(folder.read("top.toml").unwrap_err().contains("unknown node `part`"));
 }
 
 #[test]

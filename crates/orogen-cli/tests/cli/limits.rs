@@ -116,6 +116,8 @@ fn cancel(writer: &Writer) -> bool {
         "32" if writer.arguments[0] == "noise" => "1024",
         "64x36" => "4000x3000",
         "30" if writer.arguments[0] == "map" => "300",
+        "64" if writer.arguments[0] == "variants" => "2000",
+        "2" if writer.arguments[0] == "variants" => "60",
         argument => argument,
     });
     match writer.arguments[0] {
@@ -189,7 +191,7 @@ fn stdin(writer: &Writer) -> bool {
     assert!(ended.status.success(), "{:?}: {said}", writer.arguments);
     for (file, first) in writer.files.iter().zip(&first) {
         // Summaries tell the time that it took, sheets and reports the name of the recipe.
-        let named = file.ends_with(".json") || matches!(writer.arguments[0], "map" | "analyze");
+        let named = file.ends_with(".json") || matches!(writer.arguments[0], "map" | "analyze" | "variants");
         assert!(named || other.read(file) == *first, "{:?}: {file}", writer.arguments);
     }
     true

@@ -356,7 +356,7 @@ fn a_begun_build_is_not_begun_again() {
     let other = BuildSpec { window: spec.window.at(0, 0), ..spec };
     let error =
         Build::new(&world, &other, &output(&folder.out())).unwrap().run(Start::Resume, &Progress::none()).unwrap_err();
-    assert!(error.to_string().contains("it was begun over 101 x 77 samples at (7, 11)"), "{error}");
+    assert!(error.to_string().contains("it was started over 101 x 77 samples at (7, 11)"), "{error}");
 }
 
 #[test]
@@ -390,9 +390,9 @@ fn impossible_orders_are_sentences() {
     check(Form::Cog, window, None, &["height", "rough"], "a GeoTIFF holds one layer, and 2 were chosen");
     check(Form::Xyz(Encoding::Terrarium), window, None, &["height", "rough"], "an XYZ tree holds one layer");
     check(Form::Cog, window, Some(100), &["height"], "a multiple of 16, not 100");
-    check(Form::Xyz(Encoding::Terrarium), window, Some(100), &["height"], "256 or 512 samples a side, not 100");
-    check(Form::Tiles(Samples::R32), window, Some(1), &["height"], "2 to 16384 samples a side, not 1");
-    check(Form::Zarr, window, Some(10_000), &["height"], "1 to 8192 samples a side");
+    check(Form::Xyz(Encoding::Terrarium), window, Some(100), &["height"], "256 or 512 samples per side, not 100");
+    check(Form::Tiles(Samples::R32), window, Some(1), &["height"], "2 to 16384 samples per side, not 1");
+    check(Form::Zarr, window, Some(10_000), &["height"], "1 to 8192 samples per side");
     check(Form::Zarr, Window::new(500, 5, 5.0), None, &["height"], "is not inside the world");
     let folder = Folder::new();
     fs::write(folder.out(), "a file").unwrap();

@@ -145,14 +145,14 @@ mod tests {
         let good = LodConfig::default();
         assert!(good.check().is_ok());
         for (lod, said) in [
-            (LodConfig { cells: 0, ..good }, "0 cells"),
-            (LodConfig { cells: 33, ..good }, "even number"),
-            (LodConfig { cell: f64::NAN, ..good }, "NaN m"),
+            (LodConfig { cells: 0, ..good }, "from 2 to 4096, not 0"),
+            (LodConfig { cells: 33, ..good }, "must be even"),
+            (LodConfig { cell: f64::NAN, ..good }, "not NaN"),
             (LodConfig { levels: 0, ..good }, "1 to 24"),
             (LodConfig { levels: 25, ..good }, "1 to 24"),
             (LodConfig { detail: 1.2, ..good }, "1 + slack = 1.25"),
-            (LodConfig { slack: -0.1, ..good }, "slack of -0.1"),
-            (LodConfig { range: 0.0, ..good }, "range of 0 m"),
+            (LodConfig { slack: -0.1, ..good }, "slack must be from 0 to 1, not -0.1"),
+            (LodConfig { range: 0.0, ..good }, "greater than 0 m, not 0"),
             (LodConfig { range: 1e9, ..good }, "more levels"),
         ] {
             let error = lod.check().unwrap_err().to_string();

@@ -79,7 +79,7 @@ mod tests {
             assert_eq!(every(interval, low, high).unwrap(), expect, "{interval} {low} {high}");
         }
         for interval in [0.0, -5.0, f64::NAN, f64::INFINITY] {
-            assert!(every(interval, 0.0, 1.0).unwrap_err().to_string().contains("more than 0 metres"));
+            assert!(every(interval, 0.0, 1.0).unwrap_err().to_string().contains("must be greater than 0 m"));
         }
         assert!(every(1e-3, 0.0, 3000.0).unwrap_err().to_string().contains("use a larger interval"));
         assert!(every(1e-300, 0.0, 1.0).is_err());
@@ -88,7 +88,7 @@ mod tests {
     #[test]
     fn levels_given_are_sorted_and_single() {
         assert_eq!(given(&[5.0, -1.0, 5.0, 2.5]).unwrap(), [-1.0, 2.5, 5.0]);
-        assert!(given(&[f64::NAN]).unwrap_err().to_string().contains("NaN is no height"));
+        assert!(given(&[f64::NAN]).unwrap_err().to_string().contains("NaN is not a valid contour height"));
     }
 
     #[test]

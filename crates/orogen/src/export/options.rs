@@ -201,7 +201,7 @@ mod tests {
             (ValueKind::Range, "7", "two numbers"),
             (ValueKind::Point, "7", "two numbers"),
             (ValueKind::Point, "7,inf", "two numbers"),
-            (ValueKind::Word(&["a", "b", "c"]), "d", "it is a, b or c"),
+            (ValueKind::Word(&["a", "b", "c"]), "d", "it must be a, b or c"),
         ] {
             let why = given(value_kind, text).unwrap_err();
             assert!(why.contains(expect), "{why}");

@@ -67,7 +67,7 @@ mod tests {
         assert_eq!(half.0, [5.0, 0.0, 102.5, 0.0, -10.0, 470.0]);
         let turned = Affine([10.0, 0.0, 105.0, 0.0, 20.0, 490.0]).lattice(4).unwrap();
         assert_eq!((turned.origin, turned.from_south), ([105.0, 550.0], true));
-        assert!(Affine([10.0, 1.0, 0.0, 0.0, -10.0, 0.0]).lattice(4).unwrap_err().contains("turned"));
+        assert!(Affine([10.0, 1.0, 0.0, 0.0, -10.0, 0.0]).lattice(4).unwrap_err().contains("rotated"));
         assert!(Affine([-10.0, 0.0, 0.0, 0.0, -10.0, 0.0]).lattice(4).is_err());
     }
 }

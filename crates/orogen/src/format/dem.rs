@@ -254,7 +254,7 @@ mod tests {
         let dem = Dem::new([4, 1], vec![1.0, f32::INFINITY, f32::MIN, f32::NAN], None).unwrap();
         assert_eq!((dem.missing(), dem.heights[0]), (3, 1.0));
         let why = Dem::new([2, 1], vec![f32::NAN; 2], None).unwrap_err();
-        assert!(why.contains("2 x 1 samples are missing"), "{why}");
+        assert!(why.contains("2 x 1 samples are nodata"), "{why}");
     }
 
     #[test]
@@ -263,6 +263,6 @@ mod tests {
         let why = afford(1 << 16, 1 << 16, 1 << 30).unwrap_err();
         assert!(why.contains("16 GiB") && why.contains("1.0 GiB"), "{why}");
         assert!(afford(u64::MAX, u64::MAX, u64::MAX).is_err());
-        assert!(afford(0, 5, 100).unwrap_err().contains("there are none"));
+        assert!(afford(0, 5, 100).unwrap_err().contains("0 x 5 samples, which is empty"));
     }
 }

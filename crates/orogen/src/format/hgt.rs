@@ -125,7 +125,7 @@ mod tests {
     fn other_sizes_are_sentences() {
         for bytes in [vec![], vec![0; 77]] {
             let error = read(&mut Cursor::new(&bytes), "N00E000.hgt", 1 << 30).unwrap_err().to_string();
-            assert!(error.contains(&format!("this has {} bytes", bytes.len())), "{error}");
+            assert!(error.contains(&format!("not {} bytes", bytes.len())), "{error}");
         }
         let void = [0x80, 0].repeat(1201 * 1201);
         assert!(

@@ -448,7 +448,10 @@ mod tests {
         }
         assert!(read_bytes(b"\x93NUMPY\x09\x01").unwrap_err().to_string().contains("version 9.1"));
         assert!(
-            read_bytes(b"\x93NUMPY\x02\x00\xff\xff\xff\xff").unwrap_err().to_string().contains("claims 4294967295")
+            read_bytes(b"\x93NUMPY\x02\x00\xff\xff\xff\xff")
+                .unwrap_err()
+                .to_string()
+                .contains("declares 4294967295 bytes")
         );
     }
 }

@@ -138,7 +138,7 @@ mod tests {
             let read = read(&mut Cursor::new(vec![0; bytes]), "a.r16", Sample::U16, sidecar, 1 << 20);
             read.unwrap_err().to_string()
         };
-        assert!(error(&sidecar(), 29).contains("are 30 bytes, and it has 29"));
+        assert!(error(&sidecar(), 29).contains("need 30 bytes, and it has 29"));
         assert!(error(&Sidecar::default(), 30).contains("width and height"));
         assert!(error(&Sidecar { low: None, ..sidecar() }, 30).contains("low and high"));
         assert!(error(&Sidecar { width: Some(1 << 40), ..sidecar() }, 30).contains("is allowed"));

@@ -271,7 +271,7 @@ mod tests {
         for (text, expect) in [
             ("width = 'a'", "not a valid sidecar for heights"),
             ("= 3", "not a valid sidecar for heights"),
-            ("cell = 0", "`cell` is not above 0"),
+            ("cell = 0", "`cell` is not greater than 0"),
             ("low = nan", "not both numbers"),
         ] {
             let why = Sidecar::parse(text, true).unwrap_err();

@@ -176,7 +176,7 @@ mod tests {
         );
         assert!(with("<KernelFilteredSource/>").unwrap_err().contains("KernelFilteredSource"));
         assert!(with("<SimpleSource/>").unwrap_err().contains("has no file name"));
-        assert!(parse("<a/>").unwrap_err().contains("no virtual raster"));
+        assert!(parse("<a/>").unwrap_err().contains("not a virtual raster"));
         assert!(parse("II*").unwrap_err().contains("not valid XML"));
     }
 }

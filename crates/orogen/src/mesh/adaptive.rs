@@ -239,7 +239,7 @@ mod tests {
         says(&land(5, 5), f64::NAN, "not NaN");
         let mut holes = land(5, 5);
         holes.row_mut(2)[3] = f32::NAN;
-        says(&holes, 1.0, "1 of 25 samples are missing");
+        says(&holes, 1.0, "1 of 25 samples are nodata");
     }
 
     #[test]
@@ -269,6 +269,6 @@ mod tests {
         }
         let mut lonely = Grid::filled(Window::new(3, 3, 1.0), f32::NAN);
         lonely.row_mut(1)[1] = 1.0;
-        assert!(Shape::lattice(&lonely, 1).unwrap_err().to_string().contains("no triangle"));
+        assert!(Shape::lattice(&lonely, 1).unwrap_err().to_string().contains("no three neighbouring samples"));
     }
 }

@@ -106,7 +106,7 @@ mod tests {
             ("0:0", "a curve needs at least two points"),
             ("0:0,1", "`1` is not two numbers"),
             ("0:0,nan:1", "`nan:1` is not"),
-            ("0:0,0.5:1,0.5:2", "0.5 comes after 0.5"),
+            ("0:0,0.5:1,0.5:2", "0.5 follows 0.5"),
         ] {
             let error = HeightCurve::parse(text).unwrap_err().to_string();
             assert!(error.contains(expect), "{error}");

@@ -192,14 +192,14 @@ mod tests {
     fn what_is_wrong_is_told_with_its_line() {
         for (text, expect) in [
             ("", "no line of two heights"),
-            ("0 red 1", "line 1: a line has a height"),
-            ("0 red 1 blurple", "line 1: `blurple` is no colour"),
+            ("0 red 1", "line 1: each line must have a height"),
+            ("0 red 1 blurple", "line 1: `blurple` is not a colour"),
             ("# x\n0 red 1 1/2/256", "line 2: `1/2/256`"),
-            ("x red 1 blue", "line 1: `x` is no height"),
-            ("# COLOR_MODEL = LAB", "line 1: the colour model LAB"),
+            ("x red 1 blue", "line 1: `x` is not a height"),
+            ("# COLOR_MODEL = LAB", "line 1: unknown colour model LAB"),
             ("5 red 9 blue\n0 red 5 blue", "ascending"),
             ("0 400-1-1 1 red", "`400-1-1`"),
-            ("B", "line 1: `` is no colour"),
+            ("B", "line 1: `` is not a colour"),
         ] {
             let why = parse("t", text).unwrap_err();
             assert!(why.contains(expect), "{why}");

@@ -90,10 +90,10 @@ mod tests {
     #[test]
     fn what_is_wrong_is_told_with_its_line() {
         for (text, expect) in [
-            ("10 1 2 3\nhigh 1 2 3", "line 2: `high` is no height"),
-            ("10 1 2", "line 1: after the height"),
-            ("10 1 2 256", "line 1: `256` is no part"),
-            ("10 blurple", "line 1: `blurple` is no colour"),
+            ("10 1 2 3\nhigh 1 2 3", "line 2: `high` is not a height"),
+            ("10 1 2", "line 1: the height must be followed"),
+            ("10 1 2 256", "line 1: `256` is not a colour component"),
+            ("10 blurple", "line 1: `blurple` is not a colour"),
             ("1e300 1 2 3", "line 1: `1e300`"),
             ("# nothing\n", "no line of a height"),
         ] {

@@ -133,7 +133,7 @@ mod tests {
         assert!(colors.iter().all(|color| color.map(encode) == [10, 20, 30]));
         let empty = png(2, 1, ::png::ColorType::Rgba, &[0; 8]);
         assert!(parse(std::io::Cursor::new(empty), 3).unwrap_err().contains("no opaque pixel"));
-        assert!(parse(std::io::Cursor::new(b"GIF89a"), 3).unwrap_err().contains("no PNG"));
+        assert!(parse(std::io::Cursor::new(b"GIF89a"), 3).unwrap_err().contains("not a PNG"));
         let mut cut = png(64, 64, ::png::ColorType::Grayscale, &vec![7; 4096]);
         cut.truncate(60);
         assert!(parse(std::io::Cursor::new(cut), 3).is_err());

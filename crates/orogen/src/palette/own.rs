@@ -94,11 +94,11 @@ mod tests {
         for (text, expect) in [
             ("stops = []", "no stops"),
             ("name = \"x\"", "stops"),
-            ("stops = [[0, \"#12\"]]", "`#12` is no colour"),
+            ("stops = [[0, \"#12\"]]", "`#12` is not a colour"),
             ("stops = [[1, \"red\"], [0, \"red\"]]", "ascending"),
-            ("stops = [[inf, \"red\"]]", "stand at inf"),
-            ("unit = \"feet\"\nstops = [[0, \"red\"]]", "\"feet\" is not known"),
-            ("mix = \"lab\"\nstops = [[0, \"red\"]]", "\"lab\" is not known"),
+            ("stops = [[inf, \"red\"]]", "inf is not a valid position"),
+            ("unit = \"feet\"\nstops = [[0, \"red\"]]", "unknown unit \"feet\""),
+            ("mix = \"lab\"\nstops = [[0, \"red\"]]", "unknown mix \"lab\""),
             ("colour = 1\nstops = [[0, \"red\"]]", "colour"),
             ("stops = [[0", ""),
         ] {

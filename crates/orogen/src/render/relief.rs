@@ -284,7 +284,7 @@ mod tests {
         assert!(relief.bed().iter().all(|z| *z == 0.0));
         let nothing = Grid::filled(Window::new(5, 4, 3.0), f32::NAN);
         let error = Relief::new(&land(&nothing), 1.0).unwrap_err().to_string();
-        assert!(error.contains("no height"), "{error}");
+        assert!(error.contains("no finite heights"), "{error}");
         let line = Grid::filled(Window::new(5, 1, 3.0), 1.0);
         let error = Relief::new(&land(&line), 1.0).unwrap_err().to_string();
         assert!(error.contains("5 x 1"), "{error}");

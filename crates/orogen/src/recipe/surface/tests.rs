@@ -86,7 +86,7 @@ fn faults_stand_at_their_keys() {
         assert!(from.starts_with(column), "{from} / {column}: {error}");
     }
     let unbounded = recipe("", &SURFACES.replace(", \"land.a\" = [0, 5]", ""));
-    assert!(Recipe::parse(&unbounded, "test").unwrap_err().to_string().contains("`flow` needs a world with bounds"));
+    assert!(Recipe::parse(&unbounded, "test").unwrap_err().to_string().contains("`flow` needs a bounded world"));
     let missing = Recipe::parse(&recipe(SIZE, SURFACES), "test").unwrap_err().to_string();
     assert!(missing.contains("surface `rock`: the node `land` has no layer `a`"), "{missing}");
 }
