@@ -1,6 +1,6 @@
 //! Worlds larger than memory, built tile by tile into files, and never lost.
 //!
-//! An [`order::BuildSpec`] says what is wanted: which window, which layers, as what. A [`builder::Build`] makes it: tile after tile, each
+//! An [`spec::BuildSpec`] says what is wanted: which window, which layers, as what. A [`run::Build`] makes it: tile after tile, each
 //! written whole and entered with its checksum into a journal. Whatever interrupts it (a kill, a full disk, a power cut), the same
 //! order resumed keeps the tiles that are sound, makes the others and ends with the same bytes as if nothing had happened.
 //!

@@ -1,7 +1,7 @@
 //! Layers out of the engine into files: one registry of formats for every front end.
 //!
 //! A [`format::Format`] says what it is called, which extensions it has, which options it knows, what memory it takes and how it is written from a
-//! [`subject::LayerSource`]: a layer over a window, as bands of rows from the north, or whole. What it writes goes through
+//! [`layer_source::LayerSource`]: a layer over a window, as bands of rows from the north, or whole. What it writes goes through
 //! [`files::Files`], which puts all files of an export in place at the end, or none. [`registry`] lists the formats, and
 //! [`run`] exports.
 //!
