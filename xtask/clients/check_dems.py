@@ -57,7 +57,7 @@ for name in ["point.tif", "oblong.tif", "degrees.tif"]:
 south = numpy.load(export(folder / "south-up.tif", "south-up.npy", "-q"))
 checks.that("south-up.tif: north is up", numpy.array_equal(south, heights()[::-1].astype("f4")))
 
-for name, said in [("bands.tif", "3 bands"), ("webp.tif:1", "WebP"), ("turned.tif", "turned"), ("all-nodata.tif", "missing")]:
+for name, said in [("bands.tif", "3 bands"), ("webp.tif:1", "WebP"), ("turned.tif", "rotated"), ("all-nodata.tif", "samples are nodata")]:
     said_really = refused(folder / name)
     checks.that(f"{name}: refused by name", said in said_really, said_really)
 
