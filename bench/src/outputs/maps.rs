@@ -69,7 +69,7 @@ fn sheet() -> Sheet {
     }
 }
 
-/// ValueKind bytes and counts them.
+/// Takes bytes and counts them.
 struct Counted(u64);
 
 impl Write for Counted {

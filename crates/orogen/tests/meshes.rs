@@ -427,7 +427,7 @@ fn holes_are_left_out_or_refused() {
     assert!(error.contains("1 of 400 samples are nodata"), "{error}");
 }
 
-/// ValueKind `left` bytes, then fails.
+/// Takes `left` bytes, then fails.
 struct Full {
     left: usize,
 }

@@ -26,7 +26,7 @@ pub trait BuildTarget: Sync {
     /// Does a job: `grids` are its window's samples, one grid a layer, in the first stage, and none later.
     fn make(&self, job: Job, grids: &[Grid], store: &OutputStore) -> Result<Made>;
 
-    /// Whether the result is one file, put together by [`BuildTarget::finish`] from all that lies on the shelf.
+    /// Whether the result is one file, assembled by [`BuildTarget::finish`] from all files of the store.
     fn assembles(&self) -> bool {
         false
     }

@@ -34,7 +34,7 @@ pub struct WorkDir {
     file: bool,
 }
 
-/// BuildLock while a build is at work. The system lets go of it when the process ends, however it ends.
+/// The lock of a build at work. The system releases it when the process ends, in any way.
 #[derive(Debug)]
 pub struct BuildLock {
     _lock: File,

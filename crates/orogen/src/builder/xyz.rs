@@ -1,6 +1,6 @@
 //! An XYZ tree of PNG tiles in an encoding of heights ([`Encoding`]), with TileJSON.
 //!
-//! **JobFile.** Web Mercator, the world's origin at 0 degrees east and north. A pixel is an area there, and a sample stands in the middle
+//! **Position.** Web Mercator, the world's origin at 0 degrees east and north. A pixel is an area there, and a sample stands in the middle
 //! of its own. Near the equator Mercator is true to scale: one metre of the world is one metre of the map if a sample's cell is a pixel of some
 //! zoom, which [`cell_near`] finds; otherwise the map is stretched by what TileJSON says. Tiles are those of the whole map, so
 //! that windows of one world fit together; what of a tile lies beyond the window repeats its edge.

@@ -94,7 +94,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// ValueKind an option's value as text; what an option without a value is given is not looked at.
+    /// Sets an option from text. The text of an option without a value is ignored.
     ///
     /// # Errors
     /// If it is no value that the option has.

@@ -18,7 +18,7 @@ use crate::grid::{Grid, Window};
 use crate::progress::Progress;
 use crate::raster::Raster;
 
-/// SlopeStatistics are counted in classes of so many degrees.
+/// Slopes are counted in classes of so many degrees.
 pub const SLOPE_CLASS: f64 = 2.0;
 
 /// How far geomorphons look, in cells, and what counts as level, in degrees.
