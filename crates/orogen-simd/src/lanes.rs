@@ -99,9 +99,28 @@ pub trait Simd: Copy + Send + Sync + 'static {
     }
 
     /// `from[index]` per lane, read as u32; an index beyond the end reads the last entry, an empty slice gives 0.
-    fn gather(self, from: &[f32], index: Self::U32) -> Self::F32;
+    #[inline(always)]
+    fn gather(self, from: &[f32], index: Self::U32) -> Self::F32 {
+        self.load(&picked(from, index))
+    }
     /// `from[index]` per lane, read as u32; an index beyond the end reads the last entry, an empty slice gives 0.
-    fn gather_u32(self, from: &[u32], index: Self::U32) -> Self::U32;
+    #[inline(always)]
+    fn gather_u32(self, from: &[u32], index: Self::U32) -> Self::U32 {
+        self.load_u32(&picked(from, index))
+    }
+}
+
+/// `from[index]` per lane, for levels without an instruction for it.
+#[inline(always)]
+fn picked<S: Simd, I: U32Lanes<S>, T: Copy + Default>(from: &[T], index: I) -> [T; 32] {
+    let mut lanes = [0; 32];
+    index.store(&mut lanes);
+    let last = from.last().copied().unwrap_or_default();
+    let mut entries = [T::default(); 32];
+    for (entry, index) in entries.iter_mut().zip(lanes).take(S::LANES) {
+        *entry = from.get(index as usize).copied().unwrap_or(last);
+    }
+    entries
 }
 
 /// `S::LANES` f32. `+ - * /`, [`sqrt`](Self::sqrt) and [`mul_add`](Self::mul_add) round correctly (to nearest, ties to even); subnormals are kept.

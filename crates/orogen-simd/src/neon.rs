@@ -194,20 +194,6 @@ impl Simd for Neon {
             vreinterpretq_f32_u8(vqtbl4q_u8(table.0, index))
         })
     }
-    #[inline(always)]
-    fn gather(self, from: &[f32], index: U32x4) -> F32x4 {
-        let mut lanes = [0; 4];
-        index.store(&mut lanes);
-        let last = from.last().copied().unwrap_or_default();
-        self.load(&lanes.map(|index| from.get(index as usize).copied().unwrap_or(last)))
-    }
-    #[inline(always)]
-    fn gather_u32(self, from: &[u32], index: U32x4) -> U32x4 {
-        let mut lanes = [0; 4];
-        index.store(&mut lanes);
-        let last = from.last().copied().unwrap_or_default();
-        self.load_u32(&lanes.map(|index| from.get(index as usize).copied().unwrap_or(last)))
-    }
 }
 
 impl F32Lanes<Neon> for F32x4 {

@@ -202,20 +202,6 @@ impl Simd for Simd128 {
     fn lookup16(self, table: Table16x128, index: U32x4) -> F32x4 {
         F32x4(look_up(table.0, byte_numbers(v128_and(index.0, u32x4_splat(15)))))
     }
-    #[inline(always)]
-    fn gather(self, from: &[f32], index: U32x4) -> F32x4 {
-        let mut lanes = [0; 4];
-        index.store(&mut lanes);
-        let last = from.last().copied().unwrap_or_default();
-        self.load(&lanes.map(|index| from.get(index as usize).copied().unwrap_or(last)))
-    }
-    #[inline(always)]
-    fn gather_u32(self, from: &[u32], index: U32x4) -> U32x4 {
-        let mut lanes = [0; 4];
-        index.store(&mut lanes);
-        let last = from.last().copied().unwrap_or_default();
-        self.load_u32(&lanes.map(|index| from.get(index as usize).copied().unwrap_or(last)))
-    }
 }
 
 impl F32Lanes<Simd128> for F32x4 {

@@ -13,7 +13,7 @@ pub fn to_bytes(samples: &[f32]) -> Vec<u8> {
     samples.iter().flat_map(|sample| sample.to_le_bytes()).collect()
 }
 
-/// The samples of a file on the shelf, which must be so many.
+/// The samples of a file of the store, which must be so many.
 pub fn read(store: &OutputStore, place: &JobFile, count: usize) -> Result<Vec<f32>> {
     let mut bytes = Vec::with_capacity(4 * count);
     let path = store.path(place);

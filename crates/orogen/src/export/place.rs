@@ -43,8 +43,18 @@ pub fn write_on_map(
     if source.map().is_none() {
         return Ok(String::new());
     }
-    let told = sidecar::write(files, source, options, &SampleEncoding { sample, ..SampleEncoding::default() })?;
-    Ok(told + &write(files, source, options, Some(false))?)
+    write_with_sidecar(files, source, options, &SampleEncoding { sample, ..SampleEncoding::default() })
+}
+
+/// Writes NAME.json, and beside it the world file and the `.prj`. Returns the words for both.
+pub fn write_with_sidecar(
+    files: &mut Files,
+    source: &LayerSource,
+    options: &Options,
+    encoding: &SampleEncoding,
+) -> io::Result<String> {
+    let told = sidecar::write(files, source, options, encoding)?;
+    Ok(told + &write(files, source, options, Some(encoding.from_south))?)
 }
 
 /// As [`write()`], of one of several files.

@@ -36,6 +36,14 @@ pub struct SampleEncoding {
     pub channels: Vec<(PathBuf, Vec<String>)>,
 }
 
+impl SampleEncoding {
+    /// Integers up to `most` that stand for levels; those of two bytes have `byte_order`.
+    pub fn of_levels(levels: Levels, most: u16, byte_order: &'static str, from_south: bool) -> SampleEncoding {
+        let (sample, byte_order) = if most == 255 { ("u8", None) } else { ("u16", Some(byte_order)) };
+        SampleEncoding { sample, byte_order, levels: Some(levels), from_south, ..SampleEncoding::default() }
+    }
+}
+
 /// A file and its channels.
 #[derive(Debug, Serialize)]
 struct Channels<'a> {

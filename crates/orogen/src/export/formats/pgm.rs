@@ -10,7 +10,7 @@ use crate::export::notes;
 use crate::export::options::Options;
 use crate::export::place;
 use crate::export::quantizer::{self, BITS, FIRST_ROW, Quantizer, RANGE};
-use crate::export::sidecar::{self, NO_SIDECAR, SampleEncoding};
+use crate::export::sidecar::{NO_SIDECAR, SampleEncoding};
 use crate::format::pgm;
 
 /// The format.
@@ -27,22 +27,14 @@ pub static FORMAT: Format = Format {
 
 fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     let (window, most) = (*source.window(), quantizer::most(options));
-    let mut spread = Quantizer::new(source, options, most, files)?;
-    let levels = spread.levels();
+    let mut quantized = Quantizer::new(source, options, most, files)?;
+    let levels = quantized.levels();
     let notes: Vec<String> = notes::of_heights(window.cell, &levels).into_iter().map(|(_, text)| text).collect();
     files.write(|out| {
         pgm::write_head(out, [window.width, window.height], most, &notes)?;
-        spread.rows(|samples| quantizer::write_levels(out, samples, &levels, most))
+        quantized.rows(|samples| quantizer::write_levels(out, samples, &levels, most))
     })?;
-    let (sample, byte_order) = if most == 255 { ("u8", None) } else { ("u16", Some("big")) };
-    let held = SampleEncoding {
-        sample,
-        byte_order,
-        levels: Some(levels),
-        from_south: quantizer::from_south(options),
-        ..SampleEncoding::default()
-    };
-    let told =
-        sidecar::write(files, source, options, &held)? + &place::write(files, source, options, Some(held.from_south))?;
+    let encoding = SampleEncoding::of_levels(levels, most, "big", quantizer::from_south(options));
+    let told = place::write_with_sidecar(files, source, options, &encoding)?;
     Ok(quantizer::words(&levels, most) + &told)
 }

@@ -12,7 +12,7 @@ use crate::export::notes;
 use crate::export::options::{OptionSpec, Options, ValueKind};
 use crate::export::place;
 use crate::export::quantizer::{self, BITS, FIRST_ROW, Quantizer, RANGE};
-use crate::export::sidecar::{self, NO_SIDECAR, SampleEncoding};
+use crate::export::sidecar::{NO_SIDECAR, SampleEncoding};
 use crate::format::encoding::Encoding;
 use crate::format::png::{self, Picture, Pixel};
 use crate::recipe::surface::document::MAX_SURFACES;
@@ -65,27 +65,19 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
 
 fn write_grey(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     let (window, most) = (*source.window(), quantizer::most(options));
-    let mut spread = Quantizer::new(source, options, most, files)?;
-    let levels = spread.levels();
+    let mut quantized = Quantizer::new(source, options, most, files)?;
+    let levels = quantized.levels();
     let pixel = if most == 255 { Pixel::Grey8 } else { Pixel::Grey16 };
     let notes = notes::of_heights(window.cell, &levels);
     let notes: Vec<(&str, &str)> = notes.iter().map(|(keyword, text)| (*keyword, text.as_str())).collect();
     let picture = Picture { width: window.width, height: window.height, pixel, notes: &notes };
     files.write(|out| {
         png::write_through(out, &picture, |out| {
-            spread.rows(|samples| quantizer::write_levels(out, samples, &levels, most))
+            quantized.rows(|samples| quantizer::write_levels(out, samples, &levels, most))
         })
     })?;
-    let (sample, byte_order) = if most == 255 { ("u8", None) } else { ("u16", Some("big")) };
-    let held = SampleEncoding {
-        sample,
-        byte_order,
-        levels: Some(levels),
-        from_south: quantizer::from_south(options),
-        ..SampleEncoding::default()
-    };
-    let told =
-        sidecar::write(files, source, options, &held)? + &place::write(files, source, options, Some(held.from_south))?;
+    let encoding = SampleEncoding::of_levels(levels, most, "big", quantizer::from_south(options));
+    let told = place::write_with_sidecar(files, source, options, &encoding)?;
     Ok(quantizer::words(&levels, most) + &told)
 }
 
@@ -103,10 +95,10 @@ fn write_encoded(
     let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
     let notes = [("Software", made_by.as_str()), ("Description", about.as_str())];
     let picture = Picture { width: window.width, height: window.height, pixel: Pixel::Data8, notes: &notes };
-    let mut spread = Quantizer::plain(source, options, files)?;
+    let mut quantized = Quantizer::plain(source, options, files)?;
     files.write(|out| {
         png::write_through(out, &picture, |out| {
-            spread.rows(|samples| {
+            quantized.rows(|samples| {
                 let bytes: Vec<u8> = samples.iter().flat_map(|height| encoding.bytes(*height)).collect();
                 out.write_all(&bytes)
             })
@@ -119,8 +111,7 @@ fn write_encoded(
         from_south: quantizer::from_south(options),
         ..SampleEncoding::default()
     };
-    let told =
-        sidecar::write(files, source, options, &held)? + &place::write(files, source, options, Some(held.from_south))?;
+    let told = place::write_with_sidecar(files, source, options, &held)?;
     let levels = source.levels();
     Ok(format!("{} to {} as {} colours{told}", levels.low(), levels.high(), encoding.name()))
 }

@@ -9,7 +9,7 @@ use crate::export::memory::{aside, whole};
 use crate::export::options::Options;
 use crate::export::place;
 use crate::export::quantizer::{self, FIRST_ROW, Quantizer, RANGE};
-use crate::export::sidecar::{self, NO_SIDECAR, SampleEncoding};
+use crate::export::sidecar::{NO_SIDECAR, SampleEncoding};
 use crate::format::raw;
 
 /// The format.
@@ -25,18 +25,11 @@ pub static FORMAT: Format = Format {
 };
 
 fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
-    let mut spread = Quantizer::new(source, options, u16::MAX, files)?;
-    let levels = spread.levels();
-    files.write(|out| spread.rows(|samples| raw::write_u16(out, samples, &levels)))?;
+    let mut quantized = Quantizer::new(source, options, u16::MAX, files)?;
+    let levels = quantized.levels();
+    files.write(|out| quantized.rows(|samples| raw::write_u16(out, samples, &levels)))?;
     let from_south = quantizer::from_south(options);
-    let held = SampleEncoding {
-        sample: "u16",
-        byte_order: Some("little"),
-        levels: Some(levels),
-        from_south,
-        ..SampleEncoding::default()
-    };
-    let told =
-        sidecar::write(files, source, options, &held)? + &place::write(files, source, options, Some(held.from_south))?;
+    let encoding = SampleEncoding::of_levels(levels, u16::MAX, "little", from_south);
+    let told = place::write_with_sidecar(files, source, options, &encoding)?;
     Ok(quantizer::words(&levels, u16::MAX) + &told)
 }

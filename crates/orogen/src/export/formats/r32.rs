@@ -9,7 +9,7 @@ use crate::export::memory::{aside, whole};
 use crate::export::options::Options;
 use crate::export::place;
 use crate::export::quantizer::{self, FIRST_ROW, Quantizer};
-use crate::export::sidecar::{self, NO_SIDECAR, SampleEncoding};
+use crate::export::sidecar::{NO_SIDECAR, SampleEncoding};
 use crate::format::raw;
 
 /// The format.
@@ -25,18 +25,17 @@ pub static FORMAT: Format = Format {
 };
 
 fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
-    let mut spread = Quantizer::plain(source, options, files)?;
-    files.write(|out| spread.rows(|samples| raw::write_f32(out, samples)))?;
+    let mut quantized = Quantizer::plain(source, options, files)?;
+    files.write(|out| quantized.rows(|samples| raw::write_f32(out, samples)))?;
     let from_south = quantizer::from_south(options);
-    let held = SampleEncoding {
+    let encoding = SampleEncoding {
         sample: "f32",
         byte_order: Some("little"),
         levels: None,
         from_south,
         ..SampleEncoding::default()
     };
-    let told =
-        sidecar::write(files, source, options, &held)? + &place::write(files, source, options, Some(held.from_south))?;
+    let told = place::write_with_sidecar(files, source, options, &encoding)?;
     let levels = source.levels();
     Ok(format!("{} to {}{told}", levels.low(), levels.high()))
 }
