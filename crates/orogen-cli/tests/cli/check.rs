@@ -1,6 +1,6 @@
 //! `orogen check`, `orogen graph` and `orogen cache`.
 
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::process::Stdio;
 use std::time::{Duration, SystemTime};
 
@@ -45,7 +45,11 @@ fn piped(folder: &Folder, arguments: &[&str], input: &[u8]) -> Outcome {
     let mut command = folder.command(arguments);
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut stdin = child.stdin.take().unwrap();
-    stdin.write_all(input).unwrap();
+    // A command that refuses its arguments may be gone before it has read anything.
+    match stdin.write_all(input) {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => {}
+        written => written.unwrap(),
+    }
     drop(stdin);
     Outcome::of(&child.wait_with_output().unwrap())
 }
