@@ -24,60 +24,19 @@
 //! with the library; [`mod@format`], [`map`] and [`palette`] make files and pictures of grids.
 #![forbid(unsafe_code)]
 
-#[macro_use]
-pub mod declare;
-
-pub mod aggregate;
-pub mod analysis;
-pub mod bands;
-pub mod budget;
-pub mod builder;
-pub mod chunks;
-pub mod contour;
-pub mod dem;
-mod engine;
-pub mod erosion;
-pub mod error;
-pub mod export;
-pub mod expression;
-pub mod field;
-pub mod file;
-pub mod filter;
-pub mod fit;
-pub mod format;
-#[cfg(test)]
-mod full_disk;
-pub mod grid;
-pub mod growth;
-pub mod hydrography;
-pub mod hydrology;
-mod large;
-pub mod layer;
-pub mod map;
-pub mod mesh;
-pub mod node;
-pub mod op;
-pub mod open;
-mod pages;
-pub mod palette;
-pub mod plan;
-mod pool;
-pub mod progress;
-pub mod raster;
-pub mod recipe;
-pub mod render;
-pub mod resample;
-pub mod sampler;
-pub mod session;
-pub mod sheet;
-pub mod solver;
-pub mod spool;
-pub mod store;
-pub mod survey;
-pub mod tiles;
-pub mod value;
-pub mod words;
-pub mod world;
+#[doc(inline)]
+pub use orogen_engine::{
+    bands, budget, chunks, declare, expression, field, filter, growth, layer, node, op, plan, recipe, sampler, session,
+    solver, store, tiles, value, world,
+};
+#[doc(inline)]
+pub use orogen_grid::{
+    aggregate, analysis, contour, erosion, error, grid, hydrography, hydrology, progress, resample, words,
+};
+#[doc(inline)]
+pub use orogen_io::{dem, file, format, open, palette, raster, spool};
+#[doc(inline)]
+pub use orogen_output::{builder, export, fit, map, mesh, render, sheet, survey};
 
 pub use budget::Budget;
 pub use chunks::id::ChunkId;

@@ -1,0 +1,192 @@
+//! How the ground around a viewer is cut into chunks.
+
+use super::id::ChunkId;
+use crate::plan::planner::world_windows;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::Window;
+
+/// How the ground around a viewer is cut into chunks: square rings around it, each with cells twice as large as the one inside.
+///
+/// **Which chunks.** A chunk of level l has sides of `cells * cell * 2^l` metres. Within `range` of the viewer the ground is cut into
+/// chunks of the coarsest level; each that the viewer is nearer to than `detail` of its sides is replaced by the four finer ones
+/// that cover it, down to level 0. Distances are the greater of those east and south, so rings are square. What results covers the
+/// ground once, and neighbours differ by one level at most.
+///
+/// **Borders.** A chunk has `cells + 1` samples a side: its last row and column are its neighbour's first, with the same bits. Where
+/// the neighbour is one level coarser, its samples are every second one of the finer chunk's, with the same bits unless the recipe
+/// has filters (what a filter makes depends on the cell): see [`stitch`](super::seam::stitch).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LodConfig {
+    /// Cells along a chunk's side: an even number from 2 to 4096. Default 64.
+    pub cells: usize,
+    /// Metres from one sample to the next at level 0. Default 1.
+    pub cell: f64,
+    /// How many levels there are, 1 to 24. Default 6.
+    pub levels: u8,
+    /// How near the viewer comes to a chunk, in sides of that chunk, before finer ones replace it: 1 + `slack` to 16. Twice as
+    /// much makes about four times as many chunks. Default 1.5.
+    pub detail: f64,
+    /// How far the viewer sees, metres. Default 8000.
+    pub range: f64,
+    /// How much farther than `detail` (in sides) and `range` (in sides of the coarsest chunks) the viewer must go before what
+    /// came is given up again, so that a viewer who goes to and fro does not make the same chunks over and over: 0 to 1.
+    /// Default 0.25.
+    pub slack: f64,
+}
+
+impl Default for LodConfig {
+    fn default() -> LodConfig {
+        LodConfig { cells: 64, cell: 1.0, levels: 6, detail: 1.5, range: 8000.0, slack: 0.25 }
+    }
+}
+
+/// The most chunks that the coarsest level may have along the way from one end of the range to the other.
+const MAX_ACROSS: f64 = 256.0;
+
+impl LodConfig {
+    /// Whether these are rings at all.
+    ///
+    /// # Errors
+    /// Says which number cannot be, and what can.
+    pub fn check(&self) -> Result<()> {
+        let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
+        if !(2..=4096).contains(&self.cells) || self.cells % 2 == 1 {
+            return fault(format!(
+                "the number of cells of a chunk must be even and from 2 to 4096, not {}",
+                self.cells
+            ));
+        }
+        if !(self.cell.is_finite() && self.cell >= 1e-6) {
+            return fault(format!("the cell size must be at least 0.000001 m, not {}", self.cell));
+        }
+        if !(1..=24).contains(&self.levels) {
+            return fault(format!("the number of levels of detail must be from 1 to 24, not {}", self.levels));
+        }
+        if !(0.0..=1.0).contains(&self.slack) {
+            return fault(format!("the slack must be from 0 to 1, not {}", self.slack));
+        }
+        if !(1.0 + self.slack..=16.0).contains(&self.detail) {
+            return fault(format!(
+                "the detail must be from 1 + slack = {1} to 16, not {0}; otherwise neighbours could differ by more than one level",
+                self.detail,
+                1.0 + self.slack
+            ));
+        }
+        if !(self.range.is_finite() && self.range > 0.0) {
+            return fault(format!("the range must be greater than 0 m, not {}", self.range));
+        }
+        let across = 2.0 * self.range / self.side(self.levels - 1);
+        match across <= MAX_ACROSS {
+            true => Ok(()),
+            false => fault(format!(
+                "a range of {} m spans {across:.0} chunks of the coarsest level, and at most {MAX_ACROSS} are supported; use more levels or a smaller range",
+                self.range
+            )),
+        }
+    }
+
+    /// Metres from one sample to the next at a level.
+    pub fn cell_of(&self, level: u8) -> f64 {
+        // A power of two: exact, so that the samples that two levels share stand at the same position to the last bit.
+        self.cell * (1u64 << level.min(63)) as f64
+    }
+
+    /// Metres along the side of a chunk of a level.
+    pub fn side(&self, level: u8) -> f64 {
+        self.cells as f64 * self.cell_of(level)
+    }
+
+    /// The samples of a chunk, its far edges included.
+    pub fn window(&self, id: ChunkId) -> Window {
+        let samples = self.cells + 1;
+        let first = |index: i64| index.saturating_mul(self.cells as i64);
+        Window::new(samples, samples, self.cell_of(id.level)).at(first(id.x), first(id.y))
+    }
+
+    /// The samples of a chunk in a world of these measures; `None` if it has no ground there. A chunk at the world's far edges is
+    /// cut where its samples end.
+    pub(super) fn window_within(&self, id: ChunkId, size: Option<[f64; 2]>) -> Option<Window> {
+        let window = self.window(id);
+        let Some(size) = size else { return Some(window) };
+        let (world, _) = world_windows(size, window.cell);
+        let end = |first: i64, samples: usize, last: i64| -> Option<usize> {
+            let samples = (samples as i64).min(last.checked_sub(first)?);
+            (first >= 0 && samples >= 2).then_some(samples as usize)
+        };
+        let width = end(window.x, window.width, world.right())?;
+        let height = end(window.y, window.height, world.bottom())?;
+        Some(Window { width, height, ..window })
+    }
+
+    /// How far a viewer is from a chunk, in metres; 0 if above it.
+    pub fn distance(&self, id: ChunkId, [x, y]: [f64; 2]) -> f64 {
+        let side = self.side(id.level);
+        let along = |at: f64, index: i64| {
+            let start = index as f64 * side;
+            (start - at).max(at - (start + side)).max(0.0)
+        };
+        along(x, id.x).max(along(y, id.y))
+    }
+
+    /// How far a viewer is from a chunk's middle, in metres.
+    pub(super) fn distance_to_middle(&self, id: ChunkId, [x, y]: [f64; 2]) -> f64 {
+        let side = self.side(id.level);
+        let along = |at: f64, index: i64| (at - (index as f64 + 0.5) * side).abs();
+        along(x, id.x).max(along(y, id.y))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_cannot_be_is_said() {
+        let good = LodConfig::default();
+        assert!(good.check().is_ok());
+        for (lod, said) in [
+            (LodConfig { cells: 0, ..good }, "from 2 to 4096, not 0"),
+            (LodConfig { cells: 33, ..good }, "must be even"),
+            (LodConfig { cell: f64::NAN, ..good }, "not NaN"),
+            (LodConfig { levels: 0, ..good }, "1 to 24"),
+            (LodConfig { levels: 25, ..good }, "1 to 24"),
+            (LodConfig { detail: 1.2, ..good }, "1 + slack = 1.25"),
+            (LodConfig { slack: -0.1, ..good }, "slack must be from 0 to 1, not -0.1"),
+            (LodConfig { range: 0.0, ..good }, "greater than 0 m, not 0"),
+            (LodConfig { range: 1e9, ..good }, "more levels"),
+        ] {
+            let error = lod.check().unwrap_err().to_string();
+            assert!(error.contains(said), "{error}");
+        }
+    }
+
+    #[test]
+    fn chunks_share_their_edges_with_neighbours_and_parents() {
+        let lod = LodConfig { cell: 1.0 / 3.0, ..LodConfig::default() };
+        let id = ChunkId { level: 1, y: -2, x: 3 };
+        let (window, east) = (lod.window(id), lod.window(id.beside(1, 0)));
+        assert_eq!(window.right() - 1, east.x);
+        assert_eq!(window.east(64).to_bits(), east.east(0).to_bits());
+        let parent = lod.window(id.parent());
+        assert_eq!(
+            (parent.x * 2, parent.y * 2),
+            (window.x - 64, window.y),
+            "an odd column is its parent's eastern half"
+        );
+        assert_eq!(parent.east(32).to_bits(), window.east(0).to_bits());
+    }
+
+    #[test]
+    fn a_world_ends_where_its_samples_end() {
+        let lod = LodConfig { cells: 10, cell: 1.0, levels: 3, ..LodConfig::default() };
+        let within = |level, x, y| lod.window_within(ChunkId { level, y, x }, Some([25.0, 40.0]));
+        let size = |window: Option<Window>| window.map(|window| (window.width, window.height));
+        assert_eq!(size(within(0, 0, 0)), Some((11, 11)));
+        assert_eq!(size(within(0, 2, 3)), Some((6, 11)));
+        assert_eq!(size(within(0, 3, 0)), None);
+        assert_eq!(size(within(0, 0, 4)), None, "one row of samples is no ground");
+        assert_eq!(size(within(0, -1, 0)), None);
+        assert_eq!(size(within(1, 1, 1)), Some((3, 11)));
+        assert_eq!(size(within(2, 0, 0)), Some((7, 11)));
+    }
+}

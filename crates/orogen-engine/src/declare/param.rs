@@ -1,0 +1,196 @@
+//! The types that parameters can have, read from values and written as such.
+
+use super::spec::{ParamSpec, Shape};
+use crate::expression::text::Expression;
+use crate::value::{Spanned, Value};
+use orogen_io::dem::file_ref::{FileRef, Picture};
+
+/// A type that a parameter can have.
+pub trait Param: Sized {
+    /// What kind of value it is read from.
+    const SHAPE: Shape;
+    /// The parameter from a value, if the value is of the right kind.
+    fn read(value: &Value) -> Option<Self>;
+    /// The parameter as a value.
+    fn write(&self) -> Value;
+    /// Whether every number in it is finite and within the range.
+    fn within(&self, range: [f64; 2]) -> bool {
+        let _ = range;
+        true
+    }
+    /// What decides about results: the parameter itself, or of a file what is in it.
+    fn key(&self) -> Value {
+        self.write()
+    }
+    /// The file that it names, if it is a file.
+    fn file(&mut self) -> Option<&mut FileRef> {
+        None
+    }
+}
+
+impl Param for Expression {
+    const SHAPE: Shape = Shape::Expression;
+    fn read(value: &Value) -> Option<Expression> {
+        match value {
+            Value::Text(text) => Some(Expression::from(text.as_str())),
+            _ => None,
+        }
+    }
+    fn write(&self) -> Value {
+        Value::Text(self.text().to_string())
+    }
+    fn key(&self) -> Value {
+        Value::Text(Expression::key(self))
+    }
+}
+
+impl Param for FileRef {
+    const SHAPE: Shape = Shape::File;
+    fn read(value: &Value) -> Option<FileRef> {
+        match value {
+            Value::Text(path) => Some(FileRef::from(path.as_str())),
+            _ => None,
+        }
+    }
+    fn write(&self) -> Value {
+        Value::Text(self.text())
+    }
+    fn key(&self) -> Value {
+        match self.ground() {
+            Some(ground) => Value::Text(ground.hash.iter().map(|byte| format!("{byte:02x}")).collect()),
+            None => self.write(),
+        }
+    }
+    fn file(&mut self) -> Option<&mut FileRef> {
+        Some(self)
+    }
+}
+
+impl Param for Picture {
+    const SHAPE: Shape = Shape::File;
+    fn read(value: &Value) -> Option<Picture> {
+        match value {
+            Value::Text(path) => Some(Picture::from(path.as_str())),
+            _ => None,
+        }
+    }
+    fn write(&self) -> Value {
+        self.0.write()
+    }
+    fn key(&self) -> Value {
+        self.0.key()
+    }
+    fn file(&mut self) -> Option<&mut FileRef> {
+        Some(&mut self.0)
+    }
+}
+
+impl Param for f64 {
+    const SHAPE: Shape = Shape::Number;
+    fn read(value: &Value) -> Option<f64> {
+        value.number()
+    }
+    fn write(&self) -> Value {
+        Value::Number(*self)
+    }
+    fn within(&self, range: [f64; 2]) -> bool {
+        self.is_finite() && (range[0]..=range[1]).contains(self)
+    }
+}
+
+impl Param for u32 {
+    const SHAPE: Shape = Shape::Integer;
+    fn read(value: &Value) -> Option<u32> {
+        match value {
+            // What does not fit is out of every declared range too: saturate, so that the range is what the message names.
+            Value::Integer(integer) => Some(u32::try_from(*integer).unwrap_or(u32::MAX)),
+            _ => None,
+        }
+    }
+    fn write(&self) -> Value {
+        Value::Integer(i64::from(*self))
+    }
+    fn within(&self, range: [f64; 2]) -> bool {
+        (range[0]..=range[1]).contains(&f64::from(*self))
+    }
+}
+
+impl Param for u64 {
+    const SHAPE: Shape = Shape::Seed;
+    fn read(value: &Value) -> Option<u64> {
+        match value {
+            Value::Integer(integer) => u64::try_from(*integer).ok(),
+            _ => None,
+        }
+    }
+    fn write(&self) -> Value {
+        Value::Integer((*self).min(i64::MAX as u64) as i64)
+    }
+}
+
+impl Param for bool {
+    const SHAPE: Shape = Shape::Flag;
+    fn read(value: &Value) -> Option<bool> {
+        match value {
+            Value::Flag(flag) => Some(*flag),
+            _ => None,
+        }
+    }
+    fn write(&self) -> Value {
+        Value::Flag(*self)
+    }
+}
+
+impl Param for [f64; 2] {
+    const SHAPE: Shape = Shape::Pair;
+    fn read(value: &Value) -> Option<[f64; 2]> {
+        match value {
+            Value::List(items) => match items.as_slice() {
+                [a, b] => Some([a.value.number()?, b.value.number()?]),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+    fn write(&self) -> Value {
+        Value::List(self.iter().map(|number| Spanned::unplaced(Value::Number(*number))).collect())
+    }
+    fn within(&self, range: [f64; 2]) -> bool {
+        self.iter().all(|number| number.within(range))
+    }
+}
+
+impl Param for Vec<[f64; 2]> {
+    const SHAPE: Shape = Shape::Curve;
+    fn read(value: &Value) -> Option<Vec<[f64; 2]>> {
+        match value {
+            Value::List(items) => items.iter().map(|item| <[f64; 2]>::read(&item.value)).collect(),
+            _ => None,
+        }
+    }
+    fn write(&self) -> Value {
+        Value::List(self.iter().map(|point| Spanned::unplaced(point.write())).collect())
+    }
+    fn within(&self, range: [f64; 2]) -> bool {
+        self.len() >= 2
+            && self.iter().all(|point| point.within(range))
+            && self.windows(2).all(|pair| pair[0][0] < pair[1][0])
+    }
+}
+
+/// Reads one parameter: the right kind, in range; or what was expected.
+pub fn read_param<T: Param>(spec: &ParamSpec, value: &Value) -> Result<T, String> {
+    match T::read(value) {
+        Some(param) if param.within(spec.range) => Ok(param),
+        _ => {
+            let mut message = format!("`{}` must be {}, not {}", spec.name, spec.expected(), value.describe());
+            if let (Shape::Choice(choices), Value::Text(text)) = (spec.shape, value) {
+                let names: Vec<&str> = choices().iter().map(|(name, _)| *name).collect();
+                if let Some(near) = orogen_grid::words::nearest(text, names) {
+                    message.push_str(&format!("; did you mean \"{near}\"?"));
+                }
+            }
+            Err(message)
+        }
+    }
+}

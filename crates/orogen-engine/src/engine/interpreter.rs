@@ -1,0 +1,283 @@
+//! Runs a program over one block of samples.
+
+use crate::expression::function::{Argument, MAX_ARGUMENTS};
+use crate::layer::LayerKind;
+use crate::op::{Field, Inputs, Reading, Solution, Solver, WorldParams};
+use crate::plan::program::{Instruction, Operand, Program};
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::resample::{self, NOWHERE};
+use orogen_noise::Points;
+use std::sync::Arc;
+
+/// What a program's instructions refer to.
+pub struct Bindings<'a> {
+    pub world_params: &'a WorldParams,
+    pub fields: &'a (dyn Fn(usize) -> Option<&'a dyn Field> + Sync),
+    pub solvers: &'a (dyn Fn(usize) -> Option<(&'a dyn Solver, Arc<Solution>)> + Sync),
+    pub grids: &'a [Option<Grid>],
+}
+
+/// How a coordinate set's buffers are to be understood.
+#[derive(Clone, Copy, Default, PartialEq)]
+enum Shape {
+    #[default]
+    Lattice,
+    Displaced,
+    Scattered,
+}
+
+#[derive(Default)]
+struct CoordSet {
+    shape: Shape,
+    x: Vec<f64>,
+    y: Vec<f64>,
+    dx: Vec<f32>,
+    dy: Vec<f32>,
+}
+
+impl CoordSet {
+    fn points(&self) -> Points<'_> {
+        match self.shape {
+            Shape::Lattice => Points::Lattice { xs: &self.x, ys: &self.y },
+            Shape::Displaced => Points::Displaced { xs: &self.x, ys: &self.y, dx: &self.dx, dy: &self.dy },
+            Shape::Scattered => Points::Scattered { x: &self.x, y: &self.y },
+        }
+    }
+}
+
+/// Registers and coordinate sets between two runs: handed to the next interpreter, they spare it asking for memory.
+#[derive(Default)]
+pub struct Buffers {
+    registers: Vec<Vec<f32>>,
+    coord_sets: Vec<CoordSet>,
+}
+
+/// Registers and coordinate sets, used again from block to block.
+pub struct Interpreter<'p> {
+    program: &'p Program,
+    registers: Vec<Vec<f32>>,
+    coord_sets: Vec<CoordSet>,
+}
+
+impl<'p> Interpreter<'p> {
+    /// A interpreter for a program.
+    pub fn new(program: &'p Program) -> Interpreter<'p> {
+        Interpreter::with(program, Buffers::default())
+    }
+
+    /// A interpreter for a program, over buffers that another has left.
+    pub fn with(program: &'p Program, buffers: Buffers) -> Interpreter<'p> {
+        let Buffers { mut registers, mut coord_sets } = buffers;
+        registers.resize_with(program.registers, Vec::new);
+        coord_sets.resize_with(program.coord_sets.max(1), CoordSet::default);
+        Interpreter { program, registers, coord_sets }
+    }
+
+    /// The buffers, for the next interpreter.
+    pub fn into_buffers(self) -> Buffers {
+        Buffers { registers: self.registers, coord_sets: self.coord_sets }
+    }
+
+    /// Runs the program over a block of the lattice.
+    pub fn run_block(&mut self, block: &Window, bindings: &Bindings) -> Result<()> {
+        let coords = &mut self.coord_sets[0];
+        coords.shape = Shape::Lattice;
+        coords.x.clear();
+        coords.x.extend((0..block.width).map(|i| block.east(i)));
+        coords.y.clear();
+        coords.y.extend((0..block.height).map(|j| block.south(j)));
+        self.run(Some(block), block.len(), bindings)
+    }
+
+    /// Runs the program at any points.
+    pub fn run_points(&mut self, x: &[f64], y: &[f64], bindings: &Bindings) -> Result<()> {
+        let coords = &mut self.coord_sets[0];
+        coords.shape = Shape::Scattered;
+        coords.x.clear();
+        coords.x.extend_from_slice(x);
+        coords.y.clear();
+        coords.y.extend_from_slice(y);
+        self.run(None, x.len().min(y.len()), bindings)
+    }
+
+    /// Output `i` of the last run.
+    pub fn output(&self, i: usize) -> &[f32] {
+        &self.registers[self.program.outputs[i]]
+    }
+
+    fn run(&mut self, block: Option<&Window>, count: usize, bindings: &Bindings) -> Result<()> {
+        for register in &mut self.registers {
+            register.resize(count, 0.0);
+        }
+        self.program.instructions.iter().try_for_each(|instruction| self.step(instruction, block, count, bindings))
+    }
+
+    fn step(
+        &mut self,
+        instruction: &Instruction,
+        block: Option<&Window>,
+        count: usize,
+        bindings: &Bindings,
+    ) -> Result<()> {
+        match instruction {
+            Instruction::Constant { value, out } => self.registers[*out].fill(*value),
+            Instruction::Field { node, coords, inputs, out } => {
+                let field = (bindings.fields)(*node).ok_or_else(|| internal("a node to evaluate is not a field"))?;
+                self.with_inputs(*coords, inputs, *out, |points, slots, out| {
+                    field.eval(points, slots, bindings.world_params, out);
+                });
+            }
+            Instruction::Apply { function, arguments, out } => {
+                let mut samples = std::mem::take(&mut self.registers[*out]);
+                let mut given = [Argument::Number(0.0); MAX_ARGUMENTS];
+                for (given, argument) in given.iter_mut().zip(arguments) {
+                    *given = match argument {
+                        Operand::Number(number) => Argument::Number(*number),
+                        Operand::Register(register) => Argument::Samples(&self.registers[*register]),
+                    };
+                }
+                function.apply(&given[..arguments.len().min(MAX_ARGUMENTS)], &mut samples);
+                self.registers[*out] = samples;
+            }
+            Instruction::Solved { node, layer, kind, coords, inputs, out } => {
+                let solved = (bindings.solvers)(*node);
+                let (solver, solution) = solved.ok_or_else(|| internal("a solver was read before it was solved"))?;
+                self.with_inputs(*coords, inputs, *out, |at, inputs, out| {
+                    solver.read(&solution, &Reading { layer: *layer, kind: *kind, at, inputs }, out)
+                })?;
+            }
+            Instruction::Grid { grid, kind, coords, out } => {
+                let grid = bindings.grids.get(*grid).and_then(Option::as_ref);
+                let grid = grid.ok_or_else(|| internal("a grid was read before it was made"))?;
+                // Only the block itself lies on the lattice that the grid was made on.
+                let block = block.filter(|_| *coords == 0);
+                let mut samples = std::mem::take(&mut self.registers[*out]);
+                copy_or_read(grid, *kind, block, &self.coord_sets[*coords].points(), &mut samples);
+                self.registers[*out] = samples;
+            }
+            Instruction::Mask { source, result, mask, out } => {
+                let mut samples = std::mem::take(&mut self.registers[*out]);
+                let (result, mask) = (&self.registers[*result], &self.registers[*mask]);
+                match source {
+                    Some(source) => {
+                        let source = &self.registers[*source];
+                        for (((sample, s), r), m) in samples.iter_mut().zip(source).zip(result).zip(mask) {
+                            *sample = s + (r - s) * m.clamp(0.0, 1.0);
+                        }
+                    }
+                    None => {
+                        for ((sample, r), m) in samples.iter_mut().zip(result).zip(mask) {
+                            *sample = r * m.clamp(0.0, 1.0);
+                        }
+                    }
+                }
+                self.registers[*out] = samples;
+            }
+            Instruction::Displace { from, east, south, strength, reach, to } => {
+                let mut moved = std::mem::take(&mut self.coord_sets[*to]);
+                let metres = |input: f32| {
+                    // A displacement that is no number moves nothing: the source then decides what shows.
+                    let metres = (f64::from(input) * strength).clamp(-reach, *reach) as f32;
+                    if metres.is_nan() { 0.0 } else { metres }
+                };
+                let (east, south) = (&self.registers[*east], &self.registers[*south]);
+                displace(&self.coord_sets[*from], count, |k| (metres(east[k]), metres(south[k])), &mut moved);
+                self.coord_sets[*to] = moved;
+            }
+            Instruction::Map { from, map, to } => {
+                let mut mapped = std::mem::take(&mut self.coord_sets[*to]);
+                let from = &self.coord_sets[*from];
+                mapped.x.clear();
+                mapped.y.clear();
+                if from.shape == Shape::Lattice && map.is_separable() {
+                    mapped.shape = Shape::Lattice;
+                    mapped.x.extend(from.x.iter().map(|x| map.apply(*x, 0.0).0));
+                    mapped.y.extend(from.y.iter().map(|y| map.apply(0.0, *y).1));
+                } else {
+                    mapped.shape = Shape::Scattered;
+                    let points = from.points();
+                    for k in 0..count {
+                        let (x, y) = points.position(k).unwrap_or(NOWHERE);
+                        let (x, y) = map.apply(x, y);
+                        mapped.x.push(x);
+                        mapped.y.push(y);
+                    }
+                }
+                self.coord_sets[*to] = mapped;
+            }
+        }
+        Ok(())
+    }
+
+    /// Lends the inputs and takes the output out while an op works, so that both can be borrowed at once.
+    fn with_inputs<T>(
+        &mut self,
+        coords: usize,
+        inputs: &[Option<usize>],
+        out: usize,
+        work: impl FnOnce(&Points, &Inputs, &mut [f32]) -> T,
+    ) -> T {
+        let mut samples = std::mem::take(&mut self.registers[out]);
+        const FEW: usize = 8;
+        let mut few: [Option<&[f32]>; FEW] = [None; FEW];
+        let many: Vec<Option<&[f32]>>;
+        let slots = if inputs.len() <= FEW {
+            for (slot, input) in few.iter_mut().zip(inputs) {
+                *slot = input.map(|register| self.registers[register].as_slice());
+            }
+            &few[..inputs.len()]
+        } else {
+            many = inputs.iter().map(|input| input.map(|register| self.registers[register].as_slice())).collect();
+            &many
+        };
+        let done = work(&self.coord_sets[coords].points(), &Inputs::new(slots), &mut samples);
+        self.registers[out] = samples;
+        done
+    }
+}
+
+fn internal(message: &str) -> Error {
+    Error::new(ErrorKind::Internal, message)
+}
+
+/// Copies a block out of a grid on its own lattice, or reads it between samples.
+fn copy_or_read(grid: &Grid, kind: LayerKind, block: Option<&Window>, points: &Points, out: &mut [f32]) {
+    match block {
+        Some(block) if grid.window().contains(block) => {
+            let window = grid.window();
+            let (left, top) = ((block.x - window.x) as usize, (block.y - window.y) as usize);
+            for (j, row) in out.chunks_mut(block.width.max(1)).enumerate() {
+                row.copy_from_slice(&grid.row(top + j)[left..left + block.width]);
+            }
+        }
+        _ => resample::read(grid, kind, points, out),
+    }
+}
+
+/// Moves every point. From a lattice the columns and rows stay known beside the displacements; from anywhere else the new
+/// positions are plain points. Either way a position is the f64 sum of where it was and the f32 it moved.
+fn displace(from: &CoordSet, count: usize, by: impl Fn(usize) -> (f32, f32), to: &mut CoordSet) {
+    to.x.clear();
+    to.y.clear();
+    to.dx.clear();
+    to.dy.clear();
+    if from.shape == Shape::Lattice {
+        to.shape = Shape::Displaced;
+        to.x.extend_from_slice(&from.x);
+        to.y.extend_from_slice(&from.y);
+        for k in 0..count {
+            let (dx, dy) = by(k);
+            to.dx.push(dx);
+            to.dy.push(dy);
+        }
+        return;
+    }
+    to.shape = Shape::Scattered;
+    let points = from.points();
+    for k in 0..count {
+        let ((x, y), (dx, dy)) = (points.position(k).unwrap_or(NOWHERE), by(k));
+        to.x.push(x + f64::from(dx));
+        to.y.push(y + f64::from(dy));
+    }
+}

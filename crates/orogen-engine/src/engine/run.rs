@@ -1,0 +1,280 @@
+//! Runs a plan's steps.
+
+use super::interpreter::{Bindings, Interpreter};
+use crate::budget::Budget;
+use crate::op::{Context, Field, Op, Solution, Solver, StepObserver, WorldParams};
+use crate::plan::cost;
+use crate::plan::key::Key;
+use crate::plan::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
+use crate::plan::steps::{Plan, Step};
+use crate::pool::Pool;
+use crate::recipe::document::Recipe;
+use crate::recipe::graph::Graph;
+use crate::store::grids::{EXPENSIVE, GridKey, GridStore};
+use crate::store::solutions::Store;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::progress::Progress;
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// What runs plans of one recipe.
+#[derive(Clone, Copy)]
+pub struct Engine<'a> {
+    pub recipe: &'a Recipe,
+    pub graph: &'a Graph,
+    pub world_params: &'a WorldParams,
+    /// The content keys of the nodes.
+    pub keys: &'a [Key],
+    pub store: &'a Store,
+    /// Where the grids of expensive filters are kept, if they are.
+    pub grids: Option<&'a GridStore>,
+    pub budget: &'a Budget,
+    /// The threads that work is shared out to. What only waits, waits on the calling thread.
+    pub pool: &'a Pool,
+    pub progress: &'a Progress,
+    /// Who observes the steps of which node's solver. That node is solved even if its solution is stored.
+    pub observer: Option<(usize, &'a (dyn StepObserver + Sync))>,
+}
+
+/// A program to be run over a window.
+struct Filling<'a> {
+    program: &'a Program,
+    window: &'a Window,
+    outputs: usize,
+}
+
+/// What solvers found, by node.
+pub type Solutions = HashMap<usize, Arc<Solution>>;
+
+impl<'a> Engine<'a> {
+    /// Makes a plan's output grids.
+    pub fn run(&self, plan: &Plan) -> Result<Vec<Grid>> {
+        let work = cost::steps(plan, self.recipe);
+        self.progress.expect(work);
+        let solutions = self.solve(plan)?;
+        let part = self.progress.part(work);
+        let grids = self.pool.install(|| self.steps(plan, &solutions, &part))?;
+        self.progress.finish();
+        Ok(grids)
+    }
+
+    /// Makes a plan's output grids, all that it reads being solved.
+    pub(super) fn steps(&self, plan: &Plan, solutions: &Solutions, progress: &Progress) -> Result<Vec<Grid>> {
+        progress.expect(cost::steps(plan, self.recipe));
+        let mut grids: Vec<Option<Grid>> = plan.grids.iter().map(|_| None).collect();
+        let needed = self.kept_grids(plan, &mut grids);
+        for (at, step) in plan.steps.iter().enumerate() {
+            progress.check()?;
+            if !needed[at] {
+                progress.advance(cost::step(step, plan, self.recipe));
+                continue;
+            }
+            let part = progress.part(cost::step(step, plan, self.recipe));
+            self.step(step, solutions, &mut grids, &part)?;
+            part.finish();
+            for (grid, slot) in grids.iter_mut().zip(&plan.grids) {
+                if slot.last_use <= at {
+                    *grid = None;
+                }
+            }
+        }
+        // One grid may be several outputs only by being made several times: each output has a slot of its own.
+        Ok(plan.outputs.iter().filter_map(|&slot| grids[slot].take()).collect())
+    }
+
+    /// Takes the grids of expensive filters that are kept from earlier requests. Returns which steps still have to be made: those whose grids are
+    /// read by others that have to be, or are results.
+    fn kept_grids(&self, plan: &Plan, grids: &mut [Option<Grid>]) -> Vec<bool> {
+        let mut needed = vec![true; plan.steps.len()];
+        let Some(store) = self.grids.filter(|store| store.is_used()) else { return needed };
+        let mut read: Vec<bool> = plan.grids.iter().map(|slot| slot.last_use >= plan.steps.len()).collect();
+        for (at, step) in plan.steps.iter().enumerate().rev() {
+            let writes = step.writes();
+            // A program for points writes no grid.
+            needed[at] = writes.is_empty() || writes.iter().any(|&slot| read[slot]);
+            if let Some(found) = needed[at].then(|| store.find(&self.grid_keys(step)?)).flatten() {
+                writes.iter().zip(found).for_each(|(&slot, grid)| grids[slot] = Some(grid));
+                needed[at] = false;
+            }
+            if needed[at] {
+                step.reads().into_iter().for_each(|slot| read[slot] = true);
+            }
+        }
+        needed
+    }
+
+    /// What the grids of a step are kept under; `None` if they are not worth it.
+    fn grid_keys(&self, step: &Step) -> Option<Vec<GridKey>> {
+        let Step::Apply { node, window, out, .. } = step else { return None };
+        let Op::Filter(filter) = self.recipe.nodes().get(*node)?.node.op() else { return None };
+        let layers = out.iter().enumerate().filter_map(|(layer, slot)| slot.map(|_| layer));
+        (filter.cost(window.cell) >= EXPENSIVE)
+            .then(|| layers.map(|layer| GridKey::new(self.keys[*node], layer, window)).collect())
+    }
+
+    /// Makes a scattered plan's values at points, output after output.
+    pub fn run_points(&self, plan: &Plan, x: &[f64], y: &[f64]) -> Result<Vec<Vec<f32>>> {
+        let (solutions, grids) = self.before_points(plan)?;
+        let Some(program) = plan.asked() else { return Ok(Vec::new()) };
+        self.pool.install(|| self.at_points(program, x, y, &solutions, &grids))
+    }
+
+    /// All that a scattered plan makes before it is asked at any point.
+    pub fn before_points(&self, plan: &Plan) -> Result<(Solutions, Vec<Option<Grid>>)> {
+        let solutions = self.solve(plan)?;
+        let mut grids: Vec<Option<Grid>> = plan.grids.iter().map(|_| None).collect();
+        for step in &plan.steps {
+            match step {
+                Step::Fill { out, .. } if out.is_empty() => {}
+                _ => self.pool.install(|| self.step(step, &solutions, &mut grids, self.progress))?,
+            }
+        }
+        Ok((solutions, grids))
+    }
+
+    fn step(&self, step: &Step, solutions: &Solutions, grids: &mut [Option<Grid>], progress: &Progress) -> Result<()> {
+        let made = match step {
+            Step::Fill { program, window, out } => {
+                let filling = Filling { program, window, outputs: out.len() };
+                self.fill(&filling, solutions, grids, progress)?
+            }
+            Step::Apply { .. } => {
+                let made = self.apply(step, grids, progress)?;
+                self.keep_grids(step, &made);
+                made
+            }
+        };
+        for (slot, grid) in step.writes().into_iter().zip(made) {
+            grids[slot] = Some(grid);
+        }
+        Ok(())
+    }
+
+    /// Keeps the grids of an expensive filter for the next request.
+    fn keep_grids(&self, step: &Step, made: &[Grid]) {
+        let Some(store) = self.grids.filter(|store| store.is_used()) else { return };
+        for (key, grid) in self.grid_keys(step).into_iter().flatten().zip(made) {
+            let allowed = self.budget.unused().map(|unused| unused.saturating_sub(self.store.memory()));
+            store.keep(key, grid, allowed);
+        }
+    }
+
+    pub(super) fn field(&self, node: usize) -> Option<&'a dyn Field> {
+        match self.recipe.nodes().get(node)?.node.op() {
+            Op::Field(field) => Some(field),
+            _ => None,
+        }
+    }
+
+    pub(super) fn solver(&self, node: usize, solutions: &Solutions) -> Option<(&'a dyn Solver, Arc<Solution>)> {
+        match self.recipe.nodes().get(node)?.node.op() {
+            Op::Solver(solver) => Some((solver, Arc::clone(solutions.get(&node)?))),
+            _ => None,
+        }
+    }
+
+    fn at_points(
+        &self,
+        program: &Program,
+        x: &[f64],
+        y: &[f64],
+        solutions: &Solutions,
+        grids: &[Option<Grid>],
+    ) -> Result<Vec<Vec<f32>>> {
+        let fields = |node| self.field(node);
+        let solvers = |node| self.solver(node, solutions);
+        let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids };
+        const POINTS: usize = BLOCK_WIDTH * BLOCK_HEIGHT;
+        let mut values = vec![Vec::with_capacity(x.len()); program.outputs.len()];
+        let mut interpreter = Interpreter::new(program);
+        for (x, y) in x.chunks(POINTS).zip(y.chunks(POINTS)) {
+            interpreter.run_points(x, y, &bindings)?;
+            for (i, values) in values.iter_mut().enumerate() {
+                values.extend_from_slice(interpreter.output(i));
+            }
+        }
+        Ok(values)
+    }
+
+    /// Runs a program over a window: bands of rows side by side, each band block by block.
+    fn fill(
+        &self,
+        filling: &Filling,
+        solutions: &Solutions,
+        grids: &[Option<Grid>],
+        progress: &Progress,
+    ) -> Result<Vec<Grid>> {
+        let Filling { program, window, outputs } = *filling;
+        let mut out: Vec<Grid> = (0..outputs).map(|_| Grid::filled(*window, 0.0f32)).collect();
+        if window.is_empty() {
+            return Ok(out);
+        }
+        let fields = |node| self.field(node);
+        let solvers = |node| self.solver(node, solutions);
+        let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids };
+        // Enough bands for every thread to have some, none so thin that rows of noise lattice are made over and over.
+        let rows = window.height.div_ceil(2 * rayon::current_num_threads()).clamp(8, BLOCK_HEIGHT);
+        progress.expect(window.height as f64);
+        let mut bands: Vec<Vec<&mut [f32]>> = (0..window.height.div_ceil(rows)).map(|_| Vec::new()).collect();
+        for grid in &mut out {
+            for (band, samples) in bands.iter_mut().zip(grid.data_mut().chunks_mut(rows * window.width)) {
+                band.push(samples);
+            }
+        }
+        bands.into_par_iter().enumerate().try_for_each_init(
+            || Interpreter::new(program),
+            |interpreter, (band, mut out)| {
+                progress.check()?;
+                let top = band * rows;
+                let height = rows.min(window.height - top);
+                for left in (0..window.width).step_by(BLOCK_WIDTH) {
+                    let block = Window {
+                        x: window.x + left as i64,
+                        y: window.y + top as i64,
+                        width: BLOCK_WIDTH.min(window.width - left),
+                        height,
+                        cell: window.cell,
+                    };
+                    interpreter.run_block(&block, &bindings)?;
+                    for (i, out) in out.iter_mut().enumerate() {
+                        let made = interpreter.output(i).chunks(block.width);
+                        for (row, made) in out.chunks_mut(window.width).zip(made) {
+                            row[left..left + block.width].copy_from_slice(made);
+                        }
+                    }
+                }
+                progress.advance(height as f64);
+                Ok::<(), Error>(())
+            },
+        )?;
+        Ok(out)
+    }
+
+    fn apply(&self, step: &Step, grids: &[Option<Grid>], progress: &Progress) -> Result<Vec<Grid>> {
+        let Step::Apply { node, inputs, window, halo, out } = step else { return Ok(Vec::new()) };
+        let Op::Filter(filter) = self.recipe.nodes()[*node].node.op() else {
+            return Err(Error::new(ErrorKind::Internal, "a node that is not a filter was to be applied"));
+        };
+        let grown = window.grown(*halo);
+        // An input may have been made for others too, over more samples: the filter gets just what it declared.
+        let cropped: Vec<Option<Grid>> = inputs
+            .iter()
+            .map(|input| {
+                let grid = input.and_then(|slot| grids[slot].as_ref())?;
+                if *grid.window() == grown { None } else { grid.crop(&grown) }
+            })
+            .collect();
+        let given: Vec<Option<&Grid>> = inputs
+            .iter()
+            .zip(&cropped)
+            .map(|(input, cropped)| cropped.as_ref().or_else(|| input.and_then(|slot| grids[slot].as_ref())))
+            .collect();
+        let context = Context { world_params: self.world_params, progress, observer: None };
+        let mut made: Vec<Option<Grid>> =
+            out.iter().map(|wanted| wanted.map(|_| Grid::filled(*window, 0.0f32))).collect();
+        filter.apply(&given, window, &mut made, &context)?;
+        Ok(made.into_iter().flatten().collect())
+    }
+}

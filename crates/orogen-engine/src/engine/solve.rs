@@ -1,0 +1,107 @@
+//! Solves what a plan needs solved.
+
+use super::run::{Engine, Solutions};
+use super::tiles::Tiles;
+use crate::op::{Context, Op, Solution};
+use crate::plan::cost;
+use crate::plan::planner::Planner;
+use crate::plan::steps::{Plan, Solve};
+use crate::recipe::graph::Link;
+use crate::store::solutions::Begun;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::Window;
+use orogen_grid::progress::Progress;
+use std::sync::Arc;
+
+impl Engine<'_> {
+    /// The solutions that a plan's steps read: found in the store, or made, after those that their own sources read. What only a
+    /// solution that is found would read is not even looked for.
+    pub(super) fn solve(&self, plan: &Plan) -> Result<Solutions> {
+        let mut wanted = plan.solvers_read();
+        let (mut there, mut missing) = (Solutions::new(), Vec::new());
+        // Sources come first in the plan: backwards, whoever reads a solution is known before the solution is looked for.
+        for order in plan.solves.iter().rev() {
+            if !wanted.contains(&order.node) {
+                continue;
+            }
+            match self.store.find(&order.key, order.on_disk)? {
+                Some(solution) if !self.is_observed(order.node) => {
+                    there.insert(order.node, solution);
+                }
+                _ => {
+                    wanted.extend(&order.reads);
+                    missing.push(order);
+                }
+            }
+        }
+        missing.iter().for_each(|order| self.progress.expect(order.work()));
+        for order in missing.into_iter().rev() {
+            let part = self.progress.part(order.work());
+            let begun = match self.is_observed(order.node) {
+                true => self.store.begin_again(&order.key),
+                false => self.store.begin(&order.key, self.may_wait(), &part)?,
+            };
+            let solution = match begun {
+                Begun::Found(solution) => solution,
+                // It is stored on a thread of the pool: the calling thread may have been lent to another request that waits for it.
+                Begun::Make(making) => {
+                    self.pool.install(|| Ok::<_, Error>(making.finish(self.solved(order, &there, &part)?)))?
+                }
+            };
+            part.finish();
+            there.insert(order.node, self.moved(order, solution)?);
+        }
+        Ok(there)
+    }
+
+    /// Whether this thread may wait for a solution that another request is making. A thread of the pool may not: that request could be further down
+    /// its own stack.
+    fn may_wait(&self) -> bool {
+        !self.pool.is_current()
+    }
+
+    /// Whether somebody wants to see the steps of a node's solver, which is then solved even if its solution is stored.
+    fn is_observed(&self, node: usize) -> bool {
+        self.observer.is_some_and(|(observed, _)| observed == node)
+    }
+
+    /// Nanoseconds of one core that solving takes before a plan's steps can be run, about.
+    pub fn solving_work(&self, plan: &Plan) -> f64 {
+        let mut wanted = plan.solvers_read();
+        let mut work = 0.0;
+        for order in plan.solves.iter().rev() {
+            if wanted.contains(&order.node) && !self.store.has(&order.key) {
+                wanted.extend(&order.reads);
+                work += order.work();
+            }
+        }
+        work
+    }
+
+    /// A solution that two requests made at once may be in memory though this one wants it on disk.
+    fn moved(&self, order: &Solve, solution: Arc<Solution>) -> Result<Arc<Solution>> {
+        match order.on_disk {
+            true => Ok(self.store.find(&order.key, true)?.unwrap_or(solution)),
+            false => Ok(solution),
+        }
+    }
+
+    /// Solves one solver, all that its sources read being there.
+    fn solved(&self, order: &Solve, there: &Solutions, progress: &Progress) -> Result<Solution> {
+        let Op::Solver(solver) = self.recipe.nodes()[order.node].node.op() else {
+            return Err(Error::new(ErrorKind::Internal, "a node that is not a solver was to be solved"));
+        };
+        let planner = Planner::new(self.recipe, self.graph, self.keys);
+        let [sources, own] = progress.parts([order.source_work, order.own_work]);
+        sources.expect(order.source_work);
+        let make = |link: Link, tile: Window| {
+            let plan = planner.source(link, tile)?;
+            // The solution is kept, what it was made of is not.
+            let engine = Engine { grids: None, ..*self };
+            engine.steps(&plan, there, &sources.part(cost::steps(&plan, self.recipe)))
+        };
+        let tiles = Tiles { links: &self.graph.links[order.node], order, make: &make, scratch: self.store.scratch() };
+        let observer = self.observer.and_then(|(node, observer)| (node == order.node).then_some(observer));
+        solver.solve(&tiles, &Context { world_params: self.world_params, progress: &own, observer })
+    }
+}

@@ -1,0 +1,59 @@
+//! A solver's sources, made tile by tile as it asks.
+
+use crate::op::Sources;
+use crate::plan::steps::Solve;
+use crate::recipe::graph::Link;
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use orogen_io::pages::Pages;
+use orogen_io::raster::Raster;
+use std::path::Path;
+
+/// The inputs of one solver; `make` makes an input over a tile.
+pub struct Tiles<'a> {
+    pub links: &'a [Link],
+    pub order: &'a Solve,
+    pub make: &'a dyn Fn(Link, Window) -> Result<Vec<Grid>>,
+    /// The folder for what is to be on disk.
+    pub scratch: &'a Path,
+}
+
+impl Sources for Tiles<'_> {
+    fn world(&self) -> &Window {
+        &self.order.world
+    }
+
+    fn padded(&self) -> &Window {
+        &self.order.padded
+    }
+
+    fn given(&self, i: usize) -> bool {
+        self.links.get(i).is_some_and(|link| *link != Link::None)
+    }
+
+    fn each_tile(&self, i: usize, window: &Window, visit: &mut dyn FnMut(&Grid) -> Result<()>) -> Result<()> {
+        let Some(link) = self.links.get(i).filter(|link| **link != Link::None) else { return Ok(()) };
+        for tile in window.tiles(self.order.side) {
+            for grid in (self.make)(*link, tile)? {
+                visit(&grid)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn raster(&self) -> Result<Raster> {
+        match self.order.on_disk {
+            true => Pages::scratch(self.scratch, self.order.padded).map(Raster::on_disk),
+            false => Ok(Raster::in_memory(Grid::filled(self.order.padded, 0.0))),
+        }
+    }
+
+    fn on_disk(&self) -> bool {
+        self.order.on_disk
+    }
+
+    fn keep(&self, grid: Grid) -> Result<Raster> {
+        let raster = Raster::in_memory(grid);
+        if self.order.on_disk { raster.copied_to_disk(self.scratch) } else { Ok(raster) }
+    }
+}

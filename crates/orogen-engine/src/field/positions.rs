@@ -1,0 +1,45 @@
+//! Iteration over positions in every representation.
+
+use orogen_grid::resample::NOWHERE;
+use orogen_noise::Points;
+
+/// Writes `value(x, y)` of each position, in metres.
+pub(super) fn each(at: &Points, out: &mut [f32], mut value: impl FnMut(f64, f64) -> f32) {
+    match at {
+        Points::Lattice { xs, ys } if !xs.is_empty() => {
+            for (row, y) in out.chunks_mut(xs.len()).zip(ys.iter()) {
+                for (sample, x) in row.iter_mut().zip(xs.iter()) {
+                    *sample = value(*x, *y);
+                }
+            }
+        }
+        _ => {
+            for (k, sample) in out.iter_mut().enumerate() {
+                let (x, y) = at.position(k).unwrap_or(NOWHERE);
+                *sample = value(x, y);
+            }
+        }
+    }
+}
+
+/// Hermite's smooth step from 0 at 0 to 1 at 1, flat beyond.
+pub(super) fn smoothstep(t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_ways_agree() {
+        let (xs, ys) = ([1.0, 2.5, -3.0], [0.5, 7.0]);
+        let (x, y) = ([1.0, 2.5, -3.0, 1.0, 2.5, -3.0], [0.5, 0.5, 0.5, 7.0, 7.0, 7.0]);
+        let (mut a, mut b) = ([0.0; 6], [0.0; 6]);
+        each(&Points::Lattice { xs: &xs, ys: &ys }, &mut a, |x, y| (x * 10.0 + y) as f32);
+        each(&Points::Scattered { x: &x, y: &y }, &mut b, |x, y| (x * 10.0 + y) as f32);
+        assert_eq!(a, b);
+        assert_eq!(a[4], 32.0);
+    }
+}

@@ -1,0 +1,39 @@
+//! A mask by height.
+
+use crate::op::{Field, Inputs, WorldParams};
+use orogen_grid::analysis::selection::Selection;
+use orogen_noise::Points;
+
+op! {
+    /// A mask by height: 1 inside a range of values, falling smoothly to 0 below and above it.
+    ///
+    /// The source may have any unit: heights, a layer of a filter or solver, or noise.
+    pub struct SelectHeight = "select-height", field, revision 1;
+    inputs {
+        /// The values to select by, for example heights.
+        source: required,
+    }
+    params {
+        /// Lowest and highest value where the mask is 1, in the source's unit.
+        range: [f64; 2] = [500.0, 1500.0], range -1e9 to 1e9;
+        /// Width of the transition below and above the range, in the source's unit. 0 gives a sharp boundary.
+        falloff: [f64; 2] = [100.0, 100.0], range 0.0 to 1e9;
+    }
+    check |op| match op.range[0] <= op.range[1] {
+        true => Ok(()),
+        false => Err(("range", format!("the first value of `range` ({}) must not be greater than the second ({})", op.range[0], op.range[1]))),
+    };
+}
+
+impl Field for SelectHeight {
+    fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
+        let selection = Selection::new(self.range, self.falloff);
+        for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
+            *sample = selection.of(*source);
+        }
+    }
+
+    fn cost(&self) -> f64 {
+        1.0
+    }
+}

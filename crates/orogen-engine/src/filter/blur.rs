@@ -1,0 +1,121 @@
+//! Gaussian blur.
+
+use crate::op::{Context, Filter};
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use rayon::prelude::*;
+
+op! {
+    /// Gaussian blur: the mean of the surrounding samples, weighted by exp(-d^2 / 2 radius^2).
+    ///
+    /// The kernel is truncated at three standard deviations and its weights sum to 1. It is applied to rows, then to columns; each sum has
+    /// a fixed order. The time grows with radius / cell.
+    pub struct Blur = "blur", filter, revision 1;
+    inputs {
+        /// The values to blur.
+        source: required,
+    }
+    params {
+        /// Standard deviation of the kernel.
+        radius: f64 = 50.0, unit "m", range 0.0 to 1e6;
+    }
+}
+
+/// Maximum reach of the kernel in samples. A wider kernel would take too long, and its halo would not fit in memory.
+const FARTHEST: f64 = 16_384.0;
+
+impl Blur {
+    fn weights(&self, cell: f64) -> Vec<f32> {
+        let sigma = self.radius / cell;
+        let reach = self.halo(cell) as i64;
+        let weights: Vec<f64> =
+            (-reach..=reach).map(|d| libm::exp(-((d * d) as f64) / (2.0 * sigma * sigma))).collect();
+        let sum: f64 = weights.iter().sum();
+        weights.iter().map(|weight| (weight / sum) as f32).collect()
+    }
+}
+
+impl Filter for Blur {
+    fn halo(&self, cell: f64) -> usize {
+        (3.0 * self.radius / cell).ceil().min(FARTHEST) as usize
+    }
+
+    fn scratch(&self, window: &Window) -> u64 {
+        let reach = self.halo(window.cell);
+        // A tile for each band that is worked on, which may be all of them.
+        let bands = window.height.div_ceil(band(reach));
+        4 * (bands * TILE * (band(reach) + 2 * reach)) as u64
+    }
+
+    fn apply(
+        &self,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        out: &mut [Option<Grid>],
+        context: &Context,
+    ) -> Result<()> {
+        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+        let reach = self.halo(window.cell);
+        if reach == 0 || window.is_empty() {
+            out.paste(source);
+            return Ok(());
+        }
+        let weights = self.weights(window.cell);
+        let band = band(reach);
+        out.data_mut().par_chunks_mut(band * window.width).enumerate().try_for_each_init(
+            || vec![0.0f32; TILE * (band + 2 * reach)],
+            |rows, (b, out)| {
+                context.progress.check()?;
+                let (top, height) = (b * band, out.len() / window.width);
+                for left in (0..window.width).step_by(TILE) {
+                    let width = TILE.min(window.width - left);
+                    // Along x into rows that stay in cache, then along y out of them.
+                    for (j, row) in rows.chunks_mut(TILE).take(height + 2 * reach).enumerate() {
+                        let source = &source.row(top + j)[left..];
+                        weigh(&mut row[..width], &weights, source, 1);
+                    }
+                    for (j, row) in out.chunks_mut(window.width).enumerate() {
+                        weigh(&mut row[left..left + width], &weights, &rows[j * TILE..], TILE);
+                    }
+                }
+                Ok(())
+            },
+        )
+    }
+
+    fn cost(&self, cell: f64) -> f64 {
+        0.33 * (2 * self.halo(cell) + 1) as f64
+    }
+}
+
+/// Columns of a tile.
+const TILE: usize = 256;
+
+/// Rows of a band: enough that the rows shared by two bands do not matter.
+fn band(reach: usize) -> usize {
+    (4 * reach).max(256)
+}
+
+/// Each value of `out` becomes the weighted sum of as many samples of `from` as there are weights, `step` apart, starting at the same
+/// index. Sums run in the order of the weights, many side by side in registers.
+fn weigh(out: &mut [f32], weights: &[f32], from: &[f32], step: usize) {
+    const ABREAST: usize = 32;
+    let (registers, rest) = out.as_chunks_mut::<ABREAST>();
+    let done = registers.len() * ABREAST;
+    for (r, out) in registers.iter_mut().enumerate() {
+        let mut sums = [0.0f32; ABREAST];
+        for (k, weight) in weights.iter().enumerate() {
+            let samples = &from[r * ABREAST + k * step..][..ABREAST];
+            for (sum, sample) in sums.iter_mut().zip(samples) {
+                *sum += weight * sample;
+            }
+        }
+        *out = sums;
+    }
+    for (i, out) in rest.iter_mut().enumerate() {
+        *out = 0.0;
+        for (k, weight) in weights.iter().enumerate() {
+            *out += weight * from[done + i + k * step];
+        }
+    }
+}

@@ -1,0 +1,35 @@
+//! Terrain ruggedness index.
+
+use crate::op::{Context, Filter};
+use orogen_grid::analysis::roughness::riley;
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+
+op! {
+    /// Terrain ruggedness index (TRI): the square root of the sum of squared height differences to the eight neighbours (Riley, DeGloria
+    /// and Elliot 1999).
+    ///
+    /// The index depends on the cell size: the same ground has a higher index at a larger cell size.
+    pub struct Ruggedness = "ruggedness", filter, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    layers {
+        /// The index.
+        ruggedness: height, unit "m";
+    }
+}
+
+impl Filter for Ruggedness {
+    fn halo(&self, _: f64) -> usize {
+        1
+    }
+
+    fn apply(&self, inputs: &[Option<&Grid>], _: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
+        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+        context.progress.check()?;
+        *out = riley(source);
+        Ok(())
+    }
+}

@@ -1,0 +1,64 @@
+//! A mask by aspect.
+
+use crate::op::{Context, Filter};
+use orogen_grid::analysis::aspect::aspect_of;
+use orogen_grid::analysis::selection::Selection;
+use orogen_grid::analysis::slope::gradients_between;
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use rayon::prelude::*;
+
+op! {
+    /// A mask by aspect: 1 where the ground faces a direction, falling smoothly to 0 away from it.
+    ///
+    /// Use it for snow on northern slopes or rain from the west. Aspect is the downhill direction by Horn's method (1981). Level ground has
+    /// no aspect: the mask falls to 0 for slopes below `least_slope`.
+    pub struct SelectAspect = "select-aspect", filter, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// The direction: 0 is north, 90 is east.
+        direction: f64 = 0.0, unit "deg", range -360.0 to 360.0;
+        /// Angle to each side of the direction within which the mask is 1.
+        width: f64 = 30.0, unit "deg", range 0.0 to 180.0;
+        /// Width of the transition beyond `width`. 0 gives a sharp boundary.
+        falloff: f64 = 60.0, unit "deg", range 0.0 to 180.0;
+        /// Slope above which the mask is not reduced.
+        least_slope: f64 = 5.0, unit "deg", range 0.0 to 89.0;
+    }
+}
+
+impl Filter for SelectAspect {
+    fn halo(&self, _: f64) -> usize {
+        1
+    }
+
+    fn apply(
+        &self,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        out: &mut [Option<Grid>],
+        context: &Context,
+    ) -> Result<()> {
+        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+        let directions = Selection::new([-1.0, self.width], [0.0, self.falloff]);
+        let slopes = Selection::new([self.least_slope, 90.0], [self.least_slope, 0.0]);
+        let direction = self.direction as f32;
+        out.data_mut().par_chunks_mut(window.width.max(1)).enumerate().try_for_each(|(j, row)| {
+            context.progress.check()?;
+            gradients_between([source.row(j), source.row(j + 1), source.row(j + 2)], window.cell, |i, gradient| {
+                let off = (aspect_of(gradient) - direction).abs() % 360.0;
+                // The smaller of the two angles. Level ground, whose aspect is not a number, is not selected.
+                let off = if off > 180.0 { 360.0 - off } else { off };
+                row[i] = directions.of(off) * slopes.of(libm::atanf(gradient.steepness()).to_degrees());
+            });
+            Ok(())
+        })
+    }
+
+    fn cost(&self, _: f64) -> f64 {
+        15.0
+    }
+}

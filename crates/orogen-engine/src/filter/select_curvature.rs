@@ -1,0 +1,87 @@
+//! A mask by curvature.
+
+use crate::op::{Context, Filter};
+use orogen_grid::analysis::curvature::{Curvature, bend};
+use orogen_grid::analysis::selection::Selection;
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use rayon::prelude::*;
+
+choice! {
+    /// Kind of curvature.
+    pub enum Bend {
+        /// Mean curvature: convex on summits and crests, concave in hollows.
+        Total = "total",
+        /// Profile curvature, along the slope: convex at the upper edge of a slope, concave at its foot.
+        Profile = "profile",
+        /// Contour curvature: convex on spurs, where water diverges, concave in valleys, where it converges.
+        Plan = "plan",
+    }
+}
+
+op! {
+    /// A mask by curvature: 1 inside a range, falling smoothly to 0 below and above it.
+    ///
+    /// The curvature is that of the quadric through nine heights `scale` apart (Zevenbergen and Thorne 1987). It is positive where the
+    /// ground is convex; its unit is 1 over the radius of curvature. A large scale selects ridges and valleys, a small one selects details.
+    /// A scale below half a cell counts as one cell.
+    pub struct SelectCurvature = "select-curvature", filter, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// Kind of curvature.
+        kind: Bend = Bend::Total;
+        /// Distance between the heights, rounded to whole samples.
+        scale: f64 = 50.0, unit "m", range 0.0 to 1e6;
+        /// Lowest and highest curvature where the mask is 1. Concave ground has negative curvature.
+        range: [f64; 2] = [1e-3, 1e3], unit "1/m", range -1e3 to 1e3;
+        /// Width of the transition below and above the range. 0 gives a sharp boundary.
+        falloff: [f64; 2] = [1e-3, 1e-3], unit "1/m", range 0.0 to 1e3;
+    }
+    check |op| match op.range[0] <= op.range[1] {
+        true => Ok(()),
+        false => Err(("range", format!("the first value of `range` ({}) must not be greater than the second ({})", op.range[0], op.range[1]))),
+    };
+}
+
+/// Maximum distance between the heights, in samples.
+const FARTHEST: f64 = 16_384.0;
+
+impl Filter for SelectCurvature {
+    fn halo(&self, cell: f64) -> usize {
+        (self.scale / cell).round().clamp(1.0, FARTHEST) as usize
+    }
+
+    fn apply(
+        &self,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        out: &mut [Option<Grid>],
+        context: &Context,
+    ) -> Result<()> {
+        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+        let selection = Selection::new(self.range, self.falloff);
+        let apart = self.halo(window.cell);
+        let distance = apart as f64 * window.cell;
+        let kind = match self.kind {
+            Bend::Total => Curvature::Total,
+            Bend::Profile => Curvature::Profile,
+            Bend::Plan => Curvature::Plan,
+        };
+        out.data_mut().par_chunks_mut(window.width.max(1)).enumerate().try_for_each(|(j, row)| {
+            context.progress.check()?;
+            let rows = [0, 1, 2].map(|k| source.row(j + k * apart));
+            for (i, out) in row.iter_mut().enumerate() {
+                let heights = rows.map(|row| [0, 1, 2].map(|k| f64::from(row[i + k * apart])));
+                *out = selection.of(bend(heights, distance, kind));
+            }
+            Ok(())
+        })
+    }
+
+    fn cost(&self, _: f64) -> f64 {
+        6.0
+    }
+}

@@ -1,0 +1,53 @@
+//! A mask by slope.
+
+use crate::op::{Context, Filter};
+use orogen_grid::analysis::selection::Selection;
+use orogen_grid::analysis::slope::gradients_between;
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use rayon::prelude::*;
+
+op! {
+    /// A mask by slope: 1 inside a range, falling smoothly to 0 below and above it.
+    ///
+    /// The slope is Horn's (1981), as in `slope`. It depends on the cell size: the same ground is gentler at a larger cell size.
+    pub struct SelectSlope = "select-slope", filter, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// Lowest and highest slope where the mask is 1.
+        range: [f64; 2] = [30.0, 90.0], unit "deg", range 0.0 to 90.0;
+        /// Width of the transition below and above the range. 0 gives a sharp boundary.
+        falloff: [f64; 2] = [10.0, 10.0], unit "deg", range 0.0 to 90.0;
+    }
+    check |op| match op.range[0] <= op.range[1] {
+        true => Ok(()),
+        false => Err(("range", format!("the first value of `range` ({}) must not be greater than the second ({})", op.range[0], op.range[1]))),
+    };
+}
+
+impl Filter for SelectSlope {
+    fn halo(&self, _: f64) -> usize {
+        1
+    }
+
+    fn apply(
+        &self,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        out: &mut [Option<Grid>],
+        context: &Context,
+    ) -> Result<()> {
+        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+        let selection = Selection::new(self.range, self.falloff);
+        out.data_mut().par_chunks_mut(window.width.max(1)).enumerate().try_for_each(|(j, row)| {
+            context.progress.check()?;
+            gradients_between([source.row(j), source.row(j + 1), source.row(j + 2)], window.cell, |i, gradient| {
+                row[i] = selection.of(libm::atanf(gradient.steepness()).to_degrees());
+            });
+            Ok(())
+        })
+    }
+}

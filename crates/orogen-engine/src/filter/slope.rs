@@ -1,0 +1,73 @@
+//! Slope and its components.
+
+use crate::op::{Context, Filter};
+use orogen_grid::analysis::slope::{Gradient, gradients_between};
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use rayon::prelude::*;
+
+choice! {
+    /// Unit of a slope.
+    pub enum SlopeUnit {
+        /// Angle to the horizontal, 0 to 90 degrees.
+        Degrees = "degrees",
+        /// Rise over run: the tangent of the angle.
+        Ratio = "ratio",
+    }
+}
+
+op! {
+    /// Slope of the source, taken as heights in metres, by Horn's 3 x 3 method (1981).
+    ///
+    /// The slope depends on the cell size: the same ground is gentler at a larger cell size. The components along the axes are layers: they
+    /// tell the direction that the ground faces, and can displace other fields along it.
+    pub struct Slope = "slope", filter, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// Unit of the slope.
+        unit: SlopeUnit = SlopeUnit::Degrees;
+    }
+    layers {
+        /// The slope, in degrees or as a ratio.
+        slope: height;
+        /// Rise per metre to the east; negative where the ground falls to the east.
+        east: height;
+        /// Rise per metre to the south; negative where the ground falls to the south.
+        south: height;
+    }
+}
+
+impl Filter for Slope {
+    fn halo(&self, _: f64) -> usize {
+        1
+    }
+
+    fn apply(
+        &self,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        out: &mut [Option<Grid>],
+        context: &Context,
+    ) -> Result<()> {
+        let [Some(source)] = inputs else { return Ok(()) };
+        let angle = |gradient: Gradient| match self.unit {
+            SlopeUnit::Degrees => libm::atanf(gradient.steepness()).to_degrees(),
+            SlopeUnit::Ratio => gradient.steepness(),
+        };
+        let values: [&(dyn Fn(Gradient) -> f32 + Sync); 3] =
+            [&angle, &|gradient| gradient.east, &|gradient| -gradient.north];
+        for (layer, value) in out.iter_mut().zip(values) {
+            let Some(layer) = layer.as_mut().filter(|_| !window.is_empty()) else { continue };
+            layer.data_mut().par_chunks_mut(window.width).enumerate().try_for_each(|(j, row)| {
+                context.progress.check()?;
+                let rows = [source.row(j), source.row(j + 1), source.row(j + 2)];
+                gradients_between(rows, window.cell, |i, gradient| row[i] = value(gradient));
+                Ok(())
+            })?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,60 @@
+//! Thermal weathering: slopes slide to the talus angle.
+
+use crate::op::{Context, Filter};
+use orogen_grid::erosion::thermal::Thermal as Law;
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+
+op! {
+    /// Thermal weathering: ground steeper than the talus angle slides down and accumulates below as straight scree slopes.
+    ///
+    /// After Musgrave, Kolb and Mace (1989). In each pass the material that crosses the side between two cells is a share of (1 - T / |g|)
+    /// g, where g is the slope there and T the tangent of the talus angle. This is the same in all directions; comparing a cell with its
+    /// eight neighbours would make octagonal cones. Mass is conserved. Material moves one cell per pass, so a cliff of n cells needs about
+    /// n^2 passes to become scree down to its foot. The halo is one sample per pass; where it grows too large, use `bake`. The result
+    /// depends on the cell size.
+    pub struct Thermal = "thermal", filter, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// Maximum stable slope: 30 to 40 for loose rock, 25 for soil.
+        talus_angle: f64 = 35.0, unit "deg", range 0.0 to 89.0;
+        /// Number of passes.
+        iterations: u32 = 50, range 0.0 to 10000.0;
+        /// Rate of movement, as a share of the fastest stable rate.
+        rate: f64 = 1.0, range 0.0 to 1.0;
+    }
+}
+
+impl Filter for Thermal {
+    fn halo(&self, _: f64) -> usize {
+        self.iterations as usize
+    }
+
+    fn scratch(&self, window: &Window) -> u64 {
+        // All rows before and after some passes, and the bands.
+        12 * window.grown(self.iterations as usize).len() as u64
+    }
+
+    fn apply(
+        &self,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        out: &mut [Option<Grid>],
+        context: &Context,
+    ) -> Result<()> {
+        let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+        if window.is_empty() {
+            return Ok(());
+        }
+        let law = Law { talus: libm::tan(self.talus_angle.to_radians()), rate: self.rate };
+        *out = law.run(source, self.iterations as usize, context.progress)?;
+        Ok(())
+    }
+
+    fn cost(&self, _: f64) -> f64 {
+        0.7 * f64::from(self.iterations)
+    }
+}

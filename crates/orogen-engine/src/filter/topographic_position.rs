@@ -1,0 +1,79 @@
+//! Topographic position index.
+
+use crate::op::{Context, Filter};
+use orogen_grid::analysis::position::{class, positions};
+use orogen_grid::analysis::slope::degrees;
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+
+op! {
+    /// Topographic position index (TPI): the height above the mean of a surrounding disc, and the slope position derived from it (Weiss
+    /// 2001).
+    ///
+    /// The disc holds all samples within `radius`, including the centre; a radius below one cell counts as one cell. Weiss divides the
+    /// index by its standard deviation over the map. Here it is divided by the standard deviation of the heights in the disc (Wilson and
+    /// Gallant 2000), so that each sample depends only on the ground within the radius. Heights are rounded to 1/256 m. The time grows with
+    /// the radius.
+    pub struct TopographicPosition = "topographic-position", filter, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// Radius of the disc.
+        radius: f64 = 300.0, unit "m", range 0.0 to 1e6;
+    }
+    layers {
+        /// Height above the mean of the disc.
+        position: height, unit "m";
+        /// Height above the mean in standard deviations of the heights in the disc; 0 on level ground.
+        deviation: height;
+        /// Slope position: 1 ridge (deviation above 1), 2 upper slope (above 0.5), 3 middle slope, 4 flat (deviation as for 3, but a slope
+        /// of up to 5 degrees), 5 lower slope (below -0.5), 6 valley (below -1).
+        class: label;
+    }
+}
+
+/// Maximum radius in samples.
+const FARTHEST: f64 = 1024.0;
+
+impl Filter for TopographicPosition {
+    fn halo(&self, cell: f64) -> usize {
+        (self.radius / cell).floor().clamp(1.0, FARTHEST) as usize
+    }
+
+    fn scratch(&self, window: &Window) -> u64 {
+        let grown = window.grown(self.halo(window.cell));
+        16 * (grown.width as u64 + 1) * grown.height as u64 + 16 * window.len() as u64
+    }
+
+    fn apply(
+        &self,
+        inputs: &[Option<&Grid>],
+        window: &Window,
+        out: &mut [Option<Grid>],
+        context: &Context,
+    ) -> Result<()> {
+        let ([Some(source)], [position, deviation, classes]) = (inputs, out) else { return Ok(()) };
+        context.progress.check()?;
+        let found = positions(source, self.halo(window.cell));
+        for (layer, value) in [(position, 0), (deviation, 1)] {
+            let Some(layer) = layer else { continue };
+            for (out, found) in layer.data_mut().iter_mut().zip(found.data()) {
+                *out = if value == 0 { found.above_mean } else { found.deviation };
+            }
+        }
+        if let Some(classes) = classes {
+            let slopes = source.crop(&window.grown(1)).map(|around| degrees(&around));
+            let slopes = slopes.as_ref().map_or(&[][..], Grid::data);
+            for ((out, found), slope) in classes.data_mut().iter_mut().zip(found.data()).zip(slopes) {
+                *out = f32::from(class(found.deviation, *slope));
+            }
+        }
+        Ok(())
+    }
+
+    fn cost(&self, cell: f64) -> f64 {
+        4.0 * self.halo(cell) as f64
+    }
+}

@@ -1,0 +1,74 @@
+//! Frames that wait until they are shown: heights after steps, in memory while they are few, else on disk.
+
+use orogen_grid::grid::{Grid, Window};
+use orogen_io::spool::Spool;
+use std::collections::BTreeMap;
+use std::io;
+
+/// Heights over one window after some steps.
+pub struct FrameSpool {
+    spool: Spool,
+    window: Window,
+    /// Where those after each step begin.
+    starts: BTreeMap<u32, u64>,
+}
+
+impl FrameSpool {
+    /// An empty one, for grids over `window`.
+    pub fn new(spool: Spool, window: Window) -> FrameSpool {
+        FrameSpool { spool, window, starts: BTreeMap::new() }
+    }
+
+    /// Stores the heights after a step. They must be those of the spool's window.
+    ///
+    /// # Errors
+    /// If the disk takes no more.
+    pub fn put(&mut self, step: u32, heights: &Grid) -> io::Result<()> {
+        if heights.window() != &self.window {
+            return Err(io::ErrorKind::InvalidInput.into());
+        }
+        let mut start = None;
+        for row in 0..self.window.height {
+            let bytes: Vec<u8> = heights.row(row).iter().flat_map(|sample| sample.to_le_bytes()).collect();
+            let at = self.spool.push(&bytes)?;
+            start.get_or_insert(at);
+        }
+        self.starts.insert(step, start.unwrap_or_default());
+        Ok(())
+    }
+
+    /// The heights after a step. Once one was read, none can be stored any more.
+    ///
+    /// # Errors
+    /// If there are none after that step, or the disk fails.
+    pub fn get(&mut self, step: u32) -> io::Result<Grid> {
+        let start = *self.starts.get(&step).ok_or(io::ErrorKind::NotFound)?;
+        let mut grid = Grid::filled(self.window, 0.0);
+        let mut bytes = vec![0; 4 * self.window.width];
+        for row in 0..self.window.height {
+            self.spool.read(start + (row * bytes.len()) as u64, &mut bytes)?;
+            for (sample, bytes) in grid.row_mut(row).iter_mut().zip(bytes.as_chunks().0) {
+                *sample = f32::from_le_bytes(*bytes);
+            }
+        }
+        Ok(grid)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_come_back_in_any_order() {
+        let window = Window::new(3, 2, 1.0);
+        let frame = |step: u32| Grid::from_data(window, (0..6).map(|k| (k + 10 * step) as f32).collect()).unwrap();
+        let mut spool = FrameSpool::new(Spool::in_memory(), window);
+        [2, 7, 4].into_iter().for_each(|step| spool.put(step, &frame(step)).unwrap());
+        for step in [4, 2, 7, 4] {
+            assert_eq!(spool.get(step).unwrap(), frame(step));
+        }
+        assert_eq!(spool.get(3).unwrap_err().kind(), io::ErrorKind::NotFound);
+        assert!(spool.put(9, &Grid::filled(Window::new(2, 2, 1.0), 0.0)).is_err());
+    }
+}

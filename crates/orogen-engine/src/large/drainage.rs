@@ -1,0 +1,177 @@
+//! Filling and drainage of a whole map on disk.
+
+use super::areas::{self, Layers};
+use super::tiling::Tiling;
+use super::{basins, flats};
+use orogen_grid::error::Result;
+use orogen_grid::progress::Progress;
+use orogen_io::raster::Raster;
+
+/// Cells along the side of a tile of a map of so many cells. Larger tiles take more memory each, but have shorter borders together.
+pub fn side(cells: u64) -> usize {
+    match cells {
+        0..0x40_0000 => 256,
+        0x40_0000..0x400_0000 => 512,
+        _ => 1024,
+    }
+}
+
+/// Bytes of memory that work on one tile takes, with what is kept along the borders of all tiles of a map of so many cells.
+pub fn memory(cells: u64) -> u64 {
+    let side = side(cells) as u64;
+    let tiles = cells.div_ceil(side * side);
+    // At most distances over flats, basins, passes and exits take this for each cell along a border.
+    side * side * 100 + tiles * 4 * side * 256
+}
+
+/// A map of heights, and where its water goes.
+pub struct Water<'a> {
+    /// The heights.
+    pub heights: &'a Raster,
+    /// Water also leaves at or below this height.
+    pub sea: Option<f32>,
+    /// Tiles to work in.
+    pub tiling: Tiling,
+    /// Whether the work is still wanted.
+    pub progress: &'a Progress,
+}
+
+impl Water<'_> {
+    /// Writes the filled heights into `filled`, and into `codes` the receivers over the bed of depressions: what
+    /// [`hydrology::drainage::route_carving`](orogen_grid::hydrology::drainage::route_carving) and
+    /// [`hydrology::fill::filled`](orogen_grid::hydrology::fill::filled) make.
+    ///
+    /// # Errors
+    /// If the disk fails, or the work is cancelled.
+    pub fn route_carving(&self, codes: &mut Raster, filled: &mut Raster) -> Result<()> {
+        self.progress.expect((FLAT_PASSES + BASIN_PASSES) * self.tiling.count() as f64);
+        flats::resolve(self.heights, &self.tiling, self.sea, codes, self.progress)?;
+        basins::drain(self.heights, &self.tiling, self.sea, codes, filled, self.progress)
+    }
+
+    /// Writes into `codes` the receivers over heights without depressions: those of
+    /// [`hydrology::drainage::over_surface`](orogen_grid::hydrology::drainage::over_surface).
+    ///
+    /// # Errors
+    /// If the disk fails, or the work is cancelled.
+    pub fn over_surface(&self, codes: &mut Raster) -> Result<()> {
+        self.progress.expect(FLAT_PASSES * self.tiling.count() as f64);
+        flats::resolve(self.heights, &self.tiling, self.sea, codes, self.progress)
+    }
+
+    /// Makes areas, watersheds and orders of complete receivers.
+    ///
+    /// # Errors
+    /// If the disk fails, or the work is cancelled.
+    pub fn areas(&self, codes: &Raster, layers: Layers) -> Result<()> {
+        self.progress.expect(AREA_PASSES * self.tiling.count() as f64);
+        areas::make(codes, &self.tiling, layers, self.progress)
+    }
+}
+
+/// How often a tile is worked on, about: the unit of progress.
+const FLAT_PASSES: f64 = 3.0;
+const BASIN_PASSES: f64 = 2.0;
+const AREA_PASSES: f64 = 4.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use orogen_grid::grid::{Grid, Window};
+    use orogen_grid::hydrology::accumulation::accumulate;
+    use orogen_grid::hydrology::direction::hashed;
+    use orogen_grid::hydrology::outlets::Outlets;
+    use orogen_grid::hydrology::steepest::Descent;
+    use orogen_grid::hydrology::{drainage, fill, samples, strahler, watersheds};
+
+    fn raster(window: &Window) -> Raster {
+        Raster::in_memory(Grid::filled(*window, 0.0))
+    }
+
+    fn grid(raster: &Raster) -> Grid {
+        raster.get(raster.window()).unwrap()
+    }
+
+    fn same(got: &Raster, expect: impl Fn(usize) -> f32, what: &str) {
+        for (c, got) in grid(got).data().iter().enumerate() {
+            let expect = expect(c);
+            assert!(
+                got.to_bits() == expect.to_bits() || got.is_nan() && expect.is_nan(),
+                "{what}, {c}: {got} {expect}"
+            );
+        }
+    }
+
+    fn check(heights: &Grid, side: usize, sea: Option<f32>, surface: bool) {
+        let window = *heights.window();
+        let outlets = Outlets::new(heights, sea);
+        let bed = drainage::route_carving(heights, &outlets, Descent::Steepest);
+        let full = fill::filled(heights, &bed.basins);
+        let progress = Progress::default();
+        let source = Raster::in_memory(heights.clone());
+        let water = Water { heights: &source, sea, tiling: Tiling::new(window, side), progress: &progress };
+        let (mut codes, mut filled) = (raster(&window), raster(&window));
+        water.route_carving(&mut codes, &mut filled).unwrap();
+        same(&filled, |c| full.data()[c], "filled");
+        let mut receivers = bed.receivers;
+        if surface {
+            receivers = drainage::over_surface(&full, &outlets, Descent::Steepest);
+            Water { heights: &filled, ..water }.over_surface(&mut codes).unwrap();
+        }
+        same(&codes, |c| f32::from(receivers.code(c)), "receivers");
+        let drained = accumulate(&receivers);
+        let (labels, orders) =
+            (watersheds::watersheds(&receivers, &outlets, &drained), strahler::orders(&receivers, &drained, 5));
+        let [mut flow, mut watershed, mut strahler] = [0; 3].map(|_| raster(&window));
+        let layers = Layers { flow: &mut flow, watershed: &mut watershed, strahler: &mut strahler, threshold: 5 };
+        let water = Water { heights: &source, sea, tiling: Tiling::new(window, side), progress: &progress };
+        water.areas(&codes, layers).unwrap();
+        same(&flow, |c| (f64::from(drained.area.data()[c]) * window.cell * window.cell) as f32, "flow");
+        same(&watershed, |c| labels.data()[c] as f32, "watershed");
+        same(&strahler, |c| f32::from(orders.data()[c]), "strahler");
+    }
+
+    /// Wide flats, nested depressions, ties: few heights, over and over, with plateaus and bowls.
+    fn terraced(width: usize, height: usize, seed: i64) -> Grid {
+        let mut grid = samples::hills(width, height, seed);
+        let levels = [120.0, 250.0, 400.0][seed as usize % 3];
+        grid.data_mut().iter_mut().for_each(|h| *h = (*h / levels).floor() * levels - 200.0);
+        grid
+    }
+
+    /// Level ground with pits and walls strewn over it.
+    fn strewn(width: usize, height: usize, seed: i64) -> Grid {
+        let mut grid = Grid::filled(Window::new(width, height, 3.0).at(-7, 12), 0.0);
+        for (k, h) in grid.data_mut().iter_mut().enumerate() {
+            *h = match hashed(k as i64, seed) % 23 {
+                0 => -1.0,
+                1 | 2 => 1.0,
+                3 => 2.0,
+                4 => -0.0,
+                _ => 0.0,
+            };
+        }
+        grid
+    }
+
+    #[test]
+    fn tile_by_tile_is_the_same_as_in_memory() {
+        for (k, heights) in samples::grids().into_iter().filter(|grid| !grid.data().is_empty()).enumerate() {
+            for side in [1, 3, 8, 17, 64] {
+                check(&heights, side, [None, Some(250.0)][k % 2], side % 2 == 1);
+            }
+        }
+    }
+
+    #[test]
+    fn wide_flats_and_nested_depressions_over_many_tiles_are_the_same() {
+        let seeds = if std::env::var_os("OROGEN_LONG").is_some() { 0..200 } else { 0..12 };
+        for seed in seeds {
+            let side = [2, 5, 9, 14][seed as usize % 4];
+            for surface in [false, true] {
+                check(&terraced(61, 47, seed), side, Some(-200.0).filter(|_| seed % 3 == 0), surface);
+                check(&strewn(53, 39, seed), side, None, surface);
+            }
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! How much memory a plan takes, known before the first sample.
+
+use super::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
+use super::steps::{Plan, Solve, Step};
+use crate::op::Op;
+use crate::recipe::document::Recipe;
+use orogen_grid::grid::Window;
+use orogen_io::pages;
+
+/// Bytes of one grid over a window.
+pub fn grid_bytes(window: &Window) -> u64 {
+    (window.width as u64).saturating_mul(window.height as u64).saturating_mul(4)
+}
+
+/// Registers and coordinate sets of one thread.
+fn block_bytes(program: &Program) -> u64 {
+    let block = (BLOCK_WIDTH * BLOCK_HEIGHT) as u64;
+    // A coordinate set may hold two f64 a sample.
+    block * 4 * program.registers as u64 + block * 16 * program.coord_sets as u64
+}
+
+/// The most that grids take together at any step.
+pub fn grids(plan: &Plan) -> u64 {
+    let mut born = vec![usize::MAX; plan.grids.len()];
+    for (at, step) in plan.steps.iter().enumerate() {
+        for grid in step.writes() {
+            born[grid] = at;
+        }
+    }
+    // Grids are born at a step and die after one: sum the changes instead of all grids at all steps.
+    let mut change = vec![(0u64, 0u64); plan.steps.len() + 2];
+    for (grid, born) in plan.grids.iter().zip(&born) {
+        if *born != usize::MAX {
+            let bytes = grid_bytes(&grid.window);
+            change[*born].0 = change[*born].0.saturating_add(bytes);
+            let after = &mut change[grid.last_use.min(plan.steps.len()) + 1].1;
+            *after = after.saturating_add(bytes);
+        }
+    }
+    let (mut now, mut most) = (0u64, 0u64);
+    for (more, less) in change {
+        now = now.saturating_sub(less).saturating_add(more);
+        most = most.max(now);
+    }
+    most
+}
+
+/// What the steps take beside the grids: registers for each thread, or a filter's own.
+fn beside(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
+    let step = |step: &Step| match step {
+        Step::Fill { program, .. } => block_bytes(program).saturating_mul(threads as u64),
+        Step::Apply { node, inputs, window, halo, .. } => {
+            // An input that was made for others too is cut to what the filter may see.
+            let cut = |slot: &usize| plan.grids[*slot].window != window.grown(*halo);
+            let cuts = inputs.iter().flatten().filter(|slot| cut(slot)).count() as u64;
+            let own = match recipe.nodes()[*node].node.op() {
+                Op::Filter(filter) => filter.scratch(window),
+                _ => 0,
+            };
+            grid_bytes(&window.grown(*halo)).saturating_mul(cuts).saturating_add(own)
+        }
+    };
+    plan.steps.iter().map(step).max().unwrap_or(0)
+}
+
+/// Bytes that a plan's steps take at most, what they read being solved: those of a solver's tile.
+pub fn steps(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
+    grids(plan).saturating_add(beside(plan, recipe, threads))
+}
+
+/// Bytes of memory that a solver's rasters take.
+pub fn rasters(solve: &Solve) -> u64 {
+    let one = if solve.on_disk { pages::memory(&solve.padded) } else { grid_bytes(&solve.padded) };
+    one.saturating_mul(solve.rasters as u64)
+}
+
+/// Bytes of memory that solving takes beside them.
+fn scratch(solve: &Solve) -> u64 {
+    if solve.on_disk { solve.scratch_on_disk } else { solve.scratch }
+}
+
+/// Bytes a plan needs at most at any time, for `threads` threads: its text, the files that the recipe names, grids, registers, solutions, and making solvers'
+/// sources.
+pub fn needed(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
+    let solving = plan.solves.iter().map(|solve| solve.tile.saturating_add(scratch(solve))).max().unwrap_or(0);
+    let kept = plan.solves.iter().fold(0u64, |sum, solve| sum.saturating_add(rasters(solve)));
+    let own = plan.steps.iter().map(own_bytes).sum::<u64>();
+    own.saturating_add(recipe.held()).saturating_add(kept).saturating_add(steps(plan, recipe, threads).max(solving))
+}
+
+/// Bytes that a step itself takes, as a value.
+fn own_bytes(step: &Step) -> u64 {
+    match step {
+        Step::Fill { program, .. } => 128 * program.instructions.len() as u64,
+        Step::Apply { .. } => 128,
+    }
+}
+
+/// Bytes of disk that a plan needs at most for what does not fit in memory.
+pub fn disk(plan: &Plan) -> u64 {
+    let on_disk = plan.solves.iter().filter(|solve| solve.on_disk);
+    on_disk.fold(0u64, |sum, solve| sum.saturating_add(pages::disk(&solve.padded).saturating_mul(solve.rasters as u64)))
+}
+
+/// Moves rasters to the disk, the largest first, until the plan fits in `allowed` bytes or there are no more to move. Returns whether it
+/// fits.
+pub fn fit(plan: &mut Plan, recipe: &Recipe, threads: usize, allowed: u64) -> bool {
+    while needed(plan, recipe, threads) > allowed {
+        let bytes = |solve: &Solve| rasters(solve).saturating_add(scratch(solve));
+        let gain = |solve: &Solve| bytes(solve).saturating_sub(bytes(&Solve { on_disk: true, ..solve.clone() }));
+        let movable = plan.solves.iter_mut().filter(|solve| !solve.on_disk && gain(solve) > 0);
+        match movable.max_by_key(|solve| gain(solve)) {
+            Some(solve) => solve.on_disk = true,
+            None => return false,
+        }
+    }
+    true
+}

@@ -1,0 +1,460 @@
+//! A recipe in memory: the world, its nodes and its outputs.
+
+pub use super::text::LONGEST_TEXT;
+
+use crate::declare::Input;
+use crate::field::dem::Dem;
+use crate::node::Node;
+use crate::op::{Op, WorldParams};
+use crate::recipe::parameters::{Formula, Parameter, Parameters};
+use crate::recipe::surface::document::{Expanded, RAMP, Surface};
+use crate::value::{toml_key, toml_string};
+use orogen_grid::error::{Diagnostic, Error, ErrorKind, Result};
+use orogen_io::dem::file_ref::FileRef;
+use orogen_io::dem::open;
+use orogen_io::dem::prepared::PreparedDem;
+use orogen_io::dem::square::metres_of_degrees;
+use orogen_io::format::crs::registry::Crs;
+use orogen_io::format::crs::unit::Unit;
+use orogen_io::format::dem::{Georeference, Request};
+use orogen_io::palette::histogram;
+use std::collections::{BTreeMap, HashSet};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The version of recipes that this program writes.
+pub const VERSION: i64 = 1;
+
+/// Most nodes a recipe may have.
+pub const MAX_NODES: usize = 65_536;
+
+/// What a recipe says of its world. Lengths are metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WorldSpec {
+    /// The seed that every node's own seed is hashed with.
+    pub seed: u64,
+    /// Extent east and south; `None` for a world without bounds.
+    pub size: Option<[f64; 2]>,
+    /// Metres from one sample to the next of the world's own lattice: where solvers work, and what is drawn if nobody asks
+    /// for another.
+    pub cell: f64,
+    /// Height of the sea's surface.
+    pub sea_level: f64,
+    /// The map that the world lies on; `None` for a world in metres of its own, or on the map of a real place in it.
+    pub crs: Option<Crs>,
+    /// East and north of the world's first sample, its north-west corner, in the units of `crs`.
+    pub origin: Option<[f64; 2]>,
+}
+
+impl Default for WorldSpec {
+    fn default() -> WorldSpec {
+        WorldSpec { seed: 0, size: None, cell: 10.0, sea_level: 0.0, crs: None, origin: None }
+    }
+}
+
+impl WorldSpec {
+    /// What every op is told.
+    pub fn world_params(&self) -> WorldParams {
+        WorldParams { seed: self.seed, size: self.size, cell: self.cell, sea_level: self.sea_level }
+    }
+
+    /// How the world lies on the map of its `crs`, if it has both that and an `origin`. In degrees, metres are counted by the length of a
+    /// degree at the world's middle latitude.
+    fn georeference(&self) -> Option<Georeference> {
+        let (crs, origin) = (self.crs?, self.origin?);
+        let per_metre = match crs.unit() {
+            Unit::Metres(unit) => [1.0 / unit; 2],
+            Unit::Degrees => {
+                let half = self.size.map_or(0.0, |size| size[1] / 2.0);
+                let middle = origin[1] - half / metres_of_degrees(origin[1])[1];
+                metres_of_degrees(middle).map(|metres| 1.0 / metres)
+            }
+        };
+        Some(Georeference { origin, per_metre, keys: Some(crs.keys()) })
+    }
+}
+
+/// A node with its name and its mask.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedNode {
+    /// What other nodes call it.
+    pub name: String,
+    /// The op.
+    pub node: Node,
+    /// Where the op takes effect: 1 fully, 0 not at all (the first input, or 0, shows instead).
+    pub mask: Input,
+}
+
+/// A recipe: all that is needed to make a world.
+///
+/// ```
+/// use orogen::field::fbm::Fbm;
+/// use orogen::solver::normalise::Normalise;
+/// use orogen::{Recipe, WorldSpec};
+///
+/// let world = WorldSpec { seed: 7, size: Some([2000.0, 2000.0]), cell: 10.0, ..WorldSpec::default() };
+/// let mut recipe = Recipe::new(world);
+/// recipe.add("base", Fbm { wavelength: 800.0, ..Fbm::default() });
+/// recipe.add("hills", Normalise { source: "base".into(), low: 0.0, high: 300.0, ..Normalise::default() });
+/// recipe.output("height", "hills");
+/// assert!(recipe.to_toml().starts_with("orogen = 1"));
+/// ```
+#[derive(Debug, Clone)]
+pub struct Recipe {
+    /// A short description, or empty.
+    pub about: String,
+    /// The world.
+    pub world: WorldSpec,
+    parameters: Parameters,
+    used: Vec<PathBuf>,
+    nodes: Vec<NamedNode>,
+    outputs: Vec<(String, Input)>,
+    surfaces: Vec<Surface>,
+    expanded: Vec<Expanded>,
+    held: u64,
+}
+
+impl PartialEq for Recipe {
+    /// Whether two recipes make the same world from the same parameters.
+    fn eq(&self, other: &Recipe) -> bool {
+        let document = |recipe: &Recipe| (recipe.about.clone(), recipe.world, recipe.held);
+        document(self) == document(other)
+            && self.parameters.list == other.parameters.list
+            && self.nodes == other.nodes
+            && self.outputs == other.outputs
+            && self.surfaces == other.surfaces
+            && self.expanded == other.expanded
+    }
+}
+
+impl Recipe {
+    /// A recipe without nodes.
+    pub fn new(world: WorldSpec) -> Recipe {
+        Recipe {
+            about: String::new(),
+            world,
+            parameters: Parameters::default(),
+            used: Vec::new(),
+            nodes: Vec::new(),
+            outputs: Vec::new(),
+            surfaces: Vec::new(),
+            expanded: Vec::new(),
+            held: 0,
+        }
+    }
+
+    /// Adds a node. What is wrong with it is told when the world is opened.
+    pub fn add(&mut self, name: &str, node: impl Into<Node>) -> &mut Recipe {
+        self.add_masked(name, node, Input::None)
+    }
+
+    /// Adds a node that takes effect where `mask` is 1.
+    pub fn add_masked(&mut self, name: &str, node: impl Into<Node>, mask: impl Into<Input>) -> &mut Recipe {
+        self.nodes.push(NamedNode { name: name.to_string(), node: node.into(), mask: mask.into() });
+        self
+    }
+
+    /// Names a node's result for the world outside. `height` is what maps and meshes are made from.
+    pub fn output(&mut self, layer: &str, node: impl Into<Input>) -> &mut Recipe {
+        self.outputs.push((layer.to_string(), node.into()));
+        self
+    }
+
+    /// Adds a surface on top of those there are. Without any, those of [`standard`](super::surface::standard) cover the ground.
+    pub fn surface(&mut self, surface: Surface) -> &mut Recipe {
+        self.surfaces.push(surface);
+        self
+    }
+
+    /// Its own surfaces, bottom to top.
+    pub fn surfaces(&self) -> &[Surface] {
+        &self.surfaces
+    }
+
+    /// Its surfaces as far as nodes compute them: after [`expand`](super::surface::expand::expand).
+    pub fn expanded(&self) -> &[Expanded] {
+        &self.expanded
+    }
+
+    /// Notes which nodes compute its surfaces. They are not written out with the recipe.
+    pub(super) fn set_expanded(&mut self, expanded: Vec<Expanded>) {
+        self.expanded = expanded;
+    }
+
+    /// The numbers that it offers: what they are called, what they may be and what they are. [`Recipe::read_with`] and
+    /// [`Recipe::parse_with`] read it with others.
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters.list
+    }
+
+    /// Notes its parameters, and where formulas of them stood.
+    pub(super) fn set_parameters(&mut self, parameters: Parameters) {
+        self.parameters = parameters;
+    }
+
+    /// Where formulas stood.
+    pub(super) fn formulas(&self) -> &[Formula] {
+        &self.parameters.formulas
+    }
+
+    /// The files of the recipes that it uses, and of those that they use.
+    pub fn used(&self) -> &[PathBuf] {
+        &self.used
+    }
+
+    /// Notes the files of the recipes that it uses.
+    pub(super) fn set_used(&mut self, used: Vec<PathBuf>) {
+        self.used = used;
+    }
+
+    /// Puts others in the places of names that its nodes, outputs and surfaces read.
+    pub(super) fn rename_inputs(&mut self, of: impl Fn(&str) -> Option<Input>) {
+        let other = |input: &Input| match input {
+            Input::Node(name) => of(name),
+            _ => None,
+        };
+        for NamedNode { node, mask, .. } in &mut self.nodes {
+            for i in 0..node.inputs().len() {
+                if let Some(input) = other(node.input(i)) {
+                    node.set_input(i, input);
+                }
+            }
+            if let Some(input) = other(mask) {
+                *mask = input;
+            }
+        }
+        for (_, output) in &mut self.outputs {
+            if let Some(input) = other(output) {
+                *output = input;
+            }
+        }
+        self.surfaces.iter_mut().for_each(|surface| surface.rename_inputs(&of));
+    }
+
+    /// The nodes in the order they were written.
+    pub fn nodes(&self) -> &[NamedNode] {
+        &self.nodes
+    }
+
+    /// Changes nodes in their places; their names and masks stay.
+    pub fn change(&mut self, change: impl FnMut(&mut Node)) {
+        self.nodes.iter_mut().map(|named| &mut named.node).for_each(change);
+    }
+
+    /// Says which folder the paths in it count from: that of its file.
+    pub fn set_base_dir(&mut self, folder: &Path) {
+        let nodes = self.nodes.iter_mut().flat_map(|named| named.node.files());
+        nodes
+            .chain(self.surfaces.iter_mut().filter_map(Surface::picture_mut))
+            .for_each(|file| file.set_base_dir(folder));
+    }
+
+    /// The files that its nodes and surfaces name, those that these are composed of, and the recipes that it uses.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let mut nodes: Vec<Node> = self.nodes.iter().map(|named| named.node.clone()).collect();
+        let files = nodes.iter_mut().flat_map(Node::files).filter(|file| !file.is_empty()).map(|file| file.path());
+        let files: Vec<PathBuf> =
+            files.chain(self.surfaces.iter().filter_map(Surface::picture).map(FileRef::path)).collect();
+        files.iter().flat_map(|path| open::files(path)).chain(self.used.iter().cloned()).collect()
+    }
+
+    /// Reads the files that its nodes name, each once and not again where it was read, so that together their heights take no more than `allowed` bytes.
+    ///
+    /// # Errors
+    /// If one cannot be read: with the node that names it, and its place if the recipe was read from a text.
+    pub fn load(&mut self, allowed: u64) -> Result<()> {
+        // One file may be heights to one node and a picture to another.
+        let mut known: BTreeMap<(PathBuf, bool, Option<u32>), Arc<PreparedDem>> = BTreeMap::new();
+        self.held = 0;
+        for NamedNode { name, node, .. } in &mut self.nodes {
+            let band = match node {
+                Node::Dem(dem) if dem.band > 0 => Some(dem.band),
+                _ => None,
+            };
+            for file in node.files() {
+                let path = (file.path(), file.is_picture(), band);
+                let left = allowed.saturating_sub(self.held);
+                let read = || match path.1 {
+                    true => PreparedDem::picture(&path.0, left),
+                    false => PreparedDem::read(&path.0, None, Request { band, allowed: left }),
+                };
+                let ground = match file.ground().or(known.get(&path)) {
+                    Some(ground) => Arc::clone(ground),
+                    None => Arc::new(read().map_err(|error| {
+                        let message = format!("node `{name}`: {error}");
+                        Error::from_diagnostics(
+                            ErrorKind::File,
+                            vec![Diagnostic { message, place: file.location().cloned() }],
+                        )
+                    })?),
+                };
+                if known.insert(path, Arc::clone(&ground)).is_none() {
+                    self.held = self.held.saturating_add(ground.memory());
+                }
+                file.hold(ground);
+            }
+        }
+        for Expanded { surface, colors, .. } in &mut self.expanded {
+            if let Some(picture) = surface.picture().filter(|_| colors.is_empty()) {
+                let in_surface =
+                    |error: Error| Error::new(error.kind(), format!("surface `{}`: {error}", surface.name));
+                *colors = histogram::read(&picture.path(), RAMP).map_err(in_surface)?;
+            }
+        }
+        self.check_map()
+    }
+
+    /// How its metres lie on a map: as the first real place in it says, else as its world's `crs` and `origin` say. A place that names no
+    /// coordinate system is taken to be in that of the world. Known once its files are read.
+    pub fn georeference(&self) -> Option<Georeference> {
+        match (self.place(), self.world.georeference()) {
+            (Some(place), _) if place.is_on_map() => Some(place),
+            (_, Some(own)) => Some(own),
+            (Some(place), None) => Some(match self.world.crs {
+                Some(crs) => Georeference { keys: Some(crs.keys()), ..place },
+                None => place,
+            }),
+            (None, None) => None,
+        }
+    }
+
+    /// How its metres lie on the map of the first real place in it.
+    fn place(&self) -> Option<Georeference> {
+        self.nodes.iter().find_map(|named| match named.node.op() {
+            Op::Field(field) => field.georeference(),
+            _ => None,
+        })
+    }
+
+    /// Refuses a `crs` or an `origin` that contradicts the place in the recipe's files, or lacks the other.
+    fn check_map(&self) -> Result<()> {
+        let place = self.place();
+        let message = match (&place, self.world.crs, self.world.origin) {
+            (Some(place), _, Some(_)) if place.is_on_map() => {
+                "the file of heights is georeferenced; leave out `origin`".to_string()
+            }
+            (Some(place), Some(crs), None) if place.is_on_map() && place.epsg() != Some(crs.code()) => format!(
+                "the file of heights is in {}, but `crs` is EPSG:{}; heights are not reprojected. Leave out `crs`, or reproject the file first, for example with gdalwarp",
+                place.epsg().map_or("a CRS without an EPSG code".into(), |code| format!("EPSG:{code}")),
+                crs.code()
+            ),
+            (Some(place), Some(crs), None) if !place.is_on_map() && !place.fits(&crs) => format!(
+                "the coordinates of the file of heights were read as {}, but EPSG:{} ({}) has other units",
+                if place.counts_degrees() { "degrees" } else { "metres" },
+                crs.code(),
+                crs.name()
+            ),
+            (None, Some(crs), None) => format!(
+                "`crs` is EPSG:{}, but `origin` is missing; set it to the easting and northing of the world's north-west corner",
+                crs.code()
+            ),
+            (_, None, Some(_)) => {
+                "`origin` is set, but `crs` is missing; set it, for example to \"EPSG:32632\"".to_string()
+            }
+            _ => return Ok(()),
+        };
+        Err(Error::new(ErrorKind::Recipe, message))
+    }
+
+    /// A recipe of nothing but a real place at hand, which makes its very samples.
+    pub fn from_dem(path: &Path, ground: &Arc<PreparedDem>) -> Recipe {
+        let window = *ground.grid.window();
+        let size = [window.width, window.height].map(|samples| samples as f64 * window.cell);
+        let mut recipe = Recipe::new(WorldSpec { size: Some(size), cell: window.cell, ..WorldSpec::default() });
+        let (path, band) = open::split(path);
+        let mut file = FileRef::from(path.to_string_lossy().as_ref());
+        file.set_base_dir(Path::new(""));
+        file.hold(Arc::clone(ground));
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+        recipe.about = format!("Heights of {name}");
+        recipe.add("place", Dem { path: file, band: band.unwrap_or(0), ..Dem::default() }).output("height", "place");
+        recipe
+    }
+
+    /// Bytes of memory that its files take, once they are read.
+    pub fn held(&self) -> u64 {
+        self.held
+    }
+
+    /// The names of the layers it offers.
+    pub fn outputs(&self) -> impl Iterator<Item = &str> + Clone {
+        self.outputs.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// The outputs with what they show.
+    pub fn output_inputs(&self) -> &[(String, Input)] {
+        &self.outputs
+    }
+
+    /// The recipe as TOML with every default written out: self-contained, it makes the same world whatever the defaults of
+    /// a later version are; recipes that it uses are nodes of it. Its parameters are kept, with the values that they have now as their defaults, and so are formulas of them.
+    pub fn to_toml(&self) -> String {
+        let mut text = format!("orogen = {VERSION}\n");
+        if !self.about.is_empty() {
+            let _ = writeln!(text, "about = {}", toml_string(&self.about));
+        }
+        self.parameters.write_toml(&mut text);
+        let _ = writeln!(text, "\n[world]\nseed = {}", self.world.seed);
+        if let Some([width, height]) = self.world.size {
+            let _ = writeln!(text, "size = [{width:?}, {height:?}]");
+        }
+        let _ = writeln!(text, "cell = {:?}\nsea_level = {:?}", self.world.cell, self.world.sea_level);
+        if let Some(crs) = self.world.crs {
+            let _ = writeln!(text, "crs = \"EPSG:{}\"", crs.code());
+        }
+        if let Some([east, north]) = self.world.origin {
+            let _ = writeln!(text, "origin = [{east:?}, {north:?}]");
+        }
+        let bound = self.parameters.bound();
+        let added = |at: &usize| self.expanded.iter().any(|surface| surface.nodes.contains(at));
+        for (_, NamedNode { name, node, mask }) in self.nodes.iter().enumerate().filter(|(at, _)| !added(at)) {
+            let spec = node.spec();
+            let _ = writeln!(text, "\n[nodes.{}]\nop = {:?}", toml_key(name), spec.op);
+            let inputs = |text: &mut String| {
+                for (i, input) in node.inputs().iter().enumerate() {
+                    if !(spec.named_inputs && self.is_meant(&bound, name, input.name, node.input(i))) {
+                        write_input(text, &toml_key(input.name), node.input(i));
+                    }
+                }
+            };
+            let params = |text: &mut String| {
+                for (i, param) in spec.params.iter().enumerate() {
+                    let _ = writeln!(text, "{} = {}", param.name, node.param(i).to_toml());
+                }
+            };
+            // An expression stands before what it names.
+            if spec.named_inputs {
+                params(&mut text);
+                inputs(&mut text);
+            } else {
+                inputs(&mut text);
+                params(&mut text);
+            }
+            write_input(&mut text, "mask", mask);
+        }
+        text.push_str("\n[outputs]\n");
+        for (layer, input) in &self.outputs {
+            write_input(&mut text, &toml_key(layer), input);
+        }
+        self.surfaces.iter().for_each(|surface| surface.write_toml(&mut text));
+        self.parameters.restore(text)
+    }
+
+    /// Whether a name in an expression means this without being told.
+    fn is_meant(&self, bound: &HashSet<(&str, &str)>, node: &str, name: &str, input: &Input) -> bool {
+        match (self.parameters.value(name), input) {
+            (Some(value), Input::Value(number)) => value == *number && bound.contains(&(node, name)),
+            (None, Input::Node(source)) => source == name,
+            _ => false,
+        }
+    }
+}
+
+fn write_input(text: &mut String, key: &str, input: &Input) {
+    let _ = match input {
+        Input::None => Ok(()),
+        Input::Node(name) => writeln!(text, "{key} = {}", toml_string(name)),
+        Input::Value(value) => writeln!(text, "{key} = {value:?}"),
+    };
+}

@@ -1,0 +1,367 @@
+//! A recipe's nodes as a graph: names resolved, order found, keys computed.
+
+use super::document::{MAX_NODES, Recipe};
+use crate::declare::Input;
+use crate::layer::{Interpolation, LayerKind};
+use crate::node::Node;
+use crate::op::Op;
+use orogen_grid::error::{Diagnostic, Error, ErrorKind};
+use orogen_grid::words::suggestion;
+use std::collections::{BTreeSet, HashMap, HashSet};
+
+/// Deepest nesting of recipes in recipes.
+pub const MAX_USE_DEPTH: usize = 16;
+
+/// Most samples along a side of a world's own lattice.
+pub const MAX_SAMPLES: f64 = (1u64 << 31) as f64;
+
+/// Most diagnostics told at once: finding the nearest name for each of a million would take for ever and help nobody.
+pub const MAX_FAULTS: usize = 20;
+
+/// What an input resolves to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Link {
+    /// Nothing given.
+    None,
+    /// The same number everywhere.
+    Value(f32),
+    /// A node's layer.
+    Node(LayerRef),
+}
+
+/// A layer of a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LayerRef {
+    /// Index of the node in the recipe.
+    pub node: usize,
+    /// Index of the layer among the node's layers.
+    pub layer: usize,
+}
+
+/// The resolved graph.
+#[derive(Debug, Clone)]
+pub struct Graph {
+    /// Each node's inputs in the order of the declaration.
+    pub links: Vec<Vec<Link>>,
+    /// Each node's mask.
+    pub masks: Vec<Link>,
+    /// Node indices so that every node comes after those it reads.
+    pub order: Vec<usize>,
+    /// What each output shows, in the recipe's order.
+    pub outputs: Vec<Link>,
+}
+
+/// Where in a recipe something is wrong.
+#[derive(Debug, Clone, PartialEq)]
+pub enum At {
+    /// A node's key; the empty key is the node itself.
+    Node(usize, String),
+    /// An output.
+    Output(usize),
+    /// The world.
+    World,
+}
+
+/// One thing that is wrong.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GraphDiagnostic {
+    /// Where.
+    pub at: At,
+    /// What, and what to do.
+    pub message: String,
+}
+
+/// Whether a name can be a node's or a layer's.
+pub(super) fn is_name(name: &str) -> bool {
+    (1..=64).contains(&name.len())
+        && name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+        && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-')
+}
+
+/// Whether a name can be a node's: a name, behind those of the recipes that it was taken from.
+fn is_path(name: &str) -> bool {
+    name.split('/').count() <= MAX_USE_DEPTH + 1 && name.split('/').all(is_name)
+}
+
+const NAME_RULE: &str = "a name must have 1 to 64 letters, digits, `_` and `-`, and must not start with a digit";
+
+impl Graph {
+    /// Resolves names, checks every value and finds an order, or says what is wrong: all of it, up to [`MAX_FAULTS`].
+    pub fn resolve(recipe: &Recipe) -> Result<Graph, Vec<GraphDiagnostic>> {
+        let nodes = recipe.nodes();
+        if nodes.len() > MAX_NODES {
+            let message = format!("the recipe has {} nodes; at most {MAX_NODES} are allowed", nodes.len());
+            return Err(vec![GraphDiagnostic { at: At::Node(MAX_NODES, String::new()), message }]);
+        }
+        let mut resolver = Resolver { recipe, names: HashMap::with_capacity(nodes.len()), diagnostics: Vec::new() };
+        resolver.check_world();
+        (0..nodes.len()).try_for_each(|index| resolver.check_node(index))?;
+        let linked: Vec<(Vec<Link>, Link)> =
+            (0..nodes.len()).map(|index| resolver.link_node(index)).collect::<Result<_, _>>()?;
+        let outputs = resolver.link_outputs()?;
+        if !resolver.diagnostics.is_empty() {
+            return Err(resolver.diagnostics);
+        }
+        let (links, masks) = linked.into_iter().unzip();
+        let mut graph = Graph { links, masks, order: Vec::new(), outputs };
+        graph.order = graph.sort().map_err(|cycle| vec![graph.cycle_fault(&cycle, recipe)])?;
+        Ok(graph)
+    }
+
+    /// The nodes that a node reads, mask included.
+    pub fn sources(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
+        self.links[node].iter().chain([&self.masks[node]]).filter_map(|link| match link {
+            Link::Node(target) => Some(target.node),
+            _ => None,
+        })
+    }
+
+    /// Kahn's algorithm; nodes keep the order they were written in where they can. On a cycle: the nodes of one.
+    fn sort(&self) -> Result<Vec<usize>, Vec<usize>> {
+        let count = self.links.len();
+        let mut waiting: Vec<usize> = (0..count).map(|node| self.sources(node).count()).collect();
+        let mut readers: Vec<Vec<usize>> = vec![Vec::new(); count];
+        for node in 0..count {
+            for source in self.sources(node) {
+                readers[source].push(node);
+            }
+        }
+        let mut ready: BTreeSet<usize> = (0..count).filter(|&node| waiting[node] == 0).collect();
+        let mut order = Vec::with_capacity(count);
+        while let Some(node) = ready.pop_first() {
+            order.push(node);
+            for &reader in &readers[node] {
+                waiting[reader] -= 1;
+                if waiting[reader] == 0 {
+                    ready.insert(reader);
+                }
+            }
+        }
+        if order.len() == count {
+            return Ok(order);
+        }
+        // Every node left reads another that is left: walking upstream must come round.
+        let left = |node: &usize| waiting[*node] > 0;
+        let mut path: Vec<usize> = Vec::new();
+        let mut step: HashMap<usize, usize> = HashMap::new();
+        let mut at = (0..count).find(|node| left(node));
+        while let Some(node) = at {
+            if let Some(&first) = step.get(&node) {
+                let mut cycle = path.split_off(first);
+                cycle.reverse();
+                return Err(cycle);
+            }
+            step.insert(node, path.len());
+            path.push(node);
+            at = self.sources(node).find(left);
+        }
+        Err(path)
+    }
+
+    fn cycle_fault(&self, cycle: &[usize], recipe: &Recipe) -> GraphDiagnostic {
+        let name = |node: usize| recipe.nodes()[node].name.as_str();
+        let reader = cycle.first().copied().unwrap_or(0);
+        let source = cycle.last().copied().unwrap_or(0);
+        let inputs = recipe.nodes()[reader].node.inputs();
+        let key = self.links[reader]
+            .iter()
+            .position(|link| matches!(link, Link::Node(target) if target.node == source))
+            .map_or("mask", |i| inputs[i].name);
+        let message = if cycle.len() == 1 {
+            format!("node `{}`, `{key}`: the node reads itself; it must read another node", name(reader))
+        } else {
+            const SHOWN: usize = 8;
+            let mut names: Vec<&str> = cycle.iter().take(SHOWN).map(|&node| name(node)).collect();
+            if cycle.len() > SHOWN {
+                names.push("...");
+            }
+            names.push(name(reader));
+            format!("these nodes form a cycle: {}; one of them must read something else", names.join(" -> "))
+        };
+        GraphDiagnostic { at: At::Node(reader, key.to_string()), message }
+    }
+
+    /// The error of diagnostics that have no text to point into.
+    pub fn error(diagnostics: Vec<GraphDiagnostic>) -> Error {
+        let diagnostics =
+            diagnostics.into_iter().map(|diagnostic| Diagnostic { message: diagnostic.message, place: None }).collect();
+        Error::from_diagnostics(ErrorKind::Recipe, diagnostics)
+    }
+
+    /// How a target is read between its samples. A layer that is read as its source is leads to that, and so on.
+    pub fn layer_kind(&self, recipe: &Recipe, target: LayerRef) -> LayerKind {
+        let mut at = target;
+        loop {
+            match recipe.nodes()[at.node].node.layers().get(at.layer).map(|layer| layer.interpolation) {
+                Some(Interpolation::As(kind)) => return kind,
+                Some(Interpolation::AsSource) => match self.links[at.node].first() {
+                    Some(Link::Node(source)) => at = *source,
+                    _ => return LayerKind::Height,
+                },
+                None => return LayerKind::Height,
+            }
+        }
+    }
+
+    /// What `node` or `node.layer` names.
+    ///
+    /// # Errors
+    /// A message with the nearest name, if there is no such node or layer.
+    pub fn find(recipe: &Recipe, text: &str) -> Result<LayerRef, String> {
+        named(recipe, text, |name| recipe.nodes().iter().position(|node| node.name == name))
+    }
+}
+
+/// What `node` or `node.layer` names, the node's index found by `find`.
+fn named(recipe: &Recipe, text: &str, find: impl Fn(&str) -> Option<usize>) -> Result<LayerRef, String> {
+    const SHOWN: usize = 64;
+    let (node, layer) = text.split_once('.').map_or((text, None), |(node, layer)| (node, Some(layer)));
+    let Some(index) = find(node) else {
+        let shown: String = node.chars().take(SHOWN).collect();
+        let names = recipe.nodes().iter().map(|node| node.name.as_str());
+        return Err(format!("unknown node `{shown}`; {}", suggestion(node, names)));
+    };
+    let Some(layer) = layer else { return Ok(LayerRef { node: index, layer: 0 }) };
+    let layers = recipe.nodes()[index].node.layers();
+    match layers.iter().position(|known| known.name == layer) {
+        Some(layer) => Ok(LayerRef { node: index, layer }),
+        None => {
+            let shown: String = layer.chars().take(SHOWN).collect();
+            let names = layers.iter().map(|layer| layer.name);
+            Err(format!("the node `{node}` has no layer `{shown}`; {}", suggestion(layer, names)))
+        }
+    }
+}
+
+/// Goes through a recipe and gathers what is wrong with it.
+struct Resolver<'a> {
+    recipe: &'a Recipe,
+    names: HashMap<&'a str, usize>,
+    diagnostics: Vec<GraphDiagnostic>,
+}
+
+impl<'a> Resolver<'a> {
+    fn diagnostic(&mut self, at: At, message: String) {
+        self.diagnostics.push(GraphDiagnostic { at, message });
+    }
+
+    /// Ends the search where there are more diagnostics than anybody reads.
+    fn enough(&mut self) -> Result<(), Vec<GraphDiagnostic>> {
+        match self.diagnostics.len() >= MAX_FAULTS {
+            true => Err(std::mem::take(&mut self.diagnostics)),
+            false => Ok(()),
+        }
+    }
+
+    fn check_world(&mut self) {
+        let world = self.recipe.world;
+        for (name, value) in super::schema::world_values(&world) {
+            let Some(spec) = super::schema::world_param(name) else { continue };
+            if let Err(message) = super::schema::read_world(spec, &value, &mut world.clone()) {
+                self.diagnostic(At::World, message);
+            }
+        }
+        let Some([width, height]) = world.size else { return };
+        let most = width.max(height) / world.cell;
+        if most > MAX_SAMPLES {
+            let message = format!(
+                "the world would have {most:.0} samples along a side; at most {MAX_SAMPLES:.0} are allowed. Raise `cell`"
+            );
+            self.diagnostic(At::World, message);
+        }
+        if width.min(height) < world.cell {
+            let message = format!(
+                "the world is {width} x {height} m, less than one `cell` of {} m; raise `size` or lower `cell`",
+                world.cell
+            );
+            self.diagnostic(At::World, message);
+        }
+    }
+
+    /// The node for itself: its name, its parameters, and whether it can be in this world.
+    fn check_node(&mut self, index: usize) -> Result<(), Vec<GraphDiagnostic>> {
+        let named = &self.recipe.nodes()[index];
+        let name = named.name.as_str();
+        if !is_path(name) {
+            self.diagnostic(At::Node(index, String::new()), format!("`{name}` cannot be a node's name: {NAME_RULE}"));
+        }
+        if self.names.insert(name, index).is_some() {
+            self.diagnostic(At::Node(index, String::new()), format!("there are two nodes named `{name}`: rename one"));
+        }
+        self.check_params(index, &named.node);
+        let needs_bounds = match named.node.op() {
+            Op::Solver(_) => Some("looks at the whole world"),
+            Op::Field(field) if field.needs_bounds() => Some("needs the edges of the world"),
+            _ => None,
+        };
+        if let (Some(needs), None) = (needs_bounds, self.recipe.world.size) {
+            let message = format!(
+                "node `{name}`: the op `{}` {needs}, and this world is unbounded; set `size` in `world`, or remove the node",
+                named.node.spec().op
+            );
+            self.diagnostic(At::Node(index, String::new()), message);
+        }
+        self.enough()
+    }
+
+    /// Values set by a program pass the same checks as those read from a text.
+    fn check_params(&mut self, index: usize, node: &Node) {
+        let mut copy = node.clone();
+        let mut sound = true;
+        for (i, spec) in node.spec().params.iter().enumerate() {
+            if let Err(message) = copy.set_param(i, &node.param(i)) {
+                sound = false;
+                self.diagnostic(At::Node(index, spec.name.to_string()), message);
+            }
+        }
+        if sound && let Err((key, message)) = node.consistent() {
+            self.diagnostic(At::Node(index, key.to_string()), message);
+        }
+    }
+
+    /// A node's inputs and its mask.
+    fn link_node(&mut self, index: usize) -> Result<(Vec<Link>, Link), Vec<GraphDiagnostic>> {
+        let named = &self.recipe.nodes()[index];
+        let inputs = named.node.inputs();
+        let inputs = inputs.iter().enumerate().map(|(i, input)| (input.name, named.node.input(i), input.required));
+        let mut links: Vec<Link> = Vec::new();
+        for (key, input, required) in inputs.chain([("mask", &named.mask, false)]) {
+            links.push(self.link(input, required).unwrap_or_else(|message| {
+                self.diagnostic(At::Node(index, key.to_string()), format!("node `{}`, `{key}`: {message}", named.name));
+                Link::None
+            }));
+        }
+        self.enough()?;
+        let mask = links.pop().unwrap_or(Link::None);
+        Ok((links, mask))
+    }
+
+    fn link_outputs(&mut self) -> Result<Vec<Link>, Vec<GraphDiagnostic>> {
+        let (mut seen, mut links) = (HashSet::new(), Vec::new());
+        for (index, (name, input)) in self.recipe.output_inputs().iter().enumerate() {
+            if !is_name(name) {
+                self.diagnostic(At::Output(index), format!("`{name}` cannot be an output's name: {NAME_RULE}"));
+            }
+            if !seen.insert(name) {
+                self.diagnostic(At::Output(index), format!("two outputs are named `{name}`; rename one"));
+            }
+            links.push(self.link(input, true).unwrap_or_else(|message| {
+                self.diagnostic(At::Output(index), format!("output `{name}`: {message}"));
+                Link::None
+            }));
+            self.enough()?;
+        }
+        Ok(links)
+    }
+
+    /// What an input resolves to, or what is wrong with it.
+    fn link(&self, input: &Input, required: bool) -> Result<Link, String> {
+        match input {
+            Input::None if required => Err("it is missing; name the node to read, or set a number".to_string()),
+            Input::None => Ok(Link::None),
+            Input::Value(value) if value.is_finite() && (*value as f32).is_finite() => Ok(Link::Value(*value as f32)),
+            Input::Value(value) => Err(format!("{value} is not a valid sample value")),
+            Input::Node(name) => named(self.recipe, name, |node| self.names.get(node).copied()).map(Link::Node),
+        }
+    }
+}

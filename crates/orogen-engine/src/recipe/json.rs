@@ -1,0 +1,106 @@
+//! JSON text to a tree of values.
+
+use super::text::Text;
+use crate::value::{Span, Spanned, Value};
+use jsonc_parser::ast;
+use jsonc_parser::common::Ranged;
+use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
+use orogen_grid::error::Result;
+
+/// Deepest nesting read. A recipe needs four levels; a parser that recurses must never meet more than its stack holds.
+const DEEPEST: usize = 64;
+
+/// Reads the whole text; the first thing that is not JSON is the error.
+pub fn read(text: &Text) -> Result<Spanned<Value>> {
+    if let Some(at) = too_deep(text.text) {
+        return Err(text.error(&(at..at + 1), format!("the JSON is nested more than {DEEPEST} levels deep")));
+    }
+    // Plain JSON: comments or loose strings would hide brackets from the count above.
+    let options = ParseOptions {
+        allow_comments: false,
+        allow_loose_object_property_names: false,
+        allow_trailing_commas: false,
+        allow_missing_commas: false,
+        allow_single_quoted_strings: false,
+        allow_hexadecimal_numbers: false,
+        allow_unary_plus_numbers: false,
+        allow_bare_decimal_point_numbers: false,
+        allow_non_finite_numbers: false,
+        allow_extended_string_escapes: false,
+    };
+    match parse_to_ast(text.text, &CollectOptions::default(), &options) {
+        Ok(result) => match result.value {
+            Some(value) => Ok(convert(&value)),
+            None => Err(text.error(&(0..0), "the recipe is empty")),
+        },
+        Err(diagnostic) => {
+            let range = diagnostic.range();
+            Err(text.error(&(range.start..range.end), format!("this is not JSON: {}", diagnostic.kind())))
+        }
+    }
+}
+
+/// Where nesting passes the bound, outside strings and comments.
+fn too_deep(text: &str) -> Option<usize> {
+    let (mut depth, mut in_string, mut escaped) = (0usize, false, false);
+    for (at, byte) in text.bytes().enumerate() {
+        if in_string {
+            match byte {
+                _ if escaped => escaped = false,
+                b'\\' => escaped = true,
+                b'"' => in_string = false,
+                _ => {}
+            }
+            continue;
+        }
+        match byte {
+            b'"' => in_string = true,
+            b'{' | b'[' => {
+                depth += 1;
+                if depth > DEEPEST {
+                    return Some(at);
+                }
+            }
+            b'}' | b']' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+    }
+    None
+}
+
+fn span(node: &impl Ranged) -> Span {
+    let range = node.range();
+    range.start..range.end
+}
+
+fn convert(value: &ast::Value) -> Spanned<Value> {
+    let converted = match value {
+        ast::Value::StringLit(text) => Value::Text(text.value.to_string()),
+        ast::Value::NumberLit(number) => number_value(number.value),
+        ast::Value::BooleanLit(flag) => Value::Flag(flag.value),
+        ast::Value::NullKeyword(_) => Value::Other("null"),
+        ast::Value::Array(items) => Value::List(items.elements.iter().map(convert).collect()),
+        ast::Value::Object(object) => Value::Table(
+            object
+                .properties
+                .iter()
+                .map(|property| {
+                    let (name, at) = match &property.name {
+                        ast::ObjectPropName::String(text) => (text.value.to_string(), span(text)),
+                        ast::ObjectPropName::Word(word) => (word.value.to_string(), span(word)),
+                    };
+                    (Spanned { value: name, span: at }, convert(&property.value))
+                })
+                .collect(),
+        ),
+    };
+    Spanned { value: converted, span: span(value) }
+}
+
+fn number_value(text: &str) -> Value {
+    match (text.parse::<i64>(), text.parse::<f64>()) {
+        (Ok(integer), _) => Value::Integer(integer),
+        (_, Ok(number)) => Value::Number(number),
+        _ => Value::Other("an invalid number"),
+    }
+}

@@ -1,0 +1,536 @@
+//! From a tree of values to a recipe, with every diagnostic at its own key.
+
+use super::document::{MAX_NODES, Recipe, VERSION, WorldSpec};
+use super::graph::{At, Graph, MAX_FAULTS};
+use super::parameters::{Formula, Parameters, Step, resolve};
+use super::subgraph::{Origin, Shared, UseDiagnostic, Uses, take_in};
+use super::text::{LONGEST_TEXT, Text, text_of, too_long};
+use super::{json, surface, toml};
+use crate::declare::Input;
+use crate::expression::formula::place_of;
+use crate::field::expr::Expr;
+use crate::node::Node;
+use crate::value::{Span, Spanned, Value};
+use orogen_grid::error::{Diagnostic, Error, ErrorKind, Result};
+use orogen_grid::words::{list, respelled, suggestion};
+use orogen_io::open;
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
+
+/// Words that other programs use for what has one name here.
+const ALIASES: [(&str, &str); 8] = [
+    ("persistence", "gain"),
+    ("frequency", "wavelength"),
+    ("scale", "wavelength"),
+    ("period", "wavelength"),
+    ("input", "source"),
+    ("in", "source"),
+    ("sigma", "radius"),
+    ("amount", "strength"),
+];
+
+/// What a key may have meant.
+fn unknown_key(key: &str, node: &Node) -> String {
+    let inputs = node.inputs();
+    let params = node.spec().params.iter().map(|param| param.name);
+    let known = inputs.iter().map(|input| input.name).chain(params);
+    match ALIASES.iter().find(|(alias, name)| *alias == key && known.clone().any(|known| known == *name)) {
+        Some((_, name)) => format!("it is called `{name}` here"),
+        None => suggestion(key, known.chain(["op", "mask"])),
+    }
+}
+
+type Table = [(Spanned<String>, Spanned<Value>)];
+
+impl Recipe {
+    /// Reads a recipe from a file, TOML or JSON.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is no text, or is no valid recipe: then every diagnostic has its line and column.
+    pub fn read(path: &Path) -> Result<Recipe> {
+        Recipe::read_with(path, &[])
+    }
+
+    /// The same with other values for some of its parameters.
+    ///
+    /// # Errors
+    /// As [`Recipe::read`], and if a parameter is not there or may not have that value.
+    pub fn read_with(path: &Path, set: &[(String, f64)]) -> Result<Recipe> {
+        let doing = "read the recipe";
+        let Some(bytes) = open::bytes(path, doing, LONGEST_TEXT)? else {
+            return Err(too_long(&path.display().to_string()));
+        };
+        let shared = Shared::new(parse);
+        parse(&text_of(bytes, path)?, &path.display().to_string(), set, &Origin::file(path, &shared))
+    }
+
+    /// Reads a preset.
+    pub(super) fn parse_preset(name: &str, text: &str, set: &[(String, f64)]) -> Result<Recipe> {
+        let shared = Shared::new(parse);
+        parse(text, &format!("recipes/{name}.toml"), set, &Origin::preset(name, &shared))
+    }
+
+    /// Reads a recipe from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics call it.
+    ///
+    /// # Errors
+    /// If it is no valid recipe. All diagnostics are told at once, in the order of the text.
+    pub fn parse(text: &str, name: &str) -> Result<Recipe> {
+        Recipe::parse_with(text, name, &[])
+    }
+
+    /// The same with other values for some of its parameters.
+    ///
+    /// # Errors
+    /// As [`Recipe::parse`], and if a parameter is not there or may not have that value.
+    pub fn parse_with(text: &str, name: &str, set: &[(String, f64)]) -> Result<Recipe> {
+        let shared = Shared::new(parse);
+        parse(text, name, set, &Origin::text(&shared))
+    }
+}
+
+/// Reads a recipe, with those that it uses.
+fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Result<Recipe> {
+    if text.len() as u64 > LONGEST_TEXT {
+        return Err(too_long(name));
+    }
+    if text.trim_start_matches('\u{feff}').trim().is_empty() {
+        return Err(Error::new(
+            ErrorKind::Recipe,
+            format!(
+                "{name} is empty; a recipe starts with `orogen = {VERSION}`. `orogen new NAME` writes a recipe to edit"
+            ),
+        ));
+    }
+    let text = Text { name, text };
+    let is_json = text.text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
+    let tree = if is_json { json::read(&text)? } else { toml::read(&text)? };
+    let walk = Walk {
+        text: &text,
+        diagnostics: Vec::new(),
+        more: 0,
+        places: HashMap::new(),
+        names: Vec::new(),
+        parameters: Parameters::default(),
+        failed: HashSet::new(),
+        elsewhere: Vec::new(),
+    };
+    walk.recipe(tree, set, origin)
+}
+
+/// The walk through the tree: gathers diagnostics and remembers where keys stood, for what only the whole graph can tell.
+struct Walk<'a> {
+    text: &'a Text<'a>,
+    diagnostics: Vec<Diagnostic>,
+    /// How many diagnostics were not written down because there are too many to be of use.
+    more: usize,
+    /// Where the value of (node, key) stood; the empty key is the node's name.
+    places: HashMap<(usize, String), Span>,
+    /// Where the output names' values stood.
+    names: Vec<Span>,
+    /// What formulas are made of.
+    parameters: Parameters,
+    /// Formulas that have no value: enough has been said of them.
+    failed: HashSet<Span>,
+    /// What is wrong with recipes that this one uses.
+    elsewhere: Vec<Diagnostic>,
+}
+
+impl Walk<'_> {
+    fn complain(&mut self, span: &Span, message: impl Into<String>) {
+        if self.failed.contains(span) {
+            return;
+        }
+        if self.diagnostics.len() >= MAX_FAULTS {
+            self.more += 1;
+            return;
+        }
+        let diagnostic = self.text.diagnostic(span, message);
+        self.diagnostics.push(diagnostic);
+    }
+
+    fn recipe(mut self, mut tree: Spanned<Value>, set: &[(String, f64)], origin: &Origin) -> Result<Recipe> {
+        let Value::Table(top) = &tree.value else {
+            return Err(self.text.error(&tree.span, "a recipe must be a table of keys"));
+        };
+        self.version(top)?;
+        let resolved = resolve(&mut tree, self.text, set)
+            .map_err(|message| Error::new(ErrorKind::Recipe, format!("{}: {message}", self.text.name)))?;
+        resolved.diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
+        self.parameters = resolved.parameters;
+        self.failed = resolved.failed.into_iter().collect();
+        let Value::Table(top) = &tree.value else {
+            return Err(self.text.error(&tree.span, "a recipe is a table of keys"));
+        };
+        let mut recipe = Recipe::new(WorldSpec::default());
+        let mut seen = HashSet::new();
+        for (key, value) in top {
+            if self.repeated(&mut seen, key) {
+                continue;
+            }
+            match key.value.as_str() {
+                "orogen" | "$schema" | "parameters" => {}
+                "about" => match &value.value {
+                    Value::Text(about) => recipe.about = about.clone(),
+                    other => self.complain(&value.span, format!("`about` must be a string, not {}", other.describe())),
+                },
+                "world" => recipe.world = self.world(value),
+                "nodes" => self.nodes(value, &mut recipe)?,
+                "outputs" => self.outputs(value, &mut recipe),
+                // Read last: surfaces are told whether the world has bounds, used recipes come behind its own nodes.
+                "surface" | "use" => {}
+                unknown => {
+                    let known = ["orogen", "about", "parameters", "world", "nodes", "use", "outputs", "surface"];
+                    let hint = suggestion(unknown, known);
+                    self.complain(&key.span, format!("unknown key `{unknown}` in a recipe; {hint}"));
+                }
+            }
+        }
+        let places = match top.iter().find(|(key, _)| key.value == "surface") {
+            Some((_, value)) => self.surfaces(value, &mut recipe),
+            None => Vec::new(),
+        };
+        if let Some(folder) = &origin.folder {
+            recipe.set_base_dir(folder);
+        }
+        let uses = match top.iter().find(|(key, _)| key.value == "use") {
+            Some((_, value)) => self.uses(value, &mut recipe, origin),
+            None => Uses::default(),
+        };
+        if recipe.output_inputs().is_empty() && self.is_sound() {
+            self.complain(
+                &(0..0),
+                "the recipe has no outputs; add a table `[outputs]` with a line such as `height = \"NODE\"`",
+            );
+        }
+        if self.is_sound()
+            && let Err(diagnostics) = Graph::resolve(&recipe)
+        {
+            for diagnostic in diagnostics {
+                let span = match &diagnostic.at {
+                    At::Node(node, key) => {
+                        let name = self.places.get(&(*node, String::new()));
+                        let place = self.places.get(&(*node, key.clone())).or(name);
+                        place.or_else(|| uses.place(*node)).cloned().unwrap_or(0..0)
+                    }
+                    At::Output(output) => self.names.get(*output).cloned().unwrap_or(0..0),
+                    At::World => {
+                        top.iter().find(|(key, _)| key.value == "world").map_or(0..0, |(key, _)| key.span.clone())
+                    }
+                };
+                self.complain(&span, diagnostic.message);
+            }
+        }
+        if self.is_sound() && !places.is_empty() {
+            self.check_surfaces(&recipe, &places);
+        }
+        match self.is_sound() {
+            true => {
+                recipe.set_used(uses.files);
+                recipe.set_parameters(self.parameters);
+                Ok(recipe)
+            }
+            false => Err(self.text.errors(self.diagnostics, self.elsewhere, self.more)),
+        }
+    }
+
+    /// Whether nothing is wrong so far.
+    fn is_sound(&self) -> bool {
+        self.diagnostics.is_empty() && self.elsewhere.is_empty()
+    }
+
+    /// Takes in the recipes that this one uses.
+    fn uses(&mut self, value: &Spanned<Value>, recipe: &mut Recipe, origin: &Origin) -> Uses {
+        let mut uses = take_in(value, recipe, &mut self.parameters, origin);
+        for complaint in std::mem::take(&mut uses.diagnostics) {
+            match complaint {
+                UseDiagnostic::Here(span, message) => self.complain(&span, message),
+                UseDiagnostic::There(error) => {
+                    let room = MAX_FAULTS.saturating_sub(self.elsewhere.len());
+                    self.elsewhere.extend(error.diagnostics().iter().take(room).cloned());
+                }
+            }
+        }
+        recipe.rename_inputs(|name| uses.output(name).cloned());
+        uses
+    }
+
+    /// Reads the surfaces, and returns where each stands.
+    fn surfaces(&mut self, value: &Spanned<Value>, recipe: &mut Recipe) -> Vec<Span> {
+        let read = surface::read::read(value, recipe.world.size.is_some());
+        read.diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
+        read.surfaces.into_iter().for_each(|surface| {
+            recipe.surface(surface);
+        });
+        read.places
+    }
+
+    /// What is wrong with surfaces shows in the nodes that compute them.
+    fn check_surfaces(&mut self, recipe: &Recipe, places: &[Span]) {
+        let mut whole = recipe.clone();
+        surface::expand::expand(&mut whole);
+        for diagnostic in Graph::resolve(&whole).err().unwrap_or_default() {
+            let at = match diagnostic.at {
+                At::Node(node, _) => whole.expanded().iter().position(|surface| surface.nodes.contains(&node)),
+                _ => None,
+            };
+            let span = at.and_then(|at| places.get(at)).cloned().unwrap_or(0..0);
+            // The names of nodes that nobody wrote would help nobody.
+            let message = match (at.map(|at| &recipe.surfaces()[at].name), diagnostic.message.split_once("`: ")) {
+                (Some(name), Some((_, what))) => format!("surface `{name}`: {what}"),
+                _ => diagnostic.message,
+            };
+            self.complain(&span, message);
+        }
+    }
+
+    /// The version is checked first: nothing else in a recipe of another version can be trusted to be understood.
+    fn version(&self, top: &Table) -> Result<()> {
+        match top.iter().find(|(key, _)| key.value == "orogen") {
+            None => Err(self.text.error(
+                &(0..0),
+                format!("this is not a recipe: the line `orogen = {VERSION}`, the version of the recipe format, is missing"),
+            )),
+            Some((_, Spanned { value: Value::Integer(VERSION), .. })) => Ok(()),
+            Some((_, Spanned { value: Value::Integer(version), span })) if *version > VERSION => Err(self.text.error(
+                span,
+                format!("this recipe has the format version {version}, and this program reads version {VERSION}; use a newer Orogen"),
+            )),
+            Some((_, value)) => Err(self.text.error(
+                &value.span,
+                format!("`orogen` is the version of the recipe format and must be {VERSION}, not {}", value.value.describe()),
+            )),
+        }
+    }
+
+    /// Complains of a key that stands twice in a table (TOML's parser refuses it itself, JSON's does not).
+    fn repeated<'k>(&mut self, seen: &mut HashSet<&'k str>, key: &'k Spanned<String>) -> bool {
+        if !seen.insert(key.value.as_str()) {
+            self.complain(&key.span, format!("the key `{}` appears twice in this table", key.value));
+            return true;
+        }
+        false
+    }
+
+    fn world(&mut self, value: &Spanned<Value>) -> WorldSpec {
+        let mut world = WorldSpec::default();
+        let Value::Table(entries) = &value.value else {
+            self.complain(&value.span, format!("`world` must be a table, not {}", value.value.describe()));
+            return world;
+        };
+        let (mut seen, mut cell) = (HashSet::new(), None);
+        for (key, value) in entries {
+            if self.repeated(&mut seen, key) {
+                continue;
+            }
+            match super::schema::world_param(&key.value) {
+                Some(spec) => match super::schema::read_world(spec, &value.value, &mut world) {
+                    Ok(()) if spec.name == "cell" => cell = Some(value.span.clone()),
+                    Ok(()) => {}
+                    Err(message) => self.complain(&value.span, message),
+                },
+                None => {
+                    let hint = suggestion(&key.value, super::schema::WORLD.iter().map(|spec| spec.name));
+                    self.complain(&key.span, format!("unknown key `{}` in `world`; {hint}", key.value));
+                }
+            }
+        }
+        if cell.is_none()
+            && let Some([width, height]) = world.size
+        {
+            world.cell = width.max(height) / 1024.0;
+        }
+        world
+    }
+
+    fn nodes(&mut self, value: &Spanned<Value>, recipe: &mut Recipe) -> Result<()> {
+        let Value::Table(entries) = &value.value else {
+            self.complain(
+                &value.span,
+                format!("`nodes` must be a table of named nodes, not {}", value.value.describe()),
+            );
+            return Ok(());
+        };
+        if entries.len() > MAX_NODES {
+            return Err(self.text.error(
+                &entries[MAX_NODES].0.span,
+                format!("this recipe has {} nodes; at most {MAX_NODES} are allowed", entries.len()),
+            ));
+        }
+        let mut names: HashSet<&str> = HashSet::with_capacity(entries.len());
+        for (name, value) in entries {
+            if !names.insert(&name.value) {
+                self.complain(&name.span, format!("two nodes are named `{}`; rename one", name.value));
+                continue;
+            }
+            let index = recipe.nodes().len();
+            self.places.insert((index, String::new()), name.span.clone());
+            // A node that cannot be read still stands for its name, so that nodes reading it draw no diagnostic of their own;
+            // the recipe is refused anyway.
+            if let Some((node, mask)) = self.node(index, name, value) {
+                recipe.add_masked(&name.value, node, mask);
+            }
+        }
+        Ok(())
+    }
+
+    fn node(&mut self, index: usize, name: &Spanned<String>, value: &Spanned<Value>) -> Option<(Node, Input)> {
+        let Value::Table(entries) = &value.value else {
+            let found = value.value.describe();
+            self.complain(&value.span, format!("the node `{}` must be a table with an `op`, not {found}", name.value));
+            return None;
+        };
+        let Some((_, op)) = entries.iter().find(|(key, _)| key.value == "op") else {
+            self.complain(
+                &name.span,
+                format!("the node `{}` has no `op`; add a line such as `op = \"fbm\"`", name.value),
+            );
+            return None;
+        };
+        let Value::Text(op_name) = &op.value else {
+            self.complain(&op.span, format!("`op` must be the name of an op, not {}", op.value.describe()));
+            return None;
+        };
+        let other = || respelled(op_name).and_then(|other| Node::named(&other));
+        let Some(mut node) = Node::named(op_name).or_else(other) else {
+            let all = Node::all();
+            let hint = suggestion(op_name, all.iter().map(|node| node.spec().op));
+            self.complain(&op.span, format!("unknown op `{op_name}`; {hint}"));
+            return None;
+        };
+        let spec = node.spec();
+        let (mut seen, mut mask) = (HashSet::new(), Input::None);
+        let is_known = |name: &str| spec.input_named(name).is_some() || spec.param_named(name).is_some();
+        let mut entries: Vec<(Spanned<String>, &Spanned<Value>)> = (entries.iter())
+            .map(|(key, value)| {
+                let other = respelled(&key.value).filter(|other| !is_known(&key.value) && is_known(other));
+                let name = other.unwrap_or_else(|| key.value.clone());
+                let alias = spec.aliases().find(|(alias, _)| *alias == name).map(|(_, name)| name.to_string());
+                (Spanned { value: alias.unwrap_or(name), span: key.span.clone() }, value)
+            })
+            .collect();
+        // Only an expression says which inputs there are.
+        if spec.named_inputs {
+            entries.sort_by_key(|(key, _)| spec.param_named(&key.value).is_none());
+        }
+        let mut sound = true;
+        for (key, value) in &entries {
+            if self.repeated(&mut seen, key) || key.value == "op" {
+                continue;
+            }
+            if key.value == "mask" {
+                self.places.insert((index, key.value.clone()), value.span.clone());
+                mask = self.input("mask", value);
+            } else if let Some(i) = spec.param_named(&key.value) {
+                self.places.insert((index, key.value.clone()), value.span.clone());
+                match node.set_param(i, &value.value) {
+                    Ok(()) => {
+                        self.remember(&mut node, value);
+                        sound &= self.expression(index, &node, value);
+                    }
+                    Err(message) => {
+                        self.complain(&value.span, message);
+                        sound = false;
+                    }
+                }
+            } else if let Some(i) = node.inputs().iter().position(|input| input.name == key.value) {
+                self.places.insert((index, key.value.clone()), value.span.clone());
+                let input = self.input(&key.value, value);
+                node.set_input(i, input);
+            } else if sound || !spec.named_inputs {
+                let hint = unknown_key(&key.value, &node);
+                self.complain(
+                    &key.span,
+                    format!("unknown key `{}` in node `{}` (op `{}`); {hint}", key.value, name.value, spec.op),
+                );
+            }
+        }
+        if spec.named_inputs {
+            self.name_inputs(&name.value, &mut node);
+        }
+        Some((node, mask))
+    }
+
+    /// Complains of what is wrong within an expression, where it is wrong.
+    fn expression(&mut self, index: usize, node: &Node, value: &Spanned<Value>) -> bool {
+        let (Node::Expr(Expr { expr, .. }), Value::Text(text)) = (node, &value.value) else { return true };
+        let Some(fault) = expr.error() else {
+            // What a name stands for is wrong where the name stands, unless a key says what it is.
+            for name in expr.names() {
+                let span = self.text.within(&value.span, text, &place_of(text, name));
+                self.places.insert((index, name.clone()), span);
+            }
+            return true;
+        };
+        let span = self.text.within(&value.span, text, &fault.span);
+        self.complain(&span, fault.message.clone());
+        false
+    }
+
+    /// What an expression names and no key explains: a parameter, or else a node or layer.
+    fn name_inputs(&mut self, node_name: &str, node: &mut Node) {
+        let names: Vec<String> = node.inputs().iter().map(|input| input.name.to_string()).collect();
+        for (i, name) in names.iter().enumerate() {
+            if *node.input(i) != Input::None {
+                continue;
+            }
+            let input = match self.parameters.value(name) {
+                Some(value) => {
+                    let path = ["nodes", node_name, name].map(|key| Step::Key(key.to_string()));
+                    self.parameters.formulas.push(Formula { path: path.into(), text: format!(" {name}") });
+                    Input::Value(value)
+                }
+                None => Input::from(name),
+            };
+            node.set_input(i, input);
+        }
+    }
+
+    /// Where a file is named, so that whoever cannot read it can say so.
+    fn remember(&self, node: &mut Node, value: &Spanned<Value>) {
+        let Value::Text(name) = &value.value else { return };
+        let files = node.files().into_iter().filter(|file| file.location().is_none() && file.text() == *name);
+        files.for_each(|file| file.set_location(self.text.locate(&value.span)));
+    }
+
+    fn input(&mut self, key: &str, value: &Spanned<Value>) -> Input {
+        match (&value.value, value.value.number()) {
+            (Value::Text(name), _) => Input::Node(name.clone()),
+            (_, Some(number)) if number.is_finite() => Input::Value(number),
+            (other, _) => {
+                let found = other.describe();
+                self.complain(
+                    &value.span,
+                    format!("`{key}` must name a node (or one of its layers, `node.layer`) or be a finite number, not {found}"),
+                );
+                Input::None
+            }
+        }
+    }
+
+    fn outputs(&mut self, value: &Spanned<Value>, recipe: &mut Recipe) {
+        let Value::Table(entries) = &value.value else {
+            self.complain(&value.span, format!("`outputs` must be a table, not {}", value.value.describe()));
+            return;
+        };
+        let mut seen = HashSet::new();
+        for (key, value) in entries {
+            if self.repeated(&mut seen, key) {
+                continue;
+            }
+            if let Value::Table(_) = value.value {
+                self.complain(&value.span, format!("the output `{}` must name a node, not be a table", key.value));
+                continue;
+            }
+            let input = self.input(&key.value, value);
+            self.names.push(value.span.clone());
+            recipe.output(&key.value, input);
+        }
+        if entries.is_empty() {
+            let names: Vec<&str> = recipe.nodes().iter().map(|node| node.name.as_str()).collect();
+            self.complain(
+                &value.span,
+                format!("`outputs` is empty; add a layer such as `height`, which shows {}", list(names)),
+            );
+        }
+    }
+}

@@ -1,0 +1,431 @@
+//! The JSON Schema of recipes, made from the declarations.
+
+use super::document::{VERSION, WorldSpec};
+use crate::declare::{Param, ParamSpec, Shape, read_param, short};
+use crate::node::Node;
+use crate::value::Value;
+use orogen_grid::words::respelled;
+use serde_json::{Map, Value as Json, json};
+use std::collections::BTreeMap;
+
+/// Parameters of `world`.
+pub static WORLD: &[ParamSpec] = &[
+    ParamSpec {
+        name: "seed",
+        alias: "",
+        doc: "The seed of the world. Every node's own seed is hashed with it.",
+        unit: "",
+        shape: Shape::Seed,
+        range: [0.0, f64::INFINITY],
+    },
+    ParamSpec {
+        name: "size",
+        alias: "",
+        doc: "Extent of the world to the east and south, [width, height], or one number for a square. Without it the world is \
+              unbounded, and solvers cannot be used.",
+        unit: "m",
+        shape: Shape::Pair,
+        range: [1e-3, 1e9],
+    },
+    ParamSpec {
+        name: "cell",
+        alias: "",
+        doc: "Cell size of the world's own lattice, on which solvers work. Default: 1/1024 of the longer side, or 10 m in an \
+              unbounded world.",
+        unit: "m",
+        shape: Shape::Number,
+        range: [1e-4, 1e7],
+    },
+    ParamSpec { name: "sea_level", alias: "", doc: "Sea level.", unit: "m", shape: Shape::Number, range: [-1e6, 1e6] },
+    ParamSpec {
+        name: "crs",
+        alias: "",
+        doc: "Coordinate reference system of the world, as an EPSG code; it needs `origin`. It is written to GeoTIFF, GeoJSON and other \
+              georeferenced files. Default: the system of the file that a node `dem` reads, else local metres.",
+        unit: "",
+        shape: Shape::Crs,
+        range: [f64::NEG_INFINITY, f64::INFINITY],
+    },
+    ParamSpec {
+        name: "origin",
+        alias: "",
+        doc: "Easting and northing of the world's north-west corner in the units of `crs`; longitude and latitude if these are degrees.",
+        unit: "",
+        shape: Shape::Pair,
+        range: [-1e9, 1e9],
+    },
+];
+
+/// The world's parameter of that name.
+pub fn world_param(name: &str) -> Option<&'static ParamSpec> {
+    WORLD.iter().find(|spec| spec.name == name)
+}
+
+/// Reads one of the world's parameters.
+pub fn read_world(spec: &ParamSpec, value: &Value, world: &mut WorldSpec) -> Result<(), String> {
+    match spec.name {
+        "seed" => world.seed = read_param(spec, value)?,
+        "size" => {
+            world.size = Some(match value.number() {
+                Some(side) => read_param(spec, &[side, side].write())?,
+                None => read_param(spec, value)?,
+            });
+        }
+        "cell" => world.cell = read_param(spec, value)?,
+        "crs" => match value {
+            Value::Text(text) => world.crs = Some(text.parse().map_err(|why| format!("`crs`: {why}"))?),
+            other => return Err(format!("`crs` must be {}, not {}", spec.expected(), other.describe())),
+        },
+        "origin" => world.origin = Some(read_param(spec, value)?),
+        _ => world.sea_level = read_param(spec, value)?,
+    }
+    Ok(())
+}
+
+/// The world's parameters as values.
+pub fn world_values(world: &WorldSpec) -> Vec<(&'static str, Value)> {
+    let mut values =
+        vec![("seed", world.seed.write()), ("cell", world.cell.write()), ("sea_level", world.sea_level.write())];
+    values.extend(world.size.map(|size| ("size", size.write())));
+    values.extend(world.origin.map(|origin| ("origin", origin.write())));
+    values
+}
+
+/// The schema (draft 7) that editors check recipes against.
+pub fn json_schema() -> Json {
+    let name = json!({ "type": "string", "pattern": "^[A-Za-z_][A-Za-z0-9_-]{0,63}$" });
+    let mut world: Map<String, Json> =
+        WORLD.iter().map(|spec| (spec.name.to_string(), param_schema(spec, None))).collect();
+    if let Some(pair) = world.remove("size") {
+        let side = json!({ "type": "number", "minimum": 1e-3, "maximum": 1e9 });
+        world.insert("size".into(), json!({ "description": pair["description"], "anyOf": [side, pair] }));
+    }
+    let mut schema = json!({
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "title": "Orogen recipe",
+        "description": "A world: its nodes and its outputs.",
+        "type": "object",
+        "required": ["orogen", "outputs"],
+        "additionalProperties": false,
+        "properties": {
+            "$schema": { "type": "string", "description": "The schema of this document, for editors." },
+            "orogen": { "const": VERSION, "description": "The version of recipes this one is written in." },
+            "about": { "type": "string", "description": "One message about the world." },
+            "parameters": parameters_schema(&name),
+            "world": {
+                "type": "object",
+                "description": "Seed, size and cell size of the world.",
+                "additionalProperties": false,
+                "properties": world,
+            },
+            "nodes": {
+                "type": "object",
+                "description": "The nodes by name.",
+                "propertyNames": { "type": "string", "pattern": "^[A-Za-z_][A-Za-z0-9_/-]*$" },
+                "additionalProperties": { "$ref": "#/definitions/node" },
+            },
+            "use": uses_schema(&name),
+            "outputs": {
+                "type": "object",
+                "description": "Outputs of the world: layer names with the node (or node.layer) that they show. Maps are made from \
+                                `height`.",
+                "minProperties": 1,
+                "propertyNames": name,
+                "additionalProperties": { "$ref": "#/definitions/input" },
+            },
+            "surface": super::surface::schema::list(),
+        },
+        "definitions": {
+            "input": {
+                "anyOf": [
+                    { "type": "string", "pattern": "^[A-Za-z_][A-Za-z0-9_/-]*(\\.[A-Za-z0-9_-]+)?$" },
+                    { "type": "number" },
+                ],
+            },
+            "node": node_schema(),
+        },
+    });
+    for part in ["properties", "definitions"] {
+        let parts = schema[part].as_object_mut().into_iter().flatten();
+        parts
+            .filter(|(name, _)| !matches!(name.as_str(), "orogen" | "parameters"))
+            .for_each(|(_, part)| take_formulas(part));
+    }
+    schema
+}
+
+/// What a formula of parameters looks like.
+const FORMULA: &str = "^\\s*=";
+
+/// Lets a formula stand wherever a number does.
+fn take_formulas(schema: &mut Json) {
+    match schema {
+        Json::Object(keys) => {
+            if let Some(kind) =
+                keys.get("type").and_then(Json::as_str).filter(|kind| matches!(*kind, "number" | "integer"))
+            {
+                let kinds = json!([kind, "string"]);
+                keys.insert("type".into(), kinds);
+                keys.insert("pattern".into(), json!(FORMULA));
+            }
+            keys.values_mut().for_each(take_formulas);
+        }
+        Json::Array(items) => items.iter_mut().for_each(take_formulas),
+        _ => {}
+    }
+}
+
+/// What a recipe offers to whoever makes it.
+fn parameters_schema(name: &Json) -> Json {
+    let number = json!({ "type": "number" });
+    let mut name = name.clone();
+    name["pattern"] = json!("^[A-Za-z_][A-Za-z0-9_]{0,63}$");
+    json!({
+        "type": "object",
+        "description": "Numbers that the recipe offers, by name. A string that begins with `=` is a formula of them, wherever a number can stand; \
+                        `--set NAME=VALUE` gives them other values.",
+        "propertyNames": name,
+        "additionalProperties": {
+            "anyOf": [
+                number,
+                {
+                    "type": "object",
+                    "required": ["default"],
+                    "additionalProperties": false,
+                    "properties": {
+                        "default": { "type": "number", "description": "Its value if nobody gives another." },
+                        "unit": { "type": "string", "description": "Its unit." },
+                        "range": {
+                            "type": "array", "minItems": 2, "maxItems": 2, "items": number,
+                            "description": "The lowest and the highest value it may have.",
+                        },
+                        "help": { "type": "string", "description": "What it does." },
+                    },
+                },
+            ],
+        },
+    })
+}
+
+/// Other recipes as parts of this one.
+fn uses_schema(name: &Json) -> Json {
+    json!({
+        "type": "object",
+        "description": "Other recipes as parts of this one, by name. `NAME.layer` reads one of their outputs, `NAME` their `height`.",
+        "propertyNames": name,
+        "additionalProperties": {
+            "type": "object",
+            "required": ["recipe"],
+            "additionalProperties": false,
+            "properties": {
+                "recipe": { "type": "string", "description": "Name of a preset, or path of a recipe." },
+                "inputs": {
+                    "type": "object",
+                    "description": "What its nodes of the op `input` read, by their names.",
+                    "additionalProperties": { "$ref": "#/definitions/input" },
+                },
+                "parameters": {
+                    "type": "object",
+                    "description": "Values of its parameters, by their names.",
+                    "additionalProperties": { "type": "number" },
+                },
+                "seed": { "type": "integer", "minimum": 0, "description": "Hashed with the seeds of its nodes; 0 leaves them as they are." },
+            },
+        },
+    })
+}
+
+/// A node: by its op, one of the ops' schemas. `if` and `then` rather than `oneOf`, so that a wrong key is named and not just the
+/// whole node called wrong; all keys of all ops beside them, because that is where editors look for completions.
+fn node_schema() -> Json {
+    let nodes = Node::all();
+    let ops: Vec<Json> = nodes
+        .iter()
+        .map(|node| json!({ "if": { "properties": { "op": op_name(node.spec().op) } }, "then": op_schema(node) }))
+        .collect();
+    let mut keys: BTreeMap<&str, Vec<(&str, String)>> = BTreeMap::new();
+    for spec in nodes.iter().map(Node::spec) {
+        let inputs = spec.inputs.iter().map(|input| (input.name, input.doc));
+        for (key, doc) in inputs.chain(spec.params.iter().map(|param| (param.name, param.doc))) {
+            keys.entry(key).or_default().push((spec.op, short(doc)));
+        }
+    }
+    let mut properties: Map<String, Json> =
+        keys.into_iter().map(|(key, docs)| (key.to_string(), json!({ "description": joined(&docs) }))).collect();
+    let names: Vec<String> = nodes.iter().flat_map(|node| spellings(node.spec().op)).collect();
+    properties.insert("op".into(), json!({ "enum": names, "description": "What the node does." }));
+    properties.insert("mask".into(), mask_schema());
+    json!({ "type": "object", "required": ["op"], "properties": properties, "allOf": ops })
+}
+
+/// A name in each of the spellings that recipes may use, its own first.
+fn spellings(name: &str) -> Vec<String> {
+    [name.to_string()].into_iter().chain(respelled(name)).collect()
+}
+
+/// The name of an op, in any of its spellings.
+fn op_name(op: &str) -> Json {
+    match spellings(op).as_slice() {
+        [one] => json!({ "const": one }),
+        several => json!({ "enum": several }),
+    }
+}
+
+/// What a key means: once if it means the same in all ops, else op by op.
+fn joined(docs: &[(&str, String)]) -> String {
+    match docs {
+        [(_, first), others @ ..] if others.iter().all(|(_, doc)| doc == first) => first.clone(),
+        _ => docs.iter().map(|(op, doc)| format!("{op}: {doc}")).collect::<Vec<_>>().join("\n"),
+    }
+}
+
+fn mask_schema() -> Json {
+    json!({
+        "description": "Where the op takes effect: 1 fully, 0 not at all (its first input shows instead, or 0).",
+        "allOf": [{ "$ref": "#/definitions/input" }],
+    })
+}
+
+fn op_schema(node: &Node) -> Json {
+    let spec = node.spec();
+    let mut properties = Map::new();
+    let mut about = spec.doc.trim().to_string();
+    if spec.layers.len() > 1 {
+        about.push_str("\n\nLayers:");
+        for layer in spec.layers {
+            about.push_str(&format!("\n`{}`: {}", layer.name, short(layer.doc)));
+        }
+    }
+    let mut op = op_name(spec.op);
+    op["description"] = json!(about);
+    properties.insert("op".into(), op);
+    for input in spec.inputs {
+        properties.insert(
+            input.name.into(),
+            json!({ "description": short(input.doc), "allOf": [{ "$ref": "#/definitions/input" }] }),
+        );
+    }
+    for (i, param) in spec.params.iter().enumerate() {
+        let schema = param_schema(param, Some(&node.param(i)));
+        properties.extend(spellings(param.name).into_iter().map(|name| (name, schema.clone())));
+    }
+    for (alias, name) in spec.aliases() {
+        if let Some(mut schema) = properties.get(name).cloned() {
+            schema["description"] = json!(format!("The former name of `{name}`."));
+            schema["deprecated"] = json!(true);
+            properties.insert(alias.into(), schema);
+        }
+    }
+    properties.insert("mask".into(), mask_schema());
+    // What an expression names is an input: any key.
+    let others = if spec.named_inputs { json!({ "$ref": "#/definitions/input" }) } else { json!(false) };
+    let required: Vec<&str> =
+        ["op"].into_iter().chain(spec.inputs.iter().filter(|input| input.required).map(|input| input.name)).collect();
+    json!({
+        "title": spec.op,
+        "description": short(spec.doc),
+        "type": "object",
+        "required": required,
+        "additionalProperties": others,
+        "properties": properties,
+    })
+}
+
+fn param_schema(spec: &ParamSpec, default: Option<&Value>) -> Json {
+    let mut number = json!({ "type": "number" });
+    for (key, bound) in [("minimum", spec.range[0]), ("maximum", spec.range[1])] {
+        if bound.is_finite() {
+            number[key] = json!(bound);
+        }
+    }
+    let mut schema = match spec.shape {
+        Shape::Number => number,
+        Shape::Integer => {
+            number["type"] = json!("integer");
+            number
+        }
+        Shape::Seed => json!({ "type": "integer", "minimum": 0 }),
+        Shape::Flag => json!({ "type": "boolean" }),
+        Shape::Choice(choices) => json!({
+            "oneOf": choices().iter().map(|(name, doc)| json!({ "const": name, "description": short(doc) })).collect::<Vec<_>>(),
+        }),
+        Shape::File | Shape::Expression => json!({ "type": "string" }),
+        Shape::Crs => json!({ "type": "string", "pattern": "^EPSG:[0-9]+$" }),
+        Shape::Pair => json!({ "type": "array", "minItems": 2, "maxItems": 2, "items": number }),
+        Shape::Curve => json!({
+            "type": "array",
+            "minItems": 2,
+            "items": { "type": "array", "minItems": 2, "maxItems": 2, "items": number },
+        }),
+    };
+    let unit = if spec.unit.is_empty() { String::new() } else { format!(" Unit: {}.", spec.unit) };
+    schema["description"] = json!(format!("{}{unit}", short(spec.doc)));
+    if let Some(default) = default {
+        schema["default"] = plain(default);
+    }
+    schema
+}
+
+fn plain(value: &Value) -> Json {
+    match value {
+        Value::Flag(flag) => json!(flag),
+        Value::Integer(integer) => json!(integer),
+        Value::Number(number) => json!(number),
+        Value::Text(text) => json!(text),
+        Value::List(items) => Json::Array(items.iter().map(|item| plain(&item.value)).collect()),
+        Value::Table(entries) => {
+            Json::Object(entries.iter().map(|(key, item)| (key.value.clone(), plain(&item.value))).collect())
+        }
+        Value::Other(_) => Json::Null,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recipe::document::Recipe;
+
+    /// The schemas of the nodes that the schema takes for this op.
+    fn taken<'a>(schema: &'a Json, op: &str) -> Vec<&'a Json> {
+        let named =
+            |name: &Json| name["const"] == op || name["enum"].as_array().is_some_and(|all| all.contains(&json!(op)));
+        let node = &schema["definitions"]["node"];
+        assert!(named(&node["properties"]["op"]), "`{op}` is not in the list of ops");
+        let cases = node["allOf"].as_array().unwrap().iter();
+        let cases: Vec<&Json> =
+            cases.filter(|case| named(&case["if"]["properties"]["op"])).map(|case| &case["then"]).collect();
+        assert!(cases.iter().all(|then| named(&then["properties"]["op"])), "{op}");
+        cases
+    }
+
+    #[test]
+    fn the_schema_takes_every_op_and_key_that_recipes_may_name() {
+        let schema = json_schema();
+        let diagnostic = |line: &str| match Recipe::parse(
+            &format!("orogen = 1\n[nodes.n]\n{line}\n[outputs]\nheight = \"n\"\n"),
+            "test.toml",
+        ) {
+            Ok(_) => String::new(),
+            Err(error) => error.to_string(),
+        };
+        assert!(diagnostic("op = \"normalizes\"").contains("unknown op"), "the test can fail");
+        assert!(diagnostic("op = \"fbm\"\ncolor = 1").contains("unknown key"), "the test can fail");
+        let mut respellings = 0;
+        for node in Node::all() {
+            let spec = node.spec();
+            for op in spellings(spec.op) {
+                assert!(!diagnostic(&format!("op = \"{op}\"")).contains("unknown op"), "{op}");
+                let cases = taken(&schema, &op);
+                assert_eq!(cases.len(), 1, "{op}");
+                let inputs = spec.inputs.iter().map(|input| input.name);
+                let keys = inputs.chain(spec.params.iter().map(|param| param.name)).flat_map(spellings);
+                for key in keys.chain(spec.aliases().map(|(alias, _)| alias.to_string())) {
+                    let read = !diagnostic(&format!("op = \"{op}\"\n{key} = 1")).contains("unknown key");
+                    assert_eq!(read, !cases[0]["properties"][&key].is_null(), "{op}.{key}");
+                }
+                respellings += usize::from(op != spec.op);
+            }
+        }
+        assert!(respellings > 0, "an op with two spellings was tried");
+    }
+}

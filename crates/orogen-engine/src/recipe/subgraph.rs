@@ -1,0 +1,374 @@
+//! Recipes within recipes: `[use.NAME]` takes the nodes of another recipe, named `NAME/node`, and makes them nodes of this one.
+
+use super::document::{MAX_NODES, Recipe};
+use super::graph::{MAX_USE_DEPTH, is_name};
+use super::parameters::{Formula, Parameters, Step};
+use super::presets;
+use super::text::{LONGEST_TEXT, text_of};
+use crate::declare::{Input, Shape};
+use crate::expression::formula::renamed;
+use crate::expression::text::Expression;
+use crate::node::Node;
+use crate::value::{Span, Spanned, Value};
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::words::{bytes, suggestion};
+use orogen_io::open;
+use std::cell::Cell;
+use std::collections::{BTreeMap, HashSet};
+use std::path::{Path, PathBuf};
+
+/// Most recipes that a recipe may use, those that these use counted, too.
+pub const MAX_USES: usize = 256;
+
+/// The keys of a used recipe, for diagnostics.
+const KEYS: [&str; 4] = ["recipe", "inputs", "parameters", "seed"];
+
+/// Where a recipe comes from, as long as it is read.
+pub struct Origin<'a> {
+    /// The folder that paths in it count from; none for a text without a file.
+    pub folder: Option<PathBuf>,
+    /// What it is known by, and the recipes that use it, the first one first.
+    chain: Vec<String>,
+    /// What all recipes of one reading share.
+    shared: &'a Shared,
+}
+
+/// Reads a recipe from a text: what it is called, other values for parameters, and where it comes from.
+pub type Parse = fn(&str, &str, &[(String, f64)], &Origin) -> Result<Recipe>;
+
+/// What all recipes of one reading share: what is left to read, and how.
+pub struct Shared {
+    uses: Cell<usize>,
+    bytes: Cell<u64>,
+    /// Given from outside: used recipes are read as the first one is.
+    parse: Parse,
+}
+
+impl Shared {
+    /// Nothing is read yet.
+    pub fn new(parse: Parse) -> Shared {
+        Shared { uses: Cell::new(MAX_USES), bytes: Cell::new(LONGEST_TEXT), parse }
+    }
+}
+
+impl<'a> Origin<'a> {
+    /// A text without a file.
+    pub fn text(shared: &'a Shared) -> Origin<'a> {
+        Origin { folder: None, chain: Vec::new(), shared }
+    }
+
+    /// A file.
+    pub fn file(path: &Path, shared: &'a Shared) -> Origin<'a> {
+        Origin { folder: Some(folder_of(path)), chain: vec![known_as(path)], shared }
+    }
+
+    /// A preset.
+    pub fn preset(name: &str, shared: &'a Shared) -> Origin<'a> {
+        Origin { folder: None, chain: vec![name.to_string()], shared }
+    }
+
+    /// Reads a recipe that this one uses: a preset by its name, or a file.
+    fn read(&self, name: &str, set: &[(String, f64)]) -> Result<(Recipe, Option<PathBuf>)> {
+        let fault = |message: String| Err(Error::new(ErrorKind::Recipe, message));
+        let preset = presets::find(name);
+        if preset.is_none() && !looks_like_a_path(name) {
+            let hint = suggestion(name, presets::all().iter().map(|preset| preset.name));
+            return fault(format!(
+                "there is no preset `{name}`; {hint} A file is named with its extension, such as \"{name}.toml\""
+            ));
+        }
+        let path = self.folder.clone().unwrap_or_default().join(name);
+        let known = preset.map_or_else(|| known_as(&path), |preset| preset.name.to_string());
+        if let Some(first) = self.chain.iter().position(|other| *other == known) {
+            let circle: Vec<&str> = self.chain[first..].iter().chain([&known]).map(String::as_str).collect();
+            return fault(format!("these recipes use each other in a circle: {}", circle.join(" -> ")));
+        }
+        if self.chain.len() >= MAX_USE_DEPTH {
+            return fault(format!("recipes are used more than {MAX_USE_DEPTH} levels deep"));
+        }
+        let Some(uses) = self.shared.uses.get().checked_sub(1) else {
+            return fault(format!("more than {MAX_USES} recipes are used, those counted that used recipes use"));
+        };
+        self.shared.uses.set(uses);
+        let chain = self.chain.iter().cloned().chain([known]).collect();
+        let left = self.shared.bytes.get();
+        let too_long = || format!("the recipes that are used have more than {} of text together", bytes(LONGEST_TEXT));
+        match preset {
+            Some(preset) => {
+                let Some(left) = left.checked_sub(preset.text.len() as u64) else { return fault(too_long()) };
+                self.shared.bytes.set(left);
+                let origin = Origin { folder: None, chain, shared: self.shared };
+                let recipe = (self.shared.parse)(preset.text, &format!("recipes/{}.toml", preset.name), set, &origin)?;
+                Ok((recipe, None))
+            }
+            None => {
+                let Some(content) = open::bytes(&path, "read the recipe", left)? else { return fault(too_long()) };
+                self.shared.bytes.set(left - (content.len() as u64).min(left));
+                let origin = Origin { folder: Some(folder_of(&path)), chain, shared: self.shared };
+                let text = text_of(content, &path)?;
+                Ok(((self.shared.parse)(&text, &path.display().to_string(), set, &origin)?, Some(path)))
+            }
+        }
+    }
+}
+
+fn folder_of(path: &Path) -> PathBuf {
+    path.parent().unwrap_or(Path::new("")).to_path_buf()
+}
+
+/// What a file is known by, however it is named.
+fn known_as(path: &Path) -> String {
+    path.canonicalize().unwrap_or_else(|_| path.to_path_buf()).display().to_string()
+}
+
+fn looks_like_a_path(name: &str) -> bool {
+    Path::new(name).extension().is_some() || name.contains(['/', '\\'])
+}
+
+/// What is wrong, and where: at a part of the text, or in the recipe that is used.
+pub enum UseDiagnostic {
+    /// In this text.
+    Here(Span, String),
+    /// In another.
+    There(Error),
+}
+
+/// Recipes that were taken in.
+#[derive(Default)]
+pub struct Uses {
+    /// What is wrong.
+    pub diagnostics: Vec<UseDiagnostic>,
+    /// What `name` and `name.output` stand for.
+    pub outputs: BTreeMap<String, Input>,
+    /// Where the name stands of the recipe that each node came from, by the nodes' indices.
+    pub places: Vec<(std::ops::Range<usize>, Span)>,
+    /// The files read.
+    pub files: Vec<PathBuf>,
+}
+
+impl Uses {
+    /// Where the name stands of the recipe that a node came from.
+    pub fn place(&self, node: usize) -> Option<&Span> {
+        self.places.iter().find(|(nodes, _)| nodes.contains(&node)).map(|(_, span)| span)
+    }
+
+    /// What a name of a node or layer stands for, if it is an output of a used recipe.
+    pub fn output(&self, name: &str) -> Option<&Input> {
+        self.outputs.get(name)
+    }
+}
+
+/// Takes in the recipes of a table `use`: their nodes are added to `recipe`, and formulas in them to `parameters`.
+pub fn take_in(value: &Spanned<Value>, recipe: &mut Recipe, parameters: &mut Parameters, origin: &Origin) -> Uses {
+    let mut uses = Uses::default();
+    let Value::Table(entries) = &value.value else {
+        let message = format!("`use` must be a table of recipes by name, not {}", value.value.describe());
+        uses.diagnostics.push(UseDiagnostic::Here(value.span.clone(), message));
+        return uses;
+    };
+    let mut names: HashSet<String> = recipe.nodes().iter().map(|named| named.name.clone()).collect();
+    for (name, value) in entries {
+        let here = |message: String| UseDiagnostic::Here(name.span.clone(), message);
+        if !is_name(&name.value) || name.value.contains('/') {
+            uses.diagnostics.push(here(format!("`{}` cannot be the name of a used recipe: names are 1 to 64 letters, digits, `_` and `-` and do not begin with a digit", name.value)));
+        } else if !names.insert(name.value.clone()) {
+            uses.diagnostics
+                .push(here(format!("there is already a node or a used recipe named `{}`: rename one", name.value)));
+        } else if let Err(diagnostic) = one(name, value, recipe, parameters, origin, &mut uses) {
+            uses.diagnostics.push(diagnostic);
+        }
+    }
+    uses
+}
+
+/// What a table of `use` says.
+struct Asked<'v> {
+    recipe: &'v Spanned<Value>,
+    file: &'v str,
+    set: Vec<(String, f64)>,
+    inputs: Vec<(&'v Spanned<String>, Input)>,
+    seed: u64,
+}
+
+fn asked<'v>(name: &Spanned<String>, value: &'v Spanned<Value>) -> std::result::Result<Asked<'v>, UseDiagnostic> {
+    let here = |span: &Span, message: String| UseDiagnostic::Here(span.clone(), message);
+    let Value::Table(entries) = &value.value else {
+        let message =
+            format!("the used recipe `{}` must be a table with a `recipe`, not {}", name.value, value.value.describe());
+        return Err(here(&value.span, message));
+    };
+    let (mut recipe, mut set, mut inputs, mut seed) = (None, Vec::new(), Vec::new(), 0);
+    let mut seen = HashSet::new();
+    for (key, value) in entries {
+        if !seen.insert(key.value.as_str()) {
+            return Err(here(&key.span, format!("the key `{}` stands twice in this table", key.value)));
+        }
+        match (key.value.as_str(), &value.value) {
+            ("recipe", Value::Text(file)) => recipe = Some((value, file.as_str())),
+            ("recipe", other) => {
+                let message =
+                    format!("`recipe` must be the name of a preset or the path of a recipe, not {}", other.describe());
+                return Err(here(&value.span, message));
+            }
+            ("parameters", Value::Table(entries)) => {
+                for (key, value) in entries {
+                    match value.value.number() {
+                        Some(number) if number.is_finite() => set.push((key.value.clone(), number)),
+                        _ => {
+                            let message =
+                                format!("`{}` must be a finite number, not {}", key.value, value.value.describe());
+                            return Err(here(&value.span, message));
+                        }
+                    }
+                }
+            }
+            ("inputs", Value::Table(entries)) => {
+                for (key, value) in entries {
+                    inputs.push(match (&value.value, value.value.number()) {
+                        (Value::Text(node), _) => (key, Input::Node(node.clone())),
+                        (_, Some(number)) if number.is_finite() => (key, Input::Value(number)),
+                        (other, _) => {
+                            let message = format!(
+                                "`{}` must name a node or be a finite number, not {}",
+                                key.value,
+                                other.describe()
+                            );
+                            return Err(here(&value.span, message));
+                        }
+                    });
+                }
+            }
+            ("seed", Value::Integer(number)) if *number >= 0 => seed = *number as u64,
+            ("seed", other) => {
+                return Err(here(
+                    &value.span,
+                    format!("`seed` must be a whole number of at least 0, not {}", other.describe()),
+                ));
+            }
+            ("parameters" | "inputs", other) => {
+                return Err(here(&value.span, format!("`{}` must be a table, not {}", key.value, other.describe())));
+            }
+            (unknown, _) => {
+                let hint = suggestion(unknown, KEYS);
+                return Err(here(
+                    &key.span,
+                    format!("unknown key `{unknown}` in the used recipe `{}`; {hint}", name.value),
+                ));
+            }
+        }
+    }
+    match recipe {
+        Some((recipe, file)) => Ok(Asked { recipe, file, set, inputs, seed }),
+        None => Err(here(
+            &name.span,
+            format!("`{}` names no `recipe`: add a line such as `recipe = \"hills\"`", name.value),
+        )),
+    }
+}
+
+/// Takes in one recipe.
+fn one(
+    name: &Spanned<String>,
+    value: &Spanned<Value>,
+    recipe: &mut Recipe,
+    parameters: &mut Parameters,
+    origin: &Origin,
+    uses: &mut Uses,
+) -> std::result::Result<(), UseDiagnostic> {
+    let asked = asked(name, value)?;
+    let (used, file) = origin.read(asked.file, &asked.set).map_err(|error| {
+        // Without a place of its own it is about what is asked for here.
+        match error.diagnostics() {
+            [one] if one.place.is_none() => UseDiagnostic::Here(asked.recipe.span.clone(), one.message.clone()),
+            _ => UseDiagnostic::There(error),
+        }
+    })?;
+    if recipe.nodes().len() + used.nodes().len() > MAX_NODES {
+        let message = format!("with this recipe there would be more than {MAX_NODES} nodes");
+        return Err(UseDiagnostic::Here(name.span.clone(), message));
+    }
+    for (key, _) in &asked.inputs {
+        let inputs = used
+            .nodes()
+            .iter()
+            .filter(|named| matches!(named.node, Node::GraphInput(_)))
+            .map(|named| named.name.as_str());
+        if !inputs.clone().any(|input| input == key.value) {
+            let message = match inputs.clone().next() {
+                None => format!("{} has no inputs, which are nodes of the op `input`", asked.file),
+                Some(_) => format!("{} has no input `{}`; {}", asked.file, key.value, suggestion(&key.value, inputs)),
+            };
+            return Err(UseDiagnostic::Here(key.span.clone(), message));
+        }
+    }
+    let prefixed = |input: &Input| match input {
+        Input::Node(node) => Input::Node(format!("{}/{node}", name.value)),
+        other => other.clone(),
+    };
+    let first = recipe.nodes().len();
+    for named in used.nodes() {
+        let mut node = named.node.clone();
+        for i in 0..node.inputs().len() {
+            let input = prefixed(node.input(i));
+            node.set_input(i, input);
+        }
+        if let (Node::GraphInput(input), Some((_, given))) =
+            (&mut node, asked.inputs.iter().find(|(key, _)| key.value == named.name))
+        {
+            input.source = given.clone();
+        }
+        if asked.seed > 0 {
+            reseed(&mut node, asked.seed);
+        }
+        recipe.add_masked(&format!("{}/{}", name.value, named.name), node, prefixed(&named.mask));
+    }
+    take_formulas(&name.value, &used, parameters);
+    let outputs = used.output_inputs();
+    let main = outputs.iter().find(|(output, _)| output == "height").or(outputs.first());
+    let layers = outputs.iter().map(|(output, input)| (format!("{}.{output}", name.value), prefixed(input)));
+    uses.outputs.extend(layers.chain(main.map(|(_, input)| (name.value.clone(), prefixed(input)))));
+    uses.places.push((first..recipe.nodes().len(), name.span.clone()));
+    uses.files.extend(used.used().iter().cloned().chain(file));
+    Ok(())
+}
+
+/// Other seeds for all noises: each node's own hashed with that of the use.
+fn reseed(node: &mut Node, seed: u64) {
+    let params = node.spec().params;
+    for i in (0..params.len()).filter(|i| matches!(params[*i].shape, Shape::Seed)) {
+        if let Value::Integer(own) = node.param(i) {
+            let mixed = (own as u64 ^ seed.wrapping_mul(0x9E37_79B9_7F4A_7C15)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            // A seed always may be any number of 63 bits.
+            let _ = node.set_param(i, &Value::Integer(((mixed ^ (mixed >> 31)) >> 1) as i64));
+        }
+    }
+}
+
+/// Formulas in the nodes of a used recipe, with what it was given in place of its parameters.
+fn take_formulas(name: &str, used: &Recipe, parameters: &mut Parameters) {
+    let given = |parameter: &str| -> Option<String> {
+        let path = ["use", name, "parameters", parameter].map(|key| Step::Key(key.to_string()));
+        let formula =
+            parameters.formulas.iter().find(|formula| formula.path == path).map(|formula| formula.text.trim());
+        match formula {
+            Some(text) if parameters.value(text).is_some() => Some(text.to_string()),
+            Some(text) => Some(format!("({text})")),
+            None => {
+                let value = used.parameters().iter().find(|known| known.name == parameter)?.value;
+                Some(if value < 0.0 { format!("({value:?})") } else { format!("{value:?}") })
+            }
+        }
+    };
+    let mut taken = Vec::new();
+    for Formula { path, text } in used.formulas() {
+        let [Step::Key(nodes), Step::Key(node), rest @ ..] = path.as_slice() else { continue };
+        let text = renamed(text, given);
+        // Of numbers alone it says no more than the number.
+        if nodes == "nodes" && !Expression::from(text.as_str()).names().is_empty() {
+            let path =
+                [Step::Key(nodes.clone()), Step::Key(format!("{name}/{node}"))].into_iter().chain(rest.iter().cloned());
+            taken.push(Formula { path: path.collect(), text });
+        }
+    }
+    parameters.formulas.append(&mut taken);
+}

@@ -1,0 +1,100 @@
+//! A recipe's text and the places in it.
+
+use crate::value::Span;
+use orogen_grid::error::{Diagnostic, Error, ErrorKind, Location, Result};
+use orogen_grid::words::count;
+use std::path::Path;
+
+/// Longest text of a recipe, in bytes.
+pub const LONGEST_TEXT: u64 = 16 << 20;
+
+/// A text and what diagnostics call it.
+pub struct Text<'a> {
+    pub name: &'a str,
+    pub text: &'a str,
+}
+
+impl Text<'_> {
+    /// A diagnostic about a part of the text.
+    pub fn diagnostic(&self, span: &Span, message: impl Into<String>) -> Diagnostic {
+        Diagnostic { message: message.into(), place: Some(self.locate(span)) }
+    }
+
+    /// An error of one diagnostic.
+    pub fn error(&self, span: &Span, message: impl Into<String>) -> Error {
+        Error::from_diagnostics(ErrorKind::Recipe, vec![self.diagnostic(span, message)])
+    }
+
+    /// An error of several, in the order of the text, of those in other texts, and of how many `more` there are.
+    pub fn errors(&self, mut diagnostics: Vec<Diagnostic>, elsewhere: Vec<Diagnostic>, more: usize) -> Error {
+        diagnostics.sort_by_key(|diagnostic| diagnostic.place.as_ref().map(|place| (place.line, place.column)));
+        diagnostics.extend(elsewhere);
+        if more > 0 {
+            diagnostics.push(Diagnostic { message: format!("and {}", count(more, "more diagnostic")), place: None });
+        }
+        Error::from_diagnostics(ErrorKind::Recipe, diagnostics)
+    }
+
+    /// A part of a string's value, as a part of the text: exactly where the string stands as it is, all of it where it is written with escapes.
+    pub fn within(&self, string: &Span, value: &str, part: &Span) -> Span {
+        let source = self.text.get(string.clone()).unwrap_or_default();
+        match source.find(value) {
+            Some(at) if !value.is_empty() => {
+                let start = string.start + at;
+                start + part.start..start + part.end
+            }
+            _ => string.clone(),
+        }
+    }
+
+    /// A part of the text as a place.
+    pub fn locate(&self, span: &Span) -> Location {
+        let start = floor_boundary(self.text, span.start);
+        let end = floor_boundary(self.text, span.end).max(start);
+        let line_start = self.text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+        let line_end = self.text[start..].find('\n').map_or(self.text.len(), |newline| start + newline);
+        // Lines nobody can read are not shown: twenty diagnostics about one of 16 MiB would copy it twenty times.
+        const LONGEST_SHOWN: usize = 20_000;
+        let line = if line_end - line_start > LONGEST_SHOWN { "" } else { &self.text[line_start..line_end] };
+        Location {
+            file: self.name.to_string(),
+            line: self.text[..start].matches('\n').count() + 1,
+            column: self.text[line_start..start].chars().count() + 1,
+            length: self.text[start..end.clamp(start, line_end)].chars().count().max(1),
+            text: line.trim_end_matches('\r').to_string(),
+        }
+    }
+}
+
+fn floor_boundary(text: &str, at: usize) -> usize {
+    let mut at = at.min(text.len());
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    at
+}
+
+/// The error for a text of more than [`LONGEST_TEXT`] bytes.
+pub fn too_long(name: &str) -> Error {
+    Error::new(
+        ErrorKind::Recipe,
+        format!(
+            "{name} is not a recipe: it is longer than {}, the maximum length of a recipe",
+            orogen_grid::words::bytes(LONGEST_TEXT)
+        ),
+    )
+}
+
+/// What a file holds, if it is text.
+pub fn text_of(content: Vec<u8>, path: &Path) -> Result<String> {
+    String::from_utf8(content).map_err(|fault| {
+        Error::new(
+            ErrorKind::Recipe,
+            format!(
+                "{} is not a recipe: byte {} is not UTF-8 text; a recipe is a TOML or JSON file",
+                path.display(),
+                fault.utf8_error().valid_up_to()
+            ),
+        )
+    })
+}

@@ -1,0 +1,87 @@
+//! Depression breaching.
+
+use crate::op::{Context, Solution, Solver, Sources};
+use orogen_grid::error::Result;
+use orogen_grid::grid::Window;
+use orogen_grid::hydrology::least_cost::{self, Limits};
+use orogen_grid::hydrology::outlets::Outlets;
+use orogen_grid::hydrology::steepest::Descent;
+use orogen_grid::hydrology::{breach, drainage};
+
+choice! {
+    /// Route of the breach channels.
+    pub enum Way {
+        /// Along the valleys of the ground, from the bottom of the depression over its lowest spill point (Cordonnier, Bovy and Braun
+        /// 2019).
+        Valley = "valley",
+        /// Along the path with the least excavation to lower ground, for example through a thin dam rather than around it (Lindsay 2016).
+        LeastCost = "least-cost",
+    }
+}
+
+op! {
+    /// The source with every depression drained by a channel cut through its rim, or filled where the channel would be too deep.
+    ///
+    /// Channels follow the valleys of the ground from the bottom of the depression over its spill point (Cordonnier, Bovy and Braun 2019),
+    /// or the path of least excavation (Lindsay 2016). Where the cut would be deeper than `deepest`, the depression is first filled as far
+    /// as necessary (`way = "valley"`) or filled completely (`"least-cost"`). In the result water never runs uphill; channel beds and
+    /// filled ground are level. Time and memory grow with the world: 30 bytes per cell for `"valley"`, 60 for `"least-cost"`.
+    pub struct Breach = "breach", solver, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// Maximum depth of a cut. 0 only fills.
+        deepest: f64 = 50.0, unit "m", range 0.0 to 1e6;
+        /// Route of the breach channels.
+        way: Way = Way::Valley;
+        /// Maximum length of a channel with `way = "least-cost"`.
+        longest: f64 = 3000.0, unit "m", range 0.0 to 1e6;
+        /// Whether cells at or below sea level are outlets.
+        sea: bool = true;
+    }
+    layers {
+        /// The heights without depressions.
+        height: height, unit "m";
+        /// Height difference to the source: negative where the ground was cut, positive where it was filled.
+        change: height, unit "m";
+    }
+}
+
+impl Solver for Breach {
+    fn scratch(&self, padded: &Window) -> u64 {
+        let each = match self.way {
+            Way::Valley => 30,
+            Way::LeastCost => 60,
+        };
+        padded.len() as u64 * each
+    }
+
+    fn reads_sea_level(&self) -> bool {
+        self.sea
+    }
+
+    fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
+        let mut heights = sources.whole(0, sources.padded())?;
+        context.progress.check()?;
+        let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
+        let deepest = self.deepest as f32;
+        let out = match self.way {
+            Way::Valley => {
+                let drainage = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, context.progress)?;
+                breach::breach(&heights, &outlets, &drainage, deepest)
+            }
+            Way::LeastCost => {
+                let longest = (self.longest / heights.window().cell).min(f64::from(u32::MAX)) as u32;
+                least_cost::breach(&heights, &outlets, &Limits { deepest, longest }, context.progress)?
+            }
+        };
+        heights.data_mut().iter_mut().zip(out.data()).for_each(|(change, new)| *change = new - *change);
+        Ok(Solution { layers: vec![sources.keep(out)?, sources.keep(heights)?], scalars: Vec::new() })
+    }
+
+    fn cost(&self) -> f64 {
+        60.0
+    }
+}

@@ -1,0 +1,87 @@
+//! Height above nearest drainage and distance to streams.
+
+use crate::op::{Context, Solution, Solver, Sources};
+use orogen_grid::analysis::distance::nearest_in_whole;
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::hydrology::above_drainage::above_drainage;
+use orogen_grid::hydrology::accumulation::accumulate;
+use orogen_grid::hydrology::outlets::Outlets;
+use orogen_grid::hydrology::steepest::Descent;
+use orogen_grid::hydrology::{drainage, fill};
+
+op! {
+    /// Height above nearest drainage (HAND), and the distance to the nearest stream along the flow and in a straight line.
+    ///
+    /// Flow is routed as in `drainage` (D8, carving through depressions). Streams are the cells with a drainage area of at least `stream`.
+    /// The height is that of the filled source minus that of the first stream cell downstream (Rennó and others 2008, Nobre and others
+    /// 2011), so it is never negative. Ground that reaches the sea or the world's border before a stream is measured down to that outlet.
+    /// Time and memory grow with the world, 56 bytes per cell.
+    pub struct HeightAboveDrainage = "height-above-drainage", solver, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// Drainage area from which on a cell is a stream.
+        stream: f64 = 1e6, unit "m^2", range 0.0 to 1e15;
+        /// Whether cells at or below sea level are outlets.
+        sea: bool = true;
+    }
+    layers {
+        /// Height above the stream that the ground drains to; 0 in streams.
+        height: height, unit "m";
+        /// Length of the flow path to that stream, with diagonal steps counted as the square root of 2 cells; 0 in streams.
+        flow_distance: height, unit "m";
+        /// Straight-line distance to the nearest stream. In a world without streams it is the length of the world's diagonal.
+        distance: height, unit "m";
+    }
+}
+
+impl Solver for HeightAboveDrainage {
+    fn scratch(&self, padded: &Window) -> u64 {
+        padded.len() as u64 * 56
+    }
+
+    fn reads_sea_level(&self) -> bool {
+        self.sea
+    }
+
+    fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
+        let heights = sources.whole(0, sources.padded())?;
+        context.progress.check()?;
+        let window = *heights.window();
+        let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
+        let [routing, counting, following, nearing] = context.progress.parts([4.0, 1.0, 1.0, 2.0]);
+        let drained = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, &routing)?;
+        let filled = fill::filled(&heights, &drained.basins);
+        drop(heights);
+        let receivers = drained.receivers;
+        context.progress.check()?;
+        let areas = accumulate(&receivers);
+        counting.finish();
+        context.progress.check()?;
+        let threshold = (self.stream / (window.cell * window.cell)).ceil().clamp(1.0, f64::from(u32::MAX)) as u32;
+        let found = above_drainage(filled, &receivers, &areas, threshold);
+        let layers = [sources.keep(found.height)?, sources.keep(found.distance)?];
+        following.finish();
+        context.progress.check()?;
+        let mut streams = Grid::filled(window, 0.0f32);
+        for (stream, area) in streams.data_mut().iter_mut().zip(areas.area.data()) {
+            *stream = f32::from(u8::from(*area >= threshold));
+        }
+        drop((areas, receivers));
+        let mut distance = nearest_in_whole(&streams, 1.0);
+        let (across, down) = (window.width as f64, window.height as f64);
+        let diagonal = (across * across + down * down).sqrt();
+        for samples in distance.data_mut() {
+            *samples = (f64::from(*samples).min(diagonal) * window.cell) as f32;
+        }
+        nearing.finish();
+        Ok(Solution { layers: layers.into_iter().chain([sources.keep(distance)?]).collect(), scalars: Vec::new() })
+    }
+
+    fn cost(&self) -> f64 {
+        80.0
+    }
+}

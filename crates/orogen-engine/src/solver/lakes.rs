@@ -1,0 +1,73 @@
+//! Lakes in depressions.
+
+use crate::op::{Context, Solution, Solver, Sources};
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::hydrology::outlets::Outlets;
+use orogen_grid::hydrology::steepest::Descent;
+use orogen_grid::hydrology::{drainage, lakes};
+
+op! {
+    /// Depressions of the source filled with water up to their spill point. Small depressions are filled with ground instead.
+    ///
+    /// Every lake has an outlet that drains, and all other land drains to a lake, the sea or the world's border. Ground in depressions too
+    /// small for a lake is raised to a gentle slope of 1 in 10 000 until water runs off. Time and memory grow with the world, 35 bytes per
+    /// cell.
+    pub struct Lakes = "lakes", solver, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// Minimum area of a lake. A lake always covers at least 4 cells.
+        smallest: f64 = 20000.0, unit "m^2", range 0.0 to 1e15;
+        /// Whether cells at or below sea level are outlets.
+        sea: bool = true;
+    }
+    layers {
+        /// The ground: unchanged under lakes, raised in depressions too small for a lake.
+        height: height, unit "m";
+        /// Water depth; 0 on land.
+        depth: height, unit "m";
+        /// Water surface of lakes, and the ground elsewhere.
+        surface: height, unit "m";
+        /// Number of the lake, from 1; 0 on land.
+        lake: label;
+    }
+}
+
+impl Solver for Lakes {
+    fn scratch(&self, padded: &Window) -> u64 {
+        padded.len() as u64 * 35
+    }
+
+    fn reads_sea_level(&self) -> bool {
+        self.sea
+    }
+
+    fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
+        let heights = sources.whole(0, sources.padded())?;
+        context.progress.check()?;
+        let window = *heights.window();
+        let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
+        let [routing, filling] = context.progress.parts([1.0, 3.0]);
+        let drainage = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, &routing)?;
+        let fewest = (self.smallest / (window.cell * window.cell)).ceil().clamp(4.0, f64::from(u32::MAX)) as u32;
+        let found = lakes::lakes_with(&heights, &outlets, &drainage, fewest, &filling)?;
+        let mut depth = heights;
+        for (depth, (surface, bed)) in
+            depth.data_mut().iter_mut().zip(found.surface.data().iter().zip(found.bed.data()))
+        {
+            *depth = surface - bed;
+        }
+        let labels = found.labels.data().iter().map(|label| *label as f32).collect();
+        let labels = Grid::from_data(window, labels).unwrap_or_else(|| Grid::filled(window, 0.0));
+        let layers = [found.bed, depth, found.surface, labels];
+        let layers = layers.into_iter().map(|grid| sources.keep(grid)).collect::<Result<Vec<_>>>()?;
+        Ok(Solution { layers, scalars: Vec::new() })
+    }
+
+    fn cost(&self) -> f64 {
+        100.0
+    }
+}

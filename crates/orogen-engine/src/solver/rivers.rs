@@ -1,0 +1,99 @@
+//! Rivers and their beds.
+
+use crate::op::{Context, Solution, Solver, Sources};
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::hydrology::accumulation::accumulate;
+use orogen_grid::hydrology::outlets::Outlets;
+use orogen_grid::hydrology::rivers::{Channel, carve};
+use orogen_grid::hydrology::steepest::Descent;
+use orogen_grid::hydrology::{breach, drainage, strahler};
+
+op! {
+    /// Rivers where the drainage area is large enough, with beds cut into the source that descend all the way downstream.
+    ///
+    /// Depressions are drained first, as by `breach`. A river with discharge Q (m^3/s) is `width` Q^0.5 metres wide and `depth` Q^0.4
+    /// metres deep (Leopold and Maddock 1953). Its bed is cut by that depth into the cells that it crosses, whatever its width. Time and
+    /// memory grow with the world, 40 bytes per cell.
+    pub struct Rivers = "rivers", solver, revision 1;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// Drainage area from which on a cell is a river.
+        stream: f64 = 5e6, unit "m^2", range 0.0 to 1e15;
+        /// Runoff from the ground.
+        runoff: f64 = 0.5, unit "m/yr", range 0.0 to 1000.0;
+        /// Width of a river of 1 m^3/s.
+        width: f64 = 5.0, unit "m", range 0.0 to 1000.0;
+        /// Depth of a river of 1 m^3/s.
+        depth: f64 = 0.3, unit "m", range 0.0 to 1000.0;
+        /// Maximum depth of a cut through the rim of a depression. Deeper depressions are filled first.
+        deepest: f64 = 50.0, unit "m", range 0.0 to 1e6;
+        /// Whether cells at or below sea level are outlets.
+        sea: bool = true;
+    }
+    layers {
+        /// The ground with river beds.
+        height: height, unit "m";
+        /// Drainage area.
+        flow: flow, unit "m^2";
+        /// Width of the river; 0 outside rivers.
+        width: label, unit "m";
+        /// Strahler order of the river; 0 outside rivers.
+        strahler: label;
+    }
+}
+
+impl Solver for Rivers {
+    fn scratch(&self, padded: &Window) -> u64 {
+        padded.len() as u64 * 40
+    }
+
+    fn reads_sea_level(&self) -> bool {
+        self.sea
+    }
+
+    fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
+        let heights = sources.whole(0, sources.padded())?;
+        context.progress.check()?;
+        let window = *heights.window();
+        let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
+        let [routing, breaching, counting, carving] = context.progress.parts([2.0, 1.0, 1.0, 2.0]);
+        let drainage = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, &routing)?;
+        let mut ground = breach::breach(&heights, &outlets, &drainage, self.deepest as f32);
+        drop(heights);
+        breaching.finish();
+        context.progress.check()?;
+        let drained = accumulate(&drainage.receivers);
+        counting.finish();
+        context.progress.check()?;
+        let cell_area = window.cell * window.cell;
+        let threshold = (self.stream / cell_area).ceil().clamp(1.0, f64::from(u32::MAX)) as u32;
+        let orders = strahler::orders(&drainage.receivers, &drained, threshold);
+        let channel = Channel { runoff: self.runoff, width: self.width, depth: self.depth };
+        context.progress.check()?;
+        carve(&mut ground, &drainage.receivers, &drained, &orders, &channel);
+        carving.finish();
+        context.progress.check()?;
+        let area = |c: usize| f64::from(drained.area.data()[c]) * cell_area;
+        let wide = |c: usize| if orders.data()[c] > 0 { channel.width_of(channel.discharge(area(c))) } else { 0.0 };
+        let layers = vec![
+            sources.keep(ground)?,
+            sources.keep(made(window, area))?,
+            sources.keep(made(window, wide))?,
+            sources.keep(made(window, |c| f64::from(orders.data()[c])))?,
+        ];
+        Ok(Solution { layers, scalars: Vec::new() })
+    }
+
+    fn cost(&self) -> f64 {
+        100.0
+    }
+}
+
+fn made(window: Window, value: impl Fn(usize) -> f64) -> Grid {
+    let data = (0..window.len()).map(|c| value(c) as f32).collect();
+    Grid::from_data(window, data).unwrap_or_else(|| Grid::filled(window, 0.0))
+}

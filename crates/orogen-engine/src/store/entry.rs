@@ -1,0 +1,186 @@
+//! One solution in a file.
+//!
+//! A head (magic, key, numbers, the windows of the layers, a checksum), the layers' pages one after another, the checksum of each
+//! page, and a checksum of those. Numbers are little-endian. Its length follows from its head, so that a truncated file is known at
+//! once.
+
+use crate::op::Solution;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::{Grid, Window};
+use orogen_io::pages::{self, BYTES, PageFile, Pages, SIDE, checksum};
+use orogen_io::raster::Raster;
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::Path;
+use std::sync::Arc;
+
+/// What every file begins with. The number changes when the layout does.
+const MAGIC: &[u8; 16] = b"orogen solved 1\n";
+
+/// More layers or numbers than any solver makes: what says so is damaged.
+const MOST: usize = 1 << 16;
+
+/// Bytes that a solution takes in a file, about.
+pub fn length(solution: &Solution) -> u64 {
+    solution.layers.iter().fold(4096, |sum, layer| sum + pages::disk(layer.window()))
+}
+
+/// Writes a solution.
+pub fn write(out: &mut dyn Write, key: &[u8; 32], solution: &Solution) -> io::Result<()> {
+    let mut head = Vec::new();
+    head.extend_from_slice(MAGIC);
+    head.extend_from_slice(key);
+    for count in [solution.scalars.len(), solution.layers.len()] {
+        head.extend_from_slice(&(count as u64).to_le_bytes());
+    }
+    for scalar in &solution.scalars {
+        head.extend_from_slice(&scalar.to_bits().to_le_bytes());
+    }
+    for layer in &solution.layers {
+        let window = layer.window();
+        for number in
+            [window.x as u64, window.y as u64, window.width as u64, window.height as u64, window.cell.to_bits()]
+        {
+            head.extend_from_slice(&number.to_le_bytes());
+        }
+    }
+    let sum = checksum(&head);
+    out.write_all(&head)?;
+    out.write_all(&sum.to_le_bytes())?;
+    let mut sums = Vec::new();
+    let mut bytes = Vec::with_capacity(BYTES);
+    for layer in &solution.layers {
+        for window in layer.window().tiles(SIDE) {
+            let part = layer.get(&window)?;
+            bytes.clear();
+            for row in 0..window.height {
+                bytes.extend(part.row(row).iter().flat_map(|sample| sample.to_le_bytes()));
+                bytes.resize((row + 1) * SIDE * 4, 0);
+            }
+            bytes.resize(BYTES, 0);
+            sums.extend_from_slice(&checksum(&bytes).to_le_bytes());
+            out.write_all(&bytes)?;
+        }
+    }
+    out.write_all(&sums)?;
+    out.write_all(&checksum(&sums).to_le_bytes())
+}
+
+/// Reads what [`write`] wrote, into memory or left on disk. Every byte is checked before anything is handed on.
+///
+/// # Errors
+/// If the file cannot be read, is not whole, has been damaged, or holds another solution.
+pub fn read(file: File, path: &Path, key: &[u8; 32], on_disk: bool) -> Result<Solution> {
+    let length = file.metadata().map_err(|cause| Error::file("read", path, &cause))?.len();
+    let mut reader = Reader { file: Arc::new(PageFile::open(file, path)), path, at: 0 };
+    let head = reader.head(key, length)?;
+    let mut base = reader.at;
+    let pages: usize = head.windows.iter().map(pages::count).sum();
+    let sums = reader.sums(base + pages as u64 * BYTES as u64, pages)?;
+    let mut layers = Vec::new();
+    let mut sums = sums.into_iter();
+    for window in head.windows {
+        let sums: Vec<Option<u32>> = sums.by_ref().take(pages::count(&window)).map(Some).collect();
+        let paged = Pages::within(Arc::clone(&reader.file), base, sums, window);
+        // One pass over all of it, whether it stays on disk or not: damage is found before the work begins.
+        let mut grid = (!on_disk).then(|| Grid::filled(window, 0.0f32));
+        for part in window.tiles(SIDE) {
+            let part = paged.get(&part)?;
+            if let Some(grid) = &mut grid {
+                grid.paste(&part);
+            }
+        }
+        base += pages::disk(&window);
+        layers.push(grid.map_or_else(|| Raster::on_disk(paged), Raster::in_memory));
+    }
+    Ok(Solution { layers, scalars: head.scalars })
+}
+
+/// The windows of a solution's layers, as its head tells them.
+///
+/// # Errors
+/// If the head cannot be read, is damaged, or is another solution's.
+pub fn windows(file: File, path: &Path, key: &[u8; 32]) -> Result<Vec<Window>> {
+    let length = file.metadata().map_err(|cause| Error::file("read", path, &cause))?.len();
+    let mut reader = Reader { file: Arc::new(PageFile::open(file, path)), path, at: 0 };
+    Ok(reader.head(key, length)?.windows)
+}
+
+struct Head {
+    scalars: Vec<f64>,
+    windows: Vec<Window>,
+}
+
+struct Reader<'a> {
+    file: Arc<PageFile>,
+    path: &'a Path,
+    at: u64,
+}
+
+impl Reader<'_> {
+    fn fault(&self, why: &str) -> Error {
+        Error::new(ErrorKind::File, format!("{} is not a stored solution: {why}", self.path.display()))
+    }
+
+    fn bytes(&mut self, count: usize) -> Result<Vec<u8>> {
+        let mut bytes = vec![0; count];
+        self.file.read(self.at, &mut bytes).map_err(|cause| Error::file("read", self.path, &cause))?;
+        self.at += count as u64;
+        Ok(bytes)
+    }
+
+    fn head(&mut self, key: &[u8; 32], length: u64) -> Result<Head> {
+        let mut bytes = self.bytes(MAGIC.len() + 32 + 16)?;
+        if bytes[..16] != MAGIC[..] || bytes[16..48] != key[..] {
+            return Err(self.fault("it is not a solution of this version (bad magic number)"));
+        }
+        let [scalars, layers] = [48, 56].map(|at| usize::try_from(word(&bytes, at)).unwrap_or(usize::MAX));
+        if scalars > MOST || layers > MOST {
+            return Err(self.fault("it declares too many layers"));
+        }
+        bytes.extend(self.bytes(scalars * 8 + layers * 40)?);
+        let sum = self.bytes(4)?;
+        if checksum(&bytes).to_le_bytes() != sum[..] {
+            return Err(self.fault("its header is damaged"));
+        }
+        let numbers = |from: usize, count: usize| (0..count).map(move |i| from + i * 8);
+        let scalars_at = 64;
+        let windows_at = scalars_at + scalars * 8;
+        let window = |at: usize| Window {
+            x: word(&bytes, at) as i64,
+            y: word(&bytes, at + 8) as i64,
+            width: word(&bytes, at + 16) as usize,
+            height: word(&bytes, at + 24) as usize,
+            cell: f64::from_bits(word(&bytes, at + 32)),
+        };
+        let head = Head {
+            scalars: numbers(scalars_at, scalars).map(|at| f64::from_bits(word(&bytes, at))).collect(),
+            windows: (0..layers).map(|i| window(windows_at + i * 40)).collect(),
+        };
+        let pages = head.windows.iter().fold(0u64, |sum, window| sum.saturating_add(pages::count(window) as u64));
+        let whole = pages.saturating_mul(BYTES as u64 + 4).saturating_add(self.at + 4);
+        if length != whole {
+            return Err(self.fault(&format!("it has {length} bytes instead of {whole}")));
+        }
+        Ok(head)
+    }
+
+    fn sums(&mut self, at: u64, pages: usize) -> Result<Vec<u32>> {
+        self.at = at;
+        let bytes = self.bytes(pages * 4)?;
+        let sum = self.bytes(4)?;
+        if checksum(&bytes).to_le_bytes() != sum[..] {
+            return Err(self.fault("its checksums are damaged"));
+        }
+        Ok(bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
+    }
+}
+
+/// Eight bytes as a number; what is not there is 0.
+fn word(bytes: &[u8], at: usize) -> u64 {
+    let mut word = [0; 8];
+    if let Some(there) = bytes.get(at..at + 8) {
+        word.copy_from_slice(there);
+    }
+    u64::from_le_bytes(word)
+}

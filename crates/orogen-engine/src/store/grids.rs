@@ -1,0 +1,160 @@
+//! Grids that expensive filters have made, kept for the next request that wants them.
+
+use crate::plan::key::Key;
+use orogen_grid::grid::{Grid, Window};
+use std::collections::HashMap;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Filters that take at least so many nanoseconds a sample are kept: copying a grid takes about one.
+pub const EXPENSIVE: f64 = 25.0;
+
+/// Grids by the filter's content key, the layer and the window. The longest unused go first when there are more bytes than the limit.
+pub struct GridStore {
+    limit: u64,
+    held: Mutex<Entries>,
+}
+
+#[derive(Default)]
+struct Entries {
+    grids: HashMap<GridKey, (u64, Grid)>,
+    bytes: u64,
+    turn: u64,
+    /// How often all grids that were asked for were there.
+    found: u64,
+}
+
+/// What a grid is known by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct GridKey {
+    /// The content key of the filter.
+    pub node: Key,
+    /// The layer.
+    pub layer: usize,
+    /// First column and row, columns and rows.
+    samples: [i64; 4],
+    /// The bits of the cell.
+    cell: u64,
+}
+
+impl GridKey {
+    /// The key of a layer of a filter over a window.
+    pub fn new(node: Key, layer: usize, window: &Window) -> GridKey {
+        let samples = [window.x, window.y, window.width as i64, window.height as i64];
+        GridKey { node, layer, samples, cell: window.cell.to_bits() }
+    }
+}
+
+impl GridStore {
+    /// A store of at most `limit` bytes.
+    pub fn new(limit: u64) -> GridStore {
+        GridStore { limit, held: Mutex::default() }
+    }
+
+    /// Whether any grid can be kept.
+    pub fn is_used(&self) -> bool {
+        self.limit > 0
+    }
+
+    /// A copy of each of the grids, if all of them are kept.
+    pub fn find(&self, keys: &[GridKey]) -> Option<Vec<Grid>> {
+        let mut held = self.lock();
+        if !keys.iter().all(|key| held.grids.contains_key(key)) {
+            return None;
+        }
+        held.turn += 1;
+        held.found += 1;
+        let turn = held.turn;
+        let grid = |key: &GridKey| {
+            held.grids.get_mut(key).map(|(used, grid)| {
+                *used = turn;
+                grid.clone()
+            })
+        };
+        keys.iter().map(grid).collect()
+    }
+
+    /// Keeps a copy of a grid where it fits the limit and the bytes that all grids may take at the moment (`None` for no limit of these).
+    pub fn keep(&self, key: GridKey, grid: &Grid, allowed: Option<u64>) {
+        let bytes = 4 * grid.data().len() as u64;
+        let mut held = self.lock();
+        let allowed = self.limit.min(allowed.unwrap_or(u64::MAX));
+        // Grids so large that few of them fit would drive all others out.
+        if bytes > allowed.min(self.limit / 2) || held.grids.contains_key(&key) {
+            return;
+        }
+        held.shrink(allowed - bytes);
+        held.turn += 1;
+        let turn = held.turn;
+        held.bytes += bytes;
+        held.grids.insert(key, (turn, grid.clone()));
+    }
+
+    /// How often all grids that were asked for were there.
+    pub fn found(&self) -> u64 {
+        self.lock().found
+    }
+
+    /// Lets go of grids until they take at most `allowed` bytes.
+    pub fn make_room(&self, allowed: u64) {
+        self.lock().shrink(allowed);
+    }
+
+    /// Bytes of all grids.
+    pub fn memory(&self) -> u64 {
+        self.lock().bytes
+    }
+
+    /// Grids go in whole, so a panic elsewhere leaves sound ones.
+    fn lock(&self) -> MutexGuard<'_, Entries> {
+        self.held.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Entries {
+    fn shrink(&mut self, allowed: u64) {
+        while self.bytes > allowed {
+            let oldest = self.grids.iter().min_by_key(|(_, (used, _))| *used).map(|(key, _)| *key);
+            let Some((_, grid)) = oldest.and_then(|key| self.grids.remove(&key)) else { return };
+            self.bytes -= 4 * grid.data().len() as u64;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(value: f32) -> Grid {
+        Grid::filled(Window::new(10, 10, 1.0), value)
+    }
+
+    fn key(node: u8) -> GridKey {
+        GridKey::new([node; 32], 0, &Window::new(10, 10, 1.0))
+    }
+
+    #[test]
+    fn the_longest_unused_goes_first_and_the_limit_is_kept() {
+        let store = GridStore::new(1000);
+        store.keep(key(1), &grid(1.0), None);
+        store.keep(key(2), &grid(2.0), None);
+        assert_eq!(store.find(&[key(1)]).unwrap()[0], grid(1.0));
+        store.keep(key(3), &grid(3.0), None);
+        assert!(store.find(&[key(2)]).is_none() && store.find(&[key(1), key(3)]).is_some());
+        assert_eq!(store.memory(), 800);
+        store.keep(key(4), &grid(4.0), Some(399));
+        assert_eq!(store.memory(), 800, "memory that is in use is not taken");
+        store.keep(key(4), &grid(4.0), Some(500));
+        assert_eq!(store.memory(), 400, "the others make room");
+        assert!(store.find(&[key(4)]).is_some());
+        store.make_room(399);
+        assert_eq!(store.memory(), 0);
+    }
+
+    #[test]
+    fn what_never_fits_is_not_kept() {
+        let store = GridStore::new(399);
+        store.keep(key(1), &grid(1.0), None);
+        assert!(store.find(&[key(1)]).is_none());
+        assert!(!GridStore::new(0).is_used());
+    }
+}

@@ -1,0 +1,64 @@
+//! What a cache holds, for people who want to see it or to make room.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::PathBuf;
+use std::time::SystemTime;
+
+use super::cache::Cache;
+use super::entry;
+use orogen_grid::error::{Error, Result};
+use orogen_grid::grid::Window;
+
+/// A stored solution.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stored {
+    /// Its file.
+    pub path: PathBuf,
+    /// How long that is.
+    pub bytes: u64,
+    /// When it was last used.
+    pub used: SystemTime,
+    /// The windows of its layers; `None` if its head is damaged.
+    pub layers: Option<Vec<Window>>,
+}
+
+impl Cache {
+    /// The stored solutions, the longest unused first. Other files in the folder are not among them.
+    ///
+    /// # Errors
+    /// If the folder is there and cannot be read.
+    pub fn stored(&self) -> Result<Vec<Stored>> {
+        let failed = |cause: io::Error| Error::file("read the folder", &self.folder, &cause);
+        let there = match fs::read_dir(&self.folder) {
+            Err(cause) if cause.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+            there => there.map_err(failed)?,
+        };
+        let mut stored = Vec::new();
+        for file in there {
+            let file = file.map_err(failed)?;
+            let Some(key) = file.file_name().to_str().and_then(Cache::key_of) else { continue };
+            // One that another process has just removed is not there any more.
+            let Ok(meta) = file.metadata() else { continue };
+            if meta.is_file() {
+                let path = file.path();
+                let layers = File::open(&path).ok().and_then(|file| entry::windows(file, &path, &key).ok());
+                let used = meta.modified().unwrap_or(SystemTime::UNIX_EPOCH);
+                stored.push(Stored { path, bytes: meta.len(), used, layers });
+            }
+        }
+        stored.sort_by(|a, b| (a.used, &a.path).cmp(&(b.used, &b.path)));
+        Ok(stored)
+    }
+
+    /// Removes a stored solution. One that is gone already is no failure.
+    ///
+    /// # Errors
+    /// If the file cannot be removed.
+    pub fn remove(&self, stored: &Stored) -> Result<()> {
+        match fs::remove_file(&stored.path) {
+            Err(cause) if cause.kind() != io::ErrorKind::NotFound => Err(Error::file("remove", &stored.path, &cause)),
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,285 @@
+//! A big window as a stream of tiles.
+
+use crate::budget::Budget;
+use crate::world::World;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::progress::Progress;
+use std::collections::VecDeque;
+
+/// How a window is cut into tiles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Tiling {
+    /// Samples along a tile's side. The tiles at the window's east and south may be smaller.
+    pub side: usize,
+    /// Samples that a tile has beyond its side at its east and south, which are its neighbour's first: 0 for tiles that only
+    /// touch, 1 for tiles that share an edge, as engines want them.
+    pub overlap: usize,
+    /// Bytes of memory that the stream may need, the tiles it has handed out not counted; `None` takes the world's limit.
+    pub memory: Option<u64>,
+}
+
+impl Tiling {
+    /// Tiles of `side` x `side` samples that touch.
+    pub fn of(side: usize) -> Tiling {
+        Tiling { side, overlap: 0, memory: None }
+    }
+
+    /// How many tiles `window` has, east and south.
+    pub fn layout(&self, window: &Window) -> [usize; 2] {
+        let side = self.side.max(1);
+        [window.width, window.height].map(|samples| samples.saturating_sub(self.overlap).div_ceil(side).max(1))
+    }
+
+    /// The samples of the tile in column `column` and row `row`.
+    pub fn tile(&self, window: &Window, column: usize, row: usize) -> Window {
+        self.run(window, [column, row], [1, 1])
+    }
+
+    /// The samples of `count` tiles east and south from the tile at `first` on.
+    fn run(&self, window: &Window, first: [usize; 2], count: [usize; 2]) -> Window {
+        let along = |first: usize, count: usize, samples: usize| {
+            let start = (first * self.side).min(samples);
+            (start, (count * self.side + self.overlap).min(samples - start))
+        };
+        let (left, width) = along(first[0], count[0], window.width);
+        let (top, height) = along(first[1], count[1], window.height);
+        Window { x: window.x + left as i64, y: window.y + top as i64, width, height, cell: window.cell }
+    }
+}
+
+/// One tile of a stream.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tile {
+    /// Its column among the tiles, from the west.
+    pub column: usize,
+    /// Its row among the tiles, from the north.
+    pub row: usize,
+    /// One grid a layer, in the order they were asked for.
+    pub grids: Vec<Grid>,
+}
+
+/// Most samples that are made at once: enough that halos and plans cost little.
+const AT_ONCE: usize = 1 << 24;
+
+/// The tiles of a big window, made as they are asked for: see [`World::tiles`].
+pub struct Tiles<'w> {
+    world: &'w World,
+    layers: Vec<String>,
+    window: Window,
+    tiling: Tiling,
+    progress: Progress,
+    /// The work of solving, which comes before the first strip, and of a sample; known once the first strip is asked for.
+    work: Option<[f64; 2]>,
+    /// Tiles made at once, east and south.
+    at_once: [usize; 2],
+    /// Strips still to make: the first tile of each and how many.
+    strips: VecDeque<([usize; 2], [usize; 2])>,
+    made: VecDeque<Tile>,
+    /// What is wanted.
+    wanted: Box<dyn Fn(usize, usize) -> bool + Send + 'w>,
+}
+
+impl World {
+    /// Makes layers over a window tile by tile, in little memory: for windows larger than it.
+    ///
+    /// What it guarantees:
+    ///
+    /// - Each tile equals the crop of the whole window, bit for bit, whatever the tiling, the memory and the threads.
+    /// - Tiles come row after row from the north, each row from west to east, each wanted tile once.
+    /// - The work needs no more memory at once than the tiling (or the world) allows; if even one tile does not fit, nothing is
+    ///   started and the error names the figure.
+    /// - Neighbouring tiles are made together where memory allows, so that a filter's halo is shared between them.
+    /// - `progress` hears of all samples, and stops the stream with [`ErrorKind::Cancelled`]. After an error it ends.
+    ///
+    /// ```
+    /// use orogen::tiles::Tiling;
+    /// use orogen::{Progress, Window, World};
+    ///
+    /// let world = World::open(orogen::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
+    /// let window = Window::new(300, 200, 30.0);
+    /// let whole = world.window("height", &window)?;
+    /// for tile in world.tiles(&["height"], &window, Tiling::of(128), &Progress::none())? {
+    ///     let grid = &tile?.grids[0];
+    ///     assert_eq!(whole.crop(grid.window()).as_ref(), Some(grid));
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`World::plan`], if a tile has no samples, or if one tile needs more memory than allowed.
+    pub fn tiles<'w>(
+        &'w self,
+        layers: &[&str],
+        window: &Window,
+        tiling: Tiling,
+        progress: &Progress,
+    ) -> Result<Tiles<'w>> {
+        if tiling.side == 0 {
+            return Err(Error::new(ErrorKind::Request, "the tile size must be at least 1 sample"));
+        }
+        if tiling.overlap > tiling.side {
+            let message = format!("tiles of {} samples cannot overlap by {}", tiling.side, tiling.overlap);
+            return Err(Error::new(ErrorKind::Request, message));
+        }
+        self.check(window)?;
+        let mut tiles = Tiles {
+            world: self,
+            layers: layers.iter().map(ToString::to_string).collect(),
+            window: *window,
+            tiling,
+            progress: progress.clone(),
+            work: None,
+            at_once: [1, 1],
+            strips: VecDeque::new(),
+            made: VecDeque::new(),
+            wanted: Box::new(|_, _| true),
+        };
+        tiles.at_once = tiles.most_at_once()?;
+        let count = tiling.layout(window);
+        for row in (0..count[1]).step_by(tiles.at_once[1]) {
+            for column in (0..count[0]).step_by(tiles.at_once[0]) {
+                let [wide, tall] = tiles.at_once;
+                tiles.strips.push_back(([column, row], [wide.min(count[0] - column), tall.min(count[1] - row)]));
+            }
+        }
+        Ok(tiles)
+    }
+}
+
+impl<'w> Tiles<'w> {
+    /// Only the tiles for which `wanted(column, row)` holds, as when some are there already.
+    pub fn only(mut self, wanted: impl Fn(usize, usize) -> bool + Send + 'w) -> Tiles<'w> {
+        self.wanted = Box::new(wanted);
+        self
+    }
+
+    /// How many tiles the window has, east and south.
+    pub fn layout(&self) -> [usize; 2] {
+        self.tiling.layout(&self.window)
+    }
+
+    /// How many tiles are made at once, east and south: more share halos, fewer take less memory.
+    pub fn at_once(&self) -> [usize; 2] {
+        self.at_once
+    }
+
+    /// Several tiles at once, those made together, in the order of the stream: for callers that work on them side by side.
+    /// `None` when all are made.
+    pub fn next_strip(&mut self) -> Option<Result<Vec<Tile>>> {
+        if !self.made.is_empty() {
+            return Some(Ok(self.made.drain(..).collect()));
+        }
+        if let Err(error) = self.weigh() {
+            self.strips.clear();
+            return Some(Err(error));
+        }
+        while let Some((first, count)) = self.strips.pop_front() {
+            match self.make(first, count) {
+                Ok(tiles) if tiles.is_empty() => {}
+                Ok(tiles) => return Some(Ok(tiles)),
+                Err(error) => {
+                    self.strips.clear();
+                    return Some(Err(error));
+                }
+            }
+        }
+        None
+    }
+
+    /// Declares all work, before the first strip.
+    fn weigh(&mut self) -> Result<()> {
+        if self.work.is_some() {
+            return Ok(());
+        }
+        let layers: Vec<&str> = self.layers.iter().map(String::as_str).collect();
+        let window = self.tiling.run(&self.window, [0, 0], self.at_once);
+        let [solving, making] = self.world.work_of(&self.world.plan(&layers, &window)?);
+        let each = making / window.len().max(1) as f64;
+        let samples = self.strips.iter().filter_map(|(first, count)| Some(self.wanted(*first, *count)?.1.len() as f64));
+        self.progress.expect(solving + each * samples.sum::<f64>());
+        self.work = Some([solving, each]);
+        Ok(())
+    }
+
+    /// The wanted tiles among `count` from `first` on, and the window of them all; `None` if there are none.
+    fn wanted(&self, first: [usize; 2], count: [usize; 2]) -> Option<(Vec<[usize; 2]>, Window)> {
+        let all = (0..count[1]).flat_map(|row| (0..count[0]).map(move |column| [first[0] + column, first[1] + row]));
+        let wanted: Vec<[usize; 2]> = all.filter(|[column, row]| (self.wanted)(*column, *row)).collect();
+        let windows = wanted.iter().map(|[column, row]| self.tiling.tile(&self.window, *column, *row));
+        let window = windows.reduce(|all, tile| all.union(&tile))?;
+        Some((wanted, window))
+    }
+
+    /// Makes the wanted tiles among `count` from `first` on.
+    fn make(&mut self, first: [usize; 2], count: [usize; 2]) -> Result<Vec<Tile>> {
+        let Some((wanted, window)) = self.wanted(first, count) else { return Ok(Vec::new()) };
+        let [solving, each] = self.work.unwrap_or_default();
+        // What had to be solved is solved by the end of the first strip.
+        self.work = Some([0.0, each]);
+        let part = self.progress.part(solving + each * window.len() as f64);
+        let layers: Vec<&str> = self.layers.iter().map(String::as_str).collect();
+        let grids = self.world.grids(&layers, &window, &part)?;
+        let cut = |[column, row]: [usize; 2]| {
+            let tile = self.tiling.tile(&self.window, column, row);
+            Tile { column, row, grids: grids.iter().filter_map(|grid| grid.crop(&tile)).collect() }
+        };
+        Ok(wanted.into_iter().map(cut).collect())
+    }
+
+    /// The most tiles to make at once: rows of them across the whole window, else part of one row, else one tile.
+    fn most_at_once(&self) -> Result<[usize; 2]> {
+        let [columns, rows] = self.layout();
+        let samples = |[wide, tall]: [usize; 2]| {
+            let window = self.tiling.run(&self.window, [0, 0], [wide, tall]);
+            window.width.saturating_mul(window.height)
+        };
+        let allowed = self.tiling.memory.or(self.world.memory_limit());
+        let mut at_once = [columns, rows];
+        loop {
+            if at_once == [1, 1] || samples(at_once) <= AT_ONCE {
+                let needed = self.needed(at_once)?;
+                match allowed {
+                    Some(allowed) if needed > allowed => {
+                        if at_once == [1, 1] {
+                            let side = self.tiling.side;
+                            let what = format!("a tile of {side} x {side} samples");
+                            let own = self.tiling.memory.map(Budget::of);
+                            let budget = own.as_ref().unwrap_or(self.world.budget());
+                            return Err(budget.refusal(&what, needed, "use smaller tiles, or raise the memory limit"));
+                        }
+                    }
+                    _ => return Ok(at_once),
+                }
+            }
+            at_once = match at_once {
+                [wide, 1] => [wide.div_ceil(2), 1],
+                [wide, tall] => [wide, tall.div_ceil(2)],
+            };
+        }
+    }
+
+    /// Bytes that making so many tiles at once takes: the plan's, and the tiles cut out of what it makes.
+    fn needed(&self, at_once: [usize; 2]) -> Result<u64> {
+        let layers: Vec<&str> = self.layers.iter().map(String::as_str).collect();
+        let window = self.tiling.run(&self.window, [0, 0], at_once);
+        let plan = self.world.plan(&layers, &window)?;
+        let cut = (window.len() as u64).saturating_mul(4).saturating_mul(layers.len() as u64);
+        Ok(self.world.memory_of(&plan).saturating_add(cut))
+    }
+}
+
+impl Iterator for Tiles<'_> {
+    type Item = Result<Tile>;
+
+    fn next(&mut self) -> Option<Result<Tile>> {
+        if let Some(tile) = self.made.pop_front() {
+            return Some(Ok(tile));
+        }
+        match self.next_strip()? {
+            Ok(tiles) => self.made.extend(tiles),
+            Err(error) => return Some(Err(error)),
+        }
+        self.made.pop_front().map(Ok)
+    }
+}

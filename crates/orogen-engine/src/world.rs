@@ -1,0 +1,549 @@
+//! The front door: a recipe opened, asked for windows and points.
+
+use crate::budget::{Budget, Reservation};
+use crate::engine::inline::PreparedProgram;
+use crate::engine::run::Engine;
+use crate::layer::LayerKind;
+use crate::op::{Solution, StepObserver, WorldParams};
+use crate::plan::cost;
+use crate::plan::explain::explain;
+use crate::plan::key::{Key, identity, keys, link_key};
+use crate::plan::memory;
+use crate::plan::planner::{Planner, world_windows};
+use crate::plan::steps::Plan;
+use crate::recipe::document::Recipe;
+use crate::recipe::graph::{Graph, LayerRef, Link, MAX_SAMPLES};
+use crate::session::{Options, Session};
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::progress::Progress;
+use orogen_grid::words::{number, suggestion};
+use orogen_io::dem::prepared::DEFAULT_MEMORY;
+use std::collections::{BTreeSet, HashMap};
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A world: any window of it, at any resolution, always the same.
+///
+/// ```
+/// use orogen::{Recipe, Window, World};
+///
+/// let recipe = Recipe::parse(
+///     r#"
+///     orogen = 1
+///     [world]
+///     seed = 7
+///     [nodes.hills]
+///     op = "fbm"
+///     wavelength = 500
+///     [outputs]
+///     height = "hills"
+///     "#,
+///     "example",
+/// )?;
+/// let world = World::open(recipe)?;
+/// let tile = world.window("height", &Window::new(64, 64, 10.0).at(-32, 1_000_000))?;
+/// assert_eq!(tile.get(3, 5), world.height(tile.window().east(3), tile.window().south(5))?);
+/// # Ok::<(), orogen::Error>(())
+/// ```
+pub struct World {
+    recipe: Recipe,
+    graph: Graph,
+    world_params: WorldParams,
+    /// The content keys of the nodes.
+    keys: Vec<Key>,
+    /// What plans of this recipe carry.
+    identity: Key,
+    session: Session,
+    /// Plans for points of layers that depend on no grid: the same for every point.
+    pointwise: Mutex<HashMap<String, Arc<Plan>>>,
+}
+
+impl Session {
+    /// Opens a recipe in this session.
+    ///
+    /// # Errors
+    /// If the recipe is not valid, or a file that it names cannot be read.
+    pub fn open(&self, recipe: Recipe) -> Result<World> {
+        World::in_session(recipe, self.clone())
+    }
+}
+
+/// The layer that maps and meshes are made from.
+pub const HEIGHT: &str = "height";
+
+impl World {
+    /// Opens a recipe.
+    ///
+    /// # Errors
+    /// If the recipe is not valid: every diagnostic at once.
+    pub fn open(recipe: Recipe) -> Result<World> {
+        World::with_options(recipe, Options::default())
+    }
+
+    /// Opens a recipe with options.
+    ///
+    /// # Errors
+    /// If the recipe is not valid, a file that it names cannot be read, or no threads can be started.
+    pub fn with_options(recipe: Recipe, options: Options) -> Result<World> {
+        Session::new(options)?.open(recipe)
+    }
+
+    /// Opens a recipe in a session that other worlds may share.
+    fn in_session(mut recipe: Recipe, session: Session) -> Result<World> {
+        let graph = Graph::resolve(&recipe).map_err(Graph::error)?;
+        recipe.load(session.budget.left().unwrap_or(DEFAULT_MEMORY))?;
+        if recipe.outputs().next().is_none() {
+            let message = "the recipe has no outputs; add at least one, such as `height`";
+            return Err(Error::new(ErrorKind::Recipe, message));
+        }
+        Ok(World::new(recipe, graph, session))
+    }
+
+    fn new(recipe: Recipe, graph: Graph, session: Session) -> World {
+        let (world_params, keys) = (recipe.world.world_params(), keys(&recipe, &graph));
+        let identity = identity(&keys);
+        World { recipe, graph, world_params, keys, identity, session, pointwise: Mutex::default() }
+    }
+
+    /// A world of the same recipe with other parameters, on the same threads and in as much memory. What it solves is kept nowhere; what is
+    /// solved already is given.
+    ///
+    /// # Errors
+    /// If the recipe is not valid.
+    pub(crate) fn variant(&self, recipe: Recipe, solved: Vec<(Key, Arc<Solution>)>) -> Result<World> {
+        let graph = Graph::resolve(&recipe).map_err(Graph::error)?;
+        Ok(World::new(recipe, graph, self.session.with_solutions(solved)))
+    }
+
+    /// The solution stored under a key, if there is one.
+    pub(crate) fn solution(&self, key: &Key, on_disk: bool) -> Result<Option<Arc<Solution>>> {
+        self.session.store.find(key, on_disk)
+    }
+
+    /// How many solutions this world made, not found.
+    pub(crate) fn solutions_made(&self) -> usize {
+        self.session.solutions_made() as usize
+    }
+
+    /// A plan that does no more than solve nodes and what they read.
+    pub(crate) fn plan_to_solve(&self, nodes: &[usize]) -> Result<Plan> {
+        let links: Vec<Link> = nodes.iter().map(|&node| Link::Node(LayerRef { node, layer: 0 })).collect();
+        self.planned(&links, Window::new(1, 1, self.world_params.cell), false)
+    }
+
+    /// Runs a plan while somebody observes the steps of a node's solver.
+    ///
+    /// # Errors
+    /// As [`World::run`], and what the observer fails with.
+    pub(crate) fn run_observed(
+        &self,
+        plan: &Plan,
+        progress: &Progress,
+        node: usize,
+        observer: &(dyn StepObserver + Sync),
+    ) -> Result<()> {
+        let _running = self.admit(plan, progress)?;
+        let engine = Engine { observer: Some((node, observer)), ..self.engine(progress) };
+        engine.run(plan).map(drop)
+    }
+
+    /// The nodes in an order in which each comes after those that it reads.
+    pub(crate) fn order(&self) -> &[usize] {
+        &self.graph.order
+    }
+
+    /// The layers of nodes that a layer is made of, masks included.
+    pub(crate) fn layers_read(&self, layer: &str) -> Result<BTreeSet<LayerRef>> {
+        let mut read = BTreeSet::new();
+        let mut waiting = vec![self.target(layer)?];
+        while let Some(link) = waiting.pop() {
+            let Link::Node(target) = link else { continue };
+            if read.insert(target) {
+                waiting.extend(self.graph.links[target.node].iter().chain([&self.graph.masks[target.node]]));
+            }
+        }
+        Ok(read)
+    }
+
+    /// The recipe.
+    pub fn recipe(&self) -> &Recipe {
+        &self.recipe
+    }
+
+    /// The window of the whole world at `cell` metres a sample: a world of length L has round(L / cell) samples along that side;
+    /// its far edge is left to a neighbour.
+    ///
+    /// # Errors
+    /// If the world has no bounds, or has no sample or more than 2^31 along a side at that cell.
+    pub fn full_window(&self, cell: f64) -> Result<Window> {
+        let size = self.bounds()?;
+        let samples = size.map(|length| (length / cell).round());
+        let fault = |why: &str, other: &str| {
+            let [width, height] = size;
+            let message = format!(
+                "the world of {} x {} m has {why} at a cell size of {} m; use a {other} cell",
+                number(width),
+                number(height),
+                number(cell)
+            );
+            Err(Error::new(ErrorKind::Request, message))
+        };
+        if !samples.iter().all(|samples| *samples >= 1.0) {
+            return fault("no samples", "smaller");
+        }
+        if samples.iter().any(|samples| *samples > MAX_SAMPLES) {
+            return fault("more than 2^31 samples along a side", "larger");
+        }
+        Ok(Window::new(samples[0] as usize, samples[1] as usize, cell))
+    }
+
+    /// The window of the whole world with `samples` along its longer side.
+    ///
+    /// # Errors
+    /// If the world has no bounds, or no sample is asked for.
+    pub fn window_fitting(&self, samples: usize) -> Result<Window> {
+        let size = self.bounds()?;
+        if samples == 0 {
+            return Err(Error::new(ErrorKind::Request, "the longer side of the world must have at least 1 sample"));
+        }
+        let cell = size[0].max(size[1]) / samples as f64;
+        let [width, height] = size.map(|length| ((length / cell).round() as usize).max(1));
+        Ok(Window::new(width, height, cell))
+    }
+
+    fn bounds(&self) -> Result<[f64; 2]> {
+        let message = "this world is unbounded; specify a window";
+        self.world_params.size.ok_or_else(|| Error::new(ErrorKind::Request, message))
+    }
+
+    /// A plan for layers over a window.
+    ///
+    /// # Errors
+    /// If there is no such layer, or the window is not one of this world.
+    pub fn plan(&self, layers: &[&str], window: &Window) -> Result<Plan> {
+        let targets = layers.iter().map(|layer| self.target(layer)).collect::<Result<Vec<Link>>>()?;
+        self.check(window)?;
+        self.planned(&targets, *window, false)
+    }
+
+    /// What this world shares with others.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// The memory that requests share with what the caller holds: see [`Budget::reserve`].
+    pub fn budget(&self) -> &Budget {
+        &self.session.budget
+    }
+
+    /// The folder for what does not fit in memory.
+    pub fn scratch(&self) -> &Path {
+        self.session.store.scratch()
+    }
+
+    /// Bytes that a request may need; `None` for no limit.
+    pub fn memory_limit(&self) -> Option<u64> {
+        self.session.budget.left()
+    }
+
+    fn planned(&self, targets: &[Link], window: Window, scattered: bool) -> Result<Plan> {
+        let threads = self.threads();
+        Planner::new(&self.recipe, &self.graph, &self.keys).fitting(
+            targets,
+            window,
+            scattered,
+            threads,
+            self.memory_limit(),
+        )
+    }
+
+    /// Bytes of disk that running a plan takes at most, what stays in the cache not counted.
+    pub fn disk_of(&self, plan: &Plan) -> u64 {
+        memory::disk(plan)
+    }
+
+    /// Bytes that running a plan takes at most.
+    pub fn memory_of(&self, plan: &Plan) -> u64 {
+        memory::needed(plan, &self.recipe, self.threads())
+    }
+
+    /// About how many nanoseconds of one core running a plan takes: solving what is not solved yet, and the steps.
+    #[doc(hidden)]
+    pub fn work_of(&self, plan: &Plan) -> [f64; 2] {
+        [self.engine(&Progress::none()).solving_work(plan), cost::steps(plan, &self.recipe)]
+    }
+
+    /// About how many nanoseconds of one core running a plan takes, what is solved already not counted: the weight of a
+    /// [part](Progress::part) of more work.
+    pub fn work(&self, plan: &Plan) -> f64 {
+        self.work_of(plan).iter().sum()
+    }
+
+    /// About how many nanoseconds of one core a plan's steps take, all that they read being solved.
+    pub(crate) fn steps_work(&self, plan: &Plan) -> f64 {
+        cost::steps(plan, &self.recipe)
+    }
+
+    /// What a plan does, in words.
+    pub fn explain(&self, plan: &Plan) -> String {
+        explain(plan, &self.recipe, &self.graph, self.threads())
+    }
+
+    /// How many threads work on a request.
+    pub fn threads(&self) -> usize {
+        self.session.threads()
+    }
+
+    /// A hash of all that a layer depends on: its nodes with their parameters, and what these read of the world (seed, extent, cell, sea level). Names of
+    /// nodes do not enter it.
+    ///
+    /// # Errors
+    /// If there is no such layer.
+    pub fn key(&self, layer: &str) -> Result<[u8; 32]> {
+        Ok(link_key(&self.target(layer)?, &self.keys))
+    }
+
+    /// The unit of a layer: metres for [`HEIGHT`], else what its node says of itself, which may be nothing.
+    ///
+    /// # Errors
+    /// If there is no such layer.
+    pub fn unit(&self, layer: &str) -> Result<&'static str> {
+        Ok(match self.target(layer)? {
+            _ if layer == HEIGHT => "m",
+            Link::Node(target) => self.recipe.nodes()[target.node].node.layers()[target.layer].unit,
+            _ => "",
+        })
+    }
+
+    /// How a layer's samples may be read: as heights, as names in numbers, or as amounts.
+    ///
+    /// # Errors
+    /// If there is no such layer.
+    pub fn kind(&self, layer: &str) -> Result<LayerKind> {
+        Ok(match self.target(layer)? {
+            Link::Node(target) => self.graph.layer_kind(&self.recipe, target),
+            _ => LayerKind::Height,
+        })
+    }
+
+    /// Does work that shares itself out among this world's threads.
+    #[doc(hidden)]
+    pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        self.session.pool.install(work)
+    }
+
+    /// Runs a plan: one grid a layer, in the order they were asked for.
+    ///
+    /// # Errors
+    /// If it is a plan of another recipe, would need more memory than allowed (then nothing was started), or was cancelled.
+    pub fn run(&self, plan: &Plan, progress: &Progress) -> Result<Vec<Grid>> {
+        let _running = self.admit(plan, progress)?;
+        self.engine(progress).run(plan)
+    }
+
+    /// Makes layers over a window.
+    ///
+    /// # Errors
+    /// As [`World::plan`] and [`World::run`].
+    pub fn grids(&self, layers: &[&str], window: &Window, progress: &Progress) -> Result<Vec<Grid>> {
+        self.run(&self.plan(layers, window)?, progress)
+    }
+
+    /// Makes a layer over a window that may reach beyond the world by the margin of its solvers, beside `beside` bytes that the caller holds.
+    ///
+    /// # Errors
+    /// As [`World::plan`] and [`World::run`].
+    #[doc(hidden)]
+    pub fn grid_beside(&self, layer: &str, window: &Window, beside: u64, progress: &Progress) -> Result<Grid> {
+        let plan = self.planned(&[self.target(layer)?], *window, false)?;
+        self.session.budget.afford(self.memory_of(&plan).saturating_add(beside))?;
+        let mut grids = self.run(&plan, progress)?;
+        grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "no layer was requested"))
+    }
+
+    /// Makes one layer over a window.
+    ///
+    /// # Errors
+    /// As [`World::plan`] and [`World::run`].
+    pub fn window(&self, layer: &str, window: &Window) -> Result<Grid> {
+        let mut grids = self.grids(&[layer], window, &Progress::none())?;
+        grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "no layer was requested"))
+    }
+
+    /// The height at x metres east and y metres south of the origin.
+    ///
+    /// # Errors
+    /// If the world has no layer `height`, or the position is outside of it.
+    pub fn height(&self, x: f64, y: f64) -> Result<f32> {
+        Ok(self.points(HEIGHT, &[x], &[y])?.first().copied().unwrap_or(f32::NAN))
+    }
+
+    /// A layer's values at points, in metres. On lattice points they are the very samples of a window there (filters are made
+    /// at the world's cell).
+    ///
+    /// # Errors
+    /// If there is no such layer, coordinates are not finite or not in pairs, or a point is outside of the world.
+    pub fn points(&self, layer: &str, x: &[f64], y: &[f64]) -> Result<Vec<f32>> {
+        let target = self.target(layer)?;
+        let fault = |message: String| Error::new(ErrorKind::Request, message);
+        if x.len() != y.len() {
+            return Err(fault(format!("{} eastings and {} southings do not have the same length", x.len(), y.len())));
+        }
+        x.iter().zip(y).try_for_each(|(x, y)| self.check_point(*x, *y))?;
+        if x.is_empty() {
+            return Ok(Vec::new());
+        }
+        let known = self.pointwise.lock().unwrap_or_else(PoisonError::into_inner).get(layer).cloned();
+        let plan = match known {
+            Some(plan) => plan,
+            None => {
+                let plan = self.planned(&[target], self.around(x, y), true)?;
+                let plan = Arc::new(plan);
+                if plan.is_pointwise() {
+                    let mut plans = self.pointwise.lock().unwrap_or_else(PoisonError::into_inner);
+                    plans.insert(layer.to_string(), Arc::clone(&plan));
+                }
+                plan
+            }
+        };
+        let progress = Progress::none();
+        let _running = self.admit(&plan, &progress)?;
+        let values = self.engine(&progress).run_points(&plan, x, y)?;
+        Ok(values.into_iter().next().unwrap_or_default())
+    }
+
+    /// Whether a point is one of this world.
+    pub(crate) fn check_point(&self, x: f64, y: f64) -> Result<()> {
+        let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
+        if !(x.is_finite() && y.is_finite()) {
+            return fault(format!("({x}, {y}) is not a position: coordinates must be finite"));
+        }
+        match self.world_params.size {
+            Some([w, h]) if !((0.0..=w).contains(&x) && (0.0..=h).contains(&y)) => {
+                fault(format!("({x}, {y}) is outside the world, which extends from (0, 0) to ({w}, {h}) metres"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A plan for points of a layer within `around`, and all that it needs made.
+    pub(crate) fn ready(&self, layer: &str, around: Window) -> Result<PreparedProgram> {
+        let plan = self.planned(&[self.target(layer)?], around, true)?;
+        let progress = Progress::none();
+        let _running = self.admit(&plan, &progress)?;
+        let ready = self.engine(&progress).ready(&plan)?;
+        ready.ok_or_else(|| Error::new(ErrorKind::Internal, "a plan for points has no program for them"))
+    }
+
+    /// The samples at the world's cell around points, as far as the interpolating cubic reads.
+    pub(crate) fn around(&self, x: &[f64], y: &[f64]) -> Window {
+        let cell = self.world_params.cell;
+        let span = |values: &[f64]| {
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let first = ((low / cell).floor() as i64).saturating_sub(2);
+            let last = ((high / cell).ceil() as i64).saturating_add(2);
+            (first, last.saturating_sub(first).saturating_add(1) as usize)
+        };
+        let ((x, width), (y, height)) = (span(x), span(y));
+        Window { x, y, width, height, cell }
+    }
+
+    pub(crate) fn engine<'a>(&'a self, progress: &'a Progress) -> Engine<'a> {
+        Engine {
+            recipe: &self.recipe,
+            graph: &self.graph,
+            world_params: &self.world_params,
+            keys: &self.keys,
+            store: &self.session.store,
+            grids: Some(&self.session.grids),
+            budget: &self.session.budget,
+            pool: &self.session.pool,
+            progress,
+            observer: None,
+        }
+    }
+
+    /// What a layer's name means: one of the outputs, else a node or `node.layer`.
+    fn target(&self, layer: &str) -> Result<Link> {
+        if let Some(index) = self.recipe.outputs().position(|name| name == layer) {
+            return Ok(self.graph.outputs[index]);
+        }
+        Graph::find(&self.recipe, layer).map(Link::Node).map_err(|why| {
+            let message = match layer.contains('.') {
+                true => format!("unknown layer `{layer}`: {why}"),
+                false => format!("the recipe has no layer `{layer}`; {}", suggestion(layer, self.recipe.outputs())),
+            };
+            Error::new(ErrorKind::Request, message)
+        })
+    }
+
+    /// Whether the world has this window.
+    #[doc(hidden)]
+    pub fn check(&self, window: &Window) -> Result<()> {
+        let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
+        if !(window.cell.is_finite() && window.cell >= 1e-6) {
+            return fault(format!("the cell size must be at least 0.000001 m, not {}", window.cell));
+        }
+        if window.is_empty() {
+            return fault(format!("a window of {} x {} samples is empty", window.width, window.height));
+        }
+        const FAR: i64 = 1 << 53;
+        let inside = |start: i64, count: usize| {
+            (-FAR..=FAR).contains(&start) && count as u64 <= FAR as u64 && start + count as i64 <= FAR
+        };
+        if !(inside(window.x, window.width) && inside(window.y, window.height)) {
+            return fault(
+                "the window is more than 2^53 samples from the origin, where positions are no longer exact".to_string(),
+            );
+        }
+        if let Some(size) = self.world_params.size {
+            let (world, _) = world_windows(size, window.cell);
+            if !world.contains(window) {
+                return fault(format!(
+                    "the window of {} x {} samples at ({}, {}) is not inside the world, which at a cell of {} m has samples \
+                     (0, 0) to ({}, {})",
+                    window.width,
+                    window.height,
+                    window.x,
+                    window.y,
+                    number(window.cell),
+                    world.width - 1,
+                    world.height - 1
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// A window with `reach` more samples on each side, as far as the world goes.
+    #[doc(hidden)]
+    pub fn surroundings(&self, window: &Window, reach: usize) -> Window {
+        let wide = window.grown(reach);
+        let wide = match self.world_params.size {
+            Some(size) => wide.intersection(&world_windows(size, window.cell).0),
+            None => wide,
+        };
+        // A world without bounds ends where positions are no longer exact.
+        if self.check(&wide).is_ok() { wide } else { *window }
+    }
+
+    /// Whether there is memory for a window's samples, beside what is held already.
+    pub(crate) fn afford_grid(&self, window: &Window) -> Result<()> {
+        self.session.budget.afford((window.width as u64).saturating_mul(window.height as u64).saturating_mul(4))
+    }
+
+    /// Sets aside the memory that a plan needs, and lets go of other solutions to make room for it. Refuses a plan of another recipe.
+    fn admit(&self, plan: &Plan, progress: &Progress) -> Result<Reservation> {
+        if plan.recipe != self.identity {
+            let message =
+                "the plan was made for another recipe or another state of this one: make it again with `World::plan`";
+            return Err(Error::new(ErrorKind::Request, message));
+        }
+        let running = self.session.budget.admit(self.memory_of(plan), progress)?;
+        let keys: Vec<Key> = plan.solves.iter().map(|solve| solve.key).collect();
+        self.session.make_room(&keys);
+        Ok(running)
+    }
+}

@@ -1,0 +1,213 @@
+//! Slopes by Horn's method.
+//!
+//! Over the 3 x 3 neighbourhood a b c / d e f / g h i of cells of c metres (B. K. P. Horn, "Hill shading and the reflectance
+//! map", Proceedings of the IEEE 69(1), 1981):
+//!
+//! ```text
+//! p = ((c - a) + 2 (f - d) + (i - g)) / 8c      towards the east
+//! q = ((a - g) + 2 (b - h) + (c - i)) / 8c      towards the north (up the page)
+//! ```
+//!
+//! Every function here takes a grid with one sample more on each side than it returns, so that a tile and a crop agree; at the
+//! end of a world, [`extended`] makes that border up.
+//!
+//! **Where samples are missing.** A sample that is not finite has no slope: NaN. A neighbour that is not finite counts as level
+//! with its middle.
+
+use crate::grid::{Grid, Window};
+
+/// The rise per metre at one sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gradient {
+    /// p: how much higher it gets a metre further east.
+    pub east: f32,
+    /// q: how much higher it gets a metre further north, which is up the page.
+    pub north: f32,
+}
+
+impl Gradient {
+    /// The steepest rise per metre: the tangent of the slope angle.
+    pub fn steepness(&self) -> f32 {
+        (self.east * self.east + self.north * self.north).sqrt()
+    }
+
+    /// The upward normal of length 1: its parts east, north and up.
+    pub fn normal(&self) -> [f32; 3] {
+        let length = (1.0 + self.east * self.east + self.north * self.north).sqrt();
+        [-self.east / length, -self.north / length, 1.0 / length]
+    }
+}
+
+/// Gradients at the inner samples of three neighbouring rows, from the north: at columns 1 to width - 2, handed to `each` with
+/// their index from 0.
+pub fn gradients_between(rows: [&[f32]; 3], cell: f64, mut each: impl FnMut(usize, Gradient)) {
+    let scale = (1.0 / (8.0 * cell)) as f32;
+    let [above, here, below] = rows;
+    let triples = above.windows(3).zip(here.windows(3)).zip(below.windows(3));
+    for (i, ((n, m), s)) in triples.enumerate() {
+        // Differences first: neighbouring heights are alike, so little is lost to rounding even far above zero.
+        let east = ((n[2] - n[0]) + 2.0 * (m[2] - m[0]) + (s[2] - s[0])) * scale;
+        let north = ((n[0] - s[0]) + 2.0 * (n[1] - s[1]) + (n[2] - s[2])) * scale;
+        let gradient = Gradient { east, north };
+        // One test clears the good samples; missing ones, and differences that overflow, take the slow road.
+        each(i, if (east + north).is_finite() && m[1].is_finite() { gradient } else { repaired([n, m, s], cell) });
+    }
+}
+
+/// The gradient where some sample is not finite or a difference does not fit f32.
+#[cold]
+fn repaired(rows: [&[f32]; 3], cell: f64) -> Gradient {
+    let middle = rows[1][1];
+    if !middle.is_finite() {
+        return Gradient { east: f32::NAN, north: f32::NAN };
+    }
+    let at = |j: usize, i: usize| f64::from(if rows[j][i].is_finite() { rows[j][i] } else { middle });
+    let east = (at(0, 2) - at(0, 0)) + 2.0 * (at(1, 2) - at(1, 0)) + (at(2, 2) - at(2, 0));
+    let north = (at(0, 0) - at(2, 0)) + 2.0 * (at(0, 1) - at(2, 1)) + (at(0, 2) - at(2, 2));
+    let fit = |rise: f64| (rise / (8.0 * cell)).clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
+    Gradient { east: fit(east), north: fit(north) }
+}
+
+/// A value made from the gradient at every sample of `grid` but those of its border.
+pub fn from_gradients(grid: &Grid, value: impl Fn(Gradient) -> f32) -> Grid {
+    let window = inner(grid.window());
+    let mut out = Grid::filled(window, 0.0);
+    for j in 0..window.height {
+        let rows = [grid.row(j), grid.row(j + 1), grid.row(j + 2)];
+        let row = out.row_mut(j);
+        gradients_between(rows, window.cell, |i, gradient| row[i] = value(gradient));
+    }
+    out
+}
+
+/// The steepest rise per metre.
+pub fn steepness(grid: &Grid) -> Grid {
+    from_gradients(grid, |gradient| gradient.steepness())
+}
+
+/// The slope angle in degrees, 0 to 90.
+pub fn degrees(grid: &Grid) -> Grid {
+    from_gradients(grid, |gradient| libm::atanf(gradient.steepness()).to_degrees())
+}
+
+/// The window without its border of one sample; empty if that is all it has.
+pub fn inner(window: &Window) -> Window {
+    let (width, height) = (window.width.saturating_sub(2), window.height.saturating_sub(2));
+    match width == 0 || height == 0 {
+        true => Window { x: window.x + 1, y: window.y + 1, width: 0, height: 0, cell: window.cell },
+        false => Window { x: window.x + 1, y: window.y + 1, width, height, cell: window.cell },
+    }
+}
+
+/// The grid with one sample more on each side, where the last two run on in a straight line: for the ends of a world, where
+/// there is nothing to ask. (With Horn's weights this gives the border the one-sided slope.)
+pub fn extended(grid: &Grid) -> Grid {
+    let mut out = Grid::filled(grid.window().grown(1), f32::NAN);
+    let (width, height) = (grid.width(), grid.height());
+    if grid.window().is_empty() {
+        return out;
+    }
+    for j in 0..height {
+        extend_row(grid.row(j), out.row_mut(j + 1));
+    }
+    let mut border = vec![0.0; width + 2];
+    for (from, next, to) in [(1, 2.min(height), 0), (height, (height - 1).max(1), height + 1)] {
+        for (i, b) in border.iter_mut().enumerate() {
+            *b = beyond(out.get(i, from), out.get(i, next));
+        }
+        out.row_mut(to).copy_from_slice(&border);
+    }
+    out
+}
+
+/// `row` into the middle of `out`, which is longer by one at each end.
+#[doc(hidden)]
+pub fn extend_row(row: &[f32], out: &mut [f32]) {
+    let width = row.len();
+    out[1..=width].copy_from_slice(row);
+    out[0] = beyond(row[0], row[1.min(width - 1)]);
+    out[width + 1] = beyond(row[width - 1], row[width.saturating_sub(2)]);
+}
+
+/// The sample that follows `last` on the line from `before`.
+#[doc(hidden)]
+pub fn beyond(last: f32, before: f32) -> f32 {
+    let next = last + (last - before);
+    if next.is_finite() { next } else { last }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A grid of f(east, south) in metres.
+    fn grid(window: Window, f: impl Fn(f64, f64) -> f64) -> Grid {
+        let mut grid = Grid::filled(window, 0.0);
+        for j in 0..window.height {
+            for i in 0..window.width {
+                grid.row_mut(j)[i] = f(window.east(i), window.south(j)) as f32;
+            }
+        }
+        grid
+    }
+
+    #[test]
+    fn a_plane_has_its_own_slope_everywhere() {
+        for (east, north, cell) in [(0.5, 0.0, 1.0), (0.0, 0.25, 10.24), (-1.5, 2.0, 0.1), (0.0, 0.0, 30.0)] {
+            let plane = grid(Window::new(9, 7, cell).at(-4, 3), |x, y| 1000.0 + east * x - north * y);
+            let got = from_gradients(&plane, |g| g.east);
+            assert_eq!((got.window().x, got.window().y, got.width(), got.height()), (-3, 4, 7, 5));
+            let expect = [east, north, (east * east + north * north).sqrt()];
+            let values = [got, from_gradients(&plane, |g| g.north), steepness(&plane)];
+            for (grid, expect) in values.iter().zip(expect) {
+                assert!(grid.data().iter().all(|&v| (f64::from(v) - expect).abs() < 2e-3), "{expect} {cell}");
+            }
+        }
+    }
+
+    #[test]
+    fn degrees_of_one_in_one_are_45() {
+        let plane = grid(Window::new(4, 4, 2.0), |x, _| x);
+        assert!(degrees(&plane).data().iter().all(|&d| (d - 45.0).abs() < 1e-4));
+    }
+
+    #[test]
+    fn a_tile_is_the_crop() {
+        let f = |x: f64, y: f64| (x * 0.37).rem_euclid(7.0) * (y * 0.11).rem_euclid(3.0);
+        let all = steepness(&grid(Window::new(40, 30, 5.0), f));
+        let tile = steepness(&grid(Window::new(12, 9, 5.0).at(17, 11), f));
+        assert_eq!(all.crop(tile.window()).unwrap(), tile);
+    }
+
+    #[test]
+    fn missing_samples_have_no_slope_and_level_neighbours() {
+        let mut grid = grid(Window::new(5, 5, 1.0), |x, _| x);
+        grid.row_mut(2)[2] = f32::NAN;
+        let steep = steepness(&grid);
+        assert!(steep.get(1, 1).is_nan());
+        // East of the hole: (c - a) + 2 (f - d) + (i - g) = 2 + 2 (4 - 3) + 2 with the hole level with its neighbour.
+        assert!((steep.get(2, 1) - 6.0 / 8.0).abs() < 1e-6);
+        grid.row_mut(2)[2] = f32::INFINITY;
+        assert!(steepness(&grid).get(1, 1).is_nan());
+        let cliff = Grid::from_data(Window::new(3, 3, 1.0), [f32::MIN, 0.0, f32::MAX].repeat(3)).unwrap();
+        assert_eq!(from_gradients(&cliff, |g| g.east).data(), [f32::MAX]);
+    }
+
+    #[test]
+    fn a_grid_without_an_inside_gives_nothing() {
+        for (width, height) in [(0, 0), (2, 9), (9, 2), (1, 1)] {
+            assert!(steepness(&Grid::filled(Window::new(width, height, 1.0), 1.0)).window().is_empty());
+        }
+    }
+
+    #[test]
+    fn an_extended_plane_is_the_larger_plane() {
+        let f = |x: f64, y: f64| 3.0 * x - 2.0 * y;
+        let small = Window::new(6, 4, 0.5);
+        assert_eq!(extended(&grid(small, f)), grid(small.grown(1), f));
+        let one = Grid::filled(Window::new(1, 1, 1.0), 5.0);
+        assert_eq!(extended(&one), Grid::filled(Window::new(1, 1, 1.0).grown(1), 5.0));
+        let nothing = extended(&Grid::filled(Window::new(0, 3, 1.0), 5.0));
+        assert!(nothing.data().iter().all(|v| v.is_nan()));
+    }
+}

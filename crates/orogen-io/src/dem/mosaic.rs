@@ -1,0 +1,230 @@
+//! Many files of heights as one: a folder of tiles, laid by their places, or the parts of a virtual raster.
+
+use std::path::{Path, PathBuf};
+
+use crate::format::affine::Affine;
+use crate::format::crs::keys;
+use crate::format::crs::unit::Unit;
+use crate::format::dem::{Dem, Placement, Request, afford, refused};
+use crate::format::import;
+use crate::format::vrt::{self, Virtual};
+use orogen_grid::error::{Error, Result};
+
+/// The most files that are put together.
+const MAX_FILES: usize = 20_000;
+
+/// How far a tile's samples may lie beside those of the others, in cells.
+const BESIDE: f64 = 0.05;
+
+/// A part of a file, and its position in the whole.
+struct Part {
+    path: PathBuf,
+    band: Option<u32>,
+    from: [usize; 2],
+    to: [usize; 2],
+    /// Columns and rows; none is all that there are.
+    size: Option<[usize; 2]>,
+    nodata: Option<f64>,
+}
+
+/// The files of a folder that can be tiles, in the order of their names.
+///
+/// # Errors
+/// If the folder cannot be read.
+pub fn tiles(folder: &Path) -> Result<Vec<PathBuf>> {
+    let failed = |cause: std::io::Error| Error::file("read", folder, &cause);
+    let mut tiles = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if import::has_head(&path) && path.is_file() {
+            tiles.push(path);
+        }
+    }
+    tiles.sort();
+    Ok(tiles)
+}
+
+/// Reads a folder of tiles that share their cells and their coordinate system. Where two lie over each other the first by name is taken, and where it has
+/// no height the next; where none lies there is no height.
+///
+/// # Errors
+/// If the tiles do not fit together or one cannot be read, or their heights take more than is allowed.
+pub fn folder(folder: &Path, request: Request) -> Result<Dem> {
+    let name = folder.display().to_string();
+    let tiles = tiles(folder)?;
+    if tiles.len() > MAX_FILES {
+        return Err(refused(&name, format!("it has {} tiles, and at most {MAX_FILES} are supported", tiles.len())));
+    }
+    let heads: Vec<(PathBuf, [usize; 2], Placement)> = tiles
+        .into_iter()
+        .map(|path| {
+            let (size, place) = import::head(&path)?;
+            let place = place
+                .ok_or_else(|| refused(&path.display().to_string(), "it has no georeferencing, which a tile needs"))?;
+            Ok((path, size, place))
+        })
+        .collect::<Result<_>>()?;
+    let (size, place, to) = layout(&heads).map_err(|why| refused(&name, why))?;
+    let parts = heads.into_iter().zip(to).map(|((path, ..), to)| Part {
+        path,
+        band: request.band,
+        from: [0; 2],
+        to,
+        size: None,
+        nodata: None,
+    });
+    // Later ones are laid over earlier ones.
+    let parts: Vec<Part> = parts.rev().collect();
+    lay(&name, size, Some(place), &parts, request)
+}
+
+/// Size, place and the first column and row of each of many tiles.
+type Layout = ([u64; 2], Placement, Vec<[usize; 2]>);
+
+fn layout(tiles: &[(PathBuf, [usize; 2], Placement)]) -> std::result::Result<Layout, String> {
+    let Some((first, _, own)) = tiles.first() else {
+        return Err("it is a folder without tiles (.tif, .hgt or .asc)".into());
+    };
+    let called = |path: &Path| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    let system = |place: &Placement| {
+        (place.unit == Unit::Degrees, place.keys.as_ref().map(|keys| keys::epsg(keys).ok_or_else(|| keys.clone())))
+    };
+    for (path, _, place) in &tiles[1..] {
+        let pair = format!("{} and {}", called(first), called(path));
+        if system(place) != system(own) || place.unit != own.unit {
+            return Err(format!(
+                "{pair} are in different coordinate systems; reproject them to one, for example with gdalwarp"
+            ));
+        }
+        if (0..2).any(|k| (place.step[k] - own.step[k]).abs() > 1e-6 * own.step[k]) {
+            return Err(format!(
+                "{pair} have different cell sizes, {} x {} and {} x {}; resample them to one, for example with gdalwarp",
+                own.step[0], own.step[1], place.step[0], place.step[1]
+            ));
+        }
+    }
+    let west = tiles.iter().map(|(.., place)| place.origin[0]).fold(f64::INFINITY, f64::min);
+    let north = tiles.iter().map(|(.., place)| place.origin[1]).fold(f64::NEG_INFINITY, f64::max);
+    let (mut size, mut to) = ([0u64; 2], Vec::with_capacity(tiles.len()));
+    for (path, tile, place) in tiles {
+        let at = [(place.origin[0] - west) / own.step[0], (north - place.origin[1]) / own.step[1]];
+        if at.iter().any(|at| (at - at.round()).abs() > BESIDE || *at > 1e9) {
+            return Err(format!(
+                "the samples of {} are not aligned with those of the others; align them, for example with gdalwarp -tap",
+                called(path)
+            ));
+        }
+        let at = at.map(|at| at.round() as usize);
+        (0..2).for_each(|k| size[k] = size[k].max((at[k] + tile[k]) as u64));
+        to.push(at);
+    }
+    Ok((size, Placement { origin: [west, north], ..own.clone() }, to))
+}
+
+/// Reads a virtual raster.
+///
+/// # Errors
+/// If it is none, or changes samples, or a file of it cannot be read, or its heights take more than is allowed.
+pub fn virtual_raster(path: &Path, request: Request) -> Result<Dem> {
+    let name = path.display().to_string();
+    let refuse = |why: String| refused(&name, why);
+    let read = parsed(path)?;
+    let band = request.choose(read.bands.len()).map_err(refuse)?;
+    let place = place(&read).map_err(refuse)?;
+    let Virtual { size, mut bands, .. } = read;
+    let sources = bands.swap_remove(band);
+    if sources.len() > MAX_FILES {
+        return Err(refuse(format!("it has {} sources, and at most {MAX_FILES} are supported", sources.len())));
+    }
+    let parts: Vec<Part> = sources
+        .into_iter()
+        .map(|source| Part {
+            path: lies_at(path, &source),
+            band: Some(source.band),
+            from: source.from.map(|at| at as usize),
+            to: source.to.map(|at| at as usize),
+            size: source.size.map(|size| size.map(|samples| samples as usize)),
+            nodata: source.nodata,
+        })
+        .collect();
+    lay(&name, size, place, &parts, request)
+}
+
+/// The text of a virtual raster, taken apart.
+fn parsed(path: &Path) -> Result<Virtual> {
+    let name = path.display().to_string();
+    let bytes = crate::open::bytes(path, "read", vrt::MAX_LENGTH)?;
+    let bytes = bytes.ok_or_else(|| refused(&name, format!("it is longer than {} bytes", vrt::MAX_LENGTH)))?;
+    vrt::parse(&String::from_utf8_lossy(&bytes)).map_err(|why| refused(&name, why))
+}
+
+/// The file of a source of the virtual raster at `path`.
+fn lies_at(path: &Path, source: &vrt::Source) -> PathBuf {
+    match source.relative {
+        true => path.parent().unwrap_or(Path::new("")).join(&source.path),
+        false => PathBuf::from(&source.path),
+    }
+}
+
+/// The files that a virtual raster is composed of; none if it cannot be read.
+pub fn sources(path: &Path) -> Vec<PathBuf> {
+    let bands = parsed(path).map_or(Vec::new(), |read| read.bands);
+    bands.iter().flatten().map(|source| lies_at(path, source)).collect()
+}
+
+/// Where a virtual raster lies.
+fn place(read: &Virtual) -> std::result::Result<Option<Placement>, String> {
+    let Some(affine) = read.affine else { return Ok(None) };
+    let lattice = Affine::lattice(&affine, read.size[1] as usize)?;
+    if lattice.from_south {
+        return Err("its rows run from south to north; convert it to north-up first, for example with gdalwarp".into());
+    }
+    let keys = match read.system.as_deref() {
+        None => None,
+        Some(text) => Some(keys::of_text(text)?),
+    };
+    let unit = keys.as_ref().map_or(Unit::guess(lattice.origin, lattice.step), keys::unit);
+    Ok(Some(Placement { origin: lattice.origin, step: lattice.step, unit, cell: None, keys }))
+}
+
+/// Lays parts over each other, each file read by itself: beside the whole, the memory of one file is taken.
+fn lay(name: &str, size: [u64; 2], place: Option<Placement>, parts: &[Part], request: Request) -> Result<Dem> {
+    let count = afford(size[0], size[1], request.allowed).map_err(|why| refused(name, why))?;
+    let [width, height] = size.map(|side| side as usize);
+    let left = request.allowed.saturating_sub(4 * count as u64);
+    let mut heights = vec![f32::NAN; count];
+    let mut notes = Vec::new();
+    for part in parts {
+        let dem = import::read(&part.path, Request { band: part.band, allowed: left })?;
+        let outside = || {
+            let path = part.path.display();
+            refused(
+                name,
+                format!(
+                    "the part that it takes of {path} does not lie in {width} x {height} samples, or not in that file"
+                ),
+            )
+        };
+        let size = part.size.unwrap_or([dem.width, dem.height]);
+        let ends = |at: [usize; 2], within: [usize; 2]| {
+            (0..2).all(|k| at[k].checked_add(size[k]).is_some_and(|end| end <= within[k]))
+        };
+        if !ends(part.from, [dem.width, dem.height]) || !ends(part.to, [width, height]) {
+            return Err(outside());
+        }
+        for j in 0..size[1] {
+            let source = (part.from[1] + j) * dem.width + part.from[0];
+            let to = (part.to[1] + j) * width + part.to[0];
+            for (height, own) in heights[to..to + size[0]].iter_mut().zip(&dem.heights[source..source + size[0]]) {
+                if !own.is_nan() && part.nodata.is_none_or(|nodata| f64::from(*own) != nodata) {
+                    *height = *own;
+                }
+            }
+        }
+        notes.extend(dem.notes);
+    }
+    let mut dem = Dem::new([width, height], heights, place).map_err(|why| refused(name, why))?;
+    notes.dedup();
+    dem.notes = notes;
+    Ok(dem)
+}

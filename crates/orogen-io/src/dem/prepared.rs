@@ -1,0 +1,136 @@
+//! A real place, ready to be worked with.
+
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+
+use super::fill::fill;
+use super::open;
+use super::square::{Layout, steps};
+use crate::format::crs::keys::{self, USER_DEFINED};
+use crate::format::crs::unit::Unit;
+use crate::format::dem::{Dem, Georeference, Request, afford, afford_beside, refused};
+use crate::format::import;
+use crate::format::sidecar::Sidecar;
+use crate::open::regular;
+use orogen_grid::error::Result;
+use orogen_grid::grid::Grid;
+use orogen_grid::words::{count, percent};
+
+/// Most bytes of heights where nobody says.
+pub const DEFAULT_MEMORY: u64 = 4 << 30;
+
+/// Heights of a real place on a lattice of square metres, without holes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PreparedDem {
+    /// The heights; the first sample is the north-west corner, at the origin.
+    pub grid: Grid,
+    /// How many samples of the file had no height and were made up.
+    pub missing: usize,
+    /// How many samples the file has.
+    pub samples: usize,
+    /// Where it lies on a map, if the file says so.
+    pub georeference: Option<Georeference>,
+    /// What was done to it, in messages.
+    pub notes: Vec<String>,
+    /// SHA-256 of size, cell and heights.
+    pub hash: [u8; 32],
+}
+
+impl PreparedDem {
+    /// Reads what a path names ([`open::read`]): holes are filled ([`fill`]), degrees and oblong cells become square metres
+    /// ([`Layout`]). `cell` is the distance between samples in metres, where the file's own is not to be used or it has none; heights take no more
+    /// than is allowed.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is too large, or nobody tells how far its samples stand apart.
+    pub fn read(path: &Path, cell: Option<f64>, request: impl Into<Request>) -> Result<PreparedDem> {
+        let (name, request) = (path.display().to_string(), request.into());
+        let dem = open::read(path, request)?;
+        PreparedDem::of(dem, cell, request.allowed).map_err(|why| refused(&name, why))
+    }
+
+    /// Reads a grey picture: 0 for black, 1 for white, pixels a metre apart, in no more than `allowed` bytes.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is no grey .png, or is too large.
+    pub fn picture(path: &Path, allowed: u64) -> Result<PreparedDem> {
+        let name = path.display().to_string();
+        if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+            return Err(refused(
+                &name,
+                "the op `image` only reads .png; use the op `dem` for heights in other formats",
+            ));
+        }
+        let mut file = regular(path, "read")?;
+        let greys = Sidecar { low: Some(0.0), high: Some(1.0), cell: Some(1.0), ..Sidecar::default() };
+        let dem = import::parse(&mut file, &name, "png", Some(greys), allowed)?;
+        PreparedDem::of(dem, None, allowed).map_err(|why| refused(&name, why))
+    }
+
+    /// Of a DEM at hand, as [`PreparedDem::read`] does.
+    ///
+    /// # Errors
+    /// As [`PreparedDem::read`], as a message.
+    pub fn of(mut dem: Dem, cell: Option<f64>, allowed: u64) -> std::result::Result<PreparedDem, String> {
+        let steps = match (cell, &dem.place) {
+            (Some(cell), _) => [cell; 2],
+            (None, Some(place)) => steps(place, dem.height),
+            (None, None) => {
+                return Err("its cell size is unknown; set `cell`, in metres".into());
+            }
+        };
+        if !steps.iter().all(|step| (1e-3..=1e6).contains(step)) {
+            return Err(format!("its cell size of {} x {} m is out of range", steps[0], steps[1]));
+        }
+        let layout = Layout::new([dem.width, dem.height], steps);
+        afford(layout.size[0] as u64, layout.size[1] as u64, allowed)?;
+        let samples = dem.heights.len();
+        // The pyramid of a hole, and while samples are laid on squares those before and after.
+        let holes = if dem.missing() > 0 { samples as u64 / 3 * 4 } else { 0 };
+        let laid = if layout.is_square() { 0 } else { 4 * (layout.size[0] * layout.size[1]) as u64 };
+        afford_beside(samples, holes.max(laid), allowed)?;
+        let mut notes = std::mem::take(&mut dem.notes);
+        let missing = fill(&mut dem.heights, dem.width, dem.height);
+        if missing > 0 {
+            let (holes, share) = (count(missing, "sample"), percent(missing as u64, samples as u64));
+            notes.push(format!("filled {holes} without height ({share}) from the surrounding heights"));
+        }
+        let degrees = dem.place.as_ref().is_some_and(|place| place.unit == Unit::Degrees) && cell.is_none();
+        if !layout.is_square() {
+            let what = if degrees { "its degrees, at the middle latitude cells" } else { "its cells" };
+            notes.push(format!(
+                "{what} of {:.2} x {:.2} m, were resampled to squares of {:.2} m",
+                steps[0], steps[1], layout.cell
+            ));
+        }
+        let georeference = dem.place.as_ref().map(|place| Georeference {
+            origin: place.origin,
+            per_metre: [place.step[0] / steps[0], place.step[1] / steps[1]],
+            // Degrees stay degrees where nothing tells their datum.
+            keys: place.keys.clone().or((place.unit == Unit::Degrees).then(|| keys::of_epsg(USER_DEFINED, true))),
+        });
+        let grid = layout.apply(dem).ok_or("its number of samples differs from its header")?;
+        let hash = hash(&grid);
+        Ok(PreparedDem { grid, missing, samples, georeference, notes, hash })
+    }
+
+    /// Bytes of memory that it takes.
+    pub fn memory(&self) -> u64 {
+        self.grid.data().len() as u64 * 4
+    }
+}
+
+fn hash(grid: &Grid) -> [u8; 32] {
+    let mut hash = Sha256::new();
+    hash.update((grid.width() as u64).to_le_bytes());
+    hash.update((grid.height() as u64).to_le_bytes());
+    hash.update(grid.window().cell.to_bits().to_le_bytes());
+    let mut bytes = Vec::with_capacity(1 << 16);
+    for piece in grid.data().chunks(1 << 14) {
+        bytes.clear();
+        bytes.extend(piece.iter().flat_map(|sample| sample.to_le_bytes()));
+        hash.update(&bytes);
+    }
+    hash.finalize().into()
+}

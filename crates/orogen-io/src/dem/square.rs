@@ -1,0 +1,109 @@
+//! From degrees and oblong cells to square metres.
+
+use crate::format::crs::unit::Unit;
+use crate::format::dem::{Dem, Placement};
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::resample;
+use orogen_grid::resample::LayerKind;
+use orogen_noise::Points;
+
+/// Steps that differ by less than this share count as equal.
+const SQUARE: f64 = 1e-3;
+
+/// Metres of a degree of longitude and of latitude, at a latitude in degrees, on the WGS 84 ellipsoid (the usual series of cosines; right
+/// to a centimetre).
+pub fn metres_of_degrees(latitude: f64) -> [f64; 2] {
+    let phi = latitude.clamp(-89.0, 89.0).to_radians();
+    let cos = |n: f64| libm::cos(n * phi);
+    let longitude = 111_412.84 * cos(1.0) - 93.5 * cos(3.0) + 0.118 * cos(5.0);
+    let latitude = 111_132.92 - 559.82 * cos(2.0) + 1.175 * cos(4.0) - 0.0023 * cos(6.0);
+    [longitude, latitude]
+}
+
+/// Metres from a column to the next and from a row to the next, at the middle row of `rows`.
+pub fn steps(place: &Placement, rows: usize) -> [f64; 2] {
+    match place.unit {
+        Unit::Metres(unit) => place.step.map(|step| step * unit),
+        Unit::Degrees if let Some(cell) = place.cell => [cell; 2],
+        Unit::Degrees => {
+            let middle = place.origin[1] - 0.5 * place.step[1] * (rows as f64 - 1.0);
+            let [east, south] = metres_of_degrees(middle);
+            [place.step[0] * east, place.step[1] * south]
+        }
+    }
+}
+
+/// How a DEM's samples are laid on a lattice of square cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Layout {
+    /// Columns and rows of the lattice.
+    pub size: [usize; 2],
+    /// Metres from one sample to the next.
+    pub cell: f64,
+    /// The DEM's own columns and rows from one sample to the next.
+    pub ratio: [f64; 2],
+}
+
+impl Layout {
+    /// The lattice for `size` samples so many metres apart: the finer of the two steps is its cell, so that nothing is lost, and the other
+    /// way is read between samples. Steps that differ by less than a thousandth are taken as equal.
+    pub fn new(size: [usize; 2], steps: [f64; 2]) -> Layout {
+        let [east, south] = steps;
+        if (east - south).abs() <= SQUARE * south {
+            return Layout { size, cell: south, ratio: [1.0; 2] };
+        }
+        let cell = east.min(south);
+        let ratio = [cell / east, cell / south];
+        let count = |samples: usize, ratio: f64| ((samples as f64 - 1.0) / ratio + 1e-9) as usize + 1;
+        Layout { size: [count(size[0], ratio[0]), count(size[1], ratio[1])], cell, ratio }
+    }
+
+    /// Whether samples stay as they are.
+    pub fn is_square(&self) -> bool {
+        self.ratio == [1.0; 2]
+    }
+
+    /// The heights of a DEM without holes over this lattice, from its north-west corner.
+    pub fn apply(&self, dem: Dem) -> Option<Grid> {
+        let [width, height] = self.size;
+        let window = Window::new(width, height, self.cell);
+        if self.is_square() {
+            return Grid::from_data(window, dem.heights);
+        }
+        let own = Grid::from_data(Window::new(dem.width, dem.height, 1.0), dem.heights)?;
+        let xs: Vec<f64> = (0..width).map(|i| i as f64 * self.ratio[0]).collect();
+        let ys: Vec<f64> = (0..height).map(|j| j as f64 * self.ratio[1]).collect();
+        let mut out = Grid::filled(window, 0.0);
+        resample::read(&own, LayerKind::Height, &Points::Lattice { xs: &xs, ys: &ys }, out.data_mut());
+        Some(out)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn degrees_are_as_long_as_tables_say() {
+        for (latitude, east, north) in
+            [(0.0, 111_319.5, 110_574.3), (45.0, 78_846.8, 111_131.8), (60.0, 55_800.0, 111_412.2)]
+        {
+            let [e, n] = metres_of_degrees(latitude);
+            assert!((e - east).abs() < 1.0 && (n - north).abs() < 1.0, "{latitude}: {e} {n}");
+        }
+    }
+
+    #[test]
+    fn oblong_cells_become_square_and_a_plane_stays_a_plane() {
+        let heights = (0..21 * 11).map(|k| 3.0 * (k % 21) as f32 - 5.0 * (k / 21) as f32).collect();
+        let dem = Dem { width: 21, height: 11, heights, place: None, notes: Vec::new() };
+        let layout = Layout::new([21, 11], [20.0, 30.0]);
+        assert_eq!((layout.size, layout.cell), ([21, 16], 20.0));
+        let grid = layout.apply(dem).unwrap();
+        for (i, j) in [(0, 0), (20, 0), (7, 9), (13, 12), (20, 15)] {
+            let expect = 3.0 * i as f32 - 5.0 * j as f32 * 20.0 / 30.0;
+            assert!((grid.get(i, j) - expect).abs() < 0.6, "{i} {j}: {} {expect}", grid.get(i, j));
+        }
+        assert!(Layout::new([5, 5], [30.0, 30.01]).is_square());
+    }
+}

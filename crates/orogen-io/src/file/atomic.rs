@@ -1,0 +1,500 @@
+//! Files are written atomically.
+
+use std::fs::{self, File, OpenOptions, Permissions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use super::policy::Output;
+use super::temporary::Temporary;
+use orogen_grid::error::{Error, ErrorKind, Result};
+
+/// Large enough that a system call is rare, small enough not to matter to a memory budget.
+const BUFFER: usize = 256 * 1024;
+
+/// Writes the file at `output` with what `body` writes: all of it, or nothing.
+///
+/// `body` may fail with an I/O error, which comes back as a message naming the file, or with an [`Error`] of its own (through
+/// `?` or `into`), which comes back as it is.
+///
+/// ```
+/// # fn main() -> orogen::Result<()> {
+/// use orogen::file::{OutputPolicy, write_whole};
+///
+/// let path = std::env::temp_dir().join(format!("orogen-doc-{}.txt", std::process::id()));
+/// write_whole(&OutputPolicy::default().output(&path)?, |out| out.write_all(b"all of it"))?;
+/// # std::fs::remove_file(&path).ok();
+/// # Ok(())
+/// # }
+/// ```
+pub fn write_whole(output: &Output, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    stage(output, body)?.commit()
+}
+
+/// Writes what `body` writes beside `output` under a temporary name and syncs it, all but [`Staged::commit`]ting it.
+///
+/// A pipe or device is written at once.
+pub fn stage(output: &Output, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Staged> {
+    output.check(None)?;
+    stage_through(output.path(), Some(output), |file| Box::new(file), body)
+}
+
+/// As [`write_whole`], over whatever file is there: for files that are named by nobody but this library.
+pub fn replace_whole(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    stage_through(path, None, |file| Box::new(file), body)?.commit()
+}
+
+/// Puts files that belong together in their places: none of them if one may not be replaced.
+pub fn commit(files: Vec<Staged>) -> Result<()> {
+    files.iter().try_for_each(Staged::check)?;
+    files.into_iter().try_for_each(Staged::commit)
+}
+
+/// Whether files can be made in `folder`, found out by making one, which is removed at once.
+pub fn check_folder(folder: &Path) -> Result<()> {
+    let refuse = |why: &str| Error::new(ErrorKind::File, format!("cannot write into {}: {why}", folder.display()));
+    match fs::metadata(folder) {
+        Ok(there) if !there.is_dir() => Err(refuse("it is not a folder")),
+        Ok(_) => match Temporary::create(folder) {
+            Ok(_) => Ok(()),
+            // What /proc and its like answer: the folder is there, but nothing can be made in it.
+            Err(cause) if cause.kind() == io::ErrorKind::NotFound => Err(refuse("it does not allow new files")),
+            Err(cause) => Err(Error::file("write into", folder, &cause)),
+        },
+        Err(cause) if cause.kind() == io::ErrorKind::NotFound => Err(refuse("the folder does not exist")),
+        Err(cause) => Err(Error::file("write into", folder, &cause)),
+    }
+}
+
+/// A file that is written but not yet in its place. Dropped without [`Staged::commit`], it is removed.
+#[derive(Debug)]
+pub struct Staged {
+    path: PathBuf,
+    /// What may be replaced; none if anything may.
+    output: Option<Output>,
+    /// The temporary file and the target's real name; none for a pipe or device, which has already got it all.
+    file: Option<(Temporary, PathBuf)>,
+}
+
+impl Staged {
+    /// Puts the file in its place, over what may be there.
+    ///
+    /// # Errors
+    /// If something has appeared there that may not be replaced, or the system refuses.
+    pub fn commit(self) -> Result<()> {
+        self.check()?;
+        if let Some((temporary, real)) = self.file {
+            let put = match self.output.is_some_and(|output| output.keeps()) {
+                true => temporary.rename_new(&real),
+                false => temporary.rename(&real),
+            };
+            put.map_err(|cause| Error::file("write", &self.path, &cause))?;
+            sync_folder(folder(&real));
+        }
+        Ok(())
+    }
+
+    fn check(&self) -> Result<()> {
+        match (&self.output, &self.file) {
+            (Some(output), Some((temporary, _))) => output.check(Some(temporary.path())),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The error that `cause`, met while `doing` something ("read", "write") to what is called `path`, means to a person: the
+/// [`Error`] inside it if it carries one.
+pub fn explain(doing: &str, path: &Path, cause: &io::Error) -> Error {
+    match cause.get_ref().and_then(|inner| inner.downcast_ref::<Error>()) {
+        Some(error) => error.clone(),
+        None => Error::file(doing, path, cause),
+    }
+}
+
+/// What is to be written to.
+enum Destination {
+    /// A file to put in place, under the name that links lead to, with the permissions of the one that is there.
+    File { real: PathBuf, permissions: Option<Permissions> },
+    /// A pipe or device.
+    Stream,
+}
+
+/// [`stage`], with `wrap` around the file: where the tests inject their faults.
+fn stage_through(
+    path: &Path,
+    output: Option<&Output>,
+    wrap: impl for<'f> FnOnce(&'f File) -> Box<dyn Write + 'f>,
+    body: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<Staged> {
+    let failed = |cause: io::Error| Error::file("write", path, &cause);
+    let file = match target(path)? {
+        Destination::Stream => {
+            let file = OpenOptions::new().write(true).open(path).map_err(failed)?;
+            fill(path, wrap(&file), body)?;
+            None
+        }
+        Destination::File { real, permissions } => {
+            let (temporary, file) = match Temporary::create(folder(&real)) {
+                Ok(created) => created,
+                // The folder is what is missing, or what takes no files: say so.
+                Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
+                    return check_folder(folder(&real)).and(Err(failed(cause)));
+                }
+                Err(cause) => return Err(failed(cause)),
+            };
+            if let Some(permissions) = permissions {
+                // Some file systems have no permissions to keep; the file matters more.
+                let _ = file.set_permissions(permissions);
+            }
+            fill(path, wrap(&file), body)?;
+            file.sync_all().map_err(failed)?;
+            Some((temporary, real))
+        }
+    };
+    Ok(Staged { path: path.to_path_buf(), output: output.cloned(), file })
+}
+
+/// Finds out what `path` is, and refuses what cannot be written.
+fn target(path: &Path) -> Result<Destination> {
+    let refuse = |why: &str| Error::new(ErrorKind::File, format!("cannot write {}: {why}", path.display()));
+    let ends_in_separator = path.to_string_lossy().ends_with(std::path::is_separator);
+    match fs::metadata(path) {
+        Ok(there) if there.is_dir() => Err(refuse("it is a folder")),
+        Ok(there) if there.is_file() => {
+            if there.permissions().readonly() {
+                return Err(refuse("it is marked read-only"));
+            }
+            let real = fs::canonicalize(path).map_err(|cause| Error::file("write", path, &cause))?;
+            Ok(Destination::File { real, permissions: Some(there.permissions()) })
+        }
+        Ok(_) => Ok(Destination::Stream),
+        Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
+            if fs::symlink_metadata(path).is_ok() {
+                return Err(refuse("it is a link to something that does not exist"));
+            }
+            if path.file_name().is_none() || ends_in_separator {
+                return Err(refuse("it does not name a file"));
+            }
+            Ok(Destination::File { real: path.to_path_buf(), permissions: None })
+        }
+        Err(cause) => Err(Error::file("write", path, &cause)),
+    }
+}
+
+/// Runs `body` on a buffer over `file`. The file's own failure is the one reported, whatever `body` (or the format library in
+/// it) made of it, even if it swallowed it.
+fn fill(path: &Path, file: Box<dyn Write + '_>, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    let mut failure = None;
+    let done = {
+        let mut out = BufWriter::with_capacity(BUFFER, Noting { path, inner: file, failure: &mut failure });
+        let done = body(&mut out).and_then(|()| out.flush());
+        // What is left in the buffer after a failure must not be tried again on the way out.
+        drop(out.into_parts());
+        done
+    };
+    match (failure, done) {
+        (Some(failure), _) => Err(failure),
+        (None, Err(cause)) => Err(explain("write", path, &cause)),
+        (None, Ok(())) => Ok(()),
+    }
+}
+
+/// A writer that remembers the first failure of the one inside.
+struct Noting<'a> {
+    path: &'a Path,
+    inner: Box<dyn Write + 'a>,
+    failure: &'a mut Option<Error>,
+}
+
+impl Noting<'_> {
+    fn note<T>(&mut self, result: io::Result<T>) -> io::Result<T> {
+        if let Err(cause) = &result
+            && cause.kind() != io::ErrorKind::Interrupted
+            && self.failure.is_none()
+        {
+            *self.failure = Some(Error::file("write", self.path, cause));
+        }
+        result
+    }
+}
+
+impl Write for Noting<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let result = self.inner.write(bytes);
+        self.note(result)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let result = self.inner.flush();
+        self.note(result)
+    }
+}
+
+/// The folder that `path` names something in.
+pub fn folder(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+/// Makes what was renamed in a folder survive a power cut. Not every system can open or sync a folder, and the files are in
+/// place either way, so a failure here is none.
+pub fn sync_folder(folder: &Path) {
+    if let Ok(folder) = File::open(folder) {
+        let _ = folder.sync_all();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file::{Existing, OutputPolicy};
+
+    struct Folder(PathBuf);
+
+    fn write_whole(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+        super::write_whole(&OutputPolicy::new(Existing::Replace).output(path)?, body)
+    }
+
+    fn stage(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Staged> {
+        super::stage(&OutputPolicy::new(Existing::Replace).output(path)?, body)
+    }
+
+    impl Folder {
+        fn new(name: &str) -> Folder {
+            let path = std::env::temp_dir().join(format!("orogen-file-{}-{name}", std::process::id()));
+            let _ = fs::remove_dir_all(&path);
+            fs::create_dir_all(&path).unwrap();
+            Folder(path)
+        }
+
+        fn names(&self) -> Vec<String> {
+            let mut names: Vec<String> =
+                fs::read_dir(&self.0).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+            names.sort();
+            names
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    /// Takes `left` bytes, then fails as a full disk does.
+    struct Full<'f> {
+        file: &'f File,
+        left: usize,
+    }
+
+    impl Write for Full<'_> {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            if self.left == 0 && !bytes.is_empty() {
+                return Err(io::ErrorKind::StorageFull.into());
+            }
+            let take = bytes.len().min(self.left);
+            self.left -= take;
+            self.file.write(&bytes[..take])
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            self.file.flush()
+        }
+    }
+
+    fn write_through(
+        path: &Path,
+        wrap: impl for<'f> FnOnce(&'f File) -> Box<dyn Write + 'f>,
+        body: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<()> {
+        stage_through(path, None, wrap, body)?.commit()
+    }
+
+    #[test]
+    fn a_disk_that_fills_up_at_any_byte_leaves_the_old_file() {
+        let folder = Folder::new("full");
+        let path = folder.0.join("a.bin");
+        write_whole(&path, |out| out.write_all(b"old")).unwrap();
+        let text = b"a body of some length, written in pieces";
+        for n in 0..text.len() {
+            // Pieces of a length of its own make the buffer and the writer disagree about boundaries.
+            let error = write_through(
+                &path,
+                |file| Box::new(Full { file, left: n }),
+                |out| text.chunks(7).try_for_each(|piece| out.write_all(piece)),
+            )
+            .unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::File);
+            assert!(error.to_string().starts_with(&format!("cannot write {}: ", path.display())), "{error}");
+            assert_eq!(fs::read(&path).unwrap(), b"old", "after {n} bytes");
+            assert_eq!(folder.names(), ["a.bin"], "after {n} bytes");
+        }
+        write_through(&path, |file| Box::new(Full { file, left: text.len() }), |out| out.write_all(text)).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), text);
+    }
+
+    #[test]
+    fn a_failure_inside_a_large_body_leaves_nothing() {
+        let folder = Folder::new("large");
+        let path = folder.0.join("a.bin");
+        let piece = vec![7u8; 100_000];
+        for n in [0, 1, BUFFER - 1, BUFFER, BUFFER + 1, 999_999] {
+            let result = write_through(
+                &path,
+                |file| Box::new(Full { file, left: n }),
+                |out| (0..10).try_for_each(|_| out.write_all(&piece)),
+            );
+            assert!(result.is_err());
+            assert_eq!(folder.names(), [] as [&str; 0], "after {n} bytes");
+        }
+    }
+
+    #[test]
+    fn a_swallowed_failure_is_still_a_failure() {
+        let folder = Folder::new("swallowed");
+        let path = folder.0.join("a.bin");
+        let result = write_through(
+            &path,
+            |file| Box::new(Full { file, left: 10 }),
+            |out| {
+                let _ = out.write_all(&vec![0; 2 * BUFFER]);
+                Ok(())
+            },
+        );
+        assert!(result.is_err());
+        assert_eq!(folder.names(), [] as [&str; 0]);
+    }
+
+    #[test]
+    fn a_body_that_fails_leaves_the_old_file_and_its_own_error() {
+        let folder = Folder::new("body");
+        let path = folder.0.join("a.bin");
+        write_whole(&path, |out| out.write_all(b"old")).unwrap();
+        let error = write_whole(&path, |out| {
+            out.write_all(b"half")?;
+            Err(Error::new(ErrorKind::Cancelled, "stopped").into())
+        })
+        .unwrap_err();
+        assert_eq!((error.kind(), error.to_string().as_str()), (ErrorKind::Cancelled, "stopped"));
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(folder.names(), ["a.bin"]);
+    }
+
+    #[test]
+    fn a_target_that_becomes_a_folder_meanwhile_is_an_error() {
+        let folder = Folder::new("becomes");
+        let path = folder.0.join("a.bin");
+        let error = write_whole(&path, |out| {
+            fs::create_dir(&path)?;
+            out.write_all(b"new")
+        })
+        .unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::File);
+        assert_eq!(folder.names(), ["a.bin"]);
+        assert!(path.is_dir());
+    }
+
+    #[test]
+    fn targets_that_cannot_be_written_are_sentences() {
+        let folder = Folder::new("targets");
+        fs::write(folder.0.join("file"), "x").unwrap();
+        fs::create_dir(folder.0.join("folder")).unwrap();
+        let check = |name: &str, expect: &str| {
+            let path = folder.0.join(name);
+            let error = write_whole(&path, |out| out.write_all(b"new")).unwrap_err();
+            let expect = format!("cannot write {}: {expect}", path.display());
+            assert!(error.to_string().starts_with(&expect), "{error} / {expect}");
+        };
+        check("folder", "it is a folder");
+        check("new/", "it does not name a file");
+        let error = write_whole(&folder.0.join("missing/a"), |out| out.write_all(b"new")).unwrap_err();
+        let expect = format!("cannot write into {}: the folder does not exist", folder.0.join("missing").display());
+        assert_eq!(error.to_string(), expect);
+        check("file/a", "");
+        assert_eq!(folder.names(), ["file", "folder"]);
+    }
+
+    #[test]
+    fn a_read_only_file_is_left_alone() {
+        let folder = Folder::new("read-only");
+        let path = folder.0.join("a");
+        fs::write(&path, "old").unwrap();
+        let mut permissions = fs::metadata(&path).unwrap().permissions();
+        permissions.set_readonly(true);
+        fs::set_permissions(&path, permissions).unwrap();
+        let error = write_whole(&path, |out| out.write_all(b"new")).unwrap_err();
+        assert!(error.to_string().ends_with("it is marked read-only"), "{error}");
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+    }
+
+    /// /proc refuses new files even to root, who ignores the permissions of ordinary folders.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_folder_that_takes_no_files_is_a_sentence() {
+        let error = write_whole(Path::new("/proc/orogen.png"), |out| out.write_all(b"new")).unwrap_err();
+        assert!(error.to_string().starts_with("cannot write"), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_and_kept() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = Folder::new("links");
+        let (real, link) = (folder.0.join("real"), folder.0.join("link"));
+        fs::write(&real, "old").unwrap();
+        fs::set_permissions(&real, Permissions::from_mode(0o640)).unwrap();
+        symlink("real", &link).unwrap();
+        write_whole(&link, |out| out.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&real).unwrap(), b"new");
+        assert_eq!(fs::metadata(&real).unwrap().permissions().mode() & 0o777, 0o640);
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        symlink("nowhere", folder.0.join("dangling")).unwrap();
+        let error = write_whole(&folder.0.join("dangling"), |out| out.write_all(b"new")).unwrap_err();
+        assert!(error.to_string().ends_with("it is a link to something that does not exist"), "{error}");
+        assert_eq!(folder.names(), ["dangling", "link", "real"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_is_written_and_stays_a_device() {
+        write_whole(Path::new("/dev/null"), |out| out.write_all(b"gone")).unwrap();
+        assert!(!fs::metadata("/dev/null").unwrap().is_file());
+    }
+
+    #[test]
+    fn what_is_staged_and_dropped_leaves_no_trace() {
+        let folder = Folder::new("staged");
+        let path = folder.0.join("a");
+        write_whole(&path, |out| out.write_all(b"old")).unwrap();
+        let staged = stage(&path, |out| out.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        drop(staged);
+        assert_eq!(folder.names(), ["a"]);
+        stage(&path, |out| out.write_all(b"new")).unwrap().commit().unwrap();
+        assert_eq!((fs::read(&path).unwrap(), folder.names()), (b"new".to_vec(), vec!["a".to_string()]));
+    }
+
+    #[test]
+    fn folders_are_checked_without_a_trace() {
+        let folder = Folder::new("check");
+        check_folder(&folder.0).unwrap();
+        assert_eq!(folder.names(), [] as [&str; 0]);
+        fs::write(folder.0.join("file"), "x").unwrap();
+        for (name, expect) in [("file", "it is not a folder"), ("none", ""), ("file/none", "")] {
+            let path = folder.0.join(name);
+            let error = check_folder(&path).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("cannot write into {}: {expect}", path.display())), "{error}");
+        }
+        #[cfg(target_os = "linux")]
+        assert!(check_folder(Path::new("/proc")).is_err());
+    }
+
+    #[test]
+    fn the_longest_name_works() {
+        let folder = Folder::new("long");
+        let path = folder.0.join("n".repeat(255));
+        write_whole(&path, |out| out.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+    }
+}

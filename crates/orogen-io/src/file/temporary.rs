@@ -1,0 +1,269 @@
+//! Files that wait for their place, and what becomes of them when their process is killed.
+//!
+//! A process that writes into a folder holds a lock there: a file `.orogen-PID-N.lock` that it locks for as long as it has temporary
+//! files `.orogen-PID-N-K.tmp` beside it. The system lets go of the lock when the process ends, however it ends. So a temporary file
+//! whose lock can be taken, or is gone, has no owner any more. Process numbers alone would not tell: they are used again, and another
+//! container that shares the folder counts its own.
+
+use std::collections::HashMap;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
+
+/// How many names are tried before giving up: all of them taken means that something is wrong with the folder.
+const NAMES: usize = 100;
+
+const PREFIX: &str = ".orogen-";
+const LOCK: &str = ".lock";
+const TEMPORARY: &str = ".tmp";
+
+/// A temporary file beside its target, removed when dropped unless it was renamed.
+#[derive(Debug)]
+pub(crate) struct Temporary {
+    path: PathBuf,
+    /// Says that this process is alive. Dropped after the file is removed.
+    _lock: Option<Arc<FolderLock>>,
+}
+
+impl Temporary {
+    /// Creates one in `folder`. Its name has nothing of the target's, so that the longest names still work; it must be new, so
+    /// that nothing planted under it is followed or overwritten.
+    pub(crate) fn create(folder: &Path) -> io::Result<(Temporary, File)> {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let lock = FolderLock::hold(folder)?;
+        for _ in 0..NAMES {
+            let count = COUNT.fetch_add(1, Ordering::Relaxed);
+            let path = folder.join(format!("{}-{count}{TEMPORARY}", lock.stem));
+            match OpenOptions::new().read(true).write(true).create_new(true).open(&path) {
+                Ok(file) => return Ok((Temporary { path, _lock: Some(lock) }, file)),
+                Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(cause) => return Err(cause),
+            }
+        }
+        Err(io::Error::other("too many temporary files are left in its folder"))
+    }
+
+    /// Its name on the way.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Takes the name away from the file, which goes on while it is open; returns it where that is not possible.
+    pub(crate) fn unlink(mut self) -> Option<Temporary> {
+        match fs::remove_file(&self.path) {
+            Ok(()) => {
+                self.path = PathBuf::new();
+                None
+            }
+            Err(_) => Some(self),
+        }
+    }
+
+    /// Puts the file in its place, over what may be there.
+    pub(super) fn rename(mut self, real: &Path) -> io::Result<()> {
+        fs::rename(&self.path, real)?;
+        self.path = PathBuf::new();
+        Ok(())
+    }
+
+    /// Puts the file in its place if nothing is there: the system decides, so that nothing that appears at this very moment is lost.
+    pub(super) fn rename_new(self, real: &Path) -> io::Result<()> {
+        match fs::hard_link(&self.path, real) {
+            // Dropping it removes its first name.
+            Ok(()) => Ok(()),
+            Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => Err(cause),
+            // A file system without hard links: what was seen a moment ago has to do.
+            Err(_) if !super::policy::is_taken(real) => self.rename(real),
+            Err(_) => Err(io::ErrorKind::AlreadyExists.into()),
+        }
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        if !self.path.as_os_str().is_empty() {
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+/// This process's lock in a folder, held while it has temporary files there.
+#[derive(Debug)]
+struct FolderLock {
+    /// What its temporary files' names begin with.
+    stem: String,
+    path: PathBuf,
+    _file: File,
+}
+
+impl FolderLock {
+    /// The lock that this process has in `folder`, or a new one. The first in each folder removes what killed processes have left there.
+    fn hold(folder: &Path) -> io::Result<Arc<FolderLock>> {
+        static HELD: OnceLock<Mutex<HashMap<PathBuf, Weak<FolderLock>>>> = OnceLock::new();
+        let real = fs::canonicalize(folder)?;
+        let mut held = HELD.get_or_init(Mutex::default).lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(lock) = held.get(&real).and_then(Weak::upgrade) {
+            return Ok(lock);
+        }
+        if !held.contains_key(&real) {
+            sweep(&real);
+        }
+        let lock = Arc::new(FolderLock::create(&real)?);
+        held.insert(real, Arc::downgrade(&lock));
+        Ok(lock)
+    }
+
+    fn create(folder: &Path) -> io::Result<FolderLock> {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        for _ in 0..NAMES {
+            let count = COUNT.fetch_add(1, Ordering::Relaxed);
+            let stem = format!("{PREFIX}{}-{count}", std::process::id());
+            let path = folder.join(format!("{stem}{LOCK}"));
+            let file = match OpenOptions::new().write(true).create_new(true).open(&path) {
+                Ok(file) => file,
+                Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => continue,
+                Err(cause) => return Err(cause),
+            };
+            match file.try_lock() {
+                // Somebody who swept the folder had it between its making and its locking, and removes it.
+                Err(TryLockError::WouldBlock) => continue,
+                Ok(()) if !path.exists() => continue,
+                // A file system without locks: its temporary files are never swept.
+                Ok(()) | Err(TryLockError::Error(_)) => return Ok(FolderLock { stem, path, _file: file }),
+            }
+        }
+        Err(io::Error::other("too many temporary files are left in its folder"))
+    }
+}
+
+impl Drop for FolderLock {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+/// Removes the temporary files in `folder` whose process is gone, and nothing else. What cannot be removed stays.
+pub fn sweep(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    let mut left: HashMap<String, Vec<PathBuf>> = HashMap::new();
+    for entry in entries.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        // No link is followed, and no pipe is opened.
+        if let Some(stem) = stem(&name)
+            && entry.file_type().is_ok_and(|kind| kind.is_file())
+        {
+            left.entry(stem).or_default().push(entry.path());
+        }
+    }
+    for (stem, files) in left {
+        let path = folder.join(format!("{stem}{LOCK}"));
+        let lock = match OpenOptions::new().write(true).open(&path) {
+            Ok(lock) => lock.try_lock().is_ok().then_some(Some(lock)),
+            // A lock is made before the files, and removed after them.
+            Err(cause) if cause.kind() == io::ErrorKind::NotFound => Some(None),
+            Err(_) => None,
+        };
+        if let Some(_held) = lock {
+            // The lock goes last: without it, what is left of the others is nobody's all the same.
+            files.iter().filter(|file| **file != path).for_each(|file| drop(fs::remove_file(file)));
+            let _ = fs::remove_file(&path);
+        }
+    }
+}
+
+/// The process and its count that a file of this name belongs to, if it is one that this module makes.
+fn stem(name: &str) -> Option<String> {
+    let numbers = |text: &str, count: usize| {
+        let parts: Vec<&str> = text.split('-').collect();
+        let digits =
+            |part: &&str| !part.is_empty() && part.len() <= 20 && part.bytes().all(|byte| byte.is_ascii_digit());
+        (parts.len() == count && parts.iter().all(digits)).then(|| format!("{PREFIX}{}-{}", parts[0], parts[1]))
+    };
+    let rest = name.strip_prefix(PREFIX)?;
+    match rest.strip_suffix(LOCK) {
+        Some(rest) => numbers(rest, 2),
+        None => numbers(rest.strip_suffix(TEMPORARY)?, 3),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(name: &str) -> PathBuf {
+        let path = std::env::temp_dir().join(format!("orogen-temporary-{}-{name}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        path
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> =
+            fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn what_is_left_behind_goes_and_nothing_else() {
+        let folder = folder("sweep");
+        for name in [
+            // Of a killed process whose lock is left, and of one whose lock is not.
+            ".orogen-7-0.lock",
+            ".orogen-7-0-0.tmp",
+            ".orogen-7-0-12.tmp",
+            ".orogen-9-3-1.tmp",
+            // Whose names are others'.
+            ".orogen-7-0-0.tmp.bak",
+            ".orogen-7.tmp",
+            ".orogen-a-0-0.tmp",
+            ".orogen-7-0-0-0.tmp",
+            "orogen-7-0-0.tmp",
+            "mine.tmp",
+        ] {
+            fs::write(folder.join(name), "x").unwrap();
+        }
+        // Not a file.
+        fs::create_dir(folder.join(".orogen-5-0-0.tmp")).unwrap();
+        // A process that is alive holds its lock: another open file of it locks as another process does.
+        fs::write(folder.join(".orogen-8-0-0.tmp"), "x").unwrap();
+        let alive = File::create(folder.join(".orogen-8-0.lock")).unwrap();
+        alive.try_lock().unwrap();
+        let kept = [
+            ".orogen-5-0-0.tmp",
+            ".orogen-7-0-0-0.tmp",
+            ".orogen-7-0-0.tmp.bak",
+            ".orogen-7.tmp",
+            ".orogen-8-0-0.tmp",
+            ".orogen-8-0.lock",
+            ".orogen-a-0-0.tmp",
+            "mine.tmp",
+            "orogen-7-0-0.tmp",
+        ];
+        sweep(&folder);
+        assert_eq!(names(&folder), kept);
+        drop(alive);
+        sweep(&folder);
+        assert!(!names(&folder).iter().any(|name| name.starts_with(".orogen-8")), "its process has ended");
+        fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn the_first_file_in_a_folder_sweeps_it_and_the_last_leaves_nothing() {
+        let folder = folder("first");
+        fs::write(folder.join(".orogen-1-0-0.tmp"), "x").unwrap();
+        let (one, _) = Temporary::create(&folder).unwrap();
+        let (other, _) = Temporary::create(&folder.join(".")).unwrap();
+        assert_eq!(names(&folder).len(), 3, "one lock for both: {:?}", names(&folder));
+        // A neighbour sweeps while they are at work.
+        sweep(&folder);
+        assert_eq!(names(&folder).len(), 3);
+        drop(one);
+        assert!(other.path().exists());
+        other.rename(&folder.join("a")).unwrap();
+        assert_eq!(names(&folder), ["a"]);
+        fs::remove_dir_all(&folder).unwrap();
+    }
+}

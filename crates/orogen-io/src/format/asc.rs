@@ -1,0 +1,270 @@
+//! ESRI's ASCII grid, `.asc`: a head of keys and numbers, then the heights as text, row after row from the north.
+//!
+//! Read: `ncols`, `nrows`, `xllcorner` or `xllcenter`, `yllcorner` or `yllcenter`, `cellsize` (or GDAL's `dx` and `dy`),
+//! `nodata_value`, in any case and order. The format does not tell its unit: without a `.prj` beside it, it is [guessed](Unit::guess).
+
+use std::io::{self, BufRead, Write};
+
+use super::crs::unit::Unit;
+use super::dem::{Dem, Georeference, Input, Placement, afford, refused};
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+
+/// What stands for no height in a file written.
+const NODATA: f32 = -9999.0;
+
+/// The longest line of a head, and the longest number.
+const LONGEST_WORD: usize = 64;
+
+/// Writes a grid. Its samples are pixels' middles, as the format has it.
+pub fn write(out: &mut dyn Write, grid: &Grid) -> io::Result<()> {
+    write_head(out, grid.window(), None)?;
+    write_rows(out, grid.width(), grid.data())
+}
+
+/// Writes what comes before the samples of a window: local metres, or where `map` says. All of them must follow by [`write_rows`].
+pub fn write_head(out: &mut dyn Write, window: &Window, map: Option<&Georeference>) -> io::Result<()> {
+    let local = Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None };
+    let map = map.unwrap_or(&local);
+    let [west, south] = map.at(window.east(0), window.south(window.height.max(1) - 1));
+    let (_, [across, down]) = map.of(window);
+    writeln!(out, "ncols {}\nnrows {}\nxllcenter {west}\nyllcenter {south}", window.width, window.height)?;
+    // Oblong cells are GDAL's way of writing this format.
+    match across == down {
+        true => writeln!(out, "cellsize {across}")?,
+        false => writeln!(out, "dx {across}\ndy {down}")?,
+    }
+    writeln!(out, "NODATA_value {NODATA}")
+}
+
+/// Writes the next rows, `width` samples each; what is not finite is no height.
+pub fn write_rows(out: &mut dyn Write, width: usize, samples: &[f32]) -> io::Result<()> {
+    let mut text = String::new();
+    for row in samples.chunks(width.max(1)) {
+        text.clear();
+        for (i, height) in row.iter().enumerate() {
+            let gap = if i > 0 { " " } else { "" };
+            let height = if height.is_finite() { *height } else { NODATA };
+            // Writing to a string does not fail.
+            let _ = std::fmt::Write::write_fmt(&mut text, format_args!("{gap}{height}"));
+        }
+        text.push('\n');
+        out.write_all(text.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Reads a grid whose heights take no more than `allowed` bytes. `name` is what errors call it.
+///
+/// # Errors
+/// If it is no ASCII grid, or is cut short, or is too large.
+pub fn read(input: &mut dyn Input, name: &str, allowed: u64) -> Result<Dem> {
+    open(input, allowed).map_err(|why| refused(name, why))
+}
+
+#[derive(Default)]
+struct Head {
+    columns: Option<u64>,
+    rows: Option<u64>,
+    /// The lower left corner, and whether it is a pixel's middle.
+    west: Option<(f64, bool)>,
+    south: Option<(f64, bool)>,
+    step: [Option<f64>; 2],
+    nodata: Option<f64>,
+}
+
+/// Columns, rows and place of a grid; its samples are not looked at.
+///
+/// # Errors
+/// If it is no ASCII grid.
+pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Placement>)> {
+    let mut words = Words { input: &mut io::BufReader::new(input), word: Vec::new() };
+    let (head, [columns, rows], _) = read_head(&mut words).map_err(|why| refused(name, why))?;
+    Ok(([columns as usize, rows as usize], head.place(rows)))
+}
+
+/// The head, the size that it tells, and the first word behind it.
+fn read_head(words: &mut Words) -> std::result::Result<(Head, [u64; 2], Option<String>), String> {
+    let mut head = Head::default();
+    // The head ends with the first word that is a number where a key is due.
+    let mut first = words.next()?;
+    while let Some(word) = first.as_deref()
+        && word.starts_with(|c: char| c.is_ascii_alphabetic())
+        && number(word).is_none()
+    {
+        let key = word.to_ascii_lowercase();
+        let value = words.next()?.ok_or_else(|| format!("it ends after `{key}`"))?;
+        head.take(&key, &value)?;
+        first = words.next()?;
+    }
+    let (Some(columns), Some(rows)) = (head.columns, head.rows) else {
+        return Err("it is not an ASCII grid: its header has no ncols and nrows".into());
+    };
+    Ok((head, [columns, rows], first))
+}
+
+fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String> {
+    let mut words = Words { input: &mut io::BufReader::new(input), word: Vec::new() };
+    let (head, [columns, rows], first) = read_head(&mut words)?;
+    let count = afford(columns, rows, allowed)?;
+    let mut heights: Vec<f32> = Vec::new();
+    let mut next = first;
+    while heights.len() < count {
+        let Some(word) = next else {
+            return Err(format!("it ends after {} heights; its header declares {columns} x {rows}", heights.len()));
+        };
+        let height = number(&word).ok_or_else(|| {
+            let (row, column) = (heights.len() as u64 / columns + 1, heights.len() as u64 % columns + 1);
+            format!("`{}` in row {row}, column {column} is not a number", word.escape_debug())
+        })?;
+        heights.push(if head.nodata == Some(height) { f32::NAN } else { height as f32 });
+        next = if heights.len() < count { words.next()? } else { None };
+    }
+    if let Some(word) = words.next()? {
+        return Err(format!("it continues with `{}` after its {columns} x {rows} heights", word.escape_debug()));
+    }
+    let place = head.place(rows);
+    Dem::new([columns as usize, rows as usize], heights, place)
+}
+
+fn number(word: &str) -> Option<f64> {
+    // Commas are what some languages write for points.
+    word.replace(',', ".").parse().ok()
+}
+
+impl Head {
+    fn take(&mut self, key: &str, value: &str) -> std::result::Result<(), String> {
+        let number =
+            number(value).ok_or_else(|| format!("`{key}` is `{}`, which is not a number", value.escape_debug()))?;
+        let whole = || {
+            let sound = (1.0..1e15).contains(&number) && number.fract() == 0.0;
+            if sound {
+                Ok(Some(number as u64))
+            } else {
+                Err(format!("`{key}` is {number}, which is not a number of samples"))
+            }
+        };
+        match key {
+            "ncols" => self.columns = whole()?,
+            "nrows" => self.rows = whole()?,
+            "xllcorner" => self.west = Some((number, false)),
+            "xllcenter" => self.west = Some((number, true)),
+            "yllcorner" => self.south = Some((number, false)),
+            "yllcenter" => self.south = Some((number, true)),
+            "cellsize" => self.step = [Some(number); 2],
+            "dx" => self.step[0] = Some(number),
+            "dy" => self.step[1] = Some(number),
+            "nodata_value" => self.nodata = Some(number),
+            _ => return Err(format!("its header has an unknown key `{}`", key.escape_debug())),
+        }
+        if matches!(key, "cellsize" | "dx" | "dy") && !(number.is_finite() && number > 0.0) {
+            return Err(format!("`{key}` is {number}, and must be greater than 0"));
+        }
+        Ok(())
+    }
+
+    fn place(&self, rows: u64) -> Option<Placement> {
+        let ([Some(dx), Some(dy)], Some(west), Some(south)) = (self.step, self.west, self.south) else { return None };
+        let middle = |(at, is_middle): (f64, bool), step: f64| if is_middle { at } else { at + 0.5 * step };
+        let (east, bottom) = (middle(west, dx), middle(south, dy));
+        let unit = Unit::guess([east, bottom], [dx, dy]);
+        Some(Placement {
+            origin: [east, bottom + (rows as f64 - 1.0) * dy],
+            step: [dx, dy],
+            unit,
+            cell: None,
+            keys: None,
+        })
+    }
+}
+
+/// The words of a text, none longer than any number.
+struct Words<'a> {
+    input: &'a mut dyn BufRead,
+    word: Vec<u8>,
+}
+
+impl Words<'_> {
+    fn next(&mut self) -> std::result::Result<Option<String>, String> {
+        self.word.clear();
+        loop {
+            let buffer = self.input.fill_buf().map_err(|cause| cause.to_string())?;
+            if buffer.is_empty() {
+                break;
+            }
+            let blanks =
+                if self.word.is_empty() { buffer.iter().take_while(|b| b.is_ascii_whitespace()).count() } else { 0 };
+            let rest = &buffer[blanks..];
+            let letters = rest.iter().position(|b| b.is_ascii_whitespace()).unwrap_or(rest.len());
+            self.word.extend_from_slice(&rest[..letters.min(LONGEST_WORD + 1)]);
+            let ended = letters < rest.len();
+            self.input.consume(blanks + letters);
+            if self.word.len() > LONGEST_WORD || self.word.iter().any(|byte| !(0x20..0x7f).contains(byte)) {
+                return Err("it is not an ASCII grid: it contains more than words and numbers".into());
+            }
+            if ended && !self.word.is_empty() {
+                break;
+            }
+        }
+        Ok((!self.word.is_empty()).then(|| String::from_utf8_lossy(&self.word).into_owned()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use orogen_grid::grid::Window;
+    use std::io::Cursor;
+
+    fn parse(text: &str) -> Result<Dem> {
+        read(&mut Cursor::new(text.as_bytes()), "a.asc", 1 << 20)
+    }
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let mut heights: Vec<f32> = (0..15).map(|i| i as f32 * 0.37 - 2.1).collect();
+        heights[7] = f32::NAN;
+        let grid = Grid::from_data(Window::new(5, 3, 10.24).at(-3, 7), heights.clone()).unwrap();
+        let mut bytes = Vec::new();
+        write(&mut bytes, &grid).unwrap();
+        let dem = read(&mut Cursor::new(bytes), "a.asc", 1 << 20).unwrap();
+        assert_eq!((dem.width, dem.height, dem.missing()), (5, 3, 1));
+        assert!(dem.heights.iter().zip(&heights).all(|(a, b)| a == b || b.is_nan()));
+        let place = dem.place.unwrap();
+        assert_eq!((place.step, place.unit), ([10.24; 2], Unit::Metres(1.0)));
+        assert!((place.origin[0] + 30.72).abs() < 1e-9 && (place.origin[1] + 71.68).abs() < 1e-9);
+    }
+
+    #[test]
+    fn corners_middles_and_degrees() {
+        let head = |rest: &str| format!("NCOLS 2\nNROWS 2\n{rest}\n1 2\n3 4\n");
+        let place = |rest: &str| parse(&head(rest)).unwrap().place.unwrap();
+        assert_eq!(place("xllcorner 100\nyllcorner 200\ncellsize 10").origin, [105.0, 215.0]);
+        assert_eq!(place("xllcenter 100\nyllcenter 200\ncellsize 10").origin, [100.0, 210.0]);
+        let degrees = place("xllcorner 7\r\nyllcorner 46\r\ndx 0.1\r\ndy 0.05");
+        assert_eq!((degrees.unit, degrees.step), (Unit::Degrees, [0.1, 0.05]));
+        assert_eq!(parse(&head("")).unwrap().place, None);
+        assert_eq!(parse(&head("nodata_value 3")).unwrap().missing(), 1);
+        assert_eq!(parse("ncols 2\nnrows 1\n1,5 -2,5").unwrap().heights, [1.5, -2.5]);
+    }
+
+    #[test]
+    fn damaged_grids_are_sentences() {
+        for (text, expect) in [
+            ("", "has no ncols"),
+            ("ncols 2\nnrows", "ends after `nrows`"),
+            ("ncols 2\nnrows 2\n1 2 3", "ends after 3 heights; its header declares 2 x 2"),
+            ("ncols 2\nnrows 2\n1 2 3 4 5", "continues with `5`"),
+            ("ncols 2\nnrows 2\n1 2 x 4", "`x` in row 2, column 1"),
+            ("ncols 4000000000\nnrows 4\n1", "4000000000 x 4 samples"),
+            ("ncols -2\nnrows 2\n1", "`ncols` is -2"),
+            ("ncols 2\nnrows 2\ncellsize 0\n1 2 3 4", "must be greater than 0"),
+            ("ncols 2\nnrows 1\nnodata_value -9999\n-9999 -9999", "samples are nodata"),
+            ("colour 2\n", "unknown key `colour`"),
+            ("\u{89}PNG\r\n", "not an ASCII grid"),
+        ] {
+            let error = parse(text).unwrap_err().to_string();
+            assert!(error.starts_with("cannot read a.asc: ") && error.contains(expect), "{text:?}: {error}");
+        }
+    }
+}

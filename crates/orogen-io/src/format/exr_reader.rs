@@ -1,0 +1,329 @@
+//! Reading heights from OpenEXR pictures: scan lines of one part, not compressed, or with RLE, ZIPS or ZIP.
+//!
+//! "OpenEXR File Layout" (openexr.com). Heights are one channel: the only one; else `Y`, `height` or `Z`; else, where R, G and B are one, R; or the one that is
+//! chosen, counted in the order of their names. Samples are metres as they are.
+
+use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
+
+use super::dem::{Dem, Input, Request, afford, afford_beside, length, refused};
+use super::half;
+use super::sidecar::Sidecar;
+use orogen_grid::error::Result;
+
+/// The longest head read.
+const MAX_HEAD: u64 = 1 << 20;
+
+/// The most channels.
+const MAX_CHANNELS: usize = 1024;
+
+/// Reads a picture. `name` is what errors call the file.
+///
+/// # Errors
+/// If it is no OpenEXR, of another kind, damaged or too large.
+pub fn read(input: &mut dyn Input, name: &str, sidecar: &Sidecar, request: Request) -> Result<Dem> {
+    open(input, sidecar, request).map_err(|why| refused(name, why))
+}
+
+/// What a channel's samples are: their bytes, and whether they are floats.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Sample {
+    Whole,
+    Half,
+    Float,
+}
+
+impl Sample {
+    fn bytes(self) -> usize {
+        if self == Sample::Half { 2 } else { 4 }
+    }
+}
+
+#[derive(Default)]
+struct Head {
+    channels: Vec<(String, Option<Sample>, bool)>,
+    packing: Option<u8>,
+    /// First and last column and row.
+    window: Option<[i32; 4]>,
+}
+
+fn damaged() -> String {
+    "it is a damaged OpenEXR picture".into()
+}
+
+fn open(input: &mut dyn Input, sidecar: &Sidecar, request: Request) -> std::result::Result<Dem, String> {
+    let there = length(input)?;
+    let mut bytes = Vec::new();
+    read_some(input, MAX_HEAD.min(there), &mut bytes)?;
+    let mut rest = bytes.as_slice();
+    if take(&mut rest, 4).ok() != Some(&[0x76, 0x2f, 0x31, 0x01]) {
+        return Err("it is not an OpenEXR picture".into());
+    }
+    let version = int(&mut rest)? as u32;
+    if version & 0xff != 2 || version & 0x1a00 != 0 {
+        return Err(
+            "tiled, multi-part and deep OpenEXR pictures are not supported; save it as a single part with scan lines"
+                .into(),
+        );
+    }
+    let head = head(&mut rest)?;
+    let before = bytes.len() - rest.len();
+    let (Some([left, top, right, bottom]), Some(packing)) = (head.window, head.packing) else { return Err(damaged()) };
+    let side = |first: i32, last: i32| u64::try_from(i64::from(last) - i64::from(first) + 1).map_err(|_| damaged());
+    let (width, height) = (side(left, right)?, side(top, bottom)?);
+    let count = afford(width, height, request.allowed)?;
+    let rows = match packing {
+        0..=2 => 1,
+        3 => 16,
+        4 => return Err(other("PIZ")),
+        5 => return Err(other("PXR24")),
+        6 | 7 => return Err(other("B44")),
+        8 | 9 => return Err(other("DWA")),
+        _ => return Err(other("an unknown method")),
+    };
+    let chosen = choose(&head.channels, request)?;
+    let mut before_own = 0;
+    let mut own = Sample::Float;
+    let mut pixel = 0u64;
+    for (k, (name, sample, full)) in head.channels.iter().enumerate() {
+        let sample = sample
+            .filter(|_| *full)
+            .ok_or_else(|| format!("its channel {} is not of full size", name.escape_debug()))?;
+        if k < chosen {
+            before_own += sample.bytes() as u64;
+        }
+        if k == chosen {
+            own = sample;
+        }
+        pixel += sample.bytes() as u64;
+    }
+    let (width, line) = (width as usize, width.checked_mul(pixel).ok_or_else(damaged)?);
+    let blocks = height.div_ceil(rows);
+    let table = before as u64;
+    if there.saturating_sub(table) / 8 < blocks || line.saturating_mul(rows) > there.saturating_mul(1032).max(1 << 20) {
+        return Err("it ends before its samples".into());
+    }
+    let mut heights = vec![f32::NAN; count];
+    let mut seen = 0;
+    for n in 0..blocks {
+        let mut entry = Vec::new();
+        seek(input, table + 8 * n)?;
+        read_some(input, 8, &mut entry)?;
+        let at = u64::from_le_bytes(entry.try_into().map_err(|_| damaged())?);
+        let mut front = Vec::new();
+        seek(input, at)?;
+        read_some(input, 8, &mut front)?;
+        let mut front = front.as_slice();
+        let (y, size) = (int(&mut front)?, int(&mut front)?);
+        let first =
+            u64::try_from(i64::from(y) - i64::from(top)).ok().filter(|first| *first < height).ok_or_else(damaged)?;
+        let size = u64::try_from(size).ok().filter(|size| *size <= there).ok_or_else(damaged)?;
+        let lines = rows.min(height - first);
+        let due = (lines * line) as usize;
+        // As it is packed, with its bytes parted, and as samples.
+        afford_beside(count, size.saturating_add(2 * due as u64), request.allowed)?;
+        let mut packed = Vec::new();
+        read_some(input, size, &mut packed)?;
+        let samples = if packed.len() == due { packed } else { unpack(packing, &packed, due)? };
+        for j in 0..lines as usize {
+            let begin = j * line as usize + before_own as usize * width;
+            let out = &mut heights[(first as usize + j) * width..][..width];
+            let source = &samples[begin..begin + own.bytes() * width];
+            for (height, b) in out.iter_mut().zip(source.chunks_exact(own.bytes())) {
+                *height = match own {
+                    Sample::Half => half::to_f32(u16::from_le_bytes([b[0], b[1]])),
+                    Sample::Float => f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+                    Sample::Whole => u32::from_le_bytes([b[0], b[1], b[2], b[3]]) as f32,
+                };
+            }
+        }
+        seen += lines;
+    }
+    if seen != height {
+        return Err(damaged());
+    }
+    if let Some(nodata) = sidecar.nodata {
+        heights.iter_mut().filter(|height| f64::from(**height) == nodata).for_each(|height| *height = f32::NAN);
+    }
+    let heights = sidecar.north_first(heights, width)?;
+    Dem::new([width, height as usize], heights, sidecar.place(height as usize)?)
+}
+
+fn other(method: &str) -> String {
+    format!("its compression {method} is not supported; save it with ZIP (supported: none, RLE, ZIPS and ZIP)")
+}
+
+fn seek(input: &mut dyn Input, at: u64) -> std::result::Result<(), String> {
+    input.seek(std::io::SeekFrom::Start(at)).map(|_| ()).map_err(|cause| cause.to_string())
+}
+
+/// Reads exactly so many bytes, taking memory only for those that there are.
+fn read_some(input: &mut dyn Input, count: u64, out: &mut Vec<u8>) -> std::result::Result<(), String> {
+    use std::io::Read;
+    input.take(count).read_to_end(out).map_err(|cause| cause.to_string())?;
+    if out.len() as u64 == count { Ok(()) } else { Err("it ends within its samples".into()) }
+}
+
+fn take<'a>(rest: &mut &'a [u8], count: usize) -> std::result::Result<&'a [u8], String> {
+    let (head, tail) = rest.split_at_checked(count).ok_or_else(damaged)?;
+    *rest = tail;
+    Ok(head)
+}
+
+fn int(rest: &mut &[u8]) -> std::result::Result<i32, String> {
+    let four = take(rest, 4)?;
+    Ok(i32::from_le_bytes([four[0], four[1], four[2], four[3]]))
+}
+
+/// A text that a 0 ends.
+fn text(rest: &mut &[u8]) -> std::result::Result<String, String> {
+    let end = rest.iter().take(256).position(|byte| *byte == 0).ok_or_else(damaged)?;
+    let text = String::from_utf8_lossy(take(rest, end)?).into_owned();
+    take(rest, 1)?;
+    Ok(text)
+}
+
+fn head(rest: &mut &[u8]) -> std::result::Result<Head, String> {
+    let mut head = Head::default();
+    loop {
+        let name = text(rest)?;
+        if name.is_empty() {
+            return Ok(head);
+        }
+        let _kind = text(rest)?;
+        let length = usize::try_from(int(rest)?).map_err(|_| damaged())?;
+        let mut value = take(rest, length)?;
+        match name.as_str() {
+            "channels" => {
+                while value.first().is_some_and(|byte| *byte != 0) {
+                    let name = text(&mut value)?;
+                    let sample = match int(&mut value)? {
+                        0 => Some(Sample::Whole),
+                        1 => Some(Sample::Half),
+                        2 => Some(Sample::Float),
+                        _ => None,
+                    };
+                    take(&mut value, 4)?;
+                    let full = (int(&mut value)?, int(&mut value)?) == (1, 1);
+                    head.channels.push((name, sample, full));
+                    if head.channels.len() > MAX_CHANNELS {
+                        return Err(format!("it has more than {MAX_CHANNELS} channels"));
+                    }
+                }
+            }
+            "compression" => head.packing = value.first().copied(),
+            "dataWindow" => {
+                head.window = Some([int(&mut value)?, int(&mut value)?, int(&mut value)?, int(&mut value)?]);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Which channel holds heights.
+fn choose(channels: &[(String, Option<Sample>, bool)], request: Request) -> std::result::Result<usize, String> {
+    if request.band.is_none() && channels.len() > 1 {
+        let named = |wanted: &str| {
+            channels
+                .iter()
+                .position(|(name, ..)| name.rsplit('.').next().is_some_and(|own| own.eq_ignore_ascii_case(wanted)))
+        };
+        if let Some(k) = ["y", "height", "z"].into_iter().find_map(named) {
+            return Ok(k);
+        }
+    }
+    if channels.is_empty() {
+        return Err("it has no channels".into());
+    }
+    request.choose(channels.len()).map_err(|why| {
+        let names: Vec<&str> = channels.iter().map(|(name, ..)| name.as_str()).collect();
+        format!("{why} (its channels are {})", names.join(", ").escape_debug())
+    })
+}
+
+/// Unpacks a block.
+fn unpack(packing: u8, packed: &[u8], due: usize) -> std::result::Result<Vec<u8>, String> {
+    let mut parted = match packing {
+        1 => runs(packed, due)?,
+        2 | 3 => decompress_to_vec_zlib_with_limit(packed, due).map_err(|_| damaged())?,
+        _ => return Err(damaged()),
+    };
+    if parted.len() != due {
+        return Err(damaged());
+    }
+    for k in 1..due {
+        parted[k] = parted[k].wrapping_add(parted[k - 1]).wrapping_sub(128);
+    }
+    let (even, odd) = parted.split_at(due.div_ceil(2));
+    Ok((0..due).map(|k| if k % 2 == 0 { even[k / 2] } else { odd[k / 2] }).collect())
+}
+
+/// Runs of bytes: a count below 0 goes before as many bytes as they are, another before one that is repeated once more than it says.
+fn runs(packed: &[u8], due: usize) -> std::result::Result<Vec<u8>, String> {
+    let mut out = Vec::new();
+    let mut rest = packed;
+    while !rest.is_empty() {
+        match take(&mut rest, 1)?[0] as i8 {
+            count @ ..0 => out.extend_from_slice(take(&mut rest, usize::from(count.unsigned_abs()))?),
+            count => {
+                let byte = take(&mut rest, 1)?[0];
+                out.resize(out.len() + count as usize + 1, byte);
+            }
+        }
+        if out.len() > due {
+            return Err(damaged());
+        }
+    }
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::format::exr;
+    use crate::spool::Spool;
+    use std::io::Cursor;
+
+    fn written(names: &[&str], sample: exr::Sample) -> (Vec<Vec<f32>>, Vec<u8>) {
+        let (width, height) = (23, 37);
+        let picture = exr::Picture {
+            width,
+            height,
+            channels: names.iter().map(ToString::to_string).collect(),
+            sample,
+            comments: String::new(),
+        };
+        let channels: Vec<Vec<f32>> =
+            (0..names.len()).map(|n| (0..width * height).map(|k| (k * (n + 1) % 977) as f32 * 0.5).collect()).collect();
+        let mut writer = exr::Writer::new(picture, Spool::in_memory()).unwrap();
+        writer.rows(&channels.iter().map(Vec::as_slice).collect::<Vec<_>>()).unwrap();
+        let mut bytes = Vec::new();
+        writer.finish(&mut bytes).unwrap();
+        (channels, bytes)
+    }
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let parse =
+            |bytes: &[u8], request: Request| read(&mut Cursor::new(bytes), "a.exr", &Sidecar::default(), request);
+        let plain = Request::from(1 << 20);
+        for sample in [exr::Sample::Float, exr::Sample::Half] {
+            let (channels, bytes) = written(&["Y"], sample);
+            let dem = parse(&bytes, plain).unwrap();
+            assert_eq!((dem.width, dem.height, &dem.heights), (23, 37, &channels[0]));
+        }
+        let (channels, bytes) = written(&["G", "R"], exr::Sample::Float);
+        assert_eq!(parse(&bytes, Request { band: Some(2), ..plain }).unwrap().heights, channels[1]);
+        let why = parse(&bytes, plain).unwrap_err().to_string();
+        assert!(why.contains("2 bands") && why.contains("G, R"), "{why}");
+        assert!(parse(&bytes, Request::from(100)).unwrap_err().to_string().contains("is allowed"));
+        for n in (0..bytes.len() - 1).step_by(13) {
+            assert!(parse(&bytes[..n], Request { band: Some(1), ..plain }).is_err(), "{n}");
+        }
+    }
+
+    #[test]
+    fn runs_of_bytes() {
+        assert_eq!(runs(&[2, 7, 0xfe, 1, 2], 5), Ok(vec![7, 7, 7, 1, 2]));
+        assert!(runs(&[9, 7], 5).is_err() && runs(&[0x80, 1], 500).is_err());
+    }
+}

@@ -1,0 +1,335 @@
+//! Everything of the file but the samples: header, ghost area, a directory for each level.
+
+use crate::format::crs::keys::GeoKeys;
+use crate::format::dem::Georeference;
+use orogen_grid::grid::Window;
+
+/// What readers may count on. The space at its end leaves room for whoever edits the file to turn the NO into YES.
+const PROMISES: &str = "LAYOUT=IFDS_BEFORE_DATA\n\
+    BLOCK_ORDER=ROW_MAJOR\n\
+    BLOCK_LEADER=SIZE_AS_UINT4\n\
+    BLOCK_TRAILER=LAST_4_BYTES_REPEATED\n\
+    KNOWN_INCOMPATIBLE_EDITION=NO\n ";
+
+/// What the coordinates are called, ended as GeoTIFF ends its strings.
+const CITATION: &str = "Local metres|";
+
+/// Bytes before and after each tile.
+pub const LEADER: u64 = 4;
+pub const TRAILER: u64 = 4;
+
+/// The full raster or an overview, as far as its directory tells of it.
+#[derive(Debug)]
+pub struct Level {
+    /// Samples a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// The bytes of each packed tile, row by row.
+    pub lengths: Vec<u32>,
+}
+
+/// What all directories share.
+#[derive(Debug)]
+pub struct Description {
+    /// Where the full raster lies.
+    pub window: Window,
+    /// Samples along a tile's side.
+    pub tile: usize,
+    /// The value that stands for no value.
+    pub nodata: Option<f32>,
+    /// How metres lie on a map.
+    pub map: Option<Georeference>,
+}
+
+/// The file's first bytes, behind which the tiles follow, from the last level to the first: as classic TIFF if `big` is not
+/// asked for and the file does not pass 4 GiB, else as BigTIFF.
+pub fn head(description: &Description, levels: &[Level], big: bool) -> Vec<u8> {
+    let wanted = if big { Form::Big } else { Form::Classic };
+    let (form, begin) = match length(description, levels, wanted) {
+        begin if begin + data_length(levels) > u64::from(u32::MAX) => {
+            (Form::Big, length(description, levels, Form::Big))
+        }
+        begin => (wanted, begin),
+    };
+    encode(description, levels, &offsets(levels, begin), form)
+}
+
+/// How many bytes the tiles of all levels take.
+pub fn data_length(levels: &[Level]) -> u64 {
+    levels.iter().flat_map(|level| &level.lengths).map(|length| LEADER + u64::from(*length) + TRAILER).sum()
+}
+
+/// Where each tile of each level begins if the first leader stands at `begin`.
+fn offsets(levels: &[Level], begin: u64) -> Vec<Vec<u64>> {
+    let mut next = begin;
+    let mut offsets: Vec<Vec<u64>> = levels
+        .iter()
+        .rev()
+        .map(|level| {
+            let place = |length: &u32| {
+                let here = next + LEADER;
+                next = here + u64::from(*length) + TRAILER;
+                here
+            };
+            level.lengths.iter().map(place).collect()
+        })
+        .collect();
+    offsets.reverse();
+    offsets
+}
+
+/// How many bytes the head takes: the offsets in it do not change that.
+fn length(description: &Description, levels: &[Level], form: Form) -> u64 {
+    let nowhere: Vec<Vec<u64>> = levels.iter().map(|level| vec![0; level.lengths.len()]).collect();
+    encode(description, levels, &nowhere, form).len() as u64
+}
+
+fn encode(description: &Description, levels: &[Level], offsets: &[Vec<u64>], form: Form) -> Vec<u8> {
+    let mut out = Vec::new();
+    out.extend_from_slice(form.header());
+    let ghost = format!("GDAL_STRUCTURAL_METADATA_SIZE={:06} bytes\n{PROMISES}", PROMISES.len());
+    let first = (out.len() + form.word() + ghost.len()).next_multiple_of(form.alignment());
+    form.put_word(&mut out, first as u64);
+    out.extend_from_slice(ghost.as_bytes());
+    out.resize(first, 0);
+    for (k, (level, offsets)) in levels.iter().zip(offsets).enumerate() {
+        let fields = fields(description, level, offsets, k, form);
+        put_directory(&mut out, &fields, k + 1 == levels.len(), form);
+    }
+    out
+}
+
+/// One entry of a directory.
+struct Field {
+    tag: u16,
+    kind: u16,
+    count: u64,
+    bytes: Vec<u8>,
+}
+
+impl Field {
+    fn shorts(tag: u16, values: &[u16]) -> Field {
+        Field::new(tag, 3, values.len(), values.iter().flat_map(|v| v.to_le_bytes()).collect())
+    }
+
+    fn longs(tag: u16, values: &[u32]) -> Field {
+        Field::new(tag, 4, values.len(), values.iter().flat_map(|v| v.to_le_bytes()).collect())
+    }
+
+    fn doubles(tag: u16, values: &[f64]) -> Field {
+        Field::new(tag, 12, values.len(), values.iter().flat_map(|v| v.to_le_bytes()).collect())
+    }
+
+    /// A text; TIFF counts the zero behind it.
+    fn text(tag: u16, text: &str) -> Field {
+        Field::new(tag, 2, text.len() + 1, [text.as_bytes(), &[0]].concat())
+    }
+
+    fn new(tag: u16, kind: u16, count: usize, bytes: Vec<u8>) -> Field {
+        Field { tag, kind, count: count as u64, bytes }
+    }
+}
+
+/// The entries of level `k`, in the order of their tags. Only the full raster says where it lies: the overviews lie there too.
+fn fields(description: &Description, level: &Level, offsets: &[u64], k: usize, form: Form) -> Vec<Field> {
+    let Description { window, tile, nodata, map } = description;
+    let (width, height, tile) = (level.width as u32, level.height as u32, *tile as u32);
+    let mut fields = vec![
+        // Of what there is more than one: 1 marks a coarser copy of the first.
+        Field::longs(254, &[u32::from(k > 0)]),
+        Field::longs(256, &[width]),
+        Field::longs(257, &[height]),
+        // One sample a pixel, of 32 bits, compressed with deflate, black the lowest.
+        Field::shorts(258, &[32]),
+        Field::shorts(259, &[8]),
+        Field::shorts(262, &[1]),
+        Field::shorts(277, &[1]),
+        Field::shorts(284, &[1]),
+        Field::shorts(317, &[3]),
+        Field::longs(322, &[tile]),
+        Field::longs(323, &[tile]),
+        form.offsets(324, offsets),
+        Field::longs(325, &level.lengths),
+        // Floats.
+        Field::shorts(339, &[3]),
+    ];
+    if k == 0 {
+        // The tie point is column 0, row 0, whatever GeoKey 1025 says of pixels; here it says that they are points, so this is the
+        // first sample's own place. Added to 0, a south of 0 is no -0.
+        let local = ([window.east(0), 0.0 - window.south(0)], [window.cell; 2]);
+        let ([east, north], steps) = map.as_ref().map_or(local, |map| map.of(window));
+        fields.push(Field::doubles(33550, &[steps[0], steps[1], 0.0]));
+        fields.push(Field::doubles(33922, &[0.0, 0.0, 0.0, east, north, 0.0]));
+        match map.as_ref().and_then(|map| map.keys.as_ref()) {
+            Some(keys) => {
+                fields.push(Field::shorts(34735, &of_points(keys)));
+                if !keys.doubles.is_empty() {
+                    fields.push(Field::doubles(34736, &keys.doubles));
+                }
+                if !keys.text.is_empty() {
+                    fields.push(Field::text(34737, &keys.text));
+                }
+            }
+            None => {
+                fields.push(Field::shorts(34735, &geo_keys()));
+                fields.push(Field::text(34737, CITATION));
+            }
+        }
+    }
+    if let Some(nodata) = nodata {
+        // In f64, whose digits every reader takes for the very same number.
+        fields.push(Field::text(42113, &f64::from(*nodata).to_string().to_lowercase()));
+    }
+    fields
+}
+
+/// GeoTIFF's own directory in a tag: a system of its own whose unit is the metre; pixels are points.
+fn geo_keys() -> Vec<u16> {
+    const USER_DEFINED: u16 = 32767;
+    const POINT: u16 = 2;
+    const TEXTS: u16 = 34737;
+    const METRE: u16 = 9001;
+    let keys =
+        [[1024, 0, 1, USER_DEFINED], [1025, 0, 1, POINT], [1026, TEXTS, CITATION.len() as u16, 0], [3076, 0, 1, METRE]];
+    [[1, 1, 0, keys.len() as u16]].iter().chain(&keys).flatten().copied().collect()
+}
+
+/// A foreign directory of keys, with pixels that are points as all are here. Keys are sorted by their numbers.
+fn of_points(keys: &GeoKeys) -> Vec<u16> {
+    const RASTER_TYPE: u16 = 1025;
+    let head = keys.directory.get(..3).unwrap_or(&[1, 1, 0]);
+    let mut entries: Vec<&[u16]> = keys.directory.chunks_exact(4).skip(1).filter(|key| key[0] != RASTER_TYPE).collect();
+    let at = entries.partition_point(|key| key[0] < RASTER_TYPE);
+    entries.insert(at, &[RASTER_TYPE, 0, 1, 2]);
+    let count = [entries.len() as u16];
+    head.iter().chain(&count).chain(entries.into_iter().flatten()).copied().collect()
+}
+
+fn put_directory(out: &mut Vec<u8>, fields: &[Field], last: bool, form: Form) {
+    let inline = form.word();
+    let directory = form.count_length() + fields.len() * form.entry_length() + form.word();
+    let mut values = Vec::new();
+    let behind = (out.len() + directory).next_multiple_of(form.alignment());
+    form.put_count(out, fields.len());
+    for field in fields {
+        out.extend_from_slice(&field.tag.to_le_bytes());
+        out.extend_from_slice(&field.kind.to_le_bytes());
+        form.put_word(out, field.count);
+        if field.bytes.len() <= inline {
+            out.extend_from_slice(&field.bytes);
+            out.resize(out.len() + inline - field.bytes.len(), 0);
+        } else {
+            form.put_word(out, (behind + values.len()) as u64);
+            values.extend_from_slice(&field.bytes);
+            values.resize(values.len().next_multiple_of(form.alignment()), 0);
+        }
+    }
+    let next = if last { 0 } else { behind + values.len() };
+    form.put_word(out, next as u64);
+    out.resize(behind, 0);
+    out.append(&mut values);
+}
+
+/// The two forms of TIFF: offsets of four bytes or of eight.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    Classic,
+    Big,
+}
+
+impl Form {
+    /// What comes before the offset of the first directory.
+    fn header(self) -> &'static [u8] {
+        match self {
+            Form::Classic => b"II\x2a\0",
+            Form::Big => b"II\x2b\0\x08\0\0\0",
+        }
+    }
+
+    /// Bytes of an offset or a count of values.
+    fn word(self) -> usize {
+        match self {
+            Form::Classic => 4,
+            Form::Big => 8,
+        }
+    }
+
+    fn alignment(self) -> usize {
+        match self {
+            Form::Classic => 2,
+            Form::Big => 8,
+        }
+    }
+
+    /// Bytes of the count of entries.
+    fn count_length(self) -> usize {
+        match self {
+            Form::Classic => 2,
+            Form::Big => 8,
+        }
+    }
+
+    fn entry_length(self) -> usize {
+        4 + 2 * self.word()
+    }
+
+    /// A file that has no more than 4 GiB has no number here that four bytes do not hold.
+    fn put_word(self, out: &mut Vec<u8>, value: u64) {
+        out.extend_from_slice(&value.to_le_bytes()[..self.word()]);
+    }
+
+    fn put_count(self, out: &mut Vec<u8>, count: usize) {
+        out.extend_from_slice(&(count as u64).to_le_bytes()[..self.count_length()]);
+    }
+
+    fn offsets(self, tag: u16, offsets: &[u64]) -> Field {
+        match self {
+            Form::Classic => {
+                let bytes = offsets.iter().flat_map(|offset| (*offset as u32).to_le_bytes()).collect();
+                Field::new(tag, 4, offsets.len(), bytes)
+            }
+            Form::Big => {
+                let bytes = offsets.iter().flat_map(|offset| offset.to_le_bytes()).collect();
+                Field::new(tag, 16, offsets.len(), bytes)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn levels(tiles: usize, length: u32) -> Vec<Level> {
+        vec![Level { width: 512 * tiles, height: 512, lengths: vec![length; tiles] }]
+    }
+
+    #[test]
+    fn a_file_past_four_gibibytes_is_big() {
+        let description = Description { window: Window::new(1, 1, 1.0), tile: 512, nodata: None, map: None };
+        let classic = |levels: &[Level]| head(&description, levels, false)[2] == 42;
+        let mut levels = levels(4, 1 << 30);
+        assert!(!classic(&levels));
+        // To the byte: 2^32 - 1 bytes are the most whose end four bytes can tell.
+        levels[0].lengths[3] = 0;
+        let others = head(&description, &levels, false).len() as u64 + data_length(&levels);
+        levels[0].lengths[3] = (u64::from(u32::MAX) - others) as u32;
+        assert!(classic(&levels));
+        levels[0].lengths[3] += 1;
+        assert!(!classic(&levels));
+    }
+
+    #[test]
+    fn the_ghost_area_is_as_long_as_it_says() {
+        assert_eq!(PROMISES.len(), 140);
+        let description = Description { window: Window::new(1, 1, 1.0), tile: 512, nodata: None, map: None };
+        for (big, start, first) in [(false, 8, 192), (true, 16, 200)] {
+            let head = head(&description, &levels(1, 9), big);
+            assert!(
+                head[start..].starts_with(b"GDAL_STRUCTURAL_METADATA_SIZE=000140 bytes\nLAYOUT=IFDS_BEFORE_DATA\n")
+            );
+            assert_eq!(usize::from(head[if big { 8 } else { 4 }]), first);
+        }
+    }
+}

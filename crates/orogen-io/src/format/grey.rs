@@ -1,0 +1,104 @@
+//! Reading heights from a grey PNG of 8 or 16 bits, with a [`Sidecar`] that tells the heights of black and white.
+
+use std::io::BufReader;
+
+use ::png::{BitDepth, ColorType, Decoder, DecodingError, Limits, Transformations};
+
+use super::dem::{Dem, Input, afford, refused};
+use super::sidecar::Sidecar;
+use orogen_grid::error::Result;
+
+/// Reads a grey picture. `name` is what errors call the file.
+///
+/// # Errors
+/// If it is no PNG, not grey, damaged or too large, or the sidecar does not tell what black and white are.
+pub fn read(input: &mut dyn Input, name: &str, sidecar: &Sidecar, allowed: u64) -> Result<Dem> {
+    open(input, sidecar, allowed).map_err(|why| refused(name, why))
+}
+
+fn open(input: &mut dyn Input, sidecar: &Sidecar, allowed: u64) -> std::result::Result<Dem, String> {
+    let broken = |fault: DecodingError| match fault {
+        DecodingError::LimitsExceeded => {
+            "it needs more memory than a picture of its size should; it is damaged".to_string()
+        }
+        other => format!("it is not a valid PNG ({other})"),
+    };
+    let limit = usize::try_from(allowed).unwrap_or(usize::MAX);
+    let mut decoder = Decoder::new_with_limits(BufReader::new(input), Limits { bytes: limit });
+    decoder.set_transformations(Transformations::IDENTITY);
+    let mut reader = decoder.read_info().map_err(broken)?;
+    let (width, height) = (u64::from(reader.info().width), u64::from(reader.info().height));
+    let count = afford(width, height, allowed)?;
+    let (color, depth) = (reader.info().color_type, reader.info().bit_depth);
+    let size = match (color, depth) {
+        (ColorType::Grayscale, BitDepth::Eight) => 1,
+        (ColorType::Grayscale, BitDepth::Sixteen) => 2,
+        _ => {
+            return Err(format!(
+                "its pixels are {color:?} with {depth:?} bits; only grey with 8 or 16 bits is supported"
+            ));
+        }
+    };
+    if reader.info().interlaced {
+        return Err("it is interlaced; save it without interlacing".into());
+    }
+    let [low, high] = sidecar.range()?;
+    let most = if size == 1 { 255.0 } else { 65535.0 };
+    let mut heights: Vec<f32> = Vec::new();
+    while let Some(row) = reader.next_row().map_err(broken)? {
+        heights.extend(row.data().chunks_exact(size).map(|bytes| {
+            let number = bytes.iter().fold(0u32, |number, byte| number << 8 | u32::from(*byte));
+            let number = f64::from(number);
+            if sidecar.nodata == Some(number) { f32::NAN } else { (low + number / most * (high - low)) as f32 }
+        }));
+        if heights.len() >= count {
+            break;
+        }
+    }
+    if heights.len() != count {
+        return Err("it ends within its rows".into());
+    }
+    let heights = sidecar.north_first(heights, width as usize)?;
+    Dem::new([width as usize, height as usize], heights, sidecar.place(height as usize)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::format::levels::Levels;
+    use crate::format::png;
+    use orogen_grid::grid::{Grid, Window};
+    use std::io::Cursor;
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let heights: Vec<f32> = (0..35).map(|k| 100.0 + (k * k % 37) as f32 * 5.0).collect();
+        let grid = Grid::from_data(Window::new(7, 5, 4.0), heights).unwrap();
+        let levels = Levels::of(&grid);
+        let sidecar = Sidecar {
+            cell: Some(4.0),
+            low: Some(f64::from(levels.low())),
+            high: Some(f64::from(levels.high())),
+            ..Sidecar::default()
+        };
+        for (bits, error) in [(16, 0.002f32), (8, 0.4)] {
+            let mut bytes = Vec::new();
+            match bits {
+                16 => png::write_grey16(&mut bytes, &grid, &levels, &[]).unwrap(),
+                _ => png::write_grey8(&mut bytes, &grid, &levels, &[]).unwrap(),
+            }
+            let dem = read(&mut Cursor::new(&bytes), "a.png", &sidecar, 1 << 20).unwrap();
+            assert_eq!((dem.width, dem.height), (7, 5));
+            assert!(dem.heights.iter().zip(grid.data()).all(|(a, b)| (a - b).abs() <= error), "{bits} bits");
+            let why = read(&mut Cursor::new(&bytes), "a.png", &Sidecar::default(), 1 << 20).unwrap_err().to_string();
+            assert!(why.contains("low and high"), "{why}");
+            for n in 0..bytes.len() - 12 {
+                match read(&mut Cursor::new(&bytes[..n]), "a.png", &sidecar, 1 << 20) {
+                    // Only checksums are gone.
+                    Ok(cut) => assert!(cut == dem && n + 24 > bytes.len(), "{n}"),
+                    Err(error) => assert!(error.to_string().starts_with("cannot read a.png: "), "{n}: {error}"),
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Heights as whole numbers: the one place where metres become grey levels.
+
+use orogen_grid::grid::Grid;
+
+/// The range of heights that is spread over all levels of an integer format: `low` becomes 0 and `high` the largest level.
+///
+/// A flat range (`low == high`) has no spread: every height becomes 0, and [`Levels::is_flat`] says so. Heights outside the
+/// range, infinities among them, are clamped to it; NaN becomes 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Levels {
+    low: f32,
+    high: f32,
+}
+
+impl Levels {
+    /// The range from `low` to `high`, in the grid's unit. Anything but two finite numbers in this order is taken as flat.
+    pub fn new(low: f32, high: f32) -> Levels {
+        match low.is_finite() && high.is_finite() && low < high {
+            true => Levels { low, high },
+            false if low.is_finite() => Levels { low, high: low },
+            false => Levels { low: 0.0, high: 0.0 },
+        }
+    }
+
+    /// From the lowest to the highest finite sample of a grid; flat if there is none.
+    pub fn of(grid: &Grid) -> Levels {
+        let [low, high] = extremes(NO_SAMPLES, grid.data());
+        Levels::new(low, high)
+    }
+
+    /// The height that becomes 0.
+    pub fn low(&self) -> f32 {
+        self.low
+    }
+
+    /// The height that becomes the largest level.
+    pub fn high(&self) -> f32 {
+        self.high
+    }
+
+    /// Whether there is no range to spread, so that every level is 0.
+    pub fn is_flat(&self) -> bool {
+        self.low == self.high
+    }
+
+    /// The 16-bit level nearest to `height`: 0 at `low`, 65535 at `high`.
+    pub fn to_u16(&self, height: f32) -> u16 {
+        self.level(height, f64::from(u16::MAX)) as u16
+    }
+
+    /// The 8-bit level nearest to `height`: 0 at `low`, 255 at `high`.
+    pub fn to_u8(&self, height: f32) -> u8 {
+        self.level(height, f64::from(u8::MAX)) as u8
+    }
+
+    /// In f64, where neither the difference of two f32 nor its product with a level can overflow or round twice.
+    fn level(&self, height: f32, most: f64) -> f64 {
+        if height.is_nan() || self.is_flat() {
+            return 0.0;
+        }
+        let (low, high) = (f64::from(self.low), f64::from(self.high));
+        let share = (f64::from(height).clamp(low, high) - low) / (high - low);
+        (share * most + 0.5).floor()
+    }
+}
+
+/// The lowest and the highest of no samples: what [`extremes`] begins with.
+pub const NO_SAMPLES: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
+
+/// The lowest and the highest of more samples, the finite ones, and of those that came before.
+pub fn extremes(before: [f32; 2], samples: &[f32]) -> [f32; 2] {
+    let finite = samples.iter().copied().filter(|sample| sample.is_finite());
+    finite.fold(before, |[low, high], sample| [low.min(sample), high.max(sample)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use orogen_grid::grid::Window;
+
+    #[test]
+    fn ends_and_middle() {
+        let levels = Levels::new(-100.0, 300.0);
+        for (height, expect) in
+            [(-100.0, 0), (300.0, 65535), (100.0, 32768), (-1e30, 0), (f32::INFINITY, 65535), (f32::NAN, 0)]
+        {
+            assert_eq!(levels.to_u16(height), expect, "{height}");
+        }
+        assert_eq!((levels.to_u8(-100.0), levels.to_u8(100.0), levels.to_u8(300.0)), (0, 128, 255));
+    }
+
+    #[test]
+    fn every_level_comes_back_as_itself() {
+        let levels = Levels::new(120.5, 3920.25);
+        for level in 0..=u16::MAX {
+            let height = 120.5 + f64::from(level) / 65535.0 * (3920.25 - 120.5);
+            assert_eq!(levels.to_u16(height as f32), level);
+        }
+    }
+
+    #[test]
+    fn a_flat_or_senseless_range_is_flat_and_black() {
+        let (inf, nan) = (f32::INFINITY, f32::NAN);
+        for (low, high) in [(5.0, 5.0), (5.0, 4.0), (nan, 1.0), (1.0, nan), (-inf, inf), (inf, -inf)] {
+            let levels = Levels::new(low, high);
+            assert!(levels.is_flat(), "{low} {high}");
+            assert_eq!((levels.to_u16(5.0), levels.to_u8(1e9)), (0, 0));
+        }
+        assert!(Levels::of(&Grid::filled(Window::new(3, 2, 1.0), 7.0)).is_flat());
+        assert!(Levels::of(&Grid::filled(Window::new(3, 2, 1.0), nan)).is_flat());
+    }
+
+    #[test]
+    fn the_widest_range_does_not_overflow() {
+        let levels = Levels::new(f32::MIN, f32::MAX);
+        assert_eq!((levels.to_u16(f32::MIN), levels.to_u16(0.0), levels.to_u16(f32::MAX)), (0, 32768, 65535));
+    }
+}

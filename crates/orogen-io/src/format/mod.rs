@@ -1,0 +1,37 @@
+//! File formats, one a file. Writers stream into any [`Write`](std::io::Write) and hold a few rows at a time; readers of heights
+//! ([`import`]) never believe a file further than its bytes go.
+
+pub mod affine;
+pub mod asc;
+pub mod aux_xml;
+pub mod contour_svg;
+pub mod crs;
+mod deflate;
+pub mod dem;
+pub mod encoding;
+pub mod exr;
+pub mod exr_reader;
+pub mod features;
+pub mod fgb;
+pub mod flatbuffer;
+pub mod geojson;
+pub mod geotiff;
+pub mod gif;
+pub mod gpkg;
+pub mod grey;
+pub mod half;
+pub mod hgt;
+pub mod import;
+pub mod lerc;
+pub mod levels;
+pub mod npy;
+pub mod packed_tree;
+pub mod pgm;
+pub mod png;
+pub mod raw;
+pub mod sidecar;
+pub mod sqlite;
+pub mod svg;
+pub mod vrt;
+pub mod world_file;
+pub mod zarr;

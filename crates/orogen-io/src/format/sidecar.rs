@@ -1,0 +1,286 @@
+//! What stands beside a file of heights that does not tell everything itself: NAME.json or NAME.toml, for NAME.r16 also NAME.r16.json.
+//!
+//! Keys: `width`, `height` (samples); `cell` (metres from one to the next); `low`, `high` (metres of 0 and 65535, or of 0 and 255);
+//! `byte_order` ("little", unless "big"); `first_row` ("north", unless "south"); `nodata` (a sample that is no height); `geotransform` (six numbers in
+//! GDAL's order: west edge, step east, 0, north edge, 0, step south, which is negative); `crs` ("EPSG:32632"); `wkt` (the coordinate system as well-known
+//! text). Others are left alone, so that the `summary.json` which `orogen generate` writes beside `height.png` is one too.
+//!
+//! What it does not tell of the place is taken from a world file, a `.prj` and an `.aux.xml` beside the file.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use super::affine::Affine;
+use super::crs::keys::{self, GeoKeys};
+use super::crs::unit::Unit;
+use super::crs::wkt::MAX_LENGTH;
+use super::dem::{Placement, refused, turn_rows};
+use super::{aux_xml, world_file};
+use crate::open;
+use orogen_grid::error::Result;
+
+/// The longest text read.
+const LONGEST: u64 = 1 << 20;
+
+/// What a sidecar tells.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(default)]
+pub struct Sidecar {
+    /// Samples a row.
+    pub width: Option<u64>,
+    /// Rows.
+    pub height: Option<u64>,
+    /// Metres from one sample to the next.
+    pub cell: Option<f64>,
+    /// The height of a sample of 0.
+    #[serde(alias = "height_min")]
+    pub low: Option<f64>,
+    /// The height of the largest sample there can be.
+    #[serde(alias = "height_max")]
+    pub high: Option<f64>,
+    /// "little" or "big".
+    pub byte_order: Option<String>,
+    /// "north" or "south".
+    pub first_row: Option<String>,
+    /// The sample that is no height.
+    pub nodata: Option<f64>,
+    /// How columns and rows become coordinates, in GDAL's order, of pixels' corners.
+    pub geotransform: Option<[f64; 6]>,
+    /// The EPSG code of the coordinate system, with `EPSG:` before it.
+    pub crs: Option<String>,
+    /// The coordinate system as well-known text.
+    pub wkt: Option<String>,
+    /// What the files beside tell of the coordinate system of a format that tells its place itself.
+    #[serde(skip)]
+    pub keys: Option<GeoKeys>,
+    /// What beside the file could not be understood, in messages.
+    #[serde(skip)]
+    pub notes: Vec<String>,
+}
+
+impl Sidecar {
+    /// All that stands beside `path`; none if nothing does.
+    ///
+    /// # Errors
+    /// If there is one that cannot be read.
+    pub fn beside(path: &Path) -> Result<Option<Sidecar>> {
+        let mut places: Vec<PathBuf> = vec![own(path), path.with_extension("json"), path.with_extension("toml")];
+        if path.file_name().is_some_and(|name| name == "height.png" || name == "height8.png") {
+            places.push(path.with_file_name("summary.json"));
+        }
+        let told = places.into_iter().find(|place| place.is_file()).map(|place| Sidecar::read(&place)).transpose()?;
+        let mut all = told.clone().unwrap_or_default();
+        let world = world_file::names(path).into_iter().find(|place| place.is_file());
+        if let Some(world) = world {
+            let affine = text(&world, world_file::MAX_LENGTH, world_file::parse)?;
+            all.geotransform.get_or_insert(affine.geotransform());
+        }
+        let (notes, projection) = (aux_xml(path), path.with_extension("prj"));
+        if projection.is_file() {
+            match text(&projection, MAX_LENGTH as u64, keys::of_wkt) {
+                Ok(keys) => all.keys = Some(keys),
+                Err(why) => all.notes.push(format!("its coordinate system is not known: {why}")),
+            }
+        }
+        if notes.is_file() {
+            let notes = text(&notes, aux_xml::MAX_LENGTH, aux_xml::parse)?;
+            all.geotransform = all.geotransform.or(notes.affine.map(|affine| affine.geotransform()));
+            // Systems that GDAL names and nobody here knows are no reason to refuse heights.
+            all.keys = all.keys.or(notes.system.and_then(|system| keys::of_wkt(&system).ok()));
+        }
+        Ok((told.is_some() || all != Sidecar::default()).then_some(all))
+    }
+
+    fn read(path: &Path) -> Result<Sidecar> {
+        let toml = path.extension().is_some_and(|extension| extension == "toml");
+        text(path, LONGEST, |text| Sidecar::parse(text, toml))
+    }
+
+    /// From a text of TOML or JSON.
+    ///
+    /// # Errors
+    /// A message.
+    pub fn parse(text: &str, toml: bool) -> std::result::Result<Sidecar, String> {
+        let read: std::result::Result<Sidecar, String> = match toml {
+            true => toml::from_str(text).map_err(|fault| fault.message().to_string()),
+            false => serde_json::from_str(text).map_err(|fault| fault.to_string()),
+        };
+        let sidecar = read.map_err(|fault| format!("it is not a valid sidecar for heights: {fault}"))?;
+        if sidecar.cell.is_some_and(|cell| !(cell.is_finite() && cell > 0.0)) {
+            return Err("its `cell` is not greater than 0".into());
+        }
+        if [sidecar.low, sidecar.high].into_iter().flatten().any(|number| !number.is_finite()) {
+            return Err("its `low` and `high` are not both numbers".into());
+        }
+        Ok(sidecar)
+    }
+
+    /// Whether samples of several bytes begin with the highest.
+    ///
+    /// # Errors
+    /// If it says neither.
+    pub fn big_endian(&self) -> std::result::Result<bool, String> {
+        match self.byte_order.as_deref() {
+            None | Some("little") => Ok(false),
+            Some("big") => Ok(true),
+            Some(other) => {
+                Err(format!("the `byte_order` beside it is \"{}\", not \"little\" or \"big\"", other.escape_debug()))
+            }
+        }
+    }
+
+    /// Samples as they should be, row after row from the north.
+    ///
+    /// # Errors
+    /// If it does not tell which row is first.
+    pub fn north_first(&self, mut samples: Vec<f32>, width: usize) -> std::result::Result<Vec<f32>, String> {
+        let from_south = match self.first_row.as_deref() {
+            None => self.geotransform.is_some_and(|numbers| numbers[5] > 0.0),
+            Some("north") => false,
+            Some("south") => true,
+            Some(other) => {
+                let other = other.escape_debug();
+                return Err(format!("the `first_row` beside it is \"{other}\", not \"north\" or \"south\""));
+            }
+        };
+        if from_south {
+            turn_rows(&mut samples, width);
+        }
+        Ok(samples)
+    }
+
+    /// The heights of the least and the greatest sample.
+    ///
+    /// # Errors
+    /// If it does not tell them.
+    pub fn range(&self) -> std::result::Result<[f64; 2], String> {
+        match (self.low, self.high) {
+            (Some(low), Some(high)) => Ok([low, high]),
+            _ => Err(needs("low and high, the heights in metres of its lowest and highest sample value")),
+        }
+    }
+
+    /// Where the samples of so many rows stand: on their map; else, of which only the cell is known, from the origin.
+    ///
+    /// # Errors
+    /// A message if what it says of a map cannot be.
+    pub fn place(&self, rows: usize) -> std::result::Result<Option<Placement>, String> {
+        let Some(numbers) = self.geotransform else {
+            let Some(cell) = self.cell else { return Ok(None) };
+            let origin = [0.0, rows as f64 * cell - cell];
+            return Ok(Some(Placement { origin, step: [cell; 2], unit: Unit::Metres(1.0), cell: None, keys: None }));
+        };
+        let lattice = Affine::of_geotransform(numbers).lattice(rows)?;
+        let keys = self.system()?;
+        let unit = keys.as_ref().map_or(Unit::guess(lattice.origin, lattice.step), keys::unit);
+        Ok(Some(Placement { origin: lattice.origin, step: lattice.step, unit, cell: self.cell, keys }))
+    }
+
+    /// The coordinate system that it tells, or that a file beside does.
+    fn system(&self) -> std::result::Result<Option<GeoKeys>, String> {
+        if let Some(wkt) = &self.wkt {
+            return keys::of_wkt(wkt).map(Some).map_err(|why| format!("the `wkt` beside it is not understood: {why}"));
+        }
+        let Some(crs) = &self.crs else { return Ok(self.keys.clone()) };
+        keys::of_text(crs).map(Some).map_err(|why| format!("the `crs` beside it is \"{}\": {why}", crs.escape_debug()))
+    }
+
+    /// Adds the coordinate system of a `.prj` or `.aux.xml` to a place that tells none.
+    pub fn complete(&self, place: &mut Placement) {
+        if let (None, Some(keys)) = (&place.keys, &self.keys) {
+            place.unit = keys::unit(keys);
+            place.keys = Some(keys.clone());
+        }
+    }
+}
+
+/// What a text beside a file says.
+fn text<T>(path: &Path, most: u64, parse: impl Fn(&str) -> std::result::Result<T, String>) -> Result<T> {
+    let name = path.display().to_string();
+    let bytes = open::bytes(path, "read", most)?;
+    let bytes = bytes.ok_or_else(|| refused(&name, format!("it is longer than {most} bytes")))?;
+    parse(&String::from_utf8_lossy(&bytes)).map_err(|why| refused(&name, why))
+}
+
+/// GDAL's notes on a raster: NAME.EXT.aux.xml.
+pub fn aux_xml(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_os_string();
+    name.push(".aux.xml");
+    path.with_file_name(name)
+}
+
+/// The sidecar of this file alone, whatever else is called NAME: NAME.r16.json.
+pub fn own(path: &Path) -> PathBuf {
+    let mut name = path.file_name().unwrap_or_default().to_os_string();
+    name.push(".json");
+    path.with_file_name(name)
+}
+
+/// The message for a file that does not tell enough.
+pub fn needs(what: &str) -> String {
+    format!("it lacks {what}; write them to a file of the same name with the extension .json or .toml")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn toml_and_json_say_the_same() {
+        let toml =
+            Sidecar::parse("width = 3\nheight = 2\ncell = 10\nlow = -5\nhigh = 95.5\nother = 'x'", true).unwrap();
+        let json =
+            "{\"width\": 3, \"height\": 2, \"cell\": 10.0, \"height_min\": -5, \"height_max\": 95.5, \"seed\": 7}";
+        assert_eq!(toml, Sidecar::parse(json, false).unwrap());
+        assert_eq!((toml.range(), toml.big_endian()), (Ok([-5.0, 95.5]), Ok(false)));
+        assert_eq!(toml.place(2).unwrap().unwrap().origin, [0.0, 10.0]);
+    }
+
+    #[test]
+    fn rows_from_the_south_are_turned() {
+        let south = Sidecar { first_row: Some("south".into()), ..Sidecar::default() };
+        for (samples, expect) in [
+            (vec![1.0, 2.0, 3.0, 4.0], vec![3.0, 4.0, 1.0, 2.0]),
+            (vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0], vec![5.0, 6.0, 3.0, 4.0, 1.0, 2.0]),
+            (vec![1.0, 2.0], vec![1.0, 2.0]),
+        ] {
+            assert_eq!(south.north_first(samples, 2).unwrap(), expect);
+        }
+        assert_eq!(own(Path::new("a/b.r16")), Path::new("a/b.r16.json"));
+    }
+
+    #[test]
+    fn places_and_systems_are_told() {
+        let text = "cell = 64.5\ngeotransform = [7, 0.001, 0, 46, 0, -0.001]\ncrs = 'EPSG:4326'";
+        let place = Sidecar::parse(text, true).unwrap().place(3).unwrap().unwrap();
+        assert_eq!((place.origin, place.unit, place.cell), ([7.0005, 45.9995], Unit::Degrees, Some(64.5)));
+        assert_eq!(place.keys, Some(keys::of_epsg(4326, true)));
+        let south = Sidecar { geotransform: Some([0.0, 10.0, 0.0, 0.0, 0.0, 10.0]), ..Sidecar::default() };
+        assert_eq!(south.place(3).unwrap().unwrap().origin, [5.0, 25.0]);
+        assert_eq!(south.north_first(vec![1.0, 2.0], 1).unwrap(), [2.0, 1.0]);
+        for (text, expect) in [("crs = 'here'", "the `crs` beside it is \"here\""), ("wkt = 'here'", "not understood")]
+        {
+            let sidecar = Sidecar::parse(&format!("geotransform = [0, 1, 0, 0, 0, -1]\n{text}"), true).unwrap();
+            assert!(sidecar.place(3).unwrap_err().contains(expect));
+        }
+    }
+
+    #[test]
+    fn wrong_ones_are_sentences() {
+        for (text, expect) in [
+            ("width = 'a'", "not a valid sidecar for heights"),
+            ("= 3", "not a valid sidecar for heights"),
+            ("cell = 0", "`cell` is not greater than 0"),
+            ("low = nan", "not both numbers"),
+        ] {
+            let why = Sidecar::parse(text, true).unwrap_err();
+            assert!(why.contains(expect), "{text}: {why}");
+        }
+        let across = Sidecar { first_row: Some("east".into()), ..Sidecar::default() };
+        assert!(across.north_first(vec![1.0], 1).unwrap_err().contains("\"east\""));
+        let middle = Sidecar { byte_order: Some("middle".into()), ..Sidecar::default() };
+        assert!(middle.big_endian().unwrap_err().contains("\"middle\""));
+        assert!(middle.range().unwrap_err().contains("low and high"));
+    }
+}

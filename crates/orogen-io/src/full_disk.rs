@@ -1,0 +1,24 @@
+//! A writer for tests whose disk fills up.
+
+use std::io::{self, Write};
+
+/// Takes `left` bytes, then fails as a full disk does.
+pub struct Full {
+    /// Bytes that it still takes.
+    pub left: usize,
+}
+
+impl Write for Full {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.left == 0 && !bytes.is_empty() {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        let take = bytes.len().min(self.left);
+        self.left -= take;
+        Ok(take)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,67 @@
+//! Opening files that others wrote. A named pipe or a device may keep its reader waiting for ever, or never end: such names are refused.
+
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::Path;
+
+use orogen_grid::error::{Error, ErrorKind, Result};
+
+/// Where a process finds what its parent has opened for it, such as a shell's `<(command)`: nobody waits for a writer there.
+const INHERITED: [&str; 4] = ["/dev/fd/", "/dev/stdin", "/proc/self/fd/", "/proc/thread-self/fd/"];
+
+/// Opens a regular file. `doing` is what for, such as "read the recipe".
+///
+/// # Errors
+/// If it cannot be opened, or is a folder, a named pipe or a device.
+pub fn regular(path: &Path, doing: &str) -> Result<File> {
+    open(path, doing, false)
+}
+
+/// The bytes of a regular file, or of a pipe that was inherited; `None` if there are more than `most`.
+///
+/// # Errors
+/// If it cannot be read, or is a folder, a named pipe or a device.
+pub fn bytes(path: &Path, doing: &str, most: u64) -> Result<Option<Vec<u8>>> {
+    let mut bytes = Vec::new();
+    // Read with a bound, not by the length that is told: a pipe tells none.
+    let read = open(path, doing, true)?.take(most.saturating_add(1)).read_to_end(&mut bytes);
+    read.map_err(|cause| Error::file(doing, path, &cause))?;
+    Ok((bytes.len() as u64 <= most).then_some(bytes))
+}
+
+fn open(path: &Path, doing: &str, inherited: bool) -> Result<File> {
+    let failed = |cause: std::io::Error| Error::file(doing, path, &cause);
+    let kind = fs::metadata(path).map_err(failed)?;
+    let is_inherited = || INHERITED.iter().any(|folder| path.to_string_lossy().starts_with(folder));
+    if kind.is_file() || inherited && !kind.is_dir() && is_inherited() {
+        return File::open(path).map_err(failed);
+    }
+    let why = match kind.is_dir() {
+        true => "it is a folder",
+        false => "it is a pipe or a device; save its content to a file first",
+    };
+    Err(Error::new(ErrorKind::File, format!("cannot {doing} {}: {why}", path.display())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_ends_is_read() {
+        let path = std::env::temp_dir().join(format!("orogen-open-{}", std::process::id()));
+        fs::write(&path, b"12345").unwrap();
+        assert_eq!(bytes(&path, "read", 5).unwrap().unwrap(), b"12345");
+        assert_eq!(bytes(&path, "read", 4).unwrap(), None);
+        assert!(regular(&path, "read").is_ok());
+        fs::remove_file(&path).unwrap();
+        let message = |path: &str| bytes(Path::new(path), "read the palette", 5).unwrap_err().to_string();
+        assert!(message(&path.to_string_lossy()).starts_with("cannot read the palette "));
+        let folder = std::env::temp_dir();
+        assert!(message(&folder.to_string_lossy()).ends_with("it is a folder"));
+        if cfg!(unix) {
+            assert!(message("/dev/zero").contains("/dev/zero: it is a pipe or a device"));
+            assert!(regular(Path::new("/dev/zero"), "read").is_err());
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Palettes from files: the one list of the formats that are read.
+
+use std::path::Path;
+
+use super::palette::Palette;
+use super::{cpt, gdaldem, gpl, own};
+use crate::open;
+use orogen_grid::error::{Error, ErrorKind, Result};
+
+/// Larger than any palette.
+const MOST: u64 = 1 << 20;
+
+/// Reads a palette: GMT's `.cpt`, GIMP's `.gpl`, own stops as `.toml`, and whatever else as a colour file of `gdaldem`.
+///
+/// # Errors
+/// If the file cannot be read, or its text is none of these: with the line.
+pub fn read(path: &Path) -> Result<Palette> {
+    let refused =
+        |why: String| Error::new(ErrorKind::File, format!("cannot read the palette {}: {why}", path.display()));
+    let Some(bytes) = open::bytes(path, "read", MOST)? else {
+        return Err(refused(format!("it has more than {MOST} bytes, the maximum for a palette")));
+    };
+    let text = String::from_utf8(bytes).map_err(|_| refused("it is not UTF-8 text".into()))?;
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    parse(&name, &extension, &text).map_err(refused)
+}
+
+/// The same of a text at hand: `extension` tells the format.
+///
+/// # Errors
+/// What is wrong with it, as a message.
+pub fn parse(name: &str, extension: &str, text: &str) -> std::result::Result<Palette, String> {
+    match extension {
+        "cpt" => cpt::parse(name, text),
+        "gpl" => gpl::parse(name, text),
+        "toml" => own::parse(name, text),
+        _ => gdaldem::parse(name, text),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fitted::Fitted;
+    use super::*;
+
+    const TEXTS: [(&str, &str); 4] = [
+        (
+            "cpt",
+            "# COLOR_MODEL = +HSV\n# HINGE = 0\n# RANGE = -5/9\n-1 120-1-1 0 240 1 0.5 L\n0 #fed 1 4/3/2/1 ; sea\nB red\nF 7\nN -\n",
+        ),
+        (
+            "gpl",
+            "GIMP Palette\nName: Hills\nColumns: 3\n# by hand\n  0 10 20\tdeep\n 30 40 50\n255 255 255 white snow\n",
+        ),
+        (
+            "toml",
+            "name = \"A\"\nunit = \"sea\"\nmix = \"hsv\"\nstops = [[-1, \"navy\"], [0.5, \"#fa0\"]]\nabove = \"white\"\n",
+        ),
+        ("txt", "# a comment\n100%  white\n0% 0 100 0 255\n\n1500:10,20,30\nnv\tgrey50\ndefault 1 2 3\n-7e2 white\n"),
+    ];
+
+    /// Damaged texts are refused in a message or read; either way nothing panics, and what is read has colours.
+    #[test]
+    fn damage_is_no_danger() {
+        let rounds = if std::env::var_os("OROGEN_LONG").is_some() { 200_000 } else { 1_000 };
+        let pieces =
+            ["-", "/", "1e308", "nan", "#", "\n", " ", "%", "\"", "é", "[", "0", "B ", "=", ",", "99999999999", "\0"];
+        let mut state = 0x2545_f491_4f6c_dd1du64;
+        let mut next = |below: usize| {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state % below.max(1) as u64) as usize
+        };
+        for (extension, text) in TEXTS {
+            let mut read = 0;
+            for _ in 0..rounds {
+                let mut letters: Vec<char> = text.chars().collect();
+                for _ in 0..=next(4) {
+                    let at = next(letters.len());
+                    match next(3) {
+                        0 => drop(letters.drain(at..(at + 1 + next(5)).min(letters.len()))),
+                        1 => drop(letters.splice(at..at, pieces[next(pieces.len())].chars())),
+                        _ if !letters.is_empty() => letters[at] = char::from(b' ' + next(95) as u8),
+                        _ => {}
+                    }
+                }
+                let text: String = letters.into_iter().collect();
+                if let Ok(palette) = parse("damaged", extension, &text) {
+                    read += 1;
+                    let fitted = Fitted::new(&palette, -100.0, 900.0, 0.0);
+                    for height in [f32::MIN, -50.0, 0.0, 7.0, 1e9, f32::NAN] {
+                        assert!(fitted.at(height).iter().all(|c| c.is_finite()), "{text}");
+                    }
+                }
+            }
+            assert!(read > 0 && read < rounds, "{extension}: {read} of {rounds}");
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! The files of a build: put in their places, found again, known by their checksums.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use super::digest::{FileDigest, Measured};
+use super::job::{Job, JobFile, Made, Record};
+use super::journal::Journal;
+use super::work_dir::WorkDir;
+use orogen_grid::error::{Error, Result};
+use orogen_io::file;
+
+/// Bytes gathered before they are written to a file that is put together.
+const BUFFER: usize = 1 << 20;
+
+/// Puts the bytes of a file into it. The tests put a disk that fills up in its place.
+pub type Put = dyn Fn(&Path, &[u8]) -> io::Result<()> + Send + Sync;
+
+/// The files that were made, and the journal that knows of them.
+pub struct OutputStore<'a> {
+    work_dir: &'a WorkDir,
+    journal: Journal,
+    records: Mutex<BTreeMap<Job, Record>>,
+    count: AtomicU64,
+    put: &'a Put,
+}
+
+impl<'a> OutputStore<'a> {
+    /// What `records` tell of, and what will be made.
+    pub fn new(
+        work_dir: &'a WorkDir,
+        journal: Journal,
+        records: BTreeMap<Job, Record>,
+        put: &'a Put,
+    ) -> OutputStore<'a> {
+        OutputStore { work_dir, journal, records: Mutex::new(records), count: AtomicU64::new(0), put }
+    }
+
+    /// Puts the files of a job into their places and enters them into the journal.
+    ///
+    /// # Errors
+    /// If they cannot be written.
+    pub fn keep(&self, job: Job, places: &[JobFile], made: &Made) -> Result<()> {
+        let mut digests = Vec::with_capacity(made.files.len());
+        for (place, bytes) in places.iter().zip(&made.files) {
+            digests.push(self.file(place, bytes)?);
+        }
+        let record = Record { digests, ranges: made.ranges.clone() };
+        self.journal.enter(job, &record)?;
+        self.records.lock().unwrap_or_else(PoisonError::into_inner).insert(job, record);
+        Ok(())
+    }
+
+    /// Puts one file into its place, whole.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn file(&self, place: &JobFile, bytes: &[u8]) -> Result<FileDigest> {
+        let path = self.work_dir.path(place);
+        let temporary = self.temporary();
+        let put = || {
+            (self.put)(&temporary, bytes)?;
+            settle(&temporary, &path)
+        };
+        put().map_err(|cause| Error::file("write", &path, &cause))?;
+        Ok(FileDigest::of(bytes))
+    }
+
+    /// Puts together the result that is one file: `body` writes it; it takes its place when it is whole and synced.
+    ///
+    /// # Errors
+    /// If it cannot be written, or as `body` does.
+    pub fn assemble(&self, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<FileDigest> {
+        let (path, temporary) = (self.work_dir.out(), self.temporary());
+        let put = || -> io::Result<FileDigest> {
+            let mut out = BufWriter::with_capacity(BUFFER, Measured::new(File::create(&temporary)?));
+            body(&mut out)?;
+            let (file, digest) = out.into_inner().map_err(io::IntoInnerError::into_error)?.end();
+            if let Ok(there) = fs::metadata(path) {
+                // Some file systems have no permissions to keep; the file matters more.
+                let _ = file.set_permissions(there.permissions());
+            }
+            file.sync_all()?;
+            self.work_dir.output().check(Some(&temporary))?;
+            settle(&temporary, path)?;
+            Ok(digest)
+        };
+        put().map_err(|cause| file::explain("write", path, &cause))
+    }
+
+    /// Reads a file of a job.
+    ///
+    /// # Errors
+    /// If it cannot be read.
+    pub fn read(&self, place: &JobFile, bytes: &mut Vec<u8>) -> io::Result<()> {
+        use io::Read as _;
+        bytes.clear();
+        let path = self.work_dir.path(place);
+        let explain = |cause: io::Error| io::Error::from(Error::file("read", &path, &cause));
+        File::open(&path).and_then(|mut file| file.read_to_end(bytes)).map_err(explain)?;
+        Ok(())
+    }
+
+    /// Where a file of a job is.
+    pub fn path(&self, place: &JobFile) -> PathBuf {
+        self.work_dir.path(place)
+    }
+
+    /// What is known of a job that was done.
+    pub fn record(&self, job: Job) -> Option<Record> {
+        self.records.lock().unwrap_or_else(PoisonError::into_inner).get(&job).cloned()
+    }
+
+    /// The lowest and highest finite sample of a layer, over all jobs that tell; none if no sample is finite.
+    pub fn range(&self, layer: usize) -> Option<[f32; 2]> {
+        let records = self.records.lock().unwrap_or_else(PoisonError::into_inner);
+        let ranges = records.values().filter_map(|record| record.ranges.get(layer));
+        let [low, high] =
+            ranges.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], [l, h]| [low.min(*l), high.max(*h)]);
+        (low <= high).then_some([low, high])
+    }
+
+    /// All that is known.
+    pub fn into_records(self) -> BTreeMap<Job, Record> {
+        self.records.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn temporary(&self) -> PathBuf {
+        self.work_dir.temporary(self.count.fetch_add(1, Ordering::Relaxed))
+    }
+}
+
+/// Writes a file.
+pub fn put(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    File::create(path)?.write_all(bytes)
+}
+
+/// Puts a file into its place, whose folder may have to be made first.
+fn settle(temporary: &Path, path: &Path) -> io::Result<()> {
+    match fs::rename(temporary, path) {
+        Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
+            fs::create_dir_all(file::folder(path))?;
+            fs::rename(temporary, path)
+        }
+        other => other,
+    }
+}

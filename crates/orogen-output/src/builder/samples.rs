@@ -1,0 +1,73 @@
+//! Samples of a tile on their way to a file: made square, measured, as bytes to be read back here.
+
+use std::io;
+
+use super::job::JobFile;
+use super::output_store::OutputStore;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::Grid;
+use orogen_io::file;
+
+/// Little-endian f32.
+pub fn to_bytes(samples: &[f32]) -> Vec<u8> {
+    samples.iter().flat_map(|sample| sample.to_le_bytes()).collect()
+}
+
+/// The samples of a file of the store, which must be so many.
+pub fn read(store: &OutputStore, place: &JobFile, count: usize) -> Result<Vec<f32>> {
+    let mut bytes = Vec::with_capacity(4 * count);
+    let path = store.path(place);
+    store.read(place, &mut bytes).map_err(|cause: io::Error| file::explain("read", &path, &cause))?;
+    if bytes.len() != 4 * count {
+        return Err(changed(store, place));
+    }
+    Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
+}
+
+/// What there is to say of a file that is not as it was written.
+pub fn changed(store: &OutputStore, place: &JobFile) -> Error {
+    let path = store.path(place);
+    let message = format!("{} has been changed or damaged; resume the build to make it again", path.display());
+    Error::new(ErrorKind::File, message)
+}
+
+/// A grid's samples row by row in a square of `side`, what lies beyond the grid filled by `beyond`.
+pub fn square(grid: &Grid, side: usize, beyond: f32) -> Vec<f32> {
+    let mut out = vec![beyond; side * side];
+    for j in 0..grid.height() {
+        out[j * side..j * side + grid.width()].copy_from_slice(grid.row(j));
+    }
+    out
+}
+
+/// As [`square`], the grid's edge repeated beyond it.
+pub fn square_repeated(grid: &Grid, side: usize) -> Vec<f32> {
+    let mut out = Vec::with_capacity(side * side);
+    for j in 0..side {
+        let row = grid.row(j.min(grid.height() - 1));
+        out.extend_from_slice(row);
+        out.resize((j + 1) * side, row[row.len() - 1]);
+    }
+    out
+}
+
+/// The lowest and highest finite sample; the other way round if there is none.
+pub fn range(grid: &Grid) -> [f32; 2] {
+    let finite = grid.data().iter().filter(|sample| sample.is_finite());
+    finite.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], sample| [low.min(*sample), high.max(*sample)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use orogen_grid::grid::Window;
+
+    #[test]
+    fn what_lies_beyond() {
+        let grid = Grid::from_data(Window::new(2, 2, 1.0), vec![1.0, 2.0, 3.0, f32::INFINITY]).unwrap();
+        assert_eq!(square(&grid, 3, 9.0), [1.0, 2.0, 9.0, 3.0, f32::INFINITY, 9.0, 9.0, 9.0, 9.0]);
+        let inf = f32::INFINITY;
+        assert_eq!(square_repeated(&grid, 3), [1.0, 2.0, 2.0, 3.0, inf, inf, 3.0, inf, inf]);
+        assert_eq!(range(&grid), [1.0, 3.0]);
+    }
+}

@@ -1,0 +1,149 @@
+//! What is wanted.
+
+use std::path::Path;
+
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::Window;
+use orogen_io::format::encoding::Encoding;
+
+/// What a build makes of its samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// One Cloud-Optimised GeoTIFF.
+    Cog,
+    /// A Zarr v3 group, an array a layer.
+    Zarr,
+    /// A folder of tiles that share their edges.
+    Tiles(Samples),
+    /// An XYZ tree of PNG tiles whose colours are heights, with TileJSON.
+    Xyz(Encoding),
+}
+
+/// How the tiles of a folder hold their samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Samples {
+    /// 16-bit grey PNG, over the range of the whole window.
+    Png,
+    /// Headerless u16, little-endian, over the range of the whole window.
+    R16,
+    /// Headerless f32, little-endian.
+    R32,
+}
+
+impl Form {
+    /// Its name, in journals and messages.
+    pub fn name(self) -> &'static str {
+        match self {
+            Form::Cog => "cog",
+            Form::Zarr => "zarr",
+            Form::Tiles(Samples::Png) => "png",
+            Form::Tiles(Samples::R16) => "r16",
+            Form::Tiles(Samples::R32) => "r32",
+            Form::Xyz(encoding) => encoding.name(),
+        }
+    }
+
+    /// All there are.
+    pub const ALL: [Form; 7] = [
+        Form::Cog,
+        Form::Zarr,
+        Form::Tiles(Samples::Png),
+        Form::Tiles(Samples::R16),
+        Form::Tiles(Samples::R32),
+        Form::Xyz(Encoding::Terrarium),
+        Form::Xyz(Encoding::TerrainRgb),
+    ];
+
+    /// The form of that name.
+    pub fn named(name: &str) -> Option<Form> {
+        Form::ALL.into_iter().find(|form| form.name() == name)
+    }
+
+    /// The form that a name tells by its extension: `.tif`, `.tiff` or `.zarr`.
+    pub fn of(out: &Path) -> Option<Form> {
+        let extension = out.extension()?.to_string_lossy().to_lowercase();
+        match extension.as_str() {
+            "tif" | "tiff" => Some(Form::Cog),
+            "zarr" => Some(Form::Zarr),
+            _ => None,
+        }
+    }
+
+    /// Samples along a tile's side if nobody says; none where it depends on the window. Tiles that share their edges have one
+    /// more than a power of two, as engines ask for.
+    pub fn usual_tile(self) -> Option<usize> {
+        match self {
+            Form::Cog => None,
+            Form::Zarr => Some(512),
+            Form::Tiles(_) => Some(513),
+            Form::Xyz(_) => Some(256),
+        }
+    }
+
+    /// Whether it is one file rather than a folder.
+    pub fn is_file(self) -> bool {
+        self == Form::Cog
+    }
+
+    /// Whether it can hold several layers.
+    pub fn holds_many(self) -> bool {
+        matches!(self, Form::Zarr | Form::Tiles(_))
+    }
+}
+
+/// What is wanted: samples of layers, in a form.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BuildSpec {
+    /// What is made.
+    pub form: Form,
+    /// The samples.
+    pub window: Window,
+    /// Samples along a tile's side; `None` for [`Form::usual_tile`].
+    pub tile: Option<usize>,
+    /// The layers, each once.
+    pub layers: Vec<String>,
+}
+
+/// Longest name of a layer that becomes part of a file's name.
+const LONGEST_NAME: usize = 100;
+
+impl BuildSpec {
+    /// Refuses what no form can be made of.
+    ///
+    /// # Errors
+    /// If there is no layer, one twice, one whose name no file can have, or more than the form can hold.
+    pub fn check(&self) -> Result<()> {
+        let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
+        if self.layers.is_empty() {
+            return refuse("no layer was chosen; name at least one with --layers".into());
+        }
+        if self.layers.len() > 1 && !self.form.holds_many() {
+            return refuse(format!(
+                "{} holds one layer, and {} were chosen; choose one, or build a .zarr or a folder of tiles",
+                match self.form {
+                    Form::Cog => "a GeoTIFF",
+                    _ => "an XYZ tree",
+                },
+                self.layers.len()
+            ));
+        }
+        for (i, layer) in self.layers.iter().enumerate() {
+            if self.layers[..i].contains(layer) {
+                return refuse(format!("the layer `{layer}` is listed twice"));
+            }
+            let plain = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '.');
+            let named = self.form.holds_many();
+            if named && (layer.starts_with(['.', '_']) || layer.len() > LONGEST_NAME || !layer.chars().all(plain)) {
+                return refuse(format!(
+                    "`{layer}` cannot be used in file names: at most {LONGEST_NAME} letters, digits, `-`, `_` and `.` are allowed, starting with a letter or digit; rename the output in the recipe"
+                ));
+            }
+            if self.form == Form::Zarr && matches!(layer.as_str(), "x" | "y") {
+                return refuse(format!(
+                    "the layer `{layer}` has the name of a coordinate array of a .zarr; rename the output in the recipe"
+                ));
+            }
+        }
+        Ok(())
+    }
+}

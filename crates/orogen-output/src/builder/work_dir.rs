@@ -1,0 +1,319 @@
+//! Where a build lies on disk, and who may work there.
+
+use std::collections::BTreeSet;
+use std::ffi::OsString;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::job::JobFile;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_io::file::{self, Output};
+
+/// Names within the folder beside the result.
+const LOCK: &str = "lock";
+const JOURNAL: &str = "journal";
+const SCRATCH: &str = "scratch";
+const TEMPORARY: &str = "temporary";
+
+/// What a folder has at its top if a build has finished it.
+const MARKS: [&str; 3] = ["zarr.json", "manifest.json", "tiles.json"];
+
+/// How many files are synced at once.
+const SYNCS: usize = 16;
+
+/// The result and the folder beside it.
+#[derive(Debug, Clone)]
+pub struct WorkDir {
+    /// What may be replaced there.
+    output: Output,
+    out: PathBuf,
+    beside: PathBuf,
+    /// Whether the result is one file.
+    file: bool,
+}
+
+/// The lock of a build at work. The system releases it when the process ends, in any way.
+#[derive(Debug)]
+pub struct BuildLock {
+    _lock: File,
+    beside: PathBuf,
+    /// Whether the folder was made for this build.
+    new: bool,
+    /// Whether something worth keeping lies in it.
+    kept: bool,
+}
+
+impl BuildLock {
+    /// The folder has got what it was made for.
+    pub fn keep(&mut self) {
+        self.kept = true;
+    }
+}
+
+impl Drop for BuildLock {
+    fn drop(&mut self) {
+        if self.new && !self.kept {
+            // What fails before anything was made leaves no trace. Removes only what is as good as empty.
+            let _ = fs::remove_file(self.beside.join(LOCK));
+            let _ = fs::remove_dir(&self.beside);
+        }
+    }
+}
+
+impl WorkDir {
+    /// The site of a result at `out`.
+    ///
+    /// # Errors
+    /// If `out` does not name something that can be a result.
+    pub fn new(output: &Output, is_file: bool) -> Result<WorkDir> {
+        let out = output.path();
+        let refuse = |why: &str| Err(Error::new(ErrorKind::File, format!("cannot build {}: {why}", out.display())));
+        // Through links, so that what they name is replaced and they stay.
+        let real = match fs::canonicalize(out) {
+            Ok(real) => real,
+            Err(_) if fs::symlink_metadata(out).is_ok() => {
+                return refuse("it is a link to something that does not exist");
+            }
+            Err(_) => out.to_path_buf(),
+        };
+        let Some(name) = real.file_name() else {
+            return refuse("it does not name a file or folder");
+        };
+        match fs::metadata(&real) {
+            Ok(there) if is_file && there.is_dir() => return refuse("it is a folder"),
+            Ok(there) if is_file && !there.is_file() => return refuse("it is not a regular file"),
+            Ok(there) if is_file && there.permissions().readonly() => return refuse("it is marked read-only"),
+            Ok(there) if !is_file && !there.is_dir() => return refuse("it is a file, and a folder is needed"),
+            _ => {}
+        }
+        let mut beside = name.to_os_string();
+        beside.push(".build");
+        Ok(WorkDir { output: output.clone(), beside: real.with_file_name(beside), out: real, file: is_file })
+    }
+
+    /// The result.
+    pub fn out(&self) -> &Path {
+        &self.out
+    }
+
+    /// What may be replaced at its place.
+    pub fn output(&self) -> &Output {
+        &self.output
+    }
+
+    /// The folder beside the result.
+    pub fn beside(&self) -> &Path {
+        &self.beside
+    }
+
+    /// The journal.
+    pub fn journal(&self) -> PathBuf {
+        self.beside.join(JOURNAL)
+    }
+
+    /// A file of a job.
+    pub fn path(&self, place: &JobFile) -> PathBuf {
+        match place {
+            JobFile::Result(path) => self.result(path),
+            JobFile::Scratch(path) => self.beside.join(SCRATCH).join(path),
+        }
+    }
+
+    /// A file of the result; an empty path is the result itself.
+    pub fn result(&self, path: &Path) -> PathBuf {
+        if path.as_os_str().is_empty() { self.out.clone() } else { self.out.join(path) }
+    }
+
+    /// A name for a file that waits to be put in place, one for each `n`.
+    pub fn temporary(&self, n: u64) -> PathBuf {
+        self.beside.join(TEMPORARY).join(n.to_string())
+    }
+
+    /// Makes the folder beside the result and locks it.
+    ///
+    /// # Errors
+    /// If another build is at work there, or nothing can be written there.
+    pub fn hold(&self) -> Result<BuildLock> {
+        file::check_folder(file::folder(&self.out))?;
+        let new = match fs::create_dir(&self.beside) {
+            Ok(()) => true,
+            Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => false,
+            Err(cause) => return Err(Error::file("make the folder", &self.beside, &cause)),
+        };
+        if let Some(foreign) = self.foreign_beside() {
+            let message = format!(
+                "{} holds {}, which was not made by a build, and a build of {} needs that folder; move it away, or choose another output",
+                self.beside.display(),
+                foreign.to_string_lossy(),
+                self.out.display()
+            );
+            return Err(Error::new(ErrorKind::File, message));
+        }
+        let path = self.beside.join(LOCK);
+        let failed = |cause: io::Error| Error::file("lock", &path, &cause);
+        let lock = OpenOptions::new().create(true).truncate(false).write(true).open(&path).map_err(failed)?;
+        match lock.try_lock() {
+            Ok(()) => Ok(BuildLock { _lock: lock, beside: self.beside.clone(), new, kept: false }),
+            Err(TryLockError::WouldBlock) => Err(Error::new(
+                ErrorKind::File,
+                format!(
+                    "another build of {} is running; wait until it ends, or choose another output",
+                    self.out.display()
+                ),
+            )),
+            Err(TryLockError::Error(cause)) => Err(failed(cause)),
+        }
+    }
+
+    /// Whether something is at the place of the result; an empty folder is nothing.
+    pub fn is_taken(&self) -> bool {
+        match fs::read_dir(&self.out) {
+            Ok(mut entries) => entries.next().is_some(),
+            Err(_) => self.out.exists(),
+        }
+    }
+
+    /// What lies in the folder beside the result that no build puts there.
+    fn foreign_beside(&self) -> Option<OsString> {
+        let names = fs::read_dir(&self.beside).ok()?.flatten().map(|entry| entry.file_name());
+        names.filter(|name| ![LOCK, JOURNAL, SCRATCH, TEMPORARY].iter().any(|own| name == own)).min()
+    }
+
+    /// Makes room for a build that begins: removes the files of the one before, `old` within the result, and no others. Returns those, which
+    /// stay. `known` is whether there is a journal, and so the result is a build's own; `new` are the files that will be written.
+    ///
+    /// A result that is one file is left to be replaced when the new one is there.
+    ///
+    /// # Errors
+    /// If no build has made what is there, if a file that stays is in the way of a new one, or if something cannot be removed. Nothing is removed
+    /// then.
+    pub fn clear(&self, known: bool, old: &BTreeSet<PathBuf>, new: &BTreeSet<PathBuf>) -> Result<Vec<PathBuf>> {
+        let mut foreign = Vec::new();
+        if !self.file && self.is_taken() {
+            let refuse = |message: String| Err(Error::new(ErrorKind::File, message));
+            if !known && !MARKS.iter().any(|mark| self.out.join(mark).is_file()) {
+                return refuse(format!(
+                    "{} holds files that were not made by a build, which --force does not remove; empty the folder, or choose another output",
+                    self.out.display()
+                ));
+            }
+            let (files, folders) = self.contents()?;
+            let policy = self.output.policy();
+            let (own, others): (Vec<PathBuf>, Vec<PathBuf>) =
+                files.into_iter().partition(|path| old.contains(path) && !policy.is_input(&self.out.join(path)));
+            if let Some(path) = others.iter().find(|path| new.contains(*path)) {
+                return refuse(format!(
+                    "{} was not made by a build and would be overwritten; move it away, or choose another output",
+                    self.out.join(path).display()
+                ));
+            }
+            // The journal first: a half removed result must not look like one to go on with.
+            remove(&self.journal(), |path| fs::remove_file(path))?;
+            own.iter().try_for_each(|path| remove(&self.out.join(path), |path| fs::remove_file(path)))?;
+            // The innermost first. Those that hold something stay, and so do those of others that were empty.
+            let held: BTreeSet<&Path> = own.iter().flat_map(|path| path.ancestors().skip(1)).collect();
+            let emptied = folders.iter().rev().filter(|folder| held.contains(folder.as_path()));
+            emptied.for_each(|folder| drop(fs::remove_dir(self.out.join(folder))));
+            foreign = others;
+        }
+        remove(&self.journal(), |path| fs::remove_file(path))?;
+        self.sweep()?;
+        Ok(foreign)
+    }
+
+    /// The files and the folders of a result that is a folder, by their paths within it. Links are files, wherever they lead.
+    fn contents(&self) -> Result<(Vec<PathBuf>, BTreeSet<PathBuf>)> {
+        let (mut files, mut folders, mut left) = (Vec::new(), BTreeSet::new(), vec![PathBuf::new()]);
+        while let Some(within) = left.pop() {
+            let folder = self.out.join(&within);
+            let failed = |cause: io::Error| Error::file("read", &folder, &cause);
+            for entry in fs::read_dir(&folder).map_err(failed)? {
+                let entry = entry.map_err(failed)?;
+                let path = within.join(entry.file_name());
+                match entry.file_type().map_err(failed)?.is_dir() {
+                    true => {
+                        folders.insert(path.clone());
+                        left.push(path);
+                    }
+                    false => files.push(path),
+                }
+            }
+        }
+        files.sort();
+        Ok((files, folders))
+    }
+
+    /// Removes what was needed only on the way.
+    ///
+    /// # Errors
+    /// If it cannot be removed.
+    pub fn sweep(&self) -> Result<()> {
+        remove(&self.beside.join(SCRATCH), |path| fs::remove_dir_all(path))?;
+        self.tidy()
+    }
+
+    /// Removes files that were left on their way to their place.
+    ///
+    /// # Errors
+    /// If they cannot be removed.
+    pub fn tidy(&self) -> Result<()> {
+        remove(&self.beside.join(TEMPORARY), |path| fs::remove_dir_all(path))
+    }
+
+    /// Makes the folders that files go to.
+    ///
+    /// # Errors
+    /// If they cannot be made.
+    pub fn furnish(&self) -> Result<()> {
+        let make = |path: &Path| fs::create_dir_all(path).map_err(|cause| Error::file("make the folder", path, &cause));
+        make(&self.beside.join(TEMPORARY))?;
+        if self.file { Ok(()) } else { make(&self.out) }
+    }
+
+    /// Makes all of the result survive a power cut: the files at `paths` within it, the folders they are in, and their names.
+    ///
+    /// # Errors
+    /// If a file cannot be synced.
+    pub fn sync(&self, paths: &[PathBuf]) -> Result<()> {
+        let sync = |path: &PathBuf| {
+            let real = self.result(path);
+            let synced = File::open(&real).and_then(|file| file.sync_all());
+            synced.map_err(|cause| Error::file("write", &real, &cause))
+        };
+        // To wait for one disk takes no processor, and a file system that is asked many things at once answers them together.
+        let next = AtomicUsize::new(0);
+        let work = || {
+            while let Some(path) = paths.get(next.fetch_add(1, Ordering::Relaxed)) {
+                sync(path)?;
+            }
+            Ok(())
+        };
+        std::thread::scope(|scope| {
+            let threads: Vec<_> = (0..SYNCS.min(paths.len())).map(|_| scope.spawn(work)).collect();
+            let lost = || Error::new(ErrorKind::File, "a thread that synchronises files failed");
+            threads.into_iter().try_for_each(|thread| thread.join().map_err(|_| lost())?)
+        })?;
+        let mut folders = BTreeSet::new();
+        for path in paths {
+            let real = self.result(path);
+            let within = real.ancestors().skip(1).take_while(|folder| folder.starts_with(&self.out));
+            folders.extend(within.map(Path::to_path_buf));
+        }
+        folders.insert(file::folder(&self.out).to_path_buf());
+        folders.insert(self.beside.clone());
+        for folder in folders {
+            file::sync_folder(&folder);
+        }
+        Ok(())
+    }
+}
+
+/// Removes something that may not be there.
+fn remove(path: &Path, how: impl FnOnce(&Path) -> io::Result<()>) -> Result<()> {
+    match how(path) {
+        Err(cause) if cause.kind() != io::ErrorKind::NotFound => Err(Error::file("remove", path, &cause)),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,220 @@
+//! Pictures of several channels: normal maps, color maps, and splat maps of as many pictures as they take.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use super::files::Files;
+use super::format::refuse;
+use super::layer_source::LayerSource;
+use super::options::{OptionSpec, Options, ValueKind};
+use super::place;
+use super::quantizer;
+use super::sidecar::{self, SampleEncoding};
+use orogen_grid::grid::Grid;
+use orogen_io::format::levels::Levels;
+use orogen_io::format::png::{self, Picture, Pixel};
+use orogen_io::palette::color::Encoder;
+use orogen_io::spool::Spool;
+
+/// The option that turns green.
+pub const NORMAL: OptionSpec = OptionSpec {
+    name: "normal",
+    value: "WAY",
+    about: "Direction of green in a normal map: opengl (up) or directx (down) [default: opengl]",
+    value_kind: ValueKind::Word(&["opengl", "directx"]),
+};
+
+/// The option that says how weights are kept.
+pub const WEIGHTS: OptionSpec = OptionSpec {
+    name: "weights",
+    value: "HOW",
+    about: "Weights of a splat map: rgba, four per picture (NAME.png, NAME_2.png, ...), or layers, one grey picture each (NAME_grass.png, ...) \
+            [default: rgba]",
+    value_kind: ValueKind::Word(&["rgba", "layers"]),
+};
+
+/// Writes normals as red (east), green (north, or south for DirectX) and blue (up), -1 to 1 as 0 to 255 or 65535.
+///
+/// Fails as the subject and the files do.
+pub fn write_normals(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let (window, most) = (*source.window(), if options.word("bits") == Some("16") { 65535 } else { 255 });
+    let directx = options.word(NORMAL.name) == Some("directx");
+    let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+    let green = if directx { "south (DirectX)" } else { "north (OpenGL)" };
+    let about = format!("normals: red east, green {green}, blue up; {} metres a sample", window.cell);
+    let notes = [("Software", made_by.as_str()), ("Description", about.as_str())];
+    let pixel = if most == 255 { Pixel::Data8 } else { Pixel::Data16 };
+    let picture = Picture { width: window.width, height: window.height, pixel, notes: &notes };
+    let levels = Levels::new(-1.0, 1.0);
+    files.write(|out| {
+        png::write_through(out, &picture, |out| {
+            source.rows(|band| {
+                (0..band[0].height()).try_for_each(|j| {
+                    let row: Vec<f32> = (0..window.width)
+                        .flat_map(|i| {
+                            let [east, north, up] = [0, 1, 2].map(|part| band[part].get(i, j));
+                            [east, if directx { -north } else { north }, up]
+                        })
+                        .collect();
+                    quantizer::write_levels(out, &row, &levels, most)
+                })
+            })
+        })
+    })?;
+    let told = place::write(files, source, options, Some(false))?;
+    Ok(format!("red east, green {green}, blue up{told}"))
+}
+
+/// Writes colors as sRGB of 8 bits.
+///
+/// Fails as the subject and the files do.
+pub fn write_color(source: &mut LayerSource, files: &mut Files) -> io::Result<String> {
+    let window = *source.window();
+    let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+    let about = format!("{}: unlit color, sRGB; {} metres a sample", source.layer(), window.cell);
+    let notes = [("Software", made_by.as_str()), ("Description", about.as_str())];
+    let picture = Picture { width: window.width, height: window.height, pixel: Pixel::Rgb8, notes: &notes };
+    let encoder = Encoder::new();
+    files.write(|out| {
+        png::write_through(out, &picture, |out| {
+            source.rows(|band| {
+                let [red, green, blue] = band else { return refuse("a color has three channels".into()) };
+                let light = red.data().iter().zip(green.data()).zip(blue.data());
+                let bytes: Vec<u8> =
+                    light.flat_map(|((red, green), blue)| encoder.bytes([*red, *green, *blue])).collect();
+                out.write_all(&bytes)
+            })
+        })
+    })?;
+    Ok("unlit color, sRGB".to_string())
+}
+
+/// Writes weights that add up to 255 wherever there is ground.
+///
+/// Fails as the subject and the files do, and on a stream, which takes one file alone.
+pub fn write_weights(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let Some(path) = files.path().map(Path::to_path_buf) else {
+        return refuse("weights are written to several files, not to standard output; name a file with -o".into());
+    };
+    let (window, names) = (*source.window(), source.channel_names());
+    let mut spool = files.spool();
+    source.rows(|band| put_aside(&mut spool, band))?;
+    let layers = options.word(WEIGHTS.name) == Some("layers");
+    let groups: Vec<Vec<usize>> = match layers {
+        true => (0..names.len()).map(|k| vec![k]).collect(),
+        false => (0..names.len()).collect::<Vec<usize>>().chunks(4).map(<[usize]>::to_vec).collect(),
+    };
+    let mut held =
+        SampleEncoding { sample: "u8", from_south: quantizer::from_south(options), ..SampleEncoding::default() };
+    for (n, group) in groups.iter().enumerate() {
+        let suffix = match (layers, n) {
+            (true, _) => format!("_{}", names[group[0]]),
+            (false, 0) => String::new(),
+            (false, _) => format!("_{}", n + 1),
+        };
+        let to = suffixed(&path, &suffix);
+        let pixel = if layers { Pixel::Grey8 } else { Pixel::Weights8 };
+        let channels: Vec<String> = group.iter().map(|k| names[*k].clone()).collect();
+        let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+        let about = format!("weights of {}; {} metres a sample", channels.join(", "), window.cell);
+        let notes = [("Software", made_by.as_str()), ("Description", about.as_str())];
+        let picture = Picture { width: window.width, height: window.height, pixel, notes: &notes };
+        let from_south = held.from_south;
+        let body = |out: &mut dyn Write| {
+            png::write_through(out, &picture, |out| {
+                let mut bytes = vec![0; names.len() * window.width];
+                let mut pixels = vec![0; pixel.bytes() * window.width];
+                (0..window.height).try_for_each(|j| {
+                    let row = if from_south { window.height - 1 - j } else { j };
+                    spool.read((row * bytes.len()) as u64, &mut bytes)?;
+                    for (pixel, weights) in pixels.chunks_exact_mut(pixel.bytes()).zip(bytes.chunks_exact(names.len()))
+                    {
+                        pixel.iter_mut().zip(group).for_each(|(byte, k)| *byte = weights[*k]);
+                    }
+                    out.write_all(&pixels)
+                })
+            })
+        };
+        match suffix.is_empty() {
+            true => files.write(body)?,
+            false => files.write_beside(|_| to.clone(), body)?,
+        }
+        place::write_for(files, &to, source, options, Some(from_south))?;
+        held.channels.push((to, channels));
+    }
+    let told = sidecar::write(files, source, options, &held)?;
+    let list: Vec<String> = (held.channels.iter())
+        .map(|(path, channels)| {
+            let file = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            format!("{file}: {}", channels.join(", "))
+        })
+        .collect();
+    Ok(format!("weights that add up to 255\n  {}{told}", list.join("\n  ")))
+}
+
+fn put_aside(spool: &mut Spool, band: &[Grid]) -> io::Result<()> {
+    let mut weights = vec![0.0; band.len()];
+    for j in 0..band[0].height() {
+        let mut bytes = vec![0; band.len() * band[0].width()];
+        for (i, bytes) in bytes.chunks_exact_mut(band.len()).enumerate() {
+            weights.iter_mut().zip(band).for_each(|(weight, grid)| *weight = grid.get(i, j));
+            to_bytes(&weights, bytes);
+        }
+        spool.write_all(&bytes)?;
+    }
+    Ok(())
+}
+
+/// Weights as bytes that add up to exactly 255: each rounded down, what is left given to those that lost most, the first of equals first. All 0 if
+/// no weight is above 0.
+fn to_bytes(weights: &[f32], bytes: &mut [u8]) {
+    let total: f64 = weights.iter().map(|weight| f64::from(weight.max(0.0))).sum();
+    bytes.fill(0);
+    if !(total > 0.0 && total.is_finite()) {
+        return;
+    }
+    let exact = |k: usize| f64::from(weights[k].max(0.0)) * 255.0 / total;
+    let mut left = 255u32;
+    for (k, byte) in bytes.iter_mut().enumerate() {
+        *byte = exact(k).floor().min(f64::from(left)) as u8;
+        left -= u32::from(*byte);
+    }
+    while left > 0 {
+        let lost = |k: usize| exact(k) - f64::from(bytes[k]);
+        let most = (0..bytes.len()).fold(0, |most, k| if lost(k) > lost(most) { k } else { most });
+        bytes[most] += 1;
+        left -= 1;
+    }
+}
+
+/// The path with something more before its extension.
+pub(super) fn suffixed(path: &Path, suffix: &str) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_os_string();
+    name.push(suffix);
+    if let Some(extension) = path.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    path.with_file_name(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_add_up_to_255() {
+        let mut bytes = [0; 6];
+        for k in 0..500u16 {
+            let weights: Vec<f32> = (0..6).map(|n| f32::from((k * 37 + n * n * 91) % 113)).collect();
+            to_bytes(&weights, &mut bytes);
+            assert_eq!(bytes.iter().map(|byte| u32::from(*byte)).sum::<u32>(), 255);
+        }
+        to_bytes(&[1.0, 1.0, 1.0, 0.0, 0.0, 0.0], &mut bytes);
+        assert_eq!(bytes, [85, 85, 85, 0, 0, 0]);
+        to_bytes(&[0.5, 0.5], &mut bytes[..2]);
+        assert_eq!(bytes[..2], [128, 127]);
+        to_bytes(&[0.0; 6], &mut bytes);
+        assert_eq!(bytes, [0; 6]);
+    }
+}

@@ -1,0 +1,57 @@
+//! Which contours are wanted: the options of all formats of lines.
+
+use super::options::{OptionSpec, Options, ValueKind};
+use orogen_grid::contour::levels::given;
+use orogen_grid::error::{Error, ErrorKind, Result};
+
+/// `--interval`.
+pub const INTERVAL: OptionSpec = OptionSpec {
+    name: "interval",
+    value: "M",
+    about: "Contour interval in metres [default: a round number that gives 10 to 25 contours]",
+    value_kind: ValueKind::Number(1e-6, 1e6),
+};
+
+/// `--levels`.
+pub const LEVELS: OptionSpec = OptionSpec {
+    name: "levels",
+    value: "A,B,...",
+    about: "Contour heights, instead of an interval",
+    value_kind: ValueKind::Text,
+};
+
+/// `--smooth`.
+pub const SMOOTH: OptionSpec = OptionSpec {
+    name: "smooth",
+    value: "N",
+    about: "Passes of corner cutting for lines, each doubling their points, and of smoothing for rivers \
+            [default: 0 for contours, 1 for shores and watersheds, 3 for rivers]",
+    value_kind: ValueKind::Whole(0, 6),
+};
+
+/// Whether the options that say which contours are wanted go together, and can be read.
+///
+/// # Errors
+/// If not.
+pub fn check(options: &Options) -> Result<()> {
+    if options.has(INTERVAL.name) && options.has(LEVELS.name) {
+        let message = "--interval and --levels exclude each other; leave out one of them";
+        return Err(Error::new(ErrorKind::Request, message));
+    }
+    options.text(LEVELS.name).map_or(Ok(()), |text| parse(text).map(drop))
+}
+
+/// The levels of a text.
+///
+/// # Errors
+/// If a part is no number, or they are too many.
+pub fn parse(text: &str) -> Result<Vec<f64>> {
+    let numbers = text.split(',').map(|part| {
+        part.trim().parse::<f64>().map_err(|_| {
+            let message =
+                format!("`{part}` in --levels is not a height; write numbers separated by commas, such as 0,250.5,500");
+            Error::new(ErrorKind::Request, message)
+        })
+    });
+    given(&numbers.collect::<Result<Vec<f64>>>()?)
+}

@@ -1,0 +1,67 @@
+//! Contours of what is exported, as every format of lines takes them.
+
+use super::contour_options::{INTERVAL, LEVELS, SMOOTH, parse};
+use super::memory::whole;
+use super::options::Options;
+use orogen_grid::contour::chaikin::smooth;
+use orogen_grid::contour::levels::{every, round_interval};
+use orogen_grid::contour::line::Line;
+use orogen_grid::contour::trace;
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::words::{count, number};
+use orogen_io::format::levels::Levels;
+
+/// Most contours, where nobody says.
+const MOST: usize = 25;
+
+/// Lines, and how far apart they are if that is known.
+pub struct Contours {
+    /// In the order of [`trace::contours`].
+    pub lines: Vec<Line>,
+    /// Metres from one level to the next.
+    pub interval: Option<f64>,
+}
+
+/// Bytes beside the rows: the grid, and crossings, of which rough ground has about as many as samples.
+pub fn memory(window: &Window, _: &Options) -> u64 {
+    whole(window).saturating_mul(8)
+}
+
+/// The contours of a grid.
+///
+/// # Errors
+/// If the levels cannot be read, or there are more lines than can be numbered.
+pub fn on(grid: &Grid, options: &Options) -> Result<Contours> {
+    let named = options.text(LEVELS.name).map(parse).transpose()?;
+    let range = Levels::of(grid);
+    let (low, high) = (f64::from(range.low()), f64::from(range.high()));
+    let interval = match &named {
+        Some(_) => None,
+        None => Some(options.number(INTERVAL.name).unwrap_or_else(|| round_interval(high - low, MOST))),
+    };
+    let levels = match (named, interval) {
+        (Some(levels), _) => levels,
+        (None, Some(interval)) => every(interval, low, high)?,
+        (None, None) => Vec::new(),
+    };
+    let lines = trace::contours(grid, &levels)?;
+    let rounds = options.whole(SMOOTH.name).unwrap_or(0) as usize;
+    let lines = if rounds > 0 { lines.iter().map(|line| smooth(line, rounds)).collect() } else { lines };
+    Ok(Contours { lines, interval })
+}
+
+impl Contours {
+    /// How much there is, in words.
+    pub fn words(&self, unit: &str) -> String {
+        let levels = self.lines.chunk_by(|a, b| a.level == b.level).count();
+        let lines = self.lines.len();
+        let apart = self
+            .interval
+            .map_or(String::new(), |interval| format!(", one each {} {unit}", number(interval)).trim_end().to_string());
+        match levels {
+            0 => "no contours: the heights cross no level".into(),
+            _ => format!("{} of {}{apart}", count(lines, "contour line"), count(levels, "height")),
+        }
+    }
+}

@@ -1,0 +1,75 @@
+//! Nodes that a derived layer appends to a recipe.
+
+use crate::export::options::{OptionSpec, Options, ValueKind};
+use orogen_engine::declare::Input;
+use orogen_engine::node::Node;
+use orogen_engine::recipe::document::Recipe;
+use orogen_engine::solver::drainage::Drainage;
+
+/// The option that says where streams begin.
+pub const STREAM: OptionSpec = OptionSpec {
+    name: "stream",
+    value: "AREA",
+    about: "Minimum drainage area of streams, in m^2 [default: 1e6]",
+    value_kind: ValueKind::Number(0.0, 1e15),
+};
+
+/// A recipe whose heights are known, and the options that were given.
+pub struct Appended<'a> {
+    recipe: &'a mut Recipe,
+    heights: Input,
+    options: &'a Options,
+}
+
+impl<'a> Appended<'a> {
+    /// For a recipe that shows `heights` as its heights.
+    pub fn new(recipe: &'a mut Recipe, heights: Input, options: &'a Options) -> Appended<'a> {
+        Appended { recipe, heights, options }
+    }
+
+    /// The recipe.
+    pub fn recipe(&self) -> &Recipe {
+        self.recipe
+    }
+
+    /// What a node has to read for the heights.
+    pub fn heights(&self) -> Input {
+        self.heights.clone()
+    }
+
+    /// The options of the layer.
+    pub fn options(&self) -> &'a Options {
+        self.options
+    }
+
+    /// Appends a node, named after its op, unless one of that name is there already.
+    pub fn add(&mut self, node: impl Into<Node>) -> AppendedNode {
+        let node = node.into();
+        let name = format!("{}-below-height", node.spec().op);
+        if !self.recipe.nodes().iter().any(|named| named.name == name) {
+            self.recipe.add(&name, node);
+        }
+        AppendedNode(name)
+    }
+
+    /// Appends the drainage of the heights.
+    pub fn drainage(&mut self) -> AppendedNode {
+        let (source, stream) = (self.heights(), self.stream());
+        self.add(Drainage { source, stream, ..Drainage::default() })
+    }
+
+    /// The drainage area from which on there is a stream.
+    pub fn stream(&self) -> f64 {
+        self.options.number(STREAM.name).unwrap_or(Drainage::default().stream)
+    }
+}
+
+/// A node that was appended.
+pub struct AppendedNode(String);
+
+impl AppendedNode {
+    /// One of its layers.
+    pub fn layer(&self, layer: &str) -> Input {
+        Input::Node(format!("{}.{layer}", self.0))
+    }
+}

@@ -1,0 +1,63 @@
+//! Drainage: how much, which way, whose.
+
+use super::appended::STREAM;
+use super::layer::{Derived, Made, NodeLayer};
+use crate::export::options::{OptionSpec, ValueKind};
+use orogen_engine::filter::flow_direction::{Codes, FlowDirection};
+
+/// Numbers of directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster.
+const CODES: OptionSpec = OptionSpec {
+    name: "codes",
+    value: "WHOSE",
+    about: "Encoding of flow directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster [default: esri]",
+    value_kind: ValueKind::Word(&["esri", "grass", "taudem", "whitebox", "pcraster"]),
+};
+
+/// How much ground lies upstream.
+pub static AREA: Derived = Derived {
+    name: "drainage-area",
+    about: "flow accumulation: drainage area of each cell including itself, in m^2 (D8)",
+    palette: "viridis",
+    options: &[],
+    made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(to.drainage().layer("flow")) }),
+};
+
+/// Which way water takes.
+pub static DIRECTION: Derived = Derived {
+    name: "flow-direction",
+    about: "flow direction (D8), in the encoding of another program (--codes)",
+    palette: "",
+    options: &[CODES],
+    made: Made::Nodes(NodeLayer {
+        bounded: true,
+        append: |to| {
+            let codes = match to.options().word(CODES.name) {
+                Some("grass") => Codes::Grass,
+                Some("taudem") => Codes::Taudem,
+                Some("whitebox") => Codes::Whitebox,
+                Some("pcraster") => Codes::Pcraster,
+                _ => Codes::Esri,
+            };
+            let source = to.drainage().layer("receiver");
+            Ok(to.add(FlowDirection { source, codes }).layer("direction"))
+        },
+    }),
+};
+
+/// The order of the stream.
+pub static STRAHLER: Derived = Derived {
+    name: "strahler",
+    about: "Strahler order of streams; 0 elsewhere",
+    palette: "viridis",
+    options: &[STREAM],
+    made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(to.drainage().layer("strahler")) }),
+};
+
+/// What drains to one outlet.
+pub static WATERSHED: Derived = Derived {
+    name: "watershed",
+    about: "watersheds: the ground that drains to each outlet, numbered from 1; 0 in the sea",
+    palette: "",
+    options: &[],
+    made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(to.drainage().layer("watershed")) }),
+};

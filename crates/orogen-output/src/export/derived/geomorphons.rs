@@ -1,0 +1,39 @@
+//! What form the ground has.
+
+use super::layer::{Derived, Made, NodeLayer};
+use crate::export::options::{OptionSpec, ValueKind};
+use orogen_engine::filter::geomorphons::Geomorphons;
+
+/// How far geomorphons look, in metres.
+const REACH: OptionSpec = OptionSpec {
+    name: "reach",
+    value: "M",
+    about: "Search radius of geomorphons, in metres [default: 500]",
+    value_kind: ValueKind::Number(0.0, 1e6),
+};
+
+/// Ground that rises or falls by less is level, in degrees.
+const FLAT: OptionSpec = OptionSpec {
+    name: "flat",
+    value: "DEG",
+    about: "Flatness threshold of geomorphons, in degrees [default: 1]",
+    value_kind: ValueKind::Number(0.0, 45.0),
+};
+
+/// The layer.
+pub static LAYER: Derived = Derived {
+    name: "landforms",
+    about: "landforms (geomorphons): 1 flat, 2 peak, 3 ridge, 4 shoulder, 5 spur, 6 slope, 7 hollow, 8 footslope, 9 valley, 10 pit",
+    palette: "turbo",
+    options: &[REACH, FLAT],
+    made: Made::Nodes(NodeLayer {
+        bounded: false,
+        append: |to| {
+            let (options, defaults) = (to.options(), Geomorphons::default());
+            let reach = options.number(REACH.name).unwrap_or(defaults.reach);
+            let flat = options.number(FLAT.name).unwrap_or(defaults.flat);
+            let source = to.heights();
+            Ok(to.add(Geomorphons { source, reach, flat, ..defaults }).layer("form"))
+        },
+    }),
+};

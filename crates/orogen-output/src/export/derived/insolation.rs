@@ -1,0 +1,95 @@
+//! How much light of the sun the ground gets.
+
+use super::appended::Appended;
+use super::layer::{Derived, Made, NodeLayer};
+use crate::export::options::{OptionSpec, ValueKind};
+use orogen_engine::solver::insolation::Insolation;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_io::dem::latitude;
+
+/// One day.
+const DAY: OptionSpec = OptionSpec {
+    name: "day",
+    value: "N",
+    about: "Day of the year for insolation, 1 to 365 [default: the whole year]",
+    value_kind: ValueKind::Whole(1, 365),
+};
+
+/// A season.
+const SEASON: OptionSpec = OptionSpec {
+    name: "season",
+    value: "WHEN",
+    about: "Season for insolation, from equinox to solstice or solstice to equinox at the latitude: spring, summer, autumn or winter",
+    value_kind: ValueKind::Word(&["spring", "summer", "autumn", "winter"]),
+};
+
+/// The step through a single day, in hours. The days of a longer period have sunrise at different times, so shadows between the steps even out.
+const STEP_OF_A_DAY: f64 = 0.1;
+
+/// Where on the earth.
+const LATITUDE: OptionSpec = OptionSpec {
+    name: "latitude",
+    value: "DEG",
+    about: "Latitude in degrees, positive in the north [default: that of a file of heights, else 45]",
+    value_kind: ValueKind::Number(-90.0, 90.0),
+};
+
+/// How hazy the air is.
+const TURBIDITY: OptionSpec = OptionSpec {
+    name: "turbidity",
+    value: "T",
+    about: "Linke turbidity of the air: 1 clean and dry, 6 hazy [default: 3]",
+    value_kind: ValueKind::Number(1.0, 10.0),
+};
+
+/// The first day of each season in the north, and the last.
+const SEASONS: [(&str, [f64; 2]); 4] =
+    [("spring", [79.0, 171.0]), ("summer", [172.0, 265.0]), ("autumn", [266.0, 354.0]), ("winter", [355.0, 78.0])];
+
+/// The layer.
+pub static LAYER: Derived = Derived {
+    name: "insolation",
+    about: "insolation: solar energy on an average day under a clear sky, in kWh/m^2: direct, diffuse and reflected, with cast shadows",
+    palette: "inferno",
+    options: &[DAY, SEASON, LATITUDE, TURBIDITY],
+    made: Made::Nodes(NodeLayer {
+        bounded: true,
+        append: |to| {
+            let (options, defaults) = (to.options(), Insolation::default());
+            let latitude =
+                options.number(LATITUDE.name).unwrap_or_else(|| latitude_of(to).unwrap_or(defaults.latitude));
+            let step = if options.has(DAY.name) { STEP_OF_A_DAY } else { defaults.step };
+            let node = Insolation {
+                source: to.heights(),
+                latitude,
+                days: days(to, latitude)?.unwrap_or(defaults.days),
+                step,
+                turbidity: options.number(TURBIDITY.name).unwrap_or(defaults.turbidity),
+                ..defaults
+            };
+            Ok(to.add(node).layer("energy"))
+        },
+    }),
+};
+
+/// The days that are asked for.
+fn days(to: &Appended, latitude: f64) -> Result<Option<[f64; 2]>> {
+    match (to.options().whole(DAY.name), to.options().word(SEASON.name)) {
+        (Some(_), Some(_)) => {
+            Err(Error::new(ErrorKind::Request, "--day and --season exclude each other; leave out one of them"))
+        }
+        (Some(day), None) => Ok(Some([day as f64; 2])),
+        (None, Some(season)) => {
+            let north = SEASONS.iter().position(|(name, _)| *name == season);
+            // In the south it is half a year away.
+            Ok(north.map(|k| SEASONS[if latitude < 0.0 { (k + 2) % 4 } else { k }].1))
+        }
+        (None, None) => Ok(None),
+    }
+}
+
+/// The latitude of the world's middle, if its heights are a real place whose map tells it.
+fn latitude_of(to: &Appended) -> Option<f64> {
+    let size = to.recipe().world.size?;
+    latitude::latitude(&to.recipe().georeference()?, size[0] / 2.0, size[1] / 2.0)
+}

@@ -1,0 +1,162 @@
+//! What a derived layer is.
+
+use super::appended::Appended;
+use crate::export::options::OptionSpec;
+use orogen_engine::declare::Input;
+use orogen_engine::recipe::document::Recipe;
+use orogen_grid::analysis::slope::beyond;
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+
+/// What the channels of a layer are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Nature {
+    /// Plain numbers.
+    Numbers,
+    /// A direction of length 1: its parts east, north and up, each -1 to 1.
+    Normal,
+    /// Shares of a whole: each 0 to 1, together 1.
+    Weights,
+    /// A color as linear light: red, green and blue, 0 to 1.
+    Color,
+}
+
+/// A layer that follows from the heights.
+pub struct Derived {
+    /// Its name after `--layer`.
+    pub name: &'static str,
+    /// One line for a list.
+    pub about: &'static str,
+    /// The palette that suits a map of it; empty where a map of it makes no sense.
+    pub palette: &'static str,
+    /// The options it knows.
+    pub options: &'static [OptionSpec],
+    /// How it is made.
+    pub made: Made,
+}
+
+impl Derived {
+    /// How its rows are made, if it is made of rows.
+    pub fn rows(&self) -> Option<&RowLayer> {
+        match &self.made {
+            Made::Rows(rows) => Some(rows),
+            Made::Nodes(_) => None,
+        }
+    }
+}
+
+/// How a derived layer is made.
+pub enum Made {
+    /// Band of rows by band of rows, from the heights around each sample.
+    Rows(RowLayer),
+    /// By nodes that are appended to the recipe before its world is opened.
+    Nodes(NodeLayer),
+}
+
+/// A layer that nodes make.
+pub struct NodeLayer {
+    /// Whether one of them is a solver, which needs a world with bounds.
+    pub bounded: bool,
+    /// Appends the nodes, and returns what the layer reads.
+    ///
+    /// Fails if an option is missing or does not fit.
+    pub append: fn(&mut Appended) -> Result<Input>,
+}
+
+/// A layer that is made of rows of heights.
+pub struct RowLayer {
+    /// Unit of a sample, or empty.
+    pub unit: &'static str,
+    /// What its channels are.
+    pub nature: Nature,
+    /// Their names, of a recipe that was [prepared](super::list::prepare).
+    pub channels: fn(&Recipe) -> Vec<String>,
+    /// Adds to a recipe the nodes that compute what it reads beside the heights.
+    pub prepare: fn(&mut Recipe),
+    /// The layers of a prepared recipe that it reads beside the heights.
+    pub layers: fn(&Recipe) -> Vec<String>,
+    /// How many samples around one it looks at, at such a cell.
+    pub reach: fn(f64) -> usize,
+    /// Makes the samples of a window: a grid a channel.
+    pub make: fn(&Around, &Window) -> Vec<Grid>,
+}
+
+/// The ground around the samples that are made.
+pub struct Around<'a> {
+    /// Heights in metres: of the window and of what the layer reaches around it, as far as the world goes.
+    pub heights: &'a Grid,
+    /// The other layers that it reads, over the same window.
+    pub layers: &'a [Grid],
+    /// The recipe.
+    pub recipe: &'a Recipe,
+}
+
+/// The `prepare` of a layer that reads the heights alone.
+pub fn nothing(_: &mut Recipe) {}
+
+/// The `layers` of a layer that reads the heights alone.
+pub fn none(_: &Recipe) -> Vec<String> {
+    Vec::new()
+}
+
+impl Around<'_> {
+    /// The heights of a window with one more sample on each side: those of the ground, and past the ends of the world where its last two run on in a straight
+    /// line.
+    pub fn bordered(&self, window: &Window) -> Grid {
+        let wide = window.grown(1);
+        let there = self.heights.window();
+        let left = wide.x.max(there.x);
+        let (columns, rows) =
+            (left..wide.right().min(there.right()), wide.y.max(there.y)..wide.bottom().min(there.bottom()));
+        let mut out = Grid::filled(wide, f32::NAN);
+        let across = (columns.end - columns.start) as usize;
+        let (inside, from) = ((left - wide.x) as usize, (left - there.x) as usize);
+        for y in rows.clone() {
+            let source = self.heights.row((y - there.y) as usize);
+            let row = out.row_mut((y - wide.y) as usize);
+            row[inside..inside + across].copy_from_slice(&source[from..from + across]);
+            // One sample at most is missing at each end.
+            if inside > 0 {
+                row[0] = beyond(row[1], row[2.min(across)]);
+            }
+            let last = inside + across;
+            if last < row.len() {
+                row[last] = beyond(row[last - 1], row[last.saturating_sub(2).max(inside)]);
+            }
+        }
+        let (top, bottom) = ((rows.start - wide.y) as usize, (rows.end - 1 - wide.y) as usize);
+        for (to, last, before) in
+            [(0, top, (top + 1).min(bottom)), (wide.height - 1, bottom, bottom.saturating_sub(1).max(top))]
+        {
+            if to == last {
+                continue;
+            }
+            for i in 0..wide.width {
+                out.row_mut(to)[i] = beyond(out.get(i, last), out.get(i, before));
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use orogen_engine::recipe::document::WorldSpec;
+    use orogen_grid::analysis::slope::extended;
+
+    #[test]
+    fn at_the_ends_of_a_world_it_is_the_extended_grid() {
+        for (width, height) in [(7, 5), (1, 1), (2, 1), (1, 3), (2, 2)] {
+            let window = Window::new(width, height, 5.0);
+            let data = (0..width * height).map(|k| (k * k % 23) as f32).collect();
+            let ground = Grid::from_data(window, data).unwrap();
+            let around = Around { heights: &ground, layers: &[], recipe: &Recipe::new(WorldSpec::default()) };
+            let whole = around.bordered(&window);
+            assert_eq!(whole, extended(&ground), "{width} x {height}");
+            for part in window.tiles(2) {
+                assert_eq!(Some(around.bordered(&part)), whole.crop(&part.grown(1)), "{part:?}");
+            }
+        }
+    }
+}

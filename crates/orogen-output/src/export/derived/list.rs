@@ -1,0 +1,123 @@
+//! The derived layers there are.
+
+use super::appended::Appended;
+use super::layer::{Derived, Made};
+use super::{
+    albedo, aspect, curvature, drainage, geomorphons, height_above_drainage, hillshade, insolation, normal, occlusion,
+    position, roughness, ruggedness, slope, soil_depth, splat, viewshed, wetness,
+};
+use crate::export::options::{OptionSpec, Options};
+use orogen_engine::recipe::document::Recipe;
+use orogen_engine::world::HEIGHT;
+use orogen_grid::error::{Error, ErrorKind, Result};
+
+static ALL: [&Derived; 26] = [
+    &slope::LAYER,
+    &aspect::LAYER,
+    &curvature::LAYER,
+    &hillshade::LAYER,
+    &normal::LAYER,
+    &occlusion::LAYER,
+    &splat::LAYER,
+    &albedo::LAYER,
+    &roughness::LAYER,
+    &ruggedness::LAYER,
+    &position::POSITION,
+    &position::CLASS,
+    &geomorphons::LAYER,
+    &drainage::AREA,
+    &drainage::DIRECTION,
+    &drainage::STRAHLER,
+    &drainage::WATERSHED,
+    &wetness::WETNESS,
+    &wetness::STREAM_POWER,
+    &wetness::LS_FACTOR,
+    &height_above_drainage::HEIGHT_ABOVE,
+    &height_above_drainage::FLOW_DISTANCE,
+    &height_above_drainage::STREAM_DISTANCE,
+    &soil_depth::LAYER,
+    &insolation::LAYER,
+    &viewshed::LAYER,
+];
+
+/// All derived layers.
+pub fn all() -> &'static [&'static Derived] {
+    &ALL
+}
+
+/// The derived layer of that name.
+pub fn named(name: &str) -> Option<&'static Derived> {
+    ALL.into_iter().find(|derived| derived.name == name)
+}
+
+/// All options of all layers, by name, each with the layers that know it.
+pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
+    let mut all: Vec<(&OptionSpec, Vec<&str>)> = Vec::new();
+    for derived in ALL {
+        for spec in derived.options {
+            match all.iter_mut().find(|(known, _)| known.name == spec.name) {
+                Some((_, layers)) => layers.push(derived.name),
+                None => all.push((spec, vec![derived.name])),
+            }
+        }
+    }
+    all.sort_by_key(|(spec, _)| spec.name);
+    all
+}
+
+/// Appends to a recipe what a derived layer needs: call it before the world is opened. A layer that is made by nodes becomes an output of that name, so that
+/// everything reads it like a layer of the recipe. A layer that the recipe has itself, and a name that is no derived layer's, change nothing.
+///
+/// # Errors
+/// If an option was given that the layer does not know or that does not fit, or the layer needs a world with bounds and this one has none.
+pub fn prepare(recipe: &mut Recipe, layer: &str, options: &Options) -> Result<()> {
+    let has = recipe.outputs().any(|name| name == layer) || recipe.nodes().iter().any(|named| named.name == layer);
+    let derived = if has { None } else { named(layer) };
+    let known = derived.map_or(&[][..], |derived| derived.options);
+    if let Some(name) = options.names().find(|name| !known.iter().any(|spec| spec.name == *name)) {
+        let layers: Vec<&str> = ALL
+            .iter()
+            .filter(|other| other.options.iter().any(|spec| spec.name == name))
+            .map(|other| other.name)
+            .collect();
+        let message = format!("--{name} does not apply to the layer {layer}; it applies to: {}", layers.join(", "));
+        return Err(Error::new(ErrorKind::Request, message));
+    }
+    let heights = recipe.output_inputs().iter().find(|(name, _)| name == HEIGHT).map(|(_, heights)| heights.clone());
+    let (Some(derived), Some(heights)) = (derived, heights) else { return Ok(()) };
+    let bounded = recipe.world.size.is_some();
+    match &derived.made {
+        Made::Rows(rows) => (rows.prepare)(recipe),
+        Made::Nodes(nodes) if nodes.bounded && !bounded => {
+            let message = format!("the layer {layer} needs a bounded world; set `size` in [world]");
+            return Err(Error::new(ErrorKind::Request, message));
+        }
+        Made::Nodes(nodes) => {
+            let shown = (nodes.append)(&mut Appended::new(recipe, heights, options))?;
+            recipe.output(layer, shown);
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_an_option_is_the_same_wherever_it_is_known() {
+        for (n, derived) in ALL.iter().enumerate() {
+            assert!(ALL[..n].iter().all(|other| other.name != derived.name), "{}", derived.name);
+            for spec in derived.options {
+                assert!(options().iter().any(|(known, _)| *known == spec), "{} of {}", spec.name, derived.name);
+            }
+        }
+    }
+
+    #[test]
+    fn every_palette_is_there() {
+        for derived in ALL.iter().filter(|derived| !derived.palette.is_empty()) {
+            assert!(orogen_io::palette::named::find(derived.palette).is_some(), "{}", derived.palette);
+        }
+    }
+}

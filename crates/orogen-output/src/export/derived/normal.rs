@@ -1,0 +1,34 @@
+//! Where the ground points up.
+
+use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
+use orogen_grid::analysis::slope::gradients_between;
+use orogen_grid::grid::Grid;
+
+/// The layer.
+pub static LAYER: Derived = Derived {
+    name: "normal",
+    about: "normal map: components of the surface normal to the east, north and up",
+    palette: "",
+    options: &[],
+    made: Made::Rows(RowLayer {
+        unit: "",
+        nature: Nature::Normal,
+        channels: |_| ["X", "Y", "Z"].map(String::from).to_vec(),
+        prepare: nothing,
+        layers: none,
+        reach: |_| 1,
+        make: |around, window| {
+            let heights = around.bordered(window);
+            let mut parts = vec![Grid::filled(*window, 0.0); 3];
+            for j in 0..window.height {
+                let rows = [heights.row(j), heights.row(j + 1), heights.row(j + 2)];
+                gradients_between(rows, window.cell, |i, gradient| {
+                    for (part, value) in parts.iter_mut().zip(gradient.normal()) {
+                        part.row_mut(j)[i] = value;
+                    }
+                });
+            }
+            parts
+        },
+    }),
+};

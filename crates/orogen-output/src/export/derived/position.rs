@@ -1,0 +1,39 @@
+//! How high a sample lies among those around it.
+
+use super::appended::{Appended, AppendedNode};
+use super::layer::{Derived, Made, NodeLayer};
+use crate::export::options::{OptionSpec, ValueKind};
+use orogen_engine::filter::topographic_position::TopographicPosition;
+
+/// Radius of the disc, in metres.
+const RADIUS: OptionSpec = OptionSpec {
+    name: "disc",
+    value: "M",
+    about: "Radius of the disc, in metres [default: 300]",
+    value_kind: ValueKind::Number(0.0, 1e6),
+};
+
+/// Appends the node.
+fn append(to: &mut Appended) -> AppendedNode {
+    let (source, defaults) = (to.heights(), TopographicPosition::default());
+    let radius = to.options().number(RADIUS.name).unwrap_or(defaults.radius);
+    to.add(TopographicPosition { source, radius })
+}
+
+/// Height above the mean of a disc.
+pub static POSITION: Derived = Derived {
+    name: "tpi",
+    about: "topographic position index: height above the mean of a disc, in m (Weiss 2001)",
+    palette: "oleron",
+    options: &[RADIUS],
+    made: Made::Nodes(NodeLayer { bounded: false, append: |to| Ok(append(to).layer("position")) }),
+};
+
+/// Slope positions.
+pub static CLASS: Derived = Derived {
+    name: "slope-position",
+    about: "slope position (Weiss 2001): 1 ridge, 2 upper slope, 3 middle slope, 4 flat, 5 lower slope, 6 valley",
+    palette: "turbo",
+    options: &[RADIUS],
+    made: Made::Nodes(NodeLayer { bounded: false, append: |to| Ok(append(to).layer("class")) }),
+};

@@ -1,0 +1,232 @@
+//! A derived layer row after row: the ground around comes as bands, of which no more is held than is looked at.
+
+use rayon::prelude::*;
+
+use super::layer::{Around, RowLayer};
+use orogen_engine::bands::Bands;
+use orogen_engine::world::{HEIGHT, World};
+use orogen_grid::analysis::finite::FiniteCount;
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::progress::Progress;
+
+/// Rows that are made at once, if they are not too wide.
+const ROWS: usize = 256;
+const SAMPLES: usize = 1 << 21;
+
+/// Rows that one thread makes.
+const STRIP: usize = 16;
+
+/// The most rows that come at a time.
+const BAND: usize = 512;
+
+/// A derived layer's rows from the north, some at a time: a grid a channel.
+pub struct Rows<'w> {
+    derived: &'static RowLayer,
+    channels: usize,
+    window: Window,
+    world: &'w World,
+    source: Source<'w>,
+    /// The row that comes next.
+    next: usize,
+}
+
+/// The layers that are looked at.
+struct Source<'w> {
+    bands: Bands<'w>,
+    /// The window that they come over.
+    wide: Window,
+    /// Of each layer the rows that are held, whole ones; and the first of them.
+    rows: Vec<Vec<f32>>,
+    first: usize,
+}
+
+impl<'w> Rows<'w> {
+    /// The rows over a window, in no more than the world's memory beside `beside` bytes.
+    ///
+    /// # Errors
+    /// As [`World::bands`].
+    pub fn new(
+        derived: &'static RowLayer,
+        world: &'w World,
+        window: &Window,
+        reserved: u64,
+        progress: &Progress,
+    ) -> Result<Rows<'w>> {
+        let reach = (derived.reach)(window.cell);
+        let wide = world.surroundings(window, reach);
+        let others = (derived.layers)(world.recipe());
+        let layers: Vec<&str> = [HEIGHT].into_iter().chain(others.iter().map(String::as_str)).collect();
+        let channels = (derived.channels)(world.recipe()).len();
+        let held = (layers.len() * (at_once(window) + 2 * reach + BAND) * wide.width) as u64;
+        let made = (channels * at_once(window) * window.width) as u64;
+        let reserved = reserved.saturating_add(4 * (held + 2 * made));
+        let bands = world.bands(&layers, &wide, reserved, progress)?;
+        let source = Source { bands, wide, rows: vec![Vec::new(); layers.len()], first: 0 };
+        Ok(Rows { derived, channels, window: *window, world, source, next: 0 })
+    }
+
+    /// All rows at once: a grid a channel.
+    ///
+    /// # Errors
+    /// As the rows.
+    pub fn whole(self) -> Result<Vec<Grid>> {
+        let mut all = vec![Grid::filled(self.window, 0.0); self.channels];
+        for band in self {
+            all.iter_mut().zip(band?.0).for_each(|(all, band)| all.paste(&band));
+        }
+        Ok(all)
+    }
+
+    /// The next rows, and how many of the heights in their place are finite.
+    fn make(&mut self) -> Result<(Vec<Grid>, FiniteCount)> {
+        let height = at_once(&self.window).min(self.window.height - self.next);
+        let band = Window { y: self.window.y + self.next as i64, height, ..self.window };
+        self.next += height;
+        let reach = (self.derived.reach)(band.cell);
+        let grids = self.source.around(&band.grown(reach))?;
+        let Some((heights, layers)) = grids.split_first() else { return Ok((Vec::new(), FiniteCount::default())) };
+        let around = Around { heights, layers, recipe: self.world.recipe() };
+        let strips: Vec<Window> = (0..height)
+            .step_by(STRIP)
+            .map(|first| Window { y: band.y + first as i64, height: STRIP.min(height - first), ..band })
+            .collect();
+        let derived = self.derived;
+        let made: Vec<Vec<Grid>> =
+            self.world.install(|| strips.par_iter().map(|strip| (derived.make)(&around, strip)).collect());
+        let mut out = vec![Grid::filled(band, 0.0); self.channels];
+        for strip in made {
+            out.iter_mut().zip(&strip).for_each(|(out, strip)| out.paste(strip));
+        }
+        // Shades and weights are finite whatever the heights are.
+        let beneath = heights.crop(&band.intersection(heights.window()));
+        Ok((out, beneath.map_or_else(FiniteCount::default, |beneath| FiniteCount::of(beneath.data()))))
+    }
+}
+
+/// How many rows are made at once.
+fn at_once(window: &Window) -> usize {
+    (SAMPLES / window.width.max(1)).clamp(STRIP, ROWS).min(window.height.max(1))
+}
+
+impl Source<'_> {
+    /// What there is of a window, a grid a layer: all rows above it are let go.
+    fn around(&mut self, window: &Window) -> Result<Vec<Grid>> {
+        let window = window.intersection(&self.wide);
+        let (top, bottom) = ((window.y - self.wide.y) as usize, (window.bottom() - self.wide.y) as usize);
+        let width = self.wide.width;
+        for rows in &mut self.rows {
+            rows.drain(..(top - self.first) * width);
+        }
+        self.first = top;
+        while self.first + self.rows[0].len() / width < bottom {
+            match self.bands.next() {
+                Some(band) => {
+                    self.rows.iter_mut().zip(band?).for_each(|(rows, band)| rows.extend_from_slice(band.data()));
+                }
+                None => break,
+            }
+        }
+        let grids = self.rows.iter().map(|rows| {
+            let mut grid = Grid::filled(Window { x: self.wide.x, width, ..window }, 0.0);
+            let samples = grid.data().len();
+            grid.data_mut().copy_from_slice(&rows[..samples]);
+            grid
+        });
+        Ok(grids.collect())
+    }
+}
+
+impl Iterator for Rows<'_> {
+    type Item = Result<(Vec<Grid>, FiniteCount)>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.next >= self.window.height {
+            return None;
+        }
+        let made = self.make();
+        if made.is_err() {
+            self.next = self.window.height;
+        }
+        Some(made)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::derived::list;
+    use crate::export::options::Options;
+    use orogen_engine::recipe::document::Recipe;
+
+    /// A world with a sea, steep ground and rivers, with bounds or without.
+    fn world(size: &str, layer: &str) -> World {
+        let text = format!(
+            "orogen = 1\n[world]\nseed = 5\n{size}\ncell = 20\nsea_level = 40\n[nodes.hills]\nop = \"fbm\"\nwavelength = 900\n[nodes.land]\n\
+             op = \"remap\"\nsource = \"hills\"\nfrom = [-1, 1]\nto = [-300, 700]\n[outputs]\nheight = \"land\"\n"
+        );
+        let mut recipe = Recipe::parse(&text, "test").unwrap();
+        list::prepare(&mut recipe, layer, &Options::default()).unwrap();
+        World::open(recipe).unwrap()
+    }
+
+    fn rows_of(name: &str) -> &'static RowLayer {
+        list::named(name).unwrap().rows().unwrap()
+    }
+
+    fn made(derived: &'static RowLayer, world: &World, window: &Window) -> Vec<Grid> {
+        let mut all = vec![Grid::filled(*window, 0.0); (derived.channels)(world.recipe()).len()];
+        let progress = Progress::none();
+        for band in Rows::new(derived, world, window, 0, &progress).unwrap() {
+            all.iter_mut().zip(band.unwrap().0).for_each(|(all, band)| all.paste(&band));
+        }
+        all
+    }
+
+    fn bits(grids: &[Grid]) -> Vec<Vec<u32>> {
+        grids.iter().map(|grid| grid.data().iter().map(|sample| sample.to_bits()).collect()).collect()
+    }
+
+    #[test]
+    fn a_window_is_the_crop_of_the_whole() {
+        for layer in list::all() {
+            let Some(derived) = layer.rows() else { continue };
+            for size in ["size = [6000, 8000]", ""] {
+                let world = world(size, layer.name);
+                // Past the rows that are made at once, and to the far edge that is left to a neighbour.
+                let window = Window::new(301, 401, 20.0);
+                let whole = made(derived, &world, &window);
+                for part in [
+                    Window { x: 0, y: 0, width: 7, height: 5, ..window },
+                    Window { x: 100, y: 250, width: 33, height: 40, ..window },
+                    Window { x: 290, y: 390, width: 11, height: 11, ..window },
+                    Window { x: 0, y: 200, width: 301, height: 1, ..window },
+                ] {
+                    let cut: Vec<Grid> = whole.iter().map(|grid| grid.crop(&part).unwrap()).collect();
+                    assert_eq!(bits(&made(derived, &world, &part)), bits(&cut), "{} {part:?} {size}", layer.name);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn weights_add_up_and_rivers_have_beds() {
+        let world = world("size = [6000, 8000]", "splat");
+        let weights = made(rows_of("splat"), &world, &Window::new(300, 400, 20.0));
+        for k in 0..weights[0].data().len() {
+            assert!((weights.iter().map(|grid| grid.data()[k]).sum::<f32>() - 1.0).abs() < 1e-5);
+        }
+        let share = |k: usize| weights[k].data().iter().filter(|weight| **weight > 0.5).count();
+        assert!(share(0) > 10_000 && share(1) > 1000 && share(5) > 100, "{:?}", [0, 1, 2, 3, 4, 5].map(share));
+    }
+
+    #[test]
+    fn normals_have_length_one() {
+        let world = world("", "normal");
+        let parts = made(rows_of("normal"), &world, &Window::new(50, 40, 20.0));
+        for k in 0..2000 {
+            let length: f32 = parts.iter().map(|part| part.data()[k] * part.data()[k]).sum();
+            assert!((length - 1.0).abs() < 1e-5 && parts[2].data()[k] > 0.0);
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! How rugged the ground is.
+
+use super::layer::{Derived, Made, NodeLayer};
+use orogen_engine::filter::ruggedness::Ruggedness;
+
+/// The layer.
+pub static LAYER: Derived = Derived {
+    name: "tri",
+    about: "terrain ruggedness index in m (Riley, DeGloria and Elliot 1999)",
+    palette: "magma",
+    options: &[],
+    made: Made::Nodes(NodeLayer {
+        bounded: false,
+        append: |to| Ok(to.add(Ruggedness { source: to.heights() }).layer("ruggedness")),
+    }),
+};

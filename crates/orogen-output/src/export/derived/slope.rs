@@ -1,0 +1,21 @@
+//! How steep the ground is.
+
+use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
+use orogen_grid::analysis::slope::degrees;
+
+/// The layer.
+pub static LAYER: Derived = Derived {
+    name: "slope",
+    about: "slope in degrees, by Horn's 3 x 3 method",
+    palette: "slope",
+    options: &[],
+    made: Made::Rows(RowLayer {
+        unit: "deg",
+        nature: Nature::Numbers,
+        channels: |_| vec!["slope".into()],
+        prepare: nothing,
+        layers: none,
+        reach: |_| 1,
+        make: |around, window| vec![degrees(&around.bordered(window))],
+    }),
+};

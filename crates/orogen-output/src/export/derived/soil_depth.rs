@@ -1,0 +1,19 @@
+//! How deep the soil is.
+
+use super::layer::{Derived, Made, NodeLayer};
+use orogen_engine::filter::soil_depth::SoilDepth;
+
+/// The layer.
+pub static LAYER: Derived = Derived {
+    name: "soil-depth",
+    about: "steady-state soil depth in m, where production balances creep (Heimsath and others 1997)",
+    palette: "batlow",
+    options: &[],
+    made: Made::Nodes(NodeLayer {
+        bounded: false,
+        append: |to| {
+            let source = to.heights();
+            Ok(to.add(SoilDepth { source, ..SoilDepth::default() }).layer("depth"))
+        },
+    }),
+};

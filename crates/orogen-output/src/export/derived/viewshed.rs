@@ -1,0 +1,87 @@
+//! What is seen from a point.
+
+use super::layer::{Derived, Made, NodeLayer};
+use crate::export::options::{OptionSpec, ValueKind};
+use orogen_engine::solver::viewshed::Viewshed;
+use orogen_grid::error::{Error, ErrorKind};
+
+/// Where the observer stands.
+const OBSERVER: OptionSpec = OptionSpec {
+    name: "observer",
+    value: "X,Y",
+    about: "Position of the observer of a viewshed: metres east and south of the world's north-west corner",
+    value_kind: ValueKind::Point,
+};
+
+/// Height of the eye.
+const OBSERVER_HEIGHT: OptionSpec = OptionSpec {
+    name: "observer-height",
+    value: "M",
+    about: "Height of the observer's eye above the ground, in metres [default: 1.75]",
+    value_kind: ValueKind::Number(0.0, 1e6),
+};
+
+/// Height of what is looked at.
+const TARGET_HEIGHT: OptionSpec = OptionSpec {
+    name: "target-height",
+    value: "M",
+    about: "Height of the target above the ground, in metres [default: 0]",
+    value_kind: ValueKind::Number(0.0, 1e6),
+};
+
+/// How far the observer looks.
+const RADIUS: OptionSpec = OptionSpec {
+    name: "radius",
+    value: "M",
+    about: "Maximum distance of a viewshed, in metres [default: the whole world]",
+    value_kind: ValueKind::Number(0.0, 1e9),
+};
+
+/// Whether the earth is curved, and the air bends rays.
+const REFRACTION: OptionSpec = OptionSpec {
+    name: "refraction",
+    value: "K",
+    about: "Take the earth's curvature into account, with this refraction coefficient, such as 0.13 [default: a flat earth]",
+    value_kind: ValueKind::Number(0.0, 1.0),
+};
+
+/// The layer.
+pub static LAYER: Derived = Derived {
+    name: "viewshed",
+    about: "viewshed: 1 where the observer (--observer) sees the ground, else 0",
+    palette: "grey",
+    options: &[OBSERVER, OBSERVER_HEIGHT, TARGET_HEIGHT, RADIUS, REFRACTION],
+    made: Made::Nodes(NodeLayer {
+        bounded: true,
+        append: |to| {
+            let (options, defaults) = (to.options(), Viewshed::default());
+            let number = |option: &OptionSpec, default: f64| options.number(option.name).unwrap_or(default);
+            let size = to.recipe().world.size.unwrap_or_default();
+            let Some(observer) = options.point(OBSERVER.name) else {
+                let message = format!(
+                    "the layer viewshed needs --observer X,Y, in metres east and south of the world's north-west corner; the world is {} x {} m",
+                    size[0], size[1]
+                );
+                return Err(Error::new(ErrorKind::Request, message));
+            };
+            if !(0..2).all(|axis| (0.0..=size[axis]).contains(&observer[axis])) {
+                let message = format!(
+                    "the observer at {},{} is outside the world, which is {} x {} m",
+                    observer[0], observer[1], size[0], size[1]
+                );
+                return Err(Error::new(ErrorKind::Request, message));
+            }
+            let source = to.heights();
+            let node = Viewshed {
+                source,
+                observer,
+                observer_height: number(&OBSERVER_HEIGHT, defaults.observer_height),
+                target_height: number(&TARGET_HEIGHT, defaults.target_height),
+                radius: number(&RADIUS, defaults.radius),
+                curvature: options.has(REFRACTION.name),
+                refraction: number(&REFRACTION, defaults.refraction),
+            };
+            Ok(to.add(node).layer("visible"))
+        },
+    }),
+};

@@ -1,0 +1,38 @@
+//! Indices of water and slope.
+
+use super::appended::{Appended, AppendedNode};
+use super::layer::{Derived, Made, NodeLayer};
+use orogen_engine::filter::flow_indices::FlowIndices;
+
+/// Appends the nodes.
+fn append(to: &mut Appended) -> AppendedNode {
+    let (source, flow) = (to.heights(), to.drainage().layer("flow"));
+    to.add(FlowIndices { source, flow, ..FlowIndices::default() })
+}
+
+/// The topographic wetness index.
+pub static WETNESS: Derived = Derived {
+    name: "wetness",
+    about: "topographic wetness index ln(a / tan b) (Beven and Kirkby 1979)",
+    palette: "viridis",
+    options: &[],
+    made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(append(to).layer("wetness")) }),
+};
+
+/// The stream power index.
+pub static STREAM_POWER: Derived = Derived {
+    name: "stream-power-index",
+    about: "stream power index a tan b, in m (Moore, Grayson and Ladson 1991)",
+    palette: "magma",
+    options: &[],
+    made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(append(to).layer("stream_power")) }),
+};
+
+/// The LS factor.
+pub static LS_FACTOR: Derived = Derived {
+    name: "ls-factor",
+    about: "LS factor of soil erosion (Moore and Burch 1986)",
+    palette: "magma",
+    options: &[],
+    made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(append(to).layer("ls_factor")) }),
+};

@@ -1,0 +1,127 @@
+//! What may be asked of vector features, and what the recipe says of its water.
+
+use crate::export::contour_options;
+use crate::export::options::{OptionSpec, Options, ValueKind};
+use orogen_engine::node::Node;
+use orogen_engine::recipe::document::Recipe;
+use orogen_grid::error::Result;
+use orogen_grid::hydrology::rivers::Channel;
+
+/// `--river-area`.
+pub const RIVER_AREA: OptionSpec = OptionSpec {
+    name: "river-area",
+    value: "M2",
+    about: "Minimum drainage area of rivers in m^2 [default: the recipe's, else 1000000, at least 32 samples]",
+    value_kind: ValueKind::Number(0.0, 1e15),
+};
+
+/// `--lake-area`.
+pub const LAKE_AREA: OptionSpec = OptionSpec {
+    name: "lake-area",
+    value: "M2",
+    about: "Minimum area of lakes in m^2 [default: the recipe's, else 20000, at least 4 samples]",
+    value_kind: ValueKind::Number(0.0, 1e15),
+};
+
+/// `--runoff`.
+pub const RUNOFF: OptionSpec = OptionSpec {
+    name: "runoff",
+    value: "M",
+    about: "Runoff in metres per year, for discharges and widths [default: the recipe's, else 0.5]",
+    value_kind: ValueKind::Number(0.0, 1000.0),
+};
+
+/// `--prominence`.
+pub const PROMINENCE: OptionSpec = OptionSpec {
+    name: "prominence",
+    value: "M",
+    about: "Minimum prominence of summits in metres [default: 1/25 of the relief]",
+    value_kind: ValueKind::Number(0.0, 1e6),
+};
+
+/// The options of formats that hold vector features.
+pub const OPTIONS: &[OptionSpec] = &[
+    contour_options::INTERVAL,
+    contour_options::LEVELS,
+    contour_options::SMOOTH,
+    RIVER_AREA,
+    LAKE_AREA,
+    RUNOFF,
+    PROMINENCE,
+];
+
+/// The names of those that change the water.
+pub const WATER: &[&str] = &[RIVER_AREA.name, LAKE_AREA.name, RUNOFF.name, contour_options::SMOOTH.name];
+
+/// How often rivers are evened out and the corners of shores and watersheds are cut, where nobody says.
+const ROUNDS: [usize; 2] = [3, 1];
+
+/// What is asked for.
+pub struct FeatureOptions<'a> {
+    /// The options as they were given.
+    pub given: &'a Options,
+    /// Drainage area in m^2 from which on there is a river, and the fewest samples.
+    pub river: (f64, u32),
+    /// Area in m^2 from which on there is a lake.
+    pub lake: f64,
+    /// Whether water leaves into the sea.
+    pub sea: bool,
+    /// How wide rivers are.
+    pub channel: Channel,
+}
+
+/// The fewest samples that drain to a spring, unless a drainage area is asked for.
+const FEWEST: u32 = 32;
+
+impl<'a> FeatureOptions<'a> {
+    /// What is given, else what the recipe's own water is like, else the defaults.
+    ///
+    /// # Errors
+    /// If options contradict each other.
+    pub fn new(given: &'a Options, recipe: &Recipe) -> Result<FeatureOptions<'a>> {
+        contour_options::check(given)?;
+        let mut options = FeatureOptions {
+            given,
+            river: (1e6, FEWEST),
+            lake: 2e4,
+            sea: true,
+            channel: Channel { runoff: 0.5, width: 5.0, depth: 0.3 },
+        };
+        for named in recipe.nodes() {
+            match &named.node {
+                Node::Drainage(node) => {
+                    options.river = (node.stream, 1);
+                    options.sea = node.sea;
+                }
+                Node::Rivers(node) => {
+                    options.river = (node.stream, 1);
+                    options.channel = Channel { runoff: node.runoff, width: node.width, depth: node.depth };
+                    options.sea = node.sea;
+                }
+                Node::Lakes(node) => {
+                    options.lake = node.smallest;
+                    options.sea = node.sea;
+                }
+                _ => {}
+            }
+        }
+        if let Some(area) = given.number(RIVER_AREA.name) {
+            options.river = (area, 1);
+        }
+        options.lake = given.number(LAKE_AREA.name).unwrap_or(options.lake);
+        options.channel.runoff = given.number(RUNOFF.name).unwrap_or(options.channel.runoff);
+        Ok(options)
+    }
+
+    /// The samples of a cell that drain to a spring, and that a lake has, at least.
+    pub fn fewest(&self, cell: f64) -> [u32; 2] {
+        let samples =
+            |area: f64, fewest: u32| (area / (cell * cell)).ceil().clamp(f64::from(fewest), f64::from(u32::MAX)) as u32;
+        [samples(self.river.0, self.river.1.max(1)), samples(self.lake, 4)]
+    }
+
+    /// How often rivers are evened out, and the corners of areas are cut.
+    pub fn rounds(&self) -> [usize; 2] {
+        self.given.whole(contour_options::SMOOTH.name).map_or(ROUNDS, |rounds| [rounds as usize; 2])
+    }
+}

@@ -1,0 +1,130 @@
+//! The ground that features are made of: heights of a window, and the water of the world that it lies in.
+
+use super::options::FeatureOptions;
+use orogen_engine::plan::planner::world_windows;
+use orogen_engine::world::{HEIGHT, World};
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::hydrography::rivers::{River, rivers};
+use orogen_grid::hydrography::shores::{LakeArea, Shores};
+use orogen_grid::hydrography::water::{Frame, Least, MEMORY, Water};
+use orogen_grid::progress::Progress;
+
+/// Heights and water.
+pub struct FeatureSource {
+    /// The water of all the ground that was looked at.
+    pub water: Water,
+    /// The part of it that is wanted.
+    pub frame: Frame,
+    /// The shores within the frame, with the points at which rivers meet them.
+    pub shores: Shores,
+    /// The reaches within the frame. Their numbers are their places, from 1.
+    pub rivers: Vec<River>,
+    /// The lakes within the frame. Their numbers are their places, from 1.
+    pub lakes: Vec<LakeArea>,
+    /// The window of the water's grid.
+    window: Window,
+}
+
+/// Bytes for each sample that features take beside the water.
+const FEATURES: u64 = 16;
+
+/// The window over which water has to be led to know that of `window`: at the world's cell or a larger one the whole world, so that the rivers of a
+/// window are those of the world; at a smaller one, and in worlds without bounds, the window alone.
+fn extent(world: &World, window: &Window) -> Window {
+    let spec = &world.recipe().world;
+    match spec.size {
+        // With the margin that the recipe's own solvers have.
+        Some(size) if window.cell >= spec.cell => world_windows(size, window.cell).1.union(window),
+        _ => *window,
+    }
+}
+
+impl FeatureSource {
+    /// The ground of a window, beside `beside` bytes that the caller holds.
+    ///
+    /// # Errors
+    /// If the world has no heights, memory does not suffice, or the work was cancelled.
+    pub fn of(
+        world: &World,
+        window: &Window,
+        options: &FeatureOptions,
+        reserved: u64,
+        progress: &Progress,
+    ) -> Result<FeatureSource> {
+        let all = extent(world, window);
+        let samples = (all.width as u64).saturating_mul(all.height as u64);
+        if samples > u64::from(u32::MAX) {
+            let message = format!(
+                "rivers and lakes can be found on at most 2^32 samples, and there are {} x {}; use a larger cell",
+                all.width, all.height
+            );
+            return Err(Error::new(ErrorKind::Request, message));
+        }
+        // The heights are counted by the plan that makes them.
+        let held = samples.saturating_mul(MEMORY - 4 + FEATURES).saturating_add(reserved);
+        let heights = world.grid_beside(HEIGHT, &all, held, progress)?;
+        world.install(|| {
+            FeatureSource::from_heights(heights, world.recipe().world.sea_level as f32, window, options, progress)
+        })
+    }
+
+    /// The same of heights at hand, which hold the window.
+    ///
+    /// # Errors
+    /// If the work was cancelled.
+    pub fn from_heights(
+        heights: Grid,
+        sea_level: f32,
+        window: &Window,
+        options: &FeatureOptions,
+        progress: &Progress,
+    ) -> Result<FeatureSource> {
+        let all = *heights.window();
+        let [spring, lake] = options.fewest(all.cell);
+        let least = Least { spring, lake, depth: 0.0, scattered: false };
+        let water = Water::of(heights, options.sea.then_some(sea_level), least, progress)?;
+        let (left, top) = ((window.x - all.x) as usize, (window.y - all.y) as usize);
+        let frame = Frame { columns: left..left + window.width, rows: top..top + window.height };
+        let [even, cut] = options.rounds();
+        let mut shores = Shores::of(&water, &frame, cut)?;
+        progress.check()?;
+        let rivers = rivers(&water, &frame, even, &mut shores);
+        let lakes = shores.areas();
+        progress.check()?;
+        Ok(FeatureSource { water, frame, shores, rivers, lakes, window: all })
+    }
+
+    /// Metres from one sample to the next.
+    pub fn cell(&self) -> f64 {
+        self.window.cell
+    }
+
+    /// Metres east and south of the world's origin of a column and row.
+    pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [(self.window.x as f64 + x) * self.window.cell, (self.window.y as f64 + y) * self.window.cell]
+    }
+
+    /// Parts of an area, in metres.
+    pub fn parts(&self, parts: &[Vec<Vec<[f64; 2]>>]) -> Vec<Vec<Vec<[f64; 2]>>> {
+        let ring = |ring: &Vec<[f64; 2]>| ring.iter().map(|at| self.place(*at)).collect();
+        parts.iter().map(|part| part.iter().map(ring).collect()).collect()
+    }
+
+    /// The heights of the frame.
+    pub fn heights(&self) -> Option<Grid> {
+        let window = Window {
+            x: self.window.x + self.frame.columns.start as i64,
+            y: self.window.y + self.frame.rows.start as i64,
+            width: self.frame.columns.len(),
+            height: self.frame.rows.len(),
+            cell: self.window.cell,
+        };
+        self.water.heights.crop(&window)
+    }
+
+    /// The number of a lake among those within the frame, from 1.
+    pub fn lake_id(&self, lake: u32) -> Option<u32> {
+        self.lakes.binary_search_by_key(&lake, |area| area.lake).ok().map(|k| k as u32 + 1)
+    }
+}

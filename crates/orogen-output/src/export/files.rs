@@ -1,0 +1,181 @@
+//! Where an export goes: a file and what stands beside it, all of them or none, or a stream.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use orogen_grid::progress::Progress;
+use orogen_io::file::{self, Existing, Output, Staged};
+use orogen_io::spool::Spool;
+
+/// The files of one export.
+pub struct Files<'a> {
+    sink: Sink<'a>,
+    progress: Progress,
+    /// Those that are written but not yet in their places.
+    staged: Vec<Staged>,
+}
+
+enum Sink<'a> {
+    File(&'a Output),
+    Stream(&'a mut dyn Write),
+}
+
+impl<'a> Files<'a> {
+    /// A file at `output` and what stands beside it. `progress` may stop the writing.
+    pub fn at(output: &'a Output, progress: &Progress) -> Files<'a> {
+        Files { sink: Sink::File(output), progress: progress.clone(), staged: Vec::new() }
+    }
+
+    /// A stream, such as standard output, beside which nothing stands.
+    pub fn stream(out: &'a mut dyn Write, progress: &Progress) -> Files<'a> {
+        Files { sink: Sink::Stream(out), progress: progress.clone(), staged: Vec::new() }
+    }
+
+    /// The path that was asked for; none of a stream.
+    pub fn path(&self) -> Option<&Path> {
+        match &self.sink {
+            Sink::File(output) => Some(output.path()),
+            Sink::Stream(_) => None,
+        }
+    }
+
+    /// Whether files of any kind may be replaced.
+    pub fn replaces_all(&self) -> bool {
+        matches!(&self.sink, Sink::File(output) if output.policy().existing() == Existing::Replace)
+    }
+
+    /// A place for bytes that have to wait, on the disk that the file will be on.
+    pub fn spool(&self) -> Spool {
+        match &self.sink {
+            Sink::File(output) => Spool::beside(output.path()),
+            // A stream has no disk of its own to put bytes aside on.
+            Sink::Stream(_) => Spool::beside(&std::env::temp_dir().join("orogen")),
+        }
+    }
+
+    /// Writes the file that was asked for.
+    pub fn write(&mut self, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+        match &mut self.sink {
+            Sink::Stream(out) => body(&mut Stopping { out: &mut **out, progress: &self.progress }),
+            Sink::File(output) => {
+                let staged = file::stage(output, |out| body(&mut Stopping { out, progress: &self.progress }))?;
+                self.staged.push(staged);
+                Ok(())
+            }
+        }
+    }
+
+    /// Writes a file that belongs to it and whose name `name` makes of its path. Beside a stream, a pipe or a device nothing is
+    /// written.
+    pub fn write_beside(
+        &mut self,
+        name: impl FnOnce(&Path) -> PathBuf,
+        body: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let Sink::File(output) = &self.sink else { return Ok(()) };
+        let path = output.path();
+        if path.exists() && !path.is_file() {
+            return Ok(());
+        }
+        let beside = output.policy().output(name(path))?;
+        let staged = file::stage(&beside, |out| body(&mut Stopping { out, progress: &self.progress }))?;
+        self.staged.push(staged);
+        Ok(())
+    }
+
+    /// Puts all files in their places: first those beside, then the one that was asked for, whose appearance says that all is there.
+    pub(super) fn commit(self) -> io::Result<()> {
+        self.progress.check()?;
+        Ok(file::commit(self.staged.into_iter().rev().collect())?)
+    }
+}
+
+/// A writer that fails once the work is not wanted any more.
+pub(super) struct Stopping<'a> {
+    /// Where it goes.
+    pub out: &'a mut dyn Write,
+    /// Asked before each write.
+    pub progress: &'a Progress,
+}
+
+impl Write for Stopping<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.progress.check()?;
+        self.out.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use orogen_io::file::OutputPolicy;
+
+    fn folder(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("orogen-files-{}-{name}", std::process::id()));
+        let _ = std::fs::remove_dir_all(&folder);
+        std::fs::create_dir_all(&folder).unwrap();
+        folder
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = std::fs::read_dir(folder).unwrap();
+        let mut names: Vec<String> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn all_files_appear_or_none() {
+        let folder = folder("all");
+        let path = folder.join("a.png");
+        let progress = Progress::none();
+        let both = |fail: bool| -> io::Result<()> {
+            let output = OutputPolicy::default().output(&path)?;
+            let mut files = Files::at(&output, &progress);
+            files.write(|out| out.write_all(b"one"))?;
+            files.write_beside(
+                |path| path.with_extension("json"),
+                |out| match fail {
+                    true => Err(io::ErrorKind::StorageFull.into()),
+                    false => out.write_all(b"two"),
+                },
+            )?;
+            assert!(!path.exists());
+            files.commit()
+        };
+        assert!(both(true).unwrap_err().to_string().contains("a.json"));
+        assert!(names(&folder).is_empty());
+        both(false).unwrap();
+        assert_eq!(names(&folder), ["a.json", "a.png"]);
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn what_is_not_wanted_any_more_leaves_nothing() {
+        let folder = folder("stopped");
+        let progress = Progress::none();
+        let output = OutputPolicy::default().output(folder.join("a.png")).unwrap();
+        let mut files = Files::at(&output, &progress);
+        files.write(|out| out.write_all(b"one")).unwrap();
+        progress.cancel();
+        assert!(files.write_beside(|path| path.with_extension("json"), |out| out.write_all(b"two")).is_err());
+        assert!(files.commit().is_err());
+        assert!(names(&folder).is_empty());
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn nothing_stands_beside_a_stream() {
+        let (mut bytes, progress) = (Vec::new(), Progress::none());
+        let mut files = Files::stream(&mut bytes, &progress);
+        assert!(files.path().is_none());
+        files.write(|out| out.write_all(b"one")).unwrap();
+        files.write_beside(Path::to_path_buf, |_| Err(io::ErrorKind::Other.into())).unwrap();
+        files.commit().unwrap();
+        assert_eq!(bytes, b"one");
+    }
+}

@@ -1,0 +1,32 @@
+//! Vector features as FlatGeobuf.
+
+use std::io;
+
+use crate::export::contours;
+use crate::export::features::drawing::Drawing;
+use crate::export::features::options::OPTIONS;
+use crate::export::files::Files;
+use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
+use crate::export::options::Options;
+use orogen_io::format::fgb;
+
+/// The format.
+pub static FORMAT: Format = Format {
+    name: "fgb",
+    aliases: &[],
+    about: "FlatGeobuf: contour lines or vector features, one layer with a spatial index",
+    options: OPTIONS,
+    channels: 1,
+    features: true,
+    memory: contours::memory,
+    write,
+};
+
+fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let mut drawing = Drawing::of(source, options)?;
+    drawing.place();
+    let layer = drawing.only("fgb")?;
+    files.write(|out| fgb::write(out, layer, drawing.crs()))?;
+    Ok(drawing.words())
+}

@@ -1,0 +1,32 @@
+//! Contours and vector features as GeoJSON.
+
+use std::io;
+
+use crate::export::contours;
+use crate::export::features::drawing::Drawing;
+use crate::export::features::options::OPTIONS;
+use crate::export::files::Files;
+use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
+use crate::export::options::Options;
+use orogen_io::format::geojson;
+
+/// The format.
+pub static FORMAT: Format = Format {
+    name: "geojson",
+    aliases: &[],
+    about: "GeoJSON: contour lines or vector features, in local metres or georeferenced",
+    options: OPTIONS,
+    channels: 1,
+    features: true,
+    memory: contours::memory,
+    write,
+};
+
+fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    let mut drawing = Drawing::of(source, options)?;
+    drawing.place();
+    let layer = drawing.only("geojson")?;
+    files.write(|out| geojson::write(out, layer, drawing.crs(), drawing.step()))?;
+    Ok(drawing.words())
+}

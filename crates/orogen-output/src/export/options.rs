@@ -1,0 +1,210 @@
+//! What a format may be asked beyond its name: declared once beside it, checked here, read by it.
+
+use std::collections::BTreeMap;
+
+use orogen_grid::error::{Error, ErrorKind, Result};
+
+/// One option of a format. The declaration is all there is: front ends make their flags, checks and help of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OptionSpec {
+    /// Its name, in lower case with hyphens: `bits` for `--bits`.
+    pub name: &'static str,
+    /// What a help calls its value: `N`; empty where takes none.
+    pub value: &'static str,
+    /// One line for the help, with unit and default.
+    pub about: &'static str,
+    /// What values there are.
+    pub value_kind: ValueKind,
+}
+
+/// What values an option has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ValueKind {
+    /// None: it is there or not.
+    Nothing,
+    /// A whole number within these ends.
+    Whole(u64, u64),
+    /// A number within these ends.
+    Number(f64, f64),
+    /// Two numbers with a comma between them, the lower first.
+    Range,
+    /// Two numbers with a comma between them: a place.
+    Point,
+    /// One of these words.
+    Word(&'static [&'static str]),
+    /// Any text.
+    Text,
+}
+
+/// A value that was given.
+#[derive(Debug, Clone, PartialEq)]
+enum Value {
+    Given,
+    Whole(u64),
+    Number(f64),
+    Range([f64; 2]),
+    Point([f64; 2]),
+    Word(&'static str),
+    Text(String),
+}
+
+impl OptionSpec {
+    fn parse(&self, text: &str) -> std::result::Result<Value, String> {
+        let text = text.trim();
+        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+        match self.value_kind {
+            ValueKind::Nothing => Ok(Value::Given),
+            ValueKind::Whole(from, to) => match text.parse::<u64>() {
+                Ok(n) if (from..=to).contains(&n) => Ok(Value::Whole(n)),
+                _ => Err(format!("it must be a whole number from {from} to {to}")),
+            },
+            ValueKind::Number(from, to) => match number(text) {
+                Some(n) if (from..=to).contains(&n) => Ok(Value::Number(n)),
+                _ => Err(format!("it must be a number from {from} to {to}")),
+            },
+            ValueKind::Range => match text.split_once(',').map(|(low, high)| (number(low), number(high))) {
+                Some((Some(low), Some(high))) if low < high => Ok(Value::Range([low, high])),
+                _ => Err("it must be two numbers, the lower first, such as -500,4500".into()),
+            },
+            ValueKind::Point => match text.split_once(',').map(|(x, y)| (number(x), number(y))) {
+                Some((Some(x), Some(y))) => Ok(Value::Point([x, y])),
+                _ => Err("it must be two numbers separated by a comma, such as 1200,850".into()),
+            },
+            ValueKind::Word(words) => match words.iter().find(|word| word.eq_ignore_ascii_case(text)) {
+                Some(word) => Ok(Value::Word(word)),
+                None => Err(format!("it must be {}", one_of(words))),
+            },
+            ValueKind::Text => Ok(Value::Text(text.to_string())),
+        }
+    }
+}
+
+/// "a, b or c".
+fn one_of(words: &[&str]) -> String {
+    match words {
+        [init @ .., last] if !init.is_empty() => format!("{} or {last}", init.join(", ")),
+        words => words.concat(),
+    }
+}
+
+/// The options that were given, by name.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Options {
+    given: BTreeMap<&'static str, Value>,
+}
+
+impl Options {
+    /// Sets an option from text. The text of an option without a value is ignored.
+    ///
+    /// # Errors
+    /// If it is no value that the option has.
+    pub fn give(&mut self, spec: &OptionSpec, text: &str) -> Result<()> {
+        let value = spec.parse(text).map_err(|why| {
+            let message = format!("`{}` is not a value for --{}: {why}", text.escape_debug(), spec.name);
+            Error::new(ErrorKind::Request, message)
+        })?;
+        self.given.insert(spec.name, value);
+        Ok(())
+    }
+
+    /// The names of those that were given.
+    pub fn names(&self) -> impl Iterator<Item = &'static str> {
+        self.given.keys().copied()
+    }
+
+    /// Whether it was given.
+    pub fn has(&self, name: &str) -> bool {
+        self.given.contains_key(name)
+    }
+
+    /// A whole number.
+    pub fn whole(&self, name: &str) -> Option<u64> {
+        match self.given.get(name)? {
+            Value::Whole(n) => Some(*n),
+            _ => None,
+        }
+    }
+
+    /// A number.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        match self.given.get(name)? {
+            Value::Number(n) => Some(*n),
+            _ => None,
+        }
+    }
+
+    /// The ends of a range.
+    pub fn range(&self, name: &str) -> Option<[f64; 2]> {
+        match self.given.get(name)? {
+            Value::Range(ends) => Some(*ends),
+            _ => None,
+        }
+    }
+
+    /// A place.
+    pub fn point(&self, name: &str) -> Option<[f64; 2]> {
+        match self.given.get(name)? {
+            Value::Point(place) => Some(*place),
+            _ => None,
+        }
+    }
+
+    /// One of an option's words, as it declares it.
+    pub fn word(&self, name: &str) -> Option<&'static str> {
+        match self.given.get(name)? {
+            Value::Word(word) => Some(word),
+            _ => None,
+        }
+    }
+
+    /// A text.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        match self.given.get(name)? {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spec(value_kind: ValueKind) -> OptionSpec {
+        OptionSpec { name: "x", value: "X", about: "a test", value_kind }
+    }
+
+    fn given(value_kind: ValueKind, text: &str) -> std::result::Result<Options, String> {
+        let mut options = Options::default();
+        options.give(&spec(value_kind), text).map_err(|error| error.to_string())?;
+        Ok(options)
+    }
+
+    #[test]
+    fn values_are_what_is_declared() {
+        assert_eq!(given(ValueKind::Whole(1, 9), "9").unwrap().whole("x"), Some(9));
+        assert_eq!(given(ValueKind::Number(0.0, 1.0), " .5").unwrap().number("x"), Some(0.5));
+        assert_eq!(given(ValueKind::Range, "-5, 7").unwrap().range("x"), Some([-5.0, 7.0]));
+        assert_eq!(given(ValueKind::Word(&["half", "float"]), "HALF").unwrap().word("x"), Some("half"));
+        assert_eq!(given(ValueKind::Point, "7, -5").unwrap().point("x"), Some([7.0, -5.0]));
+        assert_eq!(given(ValueKind::Text, "any").unwrap().text("x"), Some("any"));
+        let flag = given(ValueKind::Nothing, "").unwrap();
+        assert!(flag.has("x") && !flag.has("y") && flag.whole("x").is_none());
+    }
+
+    #[test]
+    fn what_is_no_value_is_a_sentence() {
+        for (value_kind, text, expect) in [
+            (ValueKind::Whole(1, 9), "10", "`10` is not a value for --x: it must be a whole number from 1 to 9"),
+            (ValueKind::Number(0.0, 1.0), "nan", "a number from 0 to 1"),
+            (ValueKind::Range, "7,-5", "the lower first"),
+            (ValueKind::Range, "7", "two numbers"),
+            (ValueKind::Point, "7", "two numbers"),
+            (ValueKind::Point, "7,inf", "two numbers"),
+            (ValueKind::Word(&["a", "b", "c"]), "d", "it must be a, b or c"),
+        ] {
+            let why = given(value_kind, text).unwrap_err();
+            assert!(why.contains(expect), "{why}");
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! Samples that become whole numbers: their range is known before the first of them is written.
+
+use std::io::{self, Write};
+
+use super::files::Files;
+use super::format::refuse;
+use super::layer_source::LayerSource;
+use super::options::{OptionSpec, Options, ValueKind};
+use orogen_engine::layer::LayerKind;
+use orogen_io::format::levels::Levels;
+use orogen_io::format::npy;
+use orogen_io::spool::Spool;
+
+/// The option that fixes the range.
+pub const RANGE: OptionSpec = OptionSpec {
+    name: "range",
+    value: "LOW,HIGH",
+    about: "Values of the lowest and the highest level, to use the same scale for several windows [default: minimum and maximum of this window]",
+    value_kind: ValueKind::Range,
+};
+
+/// The option that turns the rows.
+pub const FIRST_ROW: OptionSpec = OptionSpec {
+    name: "first-row",
+    value: "SIDE",
+    about: "Side of the first row, north or south [default: north]",
+    value_kind: ValueKind::Word(&["north", "south"]),
+};
+
+/// The option of 8 bits.
+pub const BITS: OptionSpec = OptionSpec {
+    name: "bits",
+    value: "N",
+    about: "Bits per sample, 8 or 16 [default: 16, for normals 8]",
+    value_kind: ValueKind::Word(&["8", "16"]),
+};
+
+/// The largest level that the options ask for.
+pub fn most(options: &Options) -> u16 {
+    if options.word("bits") == Some("8") { 255 } else { 65535 }
+}
+
+/// Whether the rows begin in the south.
+pub fn from_south(options: &Options) -> bool {
+    options.word("first-row") == Some("south")
+}
+
+/// The rows of a layer of plain numbers, and the range that its levels stand for.
+pub struct Quantizer<'s, 'w> {
+    source: &'s mut LayerSource<'w>,
+    levels: Levels,
+    /// The samples, where they had to be made to know their range or to turn their rows.
+    kept: Option<Spool>,
+    from_south: bool,
+}
+
+/// Samples that are read back at a time.
+const PIECE: usize = 1 << 20;
+
+impl<'s, 'w> Quantizer<'s, 'w> {
+    /// Finds the range: the one asked for; else of labels, the labels themselves; of a layer without a unit whose samples all lie within 0 to 1, a mask,
+    /// 0 to 1; of all others the lowest to the highest of the window.
+    ///
+    /// Fails as the subject does, and if labels pass the largest level `most`.
+    pub fn new(source: &'s mut LayerSource<'w>, options: &Options, most: u16, files: &Files) -> io::Result<Self> {
+        let asked = options.range("range").map(|[low, high]| Levels::new(low as f32, high as f32));
+        let from_south = from_south(options);
+        let kept = match asked.is_none() || from_south {
+            true => Some(keep(source, files)?),
+            false => None,
+        };
+        let levels = match asked {
+            Some(levels) => levels,
+            None => natural(source, most)?,
+        };
+        Ok(Quantizer { source, levels, kept, from_south })
+    }
+
+    /// The rows as they are, of a format that keeps the samples: put aside only to be turned.
+    ///
+    /// Fails as the subject does.
+    pub fn plain(source: &'s mut LayerSource<'w>, options: &Options, files: &Files) -> io::Result<Self> {
+        let from_south = from_south(options);
+        let kept = if from_south { Some(keep(source, files)?) } else { None };
+        Ok(Quantizer { source, levels: Levels::new(0.0, 0.0), kept, from_south })
+    }
+
+    /// What the least and the greatest level stand for.
+    pub fn levels(&self) -> Levels {
+        self.levels
+    }
+
+    /// Gives `visit` all samples, some whole rows at a time, in the order asked for.
+    ///
+    /// Fails as `visit`, the subject and the spool do.
+    pub fn rows(&mut self, mut visit: impl FnMut(&[f32]) -> io::Result<()>) -> io::Result<()> {
+        let Some(spool) = &mut self.kept else {
+            return self.source.rows(|band| visit(band[0].data()));
+        };
+        let (width, height) = (self.source.window().width, self.source.window().height);
+        let at_once = (PIECE / width.max(1)).max(1);
+        let (mut bytes, mut samples) = (Vec::new(), Vec::new());
+        for first in (0..height).step_by(at_once) {
+            let rows = at_once.min(height - first);
+            let start = if self.from_south { height - first - rows } else { first };
+            bytes.resize(4 * rows * width, 0);
+            spool.read(4 * (start * width) as u64, &mut bytes)?;
+            samples.clear();
+            let row = |bytes: &[u8], samples: &mut Vec<f32>| {
+                samples.extend(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])));
+            };
+            match self.from_south {
+                true => bytes.rchunks_exact(4 * width).for_each(|bytes| row(bytes, &mut samples)),
+                false => row(&bytes, &mut samples),
+            }
+            visit(&samples)?;
+        }
+        Ok(())
+    }
+}
+
+/// Makes the samples and puts them aside.
+fn keep(source: &mut LayerSource, files: &Files) -> io::Result<Spool> {
+    let mut spool = files.spool();
+    source.rows(|band| npy::write_rows(&mut spool, band[0].data()))?;
+    Ok(spool)
+}
+
+/// The range that a layer's samples have by themselves, of a subject whose rows were made.
+///
+/// Fails if labels pass the largest level `most`.
+pub fn natural(source: &LayerSource, most: u16) -> io::Result<Levels> {
+    let levels = source.levels();
+    match source.kind() {
+        LayerKind::Label if levels.low() < 0.0 || levels.high() > f32::from(most) => refuse(format!(
+            "the numbers of `{}`, {} to {}, do not fit in 0 to {most}; use npy, r32, exr or tif, or set --range",
+            source.layer(),
+            levels.low(),
+            levels.high()
+        )),
+        LayerKind::Label => Ok(Levels::new(0.0, f32::from(most))),
+        _ if is_mask(source, &levels) => Ok(Levels::new(0.0, 1.0)),
+        _ => Ok(levels),
+    }
+}
+
+fn is_mask(source: &LayerSource, levels: &Levels) -> bool {
+    source.unit().is_empty() && levels.low() >= 0.0 && levels.high() <= 1.0 && levels.high() > 0.0
+}
+
+/// Writes samples as levels: a byte each, or two, the higher first.
+pub fn write_levels(out: &mut dyn Write, samples: &[f32], levels: &Levels, most: u16) -> io::Result<()> {
+    let bytes: Vec<u8> = match most {
+        255 => samples.iter().map(|sample| levels.to_u8(*sample)).collect(),
+        _ => samples.iter().flat_map(|sample| levels.to_u16(*sample).to_be_bytes()).collect(),
+    };
+    out.write_all(&bytes)
+}
+
+/// What levels stand for, in words.
+pub fn words(levels: &Levels, most: u16) -> String {
+    match levels.is_flat() {
+        true => format!("flat at {} and so all 0", levels.low()),
+        false => format!("0 is {} and {most} is {}", levels.low(), levels.high()),
+    }
+}

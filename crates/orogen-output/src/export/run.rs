@@ -1,0 +1,193 @@
+//! One export from beginning to end.
+
+use std::io::{self, Write};
+
+use super::features;
+use super::files::Files;
+use super::format::Format;
+use super::layer_source::LayerSource;
+use super::options::Options;
+use super::registry;
+use orogen_engine::world::World;
+use orogen_grid::analysis::finite::FiniteCount;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::Window;
+use orogen_grid::progress::Progress;
+use orogen_io::file::{self, Output};
+
+/// What was written.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Written {
+    /// What the samples stand for.
+    pub words: String,
+    /// How many samples there are.
+    pub count: FiniteCount,
+}
+
+/// What a format is asked to hold: layers of vector features, if it holds such and all of `layers` (names with commas between them) are; else the layer
+/// of that name, as [`LayerSource::new`].
+///
+/// # Errors
+/// As [`LayerSource::new`], and if the layers are vector features and the format holds none.
+pub fn source<'w>(
+    format: &Format,
+    world: &'w World,
+    layers: &str,
+    window: Window,
+    progress: &Progress,
+) -> Result<LayerSource<'w>> {
+    match features::list::listed(layers) {
+        Some(vectors) if format.features => LayerSource::of_features(world, vectors, window, progress),
+        Some(vectors) if vectors.len() > 1 || world.unit(layers).is_err() => {
+            let holds: Vec<String> = registry::all()
+                .iter()
+                .filter(|format| format.features)
+                .map(|format| format!(".{}", format.name))
+                .collect();
+            let message = format!(
+                "`{layers}` consists of vector features, which .{} cannot hold; formats that can: {}",
+                format.name,
+                holds.join(", ")
+            );
+            Err(Error::new(ErrorKind::Request, message))
+        }
+        _ => LayerSource::new(world, layers, window, progress),
+    }
+}
+
+/// Exports to a file, and what stands beside it: all of it or nothing.
+///
+/// # Errors
+/// If the format does not know an option or cannot hold the layer, no sample of the layer is finite, memory does not suffice (then nothing was started), the work was cancelled, or
+/// a file cannot be written.
+pub fn to_file(format: &Format, source: LayerSource, options: &Options, output: &Output) -> Result<Written> {
+    let (files, written) = staged(format, source, options, output)?;
+    files.commit().map_err(|cause| file::explain("write", output.path(), &cause))?;
+    Ok(written)
+}
+
+/// As [`to_file`], all but putting the files in their places: for exports of several.
+pub(super) fn staged<'w>(
+    format: &Format,
+    mut source: LayerSource<'w>,
+    options: &Options,
+    output: &'w Output,
+) -> Result<(Files<'w>, Written)> {
+    let path = output.path();
+    prepare(format, &mut source, options)?;
+    file::check_folder(file::folder(path))?;
+    let mut files = Files::at(output, source.progress());
+    let words =
+        write(format, &mut source, options, &mut files).map_err(|cause| file::explain("write", path, &cause))?;
+    Ok((files, written(&source, words)?))
+}
+
+/// Exports to a stream: the file alone, nothing beside it.
+///
+/// # Errors
+/// As [`to_file`]; what the stream itself fails with comes back as it is.
+pub fn to_stream(format: &Format, source: LayerSource, options: &Options, out: &mut dyn Write) -> io::Result<Written> {
+    let mut source = source;
+    prepare(format, &mut source, options)?;
+    let mut files = Files::stream(out, source.progress());
+    let words = write(format, &mut source, options, &mut files)?;
+    let written = written(&source, words)?;
+    files.commit()?;
+    Ok(written)
+}
+
+/// Has a format write. A layer without a finite sample is told as such, whatever the format says of it.
+fn write(format: &Format, source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
+    (format.write)(source, options, files).map_err(|cause| {
+        let own = cause.get_ref().and_then(|inner| inner.downcast_ref::<Error>());
+        match (own.map(Error::kind), finite(source)) {
+            (Some(ErrorKind::Request), Err(error)) => error.into(),
+            _ => cause,
+        }
+    })
+}
+
+/// What was written of a subject, if any sample of it is finite.
+fn written(source: &LayerSource, words: String) -> Result<Written> {
+    finite(source)?;
+    Ok(Written { words, count: source.count() })
+}
+
+fn finite(source: &LayerSource) -> Result<()> {
+    source.count().check(&format!("the layer `{}`", source.layer())).map(drop)
+}
+
+/// Refuses what cannot be, before anything is begun.
+fn prepare(format: &Format, source: &mut LayerSource, options: &Options) -> Result<()> {
+    registry::check(format, options)?;
+    if source.channels() > format.channels {
+        let several: Vec<&str> = (registry::all().iter())
+            .filter(|other| other.channels >= source.channels())
+            .map(|other| other.name)
+            .collect();
+        let message = format!(
+            "`{}` has {} channels, and the format {} holds {}; formats for it: {}",
+            source.layer(),
+            source.channels(),
+            format.name,
+            format.channels,
+            several.join(", ")
+        );
+        return Err(Error::new(ErrorKind::Request, message));
+    }
+    source.prepare((format.memory)(source.window(), options))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use orogen_engine::recipe::document::Recipe;
+    use orogen_engine::world::World;
+    use orogen_grid::grid::Window;
+    use orogen_grid::progress::Progress;
+    use orogen_io::file::OutputPolicy;
+    use orogen_io::full_disk::Full;
+
+    #[test]
+    fn every_format_is_written_whole_or_fails_with_its_writer() {
+        let text = "orogen = 1\n[nodes.a]\nop = \"fbm\"\nwavelength = 40\n[nodes.b]\nop = \"remap\"\nsource = \"a\"\nto = [0, 90]\n\
+                    [outputs]\nheight = \"b\"\n";
+        let world = World::open(Recipe::parse(text, "test").unwrap()).unwrap();
+        let progress = Progress::none();
+        for format in registry::all() {
+            // SRTM's tiles have sizes of their own.
+            let side = if format.name == "hgt" { 1201 } else { 40 };
+            let write = |out: &mut dyn Write| {
+                let source = LayerSource::new(&world, "height", Window::new(side, side, 2.0), &progress).unwrap();
+                to_stream(format, source, &Options::default(), out)
+            };
+            let mut whole = Vec::new();
+            let words = write(&mut whole).unwrap().words;
+            assert!(whole.len() > 100 && !words.is_empty(), "{}: {words}", format.name);
+            for left in [0, 1, 50, whole.len() / 2, whole.len() - 1] {
+                let failed = write(&mut Full { left }).unwrap_err();
+                assert_eq!(failed.kind(), io::ErrorKind::StorageFull, "{} after {left}: {failed}", format.name);
+            }
+            progress.check().unwrap();
+        }
+    }
+
+    #[test]
+    fn a_stopped_export_leaves_nothing() {
+        let text = "orogen = 1\n[nodes.a]\nop = \"constant\"\n[outputs]\nheight = \"a\"\n";
+        let world = World::open(Recipe::parse(text, "test").unwrap()).unwrap();
+        let folder = std::env::temp_dir().join(format!("orogen-export-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        for name in ["png", "r16", "tif", "exr"] {
+            let progress = Progress::none();
+            progress.cancel();
+            let source = LayerSource::new(&world, "height", Window::new(30, 30, 2.0), &progress).unwrap();
+            let path = folder.join("a").with_extension(name);
+            let output = OutputPolicy::default().output(&path).unwrap();
+            let error = to_file(registry::named(name).unwrap(), source, &Options::default(), &output).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::Cancelled, "{name}");
+        }
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}

@@ -1,0 +1,160 @@
+//! What stands beside a file that does not tell everything itself: NAME.json, read again by [`format::sidecar`](orogen_io::format::sidecar).
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::files::Files;
+use super::layer_source::LayerSource;
+use super::options::{OptionSpec, Options, ValueKind};
+use orogen_io::format::dem::Georeference;
+use orogen_io::format::levels::Levels;
+use orogen_io::format::sidecar::own;
+
+/// The option that leaves it out.
+pub const NO_SIDECAR: OptionSpec = OptionSpec {
+    name: "no-sidecar",
+    value: "",
+    about: "Do not write files beside the output: no NAME.json (size, cell size, range, seed and other metadata), no .prj, no world file and no .aux.xml",
+    value_kind: ValueKind::Nothing,
+};
+
+/// How a file holds its samples.
+#[derive(Debug, Clone, Default)]
+pub struct SampleEncoding {
+    /// The word for a sample: "u8", "u16", "f32".
+    pub sample: &'static str,
+    /// "little" or "big", where a sample has several bytes.
+    pub byte_order: Option<&'static str>,
+    /// What the least and the greatest level stand for, where samples are levels.
+    pub levels: Option<Levels>,
+    /// Whether the rows begin in the south.
+    pub from_south: bool,
+    /// The files, each with the names of its channels, where those need telling.
+    pub channels: Vec<(PathBuf, Vec<String>)>,
+}
+
+impl SampleEncoding {
+    /// Integers up to `most` that stand for levels; those of two bytes have `byte_order`.
+    pub fn of_levels(levels: Levels, most: u16, byte_order: &'static str, from_south: bool) -> SampleEncoding {
+        let (sample, byte_order) = if most == 255 { ("u8", None) } else { ("u16", Some(byte_order)) };
+        SampleEncoding { sample, byte_order, levels: Some(levels), from_south, ..SampleEncoding::default() }
+    }
+}
+
+/// A file and its channels.
+#[derive(Debug, Serialize)]
+struct Channels<'a> {
+    file: String,
+    channels: &'a [String],
+}
+
+/// The text. The order of the keys is the file's; names that readers of ours know are theirs.
+#[derive(Debug, Serialize)]
+struct Text<'a> {
+    made_by: String,
+    file: String,
+    layer: &'a str,
+    #[serde(skip_serializing_if = "str::is_empty")]
+    unit: &'a str,
+    width: usize,
+    height: usize,
+    cell: f64,
+    sample: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    byte_order: Option<&'a str>,
+    first_row: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    low: Option<f32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    high: Option<f32>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    files: Vec<Channels<'a>>,
+    min: f32,
+    max: f32,
+    sea_level: f64,
+    seed: u64,
+    east: f64,
+    south: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    geotransform: Option<[f64; 6]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    crs: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    wkt: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    crs_missing: Option<String>,
+    layer_sha256: String,
+    #[serde(skip_serializing_if = "str::is_empty")]
+    about: &'a str,
+}
+
+/// Writes it, unless it is not wanted; returns the words that tell of it.
+///
+/// It is NAME.json, or NAME.EXT.json where that is the sidecar of another file, or no sidecar of ours at all: a recipe, for one.
+///
+/// Fails as the files do, and if something else has both names.
+pub fn write(files: &mut Files, source: &LayerSource, options: &Options, held: &SampleEncoding) -> io::Result<String> {
+    let Some(path) = files.path().map(Path::to_path_buf) else { return Ok(String::new()) };
+    if options.has(NO_SIDECAR.name) || path.exists() && !path.is_file() {
+        return Ok(String::new());
+    }
+    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let place = place(&path, &name(&path));
+    let (window, world) = (source.window(), source.world().recipe());
+    let range = source.levels();
+    let map = source.map();
+    let wkt = map.as_ref().map(Georeference::wkt);
+    let text = Text {
+        made_by: format!("Orogen {}", env!("CARGO_PKG_VERSION")),
+        file: name(&path),
+        layer: source.layer(),
+        unit: source.unit(),
+        width: window.width,
+        height: window.height,
+        cell: window.cell,
+        sample: held.sample,
+        byte_order: held.byte_order,
+        first_row: if held.from_south { "south" } else { "north" },
+        low: held.levels.map(|levels| levels.low()),
+        high: held.levels.map(|levels| levels.high()),
+        files: (held.channels.iter()).map(|(path, channels)| Channels { file: name(path), channels }).collect(),
+        min: range.low(),
+        max: range.high(),
+        sea_level: world.world.sea_level,
+        seed: world.world.seed,
+        east: window.east(0),
+        south: window.south(0),
+        geotransform: map.as_ref().map(|map| map.affine(window, held.from_south).geotransform()),
+        crs: map.as_ref().and_then(Georeference::epsg).map(|code| format!("EPSG:{code}")),
+        wkt: wkt.clone().and_then(Result::ok),
+        crs_missing: wkt.and_then(Result::err),
+        layer_sha256: source.key().iter().map(|byte| format!("{byte:02x}")).collect(),
+        about: &world.about,
+    };
+    let json = serde_json::to_string_pretty(&text).map_err(io::Error::other)?;
+    files.write_beside(|_| place.clone(), |out| writeln!(out, "{json}"))?;
+    Ok(format!("; {} describes it", name(&place)))
+}
+
+/// Where it goes: NAME.json if that is free or this file's.
+fn place(path: &Path, name: &str) -> PathBuf {
+    let short = path.with_extension("json");
+    match belongs_to(&short).as_deref() {
+        None if !short.exists() => short,
+        Some(file) if file == name || !path.with_file_name(file).exists() => short,
+        _ => own(path),
+    }
+}
+
+/// The file that a sidecar of ours tells of.
+fn belongs_to(sidecar: &Path) -> Option<String> {
+    let mut text = String::new();
+    File::open(sidecar).ok()?.take(1 << 16).read_to_string(&mut text).ok()?;
+    let value: serde_json::Value = serde_json::from_str(&text).ok()?;
+    let ours = value.get("made_by")?.as_str()?.starts_with("Orogen ");
+    let file = value.get("file")?.as_str()?;
+    ours.then(|| file.to_string())
+}

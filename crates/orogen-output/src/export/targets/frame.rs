@@ -1,0 +1,218 @@
+//! Which samples an engine gets: a size that it allows, and the cell that makes the world fit.
+
+use super::target::EngineTarget;
+use orogen_engine::tiles::Tiling;
+use orogen_engine::world::World;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::Window;
+use orogen_grid::words::number;
+
+/// What was asked for; all of it may be left to the target.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Asked {
+    /// Samples along a side, of a tile where there are several.
+    pub side: Option<usize>,
+    /// Metres from one sample to the next.
+    pub cell: Option<f64>,
+    /// Samples to begin with, and how many.
+    pub window: Option<Window>,
+    /// Tiles, east and south.
+    pub tiles: Option<[usize; 2]>,
+}
+
+/// What is exported.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// All samples.
+    pub window: Window,
+    /// Samples along a side of a tile.
+    pub side: usize,
+    /// Tiles, east and south, which share their edges.
+    pub tiles: [usize; 2],
+    /// What became of the world, where it does not simply fit.
+    pub note: Option<String>,
+}
+
+impl Frame {
+    /// The samples that a target gets of a world.
+    ///
+    /// Without a size it is the largest that the world has samples for. Without a cell or a window the world's shorter extent (for several tiles: as much
+    /// of it as they cover) is spread over them; with either, they begin at the window's first sample.
+    ///
+    /// # Errors
+    /// If the target does not allow a size or tiles; the message names the nearest.
+    pub fn new(target: &EngineTarget, world: &World, asked: &Asked) -> Result<Frame> {
+        let tiles = asked.tiles.unwrap_or([1, 1]);
+        if asked.tiles.is_some() && target.tile.is_none() {
+            return refuse(format!("{} imports a single file and splits it itself; leave out --tiles", target.name));
+        }
+        if tiles.contains(&0) || tiles.iter().any(|count| *count > 100) {
+            return refuse("--tiles must be 1 to 100 tiles per side, such as --tiles 2x2".into());
+        }
+        let spec = &world.recipe().world;
+        let cell = asked.cell.unwrap_or(spec.cell);
+        let side = match (asked.side, asked.window) {
+            (Some(side), _) => allowed(target, side)?,
+            (None, Some(window)) => {
+                let sides = [0, 1].map(|axis| {
+                    let samples = if axis == 0 { window.width } else { window.height };
+                    (samples.saturating_sub(1) / tiles[axis] + 1, samples)
+                });
+                if let Some((side, samples)) = sides.into_iter().enumerate().find_map(|(axis, (side, samples))| {
+                    ((side - 1) * tiles[axis] + 1 != samples).then_some((side, samples))
+                }) {
+                    return refuse(format!(
+                        "{samples} samples cannot be divided into tiles that share their edges; use {}",
+                        (nearest(target, side) - 1) * tiles[0] + 1
+                    ));
+                }
+                if sides[0].0 != sides[1].0 {
+                    return refuse(format!(
+                        "{} only takes squares; use a window of {1} x {1} samples",
+                        target.name, sides[0].1
+                    ));
+                }
+                allowed(target, sides[0].0)?
+            }
+            (None, None) => match spec.size {
+                Some(size) => {
+                    let there = [0, 1].map(|axis| (size[axis] / cell / tiles[axis] as f64).floor() as usize + 1);
+                    let most = there[0].min(there[1]);
+                    target.sides.iter().copied().filter(|side| *side <= most).max().unwrap_or(target.sides[0])
+                }
+                None => target.sides.iter().copied().filter(|side| *side <= 1025).max().unwrap_or(target.sides[0]),
+            },
+        };
+        let samples = tiles.map(|count| count * (side - 1) + 1);
+        let spread =
+            |[width, height]: [f64; 2]| (width / (samples[0] - 1) as f64).min(height / (samples[1] - 1) as f64);
+        let (first, cell, note) = match (asked.window, asked.cell, spec.size) {
+            (Some(window), ..) => ([window.x, window.y], cell, None),
+            (None, None, Some(size)) => {
+                let cell = spread(size);
+                let covered = samples.map(|samples| (samples - 1) as f64 * cell);
+                let left = [0, 1].into_iter().any(|axis| size[axis] - covered[axis] > 1e-6 * size[axis]);
+                let mut note = Vec::new();
+                if (cell - spec.cell).abs() > 1e-9 * cell {
+                    note.push(format!(
+                        "the cell is {} m instead of {} m, so that the world fits",
+                        number(cell),
+                        number(spec.cell)
+                    ));
+                }
+                if left {
+                    note.push(format!(
+                        "of the world's {} x {} m the first {} x {} m are written, because the engine only takes squares",
+                        number(size[0]),
+                        number(size[1]),
+                        number(covered[0]),
+                        number(covered[1])
+                    ));
+                }
+                ([0, 0], cell, (!note.is_empty()).then(|| note.join("; ")))
+            }
+            _ => ([0, 0], cell, None),
+        };
+        let window = Window { x: first[0], y: first[1], width: samples[0], height: samples[1], cell };
+        Ok(Frame { window, side, tiles, note })
+    }
+
+    /// The samples of a tile.
+    pub fn tile(&self, column: usize, row: usize) -> Window {
+        Tiling { overlap: 1, ..Tiling::of(self.side - 1) }.tile(&self.window, column, row)
+    }
+}
+
+fn refuse<T>(message: String) -> Result<T> {
+    Err(Error::new(ErrorKind::Request, message))
+}
+
+fn nearest(target: &EngineTarget, side: usize) -> usize {
+    target.sides.iter().copied().min_by_key(|allowed| allowed.abs_diff(side)).unwrap_or(side)
+}
+
+fn allowed(target: &EngineTarget, side: usize) -> Result<usize> {
+    match target.sides.contains(&side) {
+        true => Ok(side),
+        false => {
+            let sides: Vec<String> = target.sides.iter().map(usize::to_string).collect();
+            refuse(format!(
+                "{} does not support {side} x {side} samples; the nearest is {}; supported sizes: {}",
+                target.name,
+                nearest(target, side),
+                sides.join(", ")
+            ))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::targets::list;
+    use orogen_engine::recipe::document::Recipe;
+
+    fn frame(target: &str, size: &str, asked: Asked) -> std::result::Result<Frame, String> {
+        let text = format!(
+            "orogen = 1\n[world]\n{size}\ncell = 10\n[nodes.a]\nop = \"constant\"\n[outputs]\nheight = \"a\"\n"
+        );
+        let world = World::open(Recipe::parse(&text, "test").unwrap()).unwrap();
+        let frame = Frame::new(list::named(target).unwrap(), &world, &asked).map_err(|error| error.to_string())?;
+        world.check(&frame.window).unwrap();
+        Ok(frame)
+    }
+
+    #[test]
+    fn the_largest_that_fits_is_taken() {
+        let square = "size = [10240, 10240]";
+        for (target, side, cell) in [
+            ("unreal", 1009, 10240.0 / 1008.0),
+            ("unity", 1025, 10.0),
+            ("hterrain", 1025, 10.0),
+            ("terrain3d", 1024, 10240.0 / 1023.0),
+        ] {
+            let frame = frame(target, square, Asked::default()).unwrap();
+            assert_eq!((frame.side, frame.window.cell, frame.window.width), (side, cell, side), "{target}");
+            assert_eq!(frame.note.is_some(), cell != 10.0);
+        }
+        let wide = frame("unity", "size = [10240, 5120]", Asked::default()).unwrap();
+        assert_eq!((wide.side, wide.window.cell), (513, 10.0));
+        assert!(wide.note.unwrap().contains("the first 5120 x 5120 m"));
+        assert_eq!(frame("unreal", "size = [300, 300]", Asked::default()).unwrap().side, 127);
+        assert_eq!(frame("unity", "", Asked::default()).unwrap().side, 1025);
+    }
+
+    #[test]
+    fn tiles_share_their_edges() {
+        let asked = Asked { tiles: Some([2, 2]), ..Asked::default() };
+        let frame = frame("unity", "size = [10240, 10240]", asked).unwrap();
+        assert_eq!((frame.side, frame.window.width), (513, 1025));
+        assert_eq!(frame.tile(1, 0), Window::new(513, 513, 10.0).at(512, 0));
+    }
+
+    #[test]
+    fn what_is_asked_for_is_kept_or_refused() {
+        let square = "size = [10240, 10240]";
+        let asked = Asked { side: Some(505), cell: Some(5.0), ..Asked::default() };
+        assert_eq!(frame("unreal", square, asked).unwrap().window, Window::new(505, 505, 5.0));
+        let window = Window::new(513, 513, 10.0).at(7, 9);
+        let asked = Asked { window: Some(window), ..Asked::default() };
+        assert_eq!(frame("unity", square, asked).unwrap().window, window);
+        for (target, asked, expect) in [
+            ("unreal", Asked { side: Some(1024), ..Asked::default() }, "the nearest is 1009"),
+            ("unity", Asked { side: Some(512), ..Asked::default() }, "the nearest is 513"),
+            ("unity", Asked { window: Some(Window::new(512, 512, 10.0)), ..Asked::default() }, "the nearest is 513"),
+            ("unity", Asked { window: Some(Window::new(513, 257, 10.0)), ..Asked::default() }, "squares"),
+            ("hterrain", Asked { tiles: Some([2, 2]), ..Asked::default() }, "leave out --tiles"),
+            ("unreal", Asked { tiles: Some([0, 2]), ..Asked::default() }, "1 to 100 tiles"),
+            (
+                "unity",
+                Asked { window: Some(Window::new(512, 512, 10.0)), tiles: Some([2, 2]), ..Asked::default() },
+                "share their edges; use 513",
+            ),
+        ] {
+            let why = frame(target, square, asked).unwrap_err();
+            assert!(why.contains(expect), "{why}");
+        }
+    }
+}

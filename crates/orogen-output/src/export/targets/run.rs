@@ -1,0 +1,119 @@
+//! An export for an engine.
+
+use std::path::PathBuf;
+
+use super::frame::Frame;
+use super::target::EngineTarget;
+use crate::export::channels::{NORMAL, WEIGHTS, suffixed};
+use crate::export::derived::layer::Nature;
+use crate::export::files::Files;
+use crate::export::format::Format;
+use crate::export::layer_source::LayerSource;
+use crate::export::options::Options;
+use crate::export::quantizer::{self, BITS, RANGE};
+use crate::export::run;
+use orogen_engine::world::{HEIGHT, World};
+use orogen_grid::analysis::finite::FiniteCount;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::Window;
+use orogen_grid::progress::Progress;
+use orogen_io::file::{self, Output};
+
+/// What was made.
+pub struct Exported {
+    /// The files that were asked for.
+    pub files: Vec<PathBuf>,
+    /// Samples of all of them, east and south, each shared edge once.
+    pub samples: [usize; 2],
+    /// What the samples in them stand for.
+    pub words: String,
+    /// How many samples there are, those of shared edges in each tile.
+    pub count: FiniteCount,
+    /// What to type into the engine's import dialogue, a line each; nothing for layers other than the heights.
+    pub import: Vec<String>,
+}
+
+/// Exports a layer over a frame, all tiles of it or none. Heights and their scale are the target's own; weights and normals have its way; other layers are
+/// grey pictures of 8 bits.
+///
+/// # Errors
+/// If the format is none of the target's, or as [`run::to_file`].
+pub fn export(
+    target: &EngineTarget,
+    format: &Format,
+    frame: &Frame,
+    world: &World,
+    layer: &str,
+    progress: &Progress,
+    output: &Output,
+) -> Result<Exported> {
+    let path = output.path();
+    let mut options = Options::default();
+    // Plain numbers are made twice: for their range, and tile by tile.
+    let nature = LayerSource::new(world, layer, frame.window, progress)?.nature();
+    let [ranging, writing] = progress.parts([if nature == Nature::Numbers { 1.0 } else { 0.0 }, 1.0]);
+    writing.expect((frame.tiles[0] * frame.tiles[1]) as f64);
+    let source = |window: Window, progress: &Progress| LayerSource::new(world, layer, window, progress);
+    let mut all = source(frame.window, &ranging)?;
+    let known: &[&str] = if layer == HEIGHT { target.formats } else { &["png"] };
+    if !known.contains(&format.name) {
+        let list: Vec<String> = known.iter().map(|name| format!(".{name}")).collect();
+        let message = format!("{} imports `{layer}` as {}, not as .{}", target.name, list.join(" or "), format.name);
+        return Err(Error::new(ErrorKind::Request, message));
+    }
+    // What may not be replaced is refused before the first tile is made.
+    let mut outputs = Vec::new();
+    for row in 0..frame.tiles[1] {
+        for column in 0..frame.tiles[0] {
+            outputs.push(match target.tile {
+                Some(name) if frame.tiles != [1, 1] => {
+                    output.policy().output(suffixed(path, &name(column, row, frame.tiles[1])))?
+                }
+                _ => output.clone(),
+            });
+        }
+    }
+    let mut import = Vec::new();
+    let mut less = 0;
+    match nature {
+        // One scale for all tiles: the whole range is known before the first is written.
+        Nature::Numbers => {
+            // What no tile can be written in is refused before the range is looked for.
+            all.prepare((format.memory)(&frame.tile(0, 0), &options))?;
+            all.rows(|_| Ok(())).map_err(|cause| file::explain("make", path, &cause))?;
+            if layer == HEIGHT {
+                let levels = all.levels();
+                (target.heights)(&levels, &mut options)?;
+                import = (target.import)(frame.side, frame.window.cell, &levels);
+            } else {
+                options.give(&BITS, "8")?;
+                let levels = quantizer::natural(&all, quantizer::most(&options))
+                    .map_err(|cause| file::explain("write", path, &cause))?;
+                if !levels.is_flat() {
+                    options.give(&RANGE, &format!("{},{}", levels.low(), levels.high()))?;
+                }
+            }
+        }
+        Nature::Normal => options.give(&NORMAL, target.normal)?,
+        Nature::Color => {}
+        Nature::Weights => {
+            options.give(&WEIGHTS, target.weights)?;
+            less = target.weights_less;
+        }
+    }
+    let (mut written, mut words, mut count) = (Vec::new(), String::new(), FiniteCount::default());
+    for row in 0..frame.tiles[1] {
+        for column in 0..frame.tiles[0] {
+            let tile = frame.tile(column, row);
+            let window = Window { width: tile.width - less, height: tile.height - less, ..tile };
+            let output = &outputs[row * frame.tiles[0] + column];
+            let (made, told) = run::staged(format, source(window, &writing.part(1.0))?, &options, output)?;
+            (words, count) = (told.words, count.and(told.count));
+            written.push(made);
+        }
+    }
+    written.into_iter().try_for_each(Files::commit).map_err(|cause| file::explain("write", path, &cause))?;
+    let files = outputs.iter().map(|output| output.path().to_path_buf()).collect();
+    let samples = [frame.window.width - less, frame.window.height - less];
+    Ok(Exported { files, samples, words, count, import })
+}

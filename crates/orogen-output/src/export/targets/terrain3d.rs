@@ -1,0 +1,35 @@
+//! Terrain3D, for Godot 4.
+//!
+//! "Importing & Exporting Data" (terrain3d.readthedocs.io): EXR or r16 for heights, metres as they are; it cuts the map into regions of 1024
+//! samples by itself. Three channels of 32 bits without opacity, which Godot reads as floats; half floats would be steps of 2 m at 3000 m.
+
+use super::target::EngineTarget;
+use crate::export::formats::exr;
+use orogen_io::format::levels::Levels;
+
+/// The target.
+pub static TARGET: EngineTarget = EngineTarget {
+    name: "terrain3d",
+    about: "Terrain3D for Godot 4: EXR of f32 in metres with channels R, G and B, whole regions of 1024 samples",
+    sides: &[256, 512, 1024, 2048, 4096, 8192, 16384],
+    formats: &[exr::FORMAT.name],
+    tile: None,
+    weights_less: 0,
+    weights: "rgba",
+    normal: "opengl",
+    heights: |_, options| options.give(&exr::RGB, ""),
+    import,
+};
+
+fn import(side: usize, cell: f64, levels: &Levels) -> Vec<String> {
+    let middle = side as f64 / 2.0;
+    vec![
+        format!(
+            "importer.tscn > Height File Name; Import Scale 1, Height Offset 0 (metres {} to {})",
+            levels.low(),
+            levels.high()
+        ),
+        format!("Import Position {middle}, 0, {middle} puts the first sample at the origin; Vertex Spacing {}", cell),
+        "rows grow south, which is +Z: nothing is flipped".to_string(),
+    ]
+}

@@ -1,0 +1,50 @@
+//! Unity's terrains.
+//!
+//! "Working with Heightmaps" and "Terrain Settings" (docs.unity3d.com): 2^n + 1 samples, 33 to 4097; RAW of 16 bits; a terrain's first row is its
+//! southern one (z grows north), so the rows are written from the south and nothing is flipped.
+
+use super::target::EngineTarget;
+use crate::export::formats::r16;
+use crate::export::quantizer::{FIRST_ROW, RANGE};
+use orogen_io::format::levels::Levels;
+
+/// The target.
+pub static TARGET: EngineTarget = EngineTarget {
+    name: "unity",
+    about: "Unity terrains: r16, little-endian, first row in the south, 2^n + 1 samples, tiles _x_z",
+    sides: &[33, 65, 129, 257, 513, 1025, 2049, 4097],
+    formats: &[r16::FORMAT.name],
+    // Columns and rows from the south-west, as its Terrain Toolbox counts them.
+    tile: Some(|column, row, rows| format!("_{column}_{}", rows - 1 - row)),
+    // Its weights have a pixel a quad.
+    weights_less: 1,
+    weights: "rgba",
+    normal: "opengl",
+    heights: |levels, options| {
+        let (low, high) = ends(levels);
+        options.give(&RANGE, &format!("{low},{high}"))?;
+        options.give(&FIRST_ROW, "south")
+    },
+    import,
+};
+
+/// The heights of 0 and 65535: level ground has a metre.
+fn ends(levels: &Levels) -> (f32, f32) {
+    match levels.is_flat() {
+        true => (levels.low(), levels.low() + 1.0),
+        false => (levels.low(), levels.high()),
+    }
+}
+
+fn import(side: usize, cell: f64, levels: &Levels) -> Vec<String> {
+    let (low, high) = ends(levels);
+    let metres = (side - 1) as f64 * cell;
+    vec![
+        format!(
+            "Terrain Settings > Heightmap Resolution {0} x {0}, then Import Raw: Depth Bit 16, Byte Order Windows, Flip Vertically off",
+            side
+        ),
+        format!("Terrain Size: X {metres}, Y {}, Z {metres}; the terrain's position Y {low}", high - low),
+        format!("weight maps (--layer splat) have {0} x {0} pixels: Control Texture Resolution {0}", side - 1),
+    ]
+}

@@ -1,0 +1,209 @@
+//! The recipe that is fitted: noise that rivers cut, shaped and scaled.
+
+use orogen_engine::field::{curve::Curve, fbm::Fbm, remap::Remap, transform::Transform};
+use orogen_engine::filter::blur::Blur;
+use orogen_engine::recipe::document::{Recipe, WorldSpec};
+use orogen_engine::solver::stream_power::StreamPower;
+
+/// A number that is searched for.
+#[derive(Debug, Clone, Copy)]
+pub struct Param {
+    /// What it is.
+    pub name: &'static str,
+    /// Its ends.
+    pub range: [f64; 2],
+    /// Whether equal steps are equal ratios.
+    pub logarithmic: bool,
+}
+
+const fn param(name: &'static str, low: f64, high: f64, logarithmic: bool) -> Param {
+    Param { name, range: [low, high], logarithmic }
+}
+
+/// All of them. Lengths are in cells, so that one search fits places of any cell.
+pub const PARAMS: [Param; 9] = [
+    param("wavelength of the first land, cells", 24.0, 600.0, true),
+    param("its gain", 0.3, 0.65, false),
+    param("its amplitude, m", 20.0, 3000.0, true),
+    param("erodibility", 5e-6, 2e-4, true),
+    param("uplift, mm/yr", 0.01, 0.3, true),
+    param("talus angle, deg", 15.0, 60.0, false),
+    param("how much rock differs", 0.0, 1.5, false),
+    param("creep, m^2/yr", 1e-3, 1.0, true),
+    param("blur, cells", 0.2, 1.0, false),
+];
+
+/// Values of the parameters, each 0 to 1 within its range.
+pub type ParamValues = [f64; PARAMS.len()];
+
+/// The value of a parameter in its own unit.
+pub fn value(values: &ParamValues, k: usize) -> f64 {
+    let Param { range: [low, high], logarithmic, .. } = PARAMS[k];
+    let share = values[k].clamp(0.0, 1.0);
+    match logarithmic {
+        true => low * libm::exp(share * libm::log(high / low)),
+        false => low + share * (high - low),
+    }
+}
+
+/// How the land that comes out is stretched and bent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// The lowest and the highest of what was cut.
+    pub from: [f64; 2],
+    /// The heights in metres that they become.
+    pub to: [f64; 2],
+    /// Between them heights go as exp(bend t) with t from 0 to 1: below 0 for high plains, above for wide valleys.
+    pub bend: f64,
+}
+
+impl Stretch {
+    /// Where a height that is a share `t` of the way from the lowest to the highest comes to lie, as such a share.
+    fn bent(&self, t: f64) -> f64 {
+        match self.bend.abs() < 1e-3 {
+            true => t,
+            false => libm::expm1(self.bend * t) / libm::expm1(self.bend),
+        }
+    }
+
+    /// The node that does it. It goes on beyond both ends: a larger world may be lower and higher than the one that was fitted.
+    pub fn curve(&self) -> Curve {
+        let ([low, high], [base, top]) = (self.from, self.to);
+        let point = |k: i32| {
+            let t = f64::from(k) / 8.0;
+            [round(low + t * (high - low)), round(base + self.bent(t) * (top - base))]
+        };
+        Curve { source: "soft".into(), points: (-8..=16).map(point).collect() }
+    }
+}
+
+/// A number with so many digits as a recipe wants.
+fn round(value: f64) -> f64 {
+    let digits = libm::pow(10.0, 4.0 - libm::log10(value.abs().max(1e-12)).floor());
+    (value * digits).round() / digits
+}
+
+/// Where the rivers of a world are solved: over all of it, or in a wider view of the land of which the world is the middle, at the same
+/// resolution. A solver ends at the world's edge, where the land stays as it was: a rim.
+#[derive(Debug, Clone, Copy)]
+struct View {
+    /// What lengths are multiplied by, so that the wider view fits into the world.
+    scale: f64,
+    /// Metres that are seen beyond the world in the west and in the north.
+    around: [f64; 2],
+    /// From one sample that rivers are solved on to the next, in the world.
+    cell: f64,
+}
+
+impl View {
+    /// The view with at least `margin` cells on each side.
+    fn new(size: [usize; 2], cell: f64, margin: usize) -> View {
+        let fewest = size[0].min(size[1]).max(1) as f64;
+        let scale = fewest / (fewest + 2.0 * margin as f64);
+        // Whole cells: the samples of the view are those of the world, and none is made of its neighbours.
+        let around = size.map(|samples| (samples as f64 * (1.0 / scale - 1.0) / 2.0).round() * cell);
+        View { scale, around, cell: cell * scale }
+    }
+
+    /// A source as the view sees it.
+    fn wider(&self, source: &str) -> Transform {
+        Transform {
+            source: source.into(),
+            scale: self.scale,
+            offset: self.around.map(|metres| -metres),
+            ..Transform::default()
+        }
+    }
+
+    /// The middle of what was solved in the view.
+    fn middle(&self, source: &str) -> Transform {
+        let offset = self.around.map(|metres| metres * self.scale);
+        Transform { source: source.into(), scale: 1.0 / self.scale, offset, ..Transform::default() }
+    }
+
+    /// The law that does in the view what another does in the world: areas are smaller there, slopes steeper.
+    fn law(&self, law: StreamPower) -> StreamPower {
+        let s = self.scale;
+        let talus = libm::atan(libm::tan(law.talus_angle.to_radians()) / s).to_degrees();
+        StreamPower {
+            erodibility: law.erodibility * libm::pow(s, law.slope_exponent - 2.0 * law.area_exponent),
+            talus_angle: talus,
+            creep: law.creep * s * s,
+            cell: self.cell,
+            ..law
+        }
+    }
+}
+
+/// The recipe of these values, in a world of so many cells, up to whose edges rivers have cut. Its node `soft` is the land before it is stretched.
+pub fn recipe(values: &ParamValues, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64) -> Recipe {
+    written(values, stretch, size, cell, seed, Some(View::new(size, cell, MARGIN)))
+}
+
+/// The same solved over the world alone, which is quicker: its land is like that of [`recipe`] from [`MARGIN`] samples inwards.
+pub(super) fn trial(values: &ParamValues, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64) -> Recipe {
+    written(values, stretch, size, cell, seed, None)
+}
+
+/// Samples along the border of a solved world whose land shows that it ends.
+pub(super) const MARGIN: usize = 48;
+
+fn written(
+    values: &ParamValues,
+    stretch: &Stretch,
+    size: [usize; 2],
+    cell: f64,
+    seed: u64,
+    view: Option<View>,
+) -> Recipe {
+    let value = |k: usize| round(value(values, k));
+    let wavelength = round(value(0) * cell);
+    let size = size.map(|samples| samples as f64 * cell);
+    let mut recipe = Recipe::new(WorldSpec { seed, size: Some(size), cell, ..WorldSpec::default() });
+    let noise = |seed: u64, wavelength: f64, octaves: u32| Fbm { seed, wavelength, octaves, ..Fbm::default() };
+    recipe.add("waves", Fbm { gain: value(1), ..noise(1, wavelength, 12) });
+    let amplitude = value(2);
+    recipe.add(
+        "ground",
+        Remap { source: "waves".into(), from: [-1.0, 1.0], to: [-amplitude, amplitude], ..Remap::default() },
+    );
+    recipe.add("rock", noise(2, round(wavelength / 2.0), 5));
+    let differs = value(6);
+    let share = |x: f64| [x, round(libm::exp(2.0 * differs * x))];
+    recipe.add("erodibility", Curve { source: "rock".into(), points: [-1.0, -0.5, 0.0, 0.5, 1.0].map(share).to_vec() });
+    recipe.add("lift", noise(3, wavelength, 4));
+    recipe.add("uplift", Remap { source: "lift".into(), from: [-1.0, 1.0], to: [0.2, 1.8], ..Remap::default() });
+    let law = StreamPower {
+        source: "ground".into(),
+        erodibility_factor: "erodibility".into(),
+        uplift_factor: "uplift".into(),
+        erodibility: value(3),
+        uplift: value(4),
+        talus_angle: value(5),
+        creep: value(7),
+        sea: false,
+        ..StreamPower::default()
+    };
+    match view {
+        Some(view) => {
+            for source in ["ground", "erodibility", "uplift"] {
+                recipe.add(&format!("{source}_around"), view.wider(source));
+            }
+            let law = StreamPower {
+                source: "ground_around".into(),
+                erodibility_factor: "erodibility_around".into(),
+                uplift_factor: "uplift_around".into(),
+                ..view.law(law)
+            };
+            recipe.add("cut_around", law);
+            recipe.add("cut", view.middle("cut_around"));
+        }
+        None => {
+            recipe.add("cut", law);
+        }
+    }
+    recipe.add("soft", Blur { source: "cut".into(), radius: round(value(8) * cell) });
+    recipe.add("land", stretch.curve());
+    recipe.output("height", "land");
+    recipe
+}

@@ -1,0 +1,173 @@
+//! Relief shading that stays soft: several lights, fitted to the land's own steepness.
+
+use orogen_grid::analysis::hillshade::Light;
+use orogen_grid::analysis::slope::{Gradient, gradients_between};
+use orogen_grid::grid::Grid;
+
+/// The lights: degrees clockwise from north, degrees above the horizon, weight. One light leaves ridges that run along it
+/// invisible; a pair beside the main one shows them (after R. K. Mark, "Multidirectional, oblique-weighted, shaded-relief
+/// image", USGS 1992).
+const LIGHTS: [(f64, f64, f32); 3] = [(315.0, 42.0, 0.6), (265.0, 38.0, 0.2), (5.0, 38.0, 0.2)];
+
+/// Which lights shade the relief.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lights {
+    /// One from the north-west.
+    One,
+    /// Three, the main one from the north-west: the usual.
+    Three,
+}
+
+/// The steepness, as rise per metre, that is shaded as it is. Land steep as real mountains seen at 30 m cells.
+const NATURAL: f32 = 0.65;
+
+/// How much of the way from its own steepness to [`NATURAL`] land is brought, in powers: 1 would make hills look like alps, 0
+/// would leave coarse cells, whose slopes are always gentler, without relief.
+const FIT: f32 = 0.66;
+
+/// How bright the darkest shadow is, and how much light beyond level ground's counts.
+const DARKEST: f32 = 0.26;
+const HIGHLIGHT: f32 = 0.45;
+
+/// How many rows are looked at to fit the z factor.
+const PROBES: usize = 64;
+
+/// A shading: lights and a z factor. Level ground keeps its colour, slopes to the light get brighter, others darker and bluer.
+#[derive(Debug, Clone)]
+pub struct Shade {
+    lights: Vec<(Light, f32)>,
+    level: f32,
+}
+
+impl Shade {
+    /// The shading with heights counting `z_factor` times.
+    pub fn new(z_factor: f32) -> Shade {
+        Shade::lit(Lights::Three, z_factor)
+    }
+
+    /// The same by these lights.
+    pub fn lit(lights: Lights, z_factor: f32) -> Shade {
+        let count = if lights == Lights::One { 1 } else { LIGHTS.len() };
+        let lights: Vec<(Light, f32)> = LIGHTS[..count]
+            .iter()
+            .map(|&(azimuth, altitude, weight)| (Light::new(azimuth, altitude, f64::from(z_factor)), weight))
+            .collect();
+        let level = lights.iter().map(|(light, weight)| weight * light.on_level()).sum();
+        Shade { lights, level }
+    }
+
+    /// The shading whose z factor suits the land (or, without land, the sea floor) of `grid`. Steepness depends on the cell, so
+    /// this is what lets 15 m and 60 m cells of one world look alike.
+    pub fn fit(grid: &Grid, sea_level: f32) -> Shade {
+        Shade::fit_lit(Lights::Three, grid, sea_level)
+    }
+
+    /// The same by these lights.
+    pub fn fit_lit(lights: Lights, grid: &Grid, sea_level: f32) -> Shade {
+        let typical = typical_steepness(grid, |height| height > sea_level)
+            .or_else(|| typical_steepness(grid, |height| height <= sea_level));
+        let z_factor = match typical {
+            Some(steepness) if steepness > 0.0 => libm::powf(NATURAL / steepness, FIT),
+            _ => 1.0,
+        };
+        Shade::lit(lights, z_factor)
+    }
+
+    /// What to multiply a colour's red, green and blue light with.
+    pub fn on(&self, gradient: Gradient) -> [f32; 3] {
+        let light: f32 = self.lights.iter().map(|(light, weight)| weight * light.on(gradient)).sum();
+        let relative = light / self.level;
+        if relative >= 1.0 {
+            [1.0 + (relative - 1.0) * HIGHLIGHT; 3]
+        } else {
+            let factor = DARKEST + (1.0 - DARKEST) * relative;
+            // Shadows are lit by the sky: they keep some blue and lose red first.
+            let dark = 1.0 - factor;
+            [factor - 0.07 * dark, factor, factor + 0.10 * dark]
+        }
+    }
+}
+
+/// The steepness that a quarter of the samples of `kind` exceed, looked at in some rows; none if there are too few.
+fn typical_steepness(grid: &Grid, kind: impl Fn(f32) -> bool) -> Option<f32> {
+    if grid.height() < 3 || grid.width() < 3 {
+        return None;
+    }
+    let inner = grid.height() - 2;
+    let mut found = Vec::new();
+    for j in (0..inner).step_by(inner.div_ceil(PROBES)) {
+        gradients_between([grid.row(j), grid.row(j + 1), grid.row(j + 2)], grid.window().cell, |i, gradient| {
+            let steepness = gradient.steepness();
+            if steepness.is_finite() && kind(grid.get(i + 1, j + 1)) {
+                found.push(steepness);
+            }
+        });
+    }
+    let at = found.len() * 3 / 4;
+    (!found.is_empty()).then(|| *found.select_nth_unstable_by(at, f32::total_cmp).1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use orogen_grid::grid::Window;
+
+    /// Long waves of `steepness` at most, running south-west to north-east.
+    fn waves(cell: f64, steepness: f64) -> Grid {
+        let window = Window::new(200, 100, cell);
+        let mut grid = Grid::filled(window, 0.0);
+        for j in 0..100 {
+            for i in 0..200 {
+                let phase = (window.east(i) + window.south(j)) / 1000.0;
+                grid.row_mut(j)[i] = (2000.0 + libm::sin(phase) * 1000.0 * steepness) as f32;
+            }
+        }
+        grid
+    }
+
+    /// The lowest and the highest factor on green that the inner samples get.
+    fn range(grid: &Grid) -> (f32, f32) {
+        let shade = Shade::fit(grid, 0.0);
+        let mut range = (f32::INFINITY, 0.0f32);
+        for j in 0..grid.height() - 2 {
+            gradients_between([grid.row(j), grid.row(j + 1), grid.row(j + 2)], grid.window().cell, |_, gradient| {
+                let factor = shade.on(gradient)[1];
+                range = (range.0.min(factor), range.1.max(factor));
+            });
+        }
+        range
+    }
+
+    #[test]
+    fn level_ground_keeps_its_colour() {
+        for z_factor in [0.1, 1.0, 30.0] {
+            let factors = Shade::new(z_factor).on(Gradient { east: 0.0, north: 0.0 });
+            assert!(factors.iter().all(|f| (f - 1.0).abs() < 1e-6));
+        }
+        assert_eq!(range(&Grid::filled(Window::new(9, 9, 1.0), 5.0)), (1.0, 1.0));
+    }
+
+    #[test]
+    fn gentle_and_steep_worlds_both_show_and_keep_their_order() {
+        let contrast: Vec<f32> = [0.02, 0.1, 0.5, 2.0]
+            .map(|steepness| {
+                let (low, high) = range(&waves(30.0, steepness));
+                assert!(low < 0.93 && high > 1.01 && low >= DARKEST, "{steepness}: {low} {high}");
+                high - low
+            })
+            .to_vec();
+        assert!(contrast.is_sorted(), "{contrast:?}");
+    }
+
+    #[test]
+    fn the_cell_matters_little() {
+        let (fine, coarse) = (range(&waves(15.0, 0.5)), range(&waves(60.0, 0.5)));
+        assert!((fine.0 - coarse.0).abs() < 0.05 && (fine.1 - coarse.1).abs() < 0.05, "{fine:?} {coarse:?}");
+    }
+
+    #[test]
+    fn missing_samples_are_merely_dark() {
+        let factors = Shade::new(1.0).on(Gradient { east: f32::NAN, north: 0.0 });
+        assert!(factors.iter().all(|&f| f > 0.0 && f < 0.5), "{factors:?}");
+    }
+}

@@ -1,0 +1,326 @@
+//! glTF 2.0 in one binary file (.glb).
+//!
+//! The Khronos Group's specification, 2.0.1. Metres; X east, Y up, Z south, the first sample of the grid at the node's origin;
+//! the node stands where the grid begins in its world. Corners come interleaved: place, normal, texture coordinate and, where
+//! wanted, colour (linear, four u16) and tangent (eastward along the ground). Indices take two bytes as long as they fit. Levels of detail follow MSFT_lod: a reader that
+//! does not know it shows the first level.
+
+use std::io::{self, Write};
+
+use serde_json::{Map, Value, json};
+
+use super::normal_map::tangent;
+use super::surface::{Corner, Surface, Wanted, push};
+use super::water::WaterMesh;
+use orogen_grid::error::{Error, ErrorKind};
+
+/// A surface in one or several levels of detail, the finest first, over the same grid.
+pub struct Model<'a> {
+    /// The levels; at least one.
+    pub levels: &'a [Surface<'a>],
+    /// A PNG picture of the grid with a pixel for each sample.
+    pub texture: Option<&'a [u8]>,
+    /// A PNG picture of the grid that goes with the texture: occlusion in red, roughness in green, metalness in blue.
+    pub material: Option<&'a [u8]>,
+    /// For each level a PNG [normal map](super::normal_map), where it has one; empty where none has.
+    pub normal_maps: &'a [Option<Vec<u8>>],
+    /// Water on it: a node and a translucent material each.
+    pub water: &'a [WaterMesh],
+    /// What is told of it beside its corners, for readers that look: keys and values.
+    pub extras: Map<String, Value>,
+}
+
+/// "glTF", "JSON" and "BIN\0" as little-endian numbers.
+const MAGIC: u32 = 0x4654_6C67;
+const JSON: u32 = 0x4E4F_534A;
+const BIN: u32 = 0x004E_4942;
+
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+const U16: u32 = 5123;
+const U32: u32 = 5125;
+const F32: u32 = 5126;
+
+/// The share of the screen down to which each level of detail is meant to be shown: half for the first, a quarter for the next.
+const COVERAGE: f64 = 0.5;
+
+/// Writes a model.
+///
+/// Fails as `out` does, and on a model that is more than the 4 GiB that such a file can hold.
+pub fn write(out: &mut dyn Write, model: &Model) -> io::Result<()> {
+    let colors = model.levels.iter().any(|level| level.painter.is_some());
+    let document = Document::new(model, colors);
+    let json = padded(document.json.to_string().into_bytes(), b' ');
+    let length = 12 + 8 + json.len() as u64 + 8 + document.length;
+    if length > u64::from(u32::MAX) {
+        let message = format!(
+            "a .glb file holds at most 4 GiB, and this mesh needs {}; use --max-error, a smaller window or a larger cell",
+            orogen_grid::words::bytes(length)
+        );
+        return Err(Error::new(ErrorKind::Request, message).into());
+    }
+    let words =
+        |out: &mut dyn Write, words: &[u32]| words.iter().try_for_each(|word| out.write_all(&word.to_le_bytes()));
+    words(out, &[MAGIC, 2, length as u32, json.len() as u32, JSON])?;
+    out.write_all(&json)?;
+    words(out, &[document.length as u32, BIN])?;
+    let light: Vec<u16> = (0..=255).map(linear).collect();
+    for (nth, level) in model.levels.iter().enumerate() {
+        let tangents = normal_map(model, nth).is_some();
+        level.corners(out, Wanted { normals: true, colors }, |corner, bytes| {
+            vertex(corner, bytes);
+            if colors {
+                let [r, g, b] = corner.color.map(|part| light[usize::from(part)]);
+                [r, g, b, u16::MAX].iter().for_each(|part| bytes.extend_from_slice(&part.to_le_bytes()));
+            }
+            if tangents {
+                push(&tangent(corner.normal), bytes);
+                // The bitangent is the cross product as it is: north.
+                push(&[1.0], bytes);
+            }
+        })?;
+        match narrow(level) {
+            true => level.triangles(out, |triangle, bytes| {
+                triangle.iter().for_each(|&corner| bytes.extend_from_slice(&(corner as u16).to_le_bytes()));
+            })?,
+            false => level.triangles(out, |triangle, bytes| {
+                triangle.iter().for_each(|corner| bytes.extend_from_slice(&corner.to_le_bytes()));
+            })?,
+        }
+        pad(out, indices(level))?;
+    }
+    for picture in pictures(model) {
+        out.write_all(picture)?;
+        pad(out, picture.len() as u64)?;
+    }
+    for water in model.water {
+        let mut bytes = Vec::new();
+        for (corner, normal) in water.corners.iter().zip(water.normals()) {
+            push(corner, &mut bytes);
+            push(&normal, &mut bytes);
+        }
+        out.write_all(&bytes)?;
+        bytes.clear();
+        bytes.extend(water.triangles.iter().flatten().flat_map(|corner| corner.to_le_bytes()));
+        out.write_all(&bytes)?;
+    }
+    Ok(())
+}
+
+/// The pictures of the ground's materials, in the order of the file.
+fn pictures<'a>(model: &Model<'a>) -> impl Iterator<Item = &'a [u8]> {
+    let base = model.texture.into_iter().flat_map(|texture| [Some(texture), model.material]).flatten();
+    base.chain(model.normal_maps.iter().flatten().map(Vec::as_slice))
+}
+
+/// The normal map of a level.
+fn normal_map<'a>(model: &Model<'a>, level: usize) -> Option<&'a [u8]> {
+    model.normal_maps.get(level)?.as_deref()
+}
+
+/// Bytes of a corner, with a color or with a tangent.
+fn stride(colors: bool, tangents: bool) -> u32 {
+    32 + if colors { 8 } else { 0 } + if tangents { 16 } else { 0 }
+}
+
+fn vertex(corner: &Corner, bytes: &mut Vec<u8>) {
+    push(&[corner.east, corner.height, corner.south], bytes);
+    push(&corner.normal, bytes);
+    push(&corner.texture, bytes);
+}
+
+/// Whether the indices of a level take two bytes each; 65535 is no index.
+fn narrow(level: &Surface) -> bool {
+    level.shape.corners() <= usize::from(u16::MAX)
+}
+
+/// Bytes of the indices of a level.
+fn indices(level: &Surface) -> u64 {
+    level.shape.triangles() as u64 * if narrow(level) { 6 } else { 12 }
+}
+
+/// Light of an sRGB byte, in 65535ths.
+fn linear(byte: u32) -> u16 {
+    let share = f64::from(byte) / 255.0;
+    let light = if share <= 0.04045 { share / 12.92 } else { libm::pow((share + 0.055) / 1.055, 2.4) };
+    (light * 65535.0).round() as u16
+}
+
+fn padded(mut bytes: Vec<u8>, with: u8) -> Vec<u8> {
+    bytes.resize(bytes.len().next_multiple_of(4), with);
+    bytes
+}
+
+fn pad(out: &mut dyn Write, written: u64) -> io::Result<()> {
+    out.write_all(&[0; 3][..(written.next_multiple_of(4) - written) as usize])
+}
+
+/// The JSON part, and how long the binary part will be.
+struct Document {
+    json: Value,
+    length: u64,
+}
+
+impl Document {
+    fn new(model: &Model, colors: bool) -> Document {
+        let (mut views, mut accessors, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
+        let mut length: u64 = 0;
+        // Levels without a normal map share a material, the others have one each.
+        let shared = usize::from((0..model.levels.len()).any(|level| normal_map(model, level).is_none()));
+        let mut more = shared;
+        let worn: Vec<usize> = (0..model.levels.len())
+            .map(|level| match normal_map(model, level) {
+                None => 0,
+                Some(_) => {
+                    more += 1;
+                    more - 1
+                }
+            })
+            .collect();
+        let mut view = |bytes: u64, mut view: Value| {
+            view["buffer"] = json!(0);
+            view["byteOffset"] = json!(length);
+            view["byteLength"] = json!(bytes);
+            length += bytes.next_multiple_of(4);
+            views.push(view);
+            views.len() - 1
+        };
+        for (nth, level) in model.levels.iter().enumerate() {
+            let corners = level.shape.corners();
+            let tangents = normal_map(model, nth).is_some();
+            let stride = u64::from(stride(colors, tangents));
+            let corner_view = view(corners as u64 * stride, json!({"byteStride": stride, "target": ARRAY_BUFFER}));
+            let index_view = view(indices(level), json!({"target": ELEMENT_ARRAY_BUFFER}));
+            // As f64: the shortest digits of an f32 are not its value.
+            let [least, greatest] = level.bounds().map(|corner| corner.map(f64::from));
+            let first = accessors.len();
+            let attribute = |offset: u32, kind: &str| json!({"bufferView": corner_view, "byteOffset": offset, "componentType": F32, "count": corners, "type": kind});
+            let mut place = attribute(0, "VEC3");
+            place["min"] = json!(least);
+            place["max"] = json!(greatest);
+            accessors.extend([place, attribute(12, "VEC3"), attribute(24, "VEC2")]);
+            let mut attributes = json!({"POSITION": first, "NORMAL": first + 1, "TEXCOORD_0": first + 2});
+            if colors {
+                let mut color = attribute(32, "VEC4");
+                color["componentType"] = json!(U16);
+                color["normalized"] = json!(true);
+                attributes["COLOR_0"] = json!(accessors.len());
+                accessors.push(color);
+            }
+            if tangents {
+                attributes["TANGENT"] = json!(accessors.len());
+                accessors.push(attribute(self::stride(colors, false), "VEC4"));
+            }
+            let kind = if narrow(level) { U16 } else { U32 };
+            let count = 3 * level.shape.triangles();
+            let primitive = json!({"attributes": attributes, "indices": accessors.len(), "material": worn[nth]});
+            accessors.push(json!({"bufferView": index_view, "componentType": kind, "count": count, "type": "SCALAR"}));
+            meshes.push(json!({"primitives": [primitive]}));
+        }
+        let mut material =
+            json!({"name": "terrain", "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 1.0}});
+        let mut json = json!({"asset": {"version": "2.0", "generator": concat!("Orogen ", env!("CARGO_PKG_VERSION"))}});
+        let images: Vec<Value> = pictures(model)
+            .map(|picture| json!({"bufferView": view(picture.len() as u64, json!({})), "mimeType": "image/png"}))
+            .collect();
+        if !images.is_empty() {
+            if model.texture.is_some() {
+                material["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 0});
+            }
+            if model.texture.and(model.material).is_some() {
+                material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = json!({"index": 1});
+                material["pbrMetallicRoughness"]["metallicFactor"] = json!(1.0);
+                material["occlusionTexture"] = json!({"index": 1});
+            }
+            let textures: Vec<Value> = (0..images.len()).map(|k| json!({"source": k, "sampler": 0})).collect();
+            json["images"] = json!(images);
+            // Linear within and between the sizes of the picture; not repeated beyond its edges.
+            json["samplers"] = json!([{"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}]);
+            json["textures"] = json!(textures);
+        }
+        let mut materials = vec![material.clone(); shared];
+        let base = usize::from(model.texture.is_some()) + usize::from(model.texture.and(model.material).is_some());
+        for (nth, level) in (0..model.levels.len()).filter(|level| normal_map(model, *level).is_some()).enumerate() {
+            let mut material = material.clone();
+            if level > 0 {
+                material["name"] = json!(format!("terrain LOD{level}"));
+            }
+            material["normalTexture"] = json!({"index": base + nth});
+            materials.push(material);
+        }
+        for water in model.water {
+            let corners = water.corners.len();
+            let stride = 24;
+            let corner_view = view(corners as u64 * stride, json!({"byteStride": stride, "target": ARRAY_BUFFER}));
+            let index_view = view(12 * water.triangles.len() as u64, json!({"target": ELEMENT_ARRAY_BUFFER}));
+            let bound = |pick: fn(f32, f32) -> f32, start: f32| {
+                water.corners.iter().fold([start; 3], |all, corner| std::array::from_fn(|i| pick(all[i], corner[i])))
+            };
+            let [least, greatest] =
+                [bound(f32::min, f32::INFINITY), bound(f32::max, f32::NEG_INFINITY)].map(|ends| ends.map(f64::from));
+            let attribute = |offset: u32| json!({"bufferView": corner_view, "byteOffset": offset, "componentType": F32, "count": corners, "type": "VEC3"});
+            let mut place = attribute(0);
+            place["min"] = json!(least);
+            place["max"] = json!(greatest);
+            let first = accessors.len();
+            let count = 3 * water.triangles.len();
+            let indices = json!({"bufferView": index_view, "componentType": U32, "count": count, "type": "SCALAR"});
+            accessors.extend([place, attribute(12), indices]);
+            let attributes = json!({"POSITION": first, "NORMAL": first + 1});
+            let primitive = json!({"attributes": attributes, "indices": first + 2, "material": materials.len()});
+            meshes.push(json!({"name": water.name, "primitives": [primitive]}));
+            let color = water.color.map(f64::from);
+            materials.push(json!({
+                "name": water.name,
+                "alphaMode": "BLEND",
+                "pbrMetallicRoughness": {"baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.1}
+            }));
+        }
+        let levels = model.levels.len();
+        let mut nodes: Vec<Value> = (0..levels).map(|level| node(model, level)).collect();
+        let mut shown = vec![0];
+        for (k, water) in model.water.iter().enumerate() {
+            shown.push(nodes.len());
+            nodes.push(placed(model, json!({"name": water.name, "mesh": levels + k})));
+        }
+        if levels > 1 {
+            json["extensionsUsed"] = json!(["MSFT_lod"]);
+        }
+        json["scene"] = json!(0);
+        json["scenes"] = json!([{"nodes": shown}]);
+        json["nodes"] = json!(nodes);
+        json["meshes"] = json!(meshes);
+        json["materials"] = json!(materials);
+        json["accessors"] = json!(accessors);
+        json["bufferViews"] = json!(views);
+        json["buffers"] = json!([{"byteLength": length}]);
+        Document { json, length }
+    }
+}
+
+/// A node where the grid begins in its world.
+fn placed(model: &Model, mut node: Value) -> Value {
+    let Some(window) = model.levels.first().map(|level| level.grid.window()) else { return node };
+    let [east, south] = [window.east(0), window.south(0)];
+    if east != 0.0 || south != 0.0 {
+        node["translation"] = json!([east, 0.0, south]);
+    }
+    node
+}
+
+/// A level's node. The first one names the others.
+fn node(model: &Model, level: usize) -> Value {
+    let levels = model.levels.len();
+    let name = if levels == 1 { "terrain".to_string() } else { format!("LOD{level}") };
+    let mut node = placed(model, json!({"name": name, "mesh": level}));
+    if level == 0 {
+        node["extras"] = Value::Object(model.extras.clone());
+        if levels > 1 {
+            let others: Vec<usize> = (1..levels).collect();
+            node["extensions"] = json!({"MSFT_lod": {"ids": others}});
+            let coverage: Vec<f64> = (1..=levels as i32).map(|level| libm::pow(COVERAGE, f64::from(level))).collect();
+            node["extras"]["MSFT_screencoverage"] = json!(coverage);
+        }
+    }
+    node
+}

@@ -1,0 +1,193 @@
+//! A shape over its grid, as formats write it: corner after corner, triangle after triangle.
+
+use std::io::{self, Write};
+
+use rayon::prelude::*;
+
+use super::shape::Shape;
+use crate::map::paint::Painter;
+use orogen_grid::analysis::halo::Halo;
+use orogen_grid::analysis::slope::{Gradient, gradients_between};
+use orogen_grid::grid::Grid;
+use orogen_grid::progress::Progress;
+
+/// What is written: a shape over a grid of heights in metres.
+#[derive(Clone, Copy)]
+pub struct Surface<'a> {
+    /// The heights.
+    pub grid: &'a Grid,
+    /// What lies around the grid, for the normals of its border.
+    pub halo: &'a Halo,
+    /// The triangles over it.
+    pub shape: &'a Shape,
+    /// What heights are multiplied by.
+    pub exaggeration: f32,
+    /// Gives corners the colours of a map.
+    pub painter: Option<&'a Painter>,
+    /// Hears of the triangles that are written, where somebody asks.
+    pub progress: Option<&'a Progress>,
+}
+
+/// One corner, in metres from the first sample of the grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Corner {
+    /// Metres east of the first column.
+    pub east: f32,
+    /// The height, exaggerated.
+    pub height: f32,
+    /// Metres south of the first row.
+    pub south: f32,
+    /// The unit normal of the height field: east, up, south. Upwards where it was not asked for.
+    pub normal: [f32; 3],
+    /// Where the sample is in a picture of the grid with a pixel for each: to the right and down, 0 to 1, in the pixel's middle.
+    pub texture: [f32; 2],
+    /// sRGB; white where it was not asked for or there is no painter.
+    pub color: [u8; 3],
+}
+
+/// What a format needs of corners beside their place.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// Normals.
+    pub normals: bool,
+    /// Colours.
+    pub colors: bool,
+}
+
+/// About how many samples are looked at between two writes.
+const BAND: usize = 1 << 18;
+
+/// What a row needs to be made.
+#[derive(Default)]
+struct Scratch {
+    wide: Vec<f32>,
+    normals: Vec<[f32; 3]>,
+    colors: Vec<u8>,
+}
+
+impl Surface<'_> {
+    /// Writes what `emit` makes of each corner, in order.
+    pub fn corners(
+        &self,
+        out: &mut dyn Write,
+        wanted: Wanted,
+        emit: impl Fn(&Corner, &mut Vec<u8>) + Sync,
+    ) -> io::Result<()> {
+        let rows = self.shape.rows();
+        for band in rows.chunks((BAND / self.grid.width().max(1)).clamp(8, 256)) {
+            let made: Vec<Vec<u8>> = band
+                .par_iter()
+                .map_init(Scratch::default, |scratch, corners| {
+                    self.prepare(corners.row, wanted, scratch);
+                    let mut bytes = Vec::with_capacity(40 * corners.len());
+                    corners.each(|column| emit(&self.corner(column, corners.row, scratch), &mut bytes));
+                    bytes
+                })
+                .collect();
+            made.iter().try_for_each(|bytes| out.write_all(bytes))?;
+        }
+        Ok(())
+    }
+
+    /// Writes what `emit` makes of each triangle, in order.
+    pub fn triangles(&self, out: &mut dyn Write, emit: impl Fn([u32; 3], &mut Vec<u8>) + Sync) -> io::Result<()> {
+        let pieces: Vec<usize> = (0..self.shape.pieces()).collect();
+        let each = self.shape.triangles() / pieces.len().max(1);
+        let advance = |pieces: usize| self.progress.iter().for_each(|progress| progress.advance(pieces as f64));
+        self.progress.iter().for_each(|progress| progress.expect(pieces.len() as f64));
+        for band in pieces.chunks((BAND / each.max(1)).clamp(8, 256)) {
+            let made: Vec<Vec<u8>> = band
+                .par_iter()
+                .map(|&piece| {
+                    let mut bytes = Vec::new();
+                    self.shape.piece(self.grid, piece, |triangle| emit(triangle, &mut bytes));
+                    bytes
+                })
+                .collect();
+            made.iter().try_for_each(|bytes| out.write_all(bytes))?;
+            advance(band.len());
+        }
+        Ok(())
+    }
+
+    /// The least and the greatest of what corners have: east, height, south.
+    pub fn bounds(&self) -> [[f32; 3]; 2] {
+        let rows = self.shape.rows();
+        let none = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+        let join = |a: [[f32; 3]; 2], b: [[f32; 3]; 2]| {
+            [std::array::from_fn(|i| a[0][i].min(b[0][i])), std::array::from_fn(|i| a[1][i].max(b[1][i]))]
+        };
+        let of_row = |corners: &super::shape::CornerRow| {
+            let mut bounds = none;
+            corners.each(|column| {
+                let place = self.place(column, corners.row);
+                bounds = join(bounds, [place, place]);
+            });
+            bounds
+        };
+        rows.par_iter().map(of_row).reduce(|| none, join)
+    }
+
+    /// East, height and south of a sample.
+    pub fn place(&self, column: usize, row: usize) -> [f32; 3] {
+        let cell = self.grid.window().cell;
+        [(column as f64 * cell) as f32, self.grid.get(column, row) * self.exaggeration, (row as f64 * cell) as f32]
+    }
+
+    fn corner(&self, column: usize, row: usize, scratch: &Scratch) -> Corner {
+        let [east, height, south] = self.place(column, row);
+        let middle = |at: usize, of: usize| ((at as f64 + 0.5) / of as f64) as f32;
+        Corner {
+            east,
+            height,
+            south,
+            normal: scratch.normals.get(column).copied().unwrap_or([0.0, 1.0, 0.0]),
+            texture: [middle(column, self.grid.width()), middle(row, self.grid.height())],
+            color: scratch.colors.get(3 * column..3 * column + 3).map_or([255; 3], |rgb| [rgb[0], rgb[1], rgb[2]]),
+        }
+    }
+
+    /// The unit normal of the surface as it is drawn: east, up, south.
+    fn normal(&self, gradient: Gradient) -> [f32; 3] {
+        let [east, south] = [-gradient.east * self.exaggeration, gradient.north * self.exaggeration];
+        let length = (east * east + south * south + 1.0).sqrt();
+        match length.is_finite() {
+            true => [east / length, 1.0 / length, south / length],
+            false => [0.0, 1.0, 0.0],
+        }
+    }
+
+    /// The unit normals of all samples, row after row.
+    pub(super) fn normals(&self) -> Vec<[f32; 3]> {
+        let (width, cell) = (self.grid.width(), self.grid.window().cell);
+        let mut normals = vec![[0.0; 3]; width * self.grid.height()];
+        normals.par_chunks_exact_mut(width).enumerate().for_each_init(Vec::new, |wide, (row, out)| {
+            let rows = self.halo.rows(self.grid, row, wide);
+            gradients_between(rows, cell, |i, gradient| out[i] = self.normal(gradient));
+        });
+        normals
+    }
+
+    /// Makes the normals and colours of a whole row.
+    fn prepare(&self, row: usize, wanted: Wanted, scratch: &mut Scratch) {
+        let painter = self.painter.filter(|_| wanted.colors);
+        if !wanted.normals && painter.is_none() {
+            return;
+        }
+        let (width, cell) = (self.grid.width(), self.grid.window().cell);
+        let rows = self.halo.rows(self.grid, row, &mut scratch.wide);
+        if wanted.normals {
+            scratch.normals.clear();
+            gradients_between(rows, cell, |_, gradient| scratch.normals.push(self.normal(gradient)));
+        }
+        if let Some(painter) = painter {
+            scratch.colors.resize(3 * width, 0);
+            painter.row(rows, cell, &mut scratch.colors);
+        }
+    }
+}
+
+/// Appends floats, little-endian.
+pub(super) fn push(floats: &[f32], bytes: &mut Vec<u8>) {
+    floats.iter().for_each(|float| bytes.extend_from_slice(&float.to_le_bytes()));
+}

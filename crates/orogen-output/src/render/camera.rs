@@ -1,0 +1,312 @@
+//! Where the picture is taken from.
+
+use super::march::Ray;
+use super::relief::Relief;
+use super::vector::Vector;
+
+/// Where a camera stands and looks, in the world's metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum View {
+    /// Around the middle of the land.
+    Around {
+        /// Where the camera stands, seen from the middle: degrees clockwise from north.
+        azimuth: f64,
+        /// And degrees above the horizon.
+        elevation: f64,
+        /// Metres from the middle; `None` takes as many as it needs to see all of the land.
+        distance: Option<f64>,
+    },
+    /// At a place.
+    At {
+        /// Metres east and south of the world's origin, and metres of height.
+        eye: [f64; 3],
+        /// What is in the middle of the picture: metres east and south; the ground there.
+        look: [f64; 2],
+    },
+}
+
+/// What has to be in the picture of a camera that looks for its place: a box, in cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// Its corner in the north-west, at the bottom.
+    pub low: Vector,
+    /// Its corner in the south-east, at the top.
+    pub high: Vector,
+    /// Whether the land goes on beyond its edges, mirrored.
+    pub mirrored: bool,
+}
+
+impl Frame {
+    fn middle(&self) -> Vector {
+        (self.low + self.high) * 0.5
+    }
+
+    fn corners(&self) -> impl Iterator<Item = Vector> {
+        let Frame { low, high, .. } = *self;
+        (0..8).map(move |k| {
+            let pick = |bit: usize, low: f64, high: f64| if k & bit == 0 { low } else { high };
+            Vector::new(pick(1, low.x, high.x), pick(2, low.y, high.y), pick(4, low.z, high.z))
+        })
+    }
+}
+
+/// How much of the land's frame is left free on each side when a camera looks for its distance.
+const MARGIN: f64 = 0.02;
+
+/// How high above the ground a camera is at least, in cells.
+const LEAST: f64 = 0.05;
+
+/// A camera in its place: a ray for every place in the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    eye: Vector,
+    ahead: Vector,
+    right: Vector,
+    down: Vector,
+    /// Tangents of half the angles of view.
+    wide: [f64; 2],
+    lifted: Option<f64>,
+}
+
+impl Camera {
+    /// The camera of a view over the land, whose first sample stands at `origin` (metres east and south), for pictures of `size` pixels
+    /// that are `fov` degrees wide on their longer side. What it looks at by itself is `frame`.
+    pub fn new(view: &View, relief: &Relief, origin: [f64; 2], size: [usize; 2], fov: f64, frame: &Frame) -> Camera {
+        let half = libm::tan(fov.to_radians() / 2.0);
+        let [width, height] = size.map(|side| side as f64);
+        let longer = width.max(height);
+        let wide = [half * width / longer, half * height / longer];
+        let cells = |[x, y]: [f64; 2]| [(x - origin[0]) / relief.cell(), (y - origin[1]) / relief.cell()];
+        let mut camera = match *view {
+            View::Around { azimuth, elevation, distance } => {
+                let middle = frame.middle();
+                let out = Vector::towards(azimuth, elevation);
+                let look = Camera::towards(middle, -out, azimuth, wide);
+                let distance = match distance {
+                    Some(distance) => distance / relief.cell(),
+                    None => look.framing(frame, out),
+                };
+                // Seen from above, the near half takes more of the picture: the frame's middle is not the land's.
+                let mut camera = Camera { eye: middle + out * distance, ..look };
+                camera.centre(frame);
+                camera
+            }
+            View::At { eye, look } => {
+                let [x, y] = cells([eye[0], eye[1]]);
+                let [look_x, look_y] = cells(look);
+                let eye = Vector::new(x, y, relief.level_of(eye[2]));
+                let aim = Vector::new(look_x, look_y, relief.top(look_x, look_y));
+                let azimuth = libm::atan2(eye.x - aim.x, aim.y - eye.y).to_degrees();
+                Camera::towards(eye, (aim - eye).unit(), azimuth, wide)
+            }
+        };
+        camera.lift(relief, frame);
+        camera
+    }
+
+    /// How many metres away a camera has to stand to see all of `frame` from every one of these sides: for pictures that turn around
+    /// the land without coming nearer.
+    pub fn distance(
+        sides: impl Iterator<Item = [f64; 2]>,
+        relief: &Relief,
+        size: [usize; 2],
+        fov: f64,
+        frame: &Frame,
+    ) -> f64 {
+        let middle = frame.middle();
+        let away = sides.map(|[azimuth, elevation]| {
+            let view = View::Around { azimuth, elevation, distance: None };
+            let camera = Camera::new(&view, relief, [0.0; 2], size, fov, frame);
+            (middle - camera.eye).dot(camera.ahead)
+        });
+        away.fold(0.0, f64::max) * relief.cell()
+    }
+
+    /// A camera that stands at a place and looks along a direction; `azimuth` is where it comes from, for when that is straight down.
+    fn towards(eye: Vector, ahead: Vector, azimuth: f64, wide: [f64; 2]) -> Camera {
+        let (sin, cos) = libm::sincos(azimuth.to_radians());
+        // Level, and to the right of who looks against `azimuth`.
+        let right = Vector::new(-cos, -sin, 0.0);
+        let down = right.cross(ahead).unit();
+        Camera { eye, ahead, right, down, wide, lifted: None }
+    }
+
+    /// Where a place is in the picture, -1 to 1 each way; `None` if it is behind.
+    pub fn project(&self, place: Vector) -> Option<[f64; 2]> {
+        let way = place - self.eye;
+        let depth = way.dot(self.ahead);
+        (depth > 1e-9).then(|| [way.dot(self.right) / depth / self.wide[0], way.dot(self.down) / depth / self.wide[1]])
+    }
+
+    /// How far out the whole box is in the picture.
+    fn framing(&self, frame: &Frame, out: Vector) -> f64 {
+        let middle = self.eye;
+        let fits = |distance: f64| {
+            let mut camera = Camera { eye: middle + out * distance, ..*self };
+            camera.centre(frame);
+            frame.corners().all(|corner| {
+                camera.project(corner).is_some_and(|at| at.iter().all(|at| at.abs() <= 1.0 - 2.0 * MARGIN))
+            })
+        };
+        let size = (frame.high - frame.low).length().max(1.0);
+        let (mut near, mut far) = (0.0, size);
+        while !fits(far) && far < 1e4 * size {
+            far *= 2.0;
+        }
+        for _ in 0..50 {
+            let half = 0.5 * (near + far);
+            (near, far) = if fits(half) { (near, half) } else { (half, far) };
+        }
+        far
+    }
+
+    /// Moves the camera across its line of sight until the box is as far from the upper edge of the picture as from the lower one,
+    /// and the same from left and right.
+    fn centre(&mut self, frame: &Frame) {
+        let depth = (frame.middle() - self.eye).dot(self.ahead);
+        for _ in 0..8 {
+            let mut low = [f64::INFINITY; 2];
+            let mut high = [f64::NEG_INFINITY; 2];
+            for corner in frame.corners() {
+                let Some(at) = self.project(corner) else {
+                    return;
+                };
+                for axis in 0..2 {
+                    low[axis] = low[axis].min(at[axis]);
+                    high[axis] = high[axis].max(at[axis]);
+                }
+            }
+            let shift = [0, 1].map(|axis| 0.5 * (low[axis] + high[axis]) * self.wide[axis] * depth);
+            self.eye = self.eye + self.right * shift[0] + self.down * shift[1];
+        }
+    }
+
+    /// Out of the ground, if it is in it; where there is none, above what the land stands on.
+    fn lift(&mut self, relief: &Relief, frame: &Frame) {
+        let [east, south] = relief.reach();
+        let inside = (0.0..=east).contains(&self.eye.x) && (0.0..=south).contains(&self.eye.y);
+        let below = match inside || frame.mirrored {
+            true => relief.top(folded(self.eye.x, east).0, folded(self.eye.y, south).0),
+            false => frame.low.z,
+        };
+        let least = below + LEAST;
+        if self.eye.z < least {
+            self.lifted = Some(relief.height_of(least) - relief.height_of(self.eye.z));
+            self.eye.z = least;
+        }
+    }
+
+    /// Where it stands, in cells.
+    pub fn eye(&self) -> Vector {
+        self.eye
+    }
+
+    /// By how many metres it had to be lifted to stand above ground and water.
+    pub fn lifted(&self) -> Option<f64> {
+        self.lifted
+    }
+
+    /// The ray through a place in the picture: 0, 0 its upper left corner, 1, 1 its lower right one.
+    pub fn ray(&self, across: f64, down: f64) -> Ray {
+        let (x, y) = ((2.0 * across - 1.0) * self.wide[0], (2.0 * down - 1.0) * self.wide[1]);
+        Ray { from: self.eye, along: (self.ahead + self.right * x + self.down * y).unit() }
+    }
+
+    /// How wide a pixel is at distance 1, in a picture so many pixels wide.
+    pub fn pixel(&self, width: usize) -> f64 {
+        2.0 * self.wide[0] / width as f64
+    }
+}
+
+/// A coordinate brought into 0 to `reach` by mirrors at both ends, and whether it then runs forwards or backwards.
+pub(super) fn folded(x: f64, reach: f64) -> (f64, f64) {
+    let turn = x.rem_euclid(2.0 * reach);
+    if turn <= reach { (turn, 1.0) } else { (2.0 * reach - turn, -1.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::relief::Land;
+    use orogen_grid::grid::{Grid, Window};
+
+    fn relief() -> Relief {
+        let heights =
+            Grid::from_data(Window::new(21, 11, 10.0), (0..231).map(|i| (i % 7) as f32 * 10.0).collect()).unwrap();
+        Relief::new(&Land { heights: &heights, surface: None, flow: None, sea_level: None }, 1.0).unwrap()
+    }
+
+    fn frame(relief: &Relief) -> Frame {
+        let [east, south] = relief.reach();
+        Frame { low: Vector::new(0.0, 0.0, -1.0), high: Vector::new(east, south, relief.highest()), mirrored: false }
+    }
+
+    #[test]
+    fn what_lies_east_is_on_the_right_of_who_looks_north() {
+        let relief = relief();
+        for elevation in [0.0, 20.0, 89.0, 90.0] {
+            let view = View::Around { azimuth: 180.0, elevation, distance: Some(900.0) };
+            let camera = Camera::new(&view, &relief, [0.0; 2], [640, 360], 45.0, &frame(&relief));
+            let middle = Vector::new(10.0, 5.0, 2.5);
+            let east = camera.project(middle + Vector::new(1.0, 0.0, 0.0)).unwrap();
+            let north = camera.project(middle + Vector::new(0.0, -1.0, 0.0)).unwrap();
+            let up = camera.project(middle + Vector::UP).unwrap();
+            assert!(east[0] > 0.01 && north[1] <= up[1].max(0.02), "{elevation}: {east:?} {north:?} {up:?}");
+            assert!(elevation > 80.0 || up[1] < -0.01, "{elevation}: {up:?}");
+            assert!(elevation < 10.0 || north[1] < -0.001, "{elevation}: {north:?}");
+        }
+    }
+
+    #[test]
+    fn rays_and_places_agree() {
+        let relief = relief();
+        let view = View::At { eye: [-50.0, 180.0, 300.0], look: [120.0, 40.0] };
+        let camera = Camera::new(&view, &relief, [0.0; 2], [300, 400], 50.0, &frame(&relief));
+        for (across, down) in [(0.5, 0.5), (0.1, 0.9), (0.8, 0.25)] {
+            let place = camera.ray(across, down).at(17.0);
+            let at = camera.project(place).unwrap();
+            assert!((at[0] - (2.0 * across - 1.0)).abs() < 1e-9 && (at[1] - (2.0 * down - 1.0)).abs() < 1e-9);
+        }
+        // The middle of the picture is the ground that it looks at.
+        let hit = relief.hit(&camera.ray(0.5, 0.5), 0.0).unwrap();
+        let place = camera.ray(0.5, 0.5).at(hit.distance);
+        assert!((place.x - 12.0).abs() < 1e-6 && (place.y - 4.0).abs() < 1e-6, "{place:?}");
+    }
+
+    #[test]
+    fn by_itself_it_sees_all_of_the_land_and_fills_the_picture() {
+        let relief = relief();
+        for (azimuth, elevation, size) in
+            [(0.0, 30.0, [1920, 1080]), (137.0, 10.0, [400, 900]), (200.0, 70.0, [500, 500])]
+        {
+            let view = View::Around { azimuth, elevation, distance: None };
+            let camera = Camera::new(&view, &relief, [0.0; 2], size, 40.0, &frame(&relief));
+            let mut most = [0.0f64; 2];
+            for corner in frame(&relief).corners() {
+                let at = camera.project(corner).unwrap();
+                most = [0, 1].map(|axis| most[axis].max(at[axis].abs()));
+            }
+            assert!(most.iter().all(|most| *most < 1.0) && most[0].max(most[1]) > 0.94, "{azimuth}: {most:?}");
+        }
+    }
+
+    #[test]
+    fn underground_it_is_lifted_and_says_so() {
+        let relief = relief();
+        let view = View::At { eye: [55.0, 50.0, -80.0], look: [120.0, 40.0] };
+        let camera = Camera::new(&view, &relief, [0.0; 2], [300, 200], 50.0, &frame(&relief));
+        assert!(camera.lifted().unwrap() > 80.0 && camera.eye().z > relief.ground(5.5, 5.0));
+        // Beside the land it may stand as low as what the land stands on, but in a land that goes on.
+        let view = View::At { eye: [-45.0, 50.0, -5.0], look: [120.0, 40.0] };
+        assert_eq!(Camera::new(&view, &relief, [0.0; 2], [300, 200], 50.0, &frame(&relief)).lifted(), None);
+        let mirrored = Frame { mirrored: true, ..frame(&relief) };
+        let camera = Camera::new(&view, &relief, [0.0; 2], [300, 200], 50.0, &mirrored);
+        assert!(camera.lifted().is_some() && camera.eye().z > relief.ground(4.5, 5.0));
+        assert_eq!(
+            [-3.0, 5.0, 12.0, 25.0].map(|x| folded(x, 10.0)),
+            [(3.0, -1.0), (5.0, 1.0), (8.0, -1.0), (5.0, 1.0)]
+        );
+        let view = View::At { eye: [55.0, 50.0, 200.0], look: [120.0, 40.0] };
+        assert_eq!(Camera::new(&view, &relief, [0.0; 2], [300, 200], 50.0, &frame(&relief)).lifted(), None);
+    }
+}

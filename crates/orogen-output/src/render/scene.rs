@@ -1,0 +1,381 @@
+//! The land with its light, ready to be painted.
+
+use rayon::prelude::*;
+
+use super::camera::{Camera, Frame, folded};
+pub use super::ground::Colors;
+use super::ground::{Dress, GroundCover};
+use super::march::{Hit, Ray, Surface};
+use super::relief::{Land, Relief};
+use super::sky::{Haze, SUN_RADIUS, Sky};
+use super::skylight::Skylight;
+use super::tone::tone_map;
+use super::vector::Vector;
+use super::water::Water;
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::Grid;
+use orogen_grid::progress::Progress;
+use orogen_io::palette::color::{Encoder, Light};
+use orogen_io::palette::palette::Palette;
+
+/// What is shown where the land ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Edge {
+    /// The land as a block, cut out and set on a table.
+    Cut,
+    /// The open sea, if most of the edge lies in it; else the land mirrored at its edges on and on, until the haze hides it.
+    Haze,
+}
+
+/// How a scene looks.
+#[derive(Debug, Clone, Copy)]
+pub struct Style<'a> {
+    /// How many times heights count.
+    pub exaggeration: f64,
+    /// The sun: degrees clockwise from north, and degrees above the horizon.
+    pub sun: [f64; 2],
+    /// How thick the haze is: 0 is none, 1 as on a clear day, for a land of whatever size.
+    pub haze: f64,
+    /// What is shown where the land ends; by itself the sea if most of the edge lies in it, else a cut.
+    pub edge: Option<Edge>,
+    /// How the ground is coloured.
+    pub colors: Colors,
+    /// The palette of [`Colors::Map`]; by itself the relief map's.
+    pub palette: Option<&'a Palette>,
+    /// Albedo (red, green and blue as linear light) and roughness of [`Colors::Surfaces`], over the land's window.
+    pub cover: Option<[&'a Grid; 4]>,
+    /// Where snow begins, in metres; by itself it suits the relief.
+    pub snow_line: Option<f64>,
+    /// Light is gathered in so many places of each pixel.
+    pub samples: u32,
+}
+
+impl Default for Style<'_> {
+    fn default() -> Self {
+        Style {
+            exaggeration: 1.0,
+            sun: [265.0, 27.0],
+            haze: 1.0,
+            edge: None,
+            colors: Colors::Natural,
+            palette: None,
+            cover: None,
+            snow_line: None,
+            samples: 5,
+        }
+    }
+}
+
+/// What lies around the land.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Around {
+    /// A table at this z.
+    Table(f64),
+    /// The sea at this z.
+    Sea(f64),
+    /// The land again, mirrored.
+    Mirrors,
+}
+
+/// How many times the land is mirrored at most along a ray.
+const MIRRORS: usize = 12;
+
+/// The haze of 1 takes so much of the optical depth of green light over the land's diagonal: of a block, and of land that goes on.
+const CLEAR: f64 = 0.30;
+const CLEAR_AROUND: f64 = 1.0;
+
+/// The land with its light.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    pub(super) relief: Relief,
+    pub(super) ground: GroundCover,
+    pub(super) water: Water,
+    pub(super) sky: Sky,
+    pub(super) skylight: Skylight,
+    pub(super) haze: Haze,
+    around: Around,
+    /// z of the lowest that is drawn.
+    pub(super) floor: f64,
+    samples: u32,
+    /// The level direction to the sun, and the tangents of the elevations of its lower and upper rim.
+    pub(super) sunwards: [f64; 2],
+    pub(super) rims: [f64; 2],
+    /// What the sun and what the whole sky give to level ground.
+    pub(super) level_sun: Light,
+    pub(super) level_sky: Light,
+    /// From light to what film is shown.
+    exposure: Light,
+    encoder: Encoder,
+}
+
+/// What a ray has met: in the land's own coordinates, mirrored or not.
+pub(super) struct Met {
+    /// All the way from the ray's start.
+    pub distance: f64,
+    pub place: Vector,
+    /// The direction it came along, mirrored as the land is.
+    pub along: Vector,
+    /// 1, or -1 where the land is mirrored: east and south.
+    pub flip: [f64; 2],
+    pub surface: Seen,
+    pub normal: Vector,
+}
+
+/// What can be seen.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Seen {
+    Land(Surface),
+    Table,
+}
+
+impl Scene {
+    /// Prepares a scene.
+    ///
+    /// # Errors
+    /// As [`Relief::new`], or if the work is cancelled.
+    pub fn new(land: &Land, style: &Style, progress: &Progress) -> Result<Scene> {
+        let [raising, lighting, painting] = progress.parts([1.0, 8.0, 2.0]);
+        let relief = Relief::new(land, style.exaggeration)?;
+        raising.finish();
+        progress.check()?;
+        let [azimuth, elevation] = style.sun;
+        let sky = Sky::new(azimuth, elevation);
+        progress.check()?;
+        let skylight = Skylight::new(&relief, &sky, &lighting)?;
+        let cover = style.cover.into_iter().flatten().all(|layer| layer.window() == land.heights.window());
+        if !cover || (style.colors == Colors::Surfaces && style.cover.is_none()) {
+            let message = "a picture of surfaces needs their albedo and roughness over the window of the heights";
+            return Err(Error::new(ErrorKind::Request, message));
+        }
+        let Style { colors, palette, cover, snow_line, .. } = *style;
+        let dress = Dress { colors, palette, cover, snow_line };
+        let ground = GroundCover::new(land, &relief, &dress);
+        painting.finish();
+        progress.check()?;
+        let [east, south] = relief.reach();
+        let across = (east * east + south * south).sqrt();
+        let wet = wet_edge(&relief);
+        let edge = style.edge.unwrap_or(if wet > 0.6 { Edge::Haze } else { Edge::Cut });
+        let floor = -0.022 * across;
+        let around = match (edge, relief.sea()) {
+            (Edge::Cut, _) => Around::Table(floor),
+            (Edge::Haze, Some(sea)) if wet > 0.6 => Around::Sea(sea),
+            (Edge::Haze, _) => Around::Mirrors,
+        };
+        let (clear, reach) = if matches!(around, Around::Mirrors) { (CLEAR_AROUND, 2.2) } else { (CLEAR, 1.2) };
+        let thins = (reach * relief.highest()).max(0.02 * across);
+        let haze = Haze::new(style.haze * clear, across, thins);
+        let sun = sky.sun();
+        let (sin, cos) = libm::sincos(azimuth.to_radians());
+        // Straight above, its two rims would be one.
+        let rims = [-SUN_RADIUS, SUN_RADIUS].map(|off| libm::tan((elevation.min(88.0) + off).to_radians()));
+        let level_sun = sky.sunlight().map(|c| c * sun.z.max(0.0) as f32);
+        let level_sky = sky.dome();
+        let exposure = exposure(&sky, level_sky);
+        Ok(Scene {
+            water: Water::new(relief.cell()),
+            relief,
+            ground,
+            sky,
+            skylight,
+            haze,
+            around,
+            floor: if matches!(around, Around::Table(_)) { floor } else { 0.0 },
+            samples: style.samples.max(1),
+            sunwards: [sin, -cos],
+            rims,
+            level_sun,
+            level_sky,
+            exposure,
+            encoder: Encoder::new(),
+        })
+    }
+
+    /// The land.
+    pub fn relief(&self) -> &Relief {
+        &self.relief
+    }
+
+    /// What a picture of all of it has to show: the block, or the land that is not under the sea.
+    pub fn frame(&self) -> Frame {
+        let ([east, south], highest) = (self.relief.reach(), self.relief.highest());
+        let floor = if let Around::Sea(sea) = self.around { sea } else { self.floor };
+        let mirrored = self.around == Around::Mirrors;
+        let whole = Frame { low: Vector::new(0.0, 0.0, floor), high: Vector::new(east, south, highest), mirrored };
+        let Around::Sea(sea) = self.around else {
+            return whole;
+        };
+        let mut frame = Frame { low: whole.high, high: whole.low, mirrored };
+        let columns = self.relief.samples()[0];
+        for (at, _) in self.relief.bed().iter().enumerate().filter(|(_, z)| f64::from(**z) > sea) {
+            let (x, y) = ((at % columns) as f64, (at / columns) as f64);
+            frame.low = Vector::new(frame.low.x.min(x), frame.low.y.min(y), sea);
+            frame.high = Vector::new(frame.high.x.max(x), frame.high.y.max(y), highest);
+        }
+        if frame.low.x < frame.high.x && frame.low.y < frame.high.y { frame } else { whole }
+    }
+
+    /// Paints some rows of a picture of `size` pixels as sRGB bytes, three a pixel, on as many threads as there are.
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    pub fn paint(
+        &self,
+        camera: &Camera,
+        size: [usize; 2],
+        rows: std::ops::Range<usize>,
+        bytes: &mut [u8],
+        progress: &Progress,
+    ) -> Result<()> {
+        let [width, height] = size;
+        let pixel = camera.pixel(width);
+        progress.expect(rows.len() as f64);
+        bytes.par_chunks_exact_mut(3 * width).zip(rows).try_for_each(|(bytes, j)| {
+            progress.check()?;
+            for (i, bytes) in bytes.chunks_exact_mut(3).enumerate() {
+                let mut sum = [0.0f32; 3];
+                for k in 0..self.samples {
+                    let [u, v] = spot(k);
+                    let ray = camera.ray((i as f64 + u) / width as f64, (j as f64 + v) / height as f64);
+                    let light = self.light(&ray, pixel);
+                    let shown = tone_map(std::array::from_fn(|c| light[c] * self.exposure[c]));
+                    sum.iter_mut().zip(shown).for_each(|(sum, c)| *sum += c);
+                }
+                bytes.copy_from_slice(&self.encoder.bytes(sum.map(|c| c / self.samples as f32)));
+            }
+            progress.advance(1.0);
+            Ok(())
+        })
+    }
+
+    /// The light that comes against a ray.
+    fn light(&self, ray: &Ray, pixel: f64) -> Light {
+        match self.meet(ray, 0.0) {
+            Some(met) => {
+                let light = self.shade(&met, pixel, true);
+                self.through_haze(ray, &met, light)
+            }
+            None => self.sky.seen(ray.along),
+        }
+    }
+
+    /// What a ray meets.
+    fn meet(&self, ray: &Ray, nearest: f64) -> Option<Met> {
+        let met = |hit: Hit| Met {
+            distance: hit.distance,
+            place: ray.at(hit.distance),
+            along: ray.along,
+            flip: [1.0; 2],
+            surface: Seen::Land(hit.surface),
+            normal: hit.normal,
+        };
+        let level = |z: f64, surface: Seen| {
+            let distance = (z - ray.from.z) / ray.along.z;
+            (ray.along.z < 0.0 && distance > nearest).then(|| Met {
+                distance,
+                place: ray.at(distance),
+                along: ray.along,
+                flip: [1.0; 2],
+                surface,
+                normal: Vector::UP,
+            })
+        };
+        match self.around {
+            Around::Mirrors => self.meet_mirrored(ray, nearest),
+            Around::Table(z) => {
+                let table = level(z, Seen::Table);
+                let hit = self.relief.hit(ray, nearest).map(met).filter(|hit| hit.place.z > z);
+                hit.or(table)
+            }
+            Around::Sea(z) => {
+                let sea = level(z, Seen::Land(Surface::Water));
+                match (self.relief.hit(ray, nearest).map(met), sea) {
+                    // The bed beyond the land's edge is not there: what would be met below the sea is the sea.
+                    (Some(hit), Some(sea)) if sea.distance < hit.distance && !self.inside(sea.place) => Some(sea),
+                    (hit, sea) => hit.or(sea),
+                }
+            }
+        }
+    }
+
+    pub(super) fn inside(&self, place: Vector) -> bool {
+        let [east, south] = self.relief.reach();
+        (0.0..=east).contains(&place.x) && (0.0..=south).contains(&place.y)
+    }
+
+    /// What a ray meets in the land and its mirrors: it goes on in the same land, itself mirrored.
+    fn meet_mirrored(&self, ray: &Ray, nearest: f64) -> Option<Met> {
+        let reach = self.relief.reach();
+        let ([x, y], mut flip) = ([0, 1].map(|axis| [ray.from.x, ray.from.y][axis]), [1.0; 2]);
+        let mut from = ray.from;
+        (from.x, flip[0]) = folded(x, reach[0]);
+        (from.y, flip[1]) = folded(y, reach[1]);
+        let mut along = Vector::new(ray.along.x * flip[0], ray.along.y * flip[1], ray.along.z);
+        let (mut gone, mut nearest) = (0.0, nearest);
+        for _ in 0..MIRRORS {
+            let ray = Ray { from, along };
+            if let Some(hit) = self.relief.hit(&ray, nearest) {
+                return Some(Met {
+                    distance: gone + hit.distance,
+                    place: ray.at(hit.distance),
+                    along,
+                    flip,
+                    surface: Seen::Land(hit.surface),
+                    normal: hit.normal,
+                });
+            }
+            let way = |from: f64, along: f64, reach: f64| match along {
+                along if along > 0.0 => (reach - from) / along,
+                along if along < 0.0 => -from / along,
+                _ => f64::INFINITY,
+            };
+            let (x, y) = (way(from.x, along.x, reach[0]), way(from.y, along.y, reach[1]));
+            let way = x.min(y).max(0.0);
+            let at = ray.at(way);
+            if !way.is_finite() || along.z >= 0.0 && at.z > self.relief.highest() {
+                return None;
+            }
+            from = Vector { x: at.x.clamp(0.0, reach[0]), y: at.y.clamp(0.0, reach[1]), ..at };
+            match x <= y {
+                true => (along.x, flip[0]) = (-along.x, -flip[0]),
+                false => (along.y, flip[1]) = (-along.y, -flip[1]),
+            }
+            gone += way;
+            nearest = 0.0;
+        }
+        None
+    }
+}
+
+/// The share of the land's edge that the sea covers.
+fn wet_edge(relief: &Relief) -> f64 {
+    let Some(sea) = relief.sea() else {
+        return 0.0;
+    };
+    let [columns, rows] = relief.samples();
+    let wet = |i: usize, j: usize| usize::from(f64::from(relief.bed()[j * columns + i]) <= sea);
+    let across: usize = (0..columns).map(|i| wet(i, 0) + wet(i, rows - 1)).sum();
+    let down: usize = (0..rows).map(|j| wet(0, j) + wet(columns - 1, j)).sum();
+    (across + down) as f64 / (2 * (columns + rows)) as f64
+}
+
+/// What light is multiplied with before it falls on film: as a photographer would expose for sunlit ground that is not quite level, the colour of the light
+/// in part made up for, as eyes do.
+fn exposure(sky: &Sky, level_sky: Light) -> Light {
+    let facing = (sky.sun().z.max(0.0) as f32).max(0.45);
+    let light: Light = std::array::from_fn(|c| sky.sunlight()[c] * facing + level_sky[c]);
+    let bright = 0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2];
+    // At night nobody waits until it looks like day.
+    let scale = BRIGHT * std::f32::consts::PI / bright.max(0.004);
+    light.map(|c| scale * libm::powf(bright.max(1e-6) / c.max(1e-6), BALANCE).clamp(0.5, 2.0))
+}
+
+/// How bright a white sheet in the sun is for the film, and how much of the light's colour is made up for.
+const BRIGHT: f32 = 2.1;
+const BALANCE: f32 = 0.55;
+
+/// The k-th place in a pixel: as many as are wanted lie evenly (M. Roberts' sequence of the plastic number, 2018).
+fn spot(k: u32) -> [f64; 2] {
+    let k = f64::from(k);
+    [(0.5 + k * 0.754_877_666_246_693) % 1.0, (0.5 + k * 0.569_840_290_998_053_3) % 1.0]
+}

@@ -1,0 +1,158 @@
+//! Water: waves, what it mirrors, and how its colour changes with depth.
+
+use super::grain::Grain;
+use super::vector::Vector;
+use orogen_io::palette::color::Light;
+
+/// What water takes of light in a metre: red first (after R. M. Pope and E. S. Fry, "Absorption spectrum (380-700 nm) of pure
+/// water", 1997, with the little that grows in it).
+const TAKES: Light = [0.40, 0.085, 0.060];
+
+/// The share of light that deep water throws back.
+const DEEP: Light = [0.006, 0.024, 0.036];
+
+/// What lies on the bottom.
+const BOTTOM: Light = [0.20, 0.18, 0.125];
+
+/// The same of lakes: water brown with humus and green with algae, in which a white disk is lost to sight at some 4 m (1.7 over the green's number:
+/// H. H. Poole and W. R. G. Atkins, "Photo-electric measurements of submarine illumination", 1929), over mud and dark stones.
+const LAKE_TAKES: Light = [0.85, 0.42, 0.65];
+const LAKE_DEEP: Light = [0.009, 0.026, 0.030];
+const LAKE_BOTTOM: Light = [0.060, 0.056, 0.040];
+
+/// In land of cells wider than this (metres) shores are drawn as if water were clearer, or they would be thinner than a pixel.
+const FINE_CELL: f64 = 10.0;
+
+/// Light refracted: the square of 1 / 1.33.
+const BENDS: f32 = 0.565;
+
+/// Wavelengths of waves in metres, the longest first, and how steep each is.
+const WAVES: [(f32, f32); 4] = [(46.0, 0.012), (19.0, 0.018), (7.0, 0.026), (2.6, 0.030)];
+
+/// Which water it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// The clear water of the sea, over sand.
+    Sea,
+    /// That of lakes.
+    Lake,
+}
+
+/// Water as it is seen in a land.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Water {
+    /// What the sea takes of light in a metre.
+    takes: Light,
+    cell: f32,
+}
+
+impl Water {
+    /// The water of a land of so wide cells.
+    pub fn new(cell: f64) -> Water {
+        let clear = (FINE_CELL / cell.max(FINE_CELL)) as f32;
+        Water { takes: TAKES.map(|takes| takes * clear), cell: cell as f32 }
+    }
+
+    /// The normal of the waves at a place, where a pixel shows so many metres.
+    pub fn normal(&self, grain: &Grain, x: f64, y: f64, footprint: f32) -> Vector {
+        let mut slope = [0.0f32; 2];
+        for (kind, (wavelength, steep)) in WAVES.into_iter().enumerate() {
+            let seen = ((wavelength / footprint - 1.0) / 3.0).clamp(0.0, 1.0);
+            if seen <= 0.0 {
+                continue;
+            }
+            let scale = f64::from(self.cell / wavelength);
+            let bump = grain.at(x * scale, y * scale * 1.4, kind as u32 + 1);
+            slope[0] += bump.slope[0] * steep * seen;
+            slope[1] += bump.slope[1] * steep * seen;
+        }
+        Vector::new(-f64::from(slope[0]), -f64::from(slope[1]), 1.0).unit()
+    }
+
+    /// The share of light that water throws back from within, so many metres deep, seen under an angle with this cosine and lit under
+    /// one with that.
+    pub fn body(&self, kind: Kind, depth: f32, seen: f32, lit: f32) -> Light {
+        let (takes, deep, bottom) = match kind {
+            Kind::Sea => (self.takes, DEEP, BOTTOM),
+            Kind::Lake => (LAKE_TAKES, LAKE_DEEP, LAKE_BOTTOM),
+        };
+        let slanted = |cosine: f32| 1.0 / (1.0 - BENDS * (1.0 - cosine * cosine)).max(0.1).sqrt();
+        let way = depth.max(0.0) * (slanted(seen) + slanted(lit));
+        std::array::from_fn(|c| {
+            let left = libm::expf(-takes[c] * way);
+            bottom[c] * left + deep[c] * (1.0 - left)
+        })
+    }
+
+    /// The colour of water cut open, so many metres below its surface.
+    pub fn section(&self, depth: f32) -> Light {
+        let left: Light = self.takes.map(|takes| libm::expf(-takes * depth * 0.12));
+        const SHALLOW: Light = [0.16, 0.36, 0.40];
+        const DARK: Light = [0.018, 0.075, 0.115];
+        std::array::from_fn(|c| DARK[c] + (SHALLOW[c] - DARK[c]) * left[c].max(left[1] * 0.6))
+    }
+}
+
+/// The share of light that water mirrors under an angle with this cosine (C. Schlick's approximation of Fresnel's equations, 1994).
+pub(super) fn mirrored(cosine: f32) -> f32 {
+    let off = 1.0 - cosine.clamp(0.0, 1.0);
+    let square = off * off;
+    0.02 + 0.98 * square * square * off
+}
+
+/// How brightly the sun glitters: light mirrored by waves as they lie within a pixel, whose slopes vary by `rough`, per light on a surface that faces
+/// the sun.
+pub(super) fn glitter(normal: Vector, to_eye: Vector, to_sun: Vector, rough: f32) -> f32 {
+    let half = (to_eye + to_sun).unit();
+    let cosine = normal.dot(half) as f32;
+    let seen = (normal.dot(to_eye) as f32).max(0.05);
+    if cosine <= 0.0 {
+        return 0.0;
+    }
+    // P. Beckmann's distribution of slopes.
+    let square = cosine * cosine;
+    let exponent = (square - 1.0) / (square * rough * rough);
+    let facing = libm::expf(exponent) / (std::f32::consts::PI * rough * rough * square * square);
+    facing * mirrored(half.dot(to_eye) as f32) / (4.0 * seen)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_mirrors_all_when_grazed_and_little_from_above() {
+        assert!((mirrored(1.0) - 0.02).abs() < 1e-6 && (mirrored(0.0) - 1.0).abs() < 1e-6);
+        // Fresnel's equations for 1.33 at 60 and 80 degrees from the upright: 0.0595 and 0.388.
+        assert!((mirrored(0.5) - 0.0595).abs() < 0.01 && (mirrored(0.173_65) - 0.388).abs() < 0.03);
+    }
+
+    #[test]
+    fn it_darkens_and_turns_blue_with_depth() {
+        let water = Water::new(5.0);
+        let [shallow, deep] = [0.3, 60.0].map(|depth| water.body(Kind::Sea, depth, 0.7, 0.7));
+        assert!(shallow[0] > 0.1 && deep[0] < 0.01 && deep[2] > 3.0 * deep[0]);
+        // Beer and Lambert: straight down and up again through a metre.
+        let metre = water.body(Kind::Sea, 1.0, 1.0, 1.0)[1];
+        let left = libm::expf(-2.0 * TAKES[1]);
+        assert!((metre - (BOTTOM[1] * left + DEEP[1] * (1.0 - left))).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_shallows_of_lakes_are_dark_whatever_the_cell() {
+        let bright = |light: Light| 0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2];
+        for cell in [5.0, 60.0, 300.0] {
+            let [shore, shallow, deep] =
+                [0.0, 2.0, 10.0].map(|depth| bright(Water::new(cell).body(Kind::Lake, depth, 0.4, 0.5)));
+            assert!(shallow < 1.5 * deep && shore < 3.0 * deep, "{cell}: {shore} {shallow} {deep}");
+        }
+    }
+
+    #[test]
+    fn the_sun_glitters_where_it_is_mirrored() {
+        let sun = Vector::towards(180.0, 40.0);
+        let [met, missed] =
+            [40.0, 60.0].map(|elevation| glitter(Vector::UP, Vector::towards(0.0, elevation), sun, 0.08));
+        assert!(met > 20.0 * missed && missed >= 0.0, "{met} {missed}");
+    }
+}

@@ -1,0 +1,268 @@
+//! Words as outlines: in the font that comes with the library, and for what that has no letters for, in one of the system's.
+
+use std::path::{Path, PathBuf};
+
+use ab_glyph::{Font, FontRef, FontVec, GlyphId, OutlineCurve};
+
+use super::scene::{Point, Step};
+use crate::map::text::Face;
+use orogen_grid::error::{Error, ErrorKind, Result};
+
+/// The fonts of a sheet.
+pub struct FontSet {
+    faces: [FontRef<'static>; 3],
+    /// A font of the system, for letters that the built-in one lacks.
+    other: Option<FontVec>,
+    /// Letters that no font has.
+    lacking: Vec<char>,
+}
+
+/// Where systems keep fonts.
+const FOLDERS: [&str; 6] = [
+    "/usr/share/fonts",
+    "/usr/local/share/fonts",
+    "/System/Library/Fonts",
+    "/Library/Fonts",
+    "C:\\Windows\\Fonts",
+    "/run/current-system/sw/share/fonts",
+];
+
+/// Folders of fonts within the user's own.
+const OWN_FOLDERS: [&str; 3] = [".local/share/fonts", ".fonts", "Library/Fonts"];
+
+/// How deep folders are looked into, how many fonts are tried, and how large they may be.
+const DEPTH: usize = 5;
+const MAX_FONTS: usize = 2000;
+const MAX_BYTES: u64 = 128 << 20;
+
+impl FontSet {
+    /// The fonts that `texts` need. Where the built-in one lacks a letter, the first font of the system that has the most of what
+    /// is lacking is taken.
+    ///
+    /// # Errors
+    /// If the built-in font cannot be read.
+    pub fn for_texts<'a>(texts: impl IntoIterator<Item = &'a str>) -> Result<FontSet> {
+        let face = |bytes: &'static [u8]| {
+            let broken = |cause| Error::new(ErrorKind::File, format!("the built-in font cannot be read: {cause}"));
+            FontRef::try_from_slice(bytes).map_err(broken)
+        };
+        let faces = [
+            face(include_bytes!("../../assets/orogen-sans-regular.ttf"))?,
+            face(include_bytes!("../../assets/orogen-sans-bold.ttf"))?,
+            face(include_bytes!("../../assets/orogen-sans-italic.ttf"))?,
+        ];
+        let mut lacking: Vec<char> = texts
+            .into_iter()
+            .flat_map(str::chars)
+            .filter(|letter| !letter.is_control() && faces[0].glyph_id(*letter).0 == 0)
+            .collect();
+        lacking.sort_unstable();
+        lacking.dedup();
+        let other = if lacking.is_empty() { None } else { search(&lacking) };
+        if let Some(font) = &other {
+            lacking.retain(|letter| font.glyph_id(*letter).0 == 0);
+        }
+        Ok(FontSet { faces, other, lacking })
+    }
+
+    /// Letters that neither the built-in font nor any of the system's has; they are left out.
+    pub fn lacking(&self) -> &[char] {
+        &self.lacking
+    }
+
+    /// How many millimetres a line of text of this size (an em, in millimetres) is long.
+    pub fn width(&self, text: &str, face: Face, size: f32) -> f32 {
+        self.set(text, face, size, |_, _, _| {})
+    }
+
+    /// The outlines of a line of text from `at` on, standing on a line that rises by `angle` radians (counter-clockwise).
+    pub fn write(&self, text: &str, face: Face, size: f32, at: Point, angle: f32) -> Vec<Step> {
+        let (sin, cos) = libm::sincosf(angle);
+        let mut steps = Vec::new();
+        self.set(text, face, size, |font, id, along| {
+            outline(
+                font,
+                id,
+                size,
+                |[x, y]| {
+                    let x = x + along;
+                    [at[0] + x * cos - y * sin, at[1] - x * sin - y * cos]
+                },
+                &mut steps,
+            );
+        });
+        steps
+    }
+
+    /// The outline of each letter of a text by itself, with where its middle stands along the line: for text that bends.
+    pub fn each(&self, text: &str, face: Face, size: f32, mut place: impl FnMut(f32) -> (Point, f32)) -> Vec<Step> {
+        let mut steps = Vec::new();
+        self.set(text, face, size, |font, id, along| {
+            let half = font.advance(id, size) / 2.0;
+            let (at, angle) = place(along + half);
+            let (sin, cos) = libm::sincosf(angle);
+            outline(
+                font,
+                id,
+                size,
+                |[x, y]| {
+                    let x = x - half;
+                    [at[0] + x * cos - y * sin, at[1] - x * sin - y * cos]
+                },
+                &mut steps,
+            );
+        });
+        steps
+    }
+
+    /// Goes along a line, telling each letter, its font, and where it begins; returns where the line ends.
+    fn set(&self, text: &str, face: Face, size: f32, mut each: impl FnMut(&dyn Glyphs, GlyphId, f32)) -> f32 {
+        let own = &self.faces[match face {
+            Face::Regular => 0,
+            Face::Bold => 1,
+            Face::Italic => 2,
+        }];
+        let (mut at, mut before) = (0.0, None);
+        for letter in text.chars() {
+            let id = own.glyph_id(letter);
+            if id.0 != 0 {
+                if let Some(before) = before {
+                    at += own.kern_unscaled(before, id) * size / own.units_per_em().unwrap_or(1000.0);
+                }
+                each(own, id, at);
+                at += own.advance(id, size);
+                before = Some(id);
+            } else if let Some(other) = &self.other {
+                let id = other.glyph_id(letter);
+                before = None;
+                if id.0 != 0 {
+                    each(other, id, at);
+                    at += other.advance(id, size);
+                }
+            }
+        }
+        at
+    }
+}
+
+/// What is asked of a font, whichever kind it is.
+trait Glyphs {
+    /// How far the next letter stands, in the unit of `size`, an em.
+    fn advance(&self, id: GlyphId, size: f32) -> f32;
+    /// The outline in ems, y up.
+    fn curves(&self, id: GlyphId) -> (Vec<OutlineCurve>, f32);
+}
+
+impl<F: Font> Glyphs for F {
+    fn advance(&self, id: GlyphId, size: f32) -> f32 {
+        self.h_advance_unscaled(id) * size / self.units_per_em().unwrap_or(1000.0)
+    }
+
+    fn curves(&self, id: GlyphId) -> (Vec<OutlineCurve>, f32) {
+        let curves = self.outline(id).map(|outline| outline.curves).unwrap_or_default();
+        (curves, self.units_per_em().unwrap_or(1000.0))
+    }
+}
+
+fn outline(font: &dyn Glyphs, id: GlyphId, size: f32, place: impl Fn([f32; 2]) -> Point, steps: &mut Vec<Step>) {
+    let (curves, em) = font.curves(id);
+    let at = |x: f32, y: f32| place([x * size / em, y * size / em]);
+    let mut last = None;
+    for curve in curves {
+        let (start, end) = match curve {
+            OutlineCurve::Line(a, b) => (a, b),
+            OutlineCurve::Quad(a, _, b) => (a, b),
+            OutlineCurve::Cubic(a, _, _, b) => (a, b),
+        };
+        if last != Some((start.x, start.y)) {
+            steps.push(Step::Move(at(start.x, start.y)));
+        }
+        last = Some((end.x, end.y));
+        let end_at = at(end.x, end.y);
+        steps.push(match curve {
+            OutlineCurve::Line(..) => Step::Line(end_at),
+            // A quadratic curve is a cubic one whose handles are two thirds of the way to its own.
+            OutlineCurve::Quad(a, h, b) => {
+                let toward = |p: f32, h: f32| p + (h - p) * 2.0 / 3.0;
+                Step::Curve(at(toward(a.x, h.x), toward(a.y, h.y)), at(toward(b.x, h.x), toward(b.y, h.y)), end_at)
+            }
+            OutlineCurve::Cubic(_, h, k, _) => Step::Curve(at(h.x, h.y), at(k.x, k.y), end_at),
+        });
+    }
+}
+
+/// The font of the system with the most of these letters; of equals the first by its path.
+fn search(lacking: &[char]) -> Option<FontVec> {
+    let own = std::env::var_os("HOME").map(PathBuf::from);
+    let own = own.iter().flat_map(|home| OWN_FOLDERS.map(|folder| home.join(folder)));
+    let mut files = Vec::new();
+    FOLDERS.iter().map(PathBuf::from).chain(own).for_each(|folder| gather(&folder, DEPTH, &mut files));
+    files.sort();
+    files.truncate(MAX_FONTS);
+    let mut best: Option<(usize, FontVec)> = None;
+    for path in files {
+        let Some(font) = read(&path) else { continue };
+        let has = lacking.iter().filter(|letter| font.glyph_id(**letter).0 != 0).count();
+        if has > best.as_ref().map_or(0, |best| best.0) {
+            best = Some((has, font));
+        }
+        if has == lacking.len() {
+            break;
+        }
+    }
+    best.map(|best| best.1)
+}
+
+fn gather(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for path in entries.filter_map(|entry| Some(entry.ok()?.path())) {
+        let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+        if ["ttf", "otf", "ttc", "otc"].iter().any(|known| extension == *known) {
+            files.push(path);
+        } else if depth > 0 && path.is_dir() {
+            gather(&path, depth - 1, files);
+        }
+    }
+}
+
+/// A font file; of a collection, its first font.
+fn read(path: &Path) -> Option<FontVec> {
+    let length = std::fs::metadata(path).ok()?.len();
+    if length > MAX_BYTES {
+        return None;
+    }
+    FontVec::try_from_vec_and_index(std::fs::read(path).ok()?, 0).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn outlines_stand_on_their_line_and_turn_with_it() {
+        let letters = FontSet::for_texts([]).unwrap();
+        let width = letters.width("HIH", Face::Regular, 10.0);
+        let ends = |steps: &[Step]| {
+            steps.iter().fold([f32::MAX, f32::MIN, f32::MAX, f32::MIN], |[l, r, t, b], step| {
+                let (Step::Move([x, y]) | Step::Line([x, y]) | Step::Curve(_, _, [x, y])) = *step;
+                [l.min(x), r.max(x), t.min(y), b.max(y)]
+            })
+        };
+        let [left, right, top, bottom] = ends(&letters.write("HIH", Face::Regular, 10.0, [5.0, 20.0], 0.0));
+        assert!(left > 5.0 && right < 5.0 + width && right > 3.0 + width && (bottom - 20.0).abs() < 0.01);
+        assert!((20.0 - top - 7.0).abs() < 0.6, "capitals are seven tenths of an em: {top}");
+        // Upwards along the page: what was to the right is above.
+        let quarter = std::f32::consts::FRAC_PI_2;
+        let [left, right, top, bottom] = ends(&letters.write("HIH", Face::Regular, 10.0, [5.0, 20.0], quarter));
+        assert!((right - 5.0).abs() < 0.01 && left < -1.0 && top < 21.0 - width && bottom < 20.0);
+    }
+
+    #[test]
+    fn letters_that_nobody_has_are_named() {
+        // No font has letters for noncharacters.
+        let letters = FontSet::for_texts(["Höhe \u{fdd0}"]).unwrap();
+        assert_eq!(letters.lacking(), ['\u{fdd0}']);
+        let widths = ["Höhe", "Höhe\u{fdd0}"].map(|text| letters.width(text, Face::Bold, 5.0));
+        assert_eq!(widths[0], widths[1]);
+    }
+}

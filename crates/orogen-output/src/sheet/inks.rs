@@ -1,0 +1,50 @@
+//! The inks and widths of a map's lines.
+
+use orogen_io::palette::color::{Light, Rgb};
+
+const BROWN: Rgb = [126, 82, 42];
+const DARK_BROWN: Rgb = [92, 56, 26];
+const ISOBATH: Rgb = [58, 112, 166];
+/// Rivers.
+pub const BLUE: Rgb = [34, 92, 156];
+/// Shores of lakes and of the sea.
+pub const SHORE: Rgb = [40, 96, 152];
+/// The water of lakes.
+pub const LAKES: Rgb = [170, 211, 233];
+
+/// Relative luminance of the ground below which inks are bright.
+const DARK: f32 = 0.14;
+
+/// Widths of contours and of index contours, in millimetres.
+pub const THIN: f32 = 0.12;
+/// See [`THIN`].
+pub const THICK: f32 = 0.24;
+
+/// What contours and their heights are drawn with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inks {
+    /// The lines.
+    pub line: Rgb,
+    /// Their heights.
+    pub words: Rgb,
+    /// How much of the ground the lines cover, 0 to 1.
+    pub cover: f32,
+}
+
+impl Inks {
+    /// Those that are seen on a color: dark ones, and on dark ground bright ones.
+    pub fn over([red, green, blue]: Light, is_land: bool) -> Inks {
+        let dark = 0.2126 * red + 0.7152 * green + 0.0722 * blue < DARK;
+        match (is_land, dark) {
+            (true, false) => Inks { line: BROWN, words: DARK_BROWN, cover: 0.62 },
+            (true, true) => Inks { line: [226, 200, 168], words: [244, 228, 208], cover: 0.4 },
+            (false, false) => Inks { line: ISOBATH, words: [28, 74, 122], cover: 0.5 },
+            (false, true) => Inks { line: [176, 208, 232], words: [206, 228, 244], cover: 0.32 },
+        }
+    }
+}
+
+/// The ink of contours in the legend.
+pub fn of_contours(is_land: bool) -> Rgb {
+    if is_land { BROWN } else { ISOBATH }
+}

@@ -1,0 +1,264 @@
+//! Where the parts of a sheet stand, in millimetres.
+
+use super::options::{Options, Page, Resolution};
+
+/// Around everything.
+pub const MARGIN: f32 = 9.0;
+/// The heading, and the two lines beneath it, with the space to the map.
+const HEADING: f32 = 17.5;
+/// Room for numbers along the sides: at the left, the right, the top and the bottom.
+const AXES: [f32; 4] = [12.5, 5.0, 1.0, 6.0];
+/// Between the map and what stands beneath or beside it.
+const FOOT_GAP: f32 = 5.0;
+/// The height of a row of blocks.
+pub const ROW: f32 = 12.5;
+/// Between two blocks of a column.
+const COLUMN_GAP: f32 = 3.5;
+/// The narrowest column of blocks beside a map, and the widest beside a map that is narrower still.
+const COLUMN: [f32; 2] = [64.0, 88.0];
+/// The least width and height that a profile is drawn in, and its height over its width at most, beneath a map and beside it.
+const PROFILE: [f32; 2] = [58.0, 30.0];
+const PROFILE_ASPECT: [f32; 2] = [0.45, 0.60];
+/// Between two blocks of a row.
+pub const BLOCK_GAP: f32 = 9.0;
+/// The narrowest page that is made to fit a map.
+const NARROWEST: f32 = 118.0;
+
+/// A block beneath or beside the map, as large as it needs to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Block {
+    /// Its width in a row, and in a column where it is as high as need be.
+    pub widths: [f32; 2],
+    /// Its height in a column.
+    pub height: f32,
+}
+
+/// Where everything stands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    /// Width and height of the page.
+    pub page: [f32; 2],
+    /// Pixels an inch.
+    pub dpi: f64,
+    /// Left, top, width and height of the map.
+    pub map: [f32; 4],
+    /// Left and top of each block.
+    pub blocks: Vec<[f32; 2]>,
+    /// The width of the column that the blocks stand in; none if they stand in rows beneath the map.
+    pub column: Option<f32>,
+    /// Left, top, width and height of what is left for profiles of the land, with their numbers; two where one would be out of proportion.
+    pub profiles: Vec<[f32; 4]>,
+}
+
+/// A map with its blocks, before it is put in its place.
+struct Draft {
+    /// Width and height of the map.
+    size: [f32; 2],
+    column: Option<f32>,
+}
+
+impl Layout {
+    /// Lays out a map of this width over height, and blocks in rows beneath it or, where a larger map is left room for that way, in a column beside
+    /// it. Room that is left on paper goes to a profile of the land.
+    ///
+    /// The map's sides stand on whole pixels, so that its picture is shown as it is.
+    pub fn new(aspect: f64, blocks: &[Block], options: &Options) -> Layout {
+        let aspect = aspect.clamp(1e-3, 1e3) as f32;
+        let head = if options.parts.title { HEADING } else { 0.0 };
+        let [left, right, top, bottom] = if options.parts.axes { AXES } else { [0.0; 4] };
+        let beside = 2.0 * MARGIN + left + right;
+        let (page, draft) = match options.page {
+            Page::Fitted(longer) => {
+                let longer = longer as f32;
+                let size = if aspect >= 1.0 { [longer, longer / aspect] } else { [longer * aspect, longer] };
+                let width = (size[0] + beside).max(NARROWEST);
+                let foot = foot(blocks, width - 2.0 * MARGIN);
+                let page = [width, 2.0 * MARGIN + head + top + size[1] + bottom + foot];
+                (page, Draft { size, column: None })
+            }
+            Page::Paper(page) => {
+                let page = page.map(|side| side as f32);
+                let room = [page[0] - beside, page[1] - 2.0 * MARGIN - head - top - bottom];
+                let within = |room: [f32; 2]| {
+                    let room = room.map(|side| side.max(5.0));
+                    let width = room[0].min(room[1] * aspect);
+                    [width, width / aspect]
+                };
+                let below = within([room[0], room[1] - foot(blocks, page[0] - 2.0 * MARGIN)]);
+                let column = blocks.iter().map(|block| block.widths[1]).fold(COLUMN[0], f32::max);
+                let aside = within([room[0] - column - FOOT_GAP, room[1]]);
+                let stacked = stack(blocks) <= page[1] - 2.0 * MARGIN - head;
+                let is_aside = !blocks.is_empty() && stacked && aside[0] > below[0];
+                // What is left beside the map, but no more than the map has with its numbers.
+                let widest = column.max(COLUMN[1]).max(aside[0] + left + right);
+                let column = column.max(room[0] - FOOT_GAP - aside[0]).min(widest);
+                let draft = match is_aside {
+                    true => Draft { size: aside, column: Some(column) },
+                    false => Draft { size: below, column: None },
+                };
+                (page, draft)
+            }
+        };
+        let Draft { size, column } = draft;
+        let dpi = match options.resolution {
+            Resolution::Inch(dpi) => dpi,
+            Resolution::Longer(pixels) => f64::from(pixels) / f64::from(page[0].max(page[1])) * 25.4,
+        };
+        let pixel = (25.4 / dpi) as f32;
+        let snapped = |at: f32| (at / pixel).round() * pixel;
+        let taken = column.map_or(0.0, |column| column + FOOT_GAP);
+        let x = MARGIN + left + (page[0] - beside - taken - size[0]).max(0.0) / 2.0;
+        let size = size.map(|side| snapped(side).max(pixel));
+        let map = [snapped(x), snapped(MARGIN + head + top), size[0], size[1]];
+        let mut layout = Layout { page, dpi, map, blocks: Vec::new(), column, profiles: Vec::new() };
+        let under = map[1] + map[3] + bottom;
+        let wanted = options.parts.profile && matches!(options.page, Page::Paper(_));
+        let fits = |[x, y, width, height]: [f32; 4]| {
+            let height = height.min(width * PROFILE_ASPECT[usize::from(column.is_some())]);
+            Some([x, y, width, height]).filter(|_| wanted && width >= PROFILE[0] && height >= PROFILE[1])
+        };
+        match column {
+            Some(column) => {
+                let x = page[0] - MARGIN - column;
+                let mut y = map[1];
+                for block in blocks {
+                    layout.blocks.push([x, y]);
+                    y += block.height + COLUMN_GAP;
+                }
+                let free = under - y - FOOT_GAP;
+                let half = (free - FOOT_GAP) / 2.0;
+                let areas = match fits([x, y, column, half]) {
+                    Some(_) => vec![fits([x, y + FOOT_GAP, column, half]); 2],
+                    None => vec![fits([x, y + FOOT_GAP, column, free])],
+                };
+                // The last one's foot stands level with the map's.
+                let mut foot = under;
+                for [x, _, width, height] in areas.into_iter().flatten() {
+                    foot -= height;
+                    layout.profiles.insert(0, [x, foot, width, height]);
+                    foot -= FOOT_GAP;
+                }
+            }
+            None => {
+                let free = page[1] - MARGIN - foot(blocks, page[0] - 2.0 * MARGIN) - under - FOOT_GAP;
+                let mut at = [MARGIN, under + FOOT_GAP];
+                match fits([map[0] - left, under + FOOT_GAP, map[2] + left + right, free]) {
+                    None => at[1] += free.clamp(0.0, 2.0 * FOOT_GAP),
+                    Some([x, y, width, height]) => {
+                        // What is left of the page even so opens the gaps.
+                        let apart = ((free - height) / 2.0).min(2.0 * FOOT_GAP);
+                        layout.profiles.push([x, y + apart, width, height]);
+                        at[1] += height + 2.0 * apart + FOOT_GAP;
+                    }
+                }
+                for block in blocks {
+                    if at[0] > MARGIN && at[0] + block.widths[0] > page[0] - MARGIN {
+                        at = [MARGIN, at[1] + ROW];
+                    }
+                    layout.blocks.push(at);
+                    at[0] += block.widths[0] + BLOCK_GAP;
+                }
+            }
+        }
+        layout
+    }
+}
+
+/// The height of all rows that blocks take within a width.
+fn foot(blocks: &[Block], width: f32) -> f32 {
+    let (mut rows, mut used) = (0.0, f32::MAX);
+    for block in blocks {
+        if used > 0.0 && used + block.widths[0] > width {
+            (rows, used) = (rows + 1.0, 0.0);
+        }
+        used += block.widths[0] + BLOCK_GAP;
+    }
+    if rows > 0.0 { rows * ROW + FOOT_GAP } else { 0.0 }
+}
+
+/// The height of a column of blocks.
+fn stack(blocks: &[Block]) -> f32 {
+    blocks.iter().map(|block| block.height + COLUMN_GAP).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::options::Shading;
+    use super::super::options::{Coloring, Parts};
+    use super::*;
+    use orogen_io::palette::named;
+
+    fn on(page: [f64; 2], profile: bool) -> Options {
+        Options {
+            title: String::new(),
+            about: String::new(),
+            palette: named::all()[0].palette(),
+            shading: Shading::Multi,
+            interval: None,
+            parts: Parts { profile, ..Parts::default() },
+            page: Page::Paper(page),
+            resolution: Resolution::Inch(150.0),
+            sea_level: None,
+            coloring: Coloring::Heights,
+            range: None,
+            map: None,
+        }
+    }
+
+    /// Colours, scale, north and legend, as they are.
+    fn blocks() -> [Block; 4] {
+        let block = |row: f32, column: f32, height: f32| Block { widths: [row, column], height };
+        [block(88.0, 0.0, ROW), block(53.0, 53.0, 9.5), block(10.0, 10.0, ROW), block(98.0, 50.0, 24.0)]
+    }
+
+    /// Left, top, right and bottom of all that stands on a page.
+    fn boxes(layout: &Layout) -> Vec<[f32; 4]> {
+        let [x, y, w, h] = layout.map;
+        let mut boxes = vec![[x - AXES[0], y - AXES[2], x + w + AXES[1], y + h + AXES[3]]];
+        for (block, [x, y]) in blocks().iter().zip(&layout.blocks) {
+            let (width, height) = match layout.column {
+                Some(column) => (block.widths[1].max(10.0).min(column), block.height),
+                None => (block.widths[0], 11.0),
+            };
+            boxes.push([*x, *y, x + width, y + height]);
+        }
+        boxes.extend(layout.profiles.iter().map(|[x, y, w, h]| [*x, *y, x + w, y + h]));
+        boxes
+    }
+
+    #[test]
+    fn paper_is_filled_and_nothing_lies_over_another() {
+        for page in [[210.0, 297.0], [297.0, 210.0], [297.0, 420.0], [420.0, 297.0], [215.9, 279.4], [300.0, 200.0]] {
+            for aspect in [0.65, 1.0, std::f64::consts::SQRT_2] {
+                let layout = Layout::new(aspect, &blocks(), &on(page, true));
+                let boxes = boxes(&layout);
+                let within = |k: usize| page[k] as f32 - MARGIN + 0.1;
+                for (n, a) in boxes.iter().enumerate() {
+                    assert!(a[0] >= MARGIN - 0.1 && a[2] <= within(0) && a[3] <= within(1), "{page:?} {aspect}: {a:?}");
+                    for b in &boxes[n + 1..] {
+                        let apart =
+                            a[2] <= b[0] + 0.1 || b[2] <= a[0] + 0.1 || a[3] <= b[1] + 0.1 || b[3] <= a[1] + 0.1;
+                        assert!(apart, "{page:?} {aspect}: {a:?} {b:?}");
+                    }
+                }
+                let ends =
+                    |k: usize, of: fn(f32, f32) -> f32, from: f32| boxes.iter().fold(from, |end, b| of(end, b[k]));
+                let usable = [0, 1].map(|k| page[k] as f32 - 2.0 * MARGIN);
+                let wide = (ends(2, f32::max, 0.0) - ends(0, f32::min, 1e9)) / usable[0];
+                let high = (ends(3, f32::max, 0.0) - MARGIN) / usable[1];
+                let area: f32 = boxes.iter().map(|b| (b[2] - b[0]) * (b[3] - b[1])).sum();
+                let covered = area / (usable[0] * (usable[1] - HEADING));
+                assert!(wide > 0.85 && high > 0.92 && covered > 0.66, "{page:?} {aspect}: {wide} {high} {covered}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_map_is_never_smaller_for_its_profile() {
+        for aspect in [0.4, 1.0, 2.5] {
+            let [with, without] = [true, false].map(|is| Layout::new(aspect, &blocks(), &on([210.0, 297.0], is)));
+            assert_eq!(with.map, without.map);
+            assert!(without.profiles.is_empty());
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! What is drawn on the relief: contours, rivers, lakes, shores and summits, found in the heights at the scale of the map.
+
+use super::furniture::{Entry, Sign};
+use super::ground::laid;
+use super::inks::{BLUE, LAKES, SHORE, THICK, THIN, of_contours};
+use super::lines::{Summit, interval, lines, summits, thick_interval};
+use super::options::{Options, Page};
+use super::ticks::grouped;
+use super::water::{Least, Water, find};
+use orogen_grid::contour::chaikin::smooth;
+use orogen_grid::contour::line::Line;
+use orogen_grid::contour::trace;
+use orogen_grid::error::Result;
+use orogen_grid::grid::Grid;
+use orogen_io::format::levels::Levels;
+
+/// How wide a sample is that lines are drawn from, in millimetres, and the most of them along a side.
+const SAMPLE: f64 = 0.25;
+const MOST: usize = 2400;
+
+/// Where rivers begin, and how large lakes are, in square millimetres; how deep, as a share of the relief.
+const SPRING: f64 = 42.0;
+const LAKE: f64 = 2.0;
+const DEPTH: f64 = 0.006;
+
+/// Heights of so many times finer samples are smooth between those that there were.
+const ENLARGED: f64 = 0.6;
+
+/// How far summits are from each other in millimetres, and how many there are at most.
+const APART: f64 = 26.0;
+const SUMMITS: usize = 24;
+
+/// How many samples lie along the longer side of a map of so many millimetres, to draw lines from.
+pub fn lines_at(longer: f64) -> usize {
+    ((longer / SAMPLE).ceil() as usize).clamp(8, MOST)
+}
+
+/// The heights at the samples that lines are drawn from, and the lines.
+pub struct Linework {
+    /// The heights.
+    pub grid: Grid,
+    /// Width over height.
+    pub aspect: f64,
+    /// Rivers and lakes.
+    pub water: Water,
+    /// Contours.
+    pub contours: Vec<Line>,
+    /// Metres from one contour to the next, if there are contours.
+    pub interval: Option<f64>,
+    /// The shore of the sea.
+    pub shore: Vec<Line>,
+    /// Summits, in samples of the heights that the grid was made of.
+    pub summits: Vec<Summit>,
+    /// Columns and rows of those heights.
+    pub samples: [usize; 2],
+}
+
+impl Linework {
+    /// Finds the lines of heights.
+    ///
+    /// # Errors
+    /// If the contours asked for are too many, or there are more shores than can be numbered.
+    pub fn of(heights: &Grid, options: &Options) -> Result<Linework> {
+        let window = heights.window();
+        let sides = [window.width - 1, window.height - 1].map(|side| side as f64);
+        let aspect = sides[0] / sides[1];
+        // How large the map will be is known only with its legend; near enough.
+        let longer = match options.page {
+            Page::Fitted(longer) => longer,
+            Page::Paper([width, height]) => {
+                let (width, height) = ((width - 36.0).max(10.0), (height - 60.0).max(10.0));
+                if width / height > aspect { height * aspect.max(1.0) } else { width / aspect.min(1.0) }
+            }
+        };
+        let samples = lines_at(longer);
+        let size = sides.map(|side| ((samples as f64 * side / sides[0].max(sides[1])).round() as usize).max(1) + 1);
+        let sample = longer / samples as f64;
+        let grid = laid(heights, size);
+        let levels = Levels::of(&grid);
+        let relief = f64::from(levels.high()) - f64::from(levels.low());
+        let parts = &options.parts;
+        let sea = options.sea_level.map(|sea| sea as f32);
+        let cells = |millimetres: f64| (millimetres / (sample * sample)).ceil().max(1.0) as u32;
+        let water = match (parts.rivers || parts.lakes) && relief > 0.0 {
+            true => {
+                // Rivers run through lakes that are not drawn.
+                let lake = if parts.lakes { cells(LAKE) } else { u32::MAX };
+                let scattered = grid.window().cell < ENLARGED * window.cell;
+                let depth = (relief * DEPTH) as f32;
+                find(&grid, sea, Least { spring: cells(SPRING), lake, depth, scattered })?
+            }
+            false => Water { rivers: Vec::new(), lakes: Vec::new(), surface: grid.clone() },
+        };
+        let interval =
+            parts.contours.then(|| options.interval.unwrap_or_else(|| interval(&grid, options.sea_level, sample)));
+        // Contours end at lakes that are drawn, and go on under those that are not.
+        let ground = Grid::from_data(*grid.window(), water.surface.data().to_vec()).filter(|_| parts.lakes);
+        let contours = match interval {
+            Some(interval) if relief > 0.0 => {
+                lines(ground.as_ref().unwrap_or(&grid), interval, options.sea_level, sample)?
+            }
+            _ => Vec::new(),
+        };
+        let shore = match (options.sea_level, options.palette.has_sea()) {
+            (Some(sea), true) => trace::contours(&grid, &[sea])?.iter().map(|line| smooth(line, 1)).collect(),
+            _ => Vec::new(),
+        };
+        let summits = match options.parts.summits {
+            // Looked for among the heights themselves: means, and the cubic between samples, have other summits.
+            true => {
+                let block = (window.width - 1).div_ceil((size[0] - 1).max(1));
+                let block_width = sample * block as f64 * (size[0] - 1) as f64 / sides[0];
+                let apart = (APART / block_width).ceil() as usize;
+                summits(heights, options.sea_level, block, apart, SUMMITS)
+            }
+            false => Vec::new(),
+        };
+        let interval = interval.filter(|_| relief > 0.0);
+        let samples = [window.width, window.height];
+        Ok(Linework { grid, aspect, water, contours, interval, shore, summits, samples })
+    }
+
+    /// What its lines mean.
+    pub fn legend(&self, options: &Options) -> Vec<Entry> {
+        let mut entries = Vec::new();
+        if let Some(interval) = self.interval.filter(|_| !self.contours.is_empty()) {
+            let metres = |value: f64| format!("{} m", grouped(value, if value.fract() == 0.0 { 0 } else { 1 }));
+            let sea = options.sea_level.unwrap_or(f64::NEG_INFINITY);
+            let ink = of_contours(self.contours.iter().any(|line| line.elevation > sea));
+            let entry = |width, text| Entry { sign: Sign::Line(width, ink), text };
+            entries.push(entry(THIN, format!("Contours, {} apart", metres(interval))));
+            entries.push(entry(THICK, format!("Index contours, {} apart", metres(thick_interval(interval)))));
+        }
+        if options.parts.rivers && !self.water.rivers.is_empty() {
+            entries.push(Entry { sign: Sign::Line(0.45, BLUE), text: "River".into() });
+        }
+        if options.parts.lakes && !self.water.lakes.is_empty() {
+            entries.push(Entry { sign: Sign::Water(LAKES, SHORE), text: "Lake".into() });
+        }
+        if !self.summits.is_empty() {
+            entries.push(Entry { sign: Sign::Summit, text: "Summit, height in m".into() });
+        }
+        entries
+    }
+}

@@ -1,0 +1,275 @@
+//! Profiles of the land through its highest sample, from west to east and from north to south: what a sheet of paper has room for beside its map.
+
+use super::furniture::{Align, Desk, SMALL, SOFT};
+use super::options::Options;
+use super::scene::{INK, Item, Point, polygon};
+use super::ticks::{Count, grouped, ticks};
+use crate::map::text::Face;
+use orogen_grid::grid::Grid;
+use orogen_io::palette::color::{Encoder, Rgb};
+use orogen_io::palette::tint::Tint;
+
+/// Room for its heading, for the heights at its left, what stands right of it, and the distances below it, in millimetres.
+const HEADING: f32 = 5.5;
+const LEFT: f32 = 12.5;
+const RIGHT: f32 = 5.0;
+const BELOW: f32 = 6.0;
+
+/// Millimetres from one place of the line to the next.
+const STEP: f32 = 0.15;
+
+/// How many times heights count at most.
+const MOST: f64 = 50.0;
+
+/// The share of its height that the land takes, and the share below it.
+const LAND: f64 = 0.80;
+const FOOT: f64 = 0.12;
+
+/// Rock: below the sea, and all of it where the map shows another layer than the heights.
+const LAND_INK: Rgb = [196, 192, 186];
+
+/// The sea cut open.
+const SEA: Rgb = [150, 192, 222];
+
+/// Which way a profile runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// From A in the west to B in the east.
+    Eastward,
+    /// From C in the north to D in the south.
+    Southward,
+}
+
+impl Direction {
+    /// The names of its ends.
+    fn names(self) -> [&'static str; 2] {
+        match self {
+            Direction::Eastward => ["A", "B"],
+            Direction::Southward => ["C", "D"],
+        }
+    }
+}
+
+/// The heights along a row or a column.
+pub struct Profile {
+    direction: Direction,
+    /// Where it is drawn, without its numbers.
+    area: [f32; 4],
+    /// How far down or across the map its line lies, 0 to 1.
+    at: f32,
+    /// The lowest height along it.
+    lowest: f32,
+    /// Heights, evenly apart from west to east.
+    heights: Vec<f32>,
+    /// Metres from its west end to its east end.
+    length: f64,
+    /// The heights at its foot and at its top.
+    span: [f64; 2],
+    exaggeration: f64,
+    sea_level: Option<f64>,
+}
+
+/// A row of samples at `count` places, evenly apart from its first sample to its last. Where places are closer than samples the line runs straight from
+/// sample to sample; where they are wider apart, each has the highest sample around it, so that no summit is lost.
+fn along(row: &[f32], count: usize) -> Vec<f32> {
+    let step = (row.len() - 1) as f64 / (count - 1).max(1) as f64;
+    let last = row.len() - 1;
+    (0..count)
+        .map(|k| {
+            let at = k as f64 * step;
+            if step <= 1.0 {
+                let (from, share) = ((at as usize).min(last), at.fract() as f32);
+                let [a, b] = [row[from], row[(from + 1).min(last)]];
+                return if share == 0.0 { a } else { a + (b - a) * share };
+            }
+            let (from, to) = ((at - step / 2.0).ceil().max(0.0) as usize, (at + step / 2.0).floor() as usize);
+            row[from.min(last)..=to.clamp(from.min(last), last)].iter().copied().fold(f32::NAN, f32::max)
+        })
+        .collect()
+}
+
+impl Profile {
+    /// The profile through the highest sample. None where no height is known, or the land is too flat or too steep to be told from a line.
+    pub fn new(
+        heights: &Grid,
+        options: &Options,
+        direction: Direction,
+        [left, top, width, height]: [f32; 4],
+    ) -> Option<Profile> {
+        let window = heights.window();
+        let finite = heights.data().iter().enumerate().filter(|(_, height)| height.is_finite());
+        let (at, highest) = finite.fold(None, |best: Option<(usize, f32)>, (at, height)| match best {
+            Some((_, most)) if most >= *height => best,
+            _ => Some((at, *height)),
+        })?;
+        let (i, j) = (at % window.width, at / window.width);
+        let (line, nth, across): (Vec<f32>, usize, usize) = match direction {
+            Direction::Eastward => (heights.row(j).to_vec(), j, window.height),
+            Direction::Southward => ((0..window.height).map(|j| heights.get(i, j)).collect(), i, window.width),
+        };
+        let area = [left + LEFT, top + HEADING, width - LEFT - RIGHT, height - HEADING - BELOW];
+        let count = ((area[2] / STEP) as usize).clamp(2, 10_000);
+        let length = (line.len() - 1) as f64 * window.cell;
+        let heights = along(&line, count);
+        let sea_level = options.sea_level.filter(|_| options.palette.has_sea());
+        let known = heights.iter().copied().filter(|height| height.is_finite());
+        let lowest = known.fold(f32::MAX, f32::min);
+        // The sea is shown where it covers ground.
+        let sea_level = sea_level.filter(|sea| f64::from(lowest) < *sea);
+        let low = f64::from(lowest);
+        let highest = f64::from(highest);
+        // Metres a millimetre across, and what the heights would take up at that scale.
+        let scale = length / f64::from(area[2]);
+        let natural = (highest - low) / scale;
+        let exaggeration = (f64::from(area[3]) * LAND / natural).min(MOST);
+        // Two digits, not rounded up: the land has to fit.
+        let digits = libm::pow(10.0, 1.0 - libm::log10(exaggeration).floor());
+        let exaggeration = (exaggeration * digits).floor() / digits;
+        let rise = f64::from(area[3]) * scale / exaggeration;
+        if !(natural * exaggeration > 1.0 && rise.is_finite()) {
+            return None;
+        }
+        let foot = low - FOOT * rise;
+        let span = [foot, foot + rise];
+        let at = nth as f32 / (across - 1).max(1) as f32;
+        Some(Profile { direction, area, at, lowest, heights, length, span, exaggeration, sea_level })
+    }
+
+    /// Draws it, and where it runs on the map. Without a tint, the land is grey.
+    pub fn draw(&self, desk: &mut Desk, map: [f32; 4], tint: Option<&Tint>, dpi: f64) {
+        let [left, top, width, height] = self.area;
+        let (right, bottom) = (left + width, top + height);
+        let up = |metres: f64| bottom - height * ((metres - self.span[0]) / (self.span[1] - self.span[0])) as f32;
+        self.ground(desk, tint, dpi);
+        let mut marks: Vec<Vec<Point>> = Vec::new();
+        let mut lines: Vec<Vec<Point>> = Vec::new();
+        let decimals = if self.span[1] - self.span[0] < 20.0 { 1 } else { 0 };
+        // Heights are metres however large they are.
+        for (value, _) in ticks(self.span, (height / 6.5).max(2.0) as usize, Count::Latitude) {
+            let (y, name) = (up(value), format!("{} m", grouped(value, decimals)));
+            marks.push(vec![[left, y], [left - 1.3, y]]);
+            lines.push(vec![[left, y], [right, y]]);
+            desk.small(&name, [left - 2.2, y + 0.95], Align::End);
+        }
+        desk.scene.lines(lines, 0.1, INK, 0.25);
+        for (value, name) in ticks([0.0, self.length], (width / 16.0).max(1.0) as usize, Count::Metres) {
+            let x = left + width * (value / self.length) as f32;
+            marks.push(vec![[x, bottom], [x, bottom + 1.3]]);
+            let half = desk.letters.width(&name, Face::Regular, SMALL) / 2.0;
+            if x + half < desk.scene.size[0] - 1.0 {
+                desk.small(&name, [x, bottom + 4.2], Align::Middle);
+            }
+        }
+        desk.scene.lines(marks, 0.2, INK, 1.0);
+        let place = |(k, height): (usize, &f32)| {
+            let x = left + width * k as f32 / (self.heights.len() - 1) as f32;
+            height.is_finite().then(|| [x, up(f64::from(*height))])
+        };
+        // A line for each stretch without holes.
+        let places: Vec<Option<Point>> = self.heights.iter().enumerate().map(place).collect();
+        let stretches = places.split(Option::is_none).map(|stretch| stretch.iter().copied().flatten().collect());
+        desk.scene.lines(stretches.collect(), 0.22, INK, 1.0);
+        desk.scene.lines(vec![vec![[left, top], [left, bottom], [right, bottom]]], 0.2, INK, 1.0);
+        let [start, end] = self.direction.names();
+        let words = format!(
+            "Profile {start}–{end}, vertical exaggeration {} ×",
+            grouped(self.exaggeration, if self.exaggeration.fract() == 0.0 { 0 } else { 1 })
+        );
+        desk.small(&words, [left, top - 2.4], Align::Start);
+        for (name, x, align) in [(start, left, Align::Start), (end, right, Align::End)] {
+            let x = if align == Align::Start { x + 0.8 } else { x - 0.8 };
+            desk.text(name, Face::Bold, SMALL, SOFT, [x, top + 2.6], align);
+        }
+        self.mark(desk, map);
+    }
+
+    /// Marks its ends on the map: arrows inside the map's frame, with the names of the ends.
+    fn mark(&self, desk: &mut Desk, map: [f32; 4]) {
+        let [start, end] = self.direction.names();
+        for (name, end, inward) in [(start, 0.0, 1.0), (end, 1.0, -1.0)] {
+            let wide = desk.letters.width(name, Face::Bold, SMALL);
+            // The arrow's tip, its foot on either side, and the middle of the name.
+            let (tip, feet, middle) = match self.direction {
+                Direction::Eastward => {
+                    let [x, y] = [map[0] + map[2] * end, map[1] + map[3] * self.at];
+                    let middle = [x + (2.6 + wide / 2.0) * inward, y];
+                    ([x + 2.0 * inward, y], [[x, y - 1.2], [x, y + 1.2]], middle)
+                }
+                Direction::Southward => {
+                    let [x, y] = [map[0] + map[2] * self.at, map[1] + map[3] * end];
+                    ([x, y + 2.0 * inward], [[x - 1.2, y], [x + 1.2, y]], [x, y + 4.0 * inward])
+                }
+            };
+            // A bright patch, so that dark ground does not swallow the letter.
+            let (across, down) = (wide / 2.0 + 0.3, 1.5);
+            let corners = [[-across, -down], [across, -down], [across, down], [-across, down]];
+            let patch = corners.map(|[dx, dy]| [middle[0] + dx, middle[1] + dy]);
+            desk.scene.area(polygon(&patch), [255; 3], 0.6);
+            desk.scene.area(polygon(&[feet[0], tip, feet[1]]), INK, 1.0);
+            desk.text(name, Face::Bold, SMALL, INK, [middle[0], middle[1] + 0.95], Align::Middle);
+        }
+    }
+
+    /// The land under the line in the map's colours or in grey, and the sea over it.
+    fn ground(&self, desk: &mut Desk, tint: Option<&Tint>, dpi: f64) {
+        let [_, _, width, height] = self.area;
+        let side = |millimetres: f32| ((f64::from(millimetres) * dpi / 25.4).round() as usize).clamp(2, 8000);
+        let [columns, rows] = [side(width), side(height)];
+        let encoder = Encoder::new();
+        let rise = (self.span[1] - self.span[0]) / rows as f64;
+        let mut pixels = Vec::with_capacity(3 * columns * rows);
+        for j in 0..rows {
+            let metres = self.span[1] - (j as f64 + 0.5) * rise;
+            // What lies below all ground on the line has the colour of the lowest; rock below the sea is not blue.
+            let is_land = self.sea_level.is_none_or(|sea| metres > sea);
+            let color = match tint {
+                Some(tint) if is_land => encoder.bytes(tint.at((metres as f32).max(self.lowest))),
+                _ => LAND_INK,
+            };
+            for i in 0..columns {
+                let at = (i as f64 + 0.5) / columns as f64 * (self.heights.len() - 1) as f64;
+                let (k, share) = (at as usize, at.fract() as f32);
+                let [a, b] = [self.heights[k], self.heights[(k + 1).min(self.heights.len() - 1)]];
+                let ground = f64::from(a + (b - a) * share);
+                let cover = |level: f64| ((level - metres) / rise + 0.5).clamp(0.0, 1.0) as f32;
+                let mut pixel = [255.0f32; 3];
+                let mut lay = |ink: Rgb, cover: f32| {
+                    pixel.iter_mut().zip(ink).for_each(|(pixel, ink)| *pixel += (f32::from(ink) - *pixel) * cover);
+                };
+                let land = if ground.is_finite() { cover(ground) } else { 0.0 };
+                if let Some(sea) = self.sea_level.filter(|sea| ground < *sea) {
+                    lay(SEA, cover(sea) * (1.0 - land));
+                }
+                lay(color, land * 0.85);
+                pixels.extend(pixel.map(|part| part.round() as u8));
+            }
+        }
+        desk.scene.items.push(Item::Picture { area: self.area, width: columns, height: rows, pixels });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_of_more_places_than_samples_has_no_steps() {
+        let row = [0.0, 10.0, 4.0, f32::NAN, 8.0];
+        let line = along(&row, 41);
+        assert_eq!((line[0], line[10], line[20], line[40]), (0.0, 10.0, 4.0, 8.0));
+        assert!((line[5] - 5.0).abs() < 1e-5 && (line[15] - 7.0).abs() < 1e-5, "{line:?}");
+        assert!(line[1..10].windows(2).all(|pair| pair[1] > pair[0]));
+        assert!(line[21..40].iter().all(|height| height.is_nan()));
+        assert_eq!(along(&row[..1], 2), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_line_of_fewer_places_than_samples_keeps_its_summits() {
+        for at in 0..1000 {
+            let mut row = vec![1.0; 1000];
+            row[at] = 9.0;
+            let line = along(&row, 300);
+            assert!(line.contains(&9.0) && line.len() == 300, "{at}");
+        }
+    }
+}

@@ -1,0 +1,385 @@
+//! A sheet as pixels.
+
+use rayon::prelude::*;
+
+use super::scene::{Item, Point, Scene, Step};
+use crate::map::canvas::Canvas;
+use orogen_io::palette::color::Rgb;
+
+/// Pieces that a curve is drawn in.
+const PIECES: usize = 8;
+
+/// Rows that are drawn at a time, side by side.
+const BAND: usize = 64;
+
+/// Draws a scene on white paper, `dpi` pixels an inch.
+///
+/// Edges are smooth: areas by how much of each pixel they cover, lines by their distance. Bands of rows are drawn side by side;
+/// none looks at another, so their number makes no difference.
+pub fn draw(scene: &Scene, dpi: f64) -> Canvas {
+    let scale = (dpi / 25.4) as f32;
+    let [width, height] = pixels(scene, dpi);
+    let shapes: Vec<Shape> = scene.items.iter().map(|item| Shape::of(item, scale)).collect();
+    let bands: Vec<Vec<Rgb>> = (0..height.div_ceil(BAND))
+        .into_par_iter()
+        .map(|k| {
+            let top = k * BAND;
+            let mut band = Band { top, width, rows: vec![[255; 3]; width * BAND.min(height - top)], cover: Vec::new() };
+            shapes.iter().for_each(|shape| band.draw(shape));
+            band.rows
+        })
+        .collect();
+    Canvas::of(width, height, bands.concat())
+}
+
+/// The size of the page in pixels.
+pub fn pixels(scene: &Scene, dpi: f64) -> [usize; 2] {
+    scene.size.map(|side| ((f64::from(side) * dpi / 25.4).round() as usize).max(1))
+}
+
+/// An item in pixels.
+enum Shape<'a> {
+    Picture { area: [f32; 4], width: usize, height: usize, pixels: &'a [u8] },
+    Lines { lines: Vec<Line>, half: f32, ink: Rgb, cover: f32 },
+    Area { edges: Vec<[Point; 2]>, top: f32, bottom: f32, ink: Rgb, cover: f32 },
+}
+
+struct Line {
+    places: Vec<Point>,
+    top: f32,
+    bottom: f32,
+}
+
+impl<'a> Shape<'a> {
+    fn of(item: &'a Item, scale: f32) -> Shape<'a> {
+        let at = |place: &Point| place.map(|side| side * scale);
+        match item {
+            Item::Picture { area, width, height, pixels } => {
+                Shape::Picture { area: area.map(|side| side * scale), width: *width, height: *height, pixels }
+            }
+            Item::Lines { lines, width, ink, cover } => {
+                let lines = lines.iter().map(|line| {
+                    let places: Vec<Point> = line.iter().map(at).collect();
+                    let (top, bottom) = span(places.iter().map(|place| place[1]));
+                    Line { places, top, bottom }
+                });
+                Shape::Lines { lines: lines.collect(), half: width * scale / 2.0, ink: *ink, cover: *cover }
+            }
+            Item::Area { outline, ink, cover } => {
+                let edges = edges(outline, scale);
+                let (top, bottom) = span(edges.iter().flatten().map(|place| place[1]));
+                Shape::Area { edges, top, bottom, ink: *ink, cover: *cover }
+            }
+        }
+    }
+}
+
+fn span(values: impl Iterator<Item = f32>) -> (f32, f32) {
+    values.fold((f32::MAX, f32::MIN), |(low, high), value| (low.min(value), high.max(value)))
+}
+
+/// An outline as straight edges, every part of it closed.
+fn edges(outline: &[Step], scale: f32) -> Vec<[Point; 2]> {
+    let at = |place: Point| place.map(|side| side * scale);
+    let mut edges = Vec::new();
+    let (mut first, mut here) = ([0.0; 2], [0.0; 2]);
+    for step in outline {
+        match *step {
+            Step::Move(place) => {
+                edges.push([here, first]);
+                (first, here) = (at(place), at(place));
+            }
+            Step::Line(place) => {
+                edges.push([here, at(place)]);
+                here = at(place);
+            }
+            Step::Curve(a, b, end) => {
+                let [a, b, end] = [a, b, end].map(at);
+                let start = here;
+                for k in 1..=PIECES {
+                    let t = k as f32 / PIECES as f32;
+                    let u = 1.0 - t;
+                    let next = [0, 1].map(|c| {
+                        u * u * u * start[c] + 3.0 * u * u * t * a[c] + 3.0 * u * t * t * b[c] + t * t * t * end[c]
+                    });
+                    edges.push([here, next]);
+                    here = next;
+                }
+            }
+        }
+    }
+    edges.push([here, first]);
+    edges.retain(|[a, b]| a[1] != b[1] && a.iter().chain(b).all(|side| side.is_finite()));
+    edges
+}
+
+/// A band of rows of the page.
+struct Band {
+    top: usize,
+    width: usize,
+    rows: Vec<Rgb>,
+    /// What a shape covers of each pixel, between two shapes all 0.
+    cover: Vec<f32>,
+}
+
+impl Band {
+    fn height(&self) -> usize {
+        self.rows.len() / self.width
+    }
+
+    /// Whether something between these heights is in the band.
+    fn reaches(&self, top: f32, bottom: f32) -> bool {
+        bottom >= self.top as f32 && top <= (self.top + self.height()) as f32
+    }
+
+    fn draw(&mut self, shape: &Shape) {
+        match shape {
+            Shape::Picture { area, width, height, pixels } => self.picture(*area, [*width, *height], pixels),
+            Shape::Lines { lines, half, ink, cover } => {
+                let reach = half + 1.0;
+                let near: Vec<&Line> =
+                    lines.iter().filter(|line| self.reaches(line.top - reach, line.bottom + reach)).collect();
+                if near.is_empty() {
+                    return;
+                }
+                self.cover.resize(self.rows.len(), 0.0);
+                let mut rows = [usize::MAX, 0];
+                for line in near {
+                    for pair in line.places.windows(2) {
+                        self.stretch(pair[0], pair[1], *half, &mut rows);
+                    }
+                }
+                self.lay(rows, *ink, *cover);
+            }
+            Shape::Area { edges, top, bottom, ink, cover } => {
+                if !edges.is_empty() && self.reaches(*top, *bottom) {
+                    self.area(edges, *ink, *cover);
+                }
+            }
+        }
+    }
+
+    /// A picture, each pixel of the page taking the nearest of its own.
+    fn picture(&mut self, [left, top, width, height]: [f32; 4], size: [usize; 2], pixels: &[u8]) {
+        let columns: Vec<Option<usize>> = (0..self.width)
+            .map(|i| {
+                let at = (i as f32 + 0.5 - left) / width;
+                (0.0..1.0).contains(&at).then(|| ((at * size[0] as f32) as usize).min(size[0] - 1))
+            })
+            .collect();
+        for j in 0..self.height() {
+            let at = ((self.top + j) as f32 + 0.5 - top) / height;
+            if !(0.0..1.0).contains(&at) {
+                continue;
+            }
+            let row = ((at * size[1] as f32) as usize).min(size[1] - 1) * size[0];
+            let out = &mut self.rows[j * self.width..(j + 1) * self.width];
+            for (out, column) in out.iter_mut().zip(&columns) {
+                if let Some(bytes) = column.and_then(|column| pixels.get(3 * (row + column)..3 * (row + column) + 3)) {
+                    out.copy_from_slice(bytes);
+                }
+            }
+        }
+    }
+
+    /// One stretch of a line: what it covers by its distance from each pixel's middle.
+    fn stretch(&mut self, [ax, ay]: Point, [bx, by]: Point, half: f32, rows: &mut [usize; 2]) {
+        let reach = half + 1.0;
+        let (dx, dy) = (bx - ax, by - ay);
+        let length = (dx * dx + dy * dy).max(1e-12);
+        // A line thinner than a pixel covers no more of it than it is wide.
+        let most = (2.0 * half).min(1.0);
+        let (from, to) = within(ay.min(by) - reach, ay.max(by) + reach, self.top, self.height());
+        let (left, right) = within(ax.min(bx) - reach, ax.max(bx) + reach, 0, self.width);
+        for j in from..to {
+            let py = (self.top + j) as f32 + 0.5 - ay;
+            let row = &mut self.cover[j * self.width..(j + 1) * self.width];
+            for (i, cover) in row.iter_mut().enumerate().take(right).skip(left) {
+                let px = i as f32 + 0.5 - ax;
+                let along = ((px * dx + py * dy) / length).clamp(0.0, 1.0);
+                let (ex, ey) = (px - along * dx, py - along * dy);
+                let share = (half + 0.5 - (ex * ex + ey * ey).sqrt()).min(most);
+                if share > *cover {
+                    *cover = share;
+                }
+            }
+        }
+        if from < to {
+            *rows = [rows[0].min(from), rows[1].max(to)];
+        }
+    }
+
+    /// An area: every edge adds to the pixels on its right what lies to the right of it, with the sign of its way.
+    fn area(&mut self, edges: &[[Point; 2]], ink: Rgb, cover: f32) {
+        // One column more takes what lies beyond the page.
+        let stride = self.width + 2;
+        let (left, right) = span(edges.iter().flatten().map(|place| place[0]));
+        let (from, to) = within(left - 1.0, right + 2.0, 0, self.width);
+        let (top, bottom) = span(edges.iter().flatten().map(|place| place[1]));
+        let (first, last) = within(top - 1.0, bottom + 1.0, self.top, self.height());
+        if from >= to || first >= last {
+            return;
+        }
+        let mut change = vec![0.0f32; stride * (last - first)];
+        let origin = (self.top + first) as f32;
+        for [a, b] in edges {
+            let (sign, a, b) = if a[1] < b[1] { (1.0, a, b) } else { (-1.0, b, a) };
+            let slope = (b[0] - a[0]) / (b[1] - a[1]);
+            let (y0, y1) = ((a[1] - origin).max(0.0), (b[1] - origin).min((last - first) as f32));
+            let mut y = y0;
+            while y < y1 {
+                let row = y as usize;
+                let end = y1.min((row + 1) as f32);
+                let x_at = |y: f32| (a[0] + (y + origin - a[1]) * slope).clamp(0.0, self.width as f32);
+                let (x0, x1) = (x_at(y), x_at(end));
+                accumulate(&mut change[row * stride..(row + 1) * stride], sign * (end - y), x0.min(x1), x0.max(x1));
+                y = if end > y { end } else { (row + 1) as f32 };
+            }
+        }
+        for (j, change) in change.chunks_exact(stride).enumerate() {
+            let mut sum: f32 = change[..from].iter().sum();
+            let row = (first + j) * self.width;
+            for (i, change) in change.iter().enumerate().take(to).skip(from) {
+                sum += change;
+                let share = sum.abs().min(1.0) * cover;
+                if share > 1e-3 {
+                    over(&mut self.rows[row + i], ink, share);
+                }
+            }
+        }
+    }
+
+    /// Lays ink over what a shape covers, and forgets what that was.
+    fn lay(&mut self, [from, to]: [usize; 2], ink: Rgb, cover: f32) {
+        for k in from.min(to) * self.width..to * self.width {
+            let share = std::mem::take(&mut self.cover[k]);
+            if share > 0.0 {
+                over(&mut self.rows[k], ink, share * cover);
+            }
+        }
+    }
+}
+
+/// An edge between two columns of one row, of a height within it: what changes from pixel to pixel.
+fn accumulate(row: &mut [f32], height: f32, x0: f32, x1: f32) {
+    let first = x0 as usize;
+    let last = x1 as usize;
+    if first == last {
+        // The share of the pixel that lies to the right of the edge's middle.
+        let middle = (x0 + x1) / 2.0 - first as f32;
+        row[first] += height * (1.0 - middle);
+        row[first + 1] += height * middle;
+        return;
+    }
+    let per_pixel = height / (x1 - x0);
+    let mut before = 0.0;
+    for (k, change) in row[first..=last].iter_mut().enumerate() {
+        let (start, end) = (x0.max((first + k) as f32), x1.min((first + k + 1) as f32));
+        let part = per_pixel * (end - start);
+        let middle = (start + end) / 2.0 - (first + k) as f32;
+        *change += before + part * (1.0 - middle);
+        before = part * middle;
+    }
+    row[last + 1] += before;
+}
+
+/// The whole pixels between two places, from `start` on, at most `count`: as indices.
+fn within(low: f32, high: f32, start: usize, count: usize) -> (usize, usize) {
+    let clamp = |at: f32| (at - start as f32).clamp(0.0, count as f32);
+    (clamp(low.floor()) as usize, clamp(high.ceil()) as usize)
+}
+
+/// Bytes are mixed, not light, as on [`Canvas`].
+fn over(pixel: &mut Rgb, ink: Rgb, share: f32) {
+    for (under, ink) in pixel.iter_mut().zip(ink) {
+        *under = (f32::from(*under) * (1.0 - share) + f32::from(ink) * share + 0.5) as u8;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::scene::polygon;
+    use super::*;
+
+    fn drawn(items: Vec<Item>) -> Canvas {
+        // 100 pixels a side of a millimetre each.
+        draw(&Scene { size: [100.0, 100.0], title: String::new(), items }, 25.4)
+    }
+
+    fn dark(canvas: &Canvas) -> f64 {
+        let all = (0..100).flat_map(|y| (0..100).map(move |x| (x, y)));
+        all.map(|(x, y)| f64::from(255 - canvas.get(x, y).unwrap()[0]) / 255.0).sum()
+    }
+
+    fn area(outline: Vec<Step>) -> Item {
+        Item::Area { outline, ink: [0; 3], cover: 1.0 }
+    }
+
+    #[test]
+    fn an_area_covers_what_it_is() {
+        // Across the bands' borders, at parts of pixels.
+        let square = polygon(&[[10.25, 20.5], [70.75, 20.5], [70.75, 80.25], [10.25, 80.25]]);
+        let canvas = drawn(vec![area(square.clone())]);
+        assert!((dark(&canvas) - 60.5 * 59.75).abs() < 1.0, "{}", dark(&canvas));
+        assert_eq!([canvas.get(40, 50), canvas.get(5, 50)], [Some([0; 3]), Some([255; 3])]);
+        let edge = canvas.get(10, 50).unwrap()[0];
+        assert!((i32::from(edge) - 64).abs() <= 1, "{edge}");
+        // The other way around makes no difference; a hole the other way is one.
+        let mut holed: Vec<Step> = square;
+        holed.extend(polygon(&[[30.0, 40.0], [30.0, 60.0], [50.0, 60.0], [50.0, 40.0]]));
+        assert!((dark(&drawn(vec![area(holed)])) - (60.5 * 59.75 - 400.0)).abs() < 1.0);
+        // A disc of four curves.
+        let k = 0.552_284_8 * 30.0;
+        let disc = vec![
+            Step::Move([80.0, 50.0]),
+            Step::Curve([80.0, 50.0 + k], [50.0 + k, 80.0], [50.0, 80.0]),
+            Step::Curve([50.0 - k, 80.0], [20.0, 50.0 + k], [20.0, 50.0]),
+            Step::Curve([20.0, 50.0 - k], [50.0 - k, 20.0], [50.0, 20.0]),
+            Step::Curve([50.0 + k, 20.0], [80.0, 50.0 - k], [80.0, 50.0]),
+        ];
+        assert!((dark(&drawn(vec![area(disc)])) / (900.0 * std::f64::consts::PI) - 1.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn what_leaves_the_page_is_cut() {
+        let large = polygon(&[[-50.0, -50.0], [150.0, -50.0], [150.0, 150.0], [-50.0, 150.0]]);
+        assert_eq!(dark(&drawn(vec![area(large)])), 1e4);
+        let right = polygon(&[[90.0, 10.0], [1e6, 10.0], [1e6, 20.0], [90.0, 20.0]]);
+        assert_eq!(dark(&drawn(vec![area(right)])), 100.0);
+        let none = polygon(&[[f32::NAN, 1.0], [5.0, f32::INFINITY], [5.0, 5.0]]);
+        drawn(vec![
+            area(none),
+            Item::Lines { lines: vec![vec![[1e9, 0.0], [-1e9, 5.0]]], width: 1.0, ink: [0; 3], cover: 1.0 },
+        ]);
+    }
+
+    #[test]
+    fn a_line_is_as_wide_as_asked_and_crosses_itself_unseen() {
+        let line =
+            |places: &[Point], width, cover| Item::Lines { lines: vec![places.to_vec()], width, ink: [0; 3], cover };
+        let across = [[10.0, 50.3], [90.0, 50.3]];
+        for width in [0.3f32, 1.0, 4.0] {
+            let column: f64 = {
+                let canvas = drawn(vec![line(&across, width, 1.0)]);
+                (0..100).map(|y| f64::from(255 - canvas.get(50, y).unwrap()[0]) / 255.0).sum()
+            };
+            assert!((column - f64::from(width)).abs() < 0.25, "{width}: {column}");
+        }
+        let twice = [[10.0, 50.0], [90.0, 50.0], [50.0, 50.0], [50.0, 10.0], [50.0, 90.0]];
+        let canvas = drawn(vec![line(&twice, 6.0, 0.5)]);
+        assert_eq!([canvas.get(50, 50), canvas.get(30, 50)], [Some([128; 3]); 2]);
+    }
+
+    #[test]
+    fn a_picture_fills_its_rectangle() {
+        let pixels: Vec<u8> = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [9, 9, 9]].concat();
+        let item = Item::Picture { area: [10.0, 20.0, 40.0, 60.0], width: 2, height: 2, pixels };
+        let canvas = drawn(vec![item]);
+        let at = |x, y| canvas.get(x, y).unwrap();
+        assert_eq!(
+            [at(10, 20), at(49, 49), at(29, 50), at(30, 79)],
+            [[255, 0, 0], [0, 255, 0], [0, 0, 255], [9, 9, 9]]
+        );
+        assert_eq!([at(9, 20), at(50, 20), at(10, 19), at(10, 80)], [[255; 3]; 4]);
+    }
+}

@@ -1,0 +1,274 @@
+//! A sheet as SVG: lines stay lines, words are outlines, the picture beneath them is embedded in tiles.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+use super::scene::{Item, Point, Scene, Step};
+use orogen_io::format::png::{self, Picture, Pixel};
+use orogen_io::format::svg::{self, MAX_PATH};
+use orogen_io::palette::color::Rgb;
+
+/// Side of a tile of a picture in pixels: as base64 even one that does not compress takes less than 1 MiB.
+const TILE: usize = 432;
+
+/// How many pixels a tile reaches over the next ones to its right and below. Viewers blend the edge of a picture with what lies under it; under
+/// a tile's left and upper edge that is the same picture, down to a scale of 1 to so many pixels.
+const OVERLAP: usize = 16;
+
+/// Writes a scene, its unit the millimetre.
+///
+/// # Errors
+/// What writing brings.
+pub fn write(out: &mut dyn Write, scene: &Scene) -> io::Result<()> {
+    let [width, height] = scene.size;
+    writeln!(
+        out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.3}mm\" height=\"{height:.3}mm\" viewBox=\"0 0 {width:.3} {height:.3}\">"
+    )?;
+    writeln!(out, "<title>{}</title>", escaped(&scene.title))?;
+    writeln!(out, "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>")?;
+    let mut text = String::new();
+    for item in &scene.items {
+        text.clear();
+        match item {
+            Item::Picture { area, width, height, pixels } => embed(out, *area, [*width, *height], pixels)?,
+            Item::Lines { lines, width, ink, cover } => {
+                let paths = paths(lines);
+                // Ink that covers in part must cover as one where lines of two paths meet.
+                let (group, stroke) = if paths.len() > 1 { (*cover, 1.0) } else { (1.0, *cover) };
+                if paths.len() > 1 {
+                    writeln!(out, "<g opacity=\"{group}\">")?;
+                }
+                for path in &paths {
+                    writeln!(
+                        out,
+                        "<path fill=\"none\" stroke=\"{}\" stroke-width=\"{width:.3}\" stroke-opacity=\"{stroke}\" \
+                         stroke-linejoin=\"round\" stroke-linecap=\"round\" d=\"{path}\"/>",
+                        hex(*ink)
+                    )?;
+                }
+                if paths.len() > 1 {
+                    writeln!(out, "</g>")?;
+                }
+            }
+            Item::Area { outline, ink, cover } => {
+                for (k, step) in outline.iter().enumerate() {
+                    match step {
+                        Step::Move(place) => {
+                            text.push_str(if k == 0 { "M" } else { "ZM" });
+                            spot(&mut text, *place);
+                        }
+                        Step::Line(place) => {
+                            text.push('L');
+                            spot(&mut text, *place);
+                        }
+                        Step::Curve(a, b, end) => {
+                            text.push('C');
+                            for (k, place) in [a, b, end].into_iter().enumerate() {
+                                text.push_str(if k > 0 { " " } else { "" });
+                                spot(&mut text, *place);
+                            }
+                        }
+                    }
+                }
+                writeln!(out, "<path fill=\"{}\" fill-opacity=\"{cover}\" d=\"{text}Z\"/>", hex(*ink))?;
+                if text.len() > MAX_PATH {
+                    svg::pad(out)?;
+                }
+            }
+        }
+    }
+    writeln!(out, "</svg>")
+}
+
+/// Embeds a picture as tiles that overlap.
+fn embed(out: &mut dyn Write, area: [f32; 4], size: [usize; 2], pixels: &[u8]) -> io::Result<()> {
+    let [x, y, w, h] = area.map(f64::from);
+    let (across, down) = (w / size[0] as f64, h / size[1] as f64);
+    for top in (0..size[1]).step_by(TILE) {
+        for left in (0..size[0]).step_by(TILE) {
+            let width = (TILE + OVERLAP).min(size[0] - left);
+            let height = (TILE + OVERLAP).min(size[1] - top);
+            let mut file = Vec::new();
+            let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[] };
+            png::write(&mut file, &picture, |rows, bytes| {
+                for (row, bytes) in rows.zip(bytes.chunks_exact_mut(3 * width)) {
+                    let from = 3 * ((top + row) * size[0] + left);
+                    bytes.copy_from_slice(&pixels[from..from + 3 * width]);
+                }
+                Ok(())
+            })?;
+            write!(
+                out,
+                "<image x=\"{:.4}\" y=\"{:.4}\" width=\"{:.4}\" height=\"{:.4}\" preserveAspectRatio=\"none\" \
+                 href=\"data:image/png;base64,",
+                x + left as f64 * across,
+                y + top as f64 * down,
+                width as f64 * across,
+                height as f64 * down
+            )?;
+            base64(out, &file)?;
+            writeln!(out, "\"/>")?;
+            svg::pad(out)?;
+        }
+    }
+    Ok(())
+}
+
+/// Lines as the data of paths, none much longer than [`MAX_PATH`].
+fn paths(lines: &[Vec<Point>]) -> Vec<String> {
+    let mut paths = vec![String::new()];
+    let mut text = String::new();
+    for line in lines.iter().flat_map(|line| svg::pieces(line)) {
+        let closed = line.len() > 2 && line.first() == line.last();
+        let line = if closed { &line[..line.len() - 1] } else { line };
+        text.clear();
+        let mut last = [0, 0];
+        for (k, place) in line.iter().enumerate() {
+            // Relative to the place before, as it was written: rounding does not add up.
+            let here = place.map(|part| (f64::from(part) * 1000.0).round() as i64);
+            match k {
+                0 => text.push('M'),
+                1 => text.push('l'),
+                _ => {}
+            }
+            thousandths(&mut text, here[0] - last[0], k > 1);
+            thousandths(&mut text, here[1] - last[1], true);
+            last = here;
+        }
+        if closed {
+            text.push('Z');
+        }
+        match paths.last_mut() {
+            Some(path) if path.is_empty() || path.len() + text.len() <= MAX_PATH => path.push_str(&text),
+            _ => paths.push(text.clone()),
+        }
+    }
+    paths
+}
+
+/// Writes a number of thousandths in as few characters as there are; a space before it, where one is needed to tell it from the one before.
+fn thousandths(text: &mut String, number: i64, follows: bool) {
+    if follows && number >= 0 {
+        text.push(' ');
+    }
+    if number < 0 {
+        text.push('-');
+    }
+    let (whole, part) = (number.unsigned_abs() / 1000, number.unsigned_abs() % 1000);
+    if whole > 0 || part == 0 {
+        let _ = write!(text, "{whole}");
+    }
+    if part > 0 {
+        let _ = write!(text, "{}", format!(".{part:03}").trim_end_matches('0'));
+    }
+}
+
+/// A place to a hundredth of a millimetre and a bit.
+fn spot(text: &mut String, [x, y]: Point) {
+    let _ = write!(text, "{} {}", (x * 1000.0).round() / 1000.0, (y * 1000.0).round() / 1000.0);
+}
+
+fn hex([red, green, blue]: Rgb) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+fn escaped(text: &str) -> String {
+    let text: String = text.chars().filter(|letter| !letter.is_control()).collect();
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// Writes bytes as base64 (RFC 4648).
+fn base64(out: &mut dyn Write, bytes: &[u8]) -> io::Result<()> {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = Vec::with_capacity(4096);
+    for chunk in bytes.chunks(3 * 1024) {
+        text.clear();
+        for three in chunk.chunks(3) {
+            let at = |k: usize| u32::from(three.get(k).copied().unwrap_or(0));
+            let bits = at(0) << 16 | at(1) << 8 | at(2);
+            for k in 0..4 {
+                let letter = LETTERS[(bits >> (18 - 6 * k)) as usize & 63];
+                text.push(if k > three.len() { b'=' } else { letter });
+            }
+        }
+        out.write_all(&text)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_is_the_standards() {
+        for (bytes, expect) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
+            let mut out = Vec::new();
+            base64(&mut out, bytes.as_bytes()).unwrap();
+            assert_eq!(String::from_utf8(out).unwrap(), expect);
+        }
+    }
+
+    #[test]
+    fn lines_stay_lines() {
+        let items = vec![
+            Item::Picture { area: [1.0, 2.0, 3.0, 4.0], width: 1, height: 1, pixels: vec![1, 2, 3] },
+            Item::Lines {
+                lines: vec![vec![[0.0, 0.0], [1.0, 0.5]], vec![[0.0; 2], [1.0; 2], [2.0, 0.0], [0.0; 2]]],
+                width: 0.25,
+                ink: [255, 0, 16],
+                cover: 0.5,
+            },
+            Item::Area {
+                outline: vec![Step::Move([0.0; 2]), Step::Curve([1.0, 0.0], [2.0, 1.0], [2.0, 2.0])],
+                ink: [0; 3],
+                cover: 1.0,
+            },
+        ];
+        let mut out = Vec::new();
+        write(&mut out, &Scene { size: [210.0, 297.0], title: "A & <B>".into(), items }).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        for expect in [
+            "width=\"210.000mm\"",
+            "<title>A &amp; &lt;B&gt;</title>",
+            "data:image/png;base64,iVBORw0KGgo",
+            "stroke=\"#ff0010\" stroke-width=\"0.250\" stroke-opacity=\"0.5\"",
+            "d=\"M0 0l1 .5M0 0l1 1 1-1Z\"",
+            "d=\"M0 0C1 0 2 1 2 2Z\"",
+        ] {
+            assert!(text.contains(expect), "{expect}: {text}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        let line = vec![[1.5, -2.0], [1.562, -2.104], [1.562, -2.1], [0.0, 0.0], [12.0004, 0.0006]];
+        assert_eq!(paths(&[line]), ["M1.5-2l.062-.104 0 .004-1.562 2.1 12 .001"]);
+    }
+
+    #[test]
+    fn no_element_is_too_long_for_a_reader() {
+        // Noise does not compress.
+        let [width, height] = [1100, 700];
+        let pixels = (0..3 * width * height).map(|k: u32| (k.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+        let picture = Item::Picture { area: [0.0, 0.0, 110.0, 70.0], width: 1100, height: 700, pixels };
+        let wave = |k: usize| (0..400).map(|i| [i as f32 * 0.37, (k * i % 97) as f32 * 0.123]).collect();
+        let lines = Item::Lines { lines: (0..90).map(wave).collect(), width: 0.1, ink: [0; 3], cover: 0.5 };
+        let mut out = Vec::new();
+        write(&mut out, &Scene { size: [110.0, 70.0], title: String::new(), items: vec![picture, lines] }).unwrap();
+        let text = String::from_utf8(out).unwrap();
+        let longest = |tag: &str| {
+            let lengths = text.lines().filter(|line| line.starts_with(tag)).map(str::len);
+            (lengths.clone().count(), lengths.max().unwrap())
+        };
+        let ((pictures, image), (paths, path)) = (longest("<image"), longest("<path"));
+        assert!(pictures == 6 && image > 900_000 && image < 1 << 20, "{pictures} of {image}");
+        assert!(paths > 2 && path < (1 << 16) + 200, "{paths} of {path}");
+        // All of one opacity, laid as one.
+        assert!(text.contains("<g opacity=\"0.5\">") && text.matches("stroke-opacity=\"1\"").count() == paths);
+        // Tiles overlap, and the last ones end where the picture does.
+        assert!(text.contains("<image x=\"0.0000\" y=\"0.0000\" width=\"44.8000\" height=\"44.8000\""));
+        assert!(text.contains("<image x=\"86.4000\" y=\"43.2000\" width=\"23.6000\" height=\"26.8000\""));
+    }
+}

@@ -1,0 +1,121 @@
+//! Rivers and lakes of a sheet, found in its heights.
+
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::hydrography::rivers::rivers;
+use orogen_grid::hydrography::shores::Shores;
+use orogen_grid::hydrography::water::{self, Cover, Frame};
+use orogen_grid::progress::Progress;
+
+pub use orogen_grid::hydrography::water::Least;
+
+/// A stretch of river between two confluences.
+#[derive(Debug, Clone, PartialEq)]
+pub struct River {
+    /// Columns and rows, downstream.
+    pub points: Vec<[f64; 2]>,
+    /// Samples that drain to its end.
+    pub drained: u32,
+}
+
+/// The water of a grid.
+#[derive(Debug, Clone)]
+pub struct Water {
+    /// Stretches of river, none of them within a lake or the sea.
+    pub rivers: Vec<River>,
+    /// The shores of lakes, rings and what the border cuts, in columns and rows.
+    pub lakes: Vec<Vec<[f64; 2]>>,
+    /// The heights, level where there is a lake.
+    pub surface: Grid,
+}
+
+/// How often the stairs of a river's cells are evened out, and the corners of shores are cut.
+const EVEN: usize = 6;
+const CUT: usize = 1;
+
+/// Finds the rivers and lakes of heights.
+///
+/// # Errors
+/// If there are more shores than can be numbered.
+pub fn find(heights: &Grid, sea_level: Option<f32>, least: Least) -> Result<Water> {
+    let window = Window::new(heights.width(), heights.height(), 1.0);
+    // In samples, so that what is found is, too.
+    let grid = Grid::from_data(window, heights.data().to_vec()).filter(|_| window.width.min(window.height) > 2);
+    let Some(grid) = grid else {
+        return Ok(Water { rivers: Vec::new(), lakes: Vec::new(), surface: heights.clone() });
+    };
+    let found = water::Water::of(grid, sea_level, least, &Progress::none())?;
+    let frame = Frame::whole(&found);
+    let mut shores = Shores::of(&found, &frame, CUT)?;
+    let rivers = rivers(&found, &frame, EVEN, &mut shores)
+        .into_iter()
+        .map(|river| River { points: river.points.iter().map(|[x, y, _]| [*x, *y]).collect(), drained: river.drained });
+    let rivers = rivers.collect();
+    let lakes =
+        shores.lines.into_iter().zip(shores.waters).filter(|(_, lake)| *lake > 0).map(|(line, _)| line).collect();
+    let mut surface = heights.clone();
+    for (cell, height) in surface.data_mut().iter_mut().enumerate() {
+        if let Cover::Lake(lake) = found.cover(cell) {
+            *height = found.lakes[lake as usize - 1].level.max(*height);
+        }
+    }
+    Ok(Water { rivers, lakes, surface })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A valley that falls to the south, with a hollow on its way.
+    fn valley() -> Grid {
+        let mut grid = Grid::filled(Window::new(61, 81, 30.0), 0.0);
+        for j in 0..81 {
+            for i in 0..61 {
+                let (x, y) = (i as f64 - 30.0, j as f64 - 40.0);
+                let hollow = -60.0 * libm::exp(-(x * x + y * y) / 40.0);
+                grid.row_mut(j)[i] = (400.0 - 3.0 * y + 4.0 * x.abs() + hollow) as f32;
+            }
+        }
+        grid
+    }
+
+    #[test]
+    fn a_river_runs_to_the_lake_and_on_from_it() {
+        let heights = valley();
+        let water = find(&heights, None, Least { spring: 100, lake: 10, depth: 5.0, scattered: false }).unwrap();
+        assert_eq!(water.lakes.len(), 1);
+        let shore = &water.lakes[0];
+        assert!(shore.first() == shore.last() && shore.len() > 10);
+        let inside = |x: f64, y: f64| (x - 30.0).abs() < 2.0 && (y - 41.0).abs() < 2.0;
+        assert!(!water.rivers.is_empty());
+        assert!(water.rivers.iter().all(|river| river.points.iter().all(|[x, y]| !inside(*x, *y))));
+        let middle = water.rivers.iter().filter(|river| river.points.iter().all(|p| (p[0] - 30.0).abs() < 4.0));
+        let rows: Vec<f64> = middle.flat_map(|river| river.points.iter().map(|p| p[1])).collect();
+        assert!(rows.iter().any(|y| *y < 25.0) && rows.iter().any(|y| *y > 60.0));
+        let level = water.surface.get(30, 40);
+        assert!(level > heights.get(30, 40) + 20.0 && level == water.surface.get(31, 41));
+        // A lake that must be larger or deeper is none.
+        for least in [
+            Least { spring: 100, lake: 4000, depth: 5.0, scattered: false },
+            Least { spring: 100, lake: 10, depth: 500.0, scattered: false },
+        ] {
+            assert!(find(&heights, None, least).unwrap().lakes.is_empty());
+        }
+    }
+
+    #[test]
+    fn the_sea_takes_the_rivers() {
+        let heights = valley();
+        let sea = heights.get(30, 70);
+        let water = find(&heights, Some(sea), Least { spring: 100, lake: 10, depth: 5.0, scattered: false }).unwrap();
+        let under =
+            water.rivers.iter().flat_map(|river| &river.points[..river.points.len() - 1]).filter(|p| p[1] > 74.0);
+        assert_eq!(under.count(), 0);
+        let flat = find(
+            &Grid::filled(Window::new(9, 9, 1.0), 5.0),
+            Some(10.0),
+            Least { spring: 1, lake: 1, depth: 0.0, scattered: false },
+        );
+        assert!(flat.unwrap().rivers.is_empty());
+    }
+}

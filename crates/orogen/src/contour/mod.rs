@@ -1,8 +1,0 @@
-//! Contours: lines of one height through a grid, as geometry.
-
-pub mod band;
-pub mod chaikin;
-pub mod levels;
-pub mod line;
-pub mod svg;
-pub mod trace;
