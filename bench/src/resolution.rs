@@ -40,9 +40,9 @@ fn measure(name: &str, world: &World) -> Result<Vec<Value>, String> {
         .iter()
         .map(|&ratio| {
             let coarse = make(ratio)?;
-            let shared = difference(&fine, &coarse, ratio, |i, j| coarse.get(i / ratio, j / ratio));
+            let shared = difference(&fine, &coarse, ratio, |i, j| coarse[(i / ratio, j / ratio)]);
             let read = between(&fine, &coarse);
-            let everywhere = difference(&fine, &read, 1, |i, j| read.get(i, j));
+            let everywhere = difference(&fine, &read, 1, |i, j| read[(i, j)]);
             let of = |[rms, worst]: [f64; 2]| {
                 json!({ "rms_m": rms, "worst_m": worst, "rms_share": rms / relief, "worst_share": worst / relief })
             };
@@ -69,7 +69,7 @@ fn difference(fine: &Grid, coarse: &Grid, step: usize, other: impl Fn(usize, usi
     let (mut squares, mut worst, mut count) = (0.0, 0.0f64, 0.0);
     for j in (border..fine.height() - border).step_by(step) {
         for i in (border..fine.width() - border).step_by(step) {
-            let off = (f64::from(other(i, j)) - f64::from(fine.get(i, j))).abs();
+            let off = (f64::from(other(i, j)) - f64::from(fine[(i, j)])).abs();
             squares += off * off;
             worst = worst.max(off);
             count += 1.0;

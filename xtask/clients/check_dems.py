@@ -219,8 +219,8 @@ with rasterio.open(export(WORK / "srtm", "srtm.tif", "-q")) as after:
     want = numpy.concatenate([tile, tile[:, ::-1][:, 1:]], axis=1)
     checks.equal("srtm: columns", got.shape[1], 2401)
     checks.that("srtm: its first row", numpy.array_equal(got[0], want[0]))
-world = export(ROOT / "recipes/hills.toml", "hills.tif", "-q", "--window", "3,5,301,203")
-want = numpy.load(export(ROOT / "recipes/hills.toml", "hills.npy", "-q", "--window", "3,5,301,203"))
+world = export(ROOT / "crates/orogen-engine/recipes/hills.toml", "hills.tif", "-q", "--window", "3,5,301,203")
+want = numpy.load(export(ROOT / "crates/orogen-engine/recipes/hills.toml", "hills.npy", "-q", "--window", "3,5,301,203"))
 for k, options in enumerate([{"compress": "lzw", "predictor": 3, "tiled": True}, {"compress": "packbits"}, {"compress": "deflate", "predictor": 2}]):
     copy(world, WORK / f"packed{k}.tif", driver="GTiff", **options)
     got = numpy.load(export(WORK / f"packed{k}.tif", f"packed{k}.npy", "-q"))

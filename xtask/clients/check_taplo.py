@@ -7,7 +7,7 @@ import sys
 from orogen import NODE_BIN, ROOT, WORK, Checks, orogen
 
 checks = Checks()
-RECIPES = ROOT / "recipes"
+RECIPES = ROOT / "crates/orogen-engine/recipes"
 SCHEMA = RECIPES / "orogen.schema.json"
 
 

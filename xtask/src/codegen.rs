@@ -18,12 +18,12 @@ pub const ABOUT: &str = "rewrite the lists of modules, nodes and formats, the JS
 pub const HELP: &str = "
 Usage: cargo xtask codegen [--check]
 
-Reads the op! block of every file in crates/orogen/src/{field,filter,solver} and rewrites
+Reads the op! block of every file in crates/orogen-engine/src/{field,filter,solver} and rewrites
   - the module lines at the end of each folder's mod.rs
-  - crates/orogen/src/node_list.rs
-  - crates/orogen/src/export/format_list.rs, of the files in export/formats that declare a FORMAT
-  - crates/orogen/src/export/vector_list.rs, of the files in export/vectors that declare a LAYER
-  - recipes/orogen.schema.json, from `orogen schema`
+  - crates/orogen-engine/src/node_list.rs
+  - crates/orogen-output/src/export/format_list.rs, of the files in export/formats that declare a FORMAT
+  - crates/orogen-output/src/export/vector_list.rs, of the files in export/vectors that declare a LAYER
+  - crates/orogen-engine/recipes/orogen.schema.json, from `orogen schema`
   - docs/ops.md, from `orogen ops --markdown`
 
   --check  change nothing; fail if one of them is not current
@@ -32,7 +32,7 @@ Reads the op! block of every file in crates/orogen/src/{field,filter,solver} and
 /// The three localities: a folder each, and the word in an op! block.
 const LOCALITIES: [&str; 3] = ["field", "filter", "solver"];
 
-const SCHEMA: &str = "recipes/orogen.schema.json";
+const SCHEMA: &str = "crates/orogen-engine/recipes/orogen.schema.json";
 const REFERENCE: &str = "docs/ops.md";
 
 /// Rewrites or checks everything.
@@ -49,7 +49,7 @@ pub fn run(args: &[String]) -> Result {
 
 /// The module lines and the list of nodes.
 pub fn lists(check: bool) -> Result {
-    let src = shell::root().join("crates/orogen/src");
+    let src = shell::root().join("crates/orogen-engine/src");
     let mut ops = Vec::new();
     for locality in LOCALITIES {
         let folder = src.join(locality);
@@ -73,7 +73,7 @@ pub fn lists(check: bool) -> Result {
     }
     lists::distinct(&ops).map_err(Failure::new)?;
     settle(&src.join("node_list.rs"), &lists::node_list(&LOCALITIES, &ops), check)?;
-    exports(&src.join("export"), check)
+    exports(&shell::root().join("crates/orogen-output/src/export"), check)
 }
 
 /// What exports are made of, each in a file that declares it: the folder, the declaration, and the list of all.

@@ -17,7 +17,7 @@ Runs the steps in this order, or only those named, and stops at the first that f
   words     names and texts use the field's terms
   clippy    no warning in any target
   tests     unit tests, integration tests, doctests, examples build
-  schema    recipes/orogen.schema.json is what `orogen schema` prints
+  schema    crates/orogen-engine/recipes/orogen.schema.json is what `orogen schema` prints
   docs      the libraries' documentation builds without a warning
   licences  every dependency has a licence we accept
 
@@ -36,7 +36,7 @@ const STEPS: &[&Step] = &[
     &Step { name: "tests", about: "cargo test --workspace", run: || sh(&mut cargo("test --workspace")) },
     &Step {
         name: "schema",
-        about: "recipes/orogen.schema.json is what `orogen schema` prints",
+        about: "crates/orogen-engine/recipes/orogen.schema.json is what `orogen schema` prints",
         run: || codegen::written(true),
     },
     &Step { name: "docs", about: "the libraries' documentation builds without a warning", run: docs },

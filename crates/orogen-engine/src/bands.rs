@@ -34,9 +34,9 @@ impl World {
     /// that the caller holds meanwhile) stay within the world's memory limit; what cannot is refused before anything is started.
     ///
     /// ```
-    /// use orogen::{Progress, Window, World};
+    /// use orogen_engine::{Progress, Window, World};
     ///
-    /// let world = World::open(orogen::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
+    /// let world = World::open(orogen_engine::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
     /// let window = Window::new(500, 700, 20.0);
     /// let mut heights = Vec::new();
     /// for band in world.bands(&["height"], &window, 0, &Progress::none())? {

@@ -14,7 +14,7 @@ use orogen_grid::words::bytes;
 /// ([`Budget::admit`]). Both together never exceed the limit. A request that does not fit now, but would if the others had ended, waits for them.
 ///
 /// ```
-/// use orogen::budget::Budget;
+/// use orogen_engine::budget::Budget;
 ///
 /// let budget = Budget::of(100 << 20);
 /// let picture = budget.reserve(60 << 20)?;
@@ -22,7 +22,7 @@ use orogen_grid::words::bytes;
 /// assert!(budget.afford(50 << 20).is_err());
 /// drop(picture);
 /// assert!(budget.afford(50 << 20).is_ok());
-/// # Ok::<(), orogen::Error>(())
+/// # Ok::<(), orogen_engine::Error>(())
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct Budget {

@@ -1,4 +1,16 @@
-//! The engine.
+//! The engine of Orogen: a recipe describes a world, and the engine makes any window of it, at any resolution, always the same.
+//!
+//! The crate `orogen` puts this engine, its files, maps and meshes together, and is what programs usually depend on. This crate alone is
+//! for programs that want terrain and write no files.
+//!
+//! ```
+//! use orogen_engine::{Window, World, presets};
+//!
+//! let world = World::open(presets::find("hills").ok_or("no such preset")?.recipe()?)?;
+//! let tile = world.window("height", &Window::new(64, 64, 30.0).at(100, 50))?;
+//! assert_eq!(tile[(10, 20)], world.height(tile.window().east(10), tile.window().south(20))?);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 #![forbid(unsafe_code)]
 
 #[macro_use]
@@ -27,3 +39,15 @@ pub mod store;
 pub mod tiles;
 pub mod value;
 pub mod world;
+
+pub use budget::Budget;
+pub use chunks::id::ChunkId;
+pub use chunks::lod::LodConfig;
+pub use chunks::stream::{ChunkStep, Chunks};
+pub use orogen_grid::{Error, ErrorKind, Grid, Progress, Result, Window};
+pub use recipe::document::{Recipe, WorldSpec};
+pub use recipe::presets;
+pub use sampler::Sampler;
+pub use session::{Options, Session};
+pub use store::cache::Cache;
+pub use world::World;

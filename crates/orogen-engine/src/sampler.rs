@@ -21,7 +21,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// A sampler holds its world: a reference, a [`World`] of its own, or an [`Arc`] if others need it too.
 ///
 /// ```
-/// use orogen::{Sampler, Window, World, presets};
+/// use orogen_engine::{Sampler, Window, World, presets};
 ///
 /// let world = World::open(presets::find("hills").ok_or("no such preset")?.recipe()?)?;
 /// let ground = Sampler::new(&world, "height")?;

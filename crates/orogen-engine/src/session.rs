@@ -37,7 +37,7 @@ pub struct Options {
 /// - Requests at the same time never need more memory together than the [budget](Options::memory) allows: those that do not fit wait for the others.
 ///
 /// ```
-/// use orogen::{Options, Session, Window, presets};
+/// use orogen_engine::{Options, Session, Window, presets};
 ///
 /// let session = Session::new(Options { threads: Some(2), ..Options::default() })?;
 /// let mut recipe = presets::find("hills").ok_or("no such preset")?.recipe()?;

@@ -93,10 +93,10 @@ impl World {
     /// - `progress` hears of all samples, and stops the stream with [`ErrorKind::Cancelled`]. After an error it ends.
     ///
     /// ```
-    /// use orogen::tiles::Tiling;
-    /// use orogen::{Progress, Window, World};
+    /// use orogen_engine::tiles::Tiling;
+    /// use orogen_engine::{Progress, Window, World};
     ///
-    /// let world = World::open(orogen::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
+    /// let world = World::open(orogen_engine::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
     /// let window = Window::new(300, 200, 30.0);
     /// let whole = world.window("height", &window)?;
     /// for tile in world.tiles(&["height"], &window, Tiling::of(128), &Progress::none())? {

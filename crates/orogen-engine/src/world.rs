@@ -26,7 +26,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// A world: any window of it, at any resolution, always the same.
 ///
 /// ```
-/// use orogen::{Recipe, Window, World};
+/// use orogen_engine::{Recipe, Window, World};
 ///
 /// let recipe = Recipe::parse(
 ///     r#"
@@ -43,8 +43,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// )?;
 /// let world = World::open(recipe)?;
 /// let tile = world.window("height", &Window::new(64, 64, 10.0).at(-32, 1_000_000))?;
-/// assert_eq!(tile.get(3, 5), world.height(tile.window().east(3), tile.window().south(5))?);
-/// # Ok::<(), orogen::Error>(())
+/// assert_eq!(tile[(3, 5)], world.height(tile.window().east(3), tile.window().south(5))?);
+/// # Ok::<(), orogen_engine::Error>(())
 /// ```
 pub struct World {
     recipe: Recipe,

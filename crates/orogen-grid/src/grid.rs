@@ -1,5 +1,7 @@
 //! Windows and grids: plain data, and reading between samples.
 
+use std::ops::{Index, IndexMut};
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -200,9 +202,12 @@ impl<T: Copy> Grid<T> {
         &mut self.data[j * width..(j + 1) * width]
     }
 
-    /// The sample in column `i` and row `j` of the window, both from 0.
-    pub fn get(&self, i: usize, j: usize) -> T {
-        self.data[j * self.window.width + i]
+
+    /// The sample in column `i` and row `j`, both from 0, or `None` outside of the grid.
+    #[must_use]
+    pub fn get(&self, i: usize, j: usize) -> Option<T> {
+        let inside = i < self.window.width && j < self.window.height;
+        if inside { self.data.get(j * self.window.width + i).copied() } else { None }
     }
 
     /// The part of the grid in `window`, or `None` if the grid does not hold all of it.
@@ -232,6 +237,24 @@ impl<T: Copy> Grid<T> {
             let source = &other.row((y - theirs.y) as usize)[from..from + width];
             self.row_mut((y - ours.y) as usize)[to..to + width].copy_from_slice(source);
         }
+    }
+}
+
+impl<T: Copy> Index<(usize, usize)> for Grid<T> {
+    type Output = T;
+
+    /// The sample in column `i` and row `j`, both from 0: `grid[(i, j)]`.
+    ///
+    /// # Panics
+    /// Outside of the grid, as slices do. [`Grid::get`] returns `None` there.
+    fn index(&self, (i, j): (usize, usize)) -> &T {
+        &self.row(j)[i]
+    }
+}
+
+impl<T: Copy> IndexMut<(usize, usize)> for Grid<T> {
+    fn index_mut(&mut self, (i, j): (usize, usize)) -> &mut T {
+        &mut self.row_mut(j)[i]
     }
 }
 

@@ -1,4 +1,38 @@
-//! Grids of heights, and algorithms on them.
+//! Terrain analysis, hydrology and erosion on grids of heights, bit for bit the same on every machine, at every SIMD level and thread count.
+//!
+//! A [`Grid`] is a rectangle of `f32` samples over a [`Window`]: sample (i, j) stands at ((x + i) cell, (y + j) cell), in metres, x to the east and y
+//! to the south. A sample that is NaN has no value. Everything here is a function of grids: no file, no network, no clock.
+//!
+//! | module | what it computes |
+//! |---|---|
+//! | [`analysis`] | slope, aspect, curvature, roughness, geomorphons, hillshade, shadows, insolation, viewsheds, distances, hypsometry, spectra |
+//! | [`hydrology`] | depressions (filled, breached, carved), D8 and D-infinity receivers, drainage areas, lakes, watersheds, stream power |
+//! | [`hydrography`] | rivers, lakes, coasts and summits as points, lines and areas |
+//! | [`erosion`] | thermal erosion, water in pipes, droplets, local stream power |
+//! | [`contour`] | lines of one height, smoothed |
+//! | [`aggregate`] | diffusion-limited aggregates, and mountains made of them |
+//! | [`resample`] | a grid read between its samples |
+//!
+//! ```
+//! use orogen_grid::hydrology::{accumulation::accumulate, drainage::route_carving, fill::fill, outlets::Outlets, steepest::Descent};
+//! use orogen_grid::{Grid, Window};
+//!
+//! // A bowl of 7 x 7 samples, 10 m apart, its rim at 4 m with a notch at 3 m.
+//! let mut bowl = Grid::filled(Window::new(7, 7, 10.0), 4.0);
+//! for j in 2..5 {
+//!     bowl.row_mut(j)[2..5].fill(1.0);
+//! }
+//! bowl.row_mut(1)[3] = 3.0;
+//! bowl.row_mut(0)[3] = 2.0;
+//! let outlets = Outlets::new(&bowl, None);
+//! assert_eq!(fill(&bowl, &outlets).row(3), [4.0, 4.0, 3.0, 3.0, 3.0, 4.0, 4.0]);
+//!
+//! // The 25 cells inside the border drain through the notch.
+//! let drained = accumulate(&route_carving(&bowl, &outlets, Descent::Steepest).receivers);
+//! assert_eq!(drained.area[(3, 0)], 26);
+//! ```
+//!
+//! The crate `orogen` is the terrain engine around it: recipes, tiles of any size, files, maps and meshes.
 #![forbid(unsafe_code)]
 
 pub mod aggregate;
@@ -12,3 +46,7 @@ pub mod hydrology;
 pub mod progress;
 pub mod resample;
 pub mod words;
+
+pub use error::{Error, ErrorKind, Result};
+pub use grid::{Grid, Window};
+pub use progress::Progress;

@@ -5,7 +5,7 @@
 //! caller hears one number, the share of all work that is done, which only grows.
 //!
 //! ```
-//! use orogen::Progress;
+//! use orogen_grid::Progress;
 //! use std::sync::{Arc, Mutex};
 //!
 //! let heard = Arc::new(Mutex::new(Vec::new()));

@@ -236,7 +236,7 @@ mod tests {
             let (width, height) = ((right - left) as usize, (bottom - top) as usize);
             let seen = from.get(&Window { x: left, y: top, width, height, ..whole }).unwrap();
             let at = |x: i64, y: i64| {
-                seen.get((x.clamp(left, right - 1) - left) as usize, (y.clamp(top, bottom - 1) - top) as usize)
+                seen[((x.clamp(left, right - 1) - left) as usize, (y.clamp(top, bottom - 1) - top) as usize)]
             };
             let mut out = Grid::filled(tile, 0.0);
             for j in 0..tile.height {

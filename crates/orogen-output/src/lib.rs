@@ -1,4 +1,13 @@
-//! Outputs.
+//! What is made of Orogen's terrains: pictures, sheets, meshes, reports and files.
+//!
+//! - [`map`]: colours on the ground, shaded relief.
+//! - [`sheet`]: map sheets with contours, grid, scale and legend, as PNG, SVG and PDF.
+//! - [`render`]: perspective pictures with sky, water and shadows.
+//! - [`mesh`]: triangles of a grid, as GLB, OBJ, PLY and STL.
+//! - [`export`]: a registry of layers and formats, for every front end.
+//! - [`builder`]: worlds of any size into files, with resume.
+//! - [`survey`]: a terrain in numbers, beside what real land is like.
+//! - [`fit`]: recipes like a real place.
 #![forbid(unsafe_code)]
 
 pub mod builder;

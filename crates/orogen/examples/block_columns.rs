@@ -43,9 +43,9 @@ fn columns(ground: &Sampler<World>, east: i64, south: i64) -> orogen::Result<[[C
     let chunk = Window::new(SIDE, SIDE, 1.0).at(east * SIDE as i64, south * SIDE as i64);
     let heights = ground.window(&chunk.grown(1))?;
     let column = |i: usize, j: usize| {
-        let height = heights.get(i + 1, j + 1);
-        let rise_east = heights.get(i + 2, j + 1) - heights.get(i, j + 1);
-        let rise_south = heights.get(i + 1, j + 2) - heights.get(i + 1, j);
+        let height = heights[(i + 1, j + 1)];
+        let rise_east = heights[(i + 2, j + 1)] - heights[(i, j + 1)];
+        let rise_south = heights[(i + 1, j + 2)] - heights[(i + 1, j)];
         let slope = 0.5 * (rise_east * rise_east + rise_south * rise_south).sqrt();
         let top = match height {
             height if height < SEA => Block::Water,

@@ -114,7 +114,7 @@ fn sample(scene: &HashMap<ChunkId, Grid>, lod: &LodConfig, x: f64, y: f64) -> Op
             let (column, row) = (x / window.cell - window.x as f64, y / window.cell - window.y as f64);
             let (i, j) = ((column as usize).min(lod.cells - 1), (row as usize).min(lod.cells - 1));
             let (right, down) = (column as f32 - i as f32, row as f32 - j as f32);
-            let along = |j: usize| grid.get(i, j) * (1.0 - right) + grid.get(i + 1, j) * right;
+            let along = |j: usize| grid[(i, j)] * (1.0 - right) + grid[(i + 1, j)] * right;
             return Some((id, along(j) * (1.0 - down) + along(j + 1) * down));
         }
         id = id.parent();

@@ -27,7 +27,7 @@ fn main() -> Result<(), orogen::Error> {
     for j in (0..grid.height()).step_by(8) {
         let row: String = (0..grid.width())
             .step_by(4)
-            .map(|i| match grid.get(i, j) {
+            .map(|i| match grid[(i, j)] {
                 height if height <= 0.0 => '~',
                 height if height < 120.0 => '.',
                 height if height < 300.0 => 'o',

@@ -12,7 +12,7 @@
 //! let tile = world.window("height", &Window::new(64, 64, 30.0).at(100, 50))?;
 //! let highest = tile.data().iter().copied().fold(f32::MIN, f32::max);
 //! println!("the highest of {} samples stands at {highest} m", tile.data().len());
-//! assert_eq!(tile.get(10, 20), world.height(tile.window().east(10), tile.window().south(20))?);
+//! assert_eq!(tile[(10, 20)], world.height(tile.window().east(10), tile.window().south(20))?);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

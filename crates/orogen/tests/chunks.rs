@@ -207,17 +207,17 @@ fn every_chunk_is_the_window_and_shares_its_borders() {
                 // Points see filters at the world's cell, which is that of level 0.
                 if id.level == 0 {
                     let height = world.height(window.east(5), window.south(3)).unwrap();
-                    assert_eq!(height.to_bits(), grid.get(5, 3).to_bits(), "{op} {id:?}");
+                    assert_eq!(height.to_bits(), grid[(5, 3)].to_bits(), "{op} {id:?}");
                 }
             }
             let mut met = 0;
             for (id, grid) in &made {
                 if let Some(east) = made.get(&id.beside(1, 0)) {
-                    assert!((0..9).all(|j| grid.get(8, j).to_bits() == east.get(0, j).to_bits()), "{op} {id:?}");
+                    assert!((0..9).all(|j| grid[(8, j)].to_bits() == east[(0, j)].to_bits()), "{op} {id:?}");
                     met += 1;
                 }
                 if let Some(south) = made.get(&id.beside(0, 1)) {
-                    assert!((0..9).all(|i| grid.get(i, 8).to_bits() == south.get(i, 0).to_bits()), "{op} {id:?}");
+                    assert!((0..9).all(|i| grid[(i, 8)].to_bits() == south[(i, 0)].to_bits()), "{op} {id:?}");
                 }
                 // The nodes' inputs are softened by a filter, whose result depends on the cell: levels agree for fields alone.
             }
@@ -250,7 +250,7 @@ fn chunks_of_bounded_worlds_are_windows_too() {
             assert_eq!(grid, world.window("height", &window).unwrap(), "{op} {id:?}");
             if id.level == 0 {
                 let height = world.height(window.east(1), window.south(1)).unwrap();
-                assert_eq!(height.to_bits(), grid.get(1, 1).to_bits(), "{op} {id:?}");
+                assert_eq!(height.to_bits(), grid[(1, 1)].to_bits(), "{op} {id:?}");
             }
             levels[usize::from(id.level)] += 1;
         }
@@ -270,7 +270,7 @@ fn levels_meet_without_cracks() {
         let mut grid = sampler.window(&chunks.window(id)).unwrap();
         // Of fields, a chunk of any level is the ground at its points.
         let height = sampler.at(grid.window().east(7), grid.window().south(9)).unwrap();
-        assert_eq!(height.to_bits(), grid.get(7, 9).to_bits(), "{id:?}");
+        assert_eq!(height.to_bits(), grid[(7, 9)].to_bits(), "{id:?}");
         stitch(&mut grid, chunks.coarser(id));
         made.insert(id, grid);
     }
@@ -283,10 +283,10 @@ fn levels_meet_without_cracks() {
         let Some(neighbour) = made.get(&coarse) else { panic!("{id:?} has a coarser neighbour in the east") };
         let top = (chunks.window(*id).y / 2 - chunks.window(coarse).y) as usize;
         for j in 0..=16 {
-            let here = grid.get(16, j);
+            let here = grid[(16, j)];
             let there = match j % 2 {
-                0 => neighbour.get(0, top + j / 2),
-                _ => 0.5 * neighbour.get(0, top + j / 2) + 0.5 * neighbour.get(0, top + j / 2 + 1),
+                0 => neighbour[(0, top + j / 2)],
+                _ => 0.5 * neighbour[(0, top + j / 2)] + 0.5 * neighbour[(0, top + j / 2 + 1)],
             };
             assert_eq!(here.to_bits(), there.to_bits(), "{id:?} row {j}");
         }

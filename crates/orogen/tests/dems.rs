@@ -113,7 +113,7 @@ fn a_band_of_several_is_chosen() {
     let of_node = world(Node { band: 2, ..node("bands.tif") }, None);
     assert_eq!(of_node.height(30.0, 60.0).unwrap(), 1000.0 + formula(1, 2));
     let ground = PreparedDem::read(&corpus().join("bands-lerc.tif:2"), None, 1 << 20).unwrap();
-    assert_eq!(ground.grid.get(1, 2), 1000.0 + formula(1, 2));
+    assert_eq!(ground.grid[(1, 2)], 1000.0 + formula(1, 2));
 }
 
 #[test]
@@ -218,7 +218,7 @@ fn degrees_and_oblong_cells_become_square_metres() {
     let oblong = ground("oblong.tif");
     assert_eq!((oblong.grid.window().cell, oblong.grid.width(), oblong.grid.height()), (20.0, 37, 34));
     // Rows of 30 m: every third row of 20 m is a row of the file.
-    assert_eq!(oblong.grid.get(9, 3), formula(9, 2));
+    assert_eq!(oblong.grid[(9, 3)], formula(9, 2));
     assert_eq!(oblong.georeference.unwrap().at(40.0, 60.0), [500010.0 + 40.0, 5199985.0 - 60.0]);
 }
 
@@ -238,8 +238,8 @@ fn a_dem_is_a_field() {
     let file = world(Node { at: [60.0, -30.0], scale: 2.0, offset: 5.0, ..node("f32-strips.tif") }, None);
     let grid = file.window("height", &Window::new(20, 10, 30.0)).unwrap();
     // Column 2 is the file's column 0, row 0 its row 1; its border goes on beyond it.
-    assert_eq!(grid.get(6, 4), 2.0 * (formula(4, 5) + 0.25) + 5.0);
-    assert_eq!(grid.get(0, 4), 2.0 * (formula(0, 5) + 0.25) + 5.0);
+    assert_eq!(grid[(6, 4)], 2.0 * (formula(4, 5) + 0.25) + 5.0);
+    assert_eq!(grid[(0, 4)], 2.0 * (formula(0, 5) + 0.25) + 5.0);
     let faded = world(Node { fade: 100.0, outside: -50.0, ..node("f32-strips.tif") }, None);
     assert_eq!(faded.height(-100.0, 30.0).unwrap(), -50.0);
     let half = faded.height(-50.0, 30.0).unwrap();

@@ -68,8 +68,8 @@ fn a_world_of_a_fitted_recipe_has_no_rim() {
             let world = World::with_options(recipe(&values, &stretch, size, 60.0, seed), options()).unwrap();
             let grid = world.window("height", &Window::new(size[0], size[1], 60.0)).unwrap();
             let step = |i: usize, j: usize| {
-                let here = grid.get(i, j);
-                let [east, south] = [grid.get(i + 1, j) - here, grid.get(i, j + 1) - here].map(f64::from);
+                let here = grid[(i, j)];
+                let [east, south] = [grid[(i + 1, j)] - here, grid[(i, j + 1)] - here].map(f64::from);
                 (east * east + south * south).sqrt()
             };
             let (mut border, mut inside) = ((0.0, 0), (0.0, 0));

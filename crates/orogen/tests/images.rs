@@ -54,7 +54,7 @@ fn pixels_stand_where_they_are_laid() {
         for j in 0..4 {
             for i in 0..5 {
                 let got = world.height(100.0 + 25.0 * i as f64, -50.0 + 25.0 * j as f64).unwrap();
-                let expect = grid.get(i, j) / 19.0;
+                let expect = grid[(i, j)] / 19.0;
                 assert!((got - expect).abs() < 0.6 / 255.0, "{bits}: ({i}, {j}) is {got}, not {expect}");
             }
         }

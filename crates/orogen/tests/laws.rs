@@ -50,7 +50,7 @@ fn tiles_equal_crop(name: &str, recipe: &Recipe, cell: f64) {
     for (layer, whole) in layers.iter().zip(&wholes) {
         assert!(whole.data().iter().all(|sample| sample.is_finite()), "{name}, {layer}: makes numbers");
         let point = warm.points(layer, &[whole_window.east(i)], &[whole_window.south(j)]).unwrap()[0];
-        assert_eq!(point.to_bits(), whole.get(i, j).to_bits(), "{name}, {layer}: point ({i}, {j})");
+        assert_eq!(point.to_bits(), whole[(i, j)].to_bits(), "{name}, {layer}: point ({i}, {j})");
     }
 }
 
@@ -181,7 +181,7 @@ fn fields_agree_where_two_resolutions_share_samples() {
                     let fine = Window::new(steps, steps, cell / ratio as f64).at(x * ratio as i64, y * ratio as i64);
                     let [coarse, fine] = [coarse, fine].map(|window| world.window("height", &window).unwrap());
                     for (j, i) in (0..9).flat_map(|j| (0..9).map(move |i| (j, i))) {
-                        let (a, b) = (fine.get(ratio * i, ratio * j), coarse.get(i, j));
+                        let (a, b) = (fine[(ratio * i, ratio * j)], coarse[(i, j)]);
                         let op = node.spec().op;
                         assert_eq!(a.to_bits(), b.to_bits(), "{op} at ({x} + {i}, {y} + {j}), {cell} m over {ratio}");
                     }
@@ -222,7 +222,7 @@ fn a_chain_of_ten_thousand_nodes_runs() {
         let again = Recipe::parse(&recipe.to_toml(), "chain.toml").unwrap();
         assert_eq!(recipe, again);
         let world = open(&again, 1);
-        assert_eq!(world.window("height", &Window::new(8, 8, 10.0)).unwrap().get(0, 0), 9999.0);
+        assert_eq!(world.window("height", &Window::new(8, 8, 10.0)).unwrap()[(0, 0)], 9999.0);
     };
     std::thread::Builder::new().stack_size(512 << 10).spawn(work).unwrap().join().unwrap();
 }
@@ -323,10 +323,10 @@ fn layers_are_read_by_name_and_only_those_wanted_are_made() {
     // The layer is what it says: rise per metre, and with its neighbour the whole slope.
     let source = world.window("a", &window.grown(1)).unwrap();
     let [east, south] = ["s.east", "s.south"].map(|layer| world.window(layer, &window).unwrap());
-    let steep = (source.get(5, 6) - source.get(5, 4)) / 20.0;
-    assert!((south.get(4, 4) - steep).abs() < 0.5 * steep.abs() + 1e-4, "{} {steep}", south.get(4, 4));
-    let slope = world.window("s", &window).unwrap().get(4, 4);
-    let whole = libm::atanf(libm::hypotf(east.get(4, 4), south.get(4, 4))).to_degrees();
+    let steep = (source[(5, 6)] - source[(5, 4)]) / 20.0;
+    assert!((south[(4, 4)] - steep).abs() < 0.5 * steep.abs() + 1e-4, "{} {steep}", south[(4, 4)]);
+    let slope = world.window("s", &window).unwrap()[(4, 4)];
+    let whole = libm::atanf(libm::hypotf(east[(4, 4)], south[(4, 4)])).to_degrees();
     assert!((slope - whole).abs() < 1e-3, "{slope} {whole}");
     let error = open("s.sout").err().unwrap().to_string();
     assert!(error.contains("has no layer `sout`; did you mean `south`?"), "{error}");

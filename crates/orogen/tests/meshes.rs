@@ -182,11 +182,11 @@ fn check(mesh: &Mesh, grid: &Grid, shape: &Shape) {
     for (corner, [east, up, south]) in mesh.places.iter().enumerate() {
         let [column, row] = shape.sample(corner as u32);
         assert_eq!((*east, *south), (column as f32 * 12.5, row as f32 * 12.5));
-        assert_eq!(up.to_bits(), grid.get(column, row).to_bits());
+        assert_eq!(up.to_bits(), grid[(column, row)].to_bits());
         let normal = wide(mesh.normals[corner]);
         assert!((dot(normal, normal) - 1.0).abs() < 1e-6 && normal[1] > 0.0);
         if (1..width - 1).contains(&column) && (1..height - 1).contains(&row) {
-            let at = |i: usize, j: usize| f64::from(grid.get(column + i - 1, row + j - 1));
+            let at = |i: usize, j: usize| f64::from(grid[(column + i - 1, row + j - 1)]);
             let east = (at(2, 0) - at(0, 0) + 2.0 * (at(2, 1) - at(0, 1)) + at(2, 2) - at(0, 2)) / 100.0;
             let south = (at(0, 2) - at(0, 0) + 2.0 * (at(1, 2) - at(1, 0)) + at(2, 2) - at(2, 0)) / 100.0;
             let expect = [-east, 1.0, -south];
@@ -592,5 +592,5 @@ fn a_mesh_far_from_the_origin_is_as_precise_as_one_at_it() {
     assert_eq!(glb.json["nodes"][0]["translation"], serde_json::json!([1_000_000_000.5, 0.0, -1_500_000_001.5]));
     let mesh = glb.mesh(0);
     assert_eq!(mesh.places[1][0], 0.5);
-    assert_eq!(mesh.places[899], [14.5, grid.get(29, 29), 14.5]);
+    assert_eq!(mesh.places[899], [14.5, grid[(29, 29)], 14.5]);
 }

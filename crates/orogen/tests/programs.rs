@@ -328,7 +328,7 @@ fn layers_masks_and_names_in_expressions() {
     let thrice = World::open(recipe.clone()).unwrap().height(50.0, 50.0).unwrap();
     recipe.add("m", Expr::new("base")).output("base", "m");
     let window = Window::new(1, 1, 10.0).at(5, 5);
-    let once = World::open(recipe).unwrap().window("base", &window).unwrap().get(0, 0);
+    let once = World::open(recipe).unwrap().window("base", &window).unwrap()[(0, 0)];
     assert_eq!(thrice, once * 3.0);
 }
 

@@ -242,7 +242,7 @@ fn teeth(grid: &Grid) -> (usize, usize, f32) {
     let (mut teeth, mut steps, mut most) = (0, 0, 0.0f32);
     for j in 2..height - 2 {
         for i in 2..width - 2 {
-            let at = |x: i64, y: i64| grid.get(x as usize, y as usize);
+            let at = |x: i64, y: i64| grid[(x as usize, y as usize)];
             let here = at(i, j);
             for [x, y] in [[1, 0], [0, 1]] {
                 let step = (at(i + x, j + y) - here).abs();

@@ -94,7 +94,7 @@ fn sixteen_threads_that_want_one_tile_solve_once() {
                 begin.wait();
                 match k % 2 {
                     0 => assert_eq!(world.window("height", &window()).unwrap(), *expect),
-                    _ => assert_eq!(world.height(600.0, 900.0).unwrap(), expect.get(10, 10)),
+                    _ => assert_eq!(world.height(600.0, 900.0).unwrap(), expect[(10, 10)]),
                 }
             });
         }

@@ -122,7 +122,7 @@ fn memory_disk_and_folder_make_the_same_bits() {
             assert_eq!(moved > 0, memory.is_some(), "{name}");
             let (i, j) = (390, 355);
             let point = world.points("height", &[window.east(i)], &[window.south(j)]).unwrap()[0];
-            assert_eq!(point.to_bits(), whole[0].get(i, j).to_bits(), "{name}");
+            assert_eq!(point.to_bits(), whole[0][(i, j)].to_bits(), "{name}");
             if cell != 10.24 {
                 // The others differ in their positions alone: one way through the disk tells.
                 let world =

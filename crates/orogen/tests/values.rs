@@ -136,12 +136,12 @@ fn blur_is_the_gaussian_mean() {
             for dy in -reach..=reach {
                 for dx in -reach..=reach {
                     let weight = libm::exp(-((dx * dx + dy * dy) as f64) / (2.0 * (radius / 10.0) * (radius / 10.0)));
-                    sum += weight * f64::from(from.get((18 + i + dx) as usize, (19 + j + dy) as usize));
+                    sum += weight * f64::from(from[((18 + i + dx) as usize, (19 + j + dy) as usize)]);
                     weights += weight;
                 }
             }
             let expect = sum / weights;
-            assert!((f64::from(made.get(i as usize, j as usize)) - expect).abs() < 1e-6, "({i}, {j})");
+            assert!((f64::from(made[(i as usize, j as usize)]) - expect).abs() < 1e-6, "({i}, {j})");
         }
     }
 }

@@ -43,13 +43,13 @@ impl Land {
     }
 
     fn lake(&self, (i, j): (usize, usize)) -> u32 {
-        self.lake.get(i, j) as u32
+        self.lake[(i, j)] as u32
     }
 
     /// Where water leaves: the sea, and the border, beyond which it runs on.
     fn is_outside(&self, (i, j): (usize, usize)) -> bool {
         let border = i == 0 || j == 0 || i + 1 == self.height.width() || j + 1 == self.height.height();
-        border || self.height.get(i, j) <= self.sea_level
+        border || self.height[(i, j)] <= self.sea_level
     }
 
     fn neighbours(&self, (i, j): (usize, usize)) -> impl Iterator<Item = ((usize, usize), f32)> {
@@ -62,10 +62,10 @@ impl Land {
 
     /// The neighbour that water takes by D8 over `heights`, if there is a lower one.
     fn receiver(&self, heights: &Grid, (i, j): (usize, usize)) -> Option<(usize, usize)> {
-        let here = heights.get(i, j);
+        let here = heights[(i, j)];
         let mut best = (0.0, None);
         for (cell, distance) in self.neighbours((i, j)) {
-            let slope = (here - heights.get(cell.0, cell.1)) / distance;
+            let slope = (here - heights[(cell.0, cell.1)]) / distance;
             if slope > best.0 {
                 best = (slope, Some(cell));
             }
@@ -91,13 +91,13 @@ impl Land {
         for (i, j) in self.cells().filter(|cell| self.lake(*cell) > 0) {
             let lake = self.lake((i, j)) as usize;
             cells[lake] += 1;
-            let surface = self.surface.get(i, j);
+            let surface = self.surface[(i, j)];
             assert!(level[lake].is_nan() || level[lake] == surface, "lake {lake} is level");
             level[lake] = surface;
-            assert!(surface >= self.height.get(i, j), "water is above its bed");
+            assert!(surface >= self.height[(i, j)], "water is above its bed");
             for (shore, _) in self.neighbours((i, j)).filter(|(cell, _)| self.lake(*cell) as usize != lake) {
                 // Not over a shore from which water would come back.
-                let low = self.surface.get(shore.0, shore.1) <= surface;
+                let low = self.surface[(shore.0, shore.1)] <= surface;
                 let on = || self.receiver(&self.surface, shore).is_some_and(|to| self.lake(to) as usize != lake);
                 spills[lake] |= low && (self.is_outside(shore) || on());
             }
@@ -108,16 +108,16 @@ impl Land {
             assert!(cells[lake] >= 4, "lake {lake} has {} cells", cells[lake]);
             assert!(spills[lake], "lake {lake} has no outlet");
         }
-        let land = self.cells().filter(|(i, j)| self.height.get(*i, *j) > self.sea_level).count();
+        let land = self.cells().filter(|(i, j)| self.height[(*i, *j)] > self.sea_level).count();
         cells.iter().sum::<usize>() as f64 / land as f64
     }
 
     /// From wherever a square kilometre drains, water goes on to where still more does, and never up.
     fn rivers_fall(&self) -> usize {
         let mut rivers = 0;
-        for (i, j) in self.cells().filter(|cell| !self.is_outside(*cell) && self.flow.get(cell.0, cell.1) >= 1e6) {
-            let (flow, surface) = (self.flow.get(i, j), self.surface.get(i, j));
-            let on = |(x, y): (usize, usize)| self.flow.get(x, y) > flow && self.surface.get(x, y) <= surface;
+        for (i, j) in self.cells().filter(|cell| !self.is_outside(*cell) && self.flow[(cell.0, cell.1)] >= 1e6) {
+            let (flow, surface) = (self.flow[(i, j)], self.surface[(i, j)]);
+            let on = |(x, y): (usize, usize)| self.flow[(x, y)] > flow && self.surface[(x, y)] <= surface;
             assert!(self.neighbours((i, j)).any(|(cell, _)| on(cell)), "the river at ({i}, {j}) ends or would rise");
             rivers += 1;
         }

@@ -72,8 +72,8 @@ fn rivers_are_those_of_the_recipes_own_drainage() {
             let (i, j) = (river.end as usize % width, river.end as usize / width);
             let (i, j) = (i - ground.frame.columns.start, j - ground.frame.rows.start);
             if river.mouth != Mouth::Border {
-                assert_eq!(f64::from(flow.get(i, j)), f64::from(river.drained) * 2500.0);
-                assert_eq!(orders.get(i, j), f32::from(river.order));
+                assert_eq!(f64::from(flow[(i, j)]), f64::from(river.drained) * 2500.0);
+                assert_eq!(orders[(i, j)], f32::from(river.order));
                 found += 1;
             }
         }

@@ -14,7 +14,7 @@ fn a_window_is_the_crop_of_the_whole() {
     folder.good(&["export", "small.toml", "-o", "part.npy", "--window", "10,20,30,15", "-q"]);
     let (all, part) = (npy(&folder.read("all.npy")), npy(&folder.read("part.npy")));
     assert_eq!((part.width(), part.height()), (30, 15));
-    assert!((0..15).all(|j| (0..30).all(|i| part.get(i, j) == all.get(i + 10, j + 20))));
+    assert!((0..15).all(|j| (0..30).all(|i| part[(i, j)] == all[(i + 10, j + 20)])));
     assert_eq!(folder.names(""), ["all.npy", "part.npy", "small.toml"]);
 }
 
@@ -32,7 +32,7 @@ fn a_file_of_heights_is_a_recipe() {
     std::fs::write(folder.path("sub/place.toml"), text).unwrap();
     folder.good(&["export", "sub/place.toml", "-o", "d.npy", "-q"]);
     let (all, part) = (npy(&folder.read("c.npy")), npy(&folder.read("d.npy")));
-    assert!((0..20).all(|j| (0..20).all(|i| part.get(i, j) == all.get(i + 10, j + 5))));
+    assert!((0..20).all(|j| (0..20).all(|i| part[(i, j)] == all[(i + 10, j + 5)])));
     std::fs::write(folder.path("cut.tif"), &folder.read("a.tif")[..900]).unwrap();
     folder.bad(&["generate", "cut.tif"], 1, "cannot read cut.tif: it ends within its");
     folder.bad(&["generate", "a.tif", "--watch"], 2, "a.tif is a file of heights");
@@ -453,7 +453,7 @@ fn contours_are_lines_of_the_heights_asked_for() {
             let (i, j) = (x.floor() as usize, y.floor() as usize);
             let (next_i, next_j) = (x.ceil() as usize, y.ceil() as usize);
             let share = (x - x.floor()) + (y - y.floor());
-            let (from, to) = (heights.get(i, j), heights.get(next_i, next_j));
+            let (from, to) = (heights[(i, j)], heights[(next_i, next_j)]);
             let between = f64::from(from) + f64::from(to - from) * share;
             let told = line["properties"]["elevation"].as_f64().unwrap();
             assert!((between - told).abs() < 0.05, "{x} {y}: {between}, {told}");

@@ -111,7 +111,7 @@ fn sizes_and_cells_choose_the_samples() {
     folder.good(&["export", "small.toml", "-o", "fine.npy", "--layer", "noise", "--cell", "5"]);
     folder.good(&["export", "small.toml", "-o", "coarse.npy", "--layer", "noise", "--cell", "10"]);
     let (fine, coarse) = (npy(&folder.read("fine.npy")), npy(&folder.read("coarse.npy")));
-    assert!((0..coarse.height()).all(|j| (0..coarse.width()).all(|i| coarse.get(i, j) == fine.get(2 * i, 2 * j))));
+    assert!((0..coarse.height()).all(|j| (0..coarse.width()).all(|i| coarse[(i, j)] == fine[(2 * i, 2 * j)])));
 }
 
 #[test]

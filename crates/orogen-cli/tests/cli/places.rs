@@ -131,7 +131,7 @@ fn bands_tiles_and_meshes() {
     let folder = Folder::new();
     folder.bad(&["export", &corpus("bands.tif"), "-o", "a.npy"], 1, "it has 3 bands");
     folder.good(&["export", &(corpus("bands.tif") + ":2"), "-o", "a.npy", "-q"]);
-    assert_eq!(npy(&folder.read("a.npy")).get(1, 2), 1032.0);
+    assert_eq!(npy(&folder.read("a.npy"))[(1, 2)], 1032.0);
     // A recipe names the band beside the file.
     folder.good(&["generate", &(corpus("bands.tif") + ":2"), "-o", "out", "-q"]);
     assert!(folder.text("out/recipe.toml").contains("band = 2"));

@@ -74,7 +74,7 @@ fn weights_albedo_and_roughness_follow_the_rules() {
         [(5, [0, 255, 0], 0.9), (40, [0, 0, 255], 0.9), (80, [255, 0, 0], 0.5), (97, [0, 255, 0], 1.0)]
     {
         assert_eq!(weight(i), expect, "{i}");
-        assert_eq!(roughness.get(i, 20), rough, "{i}");
+        assert_eq!(roughness[(i, 20)], rough, "{i}");
     }
     assert_eq!([color(40), color(80), color(97)], [[0x20, 0x40, 0x10], [0x80; 3], [0xff, 0xe0, 0xa0]]);
     // The picture's two colors cover half of the sand each, with a short mix between.

@@ -37,7 +37,7 @@ pub fn stitch(grid: &mut Grid, sides: Sides) {
     for (column, wanted) in [(0, sides.west), (last_column, sides.east)] {
         if wanted {
             for j in odd(window.y, window.height) {
-                let samples = middle(grid.get(column, j - 1), grid.get(column, j + 1));
+                let samples = middle(grid[(column, j - 1)], grid[(column, j + 1)]);
                 grid.row_mut(j)[column] = samples;
             }
         }
@@ -79,7 +79,7 @@ mod tests {
         let mut all = before.clone();
         stitch(&mut all, Sides { north: true, east: true, south: true, west: true });
         for (j, i) in (0..5).flat_map(|j| (0..5).map(move |i| (j, i))) {
-            let moved = all.get(i, j) != before.get(i, j);
+            let moved = all[(i, j)] != before[(i, j)];
             assert_eq!(moved, (j == 0 || j == 4) && i % 2 == 1, "({i}, {j})");
         }
     }
@@ -89,6 +89,6 @@ mod tests {
         let before = squares(Window::new(4, 1, 1.0).at(2, 0));
         let mut after = before.clone();
         stitch(&mut after, Sides { south: true, ..Sides::default() });
-        assert_eq!((after.get(1, 0), after.get(3, 0)), (10.0, before.get(3, 0)));
+        assert_eq!((after[(1, 0)], after[(3, 0)]), (10.0, before[(3, 0)]));
     }
 }

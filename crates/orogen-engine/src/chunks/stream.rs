@@ -23,7 +23,7 @@ pub enum ChunkStep {
 /// cut and how chunks fit together: [`LodConfig`].
 ///
 /// ```
-/// use orogen::{ChunkStep, Recipe, LodConfig, Sampler, World};
+/// use orogen_engine::{ChunkStep, Recipe, LodConfig, Sampler, World};
 /// use std::collections::HashMap;
 ///
 /// let world = World::open(Recipe::parse("orogen = 1\n[nodes.n]\nop = \"fbm\"\n[outputs]\nheight = \"n\"\n", "example")?)?;
@@ -40,7 +40,7 @@ pub enum ChunkStep {
 ///     }
 /// }
 /// assert_eq!(scene.len(), chunks.wanted().len());
-/// # Ok::<(), orogen::Error>(())
+/// # Ok::<(), orogen_engine::Error>(())
 /// ```
 ///
 /// **Chunks made on other threads.** [`Chunks::take`] hands out the nearest chunk that nobody makes yet; tell [`Chunks::done`] when it

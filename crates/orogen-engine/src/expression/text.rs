@@ -8,7 +8,7 @@ use std::fmt;
 /// An expression: its text, and what it says.
 ///
 /// ```
-/// use orogen::expression::text::Expression;
+/// use orogen_engine::expression::text::Expression;
 ///
 /// let hills = Expression::from("300 * smoothstep(0, 1, noise) + base");
 /// assert_eq!(hills.names(), ["noise", "base"]);

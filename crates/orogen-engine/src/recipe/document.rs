@@ -89,9 +89,9 @@ pub struct NamedNode {
 /// A recipe: all that is needed to make a world.
 ///
 /// ```
-/// use orogen::field::fbm::Fbm;
-/// use orogen::solver::normalise::Normalise;
-/// use orogen::{Recipe, WorldSpec};
+/// use orogen_engine::field::fbm::Fbm;
+/// use orogen_engine::solver::normalise::Normalise;
+/// use orogen_engine::{Recipe, WorldSpec};
 ///
 /// let world = WorldSpec { seed: 7, size: Some([2000.0, 2000.0]), cell: 10.0, ..WorldSpec::default() };
 /// let mut recipe = Recipe::new(world);

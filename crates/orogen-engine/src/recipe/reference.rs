@@ -91,7 +91,7 @@ fn between(layer: &Layer) -> String {
 /// The reference of all ops as a page of documentation, Markdown.
 pub fn markdown() -> String {
     let mut text = String::from(
-        "<!-- Written by `cargo xtask codegen` from the declarations in crates/orogen/src. Do not edit. -->\n\n# The ops\n\n\
+        "<!-- Written by `cargo xtask codegen` from the declarations in crates/orogen-engine/src. Do not edit. -->\n\n# The ops\n\n\
          Each node of a recipe has an `op`. The value of an input is the name of a node, the name of one of its layers (`node.layer`; \
          the node's name alone is its first layer), or a number. \
          Every node also has an optional input `mask`, from 0 to 1: the result is mixed with the node's first input (or with 0, \

@@ -69,7 +69,7 @@ impl Solver for Breach {
         let deepest = self.deepest as f32;
         let out = match self.way {
             Way::Valley => {
-                let drainage = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, context.progress)?;
+                let drainage = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, context.progress)?;
                 breach::breach(&heights, &outlets, &drainage, deepest)
             }
             Way::LeastCost => {

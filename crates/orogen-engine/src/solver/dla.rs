@@ -82,6 +82,6 @@ fn between(map: &Grid, x: f64, y: f64) -> f32 {
     let (i, j) = (x as usize, y as usize);
     let (u, v) = ((x - i as f64) as f32, (y - j as f64) as f32);
     let (right, below) = ((i + 1).min(map.width() - 1), (j + 1).min(map.height() - 1));
-    let mixed = |j: usize| map.get(i, j) * (1.0 - u) + map.get(right, j) * u;
+    let mixed = |j: usize| map[(i, j)] * (1.0 - u) + map[(right, j)] * u;
     mixed(j) * (1.0 - v) + mixed(below) * v
 }

@@ -82,7 +82,7 @@ impl Solver for Drainage {
         context.progress.check()?;
         let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
         let [bed, surface, counting, naming] = context.progress.parts([3.0, 1.0, 1.0, 2.0]);
-        let drained = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, &bed)?;
+        let drained = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, &bed)?;
         let filled = fill::filled(&heights, &drained.basins);
         drop(heights);
         context.progress.check()?;

@@ -58,7 +58,7 @@ impl Solver for Fill {
         let heights = sources.whole(0, sources.padded())?;
         context.progress.check()?;
         let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
-        let drained = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, context.progress)?;
+        let drained = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, context.progress)?;
         let filled = fill::filled(&heights, &drained.basins);
         drop(drained);
         let depth = difference(&filled, heights);

@@ -53,7 +53,7 @@ impl Solver for HeightAboveDrainage {
         let window = *heights.window();
         let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
         let [routing, counting, following, nearing] = context.progress.parts([4.0, 1.0, 1.0, 2.0]);
-        let drained = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, &routing)?;
+        let drained = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, &routing)?;
         let filled = fill::filled(&heights, &drained.basins);
         drop(heights);
         let receivers = drained.receivers;

@@ -51,7 +51,7 @@ impl Solver for Lakes {
         let window = *heights.window();
         let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
         let [routing, filling] = context.progress.parts([1.0, 3.0]);
-        let drainage = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, &routing)?;
+        let drainage = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, &routing)?;
         let fewest = (self.smallest / (window.cell * window.cell)).ceil().clamp(4.0, f64::from(u32::MAX)) as u32;
         let found = lakes::lakes_with(&heights, &outlets, &drainage, fewest, &filling)?;
         let mut depth = heights;

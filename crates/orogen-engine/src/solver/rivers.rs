@@ -61,7 +61,7 @@ impl Solver for Rivers {
         let window = *heights.window();
         let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
         let [routing, breaching, counting, carving] = context.progress.parts([2.0, 1.0, 1.0, 2.0]);
-        let drainage = drainage::over_bed_with(&heights, &outlets, Descent::Steepest, &routing)?;
+        let drainage = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, &routing)?;
         let mut ground = breach::breach(&heights, &outlets, &drainage, self.deepest as f32);
         drop(heights);
         breaching.finish();

@@ -85,7 +85,7 @@ mod tests {
         let expect = |x: f64| 1.0 / libm::pow(1.0 + x * x, 1.5);
         for i in [2usize, 5, 14] {
             let x = crest.window().east(i + 1);
-            assert!((f64::from(profile.get(i, 7)) - expect(x)).abs() < 1e-5);
+            assert!((f64::from(profile[(i, 7)]) - expect(x)).abs() < 1e-5);
         }
         assert!(curvature(&crest, Curvature::Plan).data().iter().all(|v| v.abs() < 1e-6));
         assert!(curvature(&crest, Curvature::Total).data().iter().all(|v| (v - 1.0).abs() < 1e-5));
@@ -99,10 +99,10 @@ mod tests {
         let plan = curvature(&cone, Curvature::Plan);
         let (x, y) = (cone.window().east(17), cone.window().south(16));
         let radius = (x * x + y * y).sqrt();
-        assert!((f64::from(plan.get(16, 15)) * radius - 1.0).abs() < 0.02);
+        assert!((f64::from(plan[(16, 15)]) * radius - 1.0).abs() < 0.02);
         // A valley gathers water: the other sign.
         let hollow = curvature(&made(|x, y| (x * x + y * y).sqrt()), Curvature::Plan);
-        assert!(hollow.get(16, 15) < 0.0);
+        assert!(hollow[(16, 15)] < 0.0);
     }
 
     #[test]
@@ -111,7 +111,7 @@ mod tests {
             let mut grid = Grid::filled(Window::new(3, 3, 1.0), 1.0);
             grid.row_mut(y)[x] = f32::NAN;
             for kind in [Curvature::Profile, Curvature::Plan, Curvature::Total] {
-                assert!(curvature(&grid, kind).get(0, 0).is_nan(), "{x} {y} {kind:?}");
+                assert!(curvature(&grid, kind)[(0, 0)].is_nan(), "{x} {y} {kind:?}");
             }
         }
     }

@@ -124,11 +124,11 @@ mod tests {
                     for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
                         let (dx, dy) = (x as f64 - (i + reach) as f64, y as f64 - (j + reach) as f64);
                         let square = dx * dx + dy * dy;
-                        if grid.get(x, y) >= 1.0 && square <= (reach * reach) as f64 {
+                        if grid[(x, y)] >= 1.0 && square <= (reach * reach) as f64 {
                             best = best.min(square);
                         }
                     }
-                    assert_eq!(found.get(i, j), best.sqrt() as f32, "({i}, {j}) of {width} x {height}, {reach}");
+                    assert_eq!(found[(i, j)], best.sqrt() as f32, "({i}, {j}) of {width} x {height}, {reach}");
                 }
             }
         }

@@ -91,14 +91,14 @@ pub fn geomorphons(grid: &Grid, look: &Look) -> Grid<u8> {
 
 /// The form of one sample; `limit` is the tangent of the limit of level ground.
 fn form_at(grid: &Grid, [i, j]: [usize; 2], look: &Look, limit: f64) -> Option<u8> {
-    let here = f64::from(grid.get(i, j));
+    let here = f64::from(grid[(i, j)]);
     let (mut lower, mut higher) = (0usize, 0usize);
     for (east, south) in STEPS {
         // Rise per step: of equal slopes the quotients are the same number, so that those up and down cancel where heights are whole metres.
         let (mut up, mut down) = (f64::NEG_INFINITY, f64::INFINITY);
         let farthest = if east * south == 0 { look.straight } else { look.diagonal };
         for step in 1..=farthest as isize {
-            let there = grid.get(i.wrapping_add_signed(east * step), j.wrapping_add_signed(south * step));
+            let there = grid[(i.wrapping_add_signed(east * step), j.wrapping_add_signed(south * step))];
             let slope = (f64::from(there) - here) / step as f64;
             if !slope.is_finite() {
                 return None;
@@ -149,7 +149,7 @@ mod tests {
         }
         let forms = geomorphons(&grid, &Look::square(4, 1.0));
         assert_eq!((forms.width(), forms.height()), (1, 1));
-        FORMS[usize::from(forms.get(0, 0)) - 1]
+        FORMS[usize::from(forms[(0, 0)]) - 1]
     }
 
     #[test]
@@ -180,7 +180,7 @@ mod tests {
             }
             for level in [Level::BySteepest, Level::ByDifference] {
                 let look = Look { level, ..Look::square(7, 0.1) };
-                assert_eq!(FORMS[usize::from(geomorphons(&grid, &look).get(0, 0)) - 1], "flat", "{cell} {level:?}");
+                assert_eq!(FORMS[usize::from(geomorphons(&grid, &look)[(0, 0)]) - 1], "flat", "{cell} {level:?}");
             }
         }
     }

@@ -151,7 +151,7 @@ mod tests {
             }
         }
         let shade = hillshade(&cone, &Light::default());
-        let (north_west, south_east) = (shade.get(3, 3), shade.get(15, 15));
+        let (north_west, south_east) = (shade[(3, 3)], shade[(15, 15)]);
         assert!((north_west - 1.0).abs() < 0.01 && south_east < 0.01, "{north_west} {south_east}");
         let level = hillshade(&Grid::filled(window, 7.0), &Light::default());
         assert!(level.data().iter().all(|&v| (v - 0.5f32.sqrt()).abs() < 1e-6));
@@ -170,10 +170,10 @@ mod tests {
         for (j, i) in (0..7).flat_map(|j| (0..38).map(move |i| (j, i))) {
             let near = |y: i32, x: i32| (j + 1 - y).abs() <= 1 && (i + 1 - x).abs() <= 1;
             if !near(4, 10) && !near(1, 30) {
-                assert_eq!(sound.get(i as usize, j as usize), holed.get(i as usize, j as usize), "({i}, {j})");
+                assert_eq!(sound[(i as usize, j as usize)], holed[(i as usize, j as usize)], "({i}, {j})");
             }
         }
-        assert_eq!((holed.get(9, 3), holed.get(29, 0)), (0.0, 0.0));
+        assert_eq!((holed[(9, 3)], holed[(29, 0)]), (0.0, 0.0));
     }
 
     #[test]

@@ -123,7 +123,7 @@ mod tests {
         let year = Period { latitude: 46.0, days: [1, 365], step: 0.5 };
         assert_eq!(year.sampled_days().len(), 13);
         for slope in [0.0, 12.0, -12.0] {
-            let coarse = made(&year, |_, y| slope * y as f32).get(20, 20);
+            let coarse = made(&year, |_, y| slope * y as f32)[(20, 20)];
             let sum: f32 = (1..=365)
                 .step_by(4)
                 .map(|day| {
@@ -171,9 +171,9 @@ mod tests {
         let night = Period { latitude: 80.0, days: [355, 355], step: 0.5 };
         assert!(made(&night, |_, _| 0.0).data().iter().all(|light| *light == 0.0));
         let winter = Period { latitude: 46.0, days: [355, 355], step: 0.5 };
-        let open = made(&winter, |_, _| 0.0).get(20, 20);
+        let open = made(&winter, |_, _| 0.0)[(20, 20)];
         // A wall in the south that the sun never clears at noon.
-        let behind = made(&winter, |_, y| if y > 24 { 300.0 } else { 0.0 }).get(20, 20);
+        let behind = made(&winter, |_, y| if y > 24 { 300.0 } else { 0.0 })[(20, 20)];
         assert!(behind < 0.4 * open && behind > 0.05 * open, "{behind} {open}");
     }
 }

@@ -53,7 +53,7 @@ pub fn positions(grid: &Grid, radius: usize) -> Grid<Position> {
             }
             let mean = sum as f64 / count;
             let variance = (squares as f64 - sum as f64 * mean) / count;
-            let above = f64::from(grid.get(middle, j + radius)) - mean / COUNTS;
+            let above = f64::from(grid[(middle, j + radius)]) - mean / COUNTS;
             // Less than one count is rounding.
             let deviation = if variance < 1.0 { 0.0 } else { above * COUNTS / variance.sqrt() };
             *position = Position { above_mean: above as f32, deviation: deviation as f32 };
@@ -114,13 +114,13 @@ mod tests {
                     for (dy, dx) in (0..=2 * radius).flat_map(|dy| (0..=2 * radius).map(move |dx| (dy, dx))) {
                         let (y, x) = (dy as f64 - radius as f64, dx as f64 - radius as f64);
                         if x * x + y * y <= (radius * radius) as f64 {
-                            members.push(f64::from(grid.get(i + dx, j + dy)));
+                            members.push(f64::from(grid[(i + dx, j + dy)]));
                         }
                     }
                     let mean = members.iter().sum::<f64>() / members.len() as f64;
                     let variance = members.iter().map(|h| (h - mean) * (h - mean)).sum::<f64>() / members.len() as f64;
-                    let above = f64::from(grid.get(i + radius, j + radius)) - mean;
-                    let position = got.get(i, j);
+                    let above = f64::from(grid[(i + radius, j + radius)]) - mean;
+                    let position = got[(i, j)];
                     assert!((f64::from(position.above_mean) - above).abs() < 0.003, "{radius} {position:?} {above}");
                     let deviation = above / variance.sqrt();
                     assert!((f64::from(position.deviation) - deviation).abs() < 1e-3, "{position:?} {deviation}");
@@ -134,7 +134,7 @@ mod tests {
         let mut grid = Grid::filled(Window::new(21, 21, 10.0), 500.0f32);
         assert!(positions(&grid, 4).data().iter().all(|p| *p == Position { above_mean: 0.0, deviation: 0.0 }));
         grid.row_mut(10)[10] = 600.0;
-        let peak = positions(&grid, 4).get(6, 6);
+        let peak = positions(&grid, 4)[(6, 6)];
         assert_eq!(class(peak.deviation, 30.0), 1);
         assert_eq!(
             [class(0.0, 2.0), class(0.0, 9.0), class(0.7, 9.0), class(-0.7, 0.0), class(-1.2, 0.0)],

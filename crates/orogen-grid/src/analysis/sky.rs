@@ -55,7 +55,7 @@ pub fn view(heights: &Grid, window: &Window, reach: usize) -> Grid {
     for j in 0..window.height {
         for i in 0..window.width {
             let (x, y) = (window.x + i as i64 - all.x, window.y + j as i64 - all.y);
-            let here = heights.get(x as usize, y as usize);
+            let here = heights[(x as usize, y as usize)];
             if !here.is_finite() {
                 continue;
             }
@@ -63,7 +63,7 @@ pub fn view(heights: &Grid, window: &Window, reach: usize) -> Grid {
             for look in &looks {
                 let (x, y) = (x + look.offset[0], y + look.offset[1]);
                 if (0..all.width as i64).contains(&x) && (0..all.height as i64).contains(&y) {
-                    let rise = (heights.get(x as usize, y as usize) - here) * look.per_metre;
+                    let rise = (heights[(x as usize, y as usize)] - here) * look.per_metre;
                     // False for NaN, too.
                     if rise > steepest[look.direction] {
                         steepest[look.direction] = rise;
@@ -98,7 +98,7 @@ mod tests {
     }
 
     fn middle(grid: &Grid, reach: usize) -> f32 {
-        view(grid, &Window::new(1, 1, 2.0), reach).get(0, 0)
+        view(grid, &Window::new(1, 1, 2.0), reach)[(0, 0)]
     }
 
     #[test]
@@ -138,6 +138,6 @@ mod tests {
         let mut ground = made(33, libm::hypot);
         ground.row_mut(16)[20] = f32::NAN;
         assert!(middle(&ground, 16) > 0.28);
-        assert!(view(&ground, &Window::new(1, 1, 2.0).at(4, 0), 16).get(0, 0).is_nan());
+        assert!(view(&ground, &Window::new(1, 1, 2.0).at(4, 0), 16)[(0, 0)].is_nan());
     }
 }

@@ -113,7 +113,7 @@ pub fn extended(grid: &Grid) -> Grid {
     let mut border = vec![0.0; width + 2];
     for (from, next, to) in [(1, 2.min(height), 0), (height, (height - 1).max(1), height + 1)] {
         for (i, b) in border.iter_mut().enumerate() {
-            *b = beyond(out.get(i, from), out.get(i, next));
+            *b = beyond(out[(i, from)], out[(i, next)]);
         }
         out.row_mut(to).copy_from_slice(&border);
     }
@@ -184,11 +184,11 @@ mod tests {
         let mut grid = grid(Window::new(5, 5, 1.0), |x, _| x);
         grid.row_mut(2)[2] = f32::NAN;
         let steep = steepness(&grid);
-        assert!(steep.get(1, 1).is_nan());
+        assert!(steep[(1, 1)].is_nan());
         // East of the hole: (c - a) + 2 (f - d) + (i - g) = 2 + 2 (4 - 3) + 2 with the hole level with its neighbour.
-        assert!((steep.get(2, 1) - 6.0 / 8.0).abs() < 1e-6);
+        assert!((steep[(2, 1)] - 6.0 / 8.0).abs() < 1e-6);
         grid.row_mut(2)[2] = f32::INFINITY;
-        assert!(steepness(&grid).get(1, 1).is_nan());
+        assert!(steepness(&grid)[(1, 1)].is_nan());
         let cliff = Grid::from_data(Window::new(3, 3, 1.0), [f32::MIN, 0.0, f32::MAX].repeat(3)).unwrap();
         assert_eq!(from_gradients(&cliff, |g| g.east).data(), [f32::MAX]);
     }

@@ -159,7 +159,7 @@ impl Rises {
 /// A square of the grid less its plane of least squares.
 fn level(grid: &Grid, left: usize, top: usize, side: usize) -> Vec<f64> {
     let middle = (side as f64 - 1.0) / 2.0;
-    let at = |i: usize, j: usize| f64::from(grid.get(left + i, top + j));
+    let at = |i: usize, j: usize| f64::from(grid[(left + i, top + j)]);
     let (mut mean, mut count, mut east, mut south, mut squares) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for j in 0..side {
         for i in 0..side {

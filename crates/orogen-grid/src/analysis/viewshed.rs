@@ -62,7 +62,7 @@ pub fn hidden(heights: &Grid, observer: &Observer, check: Check) -> Result<Grid>
                 true => sight([x, y], [i as i64, j as i64]).steepest(&ground),
                 false => sight([y, x], [j as i64, i as i64]).steepest(&turned),
             };
-            let here = f64::from(heights.get(i, j));
+            let here = f64::from(heights[(i, j)]);
             *out = (eye + steepest * way + observer.sinking * way * way - here).max(0.0) as f32;
         }
         Ok(())
@@ -243,9 +243,9 @@ mod tests {
         let observer = Observer { at: [10.0, 10.0], height: 2.0, radius: 350.0, sinking: 0.0 };
         let found = hidden(&heights, &observer, &|| Ok(())).unwrap();
         // From 2 m over the top of the wall, 100 m away and 10 m higher: at 300 m, 32 m.
-        assert!((found.get(40, 10) - 32.0).abs() < 1e-3, "{}", found.get(40, 10));
-        assert_eq!([found.get(15, 10), found.get(20, 10), found.get(10, 10)], [0.0; 3]);
-        assert_eq!(found.get(49, 10), BEYOND);
+        assert!((found[(40, 10)] - 32.0).abs() < 1e-3, "{}", found[(40, 10)]);
+        assert_eq!([found[(15, 10)], found[(20, 10)], found[(10, 10)]], [0.0; 3]);
+        assert_eq!(found[(49, 10)], BEYOND);
         // 10 km away the earth has sunk by 7.8 m.
         assert!((sinking(0.0) * 1e8 - 7.848).abs() < 1e-2);
     }

@@ -28,14 +28,14 @@ const ROWS: usize = 128;
 /// northernmost row. It is the same on any number of threads. Costs O(samples + crossings), about 24 bytes a crossing while it works.
 ///
 /// ```
-/// use orogen::contour::trace::contours;
-/// use orogen::{Grid, Window};
+/// use orogen_grid::contour::trace::contours;
+/// use orogen_grid::{Grid, Window};
 ///
 /// let slope = Grid::from_data(Window::new(3, 2, 10.0), vec![0.0, 50.0, 100.0, 0.0, 50.0, 100.0]).unwrap();
 /// let lines = contours(&slope, &[75.0])?;
 /// // Higher ground is in the east, so the line runs south.
 /// assert_eq!(lines[0].points, [[15.0, 0.0], [15.0, 10.0]]);
-/// # Ok::<(), orogen::Error>(())
+/// # Ok::<(), orogen_grid::Error>(())
 /// ```
 ///
 /// # Errors
@@ -267,7 +267,7 @@ mod tests {
             for j in 0..height {
                 for i in 0..width {
                     for (x, y) in [(i + 1, j), (i, j + 1)].into_iter().filter(|&(x, y)| x < width && y < height) {
-                        let (a, b) = (f64::from(field.get(i, j)), f64::from(field.get(x, y)));
+                        let (a, b) = (f64::from(field[(i, j)]), f64::from(field[(x, y)]));
                         crossings += levels.iter().filter(|level| (a >= **level) != (b >= **level)).count();
                     }
                 }
@@ -286,7 +286,7 @@ mod tests {
                     let [low, high] = [[a[0].floor(), a[1].floor()], [a[0].ceil(), a[1].ceil()]];
                     for corner in [low, high] {
                         let side = (a[1] - b[1]) * (corner[0] - a[0]) - (b[0] - a[0]) * (a[1] - corner[1]);
-                        let at = f64::from(field.get(corner[0] as usize, corner[1] as usize));
+                        let at = f64::from(field[(corner[0] as usize, corner[1] as usize)]);
                         // Twice the area, counter-clockwise on a map.
                         let left = -side > 0.0;
                         assert_eq!(at >= line.elevation, left, "{a:?} {b:?} {corner:?}");

@@ -161,7 +161,7 @@ mod tests {
                     let r = (x * x + y * y).sqrt();
                     // Neither the tip nor the foot, which are rounded.
                     if (24.0..46.0).contains(&r) {
-                        let off = f64::from(degrees.get(i, j)) - angle;
+                        let off = f64::from(degrees[(i, j)]) - angle;
                         assert!(off.abs() < 0.5, "{angle}: {off} off at ({x}, {y})");
                         seen[(libm::atan2(y, x).to_degrees() + 180.0) as usize * 16 / 361] += 1;
                     }
@@ -194,6 +194,6 @@ mod tests {
         // A chequerboard, the worst of all: it fades.
         let board = made(window, |x, y| if ((x + y) / 10.0).rem_euclid(2.0) < 0.5 { 50.0 } else { -50.0 });
         let done = weathered(&board, 10.0, 9);
-        assert!(done.data().iter().all(|h| h.abs() < 8.0), "{:?}", done.get(5, 5));
+        assert!(done.data().iter().all(|h| h.abs() < 8.0), "{:?}", done[(5, 5)]);
     }
 }

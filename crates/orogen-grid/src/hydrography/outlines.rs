@@ -52,7 +52,7 @@ struct Squares<'a> {
 impl Squares<'_> {
     fn at(&self, i: i64, j: i64) -> u32 {
         match (0..self.width).contains(&i) && (0..self.height).contains(&j) {
-            true => self.labels.get(i as usize, j as usize),
+            true => self.labels[(i as usize, j as usize)],
             false => AROUND,
         }
     }

@@ -83,13 +83,13 @@ fn depths(water: &Water, frame: &Frame) -> Grid {
     let level = |label: u32| water.lakes[label as usize - 1].level;
     for j in rows.clone() {
         for i in columns.clone() {
-            let here = water.heights.get(i, j);
+            let here = water.heights[(i, j)];
             let around = || {
                 let rows = j.saturating_sub(1)..(j + 2).min(height);
-                rows.flat_map(move |y| (i.saturating_sub(1)..(i + 2).min(width)).map(move |x| water.labels.get(x, y)))
+                rows.flat_map(move |y| (i.saturating_sub(1)..(i + 2).min(width)).map(move |x| water.labels[(x, y)]))
             };
             let beside = || around().filter(|other| *other > 0).map(level).reduce(f32::max);
-            depth.row_mut(j - rows.start + 1)[i - columns.start + 1] = match water.labels.get(i, j) {
+            depth.row_mut(j - rows.start + 1)[i - columns.start + 1] = match water.labels[(i, j)] {
                 0 => beside().map_or(-1.0, |level| (level - here).min(-HARDLY)),
                 label => (level(label) - here).max(HARDLY),
             };
@@ -111,7 +111,7 @@ fn over_the_sea(water: &Water, frame: &Frame, sea: f32) -> Option<Grid> {
 fn wet_beside([x, y]: [f64; 2], labels: &Grid<u32>) -> Option<u32> {
     let ends = |v: f64| [v.floor() as usize, v.ceil() as usize];
     let ([west, east], [north, south]) = (ends(x), ends(y));
-    let there = |i: usize, j: usize| (i < labels.width() && j < labels.height()).then(|| labels.get(i, j));
+    let there = |i: usize, j: usize| (i < labels.width() && j < labels.height()).then(|| labels[(i, j)]);
     [there(west, north), there(east, south)].into_iter().flatten().find(|label| *label > 0)
 }
 

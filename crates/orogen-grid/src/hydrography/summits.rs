@@ -31,7 +31,7 @@ const NOT_YET: u32 = u32::MAX;
 pub fn summits(heights: &Grid, frame: &Frame, sea_level: Option<f32>, least: f32) -> Vec<Summit> {
     let (columns, rows) = (&frame.columns, &frame.rows);
     let (width, height) = (columns.len(), rows.len());
-    let at = |cell: usize| heights.get(columns.start + cell % width, rows.start + cell / width);
+    let at = |cell: usize| heights[(columns.start + cell % width, rows.start + cell / width)];
     let sea = sea_level.unwrap_or(f32::NEG_INFINITY);
     let mut order: Vec<u32> = (0..width * height).filter(|cell| at(*cell) > sea).map(|cell| cell as u32).collect();
     order.retain(|cell| at(*cell as usize).is_finite());

@@ -96,7 +96,7 @@ impl Water {
         let outlets = Outlets::new(&heights, sea_level);
         let descent = if least.scattered { Descent::Scattered(1) } else { Descent::Steepest };
         progress.check()?;
-        let drainage = drainage::over_bed_with(&heights, &outlets, descent, &progress.part(0.0))?;
+        let drainage = drainage::route_carving_with(&heights, &outlets, descent, &progress.part(0.0))?;
         let mut found = lakes_with(&heights, &outlets, &drainage, least.lake, &progress.part(0.0))?;
         let receivers = drainage.receivers;
         drop(drainage.basins);

@@ -109,7 +109,7 @@ mod tests {
         let (mut sum, mut east, mut across) = (0.0, 0.0, 0.0);
         for j in 0..61 {
             for i in 0..61 {
-                let (h, x, y) = (f64::from(heights.get(i, j)), (i as f64 - 30.0) * 10.0, (j as f64 - 30.0) * 10.0);
+                let (h, x, y) = (f64::from(heights[(i, j)]), (i as f64 - 30.0) * 10.0, (j as f64 - 30.0) * 10.0);
                 sum += h;
                 east += h * x * x;
                 across += h * (x + y) * (x + y) / 2.0;

@@ -34,7 +34,12 @@ pub fn route_carving(heights: &Grid, outlets: &Outlets, descent: Descent) -> Dra
 ///
 /// # Errors
 /// If the work is cancelled.
-pub fn over_bed_with(heights: &Grid, outlets: &Outlets, descent: Descent, progress: &Progress) -> Result<Drainage> {
+pub fn route_carving_with(
+    heights: &Grid,
+    outlets: &Outlets,
+    descent: Descent,
+    progress: &Progress,
+) -> Result<Drainage> {
     progress.expect(PHASES);
     route_bed(heights, outlets, descent, || {
         progress.advance(1.0);

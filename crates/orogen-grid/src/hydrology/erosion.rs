@@ -68,7 +68,7 @@ impl Erosion {
         progress: &Progress,
     ) -> Result<()> {
         let [routing, cutting] = progress.parts([3.0, 2.0]);
-        let receivers = drainage::over_bed_with(heights, outlets, descent, &routing)?.receivers;
+        let receivers = drainage::route_carving_with(heights, outlets, descent, &routing)?.receivers;
         routing.finish();
         let drained = accumulate(&receivers);
         progress.check()?;
@@ -210,8 +210,8 @@ mod tests {
             let mut bins = [0u32; 9];
             for j in 10..150 {
                 for i in 10..150 {
-                    let east = out.get(i + 1, j) - out.get(i - 1, j);
-                    let south = out.get(i, j + 1) - out.get(i, j - 1);
+                    let east = out[(i + 1, j)] - out[(i - 1, j)];
+                    let south = out[(i, j + 1)] - out[(i, j - 1)];
                     let off = libm::atan2(f64::from(south), f64::from(east)).to_degrees().rem_euclid(45.0);
                     bins[((off / 5.0) as usize).min(8)] += 1;
                 }

@@ -195,8 +195,8 @@ mod tests {
         let (_, lakes) = made(&heights, 4);
         let expect = Lake { level: 170.0, deepest: 3 * 14 + 3, outlet: 3 * 14 + 1, cells: 12 };
         assert_eq!(lakes.lakes, [expect]);
-        assert_eq!(lakes.surface.get(4, 4), 170.0);
-        assert_eq!(lakes.bed.get(3, 3), 140.0);
-        assert!(lakes.bed.get(10, 5) > 200.0 && lakes.bed.get(10, 5) < 201.0);
+        assert_eq!(lakes.surface[(4, 4)], 170.0);
+        assert_eq!(lakes.bed[(3, 3)], 140.0);
+        assert!(lakes.bed[(10, 5)] > 200.0 && lakes.bed[(10, 5)] < 201.0);
     }
 }

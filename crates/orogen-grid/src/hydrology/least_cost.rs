@@ -48,7 +48,7 @@ pub fn breach(heights: &Grid, outlets: &Outlets, limits: &Limits, progress: &Pro
         }
     }
     searching.finish();
-    let drained = drainage::over_bed_with(&out, outlets, Descent::Steepest, &filling)?;
+    let drained = drainage::route_carving_with(&out, outlets, Descent::Steepest, &filling)?;
     Ok(fill::filled(&out, &drained.basins))
 }
 
@@ -186,13 +186,13 @@ mod tests {
         let outlets = Outlets::new(&heights, None);
         let out = breach(&heights, &outlets, &Limits { deepest: 10.0, longest: 20 }, &Progress::none()).unwrap();
         assert_eq!(out.row(5)[2..8], [4.0, 2.0, 1.0, 1.0, 1.0, 0.8]);
-        assert_eq!(out.get(3, 2), 3.0, "the lip stays");
+        assert_eq!(out[(3, 2)], 3.0, "the lip stays");
         // Not so deep: through neither, so it is filled to the lip.
         let shallow = breach(&heights, &outlets, &Limits { deepest: 1.0, longest: 20 }, &Progress::none()).unwrap();
         assert_eq!(shallow.row(5)[2..7], [4.0, 3.0, 3.0, 3.0, 5.0]);
         let drainage = drainage::route_carving(&heights, &outlets, Descent::Steepest);
         let around = along_valleys::breach(&heights, &outlets, &drainage, 10.0);
-        assert_eq!((around.get(3, 2), around.get(6, 5)), (1.0, 5.0));
+        assert_eq!((around[(3, 2)], around[(6, 5)]), (1.0, 5.0));
     }
 
     #[test]

@@ -223,7 +223,7 @@ mod tests {
         points.onto_lattice(&mut heights, &outlets);
         for j in 2..38 {
             for i in 2..48 {
-                let (got, expect) = (heights.get(i, j), plane(i as f32, j as f32));
+                let (got, expect) = (heights[(i, j)], plane(i as f32, j as f32));
                 assert!((got - expect).abs() < 1e-3, "{got}, not {expect}");
             }
         }

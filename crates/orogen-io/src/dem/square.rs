@@ -102,7 +102,7 @@ mod tests {
         let grid = layout.apply(dem).unwrap();
         for (i, j) in [(0, 0), (20, 0), (7, 9), (13, 12), (20, 15)] {
             let expect = 3.0 * i as f32 - 5.0 * j as f32 * 20.0 / 30.0;
-            assert!((grid.get(i, j) - expect).abs() < 0.6, "{i} {j}: {} {expect}", grid.get(i, j));
+            assert!((grid[(i, j)] - expect).abs() < 0.6, "{i} {j}: {} {expect}", grid[(i, j)]);
         }
         assert!(Layout::new([5, 5], [30.0, 30.01]).is_square());
     }

@@ -17,8 +17,8 @@ const BUFFER: usize = 256 * 1024;
 /// `?` or `into`), which comes back as it is.
 ///
 /// ```
-/// # fn main() -> orogen::Result<()> {
-/// use orogen::file::{OutputPolicy, write_whole};
+/// # fn main() -> orogen_io::Result<()> {
+/// use orogen_io::file::{OutputPolicy, write_whole};
 ///
 /// let path = std::env::temp_dir().join(format!("orogen-doc-{}.txt", std::process::id()));
 /// write_whole(&OutputPolicy::default().output(&path)?, |out| out.write_all(b"all of it"))?;

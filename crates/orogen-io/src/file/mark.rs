@@ -11,7 +11,7 @@ const BEFORE: &str = "# Orogen replaces this file only while it is unchanged: SH
 /// The text with its mark, behind the first line if that is a comment, else at the top.
 ///
 /// ```
-/// use orogen::file::mark::{is_intact, marked};
+/// use orogen_io::file::mark::{is_intact, marked};
 ///
 /// let text = marked("# A comment.\norogen = 1\n");
 /// assert!(is_intact(&text) && !is_intact(&text.replace("orogen = 1", "orogen = 2")));

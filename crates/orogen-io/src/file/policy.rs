@@ -26,7 +26,7 @@ pub enum Existing {
 /// links), nor a recipe that a person wrote or changed.
 ///
 /// ```
-/// use orogen::file::{Existing, OutputPolicy, write_whole};
+/// use orogen_io::file::{Existing, OutputPolicy, write_whole};
 ///
 /// let path = std::env::temp_dir().join(format!("orogen-doc-policy-{}.npy", std::process::id()));
 /// std::fs::write(&path, "notes of a person")?;

@@ -60,12 +60,12 @@ pub struct Report {
 /// A build: an order that can be met, about to be carried out.
 ///
 /// ```
-/// use orogen::builder::run::{Build, Start};
-/// use orogen::builder::spec::{BuildSpec, Form};
-/// use orogen::file::OutputPolicy;
-/// use orogen::{Progress, Window, World};
+/// use orogen_output::builder::run::{Build, Start};
+/// use orogen_output::builder::spec::{BuildSpec, Form};
+/// use orogen_io::file::OutputPolicy;
+/// use orogen_engine::{Progress, Window, World};
 ///
-/// let world = World::open(orogen::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
+/// let world = World::open(orogen_engine::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
 /// let out = std::env::temp_dir().join(format!("orogen-doc-{}.zarr", std::process::id()));
 /// let order =
 ///     BuildSpec { form: Form::Zarr, window: Window::new(300, 200, 30.0), tile: Some(128), layers: vec!["height".into()] };

@@ -147,7 +147,7 @@ impl Tree {
         let (tile, window) = (self.tile() as i64, grid.window());
         let column = |i: i64| (left + i - window.x).clamp(0, window.width as i64 - 1) as usize;
         let row = |j: i64| (top + j - window.y).clamp(0, window.height as i64 - 1) as usize;
-        (0..tile).flat_map(|j| (0..tile).map(move |i| (i, j))).map(|(i, j)| grid.get(column(i), row(j))).collect()
+        (0..tile).flat_map(|j| (0..tile).map(move |i| (i, j))).map(|(i, j)| grid[(column(i), row(j))]).collect()
     }
 
     /// The samples of a tile made of those below it; where there is none, the edge of its neighbour is repeated.

@@ -52,7 +52,7 @@ pub fn write_normals(source: &mut LayerSource, options: &Options, files: &mut Fi
                 (0..band[0].height()).try_for_each(|j| {
                     let row: Vec<f32> = (0..window.width)
                         .flat_map(|i| {
-                            let [east, north, up] = [0, 1, 2].map(|part| band[part].get(i, j));
+                            let [east, north, up] = [0, 1, 2].map(|part| band[part][(i, j)]);
                             [east, if directx { -north } else { north }, up]
                         })
                         .collect();
@@ -157,7 +157,7 @@ fn put_aside(spool: &mut Spool, band: &[Grid]) -> io::Result<()> {
     for j in 0..band[0].height() {
         let mut bytes = vec![0; band.len() * band[0].width()];
         for (i, bytes) in bytes.chunks_exact_mut(band.len()).enumerate() {
-            weights.iter_mut().zip(band).for_each(|(weight, grid)| *weight = grid.get(i, j));
+            weights.iter_mut().zip(band).for_each(|(weight, grid)| *weight = grid[(i, j)]);
             to_bytes(&weights, bytes);
         }
         spool.write_all(&bytes)?;

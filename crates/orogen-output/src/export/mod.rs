@@ -6,11 +6,11 @@
 //! [`run`] exports.
 //!
 //! ```
-//! use orogen::file::OutputPolicy;
-//! use orogen::export::{layer_source::LayerSource, options::Options, registry, run};
-//! use orogen::{Progress, Window, World};
+//! use orogen_io::file::OutputPolicy;
+//! use orogen_output::export::{layer_source::LayerSource, options::Options, registry, run};
+//! use orogen_engine::{Progress, Window, World};
 //!
-//! let world = World::open(orogen::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
+//! let world = World::open(orogen_engine::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
 //! let path = std::env::temp_dir().join(format!("orogen-doc-{}.npy", std::process::id()));
 //! let progress = Progress::none();
 //! let source = LayerSource::new(&world, "height", Window::new(100, 80, 20.0), &progress)?;

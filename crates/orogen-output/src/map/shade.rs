@@ -98,7 +98,7 @@ fn typical_steepness(grid: &Grid, kind: impl Fn(f32) -> bool) -> Option<f32> {
     for j in (0..inner).step_by(inner.div_ceil(PROBES)) {
         gradients_between([grid.row(j), grid.row(j + 1), grid.row(j + 2)], grid.window().cell, |i, gradient| {
             let steepness = gradient.steepness();
-            if steepness.is_finite() && kind(grid.get(i + 1, j + 1)) {
+            if steepness.is_finite() && kind(grid[(i + 1, j + 1)]) {
                 found.push(steepness);
             }
         });

@@ -5,10 +5,10 @@
 //! it is to look.
 //!
 //! ```
-//! use orogen::mesh::adaptive::adaptive;
-//! use orogen::{Window, World};
+//! use orogen_output::mesh::adaptive::adaptive;
+//! use orogen_engine::{Window, World};
 //!
-//! let world = World::open(orogen::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
+//! let world = World::open(orogen_engine::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
 //! let grid = world.window("height", &Window::new(257, 257, 15.0))?;
 //! let shape = adaptive(&grid, 2.0)?;
 //! assert!(shape.triangles() < 256 * 256 * 2 / 10);

@@ -59,7 +59,7 @@ impl Shape {
         let [columns, rows] = [grid.width(), grid.height()].map(|samples| steps(samples, step));
         enough(grid)?;
         numbered(columns.len() as u64 * rows.len() as u64)?;
-        let whole = rows.iter().all(|&j| columns.iter().all(|&i| grid.get(i as usize, j as usize).is_finite()));
+        let whole = rows.iter().all(|&j| columns.iter().all(|&i| grid[(i as usize, j as usize)].is_finite()));
         let lattice = Shape { kind: Kind::Lattice { columns, rows } };
         if whole { Ok(lattice) } else { lattice.without_holes(grid) }
     }
@@ -265,7 +265,7 @@ fn steps(samples: usize, step: usize) -> Vec<u32> {
 
 /// The triangles of a cell of a lattice that touch no hole, each corner as (index of column, index of row).
 fn cell(grid: &Grid, columns: &[u32], rows: &[u32], [c, r]: [usize; 2]) -> [Option<[[usize; 2]; 3]>; 2] {
-    let height = |[c, r]: [usize; 2]| grid.get(columns[c] as usize, rows[r] as usize);
+    let height = |[c, r]: [usize; 2]| grid[(columns[c] as usize, rows[r] as usize)];
     let [nw, ne, sw, se] = [[c, r], [c + 1, r], [c, r + 1], [c + 1, r + 1]];
     let holes = [nw, ne, sw, se].map(|corner| !height(corner).is_finite());
     let falling = match holes {
@@ -311,7 +311,7 @@ fn numbered(corners: u64) -> Result<()> {
 fn distance(grid: &Grid, [a, b, c]: [[usize; 2]; 3]) -> f64 {
     let whole = |[column, row]: [usize; 2]| [column as i64, row as i64];
     let turn = |a: [i64; 2], b: [i64; 2], p: [i64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
-    let height = |[column, row]: [usize; 2]| f64::from(grid.get(column, row));
+    let height = |[column, row]: [usize; 2]| f64::from(grid[(column, row)]);
     let places = [whole(a), whole(b), whole(c)];
     // Of counter-clockwise corners with y down the page: negative.
     let area = turn(places[0], places[1], places[2]) as f64;

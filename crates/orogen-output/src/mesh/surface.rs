@@ -131,7 +131,7 @@ impl Surface<'_> {
     /// East, height and south of a sample.
     pub fn place(&self, column: usize, row: usize) -> [f32; 3] {
         let cell = self.grid.window().cell;
-        [(column as f64 * cell) as f32, self.grid.get(column, row) * self.exaggeration, (row as f64 * cell) as f32]
+        [(column as f64 * cell) as f32, self.grid[(column, row)] * self.exaggeration, (row as f64 * cell) as f32]
     }
 
     fn corner(&self, column: usize, row: usize, scratch: &Scratch) -> Corner {

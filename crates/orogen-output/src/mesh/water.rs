@@ -158,7 +158,7 @@ fn height(ground: &Grid, [x, y]: [f64; 2]) -> f64 {
         (start, (start + 1).min(samples - 1), v - start as f64)
     };
     let ((west, east, u), (north, south, v)) = (along(x, ground.width()), along(y, ground.height()));
-    let at = |i: usize, j: usize| f64::from(ground.get(i, j));
+    let at = |i: usize, j: usize| f64::from(ground[(i, j)]);
     let (nw, ne, sw, se) = (at(west, north), at(east, north), at(west, south), at(east, south));
     let falling = if u > v { nw + (ne - nw) * u + (se - ne) * v } else { nw + (se - sw) * u + (sw - nw) * v };
     let rising = if u + v < 1.0 {
@@ -218,7 +218,7 @@ mod tests {
             ground.row_mut(j)[3..6].fill(2.0);
         }
         let mut mesh = WaterMesh::new("lakes", [0.0; 4]);
-        mesh.cover(&ground, |i, j| (ground.get(i, j) < 8.0).then_some(8.0));
+        mesh.cover(&ground, |i, j| (ground[(i, j)] < 8.0).then_some(8.0));
         let area: f32 = mesh.triangles.iter().map(|triangle| mesh.area(*triangle) / 2.0).sum();
         // Three rows of four squares, each row one strip.
         assert_eq!((area, mesh.triangles.len()), (12.0 * 25.0, 6));

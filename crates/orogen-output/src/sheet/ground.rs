@@ -43,7 +43,7 @@ fn read(heights: &Grid, xs: &[f64], ys: &[f64]) -> Grid {
                 let j = (y.round() as usize).min(source.height - 1);
                 for (height, x) in row.iter_mut().zip(xs) {
                     // A hole is as large as its sample's share of the ground.
-                    let nearest = own.get((x.round() as usize).min(source.width - 1), j);
+                    let nearest = own[((x.round() as usize).min(source.width - 1), j)];
                     if !nearest.is_finite() || !height.is_finite() {
                         *height = nearest;
                     }
@@ -102,12 +102,12 @@ mod tests {
             for (u, v) in [(0.2, 0.5), (0.5, 0.5), (0.8, 0.4)] {
                 let (i, j) = ((u * (size[0] - 1) as f64).round() as usize, (v * (size[1] - 1) as f64).round() as usize);
                 let (x, y) = (i as f32 / (size[0] - 1) as f32, j as f32 / (size[1] - 1) as f32);
-                assert!((laid.get(i, j) - (300.0 * x + 420.0 * y)).abs() < 0.01, "{size:?}");
+                assert!((laid[(i, j)] - (300.0 * x + 420.0 * y)).abs() < 0.01, "{size:?}");
             }
             let pixels = at_pixels(&grid, size);
             let (i, j) = (size[0] / 2, size[1] / 2);
             let (x, y) = ((i as f32 + 0.5) / size[0] as f32, (j as f32 + 0.5) / size[1] as f32);
-            assert!((pixels.get(i, j) - (300.0 * x + 420.0 * y)).abs() < 0.01, "{size:?}");
+            assert!((pixels[(i, j)] - (300.0 * x + 420.0 * y)).abs() < 0.01, "{size:?}");
         }
     }
 

@@ -99,7 +99,7 @@ pub fn summits(heights: &Grid, sea_level: Option<f64>, block: usize, apart: usiz
     let mut found: Vec<Summit> = Vec::new();
     for j in 2..height.saturating_sub(2) {
         for i in 2..width.saturating_sub(2) {
-            let Some(summit) = blocks.get(i, j) else { continue };
+            let Some(summit) = blocks[(i, j)] else { continue };
             let here = summit.height;
             // The nearest first: almost all fall there. What has no height is no summit's neighbour.
             let top = |reach: usize| {
@@ -110,7 +110,7 @@ pub fn summits(heights: &Grid, sea_level: Option<f64>, block: usize, apart: usiz
                 })
             };
             let lower = |other: Option<Summit>| other.is_some_and(|other| other.height < here);
-            let stands_out = || lower(blocks.get(i - 2, j)) || lower(blocks.get(i + 2, j));
+            let stands_out = || lower(blocks[(i - 2, j)]) || lower(blocks[(i + 2, j)]);
             if here > sea && top(1) && top(apart / 2) && stands_out() {
                 found.push(summit);
             }
@@ -195,7 +195,7 @@ mod tests {
         for block in [1, 2, 3, 7, 10] {
             let found = summits(&grid, None, block, 40 / block, 5);
             assert_eq!(found[0], Summit { x: 63, y: 83, height: 1234.5 }, "{block}");
-            assert!(found.len() == 2 && found[1].height == grid.get(149, 70), "{block}: {found:?}");
+            assert!(found.len() == 2 && found[1].height == grid[(149, 70)], "{block}: {found:?}");
         }
     }
 

@@ -105,7 +105,7 @@ impl Profile {
         let (i, j) = (at % window.width, at / window.width);
         let (line, nth, across): (Vec<f32>, usize, usize) = match direction {
             Direction::Eastward => (heights.row(j).to_vec(), j, window.height),
-            Direction::Southward => ((0..window.height).map(|j| heights.get(i, j)).collect(), i, window.width),
+            Direction::Southward => ((0..window.height).map(|j| heights[(i, j)]).collect(), i, window.width),
         };
         let area = [left + LEFT, top + HEADING, width - LEFT - RIGHT, height - HEADING - BELOW];
         let count = ((area[2] / STEP) as usize).clamp(2, 10_000);

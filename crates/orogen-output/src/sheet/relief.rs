@@ -84,9 +84,9 @@ pub fn paint(
             let height = here[i + 1];
             let sea = tint.is_sea(height);
             let mut color = match &colors {
-                Painted::Layer(values, ramp) => ramp.at(values.get(i, j)),
+                Painted::Layer(values, ramp) => ramp.at(values[(i, j)]),
                 Painted::Albedo(parts) if height.is_finite() && !sea => {
-                    parts.each_ref().map(|part| (part.get(i, j) * PRINTED).clamp(0.0, 1.0))
+                    parts.each_ref().map(|part| (part[(i, j)] * PRINTED).clamp(0.0, 1.0))
                 }
                 _ => tint.at(height),
             };

@@ -92,8 +92,8 @@ mod tests {
         let middle = water.rivers.iter().filter(|river| river.points.iter().all(|p| (p[0] - 30.0).abs() < 4.0));
         let rows: Vec<f64> = middle.flat_map(|river| river.points.iter().map(|p| p[1])).collect();
         assert!(rows.iter().any(|y| *y < 25.0) && rows.iter().any(|y| *y > 60.0));
-        let level = water.surface.get(30, 40);
-        assert!(level > heights.get(30, 40) + 20.0 && level == water.surface.get(31, 41));
+        let level = water.surface[(30, 40)];
+        assert!(level > heights[(30, 40)] + 20.0 && level == water.surface[(31, 41)]);
         // A lake that must be larger or deeper is none.
         for least in [
             Least { spring: 100, lake: 4000, depth: 5.0, scattered: false },
@@ -106,7 +106,7 @@ mod tests {
     #[test]
     fn the_sea_takes_the_rivers() {
         let heights = valley();
-        let sea = heights.get(30, 70);
+        let sea = heights[(30, 70)];
         let water = find(&heights, Some(sea), Least { spring: 100, lake: 10, depth: 5.0, scattered: false }).unwrap();
         let under =
             water.rivers.iter().flat_map(|river| &river.points[..river.points.len() - 1]).filter(|p| p[1] > 74.0);

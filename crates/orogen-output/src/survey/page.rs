@@ -185,14 +185,14 @@ fn drainage(sheet: &mut Sheet, shown: &Shown, sea_level: Option<f32>, measures: 
     let shade = hillshade(&extended(&shown.grid), &Light::new(315.0, 45.0, 1.0));
     let sea = sea_level.unwrap_or(f32::NEG_INFINITY);
     let [left, top] = shown.put(sheet, corner, |i, j| {
-        let height = shown.grid.get(i, j);
+        let height = shown.grid[(i, j)];
         if !height.is_finite() {
             return NO_DATA;
         }
         if height <= sea {
             return [205, 220, 234];
         }
-        let grey = 128.0 + 122.0 * f64::from(shade.get(i, j).clamp(0.0, 1.0));
+        let grey = 128.0 + 122.0 * f64::from(shade[(i, j)].clamp(0.0, 1.0));
         [grey as u8, grey as u8, (grey - 4.0) as u8]
     });
     let highest = f32::from(measures.water.order.max(1));

@@ -70,7 +70,7 @@ pub fn measure(heights: &Grid, progress: &Progress) -> Result<Water> {
     let outlets = Outlets::new(heights, None);
     let [filling, draining, counting] = progress.parts([3.0, 1.0, 1.0]);
     let filled =
-        fill::filled(heights, &drainage::over_bed_with(heights, &outlets, Descent::Steepest, &filling)?.basins);
+        fill::filled(heights, &drainage::route_carving_with(heights, &outlets, Descent::Steepest, &filling)?.basins);
     let receivers = drainage::over_surface_with(&filled, &outlets, Descent::Steepest, &draining)?;
     // Outlets are not asked for again.
     drop(outlets);

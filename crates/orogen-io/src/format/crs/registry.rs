@@ -8,7 +8,7 @@ use super::unit::Unit;
 /// A coordinate reference system of the EPSG registry: a projected one, or a geographic one in degrees.
 ///
 /// ```
-/// use orogen::format::crs::registry::Crs;
+/// use orogen_io::format::crs::registry::Crs;
 ///
 /// let crs: Crs = "EPSG:32632".parse()?;
 /// assert_eq!((crs.code(), crs.name()), (32632, "WGS 84 / UTM zone 32N"));

@@ -66,12 +66,12 @@ impl<'a> Cover<'a> {
         for j in 0..window.height {
             for i in 0..window.width {
                 let at = [(window.x - there.x) as usize + i, (window.y - there.y) as usize + j];
-                let has_height = self.around.heights.get(at[0], at[1]).is_finite();
+                let has_height = self.around.heights[(at[0], at[1])].is_finite();
                 // From the top down: each takes its share of what is left.
                 let mut left = if has_height { 1.0 } else { 0.0 };
                 for (weight, laid) in weights.iter_mut().zip(&self.laid).rev() {
                     // A share that is not known is none.
-                    let share = laid.share.map_or(1.0, |share| share.get(at[0], at[1]).clamp(0.0, 1.0));
+                    let share = laid.share.map_or(1.0, |share| share[(at[0], at[1])].clamp(0.0, 1.0));
                     *weight = left * if share.is_nan() { 0.0 } else { share };
                     left -= *weight;
                 }
@@ -97,11 +97,11 @@ impl<'a> Cover<'a> {
         self.each(window, |[i, j], at, weights| {
             let mut light: Light = [0.0; 3];
             for (laid, weight) in self.laid.iter().zip(weights).filter(|(_, weight)| **weight > 0.0) {
-                let position = laid.position.map_or(0.0, |position| position.get(at[0], at[1]));
+                let position = laid.position.map_or(0.0, |position| position[(at[0], at[1])]);
                 let color = ramp(&laid.expanded.colors, position);
                 light.iter_mut().zip(color).for_each(|(light, part)| *light += weight * part);
             }
-            if !self.around.heights.get(at[0], at[1]).is_finite() {
+            if !self.around.heights[(at[0], at[1])].is_finite() {
                 light = NO_DATA.map(decode);
             }
             out.iter_mut().zip(light).for_each(|(out, part)| out.row_mut(j)[i] = part);

@@ -132,7 +132,7 @@ impl Around<'_> {
                 continue;
             }
             for i in 0..wide.width {
-                out.row_mut(to)[i] = beyond(out.get(i, last), out.get(i, before));
+                out.row_mut(to)[i] = beyond(out[(i, last)], out[(i, before)]);
             }
         }
         out

@@ -33,7 +33,7 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
         source.rows(|band| {
             (0..band[0].height()).try_for_each(|j| {
                 let row: Vec<f32> =
-                    (0..window.width).flat_map(|i| band.iter().map(move |grid| grid.get(i, j))).collect();
+                    (0..window.width).flat_map(|i| band.iter().map(move |grid| grid[(i, j)])).collect();
                 npy::write_rows(out, &row)
             })
         })

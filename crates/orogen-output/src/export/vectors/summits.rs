@@ -43,7 +43,7 @@ fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer
     let found = summits(&water.heights, &ground.frame, water.sea_level, least as f32);
     let features = (1..).zip(found).map(|(id, summit)| {
         let [east, south] = ground.place(summit.place.map(|c| c as f64));
-        let col = summit.col.map_or(Value::Null, |[i, j]| Value::Real(f64::from(water.heights.get(i, j))));
+        let col = summit.col.map_or(Value::Null, |[i, j]| Value::Real(f64::from(water.heights[(i, j)])));
         let values = vec![
             Value::Integer(id),
             Value::Real(f64::from(summit.height)),

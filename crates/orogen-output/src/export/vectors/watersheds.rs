@@ -50,7 +50,7 @@ fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer
     let mut measures = vec![none; found.rivers.len() + 1];
     for (k, label) in found.labels.iter().enumerate().filter(|(_, label)| **label > 0) {
         let (i, j) = (ground.frame.columns.start + k % window.width, ground.frame.rows.start + k / window.width);
-        let height = ground.water.heights.get(i, j);
+        let height = ground.water.heights[(i, j)];
         let known = &mut measures[*label as usize];
         known.count += 1;
         known.sum += f64::from(height);
