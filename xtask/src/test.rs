@@ -1,7 +1,7 @@
 //! `cargo xtask test`: everything that Rust alone can prove.
 
 use crate::failure::Result;
-use crate::shell::{cargo, run as sh};
+use crate::shell::{self, cargo, run as sh};
 use crate::steps::{self, Step};
 use crate::{codegen, licences, words};
 
@@ -20,6 +20,7 @@ Runs the steps in this order, or only those named, and stops at the first that f
   schema    crates/orogen-engine/recipes/orogen.schema.json is what `orogen schema` prints
   docs      the libraries' documentation builds without a warning
   licences  every dependency has a licence we accept
+  package   every crate builds from its own published archive
 
 It needs nothing but Rust and, the first time, the crates that Cargo.lock names.
 ";
@@ -41,6 +42,7 @@ const STEPS: &[&Step] = &[
     },
     &Step { name: "docs", about: "the libraries' documentation builds without a warning", run: docs },
     &Step { name: "licences", about: "every dependency has a licence we accept", run: licences::check },
+    &Step { name: "package", about: "every crate builds from its own published archive", run: package },
 ];
 
 /// Runs the checks.
@@ -53,4 +55,12 @@ fn docs() -> Result {
     let mut command =
         cargo("doc --quiet --workspace --no-deps --exclude orogen-cli --exclude orogen-bench --exclude xtask");
     sh(command.env("RUSTDOCFLAGS", "-D warnings"))
+}
+
+/// Packs every crate as it would be published and builds it from that archive alone, without optimisation: paths that lead out of a
+/// crate's folder, and files that are missing in it, fail here.
+fn package() -> Result {
+    let mut command = cargo("package --quiet --workspace --exclude xtask --exclude orogen-bench --allow-dirty");
+    command.arg("--target-dir").arg(shell::target_dir().join("packages"));
+    sh(command.env("CARGO_PROFILE_DEV_OPT_LEVEL", "0").env("CARGO_PROFILE_DEV_DEBUG", "false"))
 }

@@ -17,7 +17,7 @@ const BUFFER: usize = 256 * 1024;
 /// `?` or `into`), which comes back as it is.
 ///
 /// ```
-/// # fn main() -> orogen_io::Result<()> {
+/// # fn main() -> orogen_grid::Result<()> {
 /// use orogen_io::file::{OutputPolicy, write_whole};
 ///
 /// let path = std::env::temp_dir().join(format!("orogen-doc-{}.txt", std::process::id()));

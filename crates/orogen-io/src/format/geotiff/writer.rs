@@ -16,14 +16,15 @@ use orogen_grid::grid::{Grid, Window};
 /// ```
 /// use orogen_io::format::geotiff::{options::Options, writer};
 /// use orogen_io::file::{OutputPolicy, write_whole};
-/// use orogen_io::{Grid, Window, spool::Spool};
+/// use orogen_grid::{Grid, Window};
+/// use orogen_io::spool::Spool;
 ///
 /// let grid = Grid::filled(Window::new(600, 400, 30.0), 1200.0);
 /// let path = std::env::temp_dir().join(format!("orogen-doc-{}.tif", std::process::id()));
 /// let output = OutputPolicy::default().output(&path)?;
 /// write_whole(&output, |out| writer::write(out, &grid, &Options::default(), Spool::beside(&path)))?;
 /// # std::fs::remove_file(&path).ok();
-/// # Ok::<(), orogen_io::Error>(())
+/// # Ok::<(), orogen_grid::Error>(())
 /// ```
 pub fn write(out: &mut dyn Write, grid: &Grid, options: &Options, spool: Spool) -> io::Result<()> {
     let mut writer = Writer::new(grid.window(), options, spool)?;
