@@ -202,7 +202,6 @@ impl<T: Copy> Grid<T> {
         &mut self.data[j * width..(j + 1) * width]
     }
 
-
     /// The sample in column `i` and row `j`, both from 0, or `None` outside of the grid.
     #[must_use]
     pub fn get(&self, i: usize, j: usize) -> Option<T> {

@@ -3,7 +3,7 @@
 //! - [`mod@format`]: one file format a module. Writers stream; readers never trust a file further than its bytes go.
 //! - [`dem`]: elevation models of any format opened as one: mosaics, in square metres, without voids.
 //! - [`palette`]: colour ramps by name and from files.
-//! - [`file`]: files written atomically, and the policy of what they may replace.
+//! - [`mod@file`]: files written atomically, and the policy of what they may replace.
 //! - [`raster`]: a layer in memory or in pages on disk, with the same bits.
 //! - [`spool`]: bytes that wait in memory or on disk until they are written.
 #![forbid(unsafe_code)]

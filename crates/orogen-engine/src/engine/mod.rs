@@ -1,7 +1,7 @@
 //! The engine: runs plans.
 
-pub mod inline;
-pub mod interpreter;
-pub mod run;
+pub(crate) mod inline;
+pub(crate) mod interpreter;
+pub(crate) mod run;
 mod solve;
 mod tiles;

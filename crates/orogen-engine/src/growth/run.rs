@@ -3,7 +3,7 @@
 //! A recipe's `stream-power` nodes are its stages. They run one after the other, in the order in which they read each other: while one goes
 //! through its steps, those before it are done and those after it have not begun. What no stage changes is solved once; each stage runs once,
 //! observed; and for a step that is asked for only what lies downstream of the stage is made. Frames of stages that others follow are made from
-//! [drafts](super::draft).
+//! drafts.
 
 use super::draft;
 use super::frame_spool::FrameSpool;
@@ -110,7 +110,7 @@ impl<'w> Growth<'w> {
     /// Calls `visit` with the layer after each of the steps in `wanted`, in order: 0 is the beginning, [`Growth::steps`] is the layer itself.
     ///
     /// Frames of the last stage, and those at the ends of the others, have the bits of the recipe whose stages have that many steps of the same
-    /// length. The others are near that: see [`draft`].
+    /// length. The others are near that: see `draft`.
     ///
     /// # Errors
     /// As [`World::run`], and what `visit` fails with.

@@ -2,10 +2,10 @@
 
 mod compile;
 pub(crate) mod cost;
-pub mod explain;
+pub(crate) mod explain;
 mod grid_merge;
-pub mod key;
-pub mod memory;
+pub(crate) mod key;
+pub(crate) mod memory;
 pub mod planner;
 pub mod program;
 pub mod steps;

@@ -2,6 +2,6 @@
 
 pub mod cache;
 mod entry;
-pub mod grids;
+pub(crate) mod grids;
 pub mod listing;
-pub mod solutions;
+pub(crate) mod solutions;

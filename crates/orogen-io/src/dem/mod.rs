@@ -3,7 +3,7 @@
 pub mod file_ref;
 pub mod fill;
 pub mod latitude;
-pub mod mosaic;
+pub(crate) mod mosaic;
 pub mod open;
 pub mod prepared;
 pub mod square;

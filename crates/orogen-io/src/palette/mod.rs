@@ -3,16 +3,16 @@
 //! Colours between stops are mixed in Oklab (B. Ottosson, 2020), where equal steps look equal and a mix of green and brown does
 //! not turn grey. What comes out is linear light, so that shading may multiply it; [`color::Encoder`] makes the bytes.
 
-pub mod atlas;
+pub(crate) mod atlas;
 pub mod color;
-pub mod cpt;
+pub(crate) mod cpt;
 pub mod fitted;
-pub mod gdaldem;
-pub mod gpl;
+pub(crate) mod gdaldem;
+pub(crate) mod gpl;
 pub mod histogram;
 pub mod named;
 pub mod names;
-pub mod own;
+pub(crate) mod own;
 #[allow(clippy::module_inception, reason = "the room is about palettes, the file about the one")]
 pub mod palette;
 pub mod ramp;

@@ -23,7 +23,7 @@ enum Colors {
 }
 
 impl Tint {
-    /// The atlas tint ([`Atlas`]) for a world between `low` and `high` with the sea at `sea_level`, all in metres.
+    /// The atlas tint (`Atlas`) for a world between `low` and `high` with the sea at `sea_level`, all in metres.
     pub fn hypsometric(low: f32, high: f32, sea_level: f32) -> Tint {
         Tint { colors: Colors::Atlas(Atlas::new(low, high, sea_level)), sea_level, sea: true }
     }

@@ -2,7 +2,7 @@
 //!
 //! A [`format::Format`] says what it is called, which extensions it has, which options it knows, what memory it takes and how it is written from a
 //! [`layer_source::LayerSource`]: a layer over a window, as bands of rows from the north, or whole. What it writes goes through
-//! [`files::Files`], which puts all files of an export in place at the end, or none. [`registry`] lists the formats, and
+//! `Files`, which puts all files of an export in place at the end, or none. [`registry`] lists the formats, and
 //! [`run`] exports.
 //!
 //! ```
@@ -21,18 +21,18 @@
 
 pub mod channels;
 pub mod contour_options;
-pub mod contours;
+pub(crate) mod contours;
 pub mod derived;
 pub mod features;
-pub mod files;
+pub(crate) mod files;
 pub mod format;
-pub mod formats;
+pub(crate) mod formats;
 pub mod layer_source;
-pub mod memory;
+pub(crate) mod memory;
 pub mod mesh;
 pub mod mesh_cover;
 pub mod mesh_tint;
-pub mod mesh_water;
+pub(crate) mod mesh_water;
 pub mod notes;
 pub mod options;
 pub mod place;
@@ -40,6 +40,6 @@ pub mod quantizer;
 pub mod registry;
 pub mod run;
 pub mod sheet_cover;
-pub mod sidecar;
+pub(crate) mod sidecar;
 pub mod targets;
-pub mod vectors;
+pub(crate) mod vectors;

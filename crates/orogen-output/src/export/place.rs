@@ -33,7 +33,7 @@ pub fn write(
 
 /// Writes NAME.json and the location, of a format whose files tell everything but where they lie: only for a world that lies on a map.
 ///
-/// Fails as [`write()`] and [`sidecar::write`].
+/// Fails as [`write()`] and `write`.
 pub fn write_on_map(
     files: &mut Files,
     source: &LayerSource,

@@ -2,6 +2,6 @@
 
 pub mod canvas;
 pub mod paint;
-pub mod shade;
+pub(crate) mod shade;
 pub mod swatches;
 pub mod text;

@@ -22,7 +22,7 @@ pub struct Model<'a> {
     pub texture: Option<&'a [u8]>,
     /// A PNG picture of the grid that goes with the texture: occlusion in red, roughness in green, metalness in blue.
     pub material: Option<&'a [u8]>,
-    /// For each level a PNG [normal map](super::normal_map), where it has one; empty where none has.
+    /// For each level a PNG normal map, where it has one; empty where none has.
     pub normal_maps: &'a [Option<Vec<u8>>],
     /// Water on it: a node and a translucent material each.
     pub water: &'a [WaterMesh],

@@ -7,14 +7,14 @@
 pub mod camera;
 mod grain;
 mod ground;
-pub mod march;
+pub(crate) mod march;
 pub mod relief;
 pub mod scene;
 mod shade;
-pub mod sky;
+pub(crate) mod sky;
 mod skylight;
 mod tone;
-pub mod vector;
+pub(crate) mod vector;
 mod water;
 
 #[cfg(test)]

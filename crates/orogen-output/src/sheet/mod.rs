@@ -3,25 +3,25 @@
 
 pub mod draw;
 pub mod font_set;
-pub mod furniture;
-pub mod ground;
-pub mod inks;
-pub mod labels;
-pub mod layout;
-pub mod lines;
+pub(crate) mod furniture;
+pub(crate) mod ground;
+pub(crate) mod inks;
+pub(crate) mod labels;
+pub(crate) mod layout;
+pub(crate) mod lines;
 pub mod linework;
-pub mod marks;
+pub(crate) mod marks;
 pub mod options;
 mod overlay;
 pub mod pdf;
 mod profile;
-pub mod ramp;
+pub(crate) mod ramp;
 pub mod raster;
-pub mod relief;
+pub(crate) mod relief;
 pub mod scene;
-pub mod ticks;
+pub(crate) mod ticks;
 pub mod vector;
-pub mod water;
+pub(crate) mod water;
 
 #[cfg(test)]
 mod tests;

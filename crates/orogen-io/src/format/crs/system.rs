@@ -106,11 +106,6 @@ pub struct System {
 const RADIANS: &str = "0.0174532925199433";
 
 impl System {
-    /// The parameters of its projection; none of a geographic system.
-    pub fn parameters(&self) -> &[f64] {
-        self.projection.as_ref().map_or(&[], |(_, parameters)| parameters)
-    }
-
     /// As the text of a `.prj` file: WKT 1 in ESRI's terms, on one line.
     pub fn to_wkt(&self) -> String {
         let Geographic { name, datum, spheroid, radius, flattening, .. } = self.geographic;

@@ -8,5 +8,5 @@
 
 pub mod blosc;
 pub mod metadata;
-pub mod reader;
-pub mod unpack;
+pub(crate) mod reader;
+pub(crate) mod unpack;

@@ -32,8 +32,7 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
         npy::write_shape(out, &[window.height, window.width, source.channels()])?;
         source.rows(|band| {
             (0..band[0].height()).try_for_each(|j| {
-                let row: Vec<f32> =
-                    (0..window.width).flat_map(|i| band.iter().map(move |grid| grid[(i, j)])).collect();
+                let row: Vec<f32> = (0..window.width).flat_map(|i| band.iter().map(move |grid| grid[(i, j)])).collect();
                 npy::write_rows(out, &row)
             })
         })

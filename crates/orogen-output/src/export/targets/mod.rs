@@ -1,10 +1,10 @@
 //! Engines that worlds are exported for: one file each, and [`list`] names them.
 
 pub mod frame;
-pub mod hterrain;
+pub(crate) mod hterrain;
 pub mod list;
 pub mod run;
 pub mod target;
-pub mod terrain3d;
-pub mod unity;
-pub mod unreal;
+pub(crate) mod terrain3d;
+pub(crate) mod unity;
+pub(crate) mod unreal;
