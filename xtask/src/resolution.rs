@@ -28,7 +28,7 @@ The table compares each preset at its own cell with the same preset at cells 2, 
   cubic. The difference is mostly the detail smaller than two of the larger cells. A border of two large cells is excluded.
 - RMS is the root of the mean squared difference; worst is the largest absolute difference. Both are in metres and, in brackets, as a share of the
   relief, the difference between the highest and the lowest sample.
-- Heights do not depend on the cell in this way, but slopes do: the same terrain is less steep at larger cells.
+- Slopes depend on the cell: the same terrain is less steep at larger cells.
 
 | preset | cell | requested cell | shared, RMS | shared, worst | everywhere, RMS | everywhere, worst |
 |---|--:|--:|--:|--:|--:|--:|
