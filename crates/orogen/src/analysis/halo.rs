@@ -28,7 +28,7 @@ impl Halo {
         }
     }
 
-    /// Copies the halo's samples that lie in `band`, which has the window `window`.
+    /// Copies the halo's samples that lie in `band`, a band of rows of the ground around `window`.
     pub fn take(&mut self, window: &Window, band: &Grid) {
         let there = band.window();
         let inside = usize::try_from(window.x - there.x).unwrap_or(0).min(1);

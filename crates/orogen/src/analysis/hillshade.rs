@@ -78,7 +78,7 @@ pub fn hillshade(grid: &Grid, light: &Light) -> Grid {
     out
 }
 
-/// A row without missing samples; the result says whether that held.
+/// The hillshade of a row without missing samples; returns whether none is missing.
 struct Sound<'a> {
     rows: [&'a [f32]; 3],
     cell: f64,
