@@ -42,7 +42,7 @@ const U16: u32 = 5123;
 const U32: u32 = 5125;
 const F32: u32 = 5126;
 
-/// Screen coverage down to which a level of detail is meant to be shown: this value for the first, its square for the
+/// Base of the screen coverage down to which a level of detail is meant to be shown: 1/2 for the first, 1/4 for the
 /// next.
 const COVERAGE: f64 = 0.5;
 

@@ -1,4 +1,4 @@
-//! How the ground bends.
+//! The layer `curvature`.
 
 use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
 use crate::analysis::curvature::{Curvature, curvature};

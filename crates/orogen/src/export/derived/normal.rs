@@ -1,4 +1,4 @@
-//! Where the ground points up.
+//! The layer `normal`.
 
 use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
 use crate::analysis::slope::gradients_between;

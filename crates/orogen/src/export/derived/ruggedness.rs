@@ -1,4 +1,4 @@
-//! How rugged the ground is.
+//! The layer `tri`.
 
 use super::layer::{Derived, Made, NodeLayer};
 use crate::filter::ruggedness::Ruggedness;
