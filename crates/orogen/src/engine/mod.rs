@@ -1,4 +1,4 @@
-//! The engine: runs plans.
+//! The engine, which runs plans.
 
 pub mod inline;
 pub mod interpreter;
