@@ -53,11 +53,11 @@ Only if named, because Blender is large and needs Python 3.11:
 `build` and `install` always run first. On systems other than Debian, or without root, the command prints what to install.
 ";
 
-/// One foreign program, or a few that one script runs.
+/// A foreign program, or several that one script runs.
 struct Client {
-    /// The step's name, and that of its script in xtask/clients/.
+    /// The name of the step, and of its script in xtask/clients/.
     name: &'static str,
-    /// Debian packages, each with a program (or, absolute, a file) it brings.
+    /// Debian packages, each with a program (or, as an absolute path, a file) that it installs.
     apt: &'static [(&'static str, &'static str)],
     /// Python packages, pinned.
     pip: &'static [&'static str],
@@ -198,12 +198,12 @@ fn folder() -> PathBuf {
     target_dir().join("clients")
 }
 
-/// The binary that is asked for files.
+/// The binary under test.
 fn orogen() -> PathBuf {
     target_dir().join("release").join(format!("orogen{}", std::env::consts::EXE_SUFFIX))
 }
 
-/// Runs one client's script in a fresh folder of its own.
+/// Runs a client's script in a new folder.
 fn script(name: &str) -> Result {
     if !CLIENTS.iter().any(|c| c.name == name) {
         return Err(Failure::new(format!("{name} is not in the table of clients: nothing installs it")));
@@ -211,7 +211,7 @@ fn script(name: &str) -> Result {
     script_by(&install::python(), name)
 }
 
-/// The same by another Python.
+/// The same with another Python.
 fn script_by(python: &Path, name: &str) -> Result {
     let work = folder().join("work").join(name);
     crate::shell::empty_dir(&work)?;

@@ -5,7 +5,7 @@ use serde_json::Value;
 use crate::failure::{Failure, Result, on_file};
 use crate::shell;
 
-pub const ABOUT: &str = "measure how presets differ at coarser cells; write docs/resolution.md";
+pub const ABOUT: &str = "measure the differences of presets at coarser cells; write docs/resolution.md";
 
 pub const HELP: &str = "
 Usage: cargo xtask resolution
@@ -61,7 +61,7 @@ fn page(rows: &[Value]) -> String {
             amount(number(&part[format!("{kind}_m")]), number(&part[format!("{kind}_share")]))
         };
         let preset = row["preset"].as_str().unwrap_or("?");
-        // A preset is named once, at the first of its rows.
+        // A preset is named only in its first row.
         let again = std::mem::replace(&mut last, preset) == preset;
         let (name, own) = match again {
             true => (String::new(), String::new()),
@@ -79,7 +79,7 @@ fn page(rows: &[Value]) -> String {
     text
 }
 
-/// Metres and the share of the relief; a plain 0 for the same bits.
+/// Metres and the share of the relief; a plain 0 for equal bits.
 fn amount(metres: f64, share: f64) -> String {
     match metres {
         0.0 => "0".to_owned(),

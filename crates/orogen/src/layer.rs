@@ -1,21 +1,22 @@
-//! Layers: the things a node makes, and how each may be read between its samples.
+//! Layers of nodes, and their interpolation.
 
 use serde::{Deserialize, Serialize};
 
-/// How a layer is read between its samples. On its own lattice a sample is always itself, bit for bit.
+/// The interpolation of a layer between its samples. At a sample's own position the value is always the sample, bit for
+/// bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LayerKind {
-    /// Smooth, such as a height: the interpolating cubic.
+    /// Smooth values, such as heights: interpolating cubic.
     Height,
-    /// Names in numbers, such as a watershed: the nearest sample.
+    /// Numbers as names, such as watersheds: nearest sample.
     Label,
-    /// Amounts over many orders of magnitude, such as a drainage area: linear in their logarithms, so that it neither falls
-    /// below nor rises above the samples around; the nearest sample where one of those is not above zero.
+    /// Values over many orders of magnitude, such as drainage areas: linear in their logarithms, within the range of
+    /// the surrounding samples; nearest sample if one of those is not positive.
     Flow,
 }
 
 impl LayerKind {
-    /// The word for it.
+    /// The name in declarations.
     pub fn name(self) -> &'static str {
         match self {
             LayerKind::Height => "height",
@@ -24,7 +25,7 @@ impl LayerKind {
         }
     }
 
-    /// What it means, for a reader of the reference.
+    /// The description in the reference.
     pub fn about(self) -> &'static str {
         match self {
             LayerKind::Height => "cubic interpolation",
@@ -34,29 +35,29 @@ impl LayerKind {
     }
 }
 
-/// How a declaration says its layer is read between samples.
+/// The declared interpolation of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Interpolation {
-    /// As this kind.
+    /// This kind.
     As(LayerKind),
-    /// As what the op's first input shows.
+    /// The kind of the op's first input.
     AsSource,
 }
 
-/// One of the things a node makes.
+/// A layer of a node.
 #[derive(Debug)]
 pub struct Layer {
-    /// Its name: read as `node.layer`; the first may be read as `node`.
+    /// The name: read as `node.layer`; the first may also be read as `node`.
     pub name: &'static str,
-    /// What it is.
+    /// The description.
     pub doc: &'static str,
-    /// Its unit, or empty.
+    /// The unit, or empty.
     pub unit: &'static str,
-    /// How it is read between samples.
+    /// The interpolation.
     pub interpolation: Interpolation,
 }
 
-/// What an op makes that declares no layers.
+/// The layers of an op that declares none.
 pub const ONE_LAYER: &[Layer] = &[Layer {
     name: "height",
     doc: "What the node makes.",

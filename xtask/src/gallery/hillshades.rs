@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::failure::{Result, on_file};
 use crate::shell;
 
-/// The part of a preset that is shaded, at the world's cell.
+/// The window that is shaded, at the world's cell.
 const PART: &str = "100,100,400,400";
 
 /// The shaded relief of every preset, and the page with all of them.
