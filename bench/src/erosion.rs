@@ -1,4 +1,5 @@
-//! Area `erosion`: hydrology and filters beside richdem, fastscapelib and matplotlib, in memory, CPU time of one thread.
+//! Area `erosion`: hydrology and filters compared with richdem, fastscapelib and matplotlib, in memory, CPU time of one
+//! thread.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -19,11 +20,12 @@ use crate::{filters, sizes};
 
 const CELL: f64 = 60.0;
 
-/// Where a peer's Python is, each in the variable of its name: `cargo xtask bench` installs them and sets these.
+/// The Pythons of the peers, each in the environment variable of its name: `cargo xtask bench` installs them and sets
+/// these.
 const PEERS: [(&str, &str); 3] =
     [("richdem", "OROGEN_RICHDEM"), ("fastscapelib", "OROGEN_FASTSCAPELIB"), ("matplotlib", "OROGEN_MATPLOTLIB")];
 
-/// One measured case: its name, side, our seconds, the peer and its parts that do the same, and how many times faster to be.
+/// A case: its name, side, our seconds, the peer and its parts that do the same work, and the required ratio.
 struct Case {
     name: &'static str,
     side: usize,
@@ -75,7 +77,7 @@ pub fn run(options: &Options) -> Result<Value, String> {
     let folder = std::env::temp_dir().join(format!("orogen-bench-{}", std::process::id()));
     std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let rows = measured(options, &folder);
-    // Only what was made here, in a folder of our own, is removed.
+    // Only files made here, in a folder of our own, are removed.
     let _ = std::fs::remove_dir_all(&folder);
     Ok(json!({ "area": "erosion", "simd": orogen_simd::Level::current().name(), "threads": 1, "rows": rows? }))
 }
@@ -110,7 +112,7 @@ fn measured(options: &Options, folder: &Path) -> Result<Vec<Value>, String> {
     Ok(rows)
 }
 
-/// Rough ground with depressions: ten octaves of fBm, 3000 m from low to high.
+/// Rough terrain with depressions: ten octaves of fBm with a relief of 3000 m.
 fn ground(side: usize) -> Result<Grid, String> {
     let text = "orogen = 1\n[world]\nseed = 3\n[nodes.noise]\nop = \"fbm\"\nwavelength = 20000\noctaves = 10\n\
                 [nodes.ground]\nop = \"remap\"\nsource = \"noise\"\nto = [0, 3000]\n[outputs]\nheight = \"ground\"\n";

@@ -1,5 +1,5 @@
-//! Part of area `erosion`: filters, and hillshade beside matplotlib. CPU time of one thread; two threads by the clock
-//! on the wall.
+//! Part of area `erosion`: filters, and hillshade compared with matplotlib. CPU time of one thread; wall time of two
+//! threads.
 
 use std::time::Instant;
 
@@ -17,16 +17,16 @@ use crate::measure::median;
 use crate::options::Options;
 use crate::world::figure::{Figure, Target};
 
-/// Samples a side of what comes out.
+/// Samples per side of the result.
 pub const SIDE: usize = 1024;
 
 /// Iterations of thermal weathering, of pipes and of local stream power.
 const ITERATIONS: usize = 100;
 
-/// How many times faster two threads have to be.
+/// Required speedup of two threads.
 const FASTER: f64 = 1.8;
 
-/// One measured filter: what it is given beyond the result on each side, and at most so many seconds.
+/// A measured filter: its halo on each side, and the maximum number of seconds.
 struct Case {
     name: &'static str,
     halo: fn(f64) -> usize,
@@ -57,7 +57,7 @@ const CASES: &[Case] = &[
     },
 ];
 
-/// The filters over ground that `ground` makes for a side; each on one thread, then on two beside one.
+/// The filters over terrain that `ground` makes for a side; each on one thread, then on two compared with one.
 pub fn figures(options: &Options, ground: impl Fn(usize) -> Result<Grid, String>) -> Result<Vec<Figure>, String> {
     let mut figures = Vec::new();
     let pools = [1, 2].map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build());
@@ -101,7 +101,7 @@ pub fn figures(options: &Options, ground: impl Fn(usize) -> Result<Grid, String>
     Ok(figures)
 }
 
-/// Hillshade of all samples, the border made up.
+/// Hillshade of all samples, with an extrapolated border.
 pub fn shaded(ground: &Grid) {
     std::hint::black_box(hillshade(&extended(ground), &Light::default()));
 }
@@ -154,7 +154,7 @@ fn local(ground: &Grid) -> Result<(), orogen::Error> {
     law.run(planes, ITERATIONS, &orogen::Progress::none()).map(|planes| _ = std::hint::black_box(planes))
 }
 
-/// Beyer's: 30 cells, a radius of 3.
+/// Beyer's parameters: 30 cells, a radius of 3.
 fn droplets(cell: f64) -> Droplets {
     Droplets {
         density: 500_000.0 / (SIDE * SIDE) as f64 / (cell * cell) * 1e6,

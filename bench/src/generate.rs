@@ -1,4 +1,4 @@
-//! Area `generate`: what a user waits for, from the command to the last file, on all cores.
+//! Area `generate`: wall time of whole runs of `orogen generate`, on all cores.
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -8,13 +8,13 @@ use serde_json::{Value, json};
 
 use crate::options::Options;
 
-/// Names the program to run: `cargo xtask bench` builds it and sets this.
+/// The environment variable with the program to run: `cargo xtask bench` builds it and sets this.
 const PROGRAM: &str = "OROGEN_BIN";
 
-/// Seconds on the wall that a preset may take at 1024 samples a side.
+/// Maximum wall time for a preset at 1024 samples per side, in seconds.
 const MOST: f64 = 2.0;
 
-/// Runs every preset, or those named.
+/// Runs every preset, or those selected.
 pub fn run(options: &Options) -> Result<Value, String> {
     let program = std::env::var_os(PROGRAM)
         .map(PathBuf::from)
@@ -47,7 +47,7 @@ pub fn run(options: &Options) -> Result<Value, String> {
             "target": MOST, "met": seconds <= MOST,
         }));
     }
-    // Only what was made here, in a folder of our own, is removed.
+    // Only files made here, in a folder of our own, are removed.
     let _ = std::fs::remove_dir_all(&out);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     Ok(json!({ "area": "generate", "simd": orogen_simd::Level::current().name(), "threads": threads, "rows": rows }))

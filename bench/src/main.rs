@@ -1,6 +1,7 @@
-//! Orogen beside its peers and beside physical limits, measured in one run. `cargo xtask bench` is the front.
+//! Benchmarks of Orogen against its peers and physical limits, measured in one run. `cargo xtask bench` is the front
+//! end.
 //!
-//! Prints one JSON object, {"area", "simd", "threads", "rows"}; progress goes to the error output.
+//! Prints one JSON object, {"area", "simd", "threads", "rows"}; progress goes to standard error.
 #![forbid(unsafe_code)]
 
 mod erosion;
@@ -19,7 +20,7 @@ use std::process::ExitCode;
 
 use options::Options;
 
-/// An area of measurement: its name and what measures it.
+/// An area of measurement: its name and function.
 type Area = (&'static str, fn(&Options) -> Result<serde_json::Value, String>);
 
 const AREAS: &[Area] = &[

@@ -1,52 +1,52 @@
-//! Timing that survives a busy machine: CPU time of this thread, jobs taking turns, medians.
+//! Timing that is robust on a busy machine: CPU time of this thread, jobs in turns, medians.
 
 use std::hint::black_box;
 use std::time::Instant;
 
 use cpu_time::ThreadTime;
 
-/// Something that fills a buffer.
+/// A job that fills a buffer.
 pub struct Job {
-    /// Whose it is, for the table.
+    /// The name in the table.
     pub name: &'static str,
-    /// Fills the buffer; one that can only return a new one replaces it.
+    /// Fills the buffer; a job that can only return a new buffer replaces it.
     pub fill: Fill,
 }
 
-/// The filling itself.
+/// The function that fills the buffer.
 pub type Fill = Box<dyn FnMut(&mut Vec<f32>)>;
 
 impl Job {
-    /// A job of this name.
+    /// A job with this name.
     pub fn new(name: &'static str, fill: impl FnMut(&mut Vec<f32>) + 'static) -> Self {
         Self { name, fill: Box::new(fill) }
     }
 }
 
-/// One timing lasts at least so long: the clock and its call then cost nothing.
+/// Minimum duration of a timing, in seconds, so that the cost of the clock is negligible.
 const AT_LEAST: f64 = 0.01;
 
-/// How many fills one timing may hold.
+/// Maximum number of fills per timing.
 const AT_MOST: usize = 500;
 
-/// What a timing counts.
+/// The clock of a timing.
 #[derive(Clone, Copy)]
 pub enum Clock {
     /// CPU time of the calling thread.
     Thread,
-    /// Time on the wall: for jobs that have threads of their own. Other work on the machine shows.
+    /// Wall time, for jobs with threads of their own. It includes the effect of other work on the machine.
     Wall,
 }
 
-/// The rate of each job, in samples a second: the median of timings in which the jobs take turns, so that whatever slows the
-/// machine for a while slows all of them.
+/// The rate of each job in samples per second: the median of timings in which the jobs take turns, so that a temporary
+/// slowdown of the machine affects all of them.
 pub fn rates(clock: Clock, jobs: &mut [Job], samples: usize, repetitions: usize) -> Result<Vec<f64>, String> {
     let mut buffer = vec![0.0; samples];
     let mut fills = Vec::new();
     for job in jobs.iter_mut() {
         buffer.clear();
         buffer.resize(samples, 0.0);
-        // The first fill sets up tables and faults pages in; the second tells how many make a timing.
+        // The first fill sets up tables and maps pages; the second determines the number of fills per timing.
         (job.fill)(&mut buffer);
         check(job.name, &buffer, samples)?;
         let once = seconds(clock, job, &mut buffer, 1);
@@ -73,21 +73,21 @@ fn seconds(clock: Clock, job: &mut Job, buffer: &mut Vec<f32>, fills: usize) -> 
     }
 }
 
-/// The middle one.
+/// The median.
 pub fn median(times: &mut [f64]) -> f64 {
     times.sort_by(f64::total_cmp);
     let middle = times.len() / 2;
     if times.len() % 2 == 1 { times[middle] } else { (times[middle - 1] + times[middle]) / 2.0 }
 }
 
-/// What a job that is no noise writes: one value, as fast as memory takes it.
+/// The value of the plain fill, which writes one value at the speed of memory.
 pub const PLAIN: f32 = 0.123;
 
-/// Whether the job did its work: every sample written, finite, and not all the same.
+/// Checks a job's output: every sample written, finite, and not all the same.
 fn check(name: &str, buffer: &[f32], samples: usize) -> Result<(), String> {
     let (low, high) = buffer.iter().fold((f32::MAX, f32::MIN), |(l, h), &v| (l.min(v), h.max(v)));
     let finite = buffer.iter().all(|v| v.is_finite());
-    // The plain fill writes one value: it has no spread, and is recognised by the value.
+    // The plain fill writes one value; it is recognised by that value.
     if buffer.len() == samples && finite && (high - low > 0.01 || low == PLAIN) {
         return Ok(());
     }

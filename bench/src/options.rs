@@ -1,9 +1,9 @@
-//! What a measurement is told.
+//! Options of a measurement.
 
-/// What the command line asks for.
+/// The options of the command line.
 pub struct Options {
-    /// Only cases with this in their name.
+    /// Only cases whose name contains this.
     pub case: String,
-    /// How often each job is timed.
+    /// Number of timings per job.
     pub repetitions: usize,
 }

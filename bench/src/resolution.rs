@@ -1,4 +1,4 @@
-//! Area `resolution`: how much each preset differs when it is looked at with larger cells. No clock is read.
+//! Area `resolution`: the differences of each preset at larger cells. Nothing is timed.
 
 use orogen::layer::LayerKind;
 use orogen::{Grid, Points, Window, World, presets, resample};
@@ -6,13 +6,13 @@ use serde_json::{Value, json};
 
 use crate::options::Options;
 
-/// Cells so many times the world's own.
+/// Ratios of the cells to the world's own.
 const RATIOS: [usize; 3] = [2, 4, 8];
 
-/// Columns and rows of the largest cells at the border that are left out: there the interpolation has nothing to read beyond.
+/// Border in large cells that is excluded: the interpolation has no samples beyond it.
 const BORDER: usize = 2;
 
-/// Measures every preset, or those named.
+/// Measures every preset, or those selected.
 pub fn run(options: &Options) -> Result<Value, String> {
     let mut rows = Vec::new();
     for preset in presets::all().iter().filter(|preset| preset.name.contains(&options.case)) {
@@ -27,7 +27,7 @@ fn measure(name: &str, world: &World) -> Result<Vec<Value>, String> {
     let spec = world.recipe().world;
     let coarsest = RATIOS.iter().copied().max().unwrap_or(1);
     let cells = |length: f64| (length / spec.cell).floor() as usize / coarsest * coarsest;
-    // Of a world without bounds, as much as is drawn of it.
+    // Of an unbounded world, the default window.
     let [width, height] = spec.size.map_or([1024; 2], |size| size.map(cells));
     let make = |ratio: usize| {
         let window = Window::new(width / ratio + 1, height / ratio + 1, spec.cell * ratio as f64);
@@ -54,7 +54,7 @@ fn measure(name: &str, world: &World) -> Result<Vec<Value>, String> {
         .collect()
 }
 
-/// The coarse grid read at every sample of the fine one.
+/// The coarse grid interpolated at every sample of the fine one.
 fn between(fine: &Grid, coarse: &Grid) -> Grid {
     let mut read = Grid::filled(*fine.window(), 0.0);
     let (xs, ys) = (fine.window().eastings(), fine.window().southings());
@@ -62,7 +62,7 @@ fn between(fine: &Grid, coarse: &Grid) -> Grid {
     read
 }
 
-/// The root of the mean square of what every `step`th sample differs by, and the most, in metres.
+/// The root mean square of the differences of every `step`th sample, and the maximum, in metres.
 fn difference(fine: &Grid, coarse: &Grid, step: usize, other: impl Fn(usize, usize) -> f32) -> [f64; 2] {
     let coarsest = RATIOS.iter().copied().max().unwrap_or(1);
     let border = if coarse.window().cell == fine.window().cell { BORDER * coarsest } else { 0 };

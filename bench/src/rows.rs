@@ -2,31 +2,31 @@
 
 use serde_json::{Value, json};
 
-/// What a case has to reach.
+/// The target of a case.
 #[derive(Clone, Copy)]
 pub struct Target {
-    /// Against whom.
+    /// The peer.
     pub peer: &'static str,
-    /// How many times that peer's rate.
+    /// Required ratio to the peer's rate.
     pub ratio: f64,
-    /// A rate that is enough by itself, if there is one.
+    /// A rate that suffices on its own, if there is one.
     pub or_rate: Option<f64>,
 }
 
-/// One case against one peer, or alone. Rates are in millions of samples a second.
+/// One case against one peer, or alone. Rates are in millions of samples per second.
 pub struct Row {
-    /// What is measured.
+    /// The case.
     pub case: String,
-    /// Our rate; none if we do not offer it.
+    /// Our rate; `None` if we do not offer it.
     pub ours: Option<f64>,
     /// The peer and its rate.
     pub peer: Option<(&'static str, f64)>,
-    /// What the case has to reach, if this peer is the measure.
+    /// The target, if it refers to this peer.
     pub target: Option<Target>,
 }
 
 impl Row {
-    /// As JSON. Whoever offers nothing has not met a target.
+    /// The row as JSON. Without a rate of ours a target is not met.
     pub fn json(&self) -> Value {
         let ratio = self.ours.zip(self.peer).map(|(ours, (_, theirs))| ours / theirs);
         let met = self.target.map(|target| {
@@ -46,7 +46,7 @@ impl Row {
     }
 }
 
-/// Two places: more would be noise.
+/// Two decimals; more would be noise.
 fn rounded(x: f64) -> f64 {
     (x * 100.0).round() / 100.0
 }

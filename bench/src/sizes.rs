@@ -1,4 +1,5 @@
-//! Part of area `erosion`: the preset `alpine` as worlds of many sizes, from the recipe to its heights. CPU time of one thread.
+//! Part of area `erosion`: the preset `alpine` in worlds of several sizes, from the recipe to its heights. CPU time of
+//! one thread.
 
 use cpu_time::ProcessTime;
 use orogen::{Options as Limits, Progress, World, presets};
@@ -7,15 +8,15 @@ use crate::measure::median;
 use crate::options::Options;
 use crate::world::figure::{Figure, Target};
 
-/// Cells a side.
+/// Cells per side.
 const SIDES: [usize; 4] = [512, 1024, 2048, 4096];
 
-/// How much dearer a cell may be in the dearest world than in the cheapest.
+/// Maximum ratio of the cost of a cell between the most and the least expensive world.
 const SPREAD: f64 = 1.2;
 
 const NAME: &str = "alpine by world size";
 
-/// What a cell costs in each world, and in the dearest beside the cheapest.
+/// The cost of a cell in each world, and the ratio of maximum to minimum.
 pub fn figures(options: &Options) -> Result<Vec<Figure>, String> {
     if !NAME.contains(&options.case) {
         return Ok(Vec::new());
@@ -23,7 +24,7 @@ pub fn figures(options: &Options) -> Result<Vec<Figure>, String> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().map_err(|e| e.to_string())?;
     let costs = SIDES.map(|side| {
         eprintln!("{NAME}: {side} x {side} ...");
-        // Large worlds are steadier, and take long.
+        // Large worlds vary less and take longer.
         let repetitions = (options.repetitions * SIDES[0] / side).max(1);
         let costs: Result<Vec<f64>, String> = (0..repetitions).map(|_| pool.install(|| cost(side))).collect();
         costs.map(|mut costs| median(&mut costs))
@@ -46,7 +47,7 @@ pub fn figures(options: &Options) -> Result<Vec<Figure>, String> {
     Ok(figures)
 }
 
-/// Nanoseconds a cell of a world of so many cells a side.
+/// Nanoseconds per cell of a world with this many cells per side.
 fn cost(side: usize) -> Result<f64, String> {
     let recipe = presets::find("alpine").ok_or("there is no preset `alpine`")?.recipe();
     let mut recipe = recipe.map_err(|e| e.to_string())?;

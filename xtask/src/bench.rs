@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: the one door to every figure the project claims.
+//! `cargo xtask bench`: measures all published figures.
 
 mod host;
 mod peers;
@@ -11,61 +11,61 @@ use crate::failure::{Failure, Result, on_file};
 use crate::shell;
 use crate::table;
 
-pub const ABOUT: &str = "measure beside peers and physical limits; print a table, write JSON";
+pub const ABOUT: &str = "compare with other libraries and the machine's limits; print a table, write JSON";
 
 pub const HELP: &str = "
 Usage: cargo xtask bench [AREA] [--json FILE] [--case TEXT] [--quick]
        cargo xtask bench realism --score SCRIPT --dems DIR [--first SEED] [--case TEXT]
 
-Builds the benches at full optimisation, measures one area (or each in turn) and prints a table.
+Builds the benches at full optimisation, measures one area (or all in turn) and prints a table.
 
-  AREA         noise     noise kernels beside other crates, one thread, CPU time; AVX2, memory and two threads
-               erosion   depressions, drainage, a stream power step and hillshade beside richdem, fastscapelib and matplotlib
-                         (by pip; one that does not install is left out), erosion by filters, one thread, CPU time, and two
-                         threads, worlds of 512 x 512 to 4096 x 4096 cells; OROGEN_RICHDEM, OROGEN_FASTSCAPELIB and OROGEN_MATPLOTLIB name the Python that has them
-               generate  every preset from the command to the last file, all cores, wall clock
-               outputs   contours beside contourpy, meshes beside pydelatin and OpenEXR files beside its library (by pip; OROGEN_CONTOURPY,
-                         OROGEN_PYDELATIN and OROGEN_OPENEXR name a Python that has it) and a Cloud-Optimised GeoTIFF beside
-                         gdal_translate, CPU time; maps of 4096 x 4096 and a rendered view, wall clock
-               world     chunks, tiles with halos, threads and whole builds of the preset `hills`, films of presets that grow; the builds (--case build) take
+  AREA         noise     noise kernels compared with other crates, one thread, CPU time; AVX2, memory and two threads
+               erosion   depressions, drainage, a stream power step and hillshade compared with richdem, fastscapelib and matplotlib
+                         (installed with pip; one that fails to install is omitted), erosion filters, CPU time of one thread; two
+                         threads; worlds of 512 x 512 to 4096 x 4096 cells; OROGEN_RICHDEM, OROGEN_FASTSCAPELIB and OROGEN_MATPLOTLIB name a Python that has them
+               generate  `orogen generate` for every preset, all cores, wall time
+               outputs   contours compared with contourpy, meshes with pydelatin and OpenEXR files with its library (installed with pip; OROGEN_CONTOURPY,
+                         OROGEN_PYDELATIN and OROGEN_OPENEXR name a Python that has them) and a Cloud-Optimised GeoTIFF with
+                         gdal_translate, CPU time; maps of 4096 x 4096 and a rendered view, wall time
+               world     chunks, tiles with halos, threads and whole builds of the preset `hills`, animations of growing presets; the builds (--case build) take
                          minutes and a dozen GiB of disk
-  --json FILE  write the rows as JSON too; needs an AREA once there are several
-  --case TEXT  only the cases with this in their name
-  --quick      few repetitions: to see that it runs, not to quote
+  --json FILE  also write the rows as JSON; needs an AREA
+  --case TEXT  only cases whose name contains TEXT
+  --quick      few repetitions: only to check that it runs
 
-Area realism, only where it is named: windows of alpine and endless of 16 seeds beside real places; fails if a target is missed.
+Area realism, only if it is named: compares windows of alpine and endless of 16 seeds with real places; fails if a target is missed.
 
   --score SCRIPT  the script that compares rasters (Python; OROGEN_REALISM names one that has numpy, scipy, rasterio and numba)
   --dems DIR      the real places, GeoTIFFs of 30 to 90 m
-  --first SEED    the first of the seeds; otherwise the clock's
+  --first SEED    the first of the seeds [default: from the clock]
 
 How to read the table: docs/benchmarks.md.
 ";
 
-/// Every area, as the bench program names it.
+/// The areas of the bench program.
 const AREAS: &[&str] = &["noise", "erosion", "generate", "world", "outputs"];
 
-/// Needs what is not part of the project, so it is measured only where it is named.
+/// Needs files that are not part of the project, so it is measured only if it is named.
 const REALISM: &str = "realism";
 
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Options {
     area: Option<String>,
     json: Option<PathBuf>,
-    /// Arguments that the bench program understands.
+    /// Arguments for the bench program.
     passed: Vec<String>,
-    /// What only area `realism` understands.
+    /// Options of area `realism`.
     realism: realism::Options,
 }
 
-/// Measures.
+/// Runs the measurements.
 pub fn run(args: &[String]) -> Result {
     let options = parse(args)?;
     let areas: Vec<&str> = options.area.as_deref().map_or_else(|| AREAS.to_vec(), |area| vec![area]);
     if areas.len() > 1 && options.json.is_some() {
         return Err(Failure::usage("--json holds one area: name it"));
     }
-    // Whole runs are measured with the program users run.
+    // Whole runs use the program of users.
     shell::run(&mut shell::cargo("build --quiet --release --package orogen-cli"))?;
     let program = shell::target_dir().join("release").join(format!("orogen{}", std::env::consts::EXE_SUFFIX));
     for area in areas {

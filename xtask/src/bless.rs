@@ -1,4 +1,4 @@
-//! `cargo xtask bless`: new golden files, shown before they are kept.
+//! `cargo xtask bless`: rewrites golden files, after showing the differences.
 
 use std::io::{BufRead, IsTerminal, Write};
 use std::path::Path;
@@ -6,24 +6,24 @@ use std::path::Path;
 use crate::failure::{Failure, Result, on_file};
 use crate::shell;
 
-pub const ABOUT: &str = "make the golden files anew, show what changed, ask";
+pub const ABOUT: &str = "rewrite the golden files, show the differences and ask whether to keep them";
 
 pub const HELP: &str = "
 Usage: cargo xtask bless [--yes] [TEST]
 
-Runs the tests with OROGEN_BLESS=1, which makes them rewrite what they would compare with, shows how golden/ changed
-and asks whether to keep it. What is not kept is put back as it was.
+Runs the tests with OROGEN_BLESS=1, which makes them write golden files instead of comparing with them, shows the differences
+of golden/ and asks whether to keep them. Otherwise it restores the old files.
 
-  --yes  keep it without asking
-  TEST   only the tests with this in their name
+  --yes  keep the files without asking
+  TEST   only tests whose name contains TEST
 
-A changed golden is changed terrain: CHANGELOG.md says which and why.
+A changed golden file is changed terrain: add a line to CHANGELOG.md that says which terrain changed and why.
 ";
 
-/// How much of a difference is printed.
+/// Maximum number of printed lines of a difference.
 const SHOWN_LINES: usize = 200;
 
-/// Blesses.
+/// Blesses the golden files.
 pub fn run(args: &[String]) -> Result {
     let yes = args.iter().any(|a| a == "--yes");
     let named: Vec<&String> = args.iter().filter(|a| *a != "--yes").collect();
@@ -40,7 +40,7 @@ pub fn run(args: &[String]) -> Result {
     tests.args(named).env("OROGEN_BLESS", "1");
     let tested = shell::run(&mut tests);
     if tested.is_err() {
-        // What a failed run wrote is worth nothing; the tests' own words say what to do.
+        // The output of a failed run is discarded; the tests print what is wrong.
         replace(&golden, &before)?;
         return tested;
     }
@@ -58,7 +58,7 @@ pub fn run(args: &[String]) -> Result {
     Err(Failure::new("not kept: golden/ is as it was"))
 }
 
-/// What `git diff` says of the two folders, its summary first, cut where it gets long.
+/// The output of `git diff` for the two folders, with its summary first, truncated if it is long.
 fn difference(before: &Path, after: &Path) -> Result<String> {
     let mut text = String::new();
     for form in ["--stat", "--patch"] {
@@ -96,7 +96,7 @@ fn replace(folder: &Path, with: &Path) -> Result {
     copy(with, folder)
 }
 
-/// Copies what is in one folder into another.
+/// Copies the content of a folder into another.
 fn copy(from: &Path, to: &Path) -> Result {
     for entry in std::fs::read_dir(from).map_err(|e| on_file("read", from, &e))? {
         let path = entry.map_err(|e| on_file("read", from, &e))?.path();

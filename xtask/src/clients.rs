@@ -1,7 +1,7 @@
-//! `cargo xtask clients`: the programs of other people that open what we write.
+//! `cargo xtask clients`: checks of our files by other programs.
 //!
-//! Each client is a row of a table and, but for the emulator, a script in xtask/clients/. A client that cannot be had is a failure, not a skip: a
-//! check that did not run has shown nothing.
+//! Each client is a row of a table and, except for the emulator, a script in xtask/clients/. A client that cannot be installed is a failure, not
+//! a skip: a check that did not run proves nothing.
 
 mod asan;
 mod blender;
@@ -16,48 +16,48 @@ use crate::failure::{Failure, Result};
 use crate::shell::{cargo, program, root, run as sh, target_dir};
 use crate::steps::{self, Step};
 
-pub const ABOUT: &str = "install the foreign programs that open our files, and ask them";
+pub const ABOUT: &str = "install other programs and check that they read our files";
 
 pub const HELP: &str = "
 Usage: cargo xtask clients [STEP...]
 
-Builds `orogen` for release, installs what is missing and runs every client, or only the steps named:
+Builds `orogen` in release mode, installs missing clients and runs every step, or only the steps named:
 
   build     cargo build --release -p orogen-cli
   install   apt (as root on Debian), pip into target/clients/venv, npm into target/clients/node; versions pinned; rustup's
             aarch64-unknown-linux-gnu and wasm32-unknown-unknown
-  neon      the tests of every SIMD level, built for ARM, in QEMU: the bits of NEON are the committed ones
+  neon      the tests of every SIMD level, built for ARM, in QEMU: NEON gives the committed bits
   presets   every preset against golden/presets.txt, on one thread and two, at every SIMD level of this machine
   wasm      the libraries built for WebAssembly, without threads; every preset under node
-  asan      the tests of the SIMD levels under AddressSanitizer: no kernel reads or writes beside its slices
-  numpy     NumPy reads .npy: the numbers of summary.json, and which way is east
-  pillow    Pillow reads the pictures: what a grey value stands for, what is sea; animations
-  rasterio  rasterio reads GeoTIFFs: the samples and where they lie; rio-cogeo validates their layout
-  xarray    xarray and zarr-python read Zarr groups: the samples and where they lie
-  tiles     NumPy and Pillow read tiles: shared edges, one scale for all; Terrarium heights where a map has them
-  dems      files of heights that rasterio writes in every kind there is: orogen reads the very samples, and keeps where they lie
-  meshes    the glTF validator, trimesh, meshio and admesh read GLB, OBJ, PLY and STL: the samples, the right way round, closed
-  contours  GDAL draws contours of the same heights: the same lines at the same places, and reads ours
-  water     GDAL, SQLite and Shapely read rivers, lakes and watersheds: valid, joined, falling, where the GeoTIFF lies
-  maps      Poppler and librsvg draw map sheets: the picture of the .png
-  formats   OpenEXR, GDAL, rasterio, Pillow and Godot read exported heights of every format, none mirrored, turned or moved
-  relief    gdaldem shades and measures the ground: hillshade, slope and aspect
-  layers    GRASS, WhiteboxTools and gdaldem make the layers that follow from heights: wetness, HAND, insolation, viewshed, landforms ...
-  fuzz      libFuzzer feeds the readers of foreign files, half a minute each
-  taplo     taplo checks every recipe against the JSON Schema, and refuses broken ones
+  asan      the tests of the SIMD levels under AddressSanitizer: no kernel reads or writes outside its slices
+  numpy     NumPy reads .npy: the numbers of summary.json, and the orientation
+  pillow    Pillow reads the pictures: grey values, the share of sea, animations
+  rasterio  rasterio reads GeoTIFFs: samples and coordinates; rio-cogeo validates their layout
+  xarray    xarray and zarr-python read Zarr groups: samples and coordinates
+  tiles     NumPy and Pillow read tiles: shared edges, one scale; Terrarium heights at the right map positions
+  dems      orogen reads heights in every kind that rasterio writes: bit-equal samples, the same coordinates
+  meshes    the glTF validator, trimesh, meshio and admesh read GLB, OBJ, PLY and STL: samples, orientation, closed solids
+  contours  gdal_contour of the same heights gives the same lines; GDAL reads our files
+  water     GDAL, SQLite and Shapely read rivers, lakes and watersheds: valid, connected, never rising, at the coordinates of the GeoTIFF
+  maps      Poppler and librsvg draw map sheets: they look like the .png
+  formats   OpenEXR, GDAL, rasterio, Pillow and Godot read exported heights of every format, not mirrored, rotated or shifted
+  relief    gdaldem computes the same hillshade, slope and aspect
+  layers    GRASS, WhiteboxTools and gdaldem compute the same derived layers: wetness, HAND, insolation, viewshed, landforms ...
+  fuzz      libFuzzer on the readers of foreign files, 30 s each
+  taplo     taplo validates every recipe against the JSON Schema, and rejects broken ones
 
-Only where they are named; Blender is large and needs Python 3.11:
+Only if named, because Blender is large and needs Python 3.11:
 
-  blender   Blender imports meshes: as large as the ground, summit and light where they belong
+  blender   Blender imports meshes: size, summit and light are right
 
-`build` and `install` go first whatever is named. Elsewhere than on Debian, or not as root, it says what to install.
+`build` and `install` always run first. On systems other than Debian, or without root, the command prints what to install.
 ";
 
-/// One foreign program, or a few that one script drives.
+/// A foreign program, or several that one script runs.
 struct Client {
-    /// The step's name, and that of its script in xtask/clients/.
+    /// The name of the step, and of its script in xtask/clients/.
     name: &'static str,
-    /// Debian packages, each with a program (or, absolute, a file) it brings.
+    /// Debian packages, each with a program (or, as an absolute path, a file) that it installs.
     apt: &'static [(&'static str, &'static str)],
     /// Python packages, pinned.
     pip: &'static [&'static str],
@@ -126,7 +126,7 @@ const BUILD: Step = Step {
 };
 const INSTALL: Step = Step {
     name: "install",
-    about: "what the clients need",
+    about: "the programs and packages of the clients",
     run: || {
         install::all(CLIENTS)?;
         neon::install()?;
@@ -164,20 +164,20 @@ const STEPS: &[&Step] = &[
         about: "OpenEXR, GDAL, rasterio, Pillow and Godot read exports",
         run: || script("formats"),
     },
-    &Step { name: "relief", about: "gdaldem shades the ground as orogen does", run: || script("relief") },
+    &Step { name: "relief", about: "gdaldem computes the same hillshade, slope and aspect", run: || script("relief") },
     &Step {
         name: "layers",
-        about: "GRASS, WhiteboxTools and gdaldem make the layers that follow from heights",
+        about: "GRASS, WhiteboxTools and gdaldem compute the same derived layers",
         run: || script("layers"),
     },
     &Step { name: "fuzz", about: "libFuzzer on the readers of foreign files", run: fuzz },
     &Step { name: "taplo", about: "taplo checks the recipes against the schema", run: || script("taplo") },
 ];
 
-/// What is done only where it is named.
+/// Steps that run only if they are named.
 const ASKED: &[&Step] = &[&Step { name: "blender", about: "Blender imports meshes", run: blender::check }];
 
-/// Long enough to see that nothing near the committed files breaks a reader; `cargo xtask fuzz` runs for longer.
+/// A short run, which covers inputs close to the committed files; `cargo xtask fuzz` runs longer.
 fn fuzz() -> Result {
     crate::fuzz::run(&["--seconds", "30"].map(str::to_owned))
 }
@@ -193,17 +193,17 @@ pub fn run(args: &[String]) -> Result {
     steps::run("cargo xtask clients", &steps, &named)
 }
 
-/// Where everything of the clients lies: the venv, the node packages, the files they open.
+/// The folder of the clients: the venv, the Node packages, the files they open.
 fn folder() -> PathBuf {
     target_dir().join("clients")
 }
 
-/// The binary that is asked for files.
+/// The binary under test.
 fn orogen() -> PathBuf {
     target_dir().join("release").join(format!("orogen{}", std::env::consts::EXE_SUFFIX))
 }
 
-/// Runs one client's script in a fresh folder of its own.
+/// Runs a client's script in a new folder.
 fn script(name: &str) -> Result {
     if !CLIENTS.iter().any(|c| c.name == name) {
         return Err(Failure::new(format!("{name} is not in the table of clients: nothing installs it")));
@@ -211,7 +211,7 @@ fn script(name: &str) -> Result {
     script_by(&install::python(), name)
 }
 
-/// The same by another Python.
+/// The same with another Python.
 fn script_by(python: &Path, name: &str) -> Result {
     let work = folder().join("work").join(name);
     crate::shell::empty_dir(&work)?;

@@ -1,8 +1,8 @@
-//! `cargo xtask codegen`: the lists that a new node would otherwise have to be written into by hand.
+//! `cargo xtask codegen`: generates the lists of nodes, formats and layers.
 //!
-//! A node is one file with one `op!` block. Its module line, its place in the list of nodes and its part of the JSON Schema
-//! follow from that file. A format of exports is one file, too, that declares a `FORMAT`, and a layer of vector features one that
-//! declares a `LAYER`.
+//! A node is a file with one `op!` block. Its module line, its entry in the list of nodes and its part of the JSON
+//! Schema are generated from that file. An export format is a file that declares a `FORMAT`, a layer of vector features
+//! one that declares a `LAYER`.
 
 mod lists;
 mod op;
@@ -26,16 +26,16 @@ Reads the op! block of every file in crates/orogen-engine/src/{field,filter,solv
   - crates/orogen-engine/recipes/orogen.schema.json, from `orogen schema`
   - docs/ops.md, from `orogen ops --markdown`
 
-  --check  change nothing; fail if one of them is not current
+  --check  write nothing; fail if one of the files is not up to date
 ";
 
-/// The three localities: a folder each, and the word in an op! block.
+/// The three localities: the folder and the word in an op! block.
 const LOCALITIES: [&str; 3] = ["field", "filter", "solver"];
 
 const SCHEMA: &str = "crates/orogen-engine/recipes/orogen.schema.json";
 const REFERENCE: &str = "docs/ops.md";
 
-/// Rewrites or checks everything.
+/// Writes or checks everything.
 pub fn run(args: &[String]) -> Result {
     let check = match args {
         [] => false,
@@ -76,11 +76,11 @@ pub fn lists(check: bool) -> Result {
     exports(&shell::root().join("crates/orogen-output/src/export"), check)
 }
 
-/// What exports are made of, each in a file that declares it: the folder, the declaration, and the list of all.
+/// Generated lists of exports: the folder, the declaration, and the name of the list.
 const DECLARED: [(&str, &str, &str); 2] =
     [("formats", "FORMAT: Format", "format_list.rs"), ("vectors", "LAYER: VectorLayer", "vector_list.rs")];
 
-/// The module lines of the export formats and of the layers of vector features, and the lists of those that declare one.
+/// The module lines and lists of export formats and of layers of vector features.
 fn exports(export: &Path, check: bool) -> Result {
     for (folder, declaration, list) in DECLARED {
         let (constant, _) = declaration.split_once(':').unwrap_or((declaration, ""));
@@ -98,7 +98,7 @@ fn exports(export: &Path, check: bool) -> Result {
     Ok(())
 }
 
-/// The module lines at the end of a folder's mod.rs.
+/// Writes the module lines at the end of a folder's mod.rs.
 fn settle_modules(folder: &Path, names: &[String], check: bool) -> Result {
     let list = folder.join("mod.rs");
     let head = shell::read(&list)?;
@@ -107,7 +107,7 @@ fn settle_modules(folder: &Path, names: &[String], check: bool) -> Result {
     settle(&list, &text, check)
 }
 
-/// What the declarations say to readers: the JSON Schema of recipes and the reference of the ops.
+/// Writes the documents made from declarations: the JSON Schema of recipes and the reference of the ops.
 pub fn written(check: bool) -> Result {
     for (arguments, path) in [("schema", SCHEMA), ("ops --markdown", REFERENCE)] {
         let text = shell::capture(&mut shell::cargo(&format!("run --quiet --package orogen-cli -- {arguments}")))?;
@@ -134,7 +134,7 @@ fn modules(folder: &Path) -> Result<Vec<String>> {
     Ok(names)
 }
 
-/// Makes the file hold this text, or says that it does not.
+/// Writes a file with this text, or fails if it differs.
 fn settle(path: &Path, text: &str, check: bool) -> Result {
     let shown = shell::relative(path);
     let current = if path.exists() { shell::read(path)? } else { String::new() };

@@ -1,6 +1,6 @@
-//! How a chore ends when it does not end well.
+//! Failures of tasks.
 
-/// What went wrong, as a message for the person at the terminal.
+/// A failure, with a message for the user.
 #[derive(Debug)]
 pub enum Failure {
     /// The command line was wrong: exit code 2.
@@ -20,17 +20,17 @@ impl Failure {
         Self::Usage(format!("error: {}", message.into()))
     }
 
-    /// The message alone.
+    /// The message.
     pub fn message(&self) -> &str {
         let (Self::Usage(message) | Self::Failed(message)) = self;
         message
     }
 }
 
-/// The result of a chore.
+/// The result of a task.
 pub type Result<T = ()> = std::result::Result<T, Failure>;
 
-/// The failure of something done to a file.
+/// The failure of an operation on a file.
 pub fn on_file(what: &str, path: &std::path::Path, error: &std::io::Error) -> Failure {
     Failure::new(format!("cannot {what} {}: {error}", path.display()))
 }

@@ -1,4 +1,4 @@
-//! `cargo xtask fuzz`: libFuzzer on every reader of foreign files, with the compiler that all else is built with.
+//! `cargo xtask fuzz`: libFuzzer on every reader of foreign files, with the stable compiler.
 
 use crate::failure::{Failure, Result};
 use crate::shell;
@@ -8,14 +8,14 @@ pub const ABOUT: &str = "run libFuzzer on the readers of foreign files";
 pub const HELP: &str = "
 Usage: cargo xtask fuzz [TARGET...] [--seconds N]
 
-Builds fuzz/ with coverage counters and AddressSanitizer into target/fuzz and runs each target, or those named, for 60 seconds or as many as
-said, from the files in fuzz/corpus/TARGET. New inputs go into target/fuzz/found, not into the committed corpus. What breaks a reader is left in
-fuzz/artifacts. Needs a C++ compiler for libFuzzer; cargo-fuzz is not needed, and works too.
+Builds fuzz/ with coverage counters and AddressSanitizer into target/fuzz and runs all targets, or those named, for N seconds each (default 60),
+starting with the files in fuzz/corpus/TARGET. New inputs are written to target/fuzz/found, not to the committed corpus. Inputs that break a reader
+are written to fuzz/artifacts. Needs a C++ compiler for libFuzzer; cargo-fuzz is optional.
 ";
 
 const TARGETS: [&str; 3] = ["dem", "place", "recipe"];
 
-/// What makes a program tell libFuzzer where it has been (the flags of cargo-fuzz).
+/// Flags for coverage instrumentation (those of cargo-fuzz).
 const FLAGS: &str = "--cfg fuzzing -Zsanitizer=address -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
     -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
     -Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1 -Cdebug-assertions";
@@ -54,10 +54,10 @@ pub fn run(args: &[String]) -> Result {
             .arg(format!("-max_total_time={seconds}"))
             .arg(format!("-artifact_prefix={}/", artifacts.join(target).display()))
             .args(["-rss_limit_mb=1024", "-malloc_limit_mb=256", "-timeout=10", "-print_final_stats=1", "-verbosity=0"])
-            // Sanitizers are not stable yet; the compiler is the one that all else is built with.
+            // Sanitizers are unstable; this allows them in the stable compiler that builds everything else.
             .env("RUSTC_BOOTSTRAP", "1")
             .env("RUSTFLAGS", FLAGS)
-            // A named target keeps the flags from what runs while building.
+            // A named target keeps the flags from build scripts.
             .env("CARGO_BUILD_TARGET", &host)
             .env("CARGO_TARGET_DIR", &folder)
             .env("CARGO_INCREMENTAL", "0");

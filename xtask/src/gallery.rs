@@ -1,4 +1,4 @@
-//! `cargo xtask gallery`: the pictures in the README and the docs, made by the program they show.
+//! `cargo xtask gallery`: makes the pictures of the README and the docs with `orogen` itself.
 
 use crate::failure::{Failure, Result, on_file};
 use crate::shell;
@@ -9,16 +9,16 @@ mod noises;
 mod views;
 mod water;
 
-pub const ABOUT: &str = "make the pictures in docs/images and in the noises' docs anew";
+pub const ABOUT: &str = "make the pictures in docs/images and in the noises' docs";
 
 pub const HELP: &str = "
 Usage: cargo xtask gallery
 
-Makes docs/images/ anew: one relief map of each preset, the views of docs/render.md and the README's first picture, a
-map sheet, water as vectors, all palettes, the page that shows the noises side by side, and the chunks around a viewer. Then docs/gallery.md: every preset as a
-map of the whole and as the bare shaded relief of a part, sample for pixel, in which the eye finds what colours hide. Then
-crates/orogen-noise/docs/gallery.md: the pictures that the
-documentation of orogen-noise opens with, which are in that file themselves, so that they show wherever it is read.
+Rewrites docs/images/: one relief map of each preset, the views of docs/render.md and the README's first picture, a
+map sheet, water as vectors, all palettes, the page of noises side by side, and the chunks around a viewer. Then docs/gallery.md: a map
+of each preset, and the shaded relief of a part of it at one pixel per sample, which shows artefacts that colours hide. Then
+crates/orogen-noise/docs/gallery.md: the pictures at the top of the documentation of orogen-noise. They are embedded in the
+file, so that every renderer shows them.
 ";
 
 /// Samples along a side of a preset's picture.
@@ -54,7 +54,7 @@ pub fn run(args: &[String]) -> Result {
     let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- compare --quiet -o");
     shell::run(orogen.arg(&page))?;
     println!("{}", shell::relative(&page));
-    // The example writes where it is run.
+    // The example writes into its working directory.
     let mut example = shell::cargo("run --quiet --release --package orogen --example infinite_terrain");
     shell::run(example.arg("--manifest-path").arg(shell::root().join("Cargo.toml")).current_dir(&work))?;
     let chunks = images.join("chunks.png");

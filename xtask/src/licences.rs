@@ -1,11 +1,11 @@
-//! Which licences the dependencies have: anything that would bind a program built with Orogen is refused.
+//! Licences of dependencies: licences that would bind a program built with Orogen are rejected.
 
 use serde_json::Value;
 
 use crate::failure::{Failure, Result};
 use crate::shell;
 
-/// What we accept: permissive licences, and MPL-2.0, which binds only its own files.
+/// Accepted licences: permissive ones, and MPL-2.0, which binds only its own files.
 const ACCEPTED: &[&str] = &[
     "0BSD",
     "Apache-2.0",
@@ -43,7 +43,7 @@ pub fn check() -> Result {
     Ok(())
 }
 
-/// Whether an SPDX expression can be met with accepted licences alone. `/` is the old way to write OR; AND binds tighter.
+/// Whether an SPDX expression can be satisfied with accepted licences. `/` is the old form of OR; AND binds tighter.
 fn accepted(expression: &str) -> bool {
     let spaced = expression.replace('(', " ( ").replace(')', " ) ").replace('/', " OR ");
     let words: Vec<&str> = spaced.split_whitespace().collect();
@@ -75,7 +75,7 @@ fn one(rest: &mut &[&str]) -> bool {
     let Some((&name, after)) = rest.split_first() else { return false };
     *rest = after;
     if take(rest, "WITH") {
-        // An exception only ever grants more.
+        // An exception only grants more.
         *rest = rest.get(1..).unwrap_or_default();
     }
     ACCEPTED.contains(&name)

@@ -1,4 +1,4 @@
-//! The project's chores, run as `cargo xtask COMMAND`.
+//! The project's tasks, run as `cargo xtask COMMAND`.
 #![forbid(unsafe_code)]
 
 mod bench;
@@ -20,12 +20,12 @@ use std::process::ExitCode;
 
 use failure::{Failure, Result};
 
-/// One subcommand: its file offers these three.
+/// A subcommand: its module has these three items.
 struct Command {
     name: &'static str,
     /// One line for the list of commands.
     about: &'static str,
-    /// What `cargo xtask NAME --help` prints.
+    /// The output of `cargo xtask NAME --help`.
     help: &'static str,
     run: fn(&[String]) -> Result,
 }

@@ -1,17 +1,17 @@
-//! `cargo xtask resolution`: how much each preset differs when it is looked at with larger cells, as a page of the docs.
+//! `cargo xtask resolution`: writes a page of the docs with the differences of each preset at larger cells.
 
 use serde_json::Value;
 
 use crate::failure::{Failure, Result, on_file};
 use crate::shell;
 
-pub const ABOUT: &str = "measure how presets differ at coarser cells; write docs/resolution.md";
+pub const ABOUT: &str = "measure the differences of presets at coarser cells; write docs/resolution.md";
 
 pub const HELP: &str = "
 Usage: cargo xtask resolution
 
-Makes every preset at its own cell and at 2, 4 and 8 times that, compares the heights and writes docs/resolution.md. Run it when
-a preset was added or its terrain was meant to change.
+Makes every preset at its own cell and at 2, 4 and 8 times that, compares the heights and writes docs/resolution.md. Run it after
+adding a preset or an intended change of its terrain.
 ";
 
 const PAGE: &str = "docs/resolution.md";
@@ -19,18 +19,18 @@ const PAGE: &str = "docs/resolution.md";
 const TEXT: &str = "\
 # Resolution
 
-How much a preset differs when it is looked at with cells 2, 4 and 8 times its own (`--cell`, `--size`, the levels of
+The table compares each preset at its own cell with the same preset at cells 2, 4 and 8 times as large (`--cell`, `--size`, the levels of
 [chunks](chunks.md)). Written by `cargo xtask resolution`.
 
-- *Shared samples* are those that both have: every 2nd, 4th or 8th of the finer. Of fields and of what solvers found they are the same,
-  to the last bit: 0. A filter is made at the cell it is looked at with, so what it makes differs; `bake` it to fix it at one cell.
-- *Everywhere* compares all samples of the finer with the coarser one read between its samples, by the interpolating cubic that the
-  engine itself uses: what is lost is the detail that is smaller than two of the larger cells.
-- RMS is the root of the mean square; worst is the largest difference anywhere. Both in metres and, in brackets, as a share of the relief,
-  the difference between the highest and the lowest sample. Two coarse cells at the border are left out of *everywhere*.
-- Heights stay where they are at any resolution. Slopes do not: the same land is gentler over larger cells.
+- *Shared* compares the samples that both grids have: every 2nd, 4th or 8th of the finer grid. Fields and results of solvers are
+  bit-equal there: 0. A filter is computed at the requested cell, so its results differ; `bake` it to fix it at one cell.
+- *Everywhere* compares all samples of the finer grid with the coarser grid, interpolated with the engine's interpolating
+  cubic. The difference is mostly the detail smaller than two of the larger cells. A border of two large cells is excluded.
+- RMS is the root of the mean squared difference; worst is the largest absolute difference. Both are in metres and, in brackets, as a share of the
+  relief, the difference between the highest and the lowest sample.
+- Slopes depend on the cell: the same terrain is less steep at larger cells.
 
-| preset | cell | looked at with | shared, RMS | shared, worst | everywhere, RMS | everywhere, worst |
+| preset | cell | requested cell | shared, RMS | shared, worst | everywhere, RMS | everywhere, worst |
 |---|--:|--:|--:|--:|--:|--:|
 ";
 
@@ -61,7 +61,7 @@ fn page(rows: &[Value]) -> String {
             amount(number(&part[format!("{kind}_m")]), number(&part[format!("{kind}_share")]))
         };
         let preset = row["preset"].as_str().unwrap_or("?");
-        // A preset is named once, at the first of its rows.
+        // A preset is named only in its first row.
         let again = std::mem::replace(&mut last, preset) == preset;
         let (name, own) = match again {
             true => (String::new(), String::new()),
@@ -79,7 +79,7 @@ fn page(rows: &[Value]) -> String {
     text
 }
 
-/// Metres and the share of the relief; a plain 0 for the same bits.
+/// Metres and the share of the relief; a plain 0 for equal bits.
 fn amount(metres: f64, share: f64) -> String {
     match metres {
         0.0 => "0".to_owned(),
@@ -87,7 +87,7 @@ fn amount(metres: f64, share: f64) -> String {
     }
 }
 
-/// Two figures that mean something.
+/// Two significant digits; fewer below 0.01.
 fn figures(x: f64) -> String {
     let places = match x {
         x if x >= 9.95 => 0,

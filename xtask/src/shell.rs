@@ -1,4 +1,4 @@
-//! Running other programs, and where things lie.
+//! Running other programs, and paths of the project.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -11,17 +11,17 @@ pub fn root() -> &'static Path {
     here.parent().unwrap_or(here)
 }
 
-/// The target folder: the one this very program was built into, wherever the user has put it.
+/// The target folder: that of this program, wherever the user has configured it.
 pub fn target_dir() -> PathBuf {
     let exe = std::env::current_exe().ok();
     let dir = exe.as_deref().and_then(Path::parent).and_then(Path::parent).map(Path::to_path_buf);
     dir.unwrap_or_else(|| root().join("target"))
 }
 
-/// A program started at the root of the repository.
+/// A program that runs at the root of the repository.
 pub fn program(name: impl AsRef<std::ffi::OsStr>) -> Command {
     let mut command = Command::new(name);
-    // No chore may read what an earlier build of the program has solved.
+    // No task may read solutions that an earlier build of the program has cached.
     command.current_dir(root()).env("OROGEN_CACHE", "");
     command
 }
@@ -33,20 +33,20 @@ pub fn cargo(args: &str) -> Command {
     command
 }
 
-/// The target that the compiler builds for by itself.
+/// The default target of the compiler.
 pub fn host() -> Result<String> {
     let version = capture(program("rustc").arg("-vV"))?;
     let host = version.lines().find_map(|line| line.strip_prefix("host: "));
     host.map(str::to_owned).ok_or_else(|| Failure::new("`rustc -vV` names no host"))
 }
 
-/// Runs it with our own output and no input.
+/// Runs a program with our output and without input.
 pub fn run(command: &mut Command) -> Result {
     let status = command.stdin(Stdio::null()).status().map_err(|e| cannot_start(command, &e))?;
     if status.success() { Ok(()) } else { Err(Failure::new(format!("`{}` ended with {status}", shown(command)))) }
 }
 
-/// Runs it and returns what it printed; its errors go to our own error output.
+/// Runs a program and returns its output; its errors go to our standard error.
 pub fn capture(command: &mut Command) -> Result<String> {
     let output =
         command.stdin(Stdio::null()).stderr(Stdio::inherit()).output().map_err(|e| cannot_start(command, &e))?;
@@ -56,13 +56,13 @@ pub fn capture(command: &mut Command) -> Result<String> {
     String::from_utf8(output.stdout).map_err(|_| Failure::new(format!("`{}` printed no UTF-8", shown(command))))
 }
 
-/// Whether it starts and ends well, saying nothing.
+/// Runs a program without output; returns whether it succeeds.
 pub fn succeeds(command: &mut Command) -> bool {
     let quiet = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     quiet.status().is_ok_and(|s| s.success())
 }
 
-/// The command line, for a person.
+/// The command line, for messages.
 pub fn shown(command: &Command) -> String {
     let name = Path::new(command.get_program());
     let name = name.file_name().unwrap_or(name.as_os_str()).to_string_lossy().into_owned();
@@ -85,7 +85,7 @@ pub fn write(path: &Path, text: &str) -> Result {
     std::fs::write(path, text).map_err(|e| on_file("write", path, &e))
 }
 
-/// An empty folder at this path, whatever was there before.
+/// Creates an empty folder at this path, removing an existing one.
 pub fn empty_dir(path: &Path) -> Result {
     if path.exists() {
         std::fs::remove_dir_all(path).map_err(|e| on_file("clear", path, &e))?;
@@ -93,7 +93,7 @@ pub fn empty_dir(path: &Path) -> Result {
     std::fs::create_dir_all(path).map_err(|e| on_file("create", path, &e))
 }
 
-/// A path as the reader knows it: from the root of the repository.
+/// A path relative to the root of the repository, for messages.
 pub fn relative(path: &Path) -> String {
     path.strip_prefix(root()).unwrap_or(path).to_string_lossy().replace('\\', "/")
 }

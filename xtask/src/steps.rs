@@ -1,21 +1,21 @@
-//! A row of named steps: each timed, the first failure ends it.
+//! Named steps in order, each timed; the first failure ends the run.
 
 use std::time::Instant;
 
 use crate::failure::{Failure, Result};
 use crate::table;
 
-/// One step.
+/// A step.
 pub struct Step {
-    /// What it is called on the command line.
+    /// The name on the command line.
     pub name: &'static str,
-    /// What it does, for the list.
+    /// The description in the list.
     pub about: &'static str,
-    /// Does it.
+    /// The function.
     pub run: fn() -> Result,
 }
 
-/// Runs the steps named, or all of them, and prints what each took. `command` is how to run one alone.
+/// Runs the named steps, or all of them, and prints the time of each. `command` is the command that runs a single step.
 pub fn run(command: &str, steps: &[&Step], named: &[String]) -> Result {
     let chosen = choose(steps, named)?;
     let begun = Instant::now();

@@ -1,6 +1,6 @@
 //! Plain text tables.
 
-/// Columns padded to their widest cell; a column whose every cell is a number (or a dash) stands to the right.
+/// Columns padded to their widest cell; columns of numbers (or dashes) are right-aligned.
 pub fn render(head: &[&str], rows: &[Vec<String>]) -> String {
     let columns = rows.iter().map(Vec::len).chain([head.len()]).max().unwrap_or(0);
     let cells = |column: usize| rows.iter().filter_map(move |row| row.get(column).map(String::as_str));

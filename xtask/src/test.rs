@@ -1,19 +1,19 @@
-//! `cargo xtask test`: everything that Rust alone can prove.
+//! `cargo xtask test`: all tests that need only Rust.
 
 use crate::failure::Result;
 use crate::shell::{self, cargo, run as sh};
 use crate::steps::{self, Step};
 use crate::{codegen, licences, words};
 
-pub const ABOUT: &str = "everything that proves it works, with Rust alone";
+pub const ABOUT: &str = "run all tests that need only Rust";
 
 pub const HELP: &str = "
 Usage: cargo xtask test [STEP...]
 
-Runs the steps in this order, or only those named, and stops at the first that fails:
+Runs the steps in this order, or only those named, and stops at the first failure:
 
   fmt       every file is formatted
-  lists     the generated module and node lists are current
+  lists     the generated module and node lists are up to date
   words     names and texts use the field's terms
   clippy    no warning in any target
   tests     unit tests, integration tests, doctests, examples build
@@ -22,12 +22,12 @@ Runs the steps in this order, or only those named, and stops at the first that f
   licences  every dependency has a licence we accept
   package   every crate builds from its own published archive
 
-It needs nothing but Rust and, the first time, the crates that Cargo.lock names.
+Needs only Rust and, the first time, a connection for the crates in Cargo.lock.
 ";
 
 const STEPS: &[&Step] = &[
     &Step { name: "fmt", about: "cargo fmt --all --check", run: || sh(&mut cargo("fmt --all --check")) },
-    &Step { name: "lists", about: "the generated module and node lists are current", run: || codegen::lists(true) },
+    &Step { name: "lists", about: "the generated module and node lists are up to date", run: || codegen::lists(true) },
     &Step { name: "words", about: "names and texts use the field's terms", run: words::check },
     &Step {
         name: "clippy",
@@ -50,7 +50,7 @@ pub fn run(args: &[String]) -> Result {
     steps::run("cargo xtask test", STEPS, args)
 }
 
-/// The binary `orogen` is left out: its pages would be written over those of the library of the same name.
+/// Without the binary `orogen`, whose pages would overwrite those of the library of the same name.
 fn docs() -> Result {
     let mut command =
         cargo("doc --quiet --workspace --no-deps --exclude orogen-cli --exclude orogen-bench --exclude xtask");

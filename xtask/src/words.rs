@@ -1,11 +1,11 @@
-//! Words that the field has a better one for: no name and no text of the project uses them.
+//! Checks that no name and no text uses a term that the field has a better one for.
 
 use std::path::Path;
 use std::process::Command;
 
 use crate::failure::{Failure, Result};
 
-/// Names that are not defined again, each with what it is called.
+/// Names that must not be defined, each with its replacement.
 const NAMES: &[(&str, &str)] = &[
     ("Setting", "WorldParams"),
     ("Slots", "Inputs"),
@@ -42,13 +42,13 @@ const NAMES: &[(&str, &str)] = &[
     ("Untileable", "TileError"),
 ];
 
-/// Beginnings of names.
+/// Prefixes of names, each with its replacement.
 const PREFIXES: &[(&str, &str)] = &[("MOST_", "MAX_"), ("USUAL_", "DEFAULT_")];
 
-/// What a name follows where it is defined.
+/// Keywords after which a name is defined.
 const DEFINITIONS: &[&str] = &["struct", "enum", "trait", "type", "fn", "const", "static", "mod"];
 
-/// Phrases of no text.
+/// Phrases that no text may contain.
 const PHRASES: &[&str] = &[
     "a plan for points asks at no point",
     "show nothing",
@@ -68,7 +68,7 @@ const PHRASES: &[&str] = &[
     "What depends on what it is asked for",
 ];
 
-/// Looks through every file that git tracks.
+/// Checks every file that git tracks.
 pub fn check() -> Result {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
     let listed = Command::new("git").args(["ls-files", "*.rs", "*.md", "*.toml"]).current_dir(root).output();

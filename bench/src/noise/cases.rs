@@ -1,14 +1,14 @@
-//! What is measured, and what has to be reached.
+//! Cases and targets.
 
 use crate::rows::Target;
 
-/// The picture's side.
+/// Side of the picture, in samples.
 pub const SIZE: usize = 1024;
 /// Octaves of every fractal; their frequencies double and their amplitudes halve.
 pub const OCTAVES: usize = 6;
-/// Where a slice of 3D noise is cut, in samples.
+/// Depth of a slice of 3D noise, in samples.
 pub const SLICE: f64 = 37.5;
-/// How far a warp displaces, in wavelengths per unit of noise.
+/// Displacement of a warp, in wavelengths per unit of noise.
 pub const WARP: f64 = 0.5;
 /// The seed of every job.
 pub const SEED: i32 = 1337;
@@ -16,41 +16,41 @@ pub const SEED: i32 = 1337;
 /// The kinds of work.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Work {
-    /// A hash for every sample.
+    /// One hash per sample.
     White,
     /// Value noise.
     Value,
     /// Perlin noise.
     Perlin,
-    /// A plane of 3D Perlin noise.
+    /// A slice of 3D Perlin noise.
     PerlinSlice,
-    /// Perlin noise at points in no order.
+    /// Perlin noise at scattered points.
     PerlinScattered,
     /// Fractal sum of Perlin noise.
     Fbm,
-    /// Fractal sum of creased Perlin noise.
+    /// Fractal sum of ridged Perlin noise.
     Ridged,
-    /// fBm whose octaves fade where the sum of the coarser ones is steep.
+    /// fBm whose octaves are damped where the sum of the coarser ones is steep.
     WeightedFbm,
-    /// fBm displaced by two others.
+    /// fBm displaced by two other fBm.
     WarpedFbm,
     /// Simplex noise.
     Simplex,
-    /// A plane of 3D simplex noise.
+    /// A slice of 3D simplex noise.
     SimplexSlice,
-    /// Distance to the nearest of scattered points.
+    /// Distance to the nearest scattered point.
     Worley,
 }
 
-/// One line of the table.
+/// A line of the table.
 pub struct Case {
-    /// Its name.
+    /// The name.
     pub name: &'static str,
-    /// What is done.
+    /// The kind of work.
     pub work: Work,
-    /// Samples in one period of the coarsest octave.
+    /// Wavelength of the coarsest octave, in samples.
     pub wavelength: f64,
-    /// What has to be reached.
+    /// The target.
     pub target: Option<Target>,
 }
 
@@ -58,7 +58,7 @@ const fn case(name: &'static str, work: Work, peer: &'static str, ratio: f64) ->
     Case { name, work, wavelength: 100.0, target: Some(Target { peer, ratio, or_rate: None }) }
 }
 
-/// The name under which a peer that offers no weighted fBm shows its plain one.
+/// The name of a peer without weighted fBm, whose plain fBm is measured.
 pub const PLAIN_FBM: &str = "fastnoise-lite (plain fbm)";
 
 /// Every case.
@@ -83,7 +83,7 @@ pub const CASES: &[Case] = &[
     case("Worley F1 2D", Work::Worley, "fastnoise-lite", 50.0),
 ];
 
-/// Points in no order over the picture, the same for everybody.
+/// Scattered points over the picture, the same for all jobs.
 pub fn scattered() -> (Vec<f64>, Vec<f64>) {
     let mut state = 1u64;
     let mut next = || {

@@ -1,4 +1,4 @@
-//! A picture that fits no cache: one octave beside the plainest way to write as many samples.
+//! A picture larger than the caches: one octave compared with the plain fill.
 
 use orogen_noise::{Perlin, Points};
 
@@ -7,12 +7,12 @@ use crate::measure::{self, Clock, Job, PLAIN};
 use crate::options::Options;
 use crate::rows::{Row, Target};
 
-/// Samples a side: a gibibyte.
+/// Samples per side: 1 GiB in total.
 const SIDE: usize = 16_384;
 const CASE: &str = "Perlin 2D, 16384 x 16384";
 const TARGET: Target = Target { peer: "plain fill", ratio: 0.8, or_rate: None };
 
-/// Measures it if it is asked for.
+/// Measures the case if it is selected.
 pub fn rows(options: &Options) -> Result<Vec<Row>, String> {
     if !CASE.contains(&options.case) {
         return Ok(Vec::new());
@@ -21,7 +21,7 @@ pub fn rows(options: &Options) -> Result<Vec<Row>, String> {
     let noise = Perlin { seed: SEED as u64, wavelength: 100.0 };
     let axis: Vec<f64> = (0..SIDE).map(|i| i as f64).collect();
     let mut jobs = [
-        // An error writes no sample; the check before the timings then speaks up.
+        // On an error no sample is written, and the check before the timings fails.
         Job::new("orogen", move |out| _ = noise.fill(&Points::Lattice { xs: &axis, ys: &axis }, out)),
         Job::new(TARGET.peer, |out| out.fill(PLAIN)),
     ];

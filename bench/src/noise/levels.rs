@@ -1,4 +1,4 @@
-//! AVX2 beside AVX-512, on machines that have both and use the latter.
+//! AVX2 compared with AVX-512, on machines that use the latter.
 
 use orogen_simd::Level;
 
@@ -7,17 +7,17 @@ use super::ours;
 use crate::measure::Job;
 use crate::rows::{Row, Target};
 
-/// Half the width gives half the speed, or more.
+/// Half the width must give at least half the rate.
 const TARGET: Target = Target { peer: "orogen at avx512", ratio: 0.5, or_rate: None };
 
-/// Our job at AVX2, if it is the level below the one in force.
+/// Our job at AVX2, if that is the level below the current one.
 pub fn below(case: &Case) -> Option<Job> {
     if Level::current() != Level::Avx512 {
         return None;
     }
     let mut job = ours::job(case);
     Some(Job::new("orogen at avx2", move |out| {
-        // A level that cannot be forced writes nothing, and the check before the timings speaks up.
+        // A level that cannot be forced writes nothing, and the check before the timings fails.
         if Level::force(Level::Avx2).is_ok() {
             (job.fill)(out);
         }

@@ -1,5 +1,5 @@
-//! Area `noise`: our kernels beside other crates, one thread, a picture of 1024 x 1024 samples; then a picture that fits no cache, and
-//! two threads beside one.
+//! Area `noise`: our kernels compared with other crates, one thread, a picture of 1024 x 1024 samples; then a picture
+//! larger than the caches, and two threads compared with one.
 
 mod cases;
 mod large;
@@ -15,7 +15,7 @@ use crate::options::Options;
 use crate::rows::Row;
 use cases::{CASES, Case, SIZE};
 
-/// Measures every case, or those named.
+/// Measures every case, or those selected.
 pub fn run(options: &Options) -> Result<Value, String> {
     let mut rows = Vec::new();
     for case in CASES.iter().filter(|c| c.name.contains(&options.case)) {

@@ -1,4 +1,4 @@
-//! What we offer.
+//! Our jobs.
 
 use orogen_noise::{Depth, Falloff, Fractal, Kind, LengthMismatch, Perlin, Points, Simplex, Value, White, Worley};
 use orogen_simd::Level;
@@ -37,7 +37,7 @@ pub fn job(case: &Case) -> Job {
     }
 }
 
-/// An error writes no sample; the check before the timings then speaks up.
+/// On an error no sample is written, and the check before the timings fails.
 fn job_of(mut fill: impl FnMut(&mut [f32]) -> Result<(), LengthMismatch> + 'static) -> Job {
     Job::new("orogen", move |out| _ = fill(out))
 }
@@ -51,10 +51,10 @@ fn whole(fractal: Fractal) -> Job {
     lattice(move |at, out| fractal.fill(at, out))
 }
 
-/// Rows of a band, so few that what displaces their samples stays in cache.
+/// Rows of a band, few enough for the displacements of its samples to stay in cache.
 const BAND: usize = 64;
 
-/// The textbook warp: fBm at a position displaced by two others, some rows at a time.
+/// The textbook warp: fBm at a position displaced by two other fBm, in bands of rows.
 fn warped(fractal: Fractal, wavelength: f64) -> Job {
     let axis = axis();
     let reach = (WARP * wavelength) as f32;
@@ -73,7 +73,7 @@ fn warped(fractal: Fractal, wavelength: f64) -> Job {
     })
 }
 
-/// Where the picture's columns and rows stand.
+/// The positions of the picture's columns and rows.
 fn axis() -> Vec<f64> {
     (0..SIZE).map(|i| i as f64).collect()
 }

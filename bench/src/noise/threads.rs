@@ -1,4 +1,4 @@
-//! Two threads beside one, where arithmetic and not memory is the limit; by the clock on the wall.
+//! Two threads compared with one, where arithmetic and not memory is the limit; wall time.
 
 use orogen_noise::{Falloff, Fractal, Kind, LengthMismatch, Points, Worley};
 
@@ -7,9 +7,9 @@ use crate::measure::{self, Clock, Job};
 use crate::options::Options;
 use crate::rows::{Row, Target};
 
-/// Samples a side.
+/// Samples per side.
 const SIDE: usize = 2048;
-/// How often a thread fills its band: once takes hardly ten times as long as starting a thread does.
+/// Number of fills per thread: one fill takes hardly ten times as long as starting a thread.
 const TIMES: usize = 16;
 const TARGET: Target = Target { peer: "one thread", ratio: 1.9, or_rate: None };
 
@@ -30,7 +30,7 @@ fn fractal(kind: Kind) -> Fractal {
     Fractal { kind, seed: SEED as u64, wavelength: 100.0, octaves: OCTAVES as u32, ..Fractal::default() }
 }
 
-/// Measures those that are asked for, where there are two processors.
+/// Measures the selected cases, if there are two processors.
 pub fn rows(options: &Options) -> Result<Vec<Row>, String> {
     let mut rows = Vec::new();
     if std::thread::available_parallelism().map_or(1, usize::from) < 2 {
@@ -51,7 +51,7 @@ pub fn rows(options: &Options) -> Result<Vec<Row>, String> {
     Ok(rows)
 }
 
-/// The picture in as many bands of rows, a thread for each; one is done without a thread.
+/// The picture in as many bands of rows, one thread for each; a single band needs no thread.
 fn job(name: &'static str, fill: Fill, threads: usize) -> Job {
     let axis: Vec<f64> = (0..SIDE).map(|i| i as f64).collect();
     let rows = SIDE / threads;

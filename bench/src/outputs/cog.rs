@@ -1,5 +1,5 @@
-//! A Cloud-Optimised GeoTIFF of 8192 x 8192 heights beside GDAL: the same packing (deflate, predictor 3, tiles of 512, overviews by means), one thread each,
-//! processor time; and how large the files are.
+//! A Cloud-Optimised GeoTIFF of 8192 x 8192 heights compared with GDAL: the same encoding (deflate, predictor 3, tiles
+//! of 512, averaged overviews), one thread each, CPU time; and the sizes of the files.
 
 use std::fs::File;
 use std::io::BufWriter;
@@ -19,10 +19,10 @@ use crate::world::process::watch;
 
 const SIDE: usize = 8192;
 
-/// How the other one is asked.
+/// GDAL's program.
 const GDAL: &str = "gdal_translate";
 
-/// Measures both on the same ground in turn.
+/// Measures both on the same terrain in turns.
 pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     let folder = Folder::new()?;
     let ground = ground(SIDE)?;
@@ -66,7 +66,7 @@ fn write(ground: &Grid, path: &Path) -> Result<f64, String> {
     Ok(start.elapsed().as_secs_f64())
 }
 
-/// GDAL on the same heights, which it reads as they are; none where there is no GDAL.
+/// GDAL on the same heights, which it reads as raw data; `None` without GDAL.
 fn gdal(ground: &Grid, folder: &Path) -> Result<Option<(f64, PathBuf)>, String> {
     let found = watch(Path::new(GDAL), &["--version"], f64::INFINITY);
     if found.is_err() {
@@ -102,7 +102,7 @@ fn gdal(ground: &Grid, folder: &Path) -> Result<Option<(f64, PathBuf)>, String> 
     Ok(Some((cost.cpu, out)))
 }
 
-/// A folder that goes when it is done with.
+/// A folder that is removed on drop.
 struct Folder(PathBuf);
 
 impl Folder {

@@ -1,4 +1,4 @@
-//! Contours of 20 levels beside contourpy, CPU time of one thread.
+//! Contours of 20 levels compared with contourpy, CPU time of one thread.
 
 use std::hint::black_box;
 
@@ -14,10 +14,10 @@ use crate::world::figure::{Figure, Target};
 const SIDE: usize = 2048;
 const LEVELS: usize = 20;
 
-/// Where contourpy's Python is: `cargo xtask bench` installs it and sets this.
+/// The environment variable with contourpy's Python: `cargo xtask bench` installs it and sets this.
 const PYTHON: &str = "OROGEN_CONTOURPY";
 
-/// Measures both on the same ground in turn.
+/// Measures both on the same terrain in turns.
 pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     let ground = ground(SIDE)?;
     let [low, high] =

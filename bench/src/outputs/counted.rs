@@ -1,9 +1,9 @@
-//! A writer that keeps nothing.
+//! A writer that discards data.
 
 use std::hint::black_box;
 use std::io::{self, Write};
 
-/// Counts bytes and forgets them.
+/// Counts bytes and discards them.
 pub struct Counted(pub u64);
 
 impl Write for Counted {

@@ -1,5 +1,5 @@
-//! OpenEXR of 8192 x 8192 heights, ZIP, in one thread, processor time: beside the OpenEXR library, and beside a general packer of the same bytes; and how
-//! large the files are.
+//! OpenEXR of 8192 x 8192 heights, ZIP, in one thread, CPU time: compared with the OpenEXR library, and with a general
+//! compressor on the same bytes; and the sizes of the files.
 
 use std::hint::black_box;
 use std::io;
@@ -19,16 +19,16 @@ use crate::world::figure::{Figure, Target};
 
 const SIDE: usize = 8192;
 
-/// Where a Python with OpenEXR is: `cargo xtask bench` installs it and sets this.
+/// The environment variable of a Python with OpenEXR: `cargo xtask bench` installs it and sets this.
 const PYTHON: &str = "OROGEN_OPENEXR";
 
-/// Rows that the format packs together.
+/// Rows per block of the format.
 const ROWS: usize = 16;
 
-/// The level at which the general packer is as fast as it is any good.
+/// The fastest useful level of the general compressor.
 const LEVEL: u8 = 3;
 
-/// Measures all on the same ground.
+/// Measures all on the same terrain.
 pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     let ground = ground(SIDE)?;
     let repetitions = options.repetitions.min(3);
@@ -63,7 +63,7 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     ])
 }
 
-/// Seconds, and bytes of the file.
+/// Seconds, and size of the file in bytes.
 fn write(ground: &Grid) -> Result<(f64, u64), String> {
     let picture = Picture {
         width: ground.width(),
@@ -83,7 +83,7 @@ fn write(ground: &Grid) -> Result<(f64, u64), String> {
     Ok((start.elapsed().as_secs_f64(), counted.0))
 }
 
-/// Seconds that the general packer takes for the blocks, parted and in differences already.
+/// Seconds of the general compressor for the blocks, after splitting and differences.
 fn packed(ground: &Grid) -> f64 {
     let mut seconds = 0.0;
     for rows in ground.data().chunks(ROWS * ground.width()) {

@@ -1,11 +1,11 @@
-//! The ground that outputs are made of: ten octaves of fBm, 3000 m from low to high.
+//! The terrain of the outputs: ten octaves of fBm with a relief of 3000 m.
 
 use orogen::{Grid, Recipe, Window, World};
 
-/// Metres from one sample to the next.
+/// Distance between samples, in metres.
 pub const CELL: f64 = 30.0;
 
-/// A square of it.
+/// A square of the terrain.
 pub fn ground(side: usize) -> Result<Grid, String> {
     let text = "orogen = 1\n[world]\nseed = 3\n[nodes.noise]\nop = \"fbm\"\nwavelength = 20000\noctaves = 10\n\
                 [nodes.ground]\nop = \"remap\"\nsource = \"noise\"\nto = [0, 3000]\n[outputs]\nheight = \"ground\"\n";

@@ -1,4 +1,4 @@
-//! Hillshaded maps of 4096 x 4096 heights that are at hand, in memory, to the last byte of the picture: all cores, wall clock.
+//! Hillshaded maps of 4096 x 4096 heights in memory, up to the last byte of the picture: all cores, wall time.
 
 use std::io::{self, Write};
 use std::time::Instant;
@@ -17,10 +17,10 @@ use crate::world::figure::{Figure, Target};
 
 const SIDE: usize = 4096;
 
-/// Most seconds that a map may take.
+/// Maximum time for a map, in seconds.
 const MOST: f64 = 1.5;
 
-/// Measures the plain map, a pixel a sample, and the sheet of the size it has if nobody says.
+/// Measures the plain map, one pixel per sample, and the map sheet at its default size.
 pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     let ground = ground(SIDE)?;
     let figure = |case: String, work: &dyn Fn(&Grid) -> Result<(), String>| {
@@ -69,7 +69,7 @@ fn sheet() -> Sheet {
     }
 }
 
-/// Takes bytes and counts them.
+/// Counts bytes.
 struct Counted(u64);
 
 impl Write for Counted {

@@ -1,4 +1,4 @@
-//! Meshes: few triangles beside pydelatin's, CPU time of one thread; and how long the full grid takes into a file.
+//! Adaptive meshes compared with pydelatin, CPU time of one thread; and the time to write the full grid.
 
 use std::hint::black_box;
 
@@ -19,13 +19,13 @@ use crate::options::Options;
 use crate::world::figure::{Figure, Target};
 
 const SIDE: usize = 1024;
-/// The greatest error, as a share of the relief.
+/// The maximum error, as a share of the relief.
 const SHARE: f64 = 0.01;
 
-/// Where pydelatin's Python is: `cargo xtask bench` installs it and sets this.
+/// The environment variable with pydelatin's Python: `cargo xtask bench` installs it and sets this.
 const PYTHON: &str = "OROGEN_PYDELATIN";
 
-/// Measures on ground that is rough everywhere and on the preset `alpine`.
+/// Measures on uniformly rough terrain and on the preset `alpine`.
 pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     let preset = orogen::presets::find("alpine").ok_or("there is no preset alpine")?;
     let world = preset.recipe().and_then(World::open).map_err(|e| e.to_string())?;
@@ -40,7 +40,7 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     Ok(figures)
 }
 
-/// CPU seconds of this thread for each of some repetitions.
+/// CPU seconds of this thread for each repetition.
 fn times<T>(repetitions: usize, mut work: impl FnMut() -> Result<T, String>) -> Result<Vec<f64>, String> {
     (0..repetitions)
         .map(|_| {
@@ -55,7 +55,7 @@ fn few_triangles(name: &str, grid: &Grid, options: &Options) -> Result<Figure, S
     let [low, high] = grid.data().iter().fold([f32::MAX, f32::MIN], |[l, h], v| [l.min(*v), h.max(*v)]).map(f64::from);
     let max_error = SHARE * (high - low);
     let theirs = pydelatin(grid, max_error, options.repetitions)?;
-    // No further off than what the peer reached.
+    // The error that the peer reached.
     let max_error = theirs.as_ref().map_or(max_error, |theirs| theirs.error);
     let shape = adaptive(grid, max_error).map_err(|e| e.to_string())?;
     let error = shape.deviation(grid);

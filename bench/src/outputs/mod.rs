@@ -1,4 +1,4 @@
-//! Area `outputs`: what the files that people take away cost, beside the programs that make such files otherwise.
+//! Area `outputs`: the cost of output files, compared with other programs.
 
 mod cog;
 mod contours;
@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use crate::options::Options;
 use crate::world::figure::Figure;
 
-/// A case: what is measured, and how.
+/// A case: its name and function.
 type Case = (&'static str, fn(&Options) -> Result<Vec<Figure>, String>);
 
 /// Every case.
@@ -28,7 +28,7 @@ const CASES: &[Case] = &[
     ("render", render::measure),
 ];
 
-/// Measures every case, or those named.
+/// Measures every case, or those selected.
 pub fn run(options: &Options) -> Result<Value, String> {
     let mut rows: Vec<Value> = Vec::new();
     for (name, measure) in CASES.iter().filter(|(name, _)| name.contains(&options.case)) {

@@ -1,4 +1,5 @@
-//! Peers that are Python packages: scripts in `bench/peers` that read heights from a .npy file and print a line of JSON.
+//! Peers that are Python packages: scripts in `bench/peers` that read heights from a .npy file and print a line of
+//! JSON.
 
 use std::ffi::OsStr;
 use std::path::PathBuf;
@@ -10,15 +11,15 @@ use serde_json::Value;
 
 use crate::measure::median;
 
-/// What a peer told.
+/// The result of a peer.
 pub struct Told {
     /// The median of its `seconds`.
     pub seconds: f64,
-    /// All that it printed.
+    /// The whole JSON object.
     pub values: Value,
 }
 
-/// Runs a script with the Python that a variable of the environment names, on these heights; none where it is not set.
+/// Runs a script on these heights with the Python that an environment variable names; `None` if it is not set.
 pub fn run(variable: &str, script: &str, heights: &Grid, arguments: &[String]) -> Result<Option<Told>, String> {
     let Some(python) = std::env::var_os(variable) else { return Ok(None) };
     let file = std::env::temp_dir().join(format!("orogen-bench-{script}-{}.npy", std::process::id()));
@@ -29,7 +30,7 @@ pub fn run(variable: &str, script: &str, heights: &Grid, arguments: &[String]) -
         .args([path.as_os_str(), file.as_os_str()])
         .args(arguments.iter().map(OsStr::new))
         .output();
-    // Only what was made here is removed.
+    // Only files made here are removed.
     let _ = std::fs::remove_file(&file);
     let output = output.map_err(|e| format!("{}: {e}", python.display()))?;
     let values: Value = serde_json::from_slice(&output.stdout)

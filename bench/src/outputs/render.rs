@@ -1,4 +1,4 @@
-//! A picture of 1920 x 1080 pixels of `alpine`, the world made beforehand: time on the wall with as many threads as there are.
+//! A picture of `alpine` with 1920 x 1080 pixels, of a finished world: wall time on all cores.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -14,10 +14,10 @@ use crate::world::figure::{Figure, Target};
 
 const SIZE: [usize; 2] = [1920, 1080];
 
-/// Layers that a picture of the preset shows.
+/// Layers in the picture of the preset.
 const LAYERS: [&str; 3] = ["height", "surface", "flow"];
 
-/// Measures the scene's preparation and its painting together.
+/// Measures preparation and rendering together.
 pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     let told = |error: orogen::Error| error.to_string();
     let preset = presets::find("alpine").ok_or("there is no preset alpine")?;

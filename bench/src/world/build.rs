@@ -1,7 +1,8 @@
-//! Whole builds by the program that users run: 32768 x 32768 samples under a gibibyte, beside small ones; two threads; resumed.
+//! Whole builds by the `orogen` program: 32768 x 32768 samples under 1 GiB, compared with small ones; two threads;
+//! resuming.
 //!
-//! Needs a dozen GiB of disk for temporary files, and minutes. What is compared is processor time, which a busy machine hardly changes,
-//! but for the threads.
+//! Needs a dozen GiB of disk for temporary files, and minutes. CPU time is compared, which other load changes little,
+//! except for threads.
 
 use std::path::{Path, PathBuf};
 
@@ -10,27 +11,27 @@ use super::hills;
 use super::process::{Cost, program, watch};
 use crate::options::Options;
 
-/// Samples a side: of what is large, of what it is compared with, and of what is timed on the wall.
+/// Samples per side: of the large build, of the one it is compared with, and of the one with wall time.
 const LARGE: usize = 32_768;
 const SMALL: usize = 4_096;
 const MIDDLE: usize = 8_192;
 
-/// What a build may use, and what it may be found to hold, code and all.
+/// The memory limit of a build, and the maximum resident memory including code.
 const MEMORY: &str = "1GiB";
 const MAX_GIB: f64 = 1.2;
 
-/// How much dearer a sample of the large build may be.
+/// Maximum ratio of the cost of a sample in the large build.
 const DEARER: f64 = 1.15;
 
-/// How many times faster two threads have to be.
+/// Required speedup of two threads.
 const FASTER: f64 = 1.9;
 
-/// The share of a whole build that resuming after a kill at half time may take.
+/// Maximum share of a whole build for resuming after a kill at half time.
 const RESUMED: f64 = 0.55;
 
 const FORMS: [(&str, &str); 2] = [("Zarr", "zarr"), ("COG", "tif")];
 
-/// Where builds are made; removed in the end.
+/// The folder of builds, removed at the end.
 struct Bench {
     program: PathBuf,
     folder: PathBuf,
@@ -39,12 +40,12 @@ struct Bench {
 
 impl Drop for Bench {
     fn drop(&mut self) {
-        // Only what was made here, in a folder of our own, is removed.
+        // Only files made here, in a folder of our own, are removed.
         let _ = std::fs::remove_dir_all(&self.folder);
     }
 }
 
-/// Measures.
+/// Runs the measurements.
 pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     let program = program()?;
     let folder = std::env::temp_dir().join(format!("orogen-bench-build-{}", std::process::id()));
@@ -54,7 +55,7 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     let bench = Bench { program, folder, cell: length / LARGE as f64 };
     let path = bench.folder.join("hills.toml");
     std::fs::write(&path, recipe.to_toml()).map_err(|e| format!("{}: {e}", path.display()))?;
-    // A quick run shows that it works, at a size that takes seconds.
+    // A quick run only shows that it works, at a size that takes seconds.
     let large = if options.repetitions < 9 { MIDDLE } else { LARGE };
     let mut figures = Vec::new();
     for (name, extension) in FORMS {
@@ -102,7 +103,7 @@ impl Bench {
         Ok(())
     }
 
-    /// The arguments of a build of the middle of the world, so that samples are alike at any size.
+    /// The arguments of a build around the middle of the world, so that samples are similar at any size.
     fn arguments(&self, out: &Path, side: usize, more: &[&str]) -> Vec<String> {
         let corner = (LARGE - side) / 2;
         let fixed = ["build", "hills.toml", "--layers", hills::STRETCHED, "--memory", MEMORY, "--no-cache", "-q"];
@@ -120,7 +121,7 @@ impl Bench {
         watch(&self.program, &arguments, most)
     }
 
-    /// The best of a few builds: whatever else the machine does only makes them worse.
+    /// The best of a few builds, because other load only makes them slower.
     fn best(&self, extension: &str, side: usize, times: usize, more: &[&str]) -> Result<Cost, String> {
         let out = self.folder.join(format!("out.{extension}"));
         let mut best = Cost { cpu: f64::INFINITY, wall: f64::INFINITY, memory: 0 };
@@ -136,7 +137,7 @@ impl Bench {
         Ok(best)
     }
 
-    /// What is left to pay after a kill.
+    /// The remaining cost after a kill.
     fn resumed(&self, extension: &str, side: usize, half: f64) -> Result<Cost, String> {
         let out = self.folder.join(format!("killed.{extension}"));
         let (_, ended) = self.run(&out, side, &[], half)?;

@@ -1,4 +1,4 @@
-//! A chunk of 256 x 256 samples of fields alone, on one core, into a buffer that is used again.
+//! A chunk of 256 x 256 samples of fields only, on one core, into a reused buffer.
 
 use cpu_time::ThreadTime;
 use orogen::{Sampler, Window};
@@ -8,15 +8,15 @@ use super::hills;
 use crate::measure::median;
 use crate::options::Options;
 
-/// Milliseconds that a chunk may take.
+/// Maximum time for a chunk, in milliseconds.
 const MOST: f64 = 1.0;
 
 const SIDE: usize = 256;
 
-/// Chunks a timing.
+/// Chunks per timing.
 const CHUNKS: i64 = 20;
 
-/// Measures at the world's own cell and at one of a metre, where noise changes more slowly from sample to sample.
+/// Measures at the world's own cell and at 1 m, where noise changes more slowly from sample to sample.
 pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     let mut recipe = hills::fields()?;
     let cell = recipe.world.cell;

@@ -1,37 +1,37 @@
-//! A figure that has to stay below, or reach, its target.
+//! Figures with targets.
 
 use serde_json::{Value, json};
 
-/// What a figure is held against.
+/// The target of a figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// The figure itself may be so much.
+    /// Maximum of the figure.
     AtMost(f64),
-    /// The ratio of the figure to the other may be so much.
+    /// Maximum ratio of the figure to the other.
     RatioAtMost(f64),
-    /// The ratio of the other to the figure has to be so much: how many times faster.
+    /// Minimum ratio of the other to the figure (speedup).
     FasterBy(f64),
-    /// Nothing: it is told for its own sake.
+    /// No target.
     None,
 }
 
-/// One figure.
+/// A figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// What is measured.
+    /// The case.
     pub case: String,
-    /// Ours.
+    /// Our figure.
     pub ours: f64,
-    /// Its unit.
+    /// The unit.
     pub unit: &'static str,
-    /// What it is compared with, and the same figure for that.
+    /// The comparison, with its figure.
     pub other: Option<(&'static str, f64)>,
-    /// What it is held against.
+    /// The target.
     pub target: Target,
 }
 
 impl Figure {
-    /// As a row of the report.
+    /// A row of the report.
     pub fn json(&self) -> Value {
         let other = self.other.map(|(_, value)| value);
         let (ratio, target, met) = match self.target {
@@ -59,7 +59,7 @@ impl Figure {
     }
 }
 
-/// Three places: more would be noise.
+/// Three decimals; more would be noise.
 fn rounded(x: f64) -> f64 {
     (x * 1000.0).round() / 1000.0
 }

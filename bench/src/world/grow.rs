@@ -1,23 +1,23 @@
-//! Films of a terrain growing, beside the terrain itself, by the program that users run. What is compared is processor time.
+//! Animations of growing terrain, compared with the terrain itself, by the `orogen` program. CPU time.
 
 use super::figure::{Figure, Target};
 use super::process::{program, watch};
 use crate::options::Options;
 
-/// With one stage of `stream-power` and with two.
+/// With one and with two stages of `stream-power`.
 const PRESETS: [&str; 4] = ["volcano", "dla-peaks", "canyon", "alpine"];
 
-/// How many times the processor time of the terrain its film may take.
+/// Maximum ratio of the animation's CPU time to the terrain's.
 const DEARER: f64 = 3.0;
 
-/// Measures.
+/// Runs the measurements.
 pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     let program = program()?;
     let folder = std::env::temp_dir().join(format!("orogen-bench-grow-{}", std::process::id()));
     std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let (film, terrain) = (folder.join("grow.png"), folder.join("terrain"));
     let (film, terrain) = (film.to_string_lossy().into_owned(), terrain.to_string_lossy().into_owned());
-    // The least of several runs: other work on the machine only adds.
+    // The minimum of several runs, because other load only adds.
     let runs = if options.repetitions < 9 { 1 } else { 3 };
     let least = |arguments: &[&str]| -> Result<f64, String> {
         let common = ["--size", "512", "--no-cache", "--quiet", "--force"];
@@ -36,7 +36,7 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
             target: Target::RatioAtMost(DEARER),
         })
     });
-    // Only what was made here, in a folder of our own, is removed.
+    // Only files made here, in a folder of our own, are removed.
     let _ = std::fs::remove_dir_all(&folder);
     figures.into_iter().collect()
 }

@@ -1,18 +1,18 @@
-//! The worlds that are measured, all of the preset `hills`.
+//! The measured worlds, all based on the preset `hills`.
 
 use orogen::filter::blur::Blur;
 use orogen::solver::normalise::Normalise;
 use orogen::{Options, Recipe, World, presets};
 
-/// The preset as it is: fields alone.
+/// The preset itself: fields only.
 pub fn fields() -> Result<Recipe, String> {
     presets::find("hills").ok_or("there is no preset `hills`")?.recipe().map_err(|e| e.to_string())
 }
 
-/// The layer of the recipes that end with a normalised one.
+/// The normalised layer of the recipes below.
 pub const STRETCHED: &str = "stretched";
 
-/// The preset, its heights normalised.
+/// The preset with normalised heights.
 pub fn stretched() -> Result<Recipe, String> {
     let mut recipe = fields()?;
     recipe.add("stretched", Normalise { source: "terrain".into(), low: 40.0, high: 340.0 });
@@ -20,7 +20,7 @@ pub fn stretched() -> Result<Recipe, String> {
     Ok(recipe)
 }
 
-/// The preset, its heights blurred with a halo of 32 samples at `cell` and then normalised.
+/// The preset with heights blurred with a halo of 32 samples at `cell` and then normalised.
 pub fn with_halo(cell: f64) -> Result<Recipe, String> {
     let mut recipe = fields()?;
     // The kernel ends at three radii: 31.5 samples.
@@ -30,7 +30,7 @@ pub fn with_halo(cell: f64) -> Result<Recipe, String> {
     Ok(recipe)
 }
 
-/// Opens a recipe on so many threads.
+/// Opens a recipe on this many threads.
 pub fn open(recipe: Recipe, threads: usize) -> Result<World, String> {
     World::with_options(recipe, Options { threads: Some(threads), ..Options::default() }).map_err(|e| e.to_string())
 }

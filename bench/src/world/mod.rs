@@ -1,4 +1,4 @@
-//! Area `world`: what windows, tiles, chunks and whole builds of a world cost. The recipe is the preset `hills`.
+//! Area `world`: the cost of windows, tiles, chunks and whole builds of the preset `hills`.
 
 mod build;
 mod chunk;
@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 use crate::options::Options;
 use figure::Figure;
 
-/// A case: what is measured, and how.
+/// A case: its name and function.
 type Case = (&'static str, fn(&Options) -> Result<Vec<Figure>, String>);
 
 /// Every case.
@@ -26,7 +26,7 @@ const CASES: &[Case] = &[
     ("build", build::measure),
 ];
 
-/// Measures every case, or those named.
+/// Measures every case, or those selected.
 pub fn run(options: &Options) -> Result<Value, String> {
     let mut rows: Vec<Value> = Vec::new();
     for (name, measure) in CASES.iter().filter(|(name, _)| name.contains(&options.case)) {

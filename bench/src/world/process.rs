@@ -1,16 +1,16 @@
-//! A program's run, watched from outside: processor time and memory, as Linux tells them.
+//! CPU time and memory of another process, on Linux.
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-/// How often a run is looked at.
+/// Interval of checks.
 const INTERVAL: Duration = Duration::from_millis(5);
 
-/// The kernel counts processor time in hundredths of a second, for whoever asks.
+/// The kernel reports CPU time in hundredths of a second.
 const TICKS: f64 = 100.0;
 
-/// Names the program to run: `cargo xtask bench` builds it and sets this.
+/// The environment variable with the program to run: `cargo xtask bench` builds it and sets this.
 const PROGRAM: &str = "OROGEN_BIN";
 
 /// The program to run.
@@ -19,19 +19,18 @@ pub fn program() -> Result<PathBuf, String> {
     program.ok_or_else(|| format!("{PROGRAM} is not set: run `cargo xtask bench world`"))
 }
 
-/// What a run took.
+/// The cost of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cost {
-    /// Seconds of all its threads on processors.
+    /// CPU seconds of all threads.
     pub cpu: f64,
-    /// Seconds on the wall.
+    /// Wall time in seconds.
     pub wall: f64,
-    /// The most memory it held, in bytes.
+    /// Peak memory, in bytes.
     pub memory: u64,
 }
 
-/// Runs a program to its end, or until it has used `most` seconds of processors, when it is killed. Returns what it took, and whether it
-/// came to its end.
+/// Runs a program to its end, or kills it after `most` CPU seconds. Returns the cost, and whether it ended by itself.
 pub fn watch(program: &Path, arguments: &[&str], most: f64) -> Result<(Cost, bool), String> {
     let failed = |why: &dyn std::fmt::Display| format!("{} {}: {why}", program.display(), arguments.join(" "));
     let start = Instant::now();
@@ -42,7 +41,7 @@ pub fn watch(program: &Path, arguments: &[&str], most: f64) -> Result<(Cost, boo
     let mut killed = false;
     loop {
         let look = Look::at(&child).ok_or_else(|| failed(&"this system does not tell what a process takes"))?;
-        // After its end the process is still listed, until somebody asks how it ended.
+        // After its end the process is listed until its exit status is read.
         cost = Cost { cpu: look.cpu, wall: start.elapsed().as_secs_f64(), memory: cost.memory.max(look.memory) };
         if look.ended {
             break;
@@ -70,7 +69,7 @@ impl Look {
     fn at(child: &Child) -> Option<Look> {
         let read = |name: &str| std::fs::read_to_string(format!("/proc/{}/{name}", child.id())).ok();
         let stat = read("stat")?;
-        // Behind the name, which is in brackets: the state, and as 12th and 13th the times in user's and system's code.
+        // After the name, which is in brackets: the state, and as 12th and 13th field the user and system times.
         let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
         let ticks = |at: usize| fields.get(at).and_then(|text| text.parse::<f64>().ok());
         Some(Look {
@@ -81,7 +80,7 @@ impl Look {
     }
 }
 
-/// The most memory held so far, in bytes.
+/// The peak memory so far, in bytes.
 fn high_water(status: &str) -> Option<u64> {
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)

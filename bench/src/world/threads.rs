@@ -1,5 +1,5 @@
-//! Two threads against one: time on the wall, a window of 2048 x 2048. The best of many runs, as whatever else the machine does only
-//! makes a run slower, and two threads more than one: the figure asks for an idle machine.
+//! Two threads compared with one: wall time of a window of 2048 x 2048. The best of many runs, because other load only
+//! makes a run slower, and affects two threads more: the figure needs an idle machine.
 
 use std::time::Instant;
 
@@ -9,7 +9,7 @@ use super::figure::{Figure, Target};
 use super::hills;
 use crate::options::Options;
 
-/// How many times faster two threads have to be.
+/// Required speedup of two threads.
 const FASTER: f64 = 1.9;
 
 const SIDE: usize = 2048;
@@ -29,7 +29,7 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
             for (world, best) in worlds.iter().zip(&mut best) {
                 let start = Instant::now();
                 world.window(layer, &window).map_err(|e| e.to_string())?;
-                // The first round solves what must be solved.
+                // The first round solves.
                 if round > 0 {
                     *best = best.min(start.elapsed().as_secs_f64() * 1000.0);
                 }

@@ -1,4 +1,4 @@
-//! Tiles of 512 with a halo of 32 against the whole map at once: CPU time, one thread.
+//! Tiles of 512 with a halo of 32 compared with the whole map at once: CPU time, one thread.
 
 use cpu_time::ProcessTime;
 use orogen::tiles::Tiling;
@@ -11,10 +11,10 @@ use crate::options::Options;
 
 const TILE: usize = 512;
 
-/// Samples a side: an eighth of a tile's side is its halo, and there are 8 x 8 tiles.
+/// Samples per side: the halo is a sixteenth of a tile's side, and there are 8 x 8 tiles.
 const SIDE: usize = 4096;
 
-/// How much more CPU time tiles may take: each by itself, and in a stream that shares halos.
+/// Maximum ratio of CPU time: tiles one at a time, and in a stream that shares halos.
 const ALONE: f64 = 1.4;
 const SHARED: f64 = 1.15;
 
@@ -65,7 +65,7 @@ fn alone(world: &World, window: &Window) -> orogen::Result<()> {
 }
 
 fn shared(world: &World, window: &Window) -> orogen::Result<()> {
-    // As much memory as eight tiles and their halos take: what `build` has, not the whole map at once.
+    // The memory of eight tiles and their halos, as in `build`, instead of the whole map at once.
     let tiling = Tiling { memory: Some(64 << 20), ..Tiling::of(TILE) };
     world.tiles(&[LAYER], window, tiling, &Progress::none())?.try_for_each(|tile| tile.map(|_| ()))
 }

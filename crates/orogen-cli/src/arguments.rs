@@ -14,12 +14,12 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// Names and values as the library takes them.
+    /// Names and values, as the library takes them.
     pub fn values(&self) -> Vec<(String, f64)> {
         self.set.iter().map(|Assignment(name, value)| (name.clone(), *value)).collect()
     }
 
-    /// The same with one more.
+    /// The same with one more value.
     pub fn with(&self, more: Option<(String, f64)>) -> Arguments {
         let more = more.map(|(name, value)| Assignment(name, value));
         Arguments { set: self.set.iter().cloned().chain(more).collect() }

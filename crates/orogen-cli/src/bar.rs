@@ -28,21 +28,21 @@ pub enum Mode {
 
 static MODE: OnceLock<Mode> = OnceLock::new();
 
-/// Sets how all progress of this process is shown.
+/// Sets how this process shows progress.
 pub fn set_mode(mode: Mode) {
     let _ = MODE.set(mode);
 }
 
-/// Work that is done sooner needs no bar.
+/// Work that ends sooner shows no bar.
 const PATIENCE: Duration = Duration::from_millis(400);
 
-/// How often what is shown is brought up to date.
+/// Interval of updates.
 const INTERVAL: Duration = Duration::from_millis(100);
 
-/// How often a line is printed for logs.
+/// Interval of lines for logs.
 const LOGGED: Duration = Duration::from_secs(1);
 
-/// Parts that a bar is divided into.
+/// Resolution of the bar.
 const STEPS: u64 = 1000;
 
 /// Shows the progress of one piece of work until dropped.
@@ -51,7 +51,7 @@ pub struct Bar {
     painter: Option<JoinHandle<()>>,
 }
 
-/// What the work and the thread that shows its progress share.
+/// State shared by the work and the thread that shows its progress.
 struct Watch {
     begun: Instant,
     /// Bits of the share that is done.
@@ -60,7 +60,7 @@ struct Watch {
 }
 
 impl Bar {
-    /// Progress of one piece of work, and what shows it unless `quiet` is asked for. Ctrl-C stops the work.
+    /// Progress of one piece of work, shown by the bar unless `quiet`. Ctrl-C cancels the work.
     pub fn new(quiet: bool) -> (Bar, Progress) {
         let watch = Arc::new(Watch { begun: Instant::now(), share: AtomicU64::new(0), ended: AtomicBool::new(false) });
         let mode = match MODE.get().copied().unwrap_or_default() {
@@ -74,7 +74,7 @@ impl Bar {
         let heard = Arc::clone(&watch);
         let progress = Progress::new(move |share| heard.share.store(share.to_bits(), Ordering::Relaxed));
         let seen = Arc::clone(&watch);
-        // A thread of its own: the time left goes on while the work has nothing to report.
+        // A separate thread, so that the remaining time is updated while the work reports nothing.
         let painter = std::thread::spawn(move || match mode {
             Mode::Plain => seen.print(LOGGED, |at| match at.left() {
                 Some(left) => format!("{:.0} %, {} left", at.percent(), duration(left)),
@@ -100,21 +100,21 @@ impl Drop for Bar {
     }
 }
 
-/// How far work is at a moment.
+/// The state of work at a moment.
 #[derive(Debug, Clone, Copy)]
 struct Moment {
     share: f64,
-    /// Seconds since it was begun.
+    /// Seconds since the start.
     elapsed: f64,
 }
 
 impl Moment {
-    /// Whole per cent: 100 only once all is done.
+    /// Whole per cent; 100 only when everything is done.
     fn percent(&self) -> f64 {
         (100.0 * self.share + 1e-9).floor()
     }
 
-    /// Seconds left if the work goes on as it has come so far; `None` while too little is done to tell.
+    /// Estimated seconds left; `None` while too little is done for an estimate.
     fn left(&self) -> Option<f64> {
         let tells = self.share > 0.005 && self.elapsed > 0.5 || self.share > 0.0 && self.elapsed > 10.0;
         tells.then(|| self.elapsed * (1.0 - self.share) / self.share)
@@ -133,7 +133,7 @@ impl Watch {
         self.ended.load(Ordering::Relaxed)
     }
 
-    /// Prints lines until the end, `interval` apart.
+    /// Prints a line every `interval` until the end.
     fn print(&self, interval: Duration, line: impl Fn(&Moment) -> String) {
         let mut printed = Instant::now();
         while !self.has_ended() {
@@ -143,7 +143,7 @@ impl Watch {
                 say::error(&line(&self.moment()));
             }
         }
-        // Whoever reads the lines learns how it ended.
+        // The last line tells how the work ended.
         say::error(&line(&self.moment()));
     }
 
@@ -170,7 +170,7 @@ impl Watch {
     }
 }
 
-/// Seconds as people read them.
+/// Seconds, formatted for users.
 fn duration(seconds: f64) -> String {
     let seconds = seconds.round().clamp(0.0, 1e9) as u64;
     match seconds {

@@ -1,4 +1,4 @@
-//! The page of `orogen variants`: pictures of worlds side by side, in the same colors and the same light.
+//! The page of `orogen variants`: pictures of worlds side by side, with the same colors and light.
 
 use orogen::map::canvas::{Canvas, Ink};
 use orogen::map::paint::Painter;
@@ -18,27 +18,27 @@ const HEADER: usize = 74;
 const CAPTION: usize = 46;
 const FOOTER: usize = 34;
 
-/// What the page says beside its pictures.
+/// The texts of the page.
 pub struct Sheet {
-    /// Its heading.
+    /// The heading.
     pub title: String,
-    /// What stands below that.
+    /// The line below the heading.
     pub about: String,
-    /// What stands at its foot.
+    /// The line at the foot.
     pub footer: String,
-    /// Height of the sea's surface.
+    /// Height of the sea level, in metres.
     pub sea_level: f64,
 }
 
-/// One of the pictures.
+/// A picture of the page.
 pub struct Variant {
-    /// What is different about it.
+    /// The label.
     pub label: String,
-    /// Its heights.
+    /// The heights.
     pub grid: Grid,
 }
 
-/// Pictures a row, and the size of the largest.
+/// Pictures per row, and the size of the largest.
 struct Layout {
     columns: usize,
     rows: usize,
@@ -62,7 +62,7 @@ pub fn size(variants: &[Variant], columns: Option<usize>) -> [usize; 2] {
 /// Draws the page.
 ///
 /// # Errors
-/// If there is no font.
+/// If the font cannot be loaded.
 pub fn draw(sheet: &Sheet, variants: &[Variant], columns: Option<usize>) -> orogen::Result<Canvas> {
     let [width, height] = size(variants, columns);
     let layout = layout(variants, columns);
@@ -87,7 +87,7 @@ pub fn draw(sheet: &Sheet, variants: &[Variant], columns: Option<usize>) -> orog
         let end = font.write(&mut canvas, left as f32, (baseline + 21) as i64, &label, bold);
         let heights = heights(grid, sheet.sea_level);
         let room = grid.width() as f32 - font.width(&heights, plain);
-        // Beside the label where there is room, else below it.
+        // Beside the label if there is room, otherwise below it.
         match end - left as f32 + 12.0 <= room {
             true => font.write(&mut canvas, left as f32 + room, (baseline + 21) as i64, &heights, plain),
             false => {
@@ -103,7 +103,7 @@ pub fn draw(sheet: &Sheet, variants: &[Variant], columns: Option<usize>) -> orog
     Ok(canvas)
 }
 
-/// Some rows of every world, one after another: what colors and light are fitted to.
+/// Some rows of every world in sequence, to which colors and light are fitted.
 fn together(variants: &[Variant]) -> Grid {
     let width = variants.iter().map(|variant| variant.grid.width()).min().unwrap_or(1);
     let rows: usize = variants.iter().map(|variant| variant.grid.height()).sum();
@@ -124,7 +124,7 @@ fn picture(canvas: &mut Canvas, painter: &Painter, grid: &Grid, [left, top]: [us
     }
 }
 
-/// The lowest and the highest height, and how much of the world is land where there is sea.
+/// The lowest and the highest height, and the share of land if there is a sea.
 fn heights(grid: &Grid, sea_level: f64) -> String {
     let finite = || grid.data().iter().copied().filter(|height| height.is_finite());
     let (low, high) =

@@ -1,10 +1,10 @@
-//! How much room there is on a disk.
+//! Free space on disks.
 
 use std::path::Path;
 
 use orogen::{Error, ErrorKind, words};
 
-/// Bytes that are free on the disk that `path` is on, or would be; `None` if the system does not tell.
+/// Free space, in bytes, on the disk that `path` is or would be on; `None` if the system does not tell.
 pub fn free_at(path: &Path) -> Option<u64> {
     let real = path.ancestors().find_map(|path| match path.as_os_str().is_empty() {
         true => Path::new(".").canonicalize().ok(),
@@ -13,7 +13,8 @@ pub fn free_at(path: &Path) -> Option<u64> {
     free_in(&real)
 }
 
-/// Asks the file system itself: a list of disks lacks those that live in memory, and what a path begins with does not tell where it is mounted.
+/// Asks the file system itself: lists of disks lack file systems in memory, and a path's prefix does not determine
+/// where it is mounted.
 #[cfg(unix)]
 fn free_in(folder: &Path) -> Option<u64> {
     let there = rustix::fs::statvfs(folder).ok()?;
@@ -27,7 +28,7 @@ fn free_in(folder: &Path) -> Option<u64> {
     holding.max_by_key(|disk| disk.mount_point().components().count()).map(sysinfo::Disk::available_space)
 }
 
-/// Refuses what would fill the disk that `path` is on: nothing starts that cannot finish.
+/// Fails if the disk of `path` does not have `needed` bytes, before the work starts.
 pub fn afford(path: &Path, needed: u64, free: Option<u64>) -> Result<(), Error> {
     match free {
         Some(free) if needed > free => Err(Error::new(
@@ -43,7 +44,8 @@ pub fn afford(path: &Path, needed: u64, free: Option<u64>) -> Result<(), Error> 
     }
 }
 
-/// Refuses a file of so many bytes at `path` if its disk has not as much room. What is there and no file, such as a pipe, takes any number.
+/// Fails if the disk of `path` does not have `needed` bytes. An existing object that is not a file, such as a pipe, has
+/// no limit.
 pub fn afford_file(path: &Path, needed: u64) -> Result<(), Error> {
     match path.metadata() {
         Ok(there) if !there.is_file() => Ok(()),

@@ -1,4 +1,4 @@
-//! The options of formats and of derived layers on the command line, made of what these declare.
+//! Command-line options of formats and of derived layers, made from their declarations.
 
 use std::marker::PhantomData;
 
@@ -7,12 +7,12 @@ use orogen::export::derived::list;
 use orogen::export::options::{OptionSpec, Options, ValueKind};
 use orogen::export::registry;
 
-/// What declares options.
+/// A source of option declarations.
 pub trait Declares {
     /// The heading in the help.
     const HEADING: &'static str;
 
-    /// All its options, each with the names of those that know it.
+    /// All options, each with the names of the formats or layers that have it.
     fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)>;
 }
 
@@ -58,10 +58,10 @@ pub type FormatOptions = OptionsOf<Formats>;
 pub type LayerOptions = OptionsOf<Layers>;
 
 impl<D: Declares> OptionsOf<D> {
-    /// As the library takes them.
+    /// The options, as the library takes them.
     ///
     /// # Errors
-    /// If a value is none that its option has.
+    /// If a value is not valid.
     pub fn read(&self) -> orogen::Result<Options> {
         let mut options = Options::default();
         for (spec, _) in D::options() {
@@ -80,7 +80,7 @@ impl<D: Declares> clap::Args for OptionsOf<D> {
                 .long(spec.name)
                 .help(format!("{} [{}]", spec.about, known.join(", ")))
                 .help_heading(D::HEADING);
-            // Spelled as people elsewhere do, too.
+            // Common alternative spellings are accepted.
             let arg = if spec.name == "color" { arg.aliases(["colors", "colour", "colours"]) } else { arg };
             command = command.arg(match spec.value_kind {
                 ValueKind::Nothing => arg.action(ArgAction::SetTrue),

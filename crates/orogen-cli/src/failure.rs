@@ -1,25 +1,25 @@
-//! How a command ends when it does not succeed.
+//! Failures of commands and exit codes.
 
 use std::io;
 use std::process::ExitCode;
 
 use orogen::{Error, ErrorKind, file};
 
-/// What a process ends with that was interrupted: 128 and the number of the signal, as shells count it.
+/// Exit code of an interrupted process: 128 plus the number of the signal, as in shells.
 pub const INTERRUPTED: u8 = 130;
 
-/// Why a command did not do what it was asked to.
+/// The failure of a command.
 #[derive(Debug)]
 pub enum Failure {
-    /// The command line asks for something that cannot be: exit code 2, as for what clap refuses.
+    /// The command line is not valid: exit code 2, like errors of clap.
     Usage(String),
-    /// It could be asked for, but did not succeed: exit code 1.
+    /// The command failed: exit code 1.
     Engine(Error),
-    /// Somebody asked it to stop before it was done: exit code [`INTERRUPTED`].
+    /// The command was interrupted: exit code [`INTERRUPTED`].
     Interrupted(String),
-    /// Everything has been told already: exit code 1.
+    /// Everything has been reported already: exit code 1.
     Told,
-    /// Whoever read our output has had enough of it: no failure of ours, and nothing to tell.
+    /// The reader of our output has closed the pipe: no error, and nothing to report.
     BrokenPipe,
 }
 
@@ -38,7 +38,7 @@ impl Failure {
         }
     }
 
-    /// What the process ends with. A request that the world cannot meet is a matter of usage.
+    /// The exit code of the process. A request that the world cannot satisfy counts as a usage error.
     pub fn code(&self) -> ExitCode {
         match self {
             Failure::Usage(_) => ExitCode::from(2),

@@ -1,4 +1,4 @@
-//! The folder that a terrain is written into.
+//! The output folder of a terrain.
 
 use std::path::{Path, PathBuf};
 
@@ -6,15 +6,15 @@ use orogen::{Error, file};
 
 use crate::failure::Failure;
 
-/// A folder that takes files. What had to be made of it is removed again when dropped, unless something was put in or
-/// [`Folder::keep`] was called: what fails leaves no trace.
+/// A writable folder. Folders created for it are removed on drop if they are empty and [`Folder::keep`] was not called,
+/// so that a failed command leaves no trace.
 #[derive(Debug)]
 pub struct Folder {
     made: Vec<PathBuf>,
 }
 
 impl Folder {
-    /// Makes sure of the folder at `path`: better to hear of one that takes no files before the work than after it.
+    /// Checks that files can be written to the folder at `path`, before the work begins; creates it if needed.
     pub fn ready(path: &Path) -> Result<Folder, Failure> {
         let missing = |path: &&Path| !path.as_os_str().is_empty() && path.symlink_metadata().is_err();
         let made = path.ancestors().take_while(missing).map(Path::to_path_buf).collect::<Vec<_>>();
@@ -26,7 +26,7 @@ impl Folder {
         Ok(folder)
     }
 
-    /// It has got what it was made for.
+    /// Keeps the folder.
     pub fn keep(mut self) {
         self.made.clear();
     }
@@ -35,7 +35,7 @@ impl Folder {
 impl Drop for Folder {
     fn drop(&mut self) {
         for path in &self.made {
-            // Removes only what is empty.
+            // Removes only empty folders.
             let _ = std::fs::remove_dir(path);
         }
     }

@@ -1,10 +1,10 @@
-//! The formats of what is drawn without the registry of exports, known by their extensions.
+//! Formats of commands that do not use the export registry, known by their extensions.
 
 use std::path::Path;
 
 use orogen::nearest;
 
-/// What can be written.
+/// A format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// NumPy array of f32
@@ -14,10 +14,10 @@ pub enum Format {
 }
 
 impl Format {
-    /// All there are.
+    /// All formats.
     pub const ALL: &[Format] = &[Format::Npy, Format::Png];
 
-    /// Its name, which is also its extension.
+    /// The name, which is also the extension.
     pub fn name(self) -> &'static str {
         match self {
             Format::Npy => "npy",
@@ -25,12 +25,12 @@ impl Format {
         }
     }
 
-    /// Whether files of this format have such an extension.
+    /// Whether the format has this extension.
     fn has(self, extension: &str) -> bool {
         extension.eq_ignore_ascii_case(self.name())
     }
 
-    /// The one of `formats` that the extension of `path` tells, or a message that says why it tells none.
+    /// The format among `formats` for the extension of `path`, or an error message.
     pub fn of(path: &Path, formats: &[Format]) -> Result<Format, String> {
         let Some(extension) = path.extension() else {
             return Err(format!(

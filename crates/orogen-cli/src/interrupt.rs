@@ -1,4 +1,4 @@
-//! Ctrl-C, and the request to end that a system sends.
+//! Ctrl-C and termination signals.
 
 use std::io::{self, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,14 +8,14 @@ use orogen::{Error, ErrorKind};
 
 use crate::failure::{Failure, INTERRUPTED};
 
-/// The flag that an interruption sets. The first one asks the work to stop, so that it puts away what it has begun; a second ends
-/// the process at once.
+/// The flag that an interruption sets. The first one cancels the work, which cleans up; a second one ends the process
+/// at once.
 pub fn flag() -> Arc<AtomicBool> {
     static FLAG: OnceLock<Arc<AtomicBool>> = OnceLock::new();
     let flag = FLAG.get_or_init(|| {
         let flag = Arc::new(AtomicBool::new(false));
         let handled = Arc::clone(&flag);
-        // Where no handler can be set, Ctrl-C goes on to do what it always did.
+        // If no handler can be set, Ctrl-C keeps its default effect.
         let _ = ctrlc::set_handler(move || {
             if handled.swap(true, Ordering::Relaxed) {
                 std::process::exit(i32::from(INTERRUPTED));
@@ -26,15 +26,15 @@ pub fn flag() -> Arc<AtomicBool> {
     Arc::clone(flag)
 }
 
-/// Whether it was asked for.
+/// Whether an interruption was requested.
 pub fn asked() -> bool {
     flag().load(Ordering::Relaxed)
 }
 
-/// A failure as what it is if an interruption was its cause: `then` says what that leaves behind.
+/// Converts a failure caused by an interruption; `then` describes the state that it leaves behind.
 pub fn explain(failure: Failure, then: &str) -> Failure {
     match failure {
-        // Encoders make plain I/O errors of what a [`Stoppable`] tells them.
+        // Encoders convert the error of a [`Stoppable`] to a plain I/O error.
         Failure::Engine(error) if matches!(error.kind(), ErrorKind::Cancelled | ErrorKind::File) && asked() => {
             Failure::Interrupted(format!("stopped: {then}"))
         }
@@ -42,7 +42,7 @@ pub fn explain(failure: Failure, then: &str) -> Failure {
     }
 }
 
-/// A writer that fails once an interruption was asked for.
+/// A writer that fails after an interruption.
 pub struct Stoppable<'a>(pub &'a mut dyn Write);
 
 impl Write for Stoppable<'_> {

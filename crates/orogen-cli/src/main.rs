@@ -1,6 +1,6 @@
 //! The `orogen` command: terrains from recipes.
 #![forbid(unsafe_code)]
-// These macros panic when the other end of a pipe is gone; `say` does not.
+// These macros panic if the other end of a pipe is closed; `say` does not.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
 mod arguments;

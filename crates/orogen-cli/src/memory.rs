@@ -1,12 +1,11 @@
-//! How much memory may be used: the whole process counts.
+//! Memory limits of the whole process.
 
 use orogen::Budget;
 use sysinfo::{Pid, ProcessRefreshKind, ProcessesToUpdate, System};
 
 use crate::size::Bytes;
 
-/// Half of what is free, to the machine or to the container this runs in, whichever is less; `None` if the system does not
-/// tell.
+/// Half of the free memory of the machine or of the container, whichever is less; `None` if the system does not tell.
 pub fn share_of_free() -> Option<u64> {
     let mut system = System::new().ok()?;
     system.refresh_memory();
@@ -16,7 +15,7 @@ pub fn share_of_free() -> Option<u64> {
     limits
         .into_iter()
         .flatten()
-        // What a container has free does not count the file cache it could drop, so take what is really held.
+        // A container's free memory excludes file cache that could be dropped, so the resident memory is used.
         .map(|limits| limits.total_memory.saturating_sub(limits.rss))
         .chain([system.available_memory()])
         .filter(|&free| free > 0)
@@ -24,18 +23,19 @@ pub fn share_of_free() -> Option<u64> {
         .map(|free| free / 2)
 }
 
-/// Bytes that the program takes whatever it does: its code, the runtime and the tables of its libraries.
+/// Memory of the program itself, in bytes: code, runtime and tables of libraries.
 const PROGRAM: u64 = 14 << 20;
 
-/// Bytes that a thread takes beside what it works on: the stack that it touches, and what the allocator keeps for it.
+/// Memory per thread, in bytes, beside its work: the used part of the stack, and the allocator's cache.
 const THREAD: u64 = 256 << 10;
 
-/// How many threads work at once, if nobody says.
+/// The default number of threads.
 pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// What the work may use of so many bytes for the whole process, or of [`share_of_free`] if nobody says: the program's own share is taken off.
+/// The budget for the work, from the limit of the whole process (by default [`share_of_free`]) minus the program's own
+/// memory.
 pub fn budget(allowed: Option<Bytes>, threads: usize) -> Budget {
     let budget = Budget::of(allowed.map(|bytes| bytes.0).or_else(share_of_free));
     budget.charge(PROGRAM + THREAD * threads as u64).keep();

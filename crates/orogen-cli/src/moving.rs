@@ -1,4 +1,4 @@
-//! Moving pictures: animations in one file, or frames in files of their own.
+//! Animations in one file, or as one file per frame.
 
 use std::io;
 use std::path::Path;
@@ -10,20 +10,20 @@ use orogen::format::png::{self, Animation, Picture, Pixel};
 use crate::failure::Failure;
 use crate::sink::{Sink, is_stdout};
 
-/// What frames are written to.
+/// The output of an animation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum AnimationTarget {
-    /// One PNG that moves (APNG).
+    /// An animated PNG (APNG).
     Apng,
-    /// One GIF.
+    /// A GIF.
     Gif,
-    /// A PNG for each frame: what stands before the number, how many digits it has at least, and what stands behind it.
+    /// One PNG per frame: the text before the number, the minimum number of digits, the text after it.
     Frames(String, usize, String),
 }
 
 impl AnimationTarget {
-    /// What a file's name tells: `.png` and `.gif` are animations, `view-%03d.png` is a file for each frame, and standard output gets an
-    /// APNG; or a message that says why it tells nothing.
+    /// The output for a file name: `.png` and `.gif` are animations, `view-%03d.png` is one file per frame, and
+    /// standard output is an APNG; or an error message.
     pub fn of(out: &Path) -> Result<AnimationTarget, String> {
         if is_stdout(out) {
             return Ok(AnimationTarget::Apng);
@@ -49,7 +49,7 @@ impl AnimationTarget {
         }
     }
 
-    /// The files that so many frames go into, if what is there may be replaced.
+    /// The output files of this many frames, if existing files may be replaced.
     pub fn outputs(&self, out: &Path, frames: u32, policy: &OutputPolicy) -> Result<Vec<Sink>, Failure> {
         match self {
             AnimationTarget::Apng | AnimationTarget::Gif => Ok(vec![Sink::new(out, policy)?]),
@@ -59,33 +59,33 @@ impl AnimationTarget {
         }
     }
 
-    /// Bytes that writing frames of so many pixels takes, their own three a pixel not counted.
+    /// Memory for writing frames of this many pixels, in bytes, without the pixels themselves (three bytes each).
     pub fn reserved(&self, pixels: u64) -> u64 {
         match self {
-            // What is filtered and what is packed.
+            // The filtered and the compressed frame.
             AnimationTarget::Apng | AnimationTarget::Frames(..) => pixels.saturating_mul(6),
-            // Indices, those before them, and the tables of the packer.
+            // Indices of this and the previous frame, and the tables of the encoder.
             AnimationTarget::Gif => pixels.saturating_mul(2).saturating_add(4 << 20),
         }
     }
 }
 
-/// A moving picture about to be written.
+/// An animation to write.
 pub struct Moving<'a> {
-    /// Where to: what [`AnimationTarget::outputs`] made.
+    /// The outputs, from [`AnimationTarget::outputs`].
     pub outputs: &'a [Sink],
-    /// As what.
+    /// The kind of output.
     pub target: &'a AnimationTarget,
-    /// What each frame is.
+    /// Description of a frame.
     pub picture: Picture<'a>,
-    /// How many there are, and how long each is shown.
+    /// Number and duration of the frames.
     pub animation: Animation,
-    /// Pixels in whose colours a GIF is shown, of the picture's kind.
+    /// Pixels for the palette of a GIF, of the picture's type.
     pub sample: &'a dyn Fn() -> io::Result<Vec<u8>>,
 }
 
 impl Moving<'_> {
-    /// Writes all frames as `fill` makes them, or none: it is given the frame's number, from 0, and its bytes.
+    /// Writes all frames or none. `fill` makes a frame: it gets the frame's number, from 0, and its bytes.
     pub fn write(&self, mut fill: impl FnMut(u32, &mut [u8]) -> io::Result<()>) -> Result<(), Failure> {
         let Picture { width, height, pixel, .. } = self.picture;
         match self.target {
@@ -125,7 +125,7 @@ impl Moving<'_> {
     }
 }
 
-/// Three bytes a pixel.
+/// The pixels as three bytes each.
 fn colors(sample: Vec<u8>, pixel: Pixel) -> Vec<u8> {
     if pixel == Pixel::Grey8 { sample.iter().flat_map(|grey| [*grey; 3]).collect() } else { sample }
 }

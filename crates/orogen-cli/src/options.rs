@@ -30,25 +30,25 @@ pub struct Limits {
     pub no_cache: bool,
 }
 
-/// The cache's folder; set but empty, it disables the cache.
+/// The folder of the cache; an empty value disables it.
 const CACHE_VARIABLE: &str = "OROGEN_CACHE";
 
 impl Limits {
-    /// Opens the world of a recipe within these limits; what it takes and what the command itself [reserves](Budget::reserve) share `budget`, which
-    /// is [`Limits::budget`].
+    /// Opens the world of a recipe within these limits. The world and the command's own [reservations](Budget::reserve)
+    /// share `budget`, which is [`Limits::budget`].
     pub fn open(&self, recipe: Recipe, budget: &Budget) -> Result<World, Failure> {
         Ok(World::with_options(recipe, self.options(budget))?)
     }
 
-    /// What of `--memory` the work may take.
+    /// The part of `--memory` that is available for the work.
     pub fn budget(&self) -> Budget {
         memory::budget(self.memory, self.threads())
     }
 
-    /// The limits as the library takes them.
+    /// The limits, as the library takes them.
     pub fn options(&self, budget: &Budget) -> Options {
         let threads = self.threads();
-        // For what is made from grids; fails only if already set, when remaking: then it is the same.
+        // For functions on grids. It fails only if it was set before (with --watch), to the same number.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
         Options {
             threads: Some(threads),
@@ -59,13 +59,13 @@ impl Limits {
         }
     }
 
-    /// As many as are asked for, but no more than there are cores: more would take turns, and memory.
+    /// The requested number, at most the number of cores: more threads would only take memory.
     fn threads(&self) -> usize {
         let cores = memory::cores();
         self.threads.map_or(cores, |threads| usize::from(threads).min(cores))
     }
 
-    /// What keeps solutions, if any are kept.
+    /// The cache, unless it is disabled.
     fn cache(&self) -> Option<Cache> {
         if self.no_cache {
             return None;
@@ -76,7 +76,7 @@ impl Limits {
     }
 }
 
-/// Where solutions are kept: what was asked for, else what the environment says, else where the system wants them.
+/// The folder of the cache: the given one, otherwise that of the environment variable, otherwise the system's.
 pub fn cache_folder(asked: Option<&PathBuf>) -> Option<PathBuf> {
     match (asked, std::env::var_os(CACHE_VARIABLE)) {
         (Some(folder), _) => Some(folder.clone()),

@@ -1,4 +1,4 @@
-//! NAME|FILE of a palette on the command line.
+//! The argument NAME|FILE of a palette.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use orogen::palette::{named, read};
 
 use crate::failure::Failure;
 
-/// The palette of that name, or else the one in that file.
+/// The palette with this name, otherwise the one in this file.
 pub fn find(argument: &Path) -> Result<Palette, Failure> {
     let name = argument.to_string_lossy();
     if let Some(named) = named::find(&name) {

@@ -1,8 +1,8 @@
-//! `--paper`: a sheet of paper.
+//! `--paper`: paper sizes.
 
 use std::str::FromStr;
 
-/// Width and height in millimetres, upright unless given otherwise.
+/// Width and height in millimetres, in portrait orientation unless given otherwise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Paper([f64; 2]);
 
@@ -17,11 +17,11 @@ const NAMES: [(&str, [f64; 2]); 8] = [
     ("legal", [215.9, 355.6]),
 ];
 
-/// The least and the most of a side.
+/// Minimum and maximum of a side, in millimetres.
 const SIDES: [f64; 2] = [50.0, 2000.0];
 
 impl Paper {
-    /// Width and height, laid on its side if asked for.
+    /// Width and height, in landscape orientation on request.
     pub fn sides(self, landscape: bool) -> [f64; 2] {
         let [width, height] = self.0;
         if landscape { [width.max(height), width.min(height)] } else { [width, height] }

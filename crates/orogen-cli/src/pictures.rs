@@ -1,4 +1,4 @@
-//! The files that `generate` makes of a grid of heights.
+//! The files of `orogen generate`.
 
 use std::io::Write;
 use std::path::Path;
@@ -15,34 +15,34 @@ use serde::Serialize;
 
 use crate::interrupt::Stoppable;
 
-/// `summary.json`. The order of its keys is the file's.
+/// `summary.json`. Keys have the order of the fields.
 #[derive(Debug, Clone, Serialize)]
 pub struct Report {
     /// The program and its version.
     pub made_by: String,
     /// The world's seed.
     pub seed: u64,
-    /// Samples a row.
+    /// Samples per row.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
-    /// Metres from one sample to the next.
+    /// Distance between samples, in metres.
     pub cell: f64,
-    /// Lowest height in metres: what 0 is in `height.png`.
+    /// Minimum height in metres, which is 0 in `height.png`.
     pub height_min: f32,
-    /// Highest height in metres: what 65535 is in `height.png`.
+    /// Maximum height in metres, which is 65535 in `height.png`.
     pub height_max: f32,
     /// Mean height in metres.
     pub height_mean: f64,
-    /// Height of the sea's surface in metres.
+    /// Sea level in metres.
     pub sea_level: f64,
-    /// Share of the samples above it, 0 to 1.
+    /// Share of the samples above sea level, 0 to 1.
     pub land_share: f64,
-    /// How long it took.
+    /// Duration of the command, in seconds.
     pub seconds: f64,
     /// SHA-256 of the heights as f32 little-endian, row-major.
     pub sha256: String,
-    /// How columns and rows become coordinates, in GDAL's order, of a world on a map.
+    /// The transform from columns and rows to map coordinates, in GDAL's order, for a world on a map.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub geotransform: Option<[f64; 6]>,
     /// The EPSG code of its coordinate system.
@@ -56,21 +56,22 @@ pub struct Report {
 impl Report {
     /// The text of `summary.json`.
     pub fn json(&self) -> String {
-        // A struct of numbers and strings always has a JSON text.
+        // A struct of numbers and strings can always be serialised.
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 }
 
-/// The names of the files, in the order they are put in place: the summary last, so that its appearance says that all is there.
+/// The file names in the order in which the files are put in place: the summary is last, so its presence means that all
+/// files are complete.
 pub const FILES: [&str; 5] = ["height.png", "height8.png", "map.png", "recipe.toml", "summary.json"];
 
-/// The places of the files in `folder`, if what is there may be replaced.
+/// The outputs in `folder`, if existing files may be replaced.
 pub fn outputs(folder: &Path, policy: &OutputPolicy) -> Result<Vec<Output>> {
     FILES.iter().map(|name| policy.output(folder.join(name))).collect()
 }
 
-/// Writes all files to their `outputs`, or none: they are staged first, and only put in place once every byte is on the disk.
-/// `seconds` tells the time it all took.
+/// Writes all files to their `outputs`, or none: they are put in place only after all are written to disk. `seconds`
+/// returns the duration of the command.
 pub fn write(outputs: &[Output], recipe: &Recipe, grid: &Grid, seconds: impl FnOnce() -> f64) -> Result<Report> {
     let levels = Levels::of(grid);
     let notes = notes::of_heights(grid.window().cell, &levels);
@@ -100,7 +101,8 @@ pub fn write(outputs: &[Output], recipe: &Recipe, grid: &Grid, seconds: impl FnO
     Ok(report)
 }
 
-/// The georeferencing of the pictures, if the world has one: beside each a world file, a `.prj` and GDAL's `.aux.xml`.
+/// Sidecars with the georeferencing of the pictures, if the world has one: a world file, a `.prj` and GDAL's `.aux.xml`
+/// for each.
 fn places(pictures: &[Output], recipe: &Recipe, window: &Window) -> Result<Vec<Staged>> {
     let Some(map) = recipe.georeference() else { return Ok(Vec::new()) };
     let mut staged = Vec::new();
@@ -110,10 +112,10 @@ fn places(pictures: &[Output], recipe: &Recipe, window: &Window) -> Result<Vec<S
     Ok(staged)
 }
 
-/// The comment above the recipe: how to look at its world the same way again.
+/// The comment above the recipe: the command line that reproduces the output.
 fn again(recipe: &Recipe, grid: &Grid) -> String {
     let (width, height, cell) = (grid.width(), grid.height(), grid.window().cell);
-    // A world without bounds is looked at at its own cell unless another is asked for, and then at its usual size.
+    // The default view of an unbounded world is at its own cell and has a fixed size.
     let view = match recipe.world.size {
         None if cell == recipe.world.cell => format!("--size {width}x{height}"),
         _ => format!("--cell {cell}"),

@@ -1,13 +1,13 @@
-//! Parts of a world on the command line: `--window`, `--bounds` and `--projwin`.
+//! Parts of a world: `--window`, `--bounds` and `--projwin`.
 
 use std::str::FromStr;
 
 use crate::size::{finite, samples};
 
-/// `--window`: a rectangle, counted from the world's north-west corner.
+/// `--window`: a rectangle, relative to the world's north-west corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rectangle {
-    /// Column and row of the first sample, samples a row, rows.
+    /// Column and row of the first sample, samples per row, number of rows.
     Samples(i64, i64, usize, usize),
     /// Metres east and south of the first sample, width and height.
     Metres([f64; 4]),
@@ -37,7 +37,7 @@ impl FromStr for Rectangle {
             return Err(format!("`{text}` mixes samples and metres; {RECTANGLE}"));
         }
         let corner = |text: &str| {
-            // Beyond this, positions in metres would lose the cell.
+            // Beyond this, positions in metres would lose the precision of the cell.
             let number = text.parse::<i64>().ok().filter(|n| n.abs() <= 1 << 52);
             number.ok_or_else(|| format!("`{text}` is not a column or row of samples; {RECTANGLE}"))
         };
@@ -58,13 +58,13 @@ fn length(text: &str) -> Result<f64, String> {
 /// `--bounds`: a rectangle in the coordinates of a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// The lowest coordinate east.
+    /// Minimum easting.
     pub west: f64,
-    /// The lowest coordinate north.
+    /// Minimum northing.
     pub south: f64,
-    /// The highest coordinate east.
+    /// Maximum easting.
     pub east: f64,
-    /// The highest coordinate north.
+    /// Maximum northing.
     pub north: f64,
 }
 
@@ -89,7 +89,7 @@ impl Bounds {
         }
     }
 
-    /// As gdal_translate's -projwin names them: the upper left corner, then the lower right one.
+    /// From gdal_translate's -projwin: the upper left corner, then the lower right one.
     pub fn of_corners(corners: &[f64]) -> Result<Bounds, String> {
         match *corners {
             [left, top, right, bottom] => {

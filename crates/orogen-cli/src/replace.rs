@@ -1,4 +1,4 @@
-//! What a command may replace: `--force` and `--no-clobber`, the same for all that write files.
+//! `--force` and `--no-clobber`, common to all commands that write files.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ pub struct Replace {
 }
 
 impl Replace {
-    /// What a command may replace that reads `inputs`.
+    /// The policy of a command that reads `inputs`.
     pub fn policy<P: AsRef<Path>>(self, inputs: impl IntoIterator<Item = P>) -> OutputPolicy {
         let existing = match (self.no_clobber, self.force) {
             (true, _) => Existing::Keep,
@@ -27,7 +27,7 @@ impl Replace {
         OutputPolicy::new(existing).protecting(inputs)
     }
 
-    /// The same of one that reads nothing.
+    /// The policy of a command that reads no files.
     pub fn anywhere(self) -> OutputPolicy {
         self.policy::<&Path>([])
     }

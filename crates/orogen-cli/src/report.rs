@@ -1,4 +1,4 @@
-//! Telling a person what went wrong, on standard error.
+//! Error messages on standard error.
 
 use std::fmt::Write as _;
 use std::io::{self, IsTerminal};
@@ -9,7 +9,7 @@ use orogen::words;
 use crate::failure::Failure;
 use crate::say;
 
-/// Tells of a failure: every diagnostic, with its place in the text it is about.
+/// Reports a failure: every diagnostic, with its location in the text.
 pub fn report(failure: &Failure) {
     let paint = Paint(colours());
     match failure {
@@ -24,17 +24,17 @@ pub fn report(failure: &Failure) {
     }
 }
 
-/// Whether standard error shows colours: a terminal whose user has not declined (<https://no-color.org>).
+/// Whether standard error shows colours: it is a terminal and `NO_COLOR` is not set (<https://no-color.org>).
 fn colours() -> bool {
     let declined = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     let dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
     io::stderr().is_terminal() && !declined && !dumb
 }
 
-/// The longest part of a line that is shown around a diagnostic.
+/// Maximum length of the part of a line that is shown around a diagnostic.
 const SHOWN: usize = 100;
 
-/// Writes diagnostics, with colour or without.
+/// Formats diagnostics, with colour or without.
 struct Paint(bool);
 
 impl Paint {
@@ -42,7 +42,7 @@ impl Paint {
         if self.0 { format!("\x1b[1;31m{text}\x1b[0m") } else { text.to_string() }
     }
 
-    /// `error: file:line:column: message`, then the line itself with its part underlined.
+    /// `error: file:line:column: message`, then the line with the part underlined.
     fn diagnostic(&self, message: &str, place: Option<&Location>) -> String {
         let mut text = format!("{} ", self.red("error:"));
         if let Some(Location { file, line, column, .. }) = place {
@@ -62,7 +62,7 @@ impl Paint {
         let (from, before) = if at > SHOWN * 2 / 3 { (at - SHOWN / 2, "...") } else { (0, "") };
         let to = (from + SHOWN).min(characters.len());
         let after = if to < characters.len() { "..." } else { "" };
-        // One column a character, whatever stands there: the underline must meet its word.
+        // One column per character, so that the underline is at the right position.
         let line: String = characters[from..to].iter().map(|&c| one_column(c)).collect();
         let length = place.length.min(to.saturating_sub(at)).max(1);
         let margin = " ".repeat(place.line.to_string().len());
@@ -82,15 +82,15 @@ fn one_column(c: char) -> char {
     }
 }
 
-/// What could move a terminal's cursor, change its colours or reverse its writing.
+/// Characters that could move a terminal's cursor, change its colours or reverse its text direction.
 fn is_harmful(c: char) -> bool {
     c.is_control() || matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// The longest message that is shown whole. Beyond it, it quotes something that nobody wants to read to its end.
+/// Maximum length of a message; longer ones quote overlong input.
 const SENTENCE: usize = 2000;
 
-/// A message that quotes a file or an argument, without what could command the terminal, and cut in its middle if it is endless.
+/// A message without control characters, shortened in the middle if it is too long.
 fn printable(text: &str) -> String {
     let text = &words::readable(text.to_string());
     let count = text.chars().count();

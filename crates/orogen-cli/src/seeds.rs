@@ -1,4 +1,4 @@
-//! `--seed`: one seed, or several that make an output each.
+//! `--seed`: one seed, or several with one output each.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -6,20 +6,20 @@ use std::str::FromStr;
 use crate::failure::Failure;
 use crate::size::seed;
 
-/// Most seeds of one command.
+/// Maximum number of seeds of a command.
 const MAX_SEEDS: u64 = 10_000;
 
-/// What stands for the seed in the name of an output.
+/// The placeholder of the seed in the name of an output.
 const MARK: &str = "{seed}";
 
-/// Seeds in the order they were asked for, none twice.
+/// Seeds in the given order, without duplicates.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Seeds(Vec<u64>);
 
 impl FromStr for Seeds {
     type Err = String;
 
-    /// Reads `7`, `1,2,3`, `1..9` (the 9 too) and lists of these.
+    /// Parses `7`, `1,2,3`, `1..9` (inclusive) and lists of these.
     fn from_str(text: &str) -> Result<Seeds, String> {
         let mut seeds: Vec<u64> = Vec::new();
         for part in text.split(',') {
@@ -47,13 +47,13 @@ impl FromStr for Seeds {
 }
 
 impl Seeds {
-    /// The first of them.
+    /// The first seed.
     pub fn first(&self) -> u64 {
         self.0.first().copied().unwrap_or_default()
     }
 
-    /// Does something for each seed and the name of its output: the name with the seed in place of `{seed}`, or before its
-    /// extension where there are several.
+    /// Calls a function for each seed with the name of its output: the name with the seed in place of `{seed}`, or
+    /// before its extension if there are several seeds.
     pub fn each(
         asked: Option<&Seeds>,
         out: Option<&Path>,
@@ -77,7 +77,7 @@ impl Seeds {
     }
 }
 
-/// The name of one seed's output.
+/// The output name of one seed.
 fn named(out: &Path, seed: u64) -> PathBuf {
     let text = out.to_string_lossy();
     if text.contains(MARK) {

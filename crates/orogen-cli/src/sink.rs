@@ -1,4 +1,4 @@
-//! Where a single file goes: into a file, or with `-` to standard output.
+//! Output to a file, or with `-` to standard output.
 
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::Path;
@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::interrupt::Stoppable;
 use crate::{interrupt, say};
 
-/// A place for one file.
+/// The output of a single file.
 #[derive(Debug, Clone)]
 pub enum Sink {
     /// A file, written atomically.
@@ -18,19 +18,19 @@ pub enum Sink {
     Stdout,
 }
 
-/// What stands for standard output, and as a recipe for standard input.
+/// The name of standard output and, as a recipe, of standard input.
 pub const DASH: &str = "-";
 
-/// Whether a path stands for standard output.
+/// Whether a path means standard output.
 pub fn is_stdout(path: &Path) -> bool {
     path == Path::new(DASH)
 }
 
 impl Sink {
-    /// Where `out` leads.
+    /// The output for `out`.
     ///
     /// # Errors
-    /// If that is a file that may not be replaced, or a terminal, which cannot show what is written.
+    /// If it is a file that may not be replaced, or a terminal, which cannot show binary data.
     pub fn new(out: &Path, policy: &OutputPolicy) -> Result<Sink, Failure> {
         match is_stdout(out) {
             false => Ok(Sink::File(policy.output(out)?)),
@@ -42,7 +42,7 @@ impl Sink {
         }
     }
 
-    /// Writes it as `body` does, until an interruption is asked for.
+    /// Writes the output with `body`; fails after an interruption.
     pub fn write<T>(&self, body: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> Result<T, Failure> {
         match self {
             Sink::File(output) => {
@@ -54,7 +54,7 @@ impl Sink {
             Sink::Stdout => {
                 let mut out = BufWriter::new(Piped { out: io::stdout().lock(), broken: false });
                 let written = body(&mut Stoppable(&mut out)).and_then(|value| out.flush().map(|()| value));
-                // What is left in the buffer after a failure must not be tried again on the way out.
+                // Buffered data must not be written again after a failure.
                 let (piped, _) = out.into_parts();
                 written.map_err(|cause| match (interrupt::asked(), piped.broken) {
                     (true, _) => Failure::Interrupted("interrupted: the output is incomplete".to_string()),
@@ -65,7 +65,7 @@ impl Sink {
         }
     }
 
-    /// Says what was written, on standard output where that is free for it.
+    /// Prints a message about the output, on standard output unless that contains the file.
     pub fn tell(&self, quiet: bool, words: &str) -> Result<(), Failure> {
         match self {
             Sink::File(_) if !quiet => say::out(words),
@@ -74,7 +74,7 @@ impl Sink {
     }
 }
 
-/// Standard output, and whether its reader has gone: what encoders make of that failure does not always tell.
+/// Standard output, and whether its pipe was closed, which errors of encoders do not always show.
 struct Piped {
     out: io::StdoutLock<'static>,
     broken: bool,
@@ -90,9 +90,11 @@ impl Write for Piped {
     }
 }
 
-/// The kind of file that `--format` names, or the extension of `out`, or of standard output the first of them all.
+/// The kind of file for `--format`, otherwise for the extension of `out`, otherwise (on standard output) the first of
+/// `kinds`.
 ///
-/// # Errors
+/// If neither matches one of `kinds`, or they contradict each other; `what` names the output in messages, such as "a
+/// map".
 /// If neither tells one of `kinds`, or they contradict each other; `what` says what is written, such as "a map".
 pub fn kind<K: Copy + PartialEq>(
     out: &Path,

@@ -1,14 +1,14 @@
-//! Sizes on the command line: how many samples, how many bytes, and other numbers.
+//! Parsers of sizes: samples, bytes, and other numbers.
 
 use std::str::FromStr;
 
-/// The most samples a side may have: far beyond any memory, and safely within every sum.
+/// Maximum number of samples per side: far beyond any memory, and small enough to avoid overflow.
 pub const MOST: u64 = 1_000_000_000;
 
-/// `--size`: samples of the longer side, or of both.
+/// `--size`: samples along the longer side, or both sides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Size {
-    /// N: the longer side; the other follows from the world.
+    /// N: the longer side; the other follows from the aspect ratio of the world.
     Longer(usize),
     /// WxH.
     Both(usize, usize),
@@ -25,7 +25,7 @@ impl FromStr for Size {
     }
 }
 
-/// How many samples a side has.
+/// Number of samples of a side.
 pub fn samples(text: &str) -> Result<usize, String> {
     match text.trim().parse::<u64>() {
         Ok(n) if (1..=MOST).contains(&n) => Ok(n as usize),
@@ -34,13 +34,13 @@ pub fn samples(text: &str) -> Result<usize, String> {
     }
 }
 
-/// `--seed`: what a recipe may say too, so that the one written reads back.
+/// `--seed`: in the range that recipes allow.
 pub fn seed(text: &str) -> Result<u64, String> {
     let seed = text.trim().parse().ok().filter(|&seed| seed <= i64::MAX as u64);
     seed.ok_or_else(|| format!("a seed must be a whole number from 0 to {}", i64::MAX))
 }
 
-/// `--cell`: metres from one sample to the next.
+/// `--cell`: distance between samples, in metres.
 pub fn cell(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(cell) if cell.is_finite() && cell > 0.0 => Ok(cell),
@@ -49,7 +49,7 @@ pub fn cell(text: &str) -> Result<f64, String> {
     }
 }
 
-/// `--wavelength`: samples from one hill of a noise to the next.
+/// `--wavelength`: wavelength of a noise in samples.
 pub fn wavelength(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(wavelength) if wavelength.is_finite() && wavelength > 0.0 => Ok(wavelength),
@@ -58,13 +58,13 @@ pub fn wavelength(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Any number that is one.
+/// A finite number.
 pub fn finite(text: &str) -> Result<f64, String> {
     let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
     number.ok_or_else(|| "the value must be a number, such as 2 or 0.5".into())
 }
 
-/// A number above 0.
+/// A positive number.
 pub fn positive(text: &str) -> Result<f64, String> {
     finite(text)
         .ok()
@@ -72,7 +72,7 @@ pub fn positive(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "the value must be greater than 0, such as 2 or 0.5".into())
 }
 
-/// A number from 0 up.
+/// A number that is not negative.
 pub fn not_negative(text: &str) -> Result<f64, String> {
     finite(text)
         .ok()
@@ -80,7 +80,7 @@ pub fn not_negative(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "the value must be 0 or greater, such as 1.5".into())
 }
 
-/// A few numbers with commas between them: a place, or a direction.
+/// Several numbers separated by commas: a position or a direction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Numbers(pub Vec<f64>);
 
@@ -96,7 +96,7 @@ impl FromStr for Numbers {
     }
 }
 
-/// A time of the day, as hours after midnight.
+/// A time of day, as hours after midnight.
 pub fn clock(text: &str) -> Result<f64, String> {
     let number = |text: &str, end: u32| text.trim().parse::<u32>().ok().filter(|n| *n < end).map(f64::from);
     let time = text.split_once(':').and_then(|(hour, minute)| Some(number(hour, 24)? + number(minute, 60)? / 60.0));

@@ -1,4 +1,4 @@
-//! RECIPE on the command line: a file, the name of a preset, a file of heights, or a recipe on standard input.
+//! The argument RECIPE: a file, the name of a preset, a file of heights, or a recipe on standard input.
 
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -15,27 +15,27 @@ use crate::failure::Failure;
 use crate::say;
 use crate::sink::DASH;
 
-/// Where a recipe comes from.
+/// The source of a recipe.
 #[derive(Debug, Clone)]
 pub enum Source {
     /// A file.
     File(PathBuf),
     /// A preset.
     Preset(&'static Preset),
-    /// Heights of a real place, as a recipe of nothing else.
+    /// A file of heights, as a recipe that consists only of it.
     Dem(PathBuf),
     /// Standard input.
     Stdin,
 }
 
-/// What standard input is called.
+/// The name of standard input in messages.
 const STDIN: &str = "standard input";
 
-/// What has come from standard input: it comes once, and may be read again.
+/// The content of standard input, which can be read only once.
 static PIPED: OnceLock<Vec<u8>> = OnceLock::new();
 
 impl Source {
-    /// What `argument` names: the file, if there is one, else the preset.
+    /// The source for `argument`: the file if it exists, otherwise the preset.
     pub fn find(argument: &Path) -> Result<Source, Failure> {
         if argument == Path::new(DASH) {
             return Ok(Source::Stdin);
@@ -57,7 +57,7 @@ impl Source {
         }
     }
 
-    /// Every file that is read for a recipe that came from here.
+    /// All files that a recipe from this source reads.
     pub fn inputs(&self, recipe: &Recipe) -> Vec<PathBuf> {
         let mut files = recipe.files();
         if let Source::File(path) | Source::Dem(path) = self {
@@ -66,7 +66,7 @@ impl Source {
         files
     }
 
-    /// Reads the recipe with values for its parameters; heights of a real place take no more than what is left of `budget`.
+    /// Reads the recipe with values for its parameters; the heights of a real place take at most the rest of `budget`.
     pub fn read(&self, budget: &Budget, arguments: &Arguments) -> Result<Recipe, Failure> {
         let set = arguments.values();
         Ok(match self {
@@ -88,7 +88,7 @@ impl Source {
     }
 }
 
-/// The recipe on standard input. Relative paths in it count from the working folder.
+/// The recipe on standard input. Relative paths in it are relative to the working folder.
 fn piped(set: &[(String, f64)]) -> Result<Recipe, Failure> {
     let bytes = match PIPED.get() {
         Some(bytes) => bytes,
@@ -111,7 +111,7 @@ fn piped(set: &[(String, f64)]) -> Result<Recipe, Failure> {
     }
 }
 
-/// What a world is called that comes from `argument`, for headings.
+/// The name of a world from `argument`, for headings.
 pub fn title(argument: &Path) -> String {
     match argument == Path::new(DASH) {
         true => "Untitled".into(),
@@ -119,7 +119,7 @@ pub fn title(argument: &Path) -> String {
     }
 }
 
-/// The preset called `name`, or the message that says what there is.
+/// The preset called `name`, or an error that lists all presets.
 pub fn preset(name: &str) -> Result<&'static Preset, Failure> {
     presets::find(name).ok_or_else(|| Failure::Usage(format!("no preset is called `{name}`; {}", hint(name))))
 }

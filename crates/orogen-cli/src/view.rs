@@ -56,21 +56,21 @@ pub struct SizedView {
     pub size: Option<Size>,
 }
 
-/// Samples along each side of what is looked at in a world without bounds, if nobody says.
+/// Default number of samples per side of an unbounded world.
 const UNBOUNDED: usize = 1024;
 
-/// How much of a cell a coordinate may be off that was meant to be a sample's.
+/// Tolerance, in cells, for coordinates that are meant to be those of a sample.
 const NEAR: f64 = 1e-6;
 
 impl SizedView {
-    /// The window asked for: see [`View::window`].
+    /// The requested window: see [`View::window`].
     pub fn window(&self, world: &World) -> Result<Window, Failure> {
         self.view.sized(world, self.size)
     }
 }
 
 impl View {
-    /// Changes what a recipe says of its world to what was asked for.
+    /// Applies the options to the world of a recipe.
     pub fn apply(&self, recipe: &mut Recipe) {
         let world = &mut recipe.world;
         world.seed = self.seed.as_ref().map_or(world.seed, Seeds::first);
@@ -78,8 +78,8 @@ impl View {
         world.origin = self.origin.or(world.origin);
     }
 
-    /// The window asked for: a part, or the whole world. A world of length L has round(L / cell) samples. Of a world without bounds
-    /// it is so many samples from the origin.
+    /// The requested window: a part, or the whole world. A world of length L has round(L / cell) samples. For an
+    /// unbounded world it starts at the origin and has the default size.
     pub fn window(&self, world: &World) -> Result<Window, Failure> {
         self.sized(world, None)
     }
@@ -103,10 +103,11 @@ impl View {
         }
     }
 
-    /// The part of the world that was asked for, if one was: in samples of `cell` metres, or so many as `size` says.
+    /// The requested part of the world, if any: in samples of `cell` metres, or with `size` samples.
     ///
-    /// Bounds hold the samples from their west and north on, up to but without their east and south: parts that touch share none, and bounds along
-    /// the edges of a GeoTIFF's pixels hold the same pixels as gdal_translate takes.
+    /// Bounds include samples at their west and north edges, and exclude those at their east and south edges. Adjacent
+    /// parts therefore share no samples, and bounds along pixel edges of a GeoTIFF select the same pixels as
+    /// gdal_translate.
     pub fn part(&self, world: &World, size: Option<Size>, cell: f64) -> Result<Option<Window>, Failure> {
         if size.is_some() && self.cell.is_some() {
             let message = "--size and --cell both set the cell size; leave out one of them";
@@ -139,7 +140,7 @@ impl View {
             (None, None) => return Ok(None),
         };
         if let Some([width, height]) = world.recipe().world.size {
-            // A pixel of a GeoTIFF reaches half a cell beyond its sample.
+            // A pixel of a GeoTIFF extends half a cell beyond its sample.
             let spare = (0.5 + NEAR) * cell;
             let inside =
                 ends[0] >= -spare && ends[1] >= -spare && ends[2] <= width + spare && ends[3] <= height + spare;
@@ -180,7 +181,7 @@ impl View {
     }
 }
 
-/// Where a world lies, in words.
+/// The extent of a world, as text.
 fn reach(map: Option<Georeference>, [width, height]: [f64; 2]) -> String {
     let Some(map) = map else {
         let [width, height] = [width, height].map(number);
@@ -194,13 +195,13 @@ fn reach(map: Option<Georeference>, [width, height]: [f64; 2]) -> String {
     format!("extends over {west},{south},{east},{north}{name}")
 }
 
-/// A coordinate, to about a centimetre.
+/// A coordinate, with a resolution of about a centimetre.
 fn coordinate(map: &Georeference) -> impl Fn(f64) -> String + use<> {
     let scale = if map.counts_degrees() { 1e7 } else { 1e2 };
     move |at| ((at * scale).round() / scale).to_string()
 }
 
-/// Samples and cell of what is so many metres wide and high.
+/// Samples and cell for an extent in metres.
 fn fit(extent: [f64; 2], size: Size, what: &str) -> Result<(usize, usize, f64), Failure> {
     let longer = extent[0].max(extent[1]);
     let (width, height) = match size {

@@ -1,4 +1,4 @@
-//! Making something again whenever a file changes.
+//! Watching files and repeating work when they change.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,17 +12,17 @@ use crate::failure::Failure;
 use crate::report::report;
 use crate::{interrupt, say};
 
-/// How often the file is looked at. Its content is compared, not its time: editors that touch a file change nothing.
+/// Interval of checks. Content is compared instead of time stamps, so touching a file has no effect.
 const INTERVAL: Duration = Duration::from_millis(200);
 
-/// For how long a changed file must stay the same before it is read: editors empty files before they fill them.
+/// Time for which a changed file must stay the same before it is read: editors truncate files before they write them.
 const CALM: Duration = Duration::from_millis(50);
 
-/// For how many looks a file may be gone before that is a change: editors replace files by way of removing them.
+/// Number of checks for which a missing file is not a change: some editors replace files by removing them first.
 const PATIENCE: u32 = 5;
 
-/// Calls `make` now and after each change of the recipe at `path` or of one that it uses, for ever; work on what is outdated is cancelled. Failures are
-/// told and the watch goes on, except that nobody listens any more.
+/// Calls `make` now and after each change of the recipe at `path` or of one that it uses, forever; outdated work is
+/// cancelled. Failures are reported and watching continues, unless the output is closed.
 pub fn watch(
     path: &Path,
     quiet: bool,
@@ -56,7 +56,7 @@ pub fn watch(
     }
 }
 
-/// Runs `work`, cancelling it if the file changes meanwhile.
+/// Runs `work`, and cancels it if the file changes meanwhile.
 fn until_changed<T>(seen: &Seen, progress: &Progress, work: impl FnOnce() -> T) -> T {
     let finished = AtomicBool::new(false);
     std::thread::scope(|scope| {
@@ -76,11 +76,11 @@ fn until_changed<T>(seen: &Seen, progress: &Progress, work: impl FnOnce() -> T) 
     })
 }
 
-/// What was last seen in the recipe's file and in those of the recipes that it uses.
+/// The last content of the recipe's file and of the recipes that it uses.
 #[derive(Debug, Clone, PartialEq)]
 struct Seen(Vec<SeenFile>);
 
-/// What was last seen in a file.
+/// The last content of a file.
 #[derive(Debug, Clone, PartialEq)]
 struct SeenFile {
     path: PathBuf,
@@ -88,7 +88,7 @@ struct SeenFile {
     missed: u32,
 }
 
-/// The file's bytes, if it has no more than a recipe may have.
+/// The content of a file, if it is not longer than a recipe may be.
 fn read(path: &Path) -> Option<Vec<u8>> {
     orogen::open::bytes(path, "read the recipe", LONGEST_TEXT).ok().flatten()
 }
@@ -99,7 +99,7 @@ impl Seen {
         Seen::look_at([path.to_path_buf()].into_iter().chain(used))
     }
 
-    /// Looks at files, at each once.
+    /// Reads all files.
     fn look_at(paths: impl Iterator<Item = PathBuf>) -> Seen {
         let mut files: Vec<SeenFile> = Vec::new();
         for path in paths {
@@ -110,12 +110,13 @@ impl Seen {
         Seen(files)
     }
 
-    /// Looks until nothing changes any more.
+    /// Waits until the files stop changing.
     fn settle(&mut self, path: &Path) {
         loop {
             let mut now = Seen::look(path);
             if now.0.len() == 1 {
-                // A recipe that cannot be read names no others: those that it used last may be what is wrong with it.
+                // An invalid recipe does not tell which files it uses: keep those of the last valid one, where the
+                // error may be.
                 now = Seen::look_at(self.0.iter().map(|file| file.path.clone()));
             }
             *self = now;
@@ -126,9 +127,9 @@ impl Seen {
         }
     }
 
-    /// Looks again: whether there is something else than before.
+    /// Checks whether any file has changed.
     fn changed(&mut self) -> bool {
-        // Every file is looked at, so that each is up to date.
+        // All files are checked, so that each is up to date.
         self.0.iter_mut().filter_map(|file| file.changed().then_some(())).count() > 0
     }
 }

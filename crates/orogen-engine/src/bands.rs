@@ -1,4 +1,4 @@
-//! A big window as bands of whole rows, as most files are written.
+//! Bands of whole rows of a large window, for writing files.
 
 use crate::tiles::{Tiles, Tiling};
 use crate::world::World;
@@ -10,28 +10,29 @@ use orogen_grid::words::count;
 use orogen_io::pages::Pages;
 use orogen_io::raster::Raster;
 
-/// About how many samples a band has, and the fewest and most rows.
+/// Approximate number of samples per band, and minimum and maximum number of rows.
 const SAMPLES: usize = 1 << 23;
 const ROWS: [usize; 2] = [16, 512];
 
-/// The fewest rows where memory is short.
+/// Minimum number of rows if memory is short.
 const FEWEST: usize = 4;
 
-/// The rows of a big window from the north, some at a time: see [`World::bands`].
+/// The rows of a large window from the north, in bands: see [`World::bands`].
 pub struct Bands<'w> {
     tiles: Tiles<'w>,
     layers: usize,
     window: Window,
     rows: usize,
-    /// The row that the next band begins with.
+    /// The first row of the next band.
     next: usize,
 }
 
 impl World {
-    /// Makes layers over a window in bands of whole rows, in little memory: for files larger than it.
+    /// Makes layers over a window in bands of whole rows, for files larger than memory.
     ///
-    /// The bands come from the north, one grid a layer, and have the bits of the whole window. Making them, the band at hand and `beside` (bytes
-    /// that the caller holds meanwhile) stay within the world's memory limit; what cannot is refused before anything is started.
+    /// The bands come from the north, with one grid per layer, and have the bits of the whole window. The work, the
+    /// current band and `beside` (bytes that the caller holds) stay within the world's memory limit; otherwise an error
+    /// is returned before anything is started.
     ///
     /// ```
     /// use orogen_engine::{Progress, Window, World};
@@ -47,7 +48,7 @@ impl World {
     /// ```
     ///
     /// # Errors
-    /// As [`World::tiles`].
+    /// The errors of [`World::tiles`].
     pub fn bands<'w>(
         &'w self,
         layers: &[&str],
@@ -62,7 +63,7 @@ impl World {
             let memory = self.memory_limit().map(|limit| limit.saturating_sub(held));
             match self.tiles(layers, window, Tiling { memory, ..Tiling::of(rows) }, progress) {
                 Ok(tiles) => return Ok(Bands { tiles, layers: layers.len(), window: *window, rows, next: 0 }),
-                // Fewer rows take less.
+                // Fewer rows need less memory.
                 Err(error) if error.kind() == ErrorKind::Memory && rows > FEWEST => rows = rows.div_ceil(2),
                 Err(error) if error.kind() == ErrorKind::Memory => {
                     let tile = Window { width: rows.min(window.width), height: rows, ..*window };
@@ -78,10 +79,11 @@ impl World {
 }
 
 impl World {
-    /// Makes a layer over a window as a raster on disk, in little memory, and counts its finite samples. The file is gone with the raster.
+    /// Makes a layer over a window as a raster on disk, within the memory limit, and counts its finite samples. The
+    /// file is removed with the raster.
     ///
     /// # Errors
-    /// As [`World::bands`], or if the disk takes no more.
+    /// The errors of [`World::bands`], or if the disk is full or fails.
     pub fn raster(&self, layer: &str, window: &Window, progress: &Progress) -> Result<(Raster, FiniteCount)> {
         let mut raster = Raster::on_disk(Pages::scratch(self.scratch(), *window)?);
         let mut count = FiniteCount::default();

@@ -1,4 +1,4 @@
-//! How much memory may be used, shared by all that use it.
+//! A shared limit of memory.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -8,10 +8,11 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::progress::Progress;
 use orogen_grid::words::bytes;
 
-/// A limit on bytes of memory. Clones share one limit.
+/// A memory limit in bytes. Clones share one limit.
 ///
-/// Two kinds of memory count: what a caller *holds* for as long as it likes ([`Budget::reserve`]), and what *requests* need while they run
-/// ([`Budget::admit`]). Both together never exceed the limit. A request that does not fit now, but would if the others had ended, waits for them.
+/// Two kinds of memory count: memory that a caller *holds* for any time ([`Budget::reserve`]), and memory that
+/// *requests* need while they run ([`Budget::admit`]). Together they never exceed the limit. A request that does not
+/// fit now, but would after others have ended, waits for them.
 ///
 /// ```
 /// use orogen_engine::budget::Budget;
@@ -33,7 +34,7 @@ pub struct Budget {
 #[derive(Debug, Default)]
 struct Shared {
     account: Mutex<Account>,
-    /// Told whenever bytes are given back.
+    /// Notified when bytes are released.
     freed: Condvar,
 }
 
@@ -55,7 +56,7 @@ impl Shared {
     }
 }
 
-/// How often a request that waits for memory looks whether it was cancelled.
+/// Interval at which a request that waits for memory checks for cancellation.
 const PATIENCE: Duration = Duration::from_millis(20);
 
 impl Budget {
@@ -69,26 +70,26 @@ impl Budget {
         self.limit
     }
 
-    /// Bytes that no caller holds: what a request may need. `None` if there is no limit.
+    /// Bytes that no caller holds, which a request may need. `None` if there is no limit.
     pub fn left(&self) -> Option<u64> {
         self.limit.map(|limit| limit.saturating_sub(self.shared.lock().held))
     }
 
-    /// Bytes that are neither held nor needed by a running request. `None` if there is no limit.
+    /// Bytes that are neither held nor needed by running requests. `None` if there is no limit.
     pub fn unused(&self) -> Option<u64> {
         let account = *self.shared.lock();
         self.limit.map(|limit| limit.saturating_sub(account.held).saturating_sub(account.running))
     }
 
-    /// The most bytes that were held and needed together so far.
+    /// The maximum of held and needed bytes together so far.
     pub fn peak(&self) -> u64 {
         self.shared.lock().peak
     }
 
-    /// Refuses work that needs more bytes than are left.
+    /// Checks that work with this need of memory fits.
     ///
     /// # Errors
-    /// With what is needed in all and what is allowed.
+    /// If it does not; the message has the total need and the limit.
     pub fn afford(&self, needed: u64) -> Result<()> {
         match self.left() {
             Some(left) if needed > left => {
@@ -98,24 +99,26 @@ impl Budget {
         }
     }
 
-    /// Holds so many bytes for as long as the result lives. Waits for running requests to end if the bytes would fit without them.
+    /// Holds this many bytes until the result is dropped. If they would fit without running requests, waits for those
+    /// to end.
     ///
     /// # Errors
-    /// As [`Budget::afford`].
+    /// The errors of [`Budget::afford`].
     pub fn reserve(&self, bytes: u64) -> Result<Reservation> {
         self.take(bytes, Kind::Held, &Progress::none())
     }
 
-    /// Sets aside the bytes that a request needs while it runs, until the result is dropped. Waits for other requests to end if the bytes would fit without
-    /// them; on a thread of a thread pool, where waiting could block the very request that is waited for, it refuses instead.
+    /// Reserves the bytes that a request needs while it runs, until the result is dropped. If they would fit without
+    /// other requests, waits for those to end; on a thread of a pool, where waiting could block the awaited request
+    /// itself, it fails instead.
     ///
     /// # Errors
-    /// As [`Budget::afford`], and [`ErrorKind::Cancelled`] if `progress` is cancelled while it waits.
+    /// The errors of [`Budget::afford`], and [`ErrorKind::Cancelled`] if `progress` is cancelled during the wait.
     pub fn admit(&self, bytes: u64, progress: &Progress) -> Result<Reservation> {
         self.take(bytes, Kind::Running, progress)
     }
 
-    /// Counts bytes that are held whatever the limit is, such as the program's own.
+    /// Counts bytes that are held regardless of the limit, such as the program's own memory.
     pub fn charge(&self, bytes: u64) -> Reservation {
         self.add(&mut self.shared.lock(), bytes, Kind::Held)
     }
@@ -150,7 +153,8 @@ impl Budget {
         Reservation { shared: Arc::clone(&self.shared), bytes, kind }
     }
 
-    /// The error of work that needs `needed` bytes beside those that are held: what needs them, and what to do instead.
+    /// The error for work that needs `needed` bytes beside those that are held: `what` needs them, and `instead` is the
+    /// advice.
     pub fn refusal(&self, what: &str, needed: u64, instead: &str) -> Error {
         let all = needed.saturating_add(self.shared.lock().held);
         let limit = self.limit.unwrap_or(u64::MAX);
@@ -175,7 +179,7 @@ impl Kind {
     }
 }
 
-/// Bytes that count against a [`Budget`] until this is dropped.
+/// Bytes that count towards a [`Budget`] until this is dropped.
 #[derive(Debug)]
 #[must_use = "the bytes are given back when this is dropped"]
 pub struct Reservation {
@@ -190,7 +194,7 @@ impl Reservation {
         self.bytes
     }
 
-    /// Holds them for as long as the program runs.
+    /// Holds them until the program ends.
     pub fn keep(self) {
         std::mem::forget(self);
     }

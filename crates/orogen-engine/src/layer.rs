@@ -1,30 +1,30 @@
-//! Layers: the things a node makes, and how each may be read between its samples.
+//! Layers of nodes, and their interpolation.
 
 pub use orogen_grid::resample::LayerKind;
 
-/// How a declaration says its layer is read between samples.
+/// The declared interpolation of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Interpolation {
-    /// As this kind.
+    /// This kind.
     As(LayerKind),
-    /// As what the op's first input shows.
+    /// The kind of the op's first input.
     AsSource,
 }
 
-/// One of the things a node makes.
+/// A layer of a node.
 #[derive(Debug)]
 pub struct Layer {
-    /// Its name: read as `node.layer`; the first may be read as `node`.
+    /// The name: read as `node.layer`; the first may also be read as `node`.
     pub name: &'static str,
-    /// What it is.
+    /// The description.
     pub doc: &'static str,
-    /// Its unit, or empty.
+    /// The unit, or empty.
     pub unit: &'static str,
-    /// How it is read between samples.
+    /// The interpolation.
     pub interpolation: Interpolation,
 }
 
-/// What an op makes that declares no layers.
+/// The layers of an op that declares none.
 pub const ONE_LAYER: &[Layer] = &[Layer {
     name: "height",
     doc: "What the node makes.",

@@ -1,4 +1,4 @@
-//! The list of all ops: one enum that a recipe is made of.
+//! The list of all ops, as an enum.
 
 use crate::declare::{Declared, Input, InputName, Spec};
 use crate::layer::Layer;
@@ -27,7 +27,7 @@ macro_rules! nodes {
         $( impl From<solver::$solver_mod::$solver> for Node { fn from(op: solver::$solver_mod::$solver) -> Node { Node::$solver(op) } } )*
 
         impl Node {
-            /// Every op there is, with its defaults.
+            /// All ops with their defaults.
             pub fn all() -> Vec<Node> {
                 vec![
                     $( Node::$field(Default::default()), )*
@@ -59,17 +59,17 @@ macro_rules! nodes {
 include!("node_list.rs");
 
 impl Node {
-    /// The op of that name with its defaults.
+    /// The op with this name, with its defaults.
     pub fn named(op: &str) -> Option<Node> {
         Node::all().into_iter().find(|node| node.spec().op == op)
     }
 
-    /// What its op declares.
+    /// The declaration of its op.
     pub fn spec(&self) -> &'static Spec {
         self.declared().spec()
     }
 
-    /// Its inputs: those that its op declares, or those that its expression names.
+    /// Its inputs: those that its op declares, or the names in its expression.
     pub fn inputs(&self) -> Vec<InputName<'_>> {
         self.declared().inputs()
     }
@@ -89,12 +89,12 @@ impl Node {
         self.declared().param(i)
     }
 
-    /// Sets parameter `i`, or says what was expected.
+    /// Sets parameter `i`; the error describes the valid values.
     pub fn set_param(&mut self, i: usize, value: &Value) -> Result<(), String> {
         self.declared_mut().set_param(i, value)
     }
 
-    /// What of parameter `i` decides about the node's result.
+    /// The part of parameter `i` that affects the node's result.
     pub fn param_key(&self, i: usize) -> Value {
         self.declared().param_key(i)
     }
@@ -104,12 +104,12 @@ impl Node {
         self.declared_mut().files()
     }
 
-    /// A message and its key if parameters contradict each other.
+    /// Checks that parameters do not contradict each other; the error has a key and a message.
     pub fn consistent(&self) -> Result<(), (&'static str, String)> {
         self.declared().consistent()
     }
 
-    /// What the node makes.
+    /// The layers of the node.
     pub fn layers(&self) -> &'static [Layer] {
         self.spec().layers
     }

@@ -1,4 +1,4 @@
-//! What an op is: a field, a filter or a solver, and what each is given.
+//! Traits of ops: fields, filters and solvers, and their inputs.
 
 use crate::declare::Declared;
 use crate::expression::term::{self, Term};
@@ -11,22 +11,22 @@ use orogen_io::raster::Raster;
 use orogen_noise::Points;
 use serde::{Deserialize, Serialize};
 
-/// What the world tells every op.
+/// Properties of the world that every op receives.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct WorldParams {
     /// The world's seed.
     pub seed: u64,
-    /// The world's extent in metres, east and south; `None` if it has no bounds.
+    /// The world's extent in metres, east and south; `None` if it is unbounded.
     pub size: Option<[f64; 2]>,
-    /// Metres from one sample of the world's own lattice to the next.
+    /// Distance between samples of the world's own lattice, in metres.
     pub cell: f64,
-    /// Height of the sea's surface in metres.
+    /// Sea level in metres.
     pub sea_level: f64,
 }
 
 impl WorldParams {
-    /// A node's seed within this world: two numbers hashed to one, so that worlds and nodes with neighbouring seeds have
-    /// nothing in common (splitmix64's finaliser, Steele, Lea and Flood 2014, over both).
+    /// The seed of a node in this world: both seeds are hashed together, so that consecutive seeds give independent
+    /// results (splitmix64's finaliser, Steele, Lea and Flood 2014, over both).
     pub fn seed_of(&self, node_seed: u64) -> u64 {
         let mix = |mut z: u64| {
             z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -38,96 +38,96 @@ impl WorldParams {
     }
 }
 
-/// A node's inputs evaluated at the points asked for: one block of samples each.
+/// A node's inputs evaluated at the requested points: one block of samples each.
 pub struct Inputs<'a> {
     slots: &'a [Option<&'a [f32]>],
 }
 
 impl<'a> Inputs<'a> {
-    /// Over the inputs in the order of their declaration.
+    /// Inputs in the order of their declaration.
     pub fn new(slots: &'a [Option<&'a [f32]>]) -> Inputs<'a> {
         Inputs { slots }
     }
 
-    /// Input `i` where it is given.
+    /// Input `i`, if it is given.
     pub fn get(&self, i: usize) -> Option<&'a [f32]> {
         self.slots.get(i).copied().flatten()
     }
 
-    /// Input `i`, which the declaration requires: a plan is never made without it.
+    /// Input `i`, which must be declared as required: plans always provide it.
     pub fn required(&self, i: usize) -> &'a [f32] {
         self.get(i).unwrap_or(&[])
     }
 }
 
-/// A field looks at one position and the seed, and at its inputs there. It is pure: any point, any order, any number of
-/// times.
+/// A field depends on one position, the seed, and its inputs there. It is a pure function: points can be evaluated in
+/// any order and any number of times.
 pub trait Field: Send + Sync {
-    /// Makes one value a point. A field that has [`Field::terms`] need not say how.
+    /// Computes one value per point. A field with [`Field::terms`] need not implement it.
     fn eval(&self, at: &Points, inputs: &Inputs, world_params: &WorldParams, out: &mut [f32]) {
         let _ = (at, world_params);
         term::evaluate(&self.terms().unwrap_or_default(), |input| inputs.get(input), out);
     }
 
-    /// What it computes, where that is functions of its inputs alone: each input by its index as a name. The engine then computes it by these
-    /// terms, and never calls [`Field::eval`].
+    /// The field as a function of its inputs, if it is only that: each input is named by its index. The engine then
+    /// evaluates these terms, and never calls [`Field::eval`].
     fn terms(&self) -> Option<Vec<Term>> {
         None
     }
 
-    /// Where a field's source is read elsewhere than at the position asked for. Such a field's [`Field::eval`] is never
+    /// The coordinate map of a field that reads its source at other positions. [`Field::eval`] of such a field is never
     /// called: the engine moves the points and evaluates the source there.
     fn coord_map(&self) -> Option<CoordMap> {
         None
     }
 
-    /// Whether the field also reads a source around the position asked for, to know its slope.
+    /// The stencil of a field that also reads a source around each position, to compute its slope.
     fn stencil(&self) -> Option<Stencil> {
         None
     }
 
-    /// Whether the field only makes sense in a world with bounds.
+    /// Whether the field needs a bounded world.
     fn needs_bounds(&self) -> bool {
         false
     }
 
-    /// Bytes of memory that it holds of files, for as long as its world is open.
+    /// Memory of files that it holds while its world is open, in bytes.
     fn memory(&self) -> u64 {
         0
     }
 
-    /// How the world's metres lie on a map, if this is a real place that says so.
+    /// The position of the world's metres on a map, if this is a georeferenced real place.
     fn georeference(&self) -> Option<Georeference> {
         None
     }
 
-    /// About how many nanoseconds a sample takes: what is dear is made once and kept rather than made again.
+    /// Approximate nanoseconds per sample: expensive fields are computed once and kept instead of computed repeatedly.
     fn cost(&self) -> f64 {
         0.2
     }
 
-    /// The same of a field without inputs where all samples stand in columns and rows.
+    /// The same for a field without inputs whose samples are on a lattice.
     fn cost_in_rows(&self) -> f64 {
         self.cost() * IN_ROWS
     }
 }
 
-/// What is made of nothing but the position takes this share of its cost where rows share what they have in common.
+/// The share of its cost that a field without inputs has on a lattice, where rows share work.
 const IN_ROWS: f64 = 0.15;
 
-/// A source that a field also reads around its position. The field is given, behind its inputs, that source `step` metres to the
-/// east, the west, the south and the north. The engine makes the four places and evaluates the source there, so a field's slope
-/// is known at any point, and nothing is made of neighbouring samples.
+/// A source that a field also reads around its position. After its inputs, the field receives that source at `step`
+/// metres to the east, west, south and north. The engine makes the four positions and evaluates the source there, so
+/// the slope is known at any point, without neighbouring samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stencil {
     /// Index of the input.
     pub source: usize,
-    /// Metres from the position to each of the four.
+    /// Distance from the position to each of the four, in metres.
     pub step: f64,
 }
 
 impl Stencil {
-    /// The maps to the four places: east, west, south, north.
+    /// The maps to the four positions: east, west, south, north.
     pub fn maps(&self) -> [Affine; 4] {
         [[self.step, 0.0], [-self.step, 0.0], [0.0, self.step], [0.0, -self.step]].map(|offset| Affine {
             turn: [1.0, 0.0],
@@ -137,39 +137,39 @@ impl Stencil {
     }
 }
 
-/// How a field moves the points at which its source is read.
+/// The positions at which a field reads its source.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CoordMap {
-    /// By two inputs times `strength` metres; each displacement is clamped to -reach ..= reach.
+    /// Displaced by two inputs times `strength` metres; each displacement is clamped to -reach ..= reach.
     Displaced {
-        /// Index of the input that is read elsewhere.
+        /// Index of the input that is read at the displaced position.
         source: usize,
-        /// Index of the input that moves it east.
+        /// Index of the input for the displacement east.
         east: usize,
-        /// Index of the input that moves it south.
+        /// Index of the input for the displacement south.
         south: usize,
-        /// Metres moved for an input of 1.
+        /// Displacement in metres for an input of 1.
         strength: f64,
-        /// The farthest it may be moved along each axis, in metres.
+        /// Maximum displacement along each axis, in metres.
         reach: f64,
     },
-    /// By an affine map of the position.
+    /// Mapped by an affine transform.
     Mapped {
-        /// Index of the input that is read elsewhere.
+        /// Index of the input that is read at the mapped position.
         source: usize,
-        /// The map from the position asked for to the one that is read.
+        /// The map from the requested position to the one that is read.
         map: Affine,
     },
 }
 
-/// A similarity of the plane: p -> turn(p) * scale + offset.
+/// A similarity of the plane: p -> rotate(p) * scale + offset.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Affine {
-    /// Cosine and sine of the turn; [1, 0] is none.
+    /// Cosine and sine of the rotation; [1, 0] is none.
     pub turn: [f64; 2],
-    /// Factor.
+    /// Scale factor.
     pub scale: f64,
-    /// Metres added, east and south.
+    /// Offset east and south, in metres.
     pub offset: [f64; 2],
 }
 
@@ -179,7 +179,7 @@ impl Affine {
         self.turn == [1.0, 0.0]
     }
 
-    /// Where a position is read. Without a turn the result is x * scale + offset bit for bit, so lattices stay lattices.
+    /// Maps a position. Without a rotation the result is x * scale + offset bit for bit, so lattices stay lattices.
     pub fn apply(&self, x: f64, y: f64) -> (f64, f64) {
         let (tx, ty) = if self.is_separable() {
             (x, y)
@@ -190,45 +190,45 @@ impl Affine {
     }
 }
 
-/// What a filter or solver is given beside its inputs.
+/// The context of a filter or solver.
 pub struct Context<'a> {
-    /// The world's facts.
+    /// Properties of the world.
     pub world_params: &'a WorldParams,
-    /// Where to report how far the work has come, and to ask whether it is still wanted.
+    /// Progress and cancellation of the work.
     pub progress: &'a Progress,
-    /// Who wants to know what a solver that goes step by step would end with earlier.
+    /// The observer of a solver with steps.
     pub observer: Option<&'a (dyn StepObserver + Sync)>,
 }
 
-/// Takes what a solver that goes step by step would end with after some of its steps: the solution of a shorter run of the same steps.
+/// Receives the solutions of a solver after some of its steps: those of shorter runs of the same steps.
 pub trait StepObserver {
-    /// Whether the solution after so many steps is wanted: 0 is that of one step that takes no time. It is not asked about the last.
+    /// Whether the solution after this many steps is wanted; 0 is that of one step of zero duration. Not called for the
+    /// last step.
     fn wants(&self, step: u32) -> bool;
 
-    /// Whether a layer of those solutions is read. If none after the first is, the solver may leave them out.
+    /// Whether a layer of those solutions is read. If only the first is read, the solver may omit the others.
     fn reads(&self, layer: usize) -> bool;
 
-    /// Takes that solution.
+    /// Receives such a solution.
     ///
     /// # Errors
-    /// Any error ends the solver's work with it.
+    /// An error ends the solver's work with that error.
     fn take(&self, step: u32, solution: Solution) -> Result<()>;
 }
 
-/// A filter looks at a finite halo. Its inputs arrive grown by that halo; what it makes is the same whatever window it is
-/// made in.
+/// A filter depends on a finite halo. Its inputs are extended by that halo; its results do not depend on the window.
 pub trait Filter: Declared + Send + Sync {
-    /// Samples that an input is read beyond the window on each side, at this cell.
+    /// Halo on each side of the window, in samples, for a cell in metres.
     fn halo(&self, cell: f64) -> usize;
 
-    /// Bytes needed beside inputs and layers to make `window`.
+    /// Memory beside inputs and layers for `window`, in bytes.
     fn scratch(&self, window: &Window) -> u64 {
         let _ = window;
         0
     }
 
-    /// Makes layers over `window`; each input given covers `window.grown(halo)`. `out` has a place for each declared layer:
-    /// a grid of zeros over `window` where the layer is wanted, nothing where nobody reads it.
+    /// Computes layers over `window`; each given input covers `window.grown(halo)`. `out` has an element per declared
+    /// layer: a grid of zeros over `window` if the layer is requested, otherwise `None`.
     fn apply(
         &self,
         inputs: &[Option<&Grid>],
@@ -237,51 +237,52 @@ pub trait Filter: Declared + Send + Sync {
         context: &Context,
     ) -> Result<()>;
 
-    /// About how many nanoseconds a sample takes at this cell.
+    /// Approximate nanoseconds per sample at this cell.
     fn cost(&self, cell: f64) -> f64 {
         let _ = cell;
         5.0
     }
 
-    /// Whether the result depends on the world's sea level. A filter that says no and reads it nevertheless breaks content keys.
+    /// Whether the result depends on the world's sea level. A filter that returns false must not read it, because the
+    /// content key would be wrong.
     fn reads_sea_level(&self) -> bool {
         false
     }
 }
 
-/// What a solver found: read like a field ever after.
+/// The solution of a solver, which is read like a field.
 #[derive(Debug)]
 pub struct Solution {
-    /// One raster a layer, or none if the solution is numbers alone.
+    /// One raster per layer; empty if the solution consists of numbers only.
     pub layers: Vec<Raster>,
-    /// Numbers, their meaning known to the solver.
+    /// Numbers, whose meaning is defined by the solver.
     pub scalars: Vec<f64>,
 }
 
 impl Solution {
-    /// Bytes of memory it takes.
+    /// Memory of the solution, in bytes.
     pub fn memory(&self) -> u64 {
         self.layers.iter().map(Raster::memory).sum::<u64>() + self.scalars.len() as u64 * 8
     }
 }
 
-/// A solver's inputs over the whole world, made tile by tile as it asks, and rasters to work in.
+/// A solver's inputs over the whole world, computed tile by tile on request, and rasters for its work.
 pub trait Sources {
     /// The samples of the world: 0 ..= extent / cell on both axes.
     fn world(&self) -> &Window;
 
-    /// The world with its margin for readers: what a solution's layers cover.
+    /// The world with the margin for readers, which a solution's layers must cover.
     fn padded(&self) -> &Window;
 
     /// Whether input `i` is given.
     fn given(&self, i: usize) -> bool;
 
-    /// Makes input `i` over each tile of `window` in a fixed order and hands it on. The tiles cover the window once; there is
-    /// none if the input is not given.
+    /// Computes input `i` over each tile of `window` in a fixed order, and passes it to `visit`. The tiles cover the
+    /// window once; there are none if the input is not given.
     fn each_tile(&self, i: usize, window: &Window, visit: &mut dyn FnMut(&Grid) -> Result<()>) -> Result<()>;
 
-    /// Input `i` over all of `window` at once, zero if it is not given: for solvers that cannot work tile by tile. Count it in
-    /// [`Solver::scratch`].
+    /// Input `i` over all of `window` at once, zeros if it is not given: for solvers that cannot work tile by tile.
+    /// Include it in [`Solver::scratch`].
     fn whole(&self, i: usize, window: &Window) -> Result<Grid> {
         let mut grid = Grid::filled(*window, 0.0f32);
         self.each_tile(i, window, &mut |tile| {
@@ -291,63 +292,63 @@ pub trait Sources {
         Ok(grid)
     }
 
-    /// A raster of zeros over [`Sources::padded`], to solve in or to return: in memory or on disk, as the budget says.
+    /// A raster of zeros over [`Sources::padded`], for work or for the result: in memory or on disk, depending on the
+    /// budget.
     fn raster(&self) -> Result<Raster>;
 
-    /// Whether rasters are on disk, because memory is short.
+    /// Whether rasters are on disk because memory is short.
     fn on_disk(&self) -> bool;
 
-    /// A grid over [`Sources::padded`] as a raster to return: it may leave memory for the disk.
+    /// Converts a grid over [`Sources::padded`] into a raster of the result, which may be moved to disk.
     fn keep(&self, grid: Grid) -> Result<Raster>;
 }
 
-/// What is asked of a solution.
+/// A request for values of a solution.
 pub struct Reading<'a> {
     /// Index of the layer.
     pub layer: usize,
-    /// How the layer is read between its samples.
+    /// The interpolation of the layer.
     pub kind: LayerKind,
-    /// Where.
+    /// The points.
     pub at: &'a Points<'a>,
     /// The solver's inputs at those points, if it reads them.
     pub inputs: &'a Inputs<'a>,
 }
 
-/// A solver looks at the whole bounded world, once, at a cell of its own.
+/// A solver depends on the whole bounded world, and runs once, at its own cell.
 pub trait Solver: Declared + Send + Sync {
-    /// Metres from one sample to the next of the lattice it is solved on.
+    /// The cell of the solver's lattice, in metres.
     fn cell(&self, world_cell: f64) -> f64 {
         world_cell
     }
 
-    /// How many rasters of the world it holds at once at most: the layers of the solution and those it works in.
+    /// Maximum number of rasters of the world that it holds at once: layers of the solution and those for its work.
     fn rasters(&self) -> usize {
         self.spec().layers.len()
     }
 
-    /// Bytes of memory that solving takes beside those rasters, when the world with its margin has this window. A solver that
-    /// works tile by tile takes none; one that needs whole grids counts all it holds at once, those that it then keeps as
-    /// layers included.
+    /// Memory of solving beside those rasters, in bytes, for the world with its margin. 0 for a solver that works tile
+    /// by tile; a solver that needs whole grids counts all that it holds at once, including those that become layers.
     fn scratch(&self, padded: &Window) -> u64 {
         let _ = padded;
         0
     }
 
-    /// The same when its rasters are on disk, for a solver that then works another way: tile by tile, its result the same to the
-    /// bit. It asks [`Sources::on_disk`] which way to take.
+    /// The same if its rasters are on disk, for a solver that then works tile by tile, with the same bits. It calls
+    /// [`Sources::on_disk`] to choose.
     fn scratch_on_disk(&self, padded: &Window) -> u64 {
         self.scratch(padded)
     }
 
-    /// Whether [`Solver::read`] is given the inputs at the points it is asked for.
+    /// Whether [`Solver::read`] receives the inputs at the requested points.
     fn reads_inputs(&self) -> bool {
         false
     }
 
-    /// Solves the world. The result must not depend on how the sources are cut into tiles.
+    /// Solves the world. The result must not depend on how the sources are split into tiles.
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution>;
 
-    /// Makes one value a point from the solution: unless said otherwise, what the layer's raster shows there.
+    /// Computes one value per point from the solution; by default, interpolates the layer's raster.
     fn read(&self, solution: &Solution, asked: &Reading, out: &mut [f32]) -> Result<()> {
         match solution.layers.get(asked.layer) {
             Some(raster) => raster.read(asked.kind, asked.at, out),
@@ -355,23 +356,24 @@ pub trait Solver: Declared + Send + Sync {
         }
     }
 
-    /// About how many nanoseconds a sample of the world takes to solve, its sources not counted.
+    /// Approximate nanoseconds per sample of the world for solving, without its sources.
     fn cost(&self) -> f64 {
         1.0
     }
 
-    /// Whether the solution depends on the world's sea level. A solver that says no and reads it nevertheless breaks content keys.
+    /// Whether the solution depends on the world's sea level. A solver that returns false must not read it, because the
+    /// content key would be wrong.
     fn reads_sea_level(&self) -> bool {
         false
     }
 }
 
-/// A node as what it is.
+/// A node by its locality.
 pub enum Op<'a> {
-    /// Looks at one position.
+    /// Depends on one position.
     Field(&'a dyn Field),
-    /// Looks at a halo.
+    /// Depends on a halo.
     Filter(&'a dyn Filter),
-    /// Looks at the whole world.
+    /// Depends on the whole world.
     Solver(&'a dyn Solver),
 }

@@ -1,13 +1,14 @@
-//! The threads that work is shared out to.
+//! The thread pool.
 
 use orogen_grid::error::Result;
 #[cfg(all(feature = "threads", not(target_family = "wasm")))]
 use orogen_grid::error::{Error, ErrorKind};
 
-/// Whether other threads can exist: where not, nobody may wait for one.
+/// Whether other threads can exist; otherwise no thread may wait for another.
 pub const HAS_THREADS: bool = cfg!(all(feature = "threads", not(target_family = "wasm")));
 
-/// A pool of threads. On a host without threads (WebAssembly), and without the feature `threads`, it has none, and all work is done on the calling thread.
+/// A thread pool. On a host without threads (WebAssembly), or without the feature `threads`, it is empty, and all work
+/// runs on the calling thread.
 #[derive(Debug)]
 pub struct Pool {
     #[cfg(all(feature = "threads", not(target_family = "wasm")))]
@@ -16,27 +17,27 @@ pub struct Pool {
 
 #[cfg(all(feature = "threads", not(target_family = "wasm")))]
 impl Pool {
-    /// Starts so many threads; `None` takes as many as the machine has cores.
+    /// Starts this many threads; `None` uses the number of cores.
     ///
     /// # Errors
-    /// If the system refuses.
+    /// If the system cannot start them.
     pub fn new(threads: Option<usize>) -> Result<Pool> {
         let built = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
         let refused = |cause| Error::new(ErrorKind::Request, format!("cannot start the threads asked for: {cause}"));
         Ok(Pool { threads: built.map_err(refused)? })
     }
 
-    /// Does work that is shared out to the threads.
+    /// Runs work on the threads of the pool.
     pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         self.threads.install(work)
     }
 
-    /// How many threads work.
+    /// Number of threads.
     pub fn threads(&self) -> usize {
         self.threads.current_num_threads()
     }
 
-    /// Whether the calling thread is one of the pool's.
+    /// Whether the calling thread belongs to the pool.
     pub fn is_current(&self) -> bool {
         self.threads.current_thread_index().is_some()
     }
@@ -44,7 +45,7 @@ impl Pool {
 
 #[cfg(not(all(feature = "threads", not(target_family = "wasm"))))]
 impl Pool {
-    /// Starts no thread, however many are asked for: the calling one does all the work.
+    /// Starts no threads: the calling thread does all the work.
     ///
     /// # Errors
     /// Never.
@@ -52,17 +53,17 @@ impl Pool {
         Ok(Pool {})
     }
 
-    /// Does work on the calling thread.
+    /// Runs work on the calling thread.
     pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         work()
     }
 
-    /// How many threads work.
+    /// Number of threads.
     pub fn threads(&self) -> usize {
         1
     }
 
-    /// Whether the calling thread is one of the pool's: there is no other.
+    /// Whether the calling thread belongs to the pool: always, because there is no other.
     pub fn is_current(&self) -> bool {
         true
     }

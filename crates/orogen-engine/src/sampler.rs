@@ -1,4 +1,4 @@
-//! One layer of a world, prepared for being asked often.
+//! A layer of a world prepared for many requests.
 
 use crate::engine::inline::PreparedProgram;
 use crate::engine::interpreter::Buffers;
@@ -9,16 +9,16 @@ use orogen_grid::progress::Progress;
 use std::borrow::Borrow;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// One layer of a world, prepared for being asked often: what games and servers hold on to.
+/// A layer of a world prepared for many requests, for use in games and servers.
 ///
-/// [`World::window`] and [`World::height`] plan anew each time; a sampler has planned once, has solved what must be solved, and
-/// works on the thread that calls it, which may be any number of threads at once. What it makes has the bits of the world's
-/// own windows and points.
+/// [`World::window`] and [`World::height`] plan each request; a sampler plans and solves once. It runs on the calling
+/// thread, and any number of threads may use it at once. Its results have the same bits as the world's own windows and
+/// points.
 ///
-/// Of a layer without filters it makes any window and any point without asking for memory, once it has been asked for one of
-/// that size on as many threads. Of a layer with filters it keeps some patches of ground around the last points asked for.
+/// For a layer without filters, it makes any window and any point without allocation, after the first request of that
+/// size on as many threads. For a layer with filters it keeps some patches of terrain around the last requested points.
 ///
-/// A sampler holds its world: a reference, a [`World`] of its own, or an [`Arc`] if others need it too.
+/// A sampler holds its world: a reference, a [`World`], or an [`Arc`] if it is shared.
 ///
 /// ```
 /// use orogen_engine::{Sampler, Window, World, presets};
@@ -26,7 +26,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// let world = World::open(presets::find("hills").ok_or("no such preset")?.recipe()?)?;
 /// let ground = Sampler::new(&world, "height")?;
 ///
-/// // A walk: where the feet stand.
+/// // The heights along a path.
 /// for step in 0..100 {
 ///     let (x, y) = (4000.0 + 0.7 * f64::from(step), 5000.0);
 ///     assert_eq!(ground.at(x, y)?, world.height(x, y)?);
@@ -42,33 +42,34 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 pub struct Sampler<W: Borrow<World>> {
     world: W,
     layer: String,
-    /// What answers for every point and window, if one program does.
+    /// The program for all points and windows, if a single one suffices.
     everywhere: Option<PreparedProgram>,
     patches: Mutex<Vec<Patch>>,
     /// Buffers that no thread is using.
     idle: Mutex<Vec<Buffers>>,
-    /// Tells nobody; kept, as making one asks for memory.
+    /// A progress without listener; kept, because making one allocates.
     silence: Progress,
 }
 
-/// Ground made ready for points within it.
+/// Terrain prepared for points within it.
 struct Patch {
     /// Its column and row.
     at: [i64; 2],
     ready: Arc<PreparedProgram>,
 }
 
-/// A patch is so many of the world's cells wide.
+/// Side of a patch, in cells of the world.
 const PATCH: i64 = 64;
 
-/// So many patches are kept.
+/// Number of patches that are kept.
 const PATCHES: usize = 16;
 
 impl<W: Borrow<World>> Sampler<W> {
-    /// Prepares a layer: plans it and solves what must be solved, which for some recipes takes as long as making the whole world.
+    /// Prepares a layer: plans it and solves its solvers, which for some recipes takes as long as making the whole
+    /// world.
     ///
     /// # Errors
-    /// If there is no such layer, or solving needs more memory than the world's options allow.
+    /// If there is no such layer, or solving needs more memory than the options of the world allow.
     pub fn new(world: W, layer: &str) -> Result<Sampler<W>> {
         let everywhere = {
             let world = world.borrow();
@@ -98,17 +99,17 @@ impl<W: Borrow<World>> Sampler<W> {
     /// The layer's value at x metres east and y metres south of the origin.
     ///
     /// # Errors
-    /// If the position is not finite or is outside of the world.
+    /// If the position is not finite or is outside the world.
     pub fn at(&self, x: f64, y: f64) -> Result<f32> {
         let mut value = [f32::NAN];
         self.points(&[x], &[y], &mut value)?;
         Ok(value[0])
     }
 
-    /// The layer's values at points, in metres, into `out`.
+    /// Writes the layer's values at points, in metres, to `out`.
     ///
     /// # Errors
-    /// If a point is not finite or is outside of the world, or the lengths differ.
+    /// If a point is not finite or is outside the world, or the lengths differ.
     pub fn points(&self, x: &[f64], y: &[f64], out: &mut [f32]) -> Result<()> {
         if x.len() != y.len() || x.len() != out.len() {
             let message = format!(
@@ -123,7 +124,7 @@ impl<W: Borrow<World>> Sampler<W> {
         if let Some(ready) = &self.everywhere {
             return self.ask(ready, x, y, out);
         }
-        // Runs of points on one patch are asked together.
+        // Consecutive points on one patch are evaluated together.
         let mut start = 0;
         while let (Some(first_x), Some(first_y)) = (x.get(start), y.get(start)) {
             let patch = self.patch_of(*first_x, *first_y);
@@ -136,10 +137,10 @@ impl<W: Borrow<World>> Sampler<W> {
         Ok(())
     }
 
-    /// Makes a window.
+    /// Makes the samples of a window.
     ///
     /// # Errors
-    /// As [`Sampler::fill`].
+    /// The errors of [`Sampler::fill`].
     pub fn window(&self, window: &Window) -> Result<Grid> {
         if self.everywhere.is_none() {
             return self.world().window(&self.layer, window);
@@ -151,11 +152,11 @@ impl<W: Borrow<World>> Sampler<W> {
         Ok(grid)
     }
 
-    /// Makes the samples of a window, row-major from the north-west, into `out`.
+    /// Writes the samples of a window, row-major from the north-west, to `out`.
     ///
     /// # Errors
-    /// If the window is not one of this world, `out` has not its length, or a layer with filters needs more memory than the
-    /// world's options allow.
+    /// If the window is not valid for this world, `out` has another length, or a layer with filters needs more memory
+    /// than the options of the world allow.
     pub fn fill(&self, window: &Window, out: &mut [f32]) -> Result<()> {
         self.world().check(window)?;
         if out.len() != window.len() {
@@ -183,7 +184,7 @@ impl<W: Borrow<World>> Sampler<W> {
         self.with_buffers(|buffers| self.world().engine(&self.silence).points_inline(ready, (x, y), buffers, out))
     }
 
-    /// Lends buffers that no other thread is using.
+    /// Provides buffers that no other thread is using.
     fn with_buffers(&self, work: impl FnOnce(Buffers) -> Result<Buffers>) -> Result<()> {
         let buffers = lock(&self.idle).pop().unwrap_or_default();
         let buffers = work(buffers)?;
@@ -191,12 +192,12 @@ impl<W: Borrow<World>> Sampler<W> {
         Ok(())
     }
 
-    /// The column and row of the patch that a point lies on.
+    /// The column and row of the patch that contains a point.
     fn patch_of(&self, x: f64, y: f64) -> [i64; 2] {
         [x, y].map(|metres| ((metres / self.world().recipe().world.cell).floor() as i64).div_euclid(PATCH))
     }
 
-    /// A patch, kept or made now; the least recently asked for gives way.
+    /// A patch, cached or new; the least recently used one is dropped.
     fn patch(&self, at: [i64; 2]) -> Result<Arc<PreparedProgram>> {
         let mut patches = lock(&self.patches);
         if let Some(place) = patches.iter().position(|patch| patch.at == at) {
@@ -225,7 +226,7 @@ impl<W: Borrow<World>> Sampler<W> {
     }
 }
 
-/// What these locks guard is whole at any time, also after a panic elsewhere.
+/// The data under these locks is consistent at any time, also after a panic of another thread.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

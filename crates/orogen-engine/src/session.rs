@@ -1,4 +1,4 @@
-//! What worlds share: threads, solutions, memory.
+//! Sessions: threads, solutions and memory that worlds share.
 
 use crate::budget::Budget;
 use crate::op::Solution;
@@ -11,30 +11,32 @@ use orogen_grid::error::Result;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// How worlds are worked on. None of it changes a bit of the terrain.
+/// Options of computation. They do not change the terrain.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
-    /// Threads; `None` takes as many as the machine has cores.
+    /// Number of threads; `None` uses the number of cores.
     pub threads: Option<usize>,
-    /// Bytes that all requests at the same time may need together, with what callers hold. Solutions that are too large for it are kept on disk.
+    /// Memory limit, in bytes, for all concurrent requests and reservations of callers. Larger solutions are kept on
+    /// disk.
     pub memory: Budget,
-    /// Where solutions are found again by later runs; `None` keeps none.
+    /// The cache of solutions for later runs; `None` disables it.
     pub cache: Option<Cache>,
-    /// The folder for what does not fit in memory; `None` takes the cache's, or else the system's for temporary files. Nothing
-    /// stays in it, not even after a kill.
+    /// The folder for data that does not fit in memory; `None` uses that of the cache, otherwise the system's temporary
+    /// folder. No files remain in it, even after a kill.
     pub scratch: Option<PathBuf>,
-    /// Bytes of grids of expensive filters that are kept for later requests. `None` takes 256 MiB, and a quarter of the memory limit if that is less; 0 keeps
-    /// none.
+    /// Memory limit, in bytes, for grids of expensive filters that are kept for later requests. `None` means 256 MiB,
+    /// or a quarter of the memory limit if that is less; 0 keeps none.
     pub kept_grids: Option<u64>,
 }
 
-/// Threads, solutions and a memory budget, shared by any number of worlds and of requests at the same time. Clones share them, too.
+/// Threads, solutions and a memory budget, shared by any number of worlds and concurrent requests. Clones share them
+/// too.
 ///
-/// - Requests take turns on one pool of threads.
-/// - A solution is made once, however many requests want it at the same time, and found again by every world that has the same nodes: after an edit of a
-///   recipe only what reads the edited node is solved again.
-/// - The grids of expensive filters are kept, as long as there is memory for them.
-/// - Requests at the same time never need more memory together than the [budget](Options::memory) allows: those that do not fit wait for the others.
+/// - Requests share one pool of threads.
+/// - A solution is computed once, even for concurrent requests, and is reused by every world with the same nodes: after
+///   an edit of a recipe, only nodes that depend on the edited node are solved again.
+/// - Grids of expensive filters are kept as long as there is memory.
+/// - Concurrent requests together never exceed the [budget](Options::memory): requests that do not fit wait for others.
 ///
 /// ```
 /// use orogen_engine::{Options, Session, Window, presets};
@@ -55,7 +57,7 @@ pub struct Session {
     pub(crate) budget: Budget,
 }
 
-/// Bytes of grids kept where nobody says.
+/// Default of [`Options::kept_grids`], in bytes.
 const KEPT_GRIDS: u64 = 256 << 20;
 
 impl Session {
@@ -74,37 +76,37 @@ impl Session {
         })
     }
 
-    /// The memory that requests share with what callers hold: see [`Budget::reserve`].
+    /// The memory budget, which callers can reserve from: see [`Budget::reserve`].
     pub fn budget(&self) -> &Budget {
         &self.budget
     }
 
-    /// How many threads work.
+    /// Number of threads.
     pub fn threads(&self) -> usize {
         self.pool.threads()
     }
 
-    /// How many solutions were made so far, those found again not counted.
+    /// Number of solutions computed so far, without reused ones.
     pub fn solutions_made(&self) -> u64 {
         self.store.made()
     }
 
-    /// How many filters were not applied since their grids were kept from an earlier request.
+    /// Number of filters that were not applied because their grids were kept from an earlier request.
     pub fn filters_found(&self) -> u64 {
         self.grids.found()
     }
 
-    /// Bytes of the solutions and grids that are kept in memory, beside what requests need.
+    /// Memory of kept solutions and grids, in bytes, without that of running requests.
     pub fn kept_memory(&self) -> u64 {
         self.store.memory().saturating_add(self.grids.memory())
     }
 
-    /// The same threads and memory with no solutions yet, and none that are kept for later runs.
+    /// The same threads and memory with an empty store and without a cache.
     pub fn with_empty_store(&self) -> Session {
         self.with_solutions(Vec::new())
     }
 
-    /// The same threads and memory with solutions of its own: those given, and none that are kept for later.
+    /// The same threads and memory with the given solutions and without a cache.
     pub(crate) fn with_solutions(&self, solved: Vec<(Key, Arc<Solution>)>) -> Session {
         Session {
             store: Arc::new(Store::holding(solved, self.store.scratch().clone())),
@@ -113,7 +115,8 @@ impl Session {
         }
     }
 
-    /// Lets go of kept grids and of solutions in memory, the longest unused first, until those not among `needed` fit beside what is in use.
+    /// Drops kept grids and solutions, the least recently used first, until those not in `needed` fit beside the memory
+    /// in use.
     pub(crate) fn make_room(&self, needed: &[Key]) {
         if let Some(unused) = self.budget.unused() {
             self.store.make_room(unused, needed);

@@ -1,4 +1,4 @@
-//! A big window as a stream of tiles.
+//! Streams of tiles of a large window.
 
 use crate::budget::Budget;
 use crate::world::World;
@@ -7,36 +7,36 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use std::collections::VecDeque;
 
-/// How a window is cut into tiles.
+/// The division of a window into tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Tiling {
-    /// Samples along a tile's side. The tiles at the window's east and south may be smaller.
+    /// Side of a tile in samples. The tiles at the window's east and south edges may be smaller.
     pub side: usize,
-    /// Samples that a tile has beyond its side at its east and south, which are its neighbour's first: 0 for tiles that only
-    /// touch, 1 for tiles that share an edge, as engines want them.
+    /// Samples that a tile has beyond its side in the east and south, which are its neighbours' first ones: 0 for tiles
+    /// that only touch, 1 for tiles that share an edge, as engines require.
     pub overlap: usize,
-    /// Bytes of memory that the stream may need, the tiles it has handed out not counted; `None` takes the world's limit.
+    /// Memory limit of the stream, in bytes, without the returned tiles; `None` for the world's limit.
     pub memory: Option<u64>,
 }
 
 impl Tiling {
-    /// Tiles of `side` x `side` samples that touch.
+    /// Tiles of `side` x `side` samples without overlap.
     pub fn of(side: usize) -> Tiling {
         Tiling { side, overlap: 0, memory: None }
     }
 
-    /// How many tiles `window` has, east and south.
+    /// Number of tiles of `window`, east and south.
     pub fn layout(&self, window: &Window) -> [usize; 2] {
         let side = self.side.max(1);
         [window.width, window.height].map(|samples| samples.saturating_sub(self.overlap).div_ceil(side).max(1))
     }
 
-    /// The samples of the tile in column `column` and row `row`.
+    /// The window of the tile in column `column` and row `row`.
     pub fn tile(&self, window: &Window, column: usize, row: usize) -> Window {
         self.run(window, [column, row], [1, 1])
     }
 
-    /// The samples of `count` tiles east and south from the tile at `first` on.
+    /// The window of `count` tiles east and south, starting with the tile at `first`.
     fn run(&self, window: &Window, first: [usize; 2], count: [usize; 2]) -> Window {
         let along = |first: usize, count: usize, samples: usize| {
             let start = (first * self.side).min(samples);
@@ -48,49 +48,51 @@ impl Tiling {
     }
 }
 
-/// One tile of a stream.
+/// A tile of a stream.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tile {
     /// Its column among the tiles, from the west.
     pub column: usize,
     /// Its row among the tiles, from the north.
     pub row: usize,
-    /// One grid a layer, in the order they were asked for.
+    /// One grid per layer, in the requested order.
     pub grids: Vec<Grid>,
 }
 
-/// Most samples that are made at once: enough that halos and plans cost little.
+/// Maximum number of samples that are made at once: enough to make halos and plans cheap.
 const AT_ONCE: usize = 1 << 24;
 
-/// The tiles of a big window, made as they are asked for: see [`World::tiles`].
+/// The tiles of a large window, made on demand: see [`World::tiles`].
 pub struct Tiles<'w> {
     world: &'w World,
     layers: Vec<String>,
     window: Window,
     tiling: Tiling,
     progress: Progress,
-    /// The work of solving, which comes before the first strip, and of a sample; known once the first strip is asked for.
+    /// The work of solving, which precedes the first strip, and of a sample; known once the first strip is requested.
     work: Option<[f64; 2]>,
-    /// Tiles made at once, east and south.
+    /// Number of tiles made at once, east and south.
     at_once: [usize; 2],
-    /// Strips still to make: the first tile of each and how many.
+    /// Strips still to make: the first tile of each and the number of tiles.
     strips: VecDeque<([usize; 2], [usize; 2])>,
     made: VecDeque<Tile>,
-    /// What is wanted.
+    /// The filter for wanted tiles.
     wanted: Box<dyn Fn(usize, usize) -> bool + Send + 'w>,
 }
 
 impl World {
-    /// Makes layers over a window tile by tile, in little memory: for windows larger than it.
+    /// Makes layers over a window tile by tile, for windows larger than memory.
     ///
-    /// What it guarantees:
+    /// Guarantees:
     ///
-    /// - Each tile equals the crop of the whole window, bit for bit, whatever the tiling, the memory and the threads.
-    /// - Tiles come row after row from the north, each row from west to east, each wanted tile once.
-    /// - The work needs no more memory at once than the tiling (or the world) allows; if even one tile does not fit, nothing is
-    ///   started and the error names the figure.
-    /// - Neighbouring tiles are made together where memory allows, so that a filter's halo is shared between them.
-    /// - `progress` hears of all samples, and stops the stream with [`ErrorKind::Cancelled`]. After an error it ends.
+    /// - Each tile equals the crop of the whole window, bit for bit, for any tiling, memory limit and number of
+    ///   threads.
+    /// - Tiles come row by row from the north, each row from west to east, each wanted tile once.
+    /// - The work stays within the memory limit of the tiling (or of the world). If even one tile does not fit, nothing
+    ///   is started and the error states the needed memory.
+    /// - Neighbouring tiles are made together if memory allows, so that they share a filter's halo.
+    /// - `progress` counts all samples, and cancels the stream with [`ErrorKind::Cancelled`]. The stream ends after an
+    ///   error.
     ///
     /// ```
     /// use orogen_engine::tiles::Tiling;
@@ -107,7 +109,7 @@ impl World {
     /// ```
     ///
     /// # Errors
-    /// As [`World::plan`], if a tile has no samples, or if one tile needs more memory than allowed.
+    /// The errors of [`World::plan`]; or a tile has no samples, or one tile needs more memory than allowed.
     pub fn tiles<'w>(
         &'w self,
         layers: &[&str],
@@ -148,24 +150,24 @@ impl World {
 }
 
 impl<'w> Tiles<'w> {
-    /// Only the tiles for which `wanted(column, row)` holds, as when some are there already.
+    /// Restricts the stream to tiles for which `wanted(column, row)` returns true, for example if others exist already.
     pub fn only(mut self, wanted: impl Fn(usize, usize) -> bool + Send + 'w) -> Tiles<'w> {
         self.wanted = Box::new(wanted);
         self
     }
 
-    /// How many tiles the window has, east and south.
+    /// Number of tiles of the window, east and south.
     pub fn layout(&self) -> [usize; 2] {
         self.tiling.layout(&self.window)
     }
 
-    /// How many tiles are made at once, east and south: more share halos, fewer take less memory.
+    /// Number of tiles made at once, east and south: more tiles share halos, fewer take less memory.
     pub fn at_once(&self) -> [usize; 2] {
         self.at_once
     }
 
-    /// Several tiles at once, those made together, in the order of the stream: for callers that work on them side by side.
-    /// `None` when all are made.
+    /// The next tiles that are made together, in the order of the stream, for callers that process them in parallel.
+    /// `None` at the end.
     pub fn next_strip(&mut self) -> Option<Result<Vec<Tile>>> {
         if !self.made.is_empty() {
             return Some(Ok(self.made.drain(..).collect()));
@@ -187,7 +189,7 @@ impl<'w> Tiles<'w> {
         None
     }
 
-    /// Declares all work, before the first strip.
+    /// Declares the total work, before the first strip.
     fn weigh(&mut self) -> Result<()> {
         if self.work.is_some() {
             return Ok(());
@@ -202,7 +204,7 @@ impl<'w> Tiles<'w> {
         Ok(())
     }
 
-    /// The wanted tiles among `count` from `first` on, and the window of them all; `None` if there are none.
+    /// The wanted tiles among `count` starting with `first`, and their common window; `None` if there are none.
     fn wanted(&self, first: [usize; 2], count: [usize; 2]) -> Option<(Vec<[usize; 2]>, Window)> {
         let all = (0..count[1]).flat_map(|row| (0..count[0]).map(move |column| [first[0] + column, first[1] + row]));
         let wanted: Vec<[usize; 2]> = all.filter(|[column, row]| (self.wanted)(*column, *row)).collect();
@@ -211,11 +213,11 @@ impl<'w> Tiles<'w> {
         Some((wanted, window))
     }
 
-    /// Makes the wanted tiles among `count` from `first` on.
+    /// Makes the wanted tiles among `count` starting with `first`.
     fn make(&mut self, first: [usize; 2], count: [usize; 2]) -> Result<Vec<Tile>> {
         let Some((wanted, window)) = self.wanted(first, count) else { return Ok(Vec::new()) };
         let [solving, each] = self.work.unwrap_or_default();
-        // What had to be solved is solved by the end of the first strip.
+        // Solving is complete at the end of the first strip.
         self.work = Some([0.0, each]);
         let part = self.progress.part(solving + each * window.len() as f64);
         let layers: Vec<&str> = self.layers.iter().map(String::as_str).collect();
@@ -227,7 +229,8 @@ impl<'w> Tiles<'w> {
         Ok(wanted.into_iter().map(cut).collect())
     }
 
-    /// The most tiles to make at once: rows of them across the whole window, else part of one row, else one tile.
+    /// The largest number of tiles to make at once: rows of them across the whole window, otherwise a part of a row,
+    /// otherwise one tile.
     fn most_at_once(&self) -> Result<[usize; 2]> {
         let [columns, rows] = self.layout();
         let samples = |[wide, tall]: [usize; 2]| {
@@ -259,7 +262,7 @@ impl<'w> Tiles<'w> {
         }
     }
 
-    /// Bytes that making so many tiles at once takes: the plan's, and the tiles cut out of what it makes.
+    /// Memory for making this many tiles at once, in bytes: that of the plan, and of the tiles cut from its result.
     fn needed(&self, at_once: [usize; 2]) -> Result<u64> {
         let layers: Vec<&str> = self.layers.iter().map(String::as_str).collect();
         let window = self.tiling.run(&self.window, [0, 0], at_once);

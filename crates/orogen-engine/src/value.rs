@@ -1,47 +1,47 @@
-//! The tree a recipe's text is read into: values that remember where they stood.
+//! A tree of values with their positions in a text.
 
 use std::ops::Range;
 
 /// Bytes of the text, from its start.
 pub type Span = Range<usize>;
 
-/// A value and where it stood in the text. What was made by a program has an empty span.
+/// A value and its position in the text. Values made in code have an empty span.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spanned<T> {
-    /// What was read.
+    /// The value.
     pub value: T,
-    /// Where.
+    /// Its position.
     pub span: Span,
 }
 
 impl<T> Spanned<T> {
-    /// A value that stands in no text.
+    /// A value without a position.
     pub fn unplaced(value: T) -> Spanned<T> {
         Spanned { value, span: 0..0 }
     }
 }
 
-/// What TOML and JSON have in common.
+/// The common data model of TOML and JSON.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// true or false.
+    /// A boolean.
     Flag(bool),
-    /// A whole number.
+    /// An integer.
     Integer(i64),
-    /// Any other number.
+    /// A floating-point number.
     Number(f64),
     /// A string.
     Text(String),
-    /// Values in order.
+    /// An array.
     List(Vec<Spanned<Value>>),
-    /// Keys with their values, in the order of the text.
+    /// Keys and values, in the order of the text.
     Table(Vec<(Spanned<String>, Spanned<Value>)>),
-    /// What recipes have no use for (a date, a null), by its name.
+    /// A kind that recipes do not use (a date, a null), by its name.
     Other(&'static str),
 }
 
 impl Value {
-    /// The value as a message names it: "the string `abc`", "a table".
+    /// The description in messages: "the string `abc`", "a table".
     pub fn describe(&self) -> String {
         match self {
             Value::Flag(flag) => format!("{flag}"),
@@ -61,7 +61,7 @@ impl Value {
         }
     }
 
-    /// The value as a number, whole numbers included.
+    /// The value as a number; includes integers.
     pub fn number(&self) -> Option<f64> {
         match self {
             Value::Integer(integer) => Some(*integer as f64),
@@ -100,7 +100,7 @@ fn toml_number(number: f64) -> String {
     } else if number.is_infinite() {
         if number > 0.0 { "inf".to_string() } else { "-inf".to_string() }
     } else {
-        // Debug prints the shortest form that reads back, with a point or an exponent, as TOML asks.
+        // Debug prints the shortest form that parses to the same number, with a point or an exponent, as TOML requires.
         format!("{number:?}")
     }
 }
@@ -123,7 +123,7 @@ pub fn toml_string(text: &str) -> String {
     quoted
 }
 
-/// A TOML key, quoted only where it must be.
+/// A TOML key, quoted only if necessary.
 pub fn toml_key(key: &str) -> String {
     let bare = !key.is_empty() && key.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-');
     if bare { key.to_string() } else { toml_string(key) }

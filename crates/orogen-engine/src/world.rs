@@ -1,4 +1,4 @@
-//! The front door: a recipe opened, asked for windows and points.
+//! Worlds: opened recipes, from which windows and points are requested.
 
 use crate::budget::{Budget, Reservation};
 use crate::engine::inline::PreparedProgram;
@@ -23,7 +23,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A world: any window of it, at any resolution, always the same.
+/// A world, from which any window can be made, at any resolution, always with the same bits.
 ///
 /// ```
 /// use orogen_engine::{Recipe, Window, World};
@@ -52,10 +52,10 @@ pub struct World {
     world_params: WorldParams,
     /// The content keys of the nodes.
     keys: Vec<Key>,
-    /// What plans of this recipe carry.
+    /// The identity of the recipe, which plans contain.
     identity: Key,
     session: Session,
-    /// Plans for points of layers that depend on no grid: the same for every point.
+    /// Plans for points of layers that need no grids: the same for every point.
     pointwise: Mutex<HashMap<String, Arc<Plan>>>,
 }
 
@@ -69,14 +69,14 @@ impl Session {
     }
 }
 
-/// The layer that maps and meshes are made from.
+/// The output from which maps and meshes are made.
 pub const HEIGHT: &str = "height";
 
 impl World {
     /// Opens a recipe.
     ///
     /// # Errors
-    /// If the recipe is not valid: every diagnostic at once.
+    /// If the recipe is not valid: all diagnostics at once.
     pub fn open(recipe: Recipe) -> Result<World> {
         World::with_options(recipe, Options::default())
     }
@@ -89,7 +89,7 @@ impl World {
         Session::new(options)?.open(recipe)
     }
 
-    /// Opens a recipe in a session that other worlds may share.
+    /// Opens a recipe in a shared session.
     fn in_session(mut recipe: Recipe, session: Session) -> Result<World> {
         let graph = Graph::resolve(&recipe).map_err(Graph::error)?;
         recipe.load(session.budget.left().unwrap_or(DEFAULT_MEMORY))?;
@@ -106,8 +106,8 @@ impl World {
         World { recipe, graph, world_params, keys, identity, session, pointwise: Mutex::default() }
     }
 
-    /// A world of the same recipe with other parameters, on the same threads and in as much memory. What it solves is kept nowhere; what is
-    /// solved already is given.
+    /// A world of the same recipe with other parameters, with the same threads and memory limit. Its solutions are not
+    /// stored; `solved` are existing ones.
     ///
     /// # Errors
     /// If the recipe is not valid.
@@ -121,21 +121,21 @@ impl World {
         self.session.store.find(key, on_disk)
     }
 
-    /// How many solutions this world made, not found.
+    /// Number of solutions that this world computed (not found in the store).
     pub(crate) fn solutions_made(&self) -> usize {
         self.session.solutions_made() as usize
     }
 
-    /// A plan that does no more than solve nodes and what they read.
+    /// A plan that only solves nodes and their sources.
     pub(crate) fn plan_to_solve(&self, nodes: &[usize]) -> Result<Plan> {
         let links: Vec<Link> = nodes.iter().map(|&node| Link::Node(LayerRef { node, layer: 0 })).collect();
         self.planned(&links, Window::new(1, 1, self.world_params.cell), false)
     }
 
-    /// Runs a plan while somebody observes the steps of a node's solver.
+    /// Runs a plan with an observer of the steps of a node's solver.
     ///
     /// # Errors
-    /// As [`World::run`], and what the observer fails with.
+    /// The errors of [`World::run`] and of the observer.
     pub(crate) fn run_observed(
         &self,
         plan: &Plan,
@@ -148,12 +148,12 @@ impl World {
         engine.run(plan).map(drop)
     }
 
-    /// The nodes in an order in which each comes after those that it reads.
+    /// The nodes in an order where each comes after those that it reads.
     pub(crate) fn order(&self) -> &[usize] {
         &self.graph.order
     }
 
-    /// The layers of nodes that a layer is made of, masks included.
+    /// The layers of nodes that a layer depends on, including masks.
     pub(crate) fn layers_read(&self, layer: &str) -> Result<BTreeSet<LayerRef>> {
         let mut read = BTreeSet::new();
         let mut waiting = vec![self.target(layer)?];
@@ -171,11 +171,11 @@ impl World {
         &self.recipe
     }
 
-    /// The window of the whole world at `cell` metres a sample: a world of length L has round(L / cell) samples along that side;
-    /// its far edge is left to a neighbour.
+    /// The window of the whole world with a cell of `cell` metres: a world of length L has round(L / cell) samples
+    /// along that side; the sample at its far edge belongs to the neighbour.
     ///
     /// # Errors
-    /// If the world has no bounds, or has no sample or more than 2^31 along a side at that cell.
+    /// If the world is unbounded, or has no samples or more than 2^31 along a side at that cell.
     pub fn full_window(&self, cell: f64) -> Result<Window> {
         let size = self.bounds()?;
         let samples = size.map(|length| (length / cell).round());
@@ -201,7 +201,7 @@ impl World {
     /// The window of the whole world with `samples` along its longer side.
     ///
     /// # Errors
-    /// If the world has no bounds, or no sample is asked for.
+    /// If the world is unbounded, or `samples` is 0.
     pub fn window_fitting(&self, samples: usize) -> Result<Window> {
         let size = self.bounds()?;
         if samples == 0 {
@@ -220,29 +220,29 @@ impl World {
     /// A plan for layers over a window.
     ///
     /// # Errors
-    /// If there is no such layer, or the window is not one of this world.
+    /// If there is no such layer, or the window is not valid for this world.
     pub fn plan(&self, layers: &[&str], window: &Window) -> Result<Plan> {
         let targets = layers.iter().map(|layer| self.target(layer)).collect::<Result<Vec<Link>>>()?;
         self.check(window)?;
         self.planned(&targets, *window, false)
     }
 
-    /// What this world shares with others.
+    /// The session of the world.
     pub fn session(&self) -> &Session {
         &self.session
     }
 
-    /// The memory that requests share with what the caller holds: see [`Budget::reserve`].
+    /// The memory budget, which callers can reserve from: see [`Budget::reserve`].
     pub fn budget(&self) -> &Budget {
         &self.session.budget
     }
 
-    /// The folder for what does not fit in memory.
+    /// The folder for data that does not fit in memory.
     pub fn scratch(&self) -> &Path {
         self.session.store.scratch()
     }
 
-    /// Bytes that a request may need; `None` for no limit.
+    /// Memory limit of a request, in bytes; `None` for no limit.
     pub fn memory_limit(&self) -> Option<u64> {
         self.session.budget.left()
     }
@@ -258,45 +258,45 @@ impl World {
         )
     }
 
-    /// Bytes of disk that running a plan takes at most, what stays in the cache not counted.
+    /// Maximum disk space for running a plan, in bytes, without the cache.
     pub fn disk_of(&self, plan: &Plan) -> u64 {
         memory::disk(plan)
     }
 
-    /// Bytes that running a plan takes at most.
+    /// Maximum memory for running a plan, in bytes.
     pub fn memory_of(&self, plan: &Plan) -> u64 {
         memory::needed(plan, &self.recipe, self.threads())
     }
 
-    /// About how many nanoseconds of one core running a plan takes: solving what is not solved yet, and the steps.
+    /// Approximate time of a plan on one core, in nanoseconds: for solving what is not solved yet, and for the steps.
     #[doc(hidden)]
     pub fn work_of(&self, plan: &Plan) -> [f64; 2] {
         [self.engine(&Progress::none()).solving_work(plan), cost::steps(plan, &self.recipe)]
     }
 
-    /// About how many nanoseconds of one core running a plan takes, what is solved already not counted: the weight of a
+    /// Approximate time of a plan on one core, in nanoseconds, without existing solutions: the weight of a
     /// [part](Progress::part) of more work.
     pub fn work(&self, plan: &Plan) -> f64 {
         self.work_of(plan).iter().sum()
     }
 
-    /// About how many nanoseconds of one core a plan's steps take, all that they read being solved.
+    /// Approximate time of a plan's steps on one core, in nanoseconds, without solving.
     pub(crate) fn steps_work(&self, plan: &Plan) -> f64 {
         cost::steps(plan, &self.recipe)
     }
 
-    /// What a plan does, in words.
+    /// A description of the plan for users.
     pub fn explain(&self, plan: &Plan) -> String {
         explain(plan, &self.recipe, &self.graph, self.threads())
     }
 
-    /// How many threads work on a request.
+    /// Number of threads.
     pub fn threads(&self) -> usize {
         self.session.threads()
     }
 
-    /// A hash of all that a layer depends on: its nodes with their parameters, and what these read of the world (seed, extent, cell, sea level). Names of
-    /// nodes do not enter it.
+    /// A hash of everything that a layer depends on: its nodes with their parameters, and what they read of the world
+    /// (seed, extent, cell, sea level). Names of nodes are not included.
     ///
     /// # Errors
     /// If there is no such layer.
@@ -304,7 +304,7 @@ impl World {
         Ok(link_key(&self.target(layer)?, &self.keys))
     }
 
-    /// The unit of a layer: metres for [`HEIGHT`], else what its node says of itself, which may be nothing.
+    /// The unit of a layer: metres for [`HEIGHT`], otherwise the unit that its node declares, which may be empty.
     ///
     /// # Errors
     /// If there is no such layer.
@@ -316,7 +316,7 @@ impl World {
         })
     }
 
-    /// How a layer's samples may be read: as heights, as names in numbers, or as amounts.
+    /// The kind of a layer: heights, labels or amounts.
     ///
     /// # Errors
     /// If there is no such layer.
@@ -327,16 +327,16 @@ impl World {
         })
     }
 
-    /// Does work that shares itself out among this world's threads.
+    /// Runs work on this world's threads.
     #[doc(hidden)]
     pub fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         self.session.pool.install(work)
     }
 
-    /// Runs a plan: one grid a layer, in the order they were asked for.
+    /// Runs a plan: returns one grid per layer, in the requested order.
     ///
     /// # Errors
-    /// If it is a plan of another recipe, would need more memory than allowed (then nothing was started), or was cancelled.
+    /// If it is a plan of another recipe, needs more memory than allowed (then nothing was started), or was cancelled.
     pub fn run(&self, plan: &Plan, progress: &Progress) -> Result<Vec<Grid>> {
         let _running = self.admit(plan, progress)?;
         self.engine(progress).run(plan)
@@ -345,15 +345,16 @@ impl World {
     /// Makes layers over a window.
     ///
     /// # Errors
-    /// As [`World::plan`] and [`World::run`].
+    /// The errors of [`World::plan`] and [`World::run`].
     pub fn grids(&self, layers: &[&str], window: &Window, progress: &Progress) -> Result<Vec<Grid>> {
         self.run(&self.plan(layers, window)?, progress)
     }
 
-    /// Makes a layer over a window that may reach beyond the world by the margin of its solvers, beside `beside` bytes that the caller holds.
+    /// Makes a layer over a window that may extend beyond the world by the margin of its solvers; the caller holds
+    /// `beside` bytes.
     ///
     /// # Errors
-    /// As [`World::plan`] and [`World::run`].
+    /// The errors of [`World::plan`] and [`World::run`].
     #[doc(hidden)]
     pub fn grid_beside(&self, layer: &str, window: &Window, beside: u64, progress: &Progress) -> Result<Grid> {
         let plan = self.planned(&[self.target(layer)?], *window, false)?;
@@ -365,25 +366,25 @@ impl World {
     /// Makes one layer over a window.
     ///
     /// # Errors
-    /// As [`World::plan`] and [`World::run`].
+    /// The errors of [`World::plan`] and [`World::run`].
     pub fn window(&self, layer: &str, window: &Window) -> Result<Grid> {
         let mut grids = self.grids(&[layer], window, &Progress::none())?;
         grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "no layer was requested"))
     }
 
-    /// The height at x metres east and y metres south of the origin.
+    /// The height at x metres east and y metres south of the origin, in metres.
     ///
     /// # Errors
-    /// If the world has no layer `height`, or the position is outside of it.
+    /// If the world has no layer `height`, or the position is outside it.
     pub fn height(&self, x: f64, y: f64) -> Result<f32> {
         Ok(self.points(HEIGHT, &[x], &[y])?.first().copied().unwrap_or(f32::NAN))
     }
 
-    /// A layer's values at points, in metres. On lattice points they are the very samples of a window there (filters are made
-    /// at the world's cell).
+    /// A layer's values at points, in metres. At lattice points they equal the samples of a window bit for bit (filters
+    /// are computed at the world's cell).
     ///
     /// # Errors
-    /// If there is no such layer, coordinates are not finite or not in pairs, or a point is outside of the world.
+    /// If there is no such layer, coordinates are not finite or differ in number, or a point is outside the world.
     pub fn points(&self, layer: &str, x: &[f64], y: &[f64]) -> Result<Vec<f32>> {
         let target = self.target(layer)?;
         let fault = |message: String| Error::new(ErrorKind::Request, message);
@@ -413,7 +414,7 @@ impl World {
         Ok(values.into_iter().next().unwrap_or_default())
     }
 
-    /// Whether a point is one of this world.
+    /// Checks that a point is in this world.
     pub(crate) fn check_point(&self, x: f64, y: f64) -> Result<()> {
         let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
         if !(x.is_finite() && y.is_finite()) {
@@ -427,7 +428,7 @@ impl World {
         }
     }
 
-    /// A plan for points of a layer within `around`, and all that it needs made.
+    /// A plan for points of a layer within `around`, with everything that it needs computed.
     pub(crate) fn ready(&self, layer: &str, around: Window) -> Result<PreparedProgram> {
         let plan = self.planned(&[self.target(layer)?], around, true)?;
         let progress = Progress::none();
@@ -436,7 +437,7 @@ impl World {
         ready.ok_or_else(|| Error::new(ErrorKind::Internal, "a plan for points has no program for them"))
     }
 
-    /// The samples at the world's cell around points, as far as the interpolating cubic reads.
+    /// The samples at the world's cell around points that the interpolating cubic reads.
     pub(crate) fn around(&self, x: &[f64], y: &[f64]) -> Window {
         let cell = self.world_params.cell;
         let span = |values: &[f64]| {
@@ -465,7 +466,7 @@ impl World {
         }
     }
 
-    /// What a layer's name means: one of the outputs, else a node or `node.layer`.
+    /// The target of a layer's name: an output, otherwise a node or `node.layer`.
     fn target(&self, layer: &str) -> Result<Link> {
         if let Some(index) = self.recipe.outputs().position(|name| name == layer) {
             return Ok(self.graph.outputs[index]);
@@ -479,7 +480,7 @@ impl World {
         })
     }
 
-    /// Whether the world has this window.
+    /// Checks that a window is valid for this world.
     #[doc(hidden)]
     pub fn check(&self, window: &Window) -> Result<()> {
         let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
@@ -517,7 +518,7 @@ impl World {
         Ok(())
     }
 
-    /// A window with `reach` more samples on each side, as far as the world goes.
+    /// A window extended by `reach` samples on each side, as far as the world extends.
     #[doc(hidden)]
     pub fn surroundings(&self, window: &Window, reach: usize) -> Window {
         let wide = window.grown(reach);
@@ -525,16 +526,16 @@ impl World {
             Some(size) => wide.intersection(&world_windows(size, window.cell).0),
             None => wide,
         };
-        // A world without bounds ends where positions are no longer exact.
+        // An unbounded world ends where positions are no longer exact.
         if self.check(&wide).is_ok() { wide } else { *window }
     }
 
-    /// Whether there is memory for a window's samples, beside what is held already.
+    /// Checks that there is memory for a window's samples.
     pub(crate) fn afford_grid(&self, window: &Window) -> Result<()> {
         self.session.budget.afford((window.width as u64).saturating_mul(window.height as u64).saturating_mul(4))
     }
 
-    /// Sets aside the memory that a plan needs, and lets go of other solutions to make room for it. Refuses a plan of another recipe.
+    /// Reserves the memory that a plan needs, and drops other solutions to make room. Rejects a plan of another recipe.
     fn admit(&self, plan: &Plan, progress: &Progress) -> Result<Reservation> {
         if plan.recipe != self.identity {
             let message =

@@ -1,71 +1,71 @@
-//! The one error type: a kind for programs, a message for people.
+//! The error type: a kind for programs, a message for people.
 
 use std::fmt;
 
 use crate::words::readable;
 
-/// What every fallible call of the crate returns.
+/// The result of every fallible call of the crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// What went wrong, for programs that want to tell cases apart. The message for people is the error's `Display`.
+/// The kind of an error, for programs that handle cases differently. The message for people is the error's `Display`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ErrorKind {
-    /// A recipe could not be read: its text, a key, a value, a name.
+    /// A recipe could not be read: its syntax, a key, a value, a name.
     Recipe,
-    /// A window, layer or size was asked for that the world does not have.
+    /// A request for a window, layer or size that the world does not have.
     Request,
-    /// The work would need more memory than allowed; nothing was started.
+    /// The work needs more memory than allowed; it was not started.
     Memory,
     /// A file could not be read or written.
     File,
     /// The work was cancelled by its caller.
     Cancelled,
-    /// The library broke a rule of its own: a bug, whatever was asked for.
+    /// The library violated one of its own invariants: a bug, whatever the request.
     Internal,
 }
 
-/// An error: one or more messages that say what is wrong, where, and what to do instead.
+/// One or more messages that say what is wrong, where, and what to do instead.
 ///
-/// The type is opaque so that new causes do not break callers; [`Error::kind`] tells the cases that a program may want to
-/// handle apart.
+/// The type is opaque so that new causes do not break callers; [`Error::kind`] distinguishes the cases that a program
+/// may want to handle.
 #[derive(Debug, Clone)]
 pub struct Error {
     kind: ErrorKind,
     diagnostics: Vec<Diagnostic>,
 }
 
-/// One thing that is wrong, with its place in a text where there is one.
+/// One problem, with its location in a text if it has one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// What is wrong and what to do instead, a full message without its place.
+    /// A complete message without the location: what is wrong and what to do instead.
     pub message: String,
-    /// Where in a recipe, if it is there.
+    /// The location in a recipe, if there is one.
     pub place: Option<Location>,
 }
 
-/// A place in a text: what an editor jumps to.
+/// A location in a text, as an editor needs it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Location {
-    /// The file's name as the user gave it, or what the text is called if it is no file.
+    /// The file's name as the user gave it, or the name of a text that is not a file.
     pub file: String,
     /// Line, from 1.
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// How many characters of the line are meant (at least 1).
+    /// Length of the marked part, in characters (at least 1).
     pub length: usize,
-    /// The whole line, for showing; empty if it is longer than anybody would read.
+    /// The whole line, for display; empty if it is too long to read.
     pub text: String,
 }
 
 impl Error {
-    /// An error of one message without a place.
+    /// An error of one message without a location.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Error {
         Error::from_diagnostics(kind, vec![Diagnostic { message: message.into(), place: None }])
     }
 
-    /// An error of several diagnostics, in the order of the text they come from. Names and numbers in them that nobody could read are
+    /// An error of several diagnostics, in the order of the text. Overlong names and numbers in them are
     /// [shortened](crate::words::readable).
     pub fn from_diagnostics(kind: ErrorKind, mut diagnostics: Vec<Diagnostic>) -> Error {
         for diagnostic in &mut diagnostics {
@@ -74,23 +74,23 @@ impl Error {
         Error { kind, diagnostics }
     }
 
-    /// A file that could not be read or written: names the file, what was tried and the system's reason.
+    /// A file that could not be read or written: the message contains the file, the action and the system's reason.
     pub fn file(doing: &str, path: &std::path::Path, cause: &std::io::Error) -> Error {
         Error::new(ErrorKind::File, format!("cannot {doing} {}: {}", path.display(), reason(cause)))
     }
 
-    /// Which case this is.
+    /// The kind of the error.
     pub fn kind(&self) -> ErrorKind {
         self.kind
     }
 
-    /// Everything that is wrong, one by one.
+    /// All problems.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.diagnostics
     }
 }
 
-/// The system's reason without the number the standard library adds.
+/// The system's reason, without the number that the standard library appends.
 fn reason(cause: &std::io::Error) -> String {
     let text = cause.to_string();
     match text.find(" (os error") {

@@ -1,4 +1,4 @@
-//! Windows and grids: plain data, and reading between samples.
+//! Windows and grids.
 
 use std::ops::{Index, IndexMut};
 
@@ -7,54 +7,54 @@ use serde::{Deserialize, Serialize};
 
 /// A rectangle of samples of the infinite lattice with spacing `cell`.
 ///
-/// Sample (i, j) of a window stands *at* x = (self.x + i) * cell, y = (self.y + j) * cell in metres: a lattice point, not the
-/// middle of a pixel, so neighbouring windows can share an edge. x grows east, y grows south.
+/// Sample (i, j) of a window is *at* x = (self.x + i) * cell, y = (self.y + j) * cell in metres: a lattice point, not
+/// the centre of a pixel, so neighbouring windows can share an edge. x increases eastward, y increases southward.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Window {
     /// Column of the first sample on the lattice.
     pub x: i64,
     /// Row of the first sample on the lattice.
     pub y: i64,
-    /// Samples a row.
+    /// Number of samples per row.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
-    /// Metres from one sample to the next.
+    /// Distance between samples, in metres.
     pub cell: f64,
 }
 
 impl Window {
-    /// The window of `width` x `height` samples that begins at the origin.
+    /// The window of `width` x `height` samples that starts at the origin.
     pub fn new(width: usize, height: usize, cell: f64) -> Window {
         Window { x: 0, y: 0, width, height, cell }
     }
 
-    /// The same window begun at column `x` and row `y`.
+    /// The same window, starting at column `x` and row `y`.
     pub fn at(self, x: i64, y: i64) -> Window {
         Window { x, y, ..self }
     }
 
-    /// How many samples it has.
+    /// The number of samples.
     pub fn len(&self) -> usize {
         self.width * self.height
     }
 
-    /// Whether it has no sample at all.
+    /// Whether it has no samples.
     pub fn is_empty(&self) -> bool {
         self.width == 0 || self.height == 0
     }
 
-    /// The column one past the last.
+    /// The column after the last.
     pub fn right(&self) -> i64 {
         self.x + self.width as i64
     }
 
-    /// The row one past the last.
+    /// The row after the last.
     pub fn bottom(&self) -> i64 {
         self.y + self.height as i64
     }
 
-    /// The window with `halo` more samples on each side.
+    /// The window extended by `halo` samples on each side.
     pub fn grown(&self, halo: usize) -> Window {
         Window {
             x: self.x - halo as i64,
@@ -65,7 +65,7 @@ impl Window {
         }
     }
 
-    /// The window without `border` samples on each side; empty if that is all it has.
+    /// The window without `border` samples on each side; possibly empty.
     pub fn shrunk(&self, border: usize) -> Window {
         Window {
             x: self.x + border as i64,
@@ -76,7 +76,7 @@ impl Window {
         }
     }
 
-    /// The smallest window that holds both. Both must have the same cell.
+    /// The smallest window that contains both. Both must have the same cell.
     pub fn union(&self, other: &Window) -> Window {
         debug_assert_eq!(self.cell, other.cell);
         let (x, y) = (self.x.min(other.x), self.y.min(other.y));
@@ -89,7 +89,7 @@ impl Window {
         }
     }
 
-    /// The samples that both have; empty if there are none. Both must have the same cell.
+    /// The samples of both windows; empty if there are none. Both must have the same cell.
     pub fn intersection(&self, other: &Window) -> Window {
         debug_assert_eq!(self.cell, other.cell);
         let (x, y) = (self.x.max(other.x), self.y.max(other.y));
@@ -97,7 +97,7 @@ impl Window {
         Window { x, y, width: (right - x).max(0) as usize, height: (bottom - y).max(0) as usize, cell: self.cell }
     }
 
-    /// Whether every sample of `other` is one of this window's.
+    /// Whether every sample of `other` belongs to this window.
     pub fn contains(&self, other: &Window) -> bool {
         self.cell == other.cell
             && self.x <= other.x
@@ -106,7 +106,8 @@ impl Window {
             && self.bottom() >= other.bottom()
     }
 
-    /// The window cut into tiles of at most `side` x `side` samples, row after row from the north, each from west to east.
+    /// The window split into tiles of at most `side` x `side` samples, row by row from the north, each row from west to
+    /// east.
     pub fn tiles(&self, side: usize) -> impl Iterator<Item = Window> + use<> {
         let (window, side) = (*self, side.max(1));
         let columns = window.width.div_ceil(side);
@@ -122,28 +123,28 @@ impl Window {
         })
     }
 
-    /// Metres east of the origin of column `i` of the window. Always the global index times the cell, never a running sum.
+    /// The easting of column `i`, in metres. Always the global index times the cell, never a running sum.
     pub fn east(&self, i: usize) -> f64 {
         (self.x + i as i64) as f64 * self.cell
     }
 
-    /// Metres south of the origin of row `j` of the window.
+    /// The southing of row `j`, in metres.
     pub fn south(&self, j: usize) -> f64 {
         (self.y + j as i64) as f64 * self.cell
     }
 
-    /// The eastings of all columns.
+    /// The eastings of all columns, in metres.
     pub fn eastings(&self) -> Vec<f64> {
         (0..self.width).map(|i| self.east(i)).collect()
     }
 
-    /// The southings of all rows.
+    /// The southings of all rows, in metres.
     pub fn southings(&self) -> Vec<f64> {
         (0..self.height).map(|j| self.south(j)).collect()
     }
 }
 
-/// Samples over a window, row after row from the north, each from west to east: a grid is a picture.
+/// Samples over a window, row-major from the north, each row from west to east, like a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid<T = f32> {
     window: Window,
@@ -151,27 +152,27 @@ pub struct Grid<T = f32> {
 }
 
 impl<T: Copy> Grid<T> {
-    /// A grid of one value.
+    /// A grid with one value everywhere.
     pub fn filled(window: Window, value: T) -> Grid<T> {
         Grid { window, data: vec![value; window.len()] }
     }
 
-    /// A grid over `data`, or `None` if there are not exactly as many samples as the window has.
+    /// A grid over `data`; `None` if the number of samples is not that of the window.
     pub fn from_data(window: Window, data: Vec<T>) -> Option<Grid<T>> {
         (data.len() == window.len()).then_some(Grid { window, data })
     }
 
-    /// Where the samples stand.
+    /// The window of the samples.
     pub fn window(&self) -> &Window {
         &self.window
     }
 
-    /// Samples a row.
+    /// Number of samples per row.
     pub fn width(&self) -> usize {
         self.window.width
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn height(&self) -> usize {
         self.window.height
     }
@@ -181,12 +182,12 @@ impl<T: Copy> Grid<T> {
         &self.data
     }
 
-    /// All samples, to change.
+    /// All samples, row-major, mutable.
     pub fn data_mut(&mut self) -> &mut [T] {
         &mut self.data
     }
 
-    /// The samples without their window.
+    /// The samples without the window, row-major.
     pub fn into_data(self) -> Vec<T> {
         self.data
     }
@@ -196,7 +197,7 @@ impl<T: Copy> Grid<T> {
         &self.data[j * self.window.width..(j + 1) * self.window.width]
     }
 
-    /// Row `j`, to change.
+    /// Row `j`, mutable.
     pub fn row_mut(&mut self, j: usize) -> &mut [T] {
         let width = self.window.width;
         &mut self.data[j * width..(j + 1) * width]
@@ -209,7 +210,7 @@ impl<T: Copy> Grid<T> {
         if inside { self.data.get(j * self.window.width + i).copied() } else { None }
     }
 
-    /// The part of the grid in `window`, or `None` if the grid does not hold all of it.
+    /// The part of the grid in `window`; `None` if the grid does not contain all of it.
     pub fn crop(&self, window: &Window) -> Option<Grid<T>> {
         if !self.window.contains(window) {
             return None;
@@ -222,7 +223,7 @@ impl<T: Copy> Grid<T> {
         Some(Grid { window: *window, data })
     }
 
-    /// Copies what of `other` lies in this grid's window.
+    /// Copies the samples of `other` that lie in this grid's window.
     pub fn paste(&mut self, other: &Grid<T>) {
         let (ours, theirs) = (self.window, other.window);
         let (left, right) = (ours.x.max(theirs.x), ours.right().min(theirs.right()));
@@ -257,7 +258,7 @@ impl<T: Copy> IndexMut<(usize, usize)> for Grid<T> {
     }
 }
 
-/// Samples of rows of `columns` as samples of columns, in squares that stay in cache; squares side by side.
+/// Transposes rows of `columns` samples, in squares that stay in cache; squares are processed in parallel.
 pub fn transposed<T: Copy + Default + Send + Sync>(samples: &[T], columns: usize) -> Vec<T> {
     const SIDE: usize = 32;
     let rows = samples.len() / columns.max(1);

@@ -1,8 +1,9 @@
-//! How far work has come, and the request to stop it.
+//! Progress of work, and cancellation.
 //!
-//! A [`Progress`] belongs to one piece of work. Whoever does the work declares how much there is ([`Progress::expect`]), in any unit, and counts what
-//! is done ([`Progress::advance`]). Work that consists of several pieces gives each a [part](Progress::part) with a weight, and hands the part on. The
-//! caller hears one number, the share of all work that is done, which only grows.
+//! A [`Progress`] belongs to one piece of work. The code that does the work declares its amount ([`Progress::expect`]),
+//! in any unit, and counts what is done ([`Progress::advance`]). Work that consists of several pieces gives each a
+//! [part](Progress::part) with a weight and passes the part on. The caller receives one number: the share of all work
+//! that is done, which never decreases.
 //!
 //! ```
 //! use orogen_grid::Progress;
@@ -23,20 +24,21 @@ use crate::error::{Error, ErrorKind, Result};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-/// Progress of one piece of work, shared between the caller and the work. A clone is another handle to the same.
+/// Progress of one piece of work, shared between the caller and the work. A clone is another handle to the same
+/// progress.
 #[derive(Clone, Default)]
 pub struct Progress {
     piece: Arc<Node>,
 }
 
-/// Hears the share of the work that is done.
+/// Receives the share of the work that is done.
 type Listener = dyn Fn(f64) + Send + Sync;
 
-/// What all pieces of a run share.
+/// State shared by all pieces of a run.
 #[derive(Default)]
 struct Run {
     cancelled: AtomicBool,
-    /// Set by somebody who has no [`Progress`], such as a signal handler.
+    /// Set by code that has no [`Progress`], such as a signal handler.
     stop: OnceLock<Arc<AtomicBool>>,
     listener: Option<Box<Listener>>,
 }
@@ -53,44 +55,45 @@ struct Node {
 struct Count {
     expected: f64,
     done: f64,
-    /// The share that was reported: 0 to 1, never less than before.
+    /// The last reported share: 0 to 1, never decreasing.
     share: f64,
 }
 
 impl Progress {
-    /// Progress that nobody listens to.
+    /// Progress without a listener.
     pub fn none() -> Progress {
         Progress::default()
     }
 
-    /// Calls `listener` with the share of the work that is done, from 0 to 1, each time it grows. The calls come from any thread, one at a time,
-    /// and never with a smaller share than before.
+    /// Calls `listener` with the share of the work that is done, from 0 to 1, each time it increases. The calls come
+    /// from any thread, one at a time, and never with a smaller share than before.
     pub fn new(listener: impl Fn(f64) + Send + Sync + 'static) -> Progress {
         let run = Run { listener: Some(Box::new(listener)), ..Run::default() };
         Progress { piece: Arc::new(Node { run: Arc::new(run), ..Node::default() }) }
     }
 
-    /// The same, stopped also by whoever sets `flag`: a signal handler, which cannot call [`Progress::cancel`]. The first flag stays.
+    /// The same progress, also cancelled when `flag` is set, for example by a signal handler, which cannot call
+    /// [`Progress::cancel`]. Only the first flag counts.
     pub fn stopped_by(self, flag: Arc<AtomicBool>) -> Progress {
         let _ = self.piece.run.stop.set(flag);
         self
     }
 
-    /// Asks the work to stop soon; it ends with [`ErrorKind::Cancelled`].
+    /// Requests cancellation; the work ends soon with [`ErrorKind::Cancelled`].
     pub fn cancel(&self) {
         self.piece.run.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Whether the work is to stop.
+    /// Whether cancellation was requested.
     pub fn is_cancelled(&self) -> bool {
         let run = &self.piece.run;
         run.cancelled.load(Ordering::Relaxed) || run.stop.get().is_some_and(|flag| flag.load(Ordering::Relaxed))
     }
 
-    /// Ok while the work is still wanted.
+    /// Returns an error if the work was cancelled.
     ///
     /// # Errors
-    /// [`ErrorKind::Cancelled`] once it is to stop.
+    /// [`ErrorKind::Cancelled`] after cancellation.
     pub fn check(&self) -> Result<()> {
         match self.is_cancelled() {
             true => Err(Error::new(ErrorKind::Cancelled, "the work was cancelled")),
@@ -98,8 +101,8 @@ impl Progress {
         }
     }
 
-    /// Adds to the work that there is to do. Declare all of it before the first [`Progress::advance`]: what becomes known later holds the share
-    /// where it is until the work has caught up.
+    /// Adds to the amount of work. Declare all of it before the first [`Progress::advance`]: if work is added later,
+    /// the share stays constant until it has caught up.
     pub fn expect(&self, work: f64) {
         if self.is_heard() {
             self.count().expected += work.max(0.0);
@@ -123,13 +126,14 @@ impl Progress {
         }
     }
 
-    /// A part of this work, which counts as `work` of it once it is finished. It does not add to what is [expected](Progress::expect).
+    /// A part of this work that counts as `work` when it is finished. It does not add to the
+    /// [expected](Progress::expect) amount.
     pub fn part(&self, work: f64) -> Progress {
         let whole = Some((self.clone(), work.max(0.0)));
         Progress { piece: Arc::new(Node { run: Arc::clone(&self.piece.run), whole, ..Node::default() }) }
     }
 
-    /// Divides this work into parts by their weights, which are all that is expected.
+    /// Divides this work into parts by weight. The sum of the weights becomes the expected amount.
     pub fn parts<const N: usize>(&self, weights: [f64; N]) -> [Progress; N] {
         weights.iter().for_each(|weight| self.expect(*weight));
         weights.map(|weight| self.part(weight))
@@ -143,7 +147,8 @@ impl Progress {
         self.piece.count.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Reports a larger share, to the whole that this is a part of or to the listener. The lock is held meanwhile, so that reports keep their order.
+    /// Reports a larger share, to the progress that this is a part of or to the listener. The lock is held meanwhile,
+    /// so that reports keep their order.
     fn report(&self, mut count: MutexGuard<'_, Count>, share: f64) {
         let share = share.min(1.0);
         let more = share - count.share;

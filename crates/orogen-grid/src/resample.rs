@@ -1,23 +1,24 @@
-//! Reading a grid between its samples.
+//! Interpolation of grids.
 
 use crate::grid::Grid;
 use orogen_noise::Points;
 use serde::{Deserialize, Serialize};
 
-/// How a layer is read between its samples. On its own lattice a sample is always itself, bit for bit.
+/// The interpolation of a layer between its samples. At a sample's own position the value is always the sample, bit for
+/// bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LayerKind {
-    /// Smooth, such as a height: the interpolating cubic.
+    /// Smooth values, such as heights: interpolating cubic.
     Height,
-    /// Names in numbers, such as a watershed: the nearest sample.
+    /// Numbers as names, such as watersheds: nearest sample.
     Label,
-    /// Amounts over many orders of magnitude, such as a drainage area: linear in their logarithms, so that it neither falls
-    /// below nor rises above the samples around; the nearest sample where one of those is not above zero.
+    /// Values over many orders of magnitude, such as drainage areas: linear in their logarithms, within the range of
+    /// the surrounding samples; nearest sample if one of those is not positive.
     Flow,
 }
 
 impl LayerKind {
-    /// The word for it.
+    /// The name in declarations.
     pub fn name(self) -> &'static str {
         match self {
             LayerKind::Height => "height",
@@ -26,7 +27,7 @@ impl LayerKind {
         }
     }
 
-    /// What it means, for a reader of the reference.
+    /// The description in the reference.
     pub fn about(self) -> &'static str {
         match self {
             LayerKind::Height => "cubic interpolation",
@@ -36,21 +37,21 @@ impl LayerKind {
     }
 }
 
-/// The position of a point that is not there. Plans give every point; this only keeps a mistake from becoming a panic.
+/// The position of a missing point. Plans provide all points; this only prevents a panic in case of a bug.
 pub const NOWHERE: (f64, f64) = (f64::NAN, f64::NAN);
 
-/// Index of the sample at or before a position, and the share of the way to the next.
+/// Index of the sample at or before a position, and the fraction to the next one.
 ///
-/// A position that *is* a lattice point (index * cell gives the very same f64) has share 0 at exactly that index, whatever the
-/// division says: cells such as 10.24, 0.1 and 1/3 included.
+/// A position exactly at a lattice point (index * cell gives the same f64) has fraction 0 at that index, despite
+/// rounding in the division: also for cells such as 10.24, 0.1 and 1/3.
 pub fn split(position: f64, cell: f64) -> (i64, f32) {
     let steps = position / cell;
-    // From here on every number is whole; what is beyond i64 saturates, as the nearest sample there is.
+    // From here on every number is an integer; values beyond i64 saturate.
     const WHOLE: f64 = (1u64 << 52) as f64;
     if !(-WHOLE..=WHOLE).contains(&steps) {
         return (steps as i64, 0.0);
     }
-    // Rounding by way of an integer: without SSE4.1 the library's `floor` and `round` are calls.
+    // Rounding through an integer: without SSE4.1, `floor` and `round` are function calls.
     let cut = steps as i64;
     let index = if (cut as f64) > steps { cut - 1 } else { cut };
     let rest = steps - index as f64;
@@ -59,16 +60,16 @@ pub fn split(position: f64, cell: f64) -> (i64, f32) {
         return (nearest, 0.0);
     }
     let share = rest as f32;
-    // Rounding to f32 can reach 1: that is the next sample.
+    // Rounding to f32 can give 1, which is the next sample.
     if share >= 1.0 { (index + 1, 0.0) } else { (index, share) }
 }
 
-/// Columns of a lattice that are read side by side.
+/// Columns of a lattice that are processed together.
 const COLUMNS: usize = 256;
 
-/// Reads `grid` at every point into `out`, between samples as the [`LayerKind`] says.
+/// Interpolates `grid` at all points into `out`, according to the [`LayerKind`].
 ///
-/// Beyond its border the grid continues with its border samples. A point that is not finite reads NaN.
+/// Beyond its border the border samples of the grid continue. A point that is not finite gives NaN.
 pub fn read(grid: &Grid, kind: LayerKind, at: &Points, out: &mut [f32]) {
     let reader = Reader::new(grid);
     match (kind, at) {
@@ -105,7 +106,7 @@ pub fn read(grid: &Grid, kind: LayerKind, at: &Points, out: &mut [f32]) {
     }
 }
 
-/// Index of the nearest sample; halves go to the greater one.
+/// Index of the nearest sample; halves are rounded up.
 fn nearest(position: f64, cell: f64) -> i64 {
     let (index, share) = split(position, cell);
     if share >= 0.5 { index + 1 } else { index }
@@ -154,7 +155,8 @@ impl Reader<'_> {
         }
     }
 
-    /// Linear in the logarithms of the four samples around; none if one of them has none. Share 0 gives the sample itself.
+    /// Linear in the logarithms of the four surrounding samples; `None` if one is not positive. Fraction 0 gives the
+    /// sample itself.
     fn logarithmic(&self, i: i64, j: i64, u: f32, v: f32) -> Option<f32> {
         if u == 0.0 && v == 0.0 {
             return Some(self.sample(i, j));
@@ -171,7 +173,7 @@ impl Reader<'_> {
         Some(libm::exp(north * (1.0 - v) + south * v) as f32)
     }
 
-    /// The 4 x 4 samples around, if all are the grid's own: the common case, without a look at the border for each.
+    /// The surrounding 4 x 4 samples, if all are inside the grid: the common case, without border checks.
     fn inner(&self, i: i64, j: i64) -> Option<[[f32; 4]; 4]> {
         let (left, top) = (i.saturating_sub(self.x).saturating_sub(1), j.saturating_sub(self.y).saturating_sub(1));
         if left < 0 || top < 0 || left > self.width - 4 || top > self.height - 4 {
@@ -186,7 +188,8 @@ impl Reader<'_> {
         Some(rows)
     }
 
-    /// Catmull and Rom's cubic (1974) along x in four rows, then along y. Share 0 gives the sample itself, bit for bit.
+    /// The cubic of Catmull and Rom (1974) along x in four rows, then along y. Fraction 0 gives the sample itself, bit
+    /// for bit.
     fn cubic(&self, i: i64, j: i64, u: f32, v: f32) -> f32 {
         if u != 0.0
             && v != 0.0
@@ -208,7 +211,7 @@ impl Reader<'_> {
     }
 }
 
-/// One polynomial through four samples, at `t` of the way from the second to the third.
+/// The polynomial through four samples, at the fraction `t` between the second and the third.
 #[inline]
 fn catmull_rom([p0, p1, p2, p3]: [f32; 4], t: f32) -> f32 {
     p1 + 0.5 * t * ((p2 - p0) + t * ((2.0 * p0 - 5.0 * p1 + 4.0 * p2 - p3) + t * (3.0 * (p1 - p2) + p3 - p0)))

@@ -1,7 +1,7 @@
-//! Words for people: the nearest spelling, and lists in messages.
+//! Text for messages: suggestions, lists, numbers.
 
-/// The candidate that a misspelt `word` most likely meant, if one is near enough: at most a third of its letters off
-/// (insertions, deletions, substitutions and swaps of neighbours each count one), upper and lower case alike.
+/// The candidate that a misspelt `word` most likely means: at most a third of its letters differ (insertions,
+/// deletions, substitutions and transpositions count one each), ignoring case. `None` if there is none.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word: Vec<char> = word.chars().flat_map(char::to_lowercase).take(64).collect();
     candidates
@@ -15,7 +15,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .map(|(_, _, candidate)| candidate)
 }
 
-/// Optimal string alignment distance (Damerau 1964, restricted to one edit a place).
+/// Optimal string alignment distance (Damerau 1964, restricted to one edit per position).
 fn distance(a: &[char], b: &[char]) -> usize {
     let mut rows = vec![vec![0usize; b.len() + 1]; a.len() + 1];
     for (i, row) in rows.iter_mut().enumerate() {
@@ -37,7 +37,7 @@ fn distance(a: &[char], b: &[char]) -> usize {
     rows[a.len()][b.len()]
 }
 
-/// `did you mean ...?` where a near word exists, else what there is to choose from.
+/// `did you mean ...?` if there is a similar word, otherwise the list of candidates.
 pub fn suggestion<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str> + Clone) -> String {
     match nearest(word, candidates.clone()) {
         Some(near) => format!("did you mean `{near}`?"),
@@ -51,7 +51,7 @@ pub fn suggestion<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str> 
     }
 }
 
-/// Words in a message: "`a`, `b` and `c`"; long lists are cut with their count.
+/// A list in a message: "`a`, `b` and `c`"; long lists are shortened and show their count.
 pub fn list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     const SHOWN: usize = 100;
     let words: Vec<String> = words.into_iter().map(|word| format!("`{word}`")).collect();
@@ -63,11 +63,11 @@ pub fn list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
-/// Words that are spelled in two ways.
+/// Words with two spellings.
 const SPELLINGS: [(&str, &str); 4] =
     [("centre", "center"), ("colour", "color"), ("grey", "gray"), ("normalise", "normalize")];
 
-/// A name in the other of its two spellings: "centre" for "center". None if it has one.
+/// A name in its other spelling: "centre" for "center". `None` if it has only one.
 pub fn respelled(name: &str) -> Option<String> {
     let other = |(one, other): &(&str, &str)| match (name.contains(one), name.contains(other)) {
         (true, _) => Some(name.replace(one, other)),
@@ -77,7 +77,7 @@ pub fn respelled(name: &str) -> Option<String> {
     SPELLINGS.iter().find_map(other)
 }
 
-/// So many things: "1 tile", "3 tiles".
+/// A count with its noun: "1 tile", "3 tiles".
 pub fn count(n: usize, thing: &str) -> String {
     match n {
         1 => format!("1 {thing}"),
@@ -85,7 +85,7 @@ pub fn count(n: usize, thing: &str) -> String {
     }
 }
 
-/// A part of a whole in per cent, to two digits after the point: "12.50 %", "less than 0.01 %".
+/// A share in per cent, with two decimals: "12.50 %", "less than 0.01 %".
 pub fn percent(part: u64, whole: u64) -> String {
     match 100.0 * part as f64 / whole as f64 {
         little if part > 0 && little < 0.01 => "less than 0.01 %".to_string(),
@@ -93,9 +93,9 @@ pub fn percent(part: u64, whole: u64) -> String {
     }
 }
 
-/// A number as people read it, to six digits or to the unit: "2666.67", "0.3125", "1e308".
+/// A number with up to six digits or to the unit: "2666.67", "0.3125", "1e308".
 pub fn number(value: f64) -> String {
-    // Formatting rounds to the nearest and reads back exactly.
+    // Formatting rounds to nearest, and parsing it is exact.
     let rounded = match value.abs() {
         large if large >= 1e5 => value.round(),
         _ => format!("{value:.5e}").parse().unwrap_or(value),
@@ -106,14 +106,14 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// The longest name that a message quotes whole, in characters.
+/// Maximum length of a name in a message, in characters.
 const LONGEST_NAME: usize = 80;
 
-/// The longest run of digits that a message shows: more than any number that is meant has.
+/// Maximum number of digits of a number in a message: more than any useful number has.
 const LONGEST_NUMBER: usize = 24;
 
-/// A message without what nobody reads: names between backticks are cut in their middle if they are longer than 80 characters, and numbers of
-/// more than 24 digits are written with an exponent.
+/// Shortens a message: names between backticks are cut in the middle if they are longer than 80 characters, and numbers
+/// of more than 24 digits are written with an exponent.
 pub fn readable(message: String) -> String {
     if message.len() <= LONGEST_NUMBER {
         return message;
@@ -149,7 +149,7 @@ fn short_numbers(text: &str, out: &mut String) {
         let end = rest[start..].find(|c| !digits(c)).map_or(rest.len(), |length| start + length);
         out.push_str(&rest[..start]);
         let run = &rest[start..end];
-        // Not a part of a word, such as a checksum.
+        // Not inside a word, such as a checksum.
         let alone = !rest[..start].ends_with(char::is_alphanumeric) && !rest[end..].starts_with(char::is_alphanumeric);
         match run.trim_end_matches('.').parse::<f64>() {
             Ok(number) if run.len() > LONGEST_NUMBER && alone => {
@@ -163,7 +163,7 @@ fn short_numbers(text: &str, out: &mut String) {
     out.push_str(rest);
 }
 
-/// A number of bytes as people read it: "1.5 GiB".
+/// A number of bytes: "1.5 GiB".
 pub fn bytes(n: u64) -> String {
     const UNITS: [&str; 6] = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB"];
     let (mut value, mut unit) = (n as f64, 0);
@@ -178,17 +178,17 @@ pub fn bytes(n: u64) -> String {
     }
 }
 
-/// Most letters of a text that is set in one line: no page is wider.
+/// Maximum number of characters of a text in one line.
 const LONGEST_LINE: usize = 1000;
 
-/// As much of a text as a line of this width holds, with an ellipsis where it is cut; `measure` tells how wide a text is.
+/// The part of a text that fits in this width, with an ellipsis if it is cut; `measure` returns the width of a text.
 pub fn shortened(text: &str, width: f32, measure: impl Fn(&str) -> f32) -> String {
     let ends: Vec<usize> = text.char_indices().map(|(at, _)| at).take(LONGEST_LINE + 1).collect();
     if ends.len() <= LONGEST_LINE && measure(text) <= width {
         return text.to_string();
     }
     let cut = |letters: usize| format!("{}…", text[..ends.get(letters).copied().unwrap_or(text.len())].trim_end());
-    // The most letters that fit: at least none do, all do not.
+    // Binary search for the number of characters that fit: 0 fits, all do not.
     let (mut fits, mut most) = (0, ends.len().saturating_sub(1));
     while fits < most {
         let middle = (fits + most).div_ceil(2);

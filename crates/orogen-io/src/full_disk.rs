@@ -1,8 +1,8 @@
-//! A writer for tests whose disk fills up.
+//! A writer for tests that simulates a full disk.
 
 use std::io::{self, Write};
 
-/// Takes `left` bytes, then fails as a full disk does.
+/// Accepts `left` bytes, then fails like a full disk.
 pub struct Full {
     /// Bytes that it still takes.
     pub left: usize,

@@ -1,4 +1,4 @@
-//! Opening files that others wrote. A named pipe or a device may keep its reader waiting for ever, or never end: such names are refused.
+//! Opening files of others. Named pipes and devices may block or never end, so they are rejected.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -6,10 +6,11 @@ use std::path::Path;
 
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-/// Where a process finds what its parent has opened for it, such as a shell's `<(command)`: nobody waits for a writer there.
+/// Paths of descriptors that the parent process has opened, such as a shell's `<(command)`: opening them does not
+/// block.
 const INHERITED: [&str; 4] = ["/dev/fd/", "/dev/stdin", "/proc/self/fd/", "/proc/thread-self/fd/"];
 
-/// Opens a regular file. `doing` is what for, such as "read the recipe".
+/// Opens a regular file. `doing` is the action for messages, such as "read the recipe".
 ///
 /// # Errors
 /// If it cannot be opened, or is a folder, a named pipe or a device.
@@ -17,13 +18,13 @@ pub fn regular(path: &Path, doing: &str) -> Result<File> {
     open(path, doing, false)
 }
 
-/// The bytes of a regular file, or of a pipe that was inherited; `None` if there are more than `most`.
+/// The bytes of a regular file, or of an inherited pipe; `None` if there are more than `most`.
 ///
 /// # Errors
 /// If it cannot be read, or is a folder, a named pipe or a device.
 pub fn bytes(path: &Path, doing: &str, most: u64) -> Result<Option<Vec<u8>>> {
     let mut bytes = Vec::new();
-    // Read with a bound, not by the length that is told: a pipe tells none.
+    // Reads up to a limit instead of the stated length, because a pipe has none.
     let read = open(path, doing, true)?.take(most.saturating_add(1)).read_to_end(&mut bytes);
     read.map_err(|cause| Error::file(doing, path, &cause))?;
     Ok((bytes.len() as u64 <= most).then_some(bytes))

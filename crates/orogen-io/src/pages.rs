@@ -1,4 +1,4 @@
-//! A grid in a file, in square pages, each with a checksum, the last read kept in memory.
+//! A grid in a file, in square pages with checksums; the pages read last are kept in memory.
 
 use crate::file::Temporary;
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -9,26 +9,26 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Samples along a page's side.
+/// Side of a page, in samples.
 pub const SIDE: usize = 256;
 
-/// Bytes of a page in the file.
+/// Size of a page in the file, in bytes.
 pub const BYTES: usize = SIDE * SIDE * 4;
 
-/// Most pages kept in memory.
+/// Maximum number of pages kept in memory.
 const MAX_KEPT: usize = 16;
 
-/// Bytes of memory that a grid in a file takes.
+/// Memory of a grid in a file, in bytes.
 pub fn memory(window: &Window) -> u64 {
     (count(window).min(MAX_KEPT) * BYTES + count(window) * size_of::<Option<u32>>()) as u64
 }
 
-/// Bytes that a grid over a window takes in a file.
+/// Size of a grid over a window in a file, in bytes.
 pub fn disk(window: &Window) -> u64 {
     (count(window) as u64).saturating_mul(BYTES as u64)
 }
 
-/// How many pages a grid over a window has.
+/// Number of pages of a grid over a window.
 pub fn count(window: &Window) -> usize {
     window.width.div_ceil(SIDE).saturating_mul(window.height.div_ceil(SIDE))
 }
@@ -38,22 +38,22 @@ pub fn checksum(bytes: &[u8]) -> u32 {
     crc32fast::hash(bytes)
 }
 
-/// A file that pages are in: several grids may share one.
+/// A file with pages, which several grids may share.
 #[derive(Debug)]
 pub struct PageFile {
     file: Mutex<File>,
-    /// What it is called in a message.
+    /// The name in messages.
     path: PathBuf,
-    /// Its name, where it could not be taken away at once.
+    /// Its temporary name, if it could not be removed at once.
     _name: Option<Temporary>,
 }
 
 impl PageFile {
-    /// A new file in `folder`, which is made if it is not there. The file is gone when it is dropped, or when the program ends,
-    /// however it does.
+    /// A new file in `folder`, which is created if needed. The file is removed on drop, or when the program ends for
+    /// whatever reason.
     ///
     /// # Errors
-    /// If none can be made there.
+    /// If it cannot be created.
     pub fn scratch(folder: &Path) -> Result<PageFile> {
         let made = std::fs::create_dir_all(folder).and_then(|()| Temporary::create(folder));
         let (name, file) = made.map_err(|cause| Error::file("work in", folder, &cause))?;
@@ -65,7 +65,7 @@ impl PageFile {
         PageFile { file: Mutex::new(file), path: path.to_path_buf(), _name: None }
     }
 
-    /// Reads bytes at a place.
+    /// Reads bytes at an offset.
     pub fn read(&self, at: u64, bytes: &mut [u8]) -> io::Result<()> {
         let mut file = lock(&self.file);
         file.seek(SeekFrom::Start(at))?;
@@ -84,7 +84,7 @@ impl PageFile {
 pub struct Pages {
     window: Window,
     file: Arc<PageFile>,
-    /// Where its first page is in the file.
+    /// Offset of its first page in the file.
     base: u64,
     /// The checksum of each page that was written; the others are zeros.
     sums: Vec<Option<u32>>,
@@ -93,7 +93,7 @@ pub struct Pages {
 
 type Page = Arc<Vec<f32>>;
 
-/// The pages last read, each with the turn it was read at.
+/// The pages read last, each with the time of its last use.
 #[derive(Debug, Default)]
 struct Kept {
     pages: HashMap<usize, (u64, Page)>,
@@ -101,28 +101,28 @@ struct Kept {
 }
 
 impl Pages {
-    /// A grid of zeros in a file of its own in `folder`.
+    /// A grid of zeros in a new file in `folder`.
     ///
     /// # Errors
-    /// If no file can be made there.
+    /// If the file cannot be created.
     pub fn scratch(folder: &Path, window: Window) -> Result<Pages> {
         Ok(Pages::within(Arc::new(PageFile::scratch(folder)?), 0, vec![None; count(&window)], window))
     }
 
-    /// A grid whose pages are in a file from `base` on, with their checksums.
+    /// A grid whose pages are in a file from offset `base`, with their checksums.
     pub fn within(file: Arc<PageFile>, base: u64, sums: Vec<Option<u32>>, window: Window) -> Pages {
         Pages { window, file, base, sums, kept: Mutex::default() }
     }
 
-    /// Where the samples stand.
+    /// The window of the samples.
     pub fn window(&self) -> &Window {
         &self.window
     }
 
-    /// The samples of page `index`, [`SIDE`] a row, zero beyond the window.
+    /// The samples of page `index`, [`SIDE`] per row, zeros beyond the window.
     ///
     /// # Errors
-    /// If it cannot be read, or is not what was written.
+    /// If it cannot be read, or does not match its checksum.
     pub fn page(&self, index: usize) -> Result<Page> {
         {
             let mut kept = lock(&self.kept);
@@ -164,10 +164,10 @@ impl Pages {
         }
     }
 
-    /// Writes what of `part` lies in the window.
+    /// Writes the overlapping part of `part`.
     ///
     /// # Errors
-    /// If the disk takes no more, or a page that is written in part cannot be read.
+    /// If the disk is full or fails, or a partially written page cannot be read.
     pub fn put(&mut self, part: &Grid) -> Result<()> {
         for (index, window) in self.touched(part.window()) {
             let whole = part.window().contains(&self.valid(&window));
@@ -187,7 +187,7 @@ impl Pages {
         Ok(())
     }
 
-    /// The samples of a window that lies in this one.
+    /// The samples of a window inside this one.
     ///
     /// # Errors
     /// If a page cannot be read.
@@ -206,7 +206,7 @@ impl Pages {
         Ok(grid)
     }
 
-    /// The pages that share samples with a window, with their own windows.
+    /// The pages that overlap a window, with their own windows.
     fn touched(&self, window: &Window) -> Vec<(usize, Window)> {
         let whole = self.window;
         let columns = whole.width.div_ceil(SIDE);
@@ -224,7 +224,7 @@ impl Pages {
         rows.flat_map(|row| across.clone().map(move |column| page(row, column))).collect()
     }
 
-    /// What of a page lies in the window.
+    /// The part of a page inside the window.
     fn valid(&self, page: &Window) -> Window {
         Window {
             width: (self.window.right().min(page.right()) - page.x) as usize,
@@ -234,7 +234,7 @@ impl Pages {
     }
 }
 
-/// A lock whose holder panicked still guards sound data.
+/// The data is consistent even if a thread panicked with the lock.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,4 +1,4 @@
-//! A layer over the whole world, in memory or on disk.
+//! Rasters: layers over the whole world, in memory or on disk.
 
 use crate::pages::{self, Pages, SIDE};
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -8,7 +8,7 @@ use orogen_grid::resample::{self, NOWHERE};
 use orogen_noise::Points;
 use std::path::Path;
 
-/// Samples over a window, written and read by parts. Where it is kept changes no bit of what is read.
+/// Samples over a window, written and read in parts. The bits that are read do not depend on where it is stored.
 #[derive(Debug)]
 pub struct Raster {
     kept: Kept,
@@ -31,10 +31,10 @@ impl Raster {
         Raster { kept: Kept::Disk(pages) }
     }
 
-    /// A copy on disk, in a file of its own in `folder`.
+    /// A copy on disk, in a separate file in `folder`.
     ///
     /// # Errors
-    /// If the disk takes no more.
+    /// If the disk is full or fails.
     pub fn copied_to_disk(&self, folder: &Path) -> Result<Raster> {
         let mut pages = Pages::scratch(folder, *self.window())?;
         for part in self.window().tiles(SIDE) {
@@ -43,12 +43,12 @@ impl Raster {
         Ok(Raster::on_disk(pages))
     }
 
-    /// Bytes of memory that one on disk takes.
+    /// Memory of a raster on disk, in bytes.
     pub fn memory_on_disk(window: &Window) -> u64 {
         pages::memory(window)
     }
 
-    /// Bytes of memory it takes.
+    /// Memory of this raster, in bytes.
     pub fn memory(&self) -> u64 {
         match &self.kept {
             Kept::Memory(grid) => grid.window().len() as u64 * 4,
@@ -61,7 +61,7 @@ impl Raster {
         matches!(self.kept, Kept::Disk(_))
     }
 
-    /// Where the samples stand.
+    /// The window of the samples.
     pub fn window(&self) -> &Window {
         match &self.kept {
             Kept::Memory(grid) => grid.window(),
@@ -69,10 +69,10 @@ impl Raster {
         }
     }
 
-    /// Writes what of `part` lies in the raster.
+    /// Writes the overlapping part of `part`.
     ///
     /// # Errors
-    /// If the disk takes no more.
+    /// If the disk is full or fails.
     pub fn put(&mut self, part: &Grid) -> Result<()> {
         match &mut self.kept {
             Kept::Memory(grid) => {
@@ -83,10 +83,10 @@ impl Raster {
         }
     }
 
-    /// The samples of a window, which must lie in the raster.
+    /// The samples of a window, which must be inside the raster.
     ///
     /// # Errors
-    /// If it does not, or the disk fails.
+    /// If it is not, or the disk fails.
     pub fn get(&self, window: &Window) -> Result<Grid> {
         if !self.window().contains(window) {
             let message = format!("{window:?} is not part of the raster over {:?}", self.window());
@@ -98,8 +98,8 @@ impl Raster {
         }
     }
 
-    /// Reads the raster at every point into `out`, between samples as `kind` says; beyond its border it continues with its
-    /// border samples, and a point that is not finite reads NaN.
+    /// Reads the raster at all points into `out`, interpolated according to `kind`. Beyond its border the border
+    /// samples continue; a point that is not finite gives NaN.
     ///
     /// # Errors
     /// If the disk fails.
@@ -112,11 +112,10 @@ impl Raster {
     }
 }
 
-/// Most samples fetched at once to read some points.
+/// Maximum number of samples that are fetched at once for some points.
 const FETCHED: usize = 1 << 18;
 
-/// Reads points that lie near each other from one grid around them: all at once where that is small, else in ever smaller
-/// runs.
+/// Reads nearby points from one grid around them: all at once if that is small, otherwise in ever smaller runs.
 fn read_pages(pages: &Pages, kind: LayerKind, at: &Points, out: &mut [f32]) -> Result<()> {
     if let Points::Lattice { xs, ys } = at {
         let around = around(pages.window(), xs.iter().copied(), ys.iter().copied());
@@ -125,7 +124,7 @@ fn read_pages(pages: &Pages, kind: LayerKind, at: &Points, out: &mut [f32]) -> R
             return Ok(());
         }
     }
-    // A run of points in their order; none is so long that a lattice's far ends are looked at over and over.
+    // A run of consecutive points; limited, so that the far ends of a lattice are not read repeatedly.
     const RUN: usize = 4096;
     let mut runs: Vec<(usize, usize)> = (0..out.len()).step_by(RUN).map(|k| (k, (k + RUN).min(out.len()))).collect();
     let (mut xs, mut ys) = (Vec::with_capacity(RUN), Vec::with_capacity(RUN));
@@ -148,7 +147,7 @@ fn read_pages(pages: &Pages, kind: LayerKind, at: &Points, out: &mut [f32]) -> R
     Ok(())
 }
 
-/// The samples of `window` that reading at these positions may look at: at least one, so that what lies beyond the border finds
+/// The samples of `window` that may be read for these positions: at least one, so that positions beyond the border find
 /// the border.
 fn around(window: &Window, xs: impl Iterator<Item = f64>, ys: impl Iterator<Item = f64>) -> Window {
     fn span(positions: impl Iterator<Item = f64>, cell: f64, first: i64, last: i64) -> (i64, usize) {

@@ -1,4 +1,4 @@
-//! Bytes that have to wait until their place in a file is known: in memory while they are few, on disk when they are many.
+//! Temporary storage for bytes whose position in a file is not known yet: in memory if they are few, otherwise on disk.
 
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -6,24 +6,24 @@ use std::path::{Path, PathBuf};
 
 use crate::file::{self, Temporary};
 
-/// How many bytes stay in memory: little beside any `--memory`, and small files need no other.
+/// Bytes that stay in memory: little compared with any `--memory`, and enough for small files.
 pub const IN_MEMORY: usize = 8 << 20;
 
-/// What can be written and read back.
+/// A file that can be written and read back.
 trait Disk: Read + Write + Seek + Send {}
 
 impl<T: Read + Write + Seek + Send> Disk for T {}
 
-/// Bytes put aside, to be read back in any order. What it keeps on disk is gone when it is dropped.
+/// Temporary storage of bytes, which can be read back in any order. Its file is removed on drop.
 #[derive(Default)]
 pub struct Spool {
     memory: Vec<u8>,
-    /// Where a file can be made once there are more bytes than [`Spool::most`].
+    /// The folder for a file, if there are more bytes than [`Spool::most`].
     folder: Option<PathBuf>,
     most: usize,
-    /// Dropped before the name below: not every system removes what is open.
+    /// Dropped before the name below: some systems cannot remove open files.
     file: Option<Box<dyn Disk>>,
-    /// The file's name, where it could not be taken away at once.
+    /// The file's name, if it could not be removed at once.
     name: Option<Temporary>,
     length: u64,
 }
@@ -34,13 +34,13 @@ impl Spool {
         Spool::default()
     }
 
-    /// Keeps up to [`IN_MEMORY`] in memory, and more than that in a file on the disk that a file at `path` would be on. If `path` is a
-    /// pipe or a device there is no such disk: the file is in the system's folder for temporary ones.
+    /// Keeps up to [`IN_MEMORY`] in memory, and more than that in a file on the same disk as `path`. If `path` is a
+    /// pipe or a device, the file is in the system's temporary folder.
     pub fn beside(path: &Path) -> Spool {
         Spool { folder: Some(folder_of(path)), most: IN_MEMORY, ..Spool::default() }
     }
 
-    /// Puts bytes aside; returns where [`Spool::read`] finds them.
+    /// Stores bytes; returns the position for [`Spool::read`].
     pub fn push(&mut self, bytes: &[u8]) -> io::Result<u64> {
         let at = self.length;
         if self.file.is_none()
@@ -61,7 +61,7 @@ impl Spool {
         Ok(at)
     }
 
-    /// Reads back what was put at `at`. Nothing can be put aside any more afterwards.
+    /// Reads bytes stored at `at`. No more bytes can be stored afterwards.
     pub fn read(&mut self, at: u64, bytes: &mut [u8]) -> io::Result<()> {
         if let Some(file) = &mut self.file {
             file.seek(SeekFrom::Start(at))?;
@@ -74,7 +74,7 @@ impl Spool {
     }
 }
 
-/// What is written is put aside.
+/// Written bytes are stored.
 impl Write for Spool {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.push(bytes).map(|_| bytes.len())
@@ -85,7 +85,7 @@ impl Write for Spool {
     }
 }
 
-/// The folder for a file that waits to be copied to `path`.
+/// The folder for a temporary file that will be copied to `path`.
 fn folder_of(path: &Path) -> PathBuf {
     match fs::canonicalize(path) {
         Ok(real) if real.is_file() => file::folder(&real).to_path_buf(),
@@ -94,7 +94,7 @@ fn folder_of(path: &Path) -> PathBuf {
     }
 }
 
-/// A new file, without its name where the system allows that, so that not even a kill leaves it behind.
+/// A new file, without a name if the system allows that, so that it is removed even after a kill.
 fn scratch(folder: &Path) -> io::Result<(File, Option<Temporary>)> {
     let (name, file) = Temporary::create(folder)?;
     Ok((file, name.unlink()))

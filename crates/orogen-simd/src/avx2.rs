@@ -29,7 +29,7 @@ pub struct Table8x256(__m256);
 pub struct Table16x256(__m256, __m256);
 
 impl Avx2 {
-    /// The token, where the processor (and the operating system) has what it stands for.
+    /// The token, if the processor and the operating system support the instructions.
     #[inline]
     #[must_use]
     pub fn detect() -> Option<Avx2> {
@@ -42,10 +42,10 @@ impl Avx2 {
         .then_some(Avx2(()))
     }
 
-    /// The token without asking.
+    /// The token without a check.
     ///
     /// # Safety
-    /// [`Avx2::detect`] would give it.
+    /// [`Avx2::detect`] must return a token on this machine.
     #[inline(always)]
     #[must_use]
     pub unsafe fn new_unchecked() -> Avx2 {
@@ -188,7 +188,7 @@ impl Simd for Avx2 {
     fn lookup16(self, table: Table16x256, index: U32x8) -> F32x8 {
         // SAFETY: see the head of the file.
         F32x8(unsafe {
-            // Bit 3 of the index, moved to the sign, picks the half.
+            // Bit 3 of the index, shifted to the sign, selects the half.
             let half = _mm256_castsi256_ps(index.shl(28).0);
             let low = _mm256_permutevar8x32_ps(table.0, index.0);
             let high = _mm256_permutevar8x32_ps(table.1, index.0);
@@ -219,7 +219,7 @@ impl Simd for Avx2 {
     }
 }
 
-/// A comparison's result as a mask.
+/// The result of a comparison as a mask.
 #[inline(always)]
 fn mask(lanes: __m256) -> Mask8 {
     // SAFETY: see the head of the file; the argument came from an AVX instruction.

@@ -20,7 +20,7 @@ pub struct F64x16(__m512d, __m512d);
 /// 16 truth values.
 #[derive(Clone, Copy, Debug)]
 pub struct Mask16(__mmask16);
-/// 8 f32, twice over.
+/// 8 f32, twice.
 #[derive(Clone, Copy, Debug)]
 pub struct Table8x512(__m512);
 /// 16 f32.
@@ -28,7 +28,7 @@ pub struct Table8x512(__m512);
 pub struct Table16x512(__m512);
 
 impl Avx512 {
-    /// The token, where the processor (and the operating system) has what it stands for.
+    /// The token, if the processor and the operating system support the instructions.
     #[inline]
     #[must_use]
     pub fn detect() -> Option<Avx512> {
@@ -45,10 +45,10 @@ impl Avx512 {
         .then_some(Avx512(()))
     }
 
-    /// The token without asking.
+    /// The token without a check.
     ///
     /// # Safety
-    /// [`Avx512::detect`] would give it.
+    /// [`Avx512::detect`] must return a token on this machine.
     #[inline(always)]
     #[must_use]
     pub unsafe fn new_unchecked() -> Avx512 {
@@ -210,7 +210,7 @@ impl Simd for Avx512 {
     fn whole(self, number: F64x16) -> (F64x16, U32x16, U32x16) {
         const DOWN: i32 = _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC;
         let far = self.f64(6_755_399_441_055_744.0);
-        // Numbers of that size have no fraction: a sum rounded down is the whole number, already in place.
+        // Numbers of that size have no fraction: a sum rounded down is the integer, already in the low bits.
         // SAFETY: see the head of the file.
         let sum = unsafe {
             F64x16(_mm512_add_round_pd::<DOWN>(number.0, far.0), _mm512_add_round_pd::<DOWN>(number.1, far.1))
@@ -242,7 +242,7 @@ impl Simd for Avx512 {
     }
 }
 
-/// The highest index a gather may use: its indices are signed 32-bit, so the rest of a huger slice is out of its reach.
+/// The highest index of a gather: its indices are signed 32-bit, so the rest of a larger slice cannot be reached.
 #[inline(always)]
 pub(crate) fn last_index(length: usize) -> Option<i32> {
     length.checked_sub(1).map(|last| i32::try_from(last).unwrap_or(i32::MAX))

@@ -1,14 +1,14 @@
-//! Two registers of a level abreast: while one waits for a result, the processor works on the other.
+//! Two registers of a level side by side: while one waits for a result, the processor works on the other.
 
 use crate::{Body, F32Lanes, F64Lanes, Level, MaskLanes, Simd, U32Lanes};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
-/// The token of a level whose lanes come in pairs of registers, for bodies that are long chains of instructions, each waiting for the
-/// one before it. At most 16 lanes can be doubled.
+/// The token of a level whose lanes are pairs of registers, for bodies that are long chains of dependent instructions.
+/// At most 16 lanes can be doubled.
 #[derive(Clone, Copy, Debug)]
 pub struct Double<S>(pub S);
 
-/// Two of the same.
+/// Two of the same type.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<T>(T, T);
 
@@ -40,7 +40,7 @@ impl<T: Not<Output = T>> Not for Pair<T> {
     }
 }
 
-/// A body that is run with pairs.
+/// A body that runs with pairs.
 struct Paired<B>(B);
 
 impl<B: Body> Body for Paired<B> {
@@ -128,7 +128,7 @@ impl<S: Simd> Simd for Double<S> {
     }
 }
 
-/// Lanes from either half, by the index's highest bit that counts.
+/// Lanes from either half, selected by the highest significant bit of the index.
 #[inline(always)]
 fn half<S: Simd>(from: Pair<S::F32>, index: S::U32) -> S::F32 {
     let sign = 31 - S::LANES.trailing_zeros();

@@ -1,36 +1,36 @@
-//! What a body may do: the token's trait and the traits of its lane types.
+//! The operations of a body: the token's trait and the traits of its lane types.
 //!
-//! The rules hold at every level, bit for bit, but for the payload and sign of a NaN, which are unspecified.
+//! The operations give the same bits at every level, except for the payload and sign of NaN, which are unspecified.
 
 use crate::{Body, Level, Stream};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
-/// Proof that a level's instructions may be used, and the way to its lanes. Lane values come from a token only, so safe code
-/// never runs an instruction the processor lacks.
+/// Proof that a level's instructions may be used, and access to its lanes. Lane values come only from a token, so safe
+/// code never runs an instruction that the processor lacks.
 ///
-/// Slices that are too short make the loads and stores panic as indexing does; the `_partial` forms take any length.
+/// Loads and stores panic if a slice is too short, like indexing; the `_partial` forms accept any length.
 pub trait Simd: Copy + Send + Sync + 'static {
     /// `LANES` f32.
     type F32: F32Lanes<Self>;
-    /// `LANES` u32 with wrapping arithmetic; read as i32 where a method says so.
+    /// `LANES` u32 with wrapping arithmetic; interpreted as i32 where a method says so.
     type U32: U32Lanes<Self>;
     /// `LANES` f64, in as many registers as they need.
     type F64: F64Lanes<Self>;
-    /// One truth value per lane.
+    /// One boolean per lane.
     type Mask: MaskLanes;
-    /// Eight f32 to look up in registers.
+    /// A lookup table of eight f32 in registers.
     type Table8: Copy;
-    /// Sixteen f32 to look up in registers.
+    /// A lookup table of sixteen f32 in registers.
     type Table16: Copy;
 
-    /// How many lanes the types of this level have: 4, 8 or 16, or twice that ([`crate::Double`]).
+    /// Number of lanes of the types: 4, 8 or 16, or twice that ([`crate::Double`]).
     const LANES: usize;
-    /// The level this token proves.
+    /// The level that this token proves.
     const LEVEL: Level;
-    /// Whether a [`Simd::lookup16`] costs one instruction, so that it beats a [`Simd::lookup8`] and a sign.
+    /// Whether [`Simd::lookup16`] is a single instruction, and thus faster than [`Simd::lookup8`] with a sign.
     const WIDE_LOOKUP: bool;
 
-    /// Compiles `body` as a function of its own for this level and calls it.
+    /// Compiles `body` as a separate function for this level and calls it.
     fn run<B: Body>(self, body: B) -> B::Output;
 
     /// `value` in every lane.
@@ -79,38 +79,40 @@ pub trait Simd: Copy + Send + Sync + 'static {
         self.load_f64(&lanes)
     }
 
-    /// A table to look up with [`Simd::lookup8`].
+    /// A table for [`Simd::lookup8`].
     fn table8(self, entries: &[f32; 8]) -> Self::Table8;
-    /// A table to look up with [`Simd::lookup16`].
+    /// A table for [`Simd::lookup16`].
     fn table16(self, entries: &[f32; 16]) -> Self::Table16;
-    /// Each lane's entry, chosen by the low three bits of its index.
+    /// The entry for each lane, selected by the low three bits of its index.
     fn lookup8(self, table: Self::Table8, index: Self::U32) -> Self::F32;
-    /// Each lane's entry, chosen by the low four bits of its index.
+    /// The entry for each lane, selected by the low four bits of its index.
     fn lookup16(self, table: Self::Table16, index: Self::U32) -> Self::F32;
 
-    /// The greatest whole numbers not above, and those numbers in two's complement: the low words, and the high words plus
-    /// 0x4338_0000. For numbers of size below 2^51; the sign of a zero is unspecified.
+    /// The floor of each number, and that integer in two's complement: the low words, and the high words plus
+    /// 0x4338_0000. For numbers with an absolute value below 2^51; the sign of a zero is unspecified.
     #[inline(always)]
     fn whole(self, number: Self::F64) -> (Self::F64, Self::U32, Self::U32) {
-        // A whole number added to 1.5 * 2^52 stands in the low bits of the sum.
+        // After adding 1.5 * 2^52, an integer is in the low bits of the sum.
         let whole = number.floor();
         let (low, high) = (whole + self.f64(6_755_399_441_055_744.0)).words();
         (whole, low, high)
     }
 
-    /// `from[index]` per lane, read as u32; an index beyond the end reads the last entry, an empty slice gives 0.
+    /// `from[index]` per lane, with unsigned indices; an index beyond the end reads the last entry, an empty slice
+    /// gives 0.
     #[inline(always)]
     fn gather(self, from: &[f32], index: Self::U32) -> Self::F32 {
         self.load(&picked(from, index))
     }
-    /// `from[index]` per lane, read as u32; an index beyond the end reads the last entry, an empty slice gives 0.
+    /// `from[index]` per lane, with unsigned indices; an index beyond the end reads the last entry, an empty slice
+    /// gives 0.
     #[inline(always)]
     fn gather_u32(self, from: &[u32], index: Self::U32) -> Self::U32 {
         self.load_u32(&picked(from, index))
     }
 }
 
-/// `from[index]` per lane, for levels without an instruction for it.
+/// `from[index]` per lane, for levels without a gather instruction.
 #[inline(always)]
 fn picked<S: Simd, I: U32Lanes<S>, T: Copy + Default>(from: &[T], index: I) -> [T; 32] {
     let mut lanes = [0; 32];
@@ -135,9 +137,9 @@ pub trait F32Lanes<S: Simd>:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// Writes the lanes to the first `LANES` places of `to`.
+    /// Writes the lanes to the first `LANES` elements of `to`.
     fn store(self, to: &mut [f32]);
-    /// Writes as many lanes as `to` has room for.
+    /// Writes as many lanes as `to` has elements.
     #[inline(always)]
     fn store_partial(self, to: &mut [f32]) {
         if to.len() >= S::LANES {
@@ -148,8 +150,8 @@ pub trait F32Lanes<S: Simd>:
         let room = to.len();
         to.copy_from_slice(&lanes[..room]);
     }
-    /// Writes as many lanes as `to` has room for: past the caches where `to` begins at a register's boundary in memory (and the level
-    /// can), else as [`store_partial`](Self::store_partial) does.
+    /// Writes as many lanes as `to` has elements: with non-temporal stores if `to` is aligned to a register (and the
+    /// level supports them), otherwise like [`store_partial`](Self::store_partial).
     #[inline(always)]
     fn stream(self, to: &mut [f32], stream: &Stream) {
         let _ = stream;
@@ -159,15 +161,15 @@ pub trait F32Lanes<S: Simd>:
     fn mul_add(self, factor: Self, term: Self) -> Self;
     /// `term - self * factor`, rounded once.
     fn neg_mul_add(self, factor: Self, term: Self) -> Self;
-    /// `self < other ? self : other`: the second where either is NaN or both are zero.
+    /// `self < other ? self : other`: `other` if either is NaN or both are zero.
     fn min(self, other: Self) -> Self;
-    /// `self > other ? self : other`: the second where either is NaN or both are zero.
+    /// `self > other ? self : other`: `other` if either is NaN or both are zero.
     fn max(self, other: Self) -> Self;
-    /// The sign bit cleared.
+    /// The absolute value (clears the sign bit).
     fn abs(self) -> Self;
-    /// The square root; NaN below zero.
+    /// The square root; NaN for negative numbers.
     fn sqrt(self) -> Self;
-    /// The greatest whole number not above; keeps the sign of zero.
+    /// The floor; keeps the sign of zero.
     fn floor(self) -> Self;
     /// `self < other`; false for NaN.
     fn lt(self, other: Self) -> S::Mask;
@@ -177,11 +179,11 @@ pub trait F32Lanes<S: Simd>:
     fn eq(self, other: Self) -> S::Mask;
     /// `self` where the mask holds, else `other`.
     fn select(self, mask: S::Mask, other: Self) -> Self;
-    /// Truncated to i32; NaN and what does not fit give `i32::MIN`.
+    /// Truncation to i32; NaN and values out of range give `i32::MIN`.
     fn to_i32(self) -> S::U32;
     /// The bit patterns.
     fn bits(self) -> S::U32;
-    /// Exact as f64.
+    /// Conversion to f64, which is exact.
     fn widen(self) -> S::F64;
     /// Lane i gets lane `index[i] % LANES`.
     fn permute(self, index: S::U32) -> Self;
@@ -201,9 +203,9 @@ pub trait U32Lanes<S: Simd>:
     + BitXor<Output = Self>
     + Not<Output = Self>
 {
-    /// Writes the lanes to the first `LANES` places of `to`.
+    /// Writes the lanes to the first `LANES` elements of `to`.
     fn store(self, to: &mut [u32]);
-    /// Writes as many lanes as `to` has room for.
+    /// Writes as many lanes as `to` has elements.
     #[inline(always)]
     fn store_partial(self, to: &mut [u32]) {
         if to.len() >= S::LANES {
@@ -216,19 +218,19 @@ pub trait U32Lanes<S: Simd>:
     }
     /// Shifted left by `count % 32` bits.
     fn shl(self, count: u32) -> Self;
-    /// Shifted right by `count % 32` bits, zeros entering.
+    /// Shifted right by `count % 32` bits, filled with zeros.
     fn shr(self, count: u32) -> Self;
-    /// Shifted right by `count % 32` bits as i32, the sign entering.
+    /// Arithmetic shift right by `count % 32` bits, as i32.
     fn sar(self, count: u32) -> Self;
     /// `self == other`.
     fn eq(self, other: Self) -> S::Mask;
-    /// `self < other`, both read as i32.
+    /// `self < other`, as i32.
     fn lt_i32(self, other: Self) -> S::Mask;
     /// `self` where the mask holds, else `other`.
     fn select(self, mask: S::Mask, other: Self) -> Self;
-    /// Read as i32, converted and rounded to nearest.
+    /// Interpreted as i32, converted and rounded to nearest.
     fn i32_to_f32(self) -> S::F32;
-    /// The lanes as the bit patterns of f32.
+    /// The lanes as bit patterns of f32.
     fn as_f32(self) -> S::F32;
     /// Lane i gets lane `index[i] % LANES`.
     fn permute(self, index: S::U32) -> Self;
@@ -238,13 +240,13 @@ pub trait U32Lanes<S: Simd>:
 pub trait F64Lanes<S: Simd>:
     Copy + Send + Sync + 'static + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
 {
-    /// Writes the lanes to the first `LANES` places of `to`.
+    /// Writes the lanes to the first `LANES` elements of `to`.
     fn store(self, to: &mut [f64]);
     /// `self < other ? self : other`.
     fn min(self, other: Self) -> Self;
     /// `self > other ? self : other`.
     fn max(self, other: Self) -> Self;
-    /// The greatest whole number not above; keeps the sign of zero.
+    /// The floor; keeps the sign of zero.
     fn floor(self) -> Self;
     /// Rounded to the nearest f32.
     fn narrow(self) -> S::F32;
@@ -252,16 +254,16 @@ pub trait F64Lanes<S: Simd>:
     fn words(self) -> (S::U32, S::U32);
 }
 
-/// One truth value per lane.
+/// One boolean per lane.
 pub trait MaskLanes:
     Copy + Send + Sync + 'static + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
 {
-    /// How many truth values there are.
+    /// Number of lanes.
     const LANES: usize;
 
-    /// Lane i in bit i; the bits beyond the lanes are 0.
+    /// Lane i in bit i; higher bits are 0.
     fn to_bits(self) -> u32;
-    /// Whether any lane holds.
+    /// Whether any lane is true.
     #[inline(always)]
     fn any(self) -> bool {
         self.to_bits() != 0

@@ -1,4 +1,4 @@
-//! Which instruction set runs: found once, forced when a test or a bug report needs it.
+//! SIMD levels: detected once, or forced for tests and bug reports.
 
 use std::fmt;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -8,9 +8,9 @@ use std::sync::atomic::{AtomicU8, Ordering};
 pub enum Level {
     /// No instructions beyond the target's baseline; lanes are emulated over arrays.
     Scalar,
-    /// WebAssembly's 128-bit vectors: 4 lanes. Part of modules that are built with them.
+    /// WebAssembly's 128-bit vectors: 4 lanes. Available in modules that are built with them.
     Simd128,
-    /// ARM's 128-bit vectors: 4 lanes. Part of every aarch64 target.
+    /// ARM's 128-bit vectors: 4 lanes. Available on every aarch64 target.
     Neon,
     /// x86-64 with AVX2 and FMA (2013 on): 8 lanes.
     Avx2,
@@ -21,7 +21,7 @@ pub enum Level {
 /// The environment variable that forces a level for a whole process: `scalar`, `simd128`, `neon`, `avx2` or `avx512`.
 pub const LEVEL_VARIABLE: &str = "OROGEN_SIMD";
 
-/// Why a level cannot be used.
+/// The reason why a level cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LevelError {
     /// No level has this name.
@@ -63,15 +63,15 @@ impl std::str::FromStr for Level {
     }
 }
 
-/// The level in force, as its number in [`Level::ALL`] plus one; 0 until somebody asks. Only available levels are ever stored,
-/// which is what makes [`crate::dispatch`] sound.
+/// The current level, as its index in [`Level::ALL`] plus one; 0 until it is first read. Only available levels are
+/// stored, which makes [`crate::dispatch`] sound.
 static CURRENT: AtomicU8 = AtomicU8::new(0);
 
 impl Level {
-    /// Every level there is, slowest first.
+    /// All levels, slowest first.
     pub const ALL: [Level; 5] = [Level::Scalar, Level::Simd128, Level::Neon, Level::Avx2, Level::Avx512];
 
-    /// The level's name as [`LEVEL_VARIABLE`] takes it.
+    /// The level's name, as in [`LEVEL_VARIABLE`].
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -83,7 +83,7 @@ impl Level {
         }
     }
 
-    /// How many f32 one register holds at this level.
+    /// Number of f32 per register.
     #[must_use]
     pub const fn lanes(self) -> usize {
         match self {
@@ -93,7 +93,7 @@ impl Level {
         }
     }
 
-    /// Whether this processor and this build can run the level.
+    /// Whether this processor and this build support the level.
     #[must_use]
     pub fn is_available(self) -> bool {
         match self {
@@ -109,22 +109,22 @@ impl Level {
         }
     }
 
-    /// The levels this machine can run, slowest first. The scalar level is always among them.
+    /// The levels that this machine supports, slowest first. The scalar level is always included.
     #[must_use]
     pub fn available() -> Vec<Level> {
         Level::ALL.into_iter().filter(|level| level.is_available()).collect()
     }
 
-    /// The fastest level this machine can run, whatever the environment says.
+    /// The fastest level that this machine supports, ignoring the environment.
     #[must_use]
     pub fn detect() -> Level {
         Level::ALL.into_iter().rev().find(|level| level.is_available()).unwrap_or(Level::Scalar)
     }
 
-    /// What [`LEVEL_VARIABLE`] asks for: nothing, a level, or an error a program should show its user.
+    /// The level that [`LEVEL_VARIABLE`] requests, if any.
     ///
     /// # Errors
-    /// The variable names no level, or one this machine lacks.
+    /// The variable contains an unknown level, or one that this machine lacks.
     pub fn environment() -> Result<Option<Level>, LevelError> {
         let Some(name) = std::env::var_os(LEVEL_VARIABLE).filter(|name| !name.is_empty()) else {
             return Ok(None);
@@ -133,8 +133,8 @@ impl Level {
         if level.is_available() { Ok(Some(level)) } else { Err(LevelError::Unavailable(level)) }
     }
 
-    /// The level [`crate::dispatch`] uses: the last one [`Level::force`] set, else what the environment asks for, else the
-    /// fastest. An environment that asks for the impossible counts as silent here; [`Level::environment`] reports it.
+    /// The level that [`crate::dispatch`] uses: the last one set by [`Level::force`], otherwise that of the
+    /// environment, otherwise the fastest. An invalid environment is ignored here; [`Level::environment`] reports it.
     #[inline]
     #[must_use]
     pub fn current() -> Level {
@@ -147,17 +147,18 @@ impl Level {
     #[cold]
     fn first() -> Level {
         let level = Level::environment().ok().flatten().unwrap_or_else(Level::detect);
-        // Another thread may have forced a level meanwhile: then that one holds.
+        // If another thread has forced a level in the meantime, that one is used.
         match CURRENT.compare_exchange(0, level.number(), Ordering::Relaxed, Ordering::Relaxed) {
             Ok(_) => level,
             Err(number) => Level::ALL[usize::from(number - 1) % Level::ALL.len()],
         }
     }
 
-    /// Makes every later [`crate::dispatch`] of the process use `level`. The bits stay the same; only the speed changes.
+    /// Makes all later calls of [`crate::dispatch`] in the process use `level`. The results keep their bits; only the
+    /// speed changes.
     ///
     /// # Errors
-    /// This machine lacks the level; the level in force stays.
+    /// This machine lacks the level; the current level does not change.
     pub fn force(level: Level) -> Result<(), LevelError> {
         if !level.is_available() {
             return Err(LevelError::Unavailable(level));

@@ -1,5 +1,5 @@
-//! One door to SIMD: a generic body is compiled once per instruction set, the fastest is picked at run time, and every one of
-//! them gives the same bits.
+//! Portable SIMD: a generic body is compiled once per instruction set, the fastest one is selected at run time, and all
+//! give the same bits.
 //!
 //! ```
 //! use orogen_simd::{Body, F32Lanes, Simd, dispatch};
@@ -29,12 +29,13 @@
 //! assert_eq!(y, [7.0; 19]);
 //! ```
 //!
-//! A default x86-64 build carries every level; no compiler flag is needed. Three habits keep a body fast: mark `run` and every
-//! function it calls `#[inline(always)]` (what is not inlined is compiled without the level's instructions), keep closures out of
-//! hot loops for the same reason, and cut big bodies with [`Simd::run`], which makes a function of its own *with* the instructions.
+//! A default x86-64 build contains every level; compiler flags are not needed. Three rules keep a body fast: mark `run`
+//! and every function it calls `#[inline(always)]` (functions that are not inlined are compiled without the level's
+//! instructions), keep closures out of hot loops for the same reason, and split large bodies with [`Simd::run`], which
+//! makes a separate function *with* the instructions.
 //!
-//! This is the only crate of the workspace with `unsafe` code. It is sound because lane values and the tokens of the hardware
-//! levels have private contents: a token comes from [`dispatch`] or from detection, a lane value from a token.
+//! This is the only crate of the workspace with `unsafe` code. It is sound because lane values and the tokens of the
+//! hardware levels have private contents: a token comes from [`dispatch`] or from detection, a lane value from a token.
 
 mod double;
 mod fma;
@@ -68,16 +69,16 @@ pub use neon::Neon;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 pub use simd128::Simd128;
 
-/// Code written once for any level. Mark `run` `#[inline(always)]`.
+/// Code that is written once for all levels. Mark `run` `#[inline(always)]`.
 pub trait Body {
-    /// What it returns.
+    /// The return type.
     type Output;
 
-    /// The code; `simd` is the way to the lanes.
+    /// The code; `simd` gives access to the lanes.
     fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 
-/// Runs `body` at the level in force ([`Level::current`]).
+/// Runs `body` at the current level ([`Level::current`]).
 #[inline]
 pub fn dispatch<B: Body>(body: B) -> B::Output {
     match Level::current() {
@@ -95,10 +96,10 @@ pub fn dispatch<B: Body>(body: B) -> B::Output {
     }
 }
 
-/// Runs `body` at a chosen level, whatever is in force.
+/// Runs `body` at a given level, regardless of the current one.
 ///
 /// # Errors
-/// This machine lacks the level; the body has not run.
+/// This machine lacks the level; the body was not run.
 pub fn dispatch_at<B: Body>(level: Level, body: B) -> Result<B::Output, LevelError> {
     match level {
         Level::Scalar => Ok(Scalar::<4>.run(body)),

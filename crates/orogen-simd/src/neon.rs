@@ -1,4 +1,4 @@
-//! NEON: 4 lanes in one register, f64 in two. Part of every aarch64 target, so its token is free to make.
+//! NEON: 4 lanes in one register, f64 in two. Part of every aarch64 target, so its token needs no check.
 
 use crate::{Body, F32Lanes, F64Lanes, Level, MaskLanes, Simd, U32Lanes};
 use core::arch::aarch64::*;
@@ -96,7 +96,7 @@ impl Not for Mask4 {
     }
 }
 
-/// The byte numbers of word `index` of a table: 4 * index in every byte, plus 0 to 3.
+/// The byte indices of word `index` of a table: 4 * index in every byte, plus 0 to 3.
 #[inline(always)]
 fn byte_numbers(index: uint32x4_t) -> uint8x16_t {
     // SAFETY: see the head of the file.
@@ -215,7 +215,7 @@ impl F32Lanes<Neon> for F32x4 {
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        // Not vminq: that one hands NaN on.
+        // Not vminq, which propagates NaN.
         self.select(self.lt(other), other)
     }
     #[inline(always)]
@@ -259,7 +259,7 @@ impl F32Lanes<Neon> for F32x4 {
     }
     #[inline(always)]
     fn to_i32(self) -> U32x4 {
-        // The instruction saturates; what does not fit (NaN too) must give the lowest number.
+        // The instruction saturates; values out of range and NaN must give the lowest number.
         // SAFETY: see the head of the file.
         U32x4(unsafe {
             let fits = vandq_u32(

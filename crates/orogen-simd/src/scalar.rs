@@ -1,4 +1,4 @@
-//! The level every machine has: lanes emulated over arrays, 4, 8 or 16 wide so that tests can stand in for any register.
+//! The level of every machine: lanes emulated with arrays, 4, 8 or 16 wide so that tests can emulate any register.
 
 use crate::fma::{floor32, floor64, fma, to_i32};
 use crate::{Body, F32Lanes, F64Lanes, Level, MaskLanes, Simd, U32Lanes};
@@ -137,9 +137,9 @@ impl<const N: usize> Simd for Scalar<N> {
     }
 }
 
-// Unlike the other levels' operations, these leave it to the compiler whether to inline: unrolled arrays are long.
-// The long operations are functions of their own: eight copies of each, wherever a body uses one, would make this level the
-// biggest by far.
+// Unlike the other levels' operations, these are inlined at the compiler's discretion, because unrolled arrays are long.
+// The long operations are separate functions: eight copies of each in every body would make the code of this level by far
+// the largest.
 
 #[inline(never)]
 fn fma_lanes<const N: usize>(a: &[f32; N], b: &[f32; N], c: &mut [f32; N]) {

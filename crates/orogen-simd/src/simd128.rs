@@ -1,5 +1,6 @@
-//! WebAssembly's 128-bit vectors: 4 lanes in one register, f64 in two. A module is built with them or without (`-C target-feature=+simd128`), so the token
-//! is free to make. They have no fused multiply-add that rounds the same everywhere: it is made of f64, as at the scalar level.
+//! WebAssembly's 128-bit vectors: 4 lanes in one register, f64 in two. A module is built with them or without
+//! (`-C target-feature=+simd128`), so the token needs no check. They have no fused multiply-add with defined rounding: it
+//! is emulated with f64, as at the scalar level.
 
 use crate::{Body, F32Lanes, F64Lanes, Level, MaskLanes, Simd, U32Lanes};
 use core::arch::wasm32::*;
@@ -88,7 +89,7 @@ impl Not for Mask4 {
     }
 }
 
-/// `a * b + c` of f32 widened to f64, rounded to odd: rounded to f32 it is the fused multiply-add ([`crate::fma`] says why).
+/// `a * b + c` of f32 widened to f64, rounded to odd: rounded to f32 it is the fused multiply-add (see [`crate::fma`]).
 #[inline(always)]
 fn fma_to_odd(a: v128, b: v128, c: v128) -> v128 {
     let zero = f64x2_splat(0.0);
@@ -116,13 +117,13 @@ fn demote(low: v128, high: v128) -> v128 {
     i32x4_shuffle::<0, 1, 4, 5>(f32x4_demote_f64x2_zero(low), f32x4_demote_f64x2_zero(high))
 }
 
-/// The byte numbers of word `index` of a table: 4 * index in every byte, plus 0 to 3.
+/// The byte indices of word `index` of a table: 4 * index in every byte, plus 0 to 3.
 #[inline(always)]
 fn byte_numbers(index: v128) -> v128 {
     i32x4_add(i32x4_mul(index, u32x4_splat(0x0404_0404)), u32x4_splat(0x0302_0100))
 }
 
-/// The bytes of those numbers in a table of several registers. A number beyond a register gives 0.
+/// The bytes with these indices in a table of several registers. An index beyond a register gives 0.
 #[inline(always)]
 fn look_up<const N: usize>(table: [v128; N], mut numbers: v128) -> v128 {
     let mut found = u32x4_splat(0);
@@ -262,7 +263,7 @@ impl F32Lanes<Simd128> for F32x4 {
     }
     #[inline(always)]
     fn to_i32(self) -> U32x4 {
-        // The instruction saturates; what does not fit (NaN too) must give the lowest number.
+        // The instruction saturates; values out of range and NaN must give the lowest number.
         let fits =
             v128_and(f32x4_ge(self.0, f32x4_splat(-2_147_483_648.0)), f32x4_lt(self.0, f32x4_splat(2_147_483_648.0)));
         U32x4(v128_bitselect(i32x4_trunc_sat_f32x4(self.0), u32x4_splat(0x8000_0000), fits))

@@ -1,6 +1,6 @@
-//! Results on their way past the caches.
+//! Non-temporal stores.
 
-/// Leave to write past the caches: see [`streaming`].
+/// A permit for non-temporal stores: see [`streaming`].
 #[derive(Debug)]
 pub struct Stream(());
 
@@ -14,10 +14,10 @@ impl Drop for Stream {
     }
 }
 
-/// Does work that writes some of its results by [`crate::F32Lanes::stream`], past the caches: what is written but not read again
-/// soon, and larger than they are, is written faster so. All of it has arrived when this returns, for every thread to see.
+/// Runs work that writes results with [`crate::F32Lanes::stream`], which bypasses the caches. This is faster for results
+/// that are larger than the caches and are not read again soon. When it returns, the results are visible to all threads.
 pub fn streaming<R>(work: impl FnOnce(&Stream) -> R) -> R {
-    // Dropped here whatever happens: nobody but this function ever owns one.
+    // Dropped here in any case, because only this function owns one.
     let stream = Stream(());
     work(&stream)
 }

@@ -1,8 +1,9 @@
-//! Orogen: a recipe describes a world; the engine makes any window of it, at any resolution, always the same.
+//! Orogen, a procedural terrain engine: a recipe describes a world, and the engine makes any window of it, at any
+//! resolution, always with the same bits.
 //!
-//! A [`Recipe`] is a document (TOML or JSON): a world with a seed and measures in metres, named nodes, named outputs. A
-//! [`World`] is a recipe opened: ask it for a [`Window`] of a layer and get a [`Grid`] of heights; ask it for a point and get
-//! the very same number.
+//! A [`Recipe`] is a document (TOML or JSON): a world with a seed and lengths in metres, named nodes, named outputs. A
+//! [`World`] is an opened recipe. It returns a [`Grid`] of heights for a [`Window`] of a layer, and exactly the same
+//! numbers for single points.
 //!
 //! ```
 //! use orogen::{Window, World};
@@ -16,12 +17,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Three words order everything. A **field** looks at one position and the seed (noise, curves, warps); a **filter** looks at a
-//! finite halo (blur, slope); a **solver** looks at the whole bounded world, once (normalise, bake). So any tile equals the
-//! crop of the whole, bit for bit, whatever the tile size, the number of threads, the SIMD level or the machine.
+//! Ops have one of three localities. A **field** depends on one position and the seed (noise, curves, warps). A
+//! **filter** depends on a finite halo (blur, slope). A **solver** depends on the whole bounded world and runs once
+//! (normalise, bake). Therefore any tile equals the crop of the whole, bit for bit, for any tile size, number of
+//! threads, SIMD level and machine.
 //!
-//! Where to go on: [`Recipe`] builds a world in code; a [`Sampler`] answers many questions quickly, [`Chunks`] follow a viewer; [`node::Node::all`] lists the ops; [`presets`] are the recipes that come
-//! with the library; [`mod@format`], [`map`] and [`palette`] make files and pictures of grids.
+//! Further entry points: [`Recipe`] also builds a world in code; a [`Sampler`] is fast for many requests; [`Chunks`]
+//! follow a viewer; [`node::Node::all`] lists the ops; [`presets`] are the built-in recipes; [`mod@format`], [`map`]
+//! and [`palette`] make files and pictures of grids.
 #![forbid(unsafe_code)]
 
 #[doc(inline)]

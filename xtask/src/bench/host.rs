@@ -1,17 +1,17 @@
-//! When and where a figure was measured: without that it means nothing.
+//! Date and machine of a measurement, without which figures are meaningless.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use crate::shell;
 
-/// Today, as year-month-day in UTC.
+/// Today in UTC, as year-month-day.
 pub fn date() -> String {
     let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |d| d.as_secs());
     let (year, month, day) = civil(i64::try_from(seconds / 86_400).unwrap_or(0));
     format!("{year:04}-{month:02}-{day:02}")
 }
 
-/// The processor's own name.
+/// The name of the processor.
 pub fn processor() -> String {
     let linux = || {
         let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
@@ -24,8 +24,8 @@ pub fn processor() -> String {
     name.map_or_else(|| format!("unnamed {}", std::env::consts::ARCH), |n| n.trim().to_owned())
 }
 
-/// The Gregorian date so many days after 1970-01-01. Years are counted from March, which puts the leap day last: the days
-/// before a month are then a straight line rounded down.
+/// The Gregorian date of a number of days after 1970-01-01. Years are counted from March, which puts the leap day last:
+/// the days before a month are then a straight line rounded down.
 fn civil(days: i64) -> (i64, i64, i64) {
     let days = days + 719_468; // since 0000-03-01
     let era = days.div_euclid(146_097); // 400 years each

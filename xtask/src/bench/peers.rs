@@ -1,10 +1,11 @@
-//! The peers that are no crates: Python packages, each in a virtual environment of its own.
+//! Peers that are Python packages, each in its own virtual environment.
 
 use std::path::PathBuf;
 
 use crate::shell;
 
-/// A peer: the area that it is measured in, the variable in which the bench program looks for its Python, what to install, and the Pythons it installs on.
+/// A peer: its area, the environment variable in which the bench program looks for its Python, the packages, and the
+/// supported Pythons.
 struct Peer {
     area: &'static str,
     variable: &'static str,
@@ -14,7 +15,7 @@ struct Peer {
 }
 
 const PEERS: &[Peer] = &[
-    // Its last release on PyPI is source that compiles with no newer Python.
+    // Its last release on PyPI is source that does not compile with newer Pythons.
     Peer {
         area: "erosion",
         variable: "OROGEN_RICHDEM",
@@ -59,8 +60,8 @@ const PEERS: &[Peer] = &[
     },
 ];
 
-/// The Pythons of an area's peers that can be had, each with its variable; one that is set already is taken as it is. What cannot be
-/// had is named on the error output.
+/// The Pythons of an area's peers that can be installed, each with its variable; a variable that is set is used
+/// unchanged. Peers that cannot be installed are listed on standard error.
 pub fn installed(area: &str) -> Vec<(&'static str, PathBuf)> {
     let peers = PEERS.iter().filter(|peer| peer.area == area);
     peers.filter_map(|peer| Some((peer.variable, install(peer)?))).collect()

@@ -1,4 +1,5 @@
-//! `cargo xtask bench realism`: how close presets come to real terrain, by a script and real places that are not part of the project.
+//! `cargo xtask bench realism`: compares presets with real terrain, with a script and real places that are not part of
+//! the project.
 
 use std::path::{Path, PathBuf};
 
@@ -7,17 +8,17 @@ use crate::failure::{Failure, Result, on_file};
 use crate::shell;
 use crate::table;
 
-/// What is measured: where, and what is expected of it.
+/// A case: the window and its targets.
 struct Case {
     preset: &'static str,
-    /// What the table calls it.
+    /// The name in the table.
     name: &'static str,
-    /// The window's first sample, east and south, for worlds without bounds.
+    /// The window's first sample, east and south, for unbounded worlds.
     at: [i64; 2],
     targets: Targets,
 }
 
-/// The most that each figure may be.
+/// Maximum values of the figures.
 struct Targets {
     median: f64,
     p90: f64,
@@ -25,11 +26,11 @@ struct Targets {
     outliers: f64,
     bias: f64,
     worst_bias: f64,
-    /// The smallest share of windows that are judged.
+    /// Minimum share of windows that are judged.
     judged: f64,
 }
 
-/// Whatever it comes to.
+/// No target.
 const ANY: f64 = f64::INFINITY;
 
 const ENDLESS: Targets =
@@ -54,24 +55,24 @@ const CASES: &[Case] = &[
     Case { preset: "endless", name: "endless, 10 000 km out", at: [166_666_667, -166_666_667], targets: ENDLESS },
 ];
 
-/// Samples a side, and metres from one to the next: what the script was made for.
+/// Samples per side, and the cell in metres, as the script expects.
 const SIDE: u32 = 1024;
 const CELL: u32 = 60;
 
-/// What area `realism` was asked.
+/// Options of area `realism`.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Options {
     pub score: Option<PathBuf>,
     pub dems: Option<PathBuf>,
-    /// The first seed of the sixteen; taken from the clock if nobody says, so that they are fresh.
+    /// The first of sixteen seeds; by default taken from the clock, so that they are new.
     pub first: Option<u64>,
-    /// Only cases with this in their name.
+    /// Only cases whose name contains this.
     pub case: Option<String>,
 }
 
 const SEEDS: u64 = 16;
 
-/// What a script said.
+/// The result of the script.
 #[derive(Debug, PartialEq)]
 struct Score {
     judged: f64,
@@ -84,7 +85,7 @@ struct Score {
     worst_bias: f64,
 }
 
-/// Measures, prints a table, and fails if a figure misses its target.
+/// Runs the measurements, prints a table, and fails if a figure misses its target.
 pub fn run(options: &Options, program: &Path) -> Result {
     let (Some(score), Some(dems)) = (&options.score, &options.dems) else {
         return Err(Failure::usage("realism needs --score SCRIPT and --dems DIR: neither is part of the project"));
@@ -135,7 +136,7 @@ fn cells(name: &str, score: &Score) -> Vec<String> {
     ]
 }
 
-/// A message for each target missed.
+/// A message for each missed target.
 fn misses(case: &Case, score: &Score) -> Vec<String> {
     let targets = &case.targets;
     let most = [
@@ -164,7 +165,7 @@ fn make(program: &Path, case: &Case, seed: u64, file: &Path) -> Result {
     shell::run(command.arg("-o").arg(file))
 }
 
-/// The real places, in the order of their names.
+/// The real places, sorted by name.
 fn rasters(dems: &Path) -> Result<Vec<PathBuf>> {
     let entries = std::fs::read_dir(dems).map_err(|e| on_file("read", dems, &e))?;
     let mut files = Vec::new();
@@ -181,7 +182,7 @@ fn rasters(dems: &Path) -> Result<Vec<PathBuf>> {
     }
 }
 
-/// A Python that has what the script needs: `OROGEN_REALISM`, or one in the target folder.
+/// A Python with the script's packages: `OROGEN_REALISM`, or one in the target folder.
 fn python() -> Result<PathBuf> {
     if let Some(python) = std::env::var_os("OROGEN_REALISM") {
         return Ok(python.into());
@@ -203,7 +204,7 @@ fn clock() -> u64 {
     std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(1, |time| time.as_secs())
 }
 
-/// Reads the script's lines: a name, then numbers among words.
+/// Parses the script's lines: a name, then numbers among words.
 fn read(said: &str) -> Option<Score> {
     let numbers = |name: &str| -> Option<Vec<f64>> {
         let line = said.lines().find_map(|line| line.strip_prefix(name))?;

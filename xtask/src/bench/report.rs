@@ -1,4 +1,4 @@
-//! What the bench program measured, as a table and as JSON.
+//! The results of the bench program, as a table and as JSON.
 
 use serde_json::{Map, Value, json};
 
@@ -8,7 +8,7 @@ use crate::failure::{Failure, Result};
 /// The columns of the table.
 pub const HEAD: [&str; 7] = ["case", "ours", "unit", "peer", "theirs", "ratio", "target"];
 
-/// One area's figures, and where they were measured.
+/// The figures of an area, with the machine.
 pub struct Report {
     area: String,
     rows: Vec<Map<String, Value>>,
@@ -19,7 +19,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// From what the bench program printed: {"area", "simd", "threads", "rows"}.
+    /// Parses the output of the bench program: {"area", "simd", "threads", "rows"}.
     pub fn read(text: &str) -> Result<Self> {
         let value: Value =
             serde_json::from_str(text).map_err(|e| Failure::new(format!("the bench printed no JSON: {e}")))?;
@@ -47,7 +47,7 @@ impl Report {
         )
     }
 
-    /// The table's cells. A case is named once, at the first of its peers.
+    /// The table's cells. A case is named only at its first peer.
     pub fn cells(&self) -> Vec<Vec<String>> {
         let mut last = "";
         let mut rows = Vec::new();
@@ -89,7 +89,7 @@ impl Report {
     }
 }
 
-/// Three figures are what such a measurement is good for.
+/// Three significant digits.
 fn number(value: Option<&Value>) -> String {
     let Some(x) = value.and_then(Value::as_f64) else { return "-".to_owned() };
     let places = match x.abs() {

@@ -1,4 +1,5 @@
-//! Blender as a Python module. It is large (a gibibyte installed), wants one version of Python and its own NumPy, and so is asked only where it is named.
+//! Blender as a Python module. It is large (1 GiB installed) and needs one version of Python and its own NumPy, so it
+//! runs only if it is named.
 
 use std::path::PathBuf;
 
@@ -7,10 +8,10 @@ use crate::shell;
 
 const MODULE: &str = "bpy==5.0.0";
 
-/// The one that the module is built for.
+/// The Python that the module is built for.
 const PYTHONS: [&str; 2] = ["python3.11", "python3"];
 
-/// Installs it where it is missing, and asks it.
+/// Installs it if it is missing, and runs the check.
 pub fn check() -> Result {
     let python = python();
     let there = || shell::succeeds(shell::program(&python).args(["-c", "import bpy"]));

@@ -1,4 +1,4 @@
-//! Getting the clients: Debian packages, a venv, a folder of node packages.
+//! Installation of the clients: Debian packages, a venv, a folder of Node packages.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -8,10 +8,10 @@ use super::Client;
 use crate::failure::{Failure, Result};
 use crate::shell;
 
-/// A registry may be away for a moment: waits before the second and the third try.
+/// Waits before the second and the third try, because registries may be unavailable for a moment.
 const BACK_OFF: [Duration; 2] = [Duration::from_secs(5), Duration::from_secs(20)];
 
-/// Installs what these clients need and this machine lacks.
+/// Installs the missing programs and packages of these clients.
 pub fn all(clients: &[Client]) -> Result {
     let mut debian: Vec<&str> = Vec::new();
     if !shell::succeeds(shell::program("python3").args(["-c", "import venv, ensurepip"])) {
@@ -24,12 +24,12 @@ pub fn all(clients: &[Client]) -> Result {
     npm(&sorted(clients.iter().flat_map(|c| c.npm).copied().collect()))
 }
 
-/// The python that has the pinned packages.
+/// The Python with the pinned packages.
 pub fn python() -> PathBuf {
     venv().join(if cfg!(windows) { "Scripts/python.exe" } else { "bin/python" })
 }
 
-/// Where the node packages' programs are.
+/// The folder of the Node packages' programs.
 pub fn node_bin() -> PathBuf {
     node().join("node_modules/.bin")
 }
@@ -48,13 +48,13 @@ fn sorted(mut names: Vec<&str>) -> Vec<&str> {
     names
 }
 
-/// Whether a program is on the path; of an absolute path, whether it is a file.
+/// Whether a program is in the path; for an absolute path, whether it is a file.
 fn on_path(name: &str) -> bool {
     let path = std::env::var_os("PATH").unwrap_or_default();
     std::env::split_paths(&path).any(|dir| dir.join(name).is_file())
 }
 
-/// Installs Debian's packages of another architecture.
+/// Installs Debian packages of another architecture.
 pub fn foreign_apt(architecture: &str, packages: &[&str]) -> Result {
     if may_install() {
         shell::run(shell::program("dpkg").args(["--add-architecture", architecture]))?;
@@ -62,7 +62,7 @@ pub fn foreign_apt(architecture: &str, packages: &[&str]) -> Result {
     apt(packages)
 }
 
-/// Whether this is a Debian, and we are root.
+/// Whether this is Debian, and we are root.
 fn may_install() -> bool {
     let root = shell::capture(shell::program("id").arg("-u")).is_ok_and(|id| id.trim() == "0");
     root && on_path("apt-get")
@@ -124,7 +124,7 @@ fn npm(packages: &[&str]) -> Result {
     remember(&node(), packages)
 }
 
-/// Three tries with waits between them.
+/// Runs a command up to three times, with waits between.
 pub fn patiently(command: impl Fn() -> Command) -> Result {
     for wait in BACK_OFF {
         match shell::run(&mut command()) {
@@ -136,7 +136,7 @@ pub fn patiently(command: impl Fn() -> Command) -> Result {
     shell::run(&mut command())
 }
 
-/// Whether a folder holds exactly these packages, by the note left in it when they were all in.
+/// Whether a folder contains exactly these packages, by the note written after the installation.
 fn installed(folder: &Path, packages: &[&str]) -> bool {
     std::fs::read_to_string(note(folder)).is_ok_and(|text| text.lines().eq(packages.iter().copied()))
 }

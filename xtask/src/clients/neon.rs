@@ -1,6 +1,6 @@
 //! The tests of every SIMD level, run on an emulated ARM processor: there the levels are NEON and scalar.
 //!
-//! What is cross-built is the two crates that know of levels; both depend on nothing that would need a C library's headers.
+//! Only the two crates that depend on levels are cross-built; they need no C headers.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,22 +11,23 @@ use crate::shell;
 
 const TARGET: &str = "aarch64-unknown-linux-gnu";
 
-/// What links and what runs the tests: each file or program with the package that brings it.
+/// The linker and the emulator: each file or program with its package.
 pub const APT: &[(&str, &str)] = &[
     ("aarch64-linux-gnu-gcc", "gcc-aarch64-linux-gnu"),
     ("/usr/aarch64-linux-gnu/lib/libc.a", "libc6-dev-arm64-cross"),
     ("qemu-aarch64", "qemu-user"),
 ];
 
-/// Debian's own compiler, for where rustup cannot fetch the standard library of another target.
+/// Debian's compiler, for systems where rustup cannot fetch the standard library of another target.
 const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
 const DEBIAN_PACKAGES: [&str; 2] = ["rustc-web", "libstd-rust-web-dev:arm64"];
 
-/// The tests that are run: bits against the goldens, all ways of asking against each other, every operation against the scalar.
+/// The tests that are run: bits against the goldens, all entry points against each other, every operation against the
+/// scalar level.
 const TESTS: [&str; 2] =
     ["test --quiet --package orogen-simd --lib", "test --quiet --package orogen-noise --test goldens --test ways"];
 
-/// Gets a standard library for the target, if no compiler here has one: by rustup, else Debian's.
+/// Installs a standard library for the target if no compiler has one: from rustup, otherwise from Debian.
 pub fn install() -> Result {
     if native() || rustc().is_some() {
         return Ok(());
@@ -62,7 +63,7 @@ const fn native() -> bool {
     cfg!(target_arch = "aarch64")
 }
 
-/// Makes cargo build for the target and run what it built in the emulator.
+/// Sets up cargo to build for the target and run the result in the emulator.
 fn cross(command: &mut Command) -> Result {
     let Some(rustc) = rustc() else {
         return Err(Failure::new(format!("no compiler here has the standard library of {TARGET}")));
@@ -73,16 +74,16 @@ fn cross(command: &mut Command) -> Result {
         .env("CARGO_TARGET_DIR", super::folder().join("neon"))
         .env("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER", "aarch64-linux-gnu-gcc")
         .env("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER", "qemu-aarch64")
-        // Whole in itself: the emulator would else mix the C libraries that several packages bring.
+        // Statically linked: otherwise the emulator would mix the C libraries of several packages.
         .env("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUSTFLAGS", "-C target-feature=+crt-static")
-        // Emulated, the usual light optimisation takes longer to run than this takes to build.
+        // Under emulation the default optimisation level takes longer to run than this one takes to build.
         .env("CARGO_PROFILE_DEV_OPT_LEVEL", "2")
         .env("CARGO_PROFILE_DEV_DEBUG", "false")
         .env("CARGO_INCREMENTAL", "0");
     Ok(())
 }
 
-/// A compiler that has the target's standard library.
+/// A compiler with the target's standard library.
 fn rustc() -> Option<PathBuf> {
     let usual = std::env::var_os("RUSTC").map_or_else(|| PathBuf::from("rustc"), PathBuf::from);
     [usual, PathBuf::from(DEBIAN_RUSTC)].into_iter().find(|rustc| has_target(rustc))

@@ -1,4 +1,4 @@
-//! The release binary makes every preset as the golden file says, whatever it runs on.
+//! Checks that the release binary makes every preset with the golden hash.
 
 use serde_json::Value;
 
@@ -41,7 +41,7 @@ fn parse(text: &str) -> std::result::Result<Vec<(&str, &str)>, &str> {
     lines.map(|line| line.split_once(' ').map(|(name, hash)| (name, hash.trim())).ok_or(line)).collect()
 }
 
-/// The levels this machine can be forced to.
+/// The levels that this machine supports.
 fn levels() -> Vec<&'static str> {
     let mut levels = vec!["scalar"];
     if cfg!(target_arch = "aarch64") {

@@ -1,4 +1,5 @@
-//! The libraries built for WebAssembly without a system, and every preset made by them under node: the golden bits.
+//! The libraries built for WebAssembly, without an operating system; every preset is made under node and must have the
+//! golden hash.
 
 use super::install;
 use crate::failure::{Failure, Result};
@@ -6,7 +7,7 @@ use crate::shell;
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Gets the target's standard library.
+/// Installs the target's standard library.
 pub fn install() -> Result {
     let ask = ["--print", "target-libdir", "--target", TARGET];
     if shell::capture(shell::program("rustc").args(ask))

@@ -1,19 +1,19 @@
-//! Finding the op! block of a node's file.
+//! Parsing of op! blocks.
 
-/// What codegen needs to know of a node.
+/// The data of a node for codegen.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Op {
-    /// The module, which is the file's name.
+    /// The module, which is the name of the file.
     pub module: String,
     /// The struct.
     pub name: String,
-    /// The word a recipe writes.
+    /// The name in recipes.
     pub op: String,
-    /// The locality it declares.
+    /// The declared locality.
     pub locality: String,
 }
 
-/// The one op! block of this source text; none if the file is a helper. The module is left empty.
+/// The op! block of a source text; `None` if the file has none. The module is left empty.
 pub fn find(text: &str) -> Result<Option<Op>, String> {
     let mut found = None;
     let mut lines = text.lines().map(str::trim);
@@ -34,7 +34,7 @@ pub fn find(text: &str) -> Result<Option<Op>, String> {
     Ok(found)
 }
 
-/// `op! {`, also by its path; not a line of a comment or a doc example.
+/// Whether a line is `op! {`, also with a path; not in a comment or a doc example.
 fn opens(line: &str) -> bool {
     let call = line.strip_prefix("crate::op::").or(line.strip_prefix("crate::")).unwrap_or(line);
     call.strip_prefix("op!").is_some_and(|rest| rest.trim_start().starts_with('{'))

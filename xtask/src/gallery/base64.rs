@@ -1,6 +1,6 @@
-//! Bytes as text, by RFC 4648.
+//! Base64 encoding (RFC 4648).
 
-/// Bytes in base 64.
+/// Bytes in base64.
 pub fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);

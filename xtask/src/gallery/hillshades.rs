@@ -5,21 +5,21 @@ use std::path::Path;
 use crate::failure::{Result, on_file};
 use crate::shell;
 
-/// The part of a preset that is shaded, at the world's cell.
+/// The window that is shaded, at the world's cell.
 const PART: &str = "100,100,400,400";
 
 /// The shaded relief of every preset, and the page with all of them.
 pub fn write(presets: &[(&str, &str)], images: &Path) -> Result {
     let mut page = String::from(
-        "# Gallery\n\nEvery preset as it comes: the whole world as a map, and the bare shaded relief of a part of it (light from the north-west, 45 degrees\n\
-         high; a sample of the world's own cell for each pixel), in which the eye finds what colours hide.\n\nMade by `cargo xtask gallery`.\n\n\
+        "# Gallery\n\nEvery preset with its defaults: a map of the whole world, and the shaded relief of a part of it without colours (light from the north-west at\n\
+         45 degrees elevation; one pixel per sample at the world's own cell), which shows artefacts that colours hide.\n\nWritten by `cargo xtask gallery`.\n\n\
          | preset | map | shaded relief |\n|---|---|---|\n",
     );
     for (name, about) in presets {
         let to = images.join(format!("{name}-hillshade.png"));
         let mut orogen = shell::cargo("run --quiet --release --package orogen-cli -- export --quiet --layer hillshade");
         shell::run(orogen.args([name, "--bits", "8", "--range", "0,1", "--window", PART, "-o"]).arg(&to))?;
-        // What is known of the samples belongs beside a file that is read again, not beside a picture.
+        // The sidecar serves programs that read the samples; a picture of the docs needs none.
         let sidecar = to.with_extension("json");
         std::fs::remove_file(&sidecar).map_err(|e| on_file("delete", &sidecar, &e))?;
         println!("{}", shell::relative(&to));

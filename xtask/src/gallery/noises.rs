@@ -1,4 +1,4 @@
-//! The gallery that the documentation of orogen-noise opens with.
+//! The gallery at the top of the documentation of orogen-noise.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use super::base64::base64;
 use crate::failure::{Result, on_file};
 use crate::shell;
 
-/// The names under the pictures and the arguments of `orogen noise` that make them; row after row.
+/// The captions of the pictures and the arguments of `orogen noise` that make them, row by row.
 const PICTURES: [(&str, &str); 16] = [
     ("White", "white --wavelength 4"),
     ("Value", "value --wavelength 32"),
@@ -28,7 +28,7 @@ const PICTURES: [(&str, &str); 16] = [
 
 const COLUMNS: usize = 4;
 
-/// Writes crates/orogen-noise/docs/gallery.md; pictures are made in `work`.
+/// Writes crates/orogen-noise/docs/gallery.md; `work` is for temporary files.
 pub fn write(work: &Path) -> Result {
     let file = work.join("noise.png");
     let mut text = String::from("<!-- Written by `cargo xtask gallery`. Do not edit. -->\n<table>\n");

@@ -1,11 +1,11 @@
-//! The pictures of the land as it would be seen.
+//! Rendered views.
 
 use std::path::Path;
 
 use crate::failure::Result;
 use crate::shell;
 
-/// A picture's name, and what `orogen render` is asked for.
+/// The name of a picture, and the arguments of `orogen render`.
 const VIEWS: [(&str, &str); 5] = [
     (
         "hero",
@@ -17,7 +17,7 @@ const VIEWS: [(&str, &str); 5] = [
     ("view-volcano", "volcano --size 1120x630 --samples 9 --camera 170,20"),
 ];
 
-/// Makes them in a folder.
+/// Writes them to a folder.
 pub fn write(images: &Path) -> Result {
     for (name, arguments) in VIEWS {
         let to = images.join(format!("{name}.png"));

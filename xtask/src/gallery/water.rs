@@ -10,7 +10,7 @@ use crate::shell;
 const WINDOW: [usize; 4] = [560, 120, 420, 300];
 const CELL: usize = 60;
 
-/// Makes it in a folder; `work` is for what it is made of.
+/// Writes it to a folder; `work` is for temporary files.
 pub fn write(images: &Path, work: &Path) -> Result {
     let window = WINDOW.map(|number| number.to_string()).join(",");
     let export = |name: &str, arguments: &[&str]| {
@@ -23,7 +23,7 @@ pub fn write(images: &Path, work: &Path) -> Result {
     let drawing = export("water.svg", &["--layer", "rivers,lakes,watersheds,summits"])?;
     let drawing = String::from_utf8(drawing).map_err(|_| Failure::new("the drawing is not UTF-8"))?;
     let Some((head, body)) = drawing.split_once('\n') else { return Err(Failure::new("the drawing has no lines")) };
-    // Lines count from the middle of the first sample, pictures from its corner.
+    // Coordinates of lines start at the centre of the first sample, those of pictures at its corner.
     let [_, _, columns, rows] = WINDOW.map(|samples| samples * CELL);
     let corner = CELL / 2;
     let source = base64(&shade);

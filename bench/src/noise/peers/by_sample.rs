@@ -1,4 +1,4 @@
-//! For peers that offer one sample at a time.
+//! Helper for peers that compute one sample per call.
 
 use crate::noise::cases::SIZE;
 

@@ -1,4 +1,4 @@
-//! fastnoise-lite: a settings struct and one call a sample, f32.
+//! fastnoise-lite: a settings struct and one call per sample, f32.
 
 use fastnoise_lite::{CellularDistanceFunction, CellularReturnType, FastNoiseLite, FractalType, NoiseType};
 
@@ -6,7 +6,7 @@ use super::by_sample::by_sample;
 use crate::measure::Job;
 use crate::noise::cases::{Case, OCTAVES, PLAIN_FBM, SEED, SLICE, Work, scattered};
 
-/// What fastnoise-lite offers for the case.
+/// The job of fastnoise-lite for a case.
 pub fn job(case: &Case) -> Option<Job> {
     let (noise_type, fractal) = match case.work {
         Work::Value => (NoiseType::Value, FractalType::None),
@@ -15,7 +15,7 @@ pub fn job(case: &Case) -> Option<Job> {
         Work::Ridged => (NoiseType::Perlin, FractalType::Ridged),
         Work::Simplex | Work::SimplexSlice => (NoiseType::OpenSimplex2, FractalType::None),
         Work::Worley => (NoiseType::Cellular, FractalType::None),
-        // Its warp displaces by one cheap gradient lookup an octave: not the same work.
+        // Its warp uses one cheap gradient lookup per octave, which is not the same work.
         Work::White | Work::WarpedFbm => return None,
     };
     let mut noise = FastNoiseLite::with_seed(SEED);

@@ -1,5 +1,5 @@
-//! libnoise: generators chained by types and one call a sample, f64. Its own buffer is filled by the same call through an
-//! iterator over coordinates, which is slower than a loop.
+//! libnoise: generators composed by types and one call per sample, f64. Its own buffers are filled by the same call
+//! through an iterator over coordinates, which is slower than a loop.
 
 use libnoise::{Generator, Source};
 
@@ -9,7 +9,7 @@ use crate::noise::cases::{Case, OCTAVES, SEED, SLICE, Work, scattered};
 
 const NAME: &str = "libnoise";
 
-/// What libnoise offers for the case.
+/// The job of libnoise for a case.
 pub fn job(case: &Case) -> Option<Job> {
     let seed = SEED as u64;
     let octaves = OCTAVES as u32;

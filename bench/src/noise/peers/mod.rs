@@ -1,4 +1,4 @@
-//! The peers: each fills the picture by the fastest way it offers in public.
+//! The peers: each fills the picture by the fastest way of its public API.
 
 #[cfg(feature = "peers")]
 mod by_sample;
@@ -17,7 +17,7 @@ mod simdnoise;
 use super::cases::Case;
 use crate::measure::Job;
 
-/// What a peer does for a case; none if it does not offer it.
+/// The job of a peer for a case; `None` if it does not offer it.
 pub type Peer = fn(&Case) -> Option<Job>;
 
 /// Every peer.

@@ -1,4 +1,4 @@
-//! noise-functions: static types and one call a sample, f32.
+//! noise-functions: static types and one call per sample, f32.
 
 use noise_functions::modifiers::Frequency;
 use noise_functions::{CellDistance, Constant, Noise, OpenSimplex2, Perlin, Sample, Value};
@@ -9,7 +9,7 @@ use crate::noise::cases::{Case, OCTAVES, SEED, SLICE, WARP, Work, scattered};
 
 const NAME: &str = "noise-functions";
 
-/// What noise-functions offers for the case.
+/// The job of noise-functions for a case.
 pub fn job(case: &Case) -> Option<Job> {
     let octaves = OCTAVES as u32;
     let frequency = (1.0 / case.wavelength) as f32;
@@ -49,7 +49,7 @@ fn points<N: Sample<2> + 'static>(noise: Frequency<N, Constant>) -> Job {
     })
 }
 
-/// The textbook warp: fBm at a position displaced by two others.
+/// The textbook warp: fBm at a position displaced by two other fBm.
 fn warped<N: Sample<2> + 'static>(noise: Frequency<N, Constant>, wavelength: f64) -> Job {
     let reach = (WARP * wavelength) as f32;
     Job::new(NAME, move |out| {

@@ -1,4 +1,4 @@
-//! noise: function objects and one call a sample, f64.
+//! noise: function objects and one call per sample, f64.
 
 use noise::core::worley::ReturnType;
 use noise::{Fbm, MultiFractal, NoiseFn, Perlin, RidgedMulti, Simplex, Value, Worley};
@@ -9,7 +9,7 @@ use crate::noise::cases::{Case, OCTAVES, SEED, SLICE, Work, scattered};
 
 const NAME: &str = "noise";
 
-/// What noise offers for the case.
+/// The job of noise for a case.
 pub fn job(case: &Case) -> Option<Job> {
     let seed = SEED as u32;
     let frequency = 1.0 / case.wavelength;

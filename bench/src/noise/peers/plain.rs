@@ -1,9 +1,9 @@
-//! No noise at all: how fast the picture can be written.
+//! The plain fill: the maximum speed of writing the picture.
 
 use crate::measure::{Job, PLAIN};
 use crate::noise::cases::{Case, Work};
 
-/// A physical limit for the cheapest noise.
+/// The physical limit of the cheapest noise.
 pub fn job(case: &Case) -> Option<Job> {
     (case.work == Work::White).then(|| Job::new("plain fill", |out| out.fill(PLAIN)))
 }

@@ -1,12 +1,12 @@
-//! simdnoise: whole pictures by SIMD up to AVX2, f32, always a new buffer. Its only basis is simplex: beside our Perlin
-//! fractals it stands under that name, and no target is measured against it.
+//! simdnoise: whole pictures with SIMD up to AVX2, f32, always in a new buffer. Its only basis is simplex: it is
+//! compared with our Perlin fractals under that name, and no target refers to it.
 
 use simdnoise::{CellReturnType, NoiseBuilder};
 
 use crate::measure::Job;
 use crate::noise::cases::{Case, OCTAVES, SEED, SIZE, Work};
 
-/// What simdnoise offers for the case.
+/// The job of simdnoise for a case.
 pub fn job(case: &Case) -> Option<Job> {
     let octaves = OCTAVES as u8;
     let frequency = (1.0 / case.wavelength) as f32;

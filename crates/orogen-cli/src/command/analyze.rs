@@ -50,7 +50,7 @@ pub struct Args {
     quiet: bool,
 }
 
-/// Measures and tells.
+/// Measures the terrain and prints the result.
 pub fn run(args: &Args) -> Result<(), Failure> {
     Seeds::each(args.samples.view.seed.as_ref(), args.out.as_deref(), |seed, out| {
         let view = View { seed, ..args.samples.view.clone() };
@@ -73,7 +73,7 @@ fn measure(args: &Args) -> Result<(), Failure> {
     let sink = args.out.as_ref().map(|out| Sink::new(out, &policy)).transpose()?;
     let world = args.limits.open(recipe, &budget)?;
     let window = args.samples.window(&world)?;
-    // A file of heights tells nothing of a sea: all of it is land.
+    // A file of heights has no sea level: all of it is land.
     let sea_level = match source {
         Source::Dem(_) => None,
         _ => Some(world.recipe().world.sea_level as f32),
@@ -116,34 +116,34 @@ fn measure(args: &Args) -> Result<(), Failure> {
         (false, false) => words(args, &window, &measures),
     };
     match sink {
-        // The page has standard output for itself.
+        // The page occupies standard output.
         Some(Sink::Stdout) => say::error(text.trim_end()),
         _ => say::out(&text)?,
     }
     Ok(())
 }
 
-/// Nanoseconds that measuring a sample takes, and drawing its share of the page, about.
+/// Approximate time for measuring a sample, and for drawing its share of the page, in nanoseconds.
 const MEASURING: f64 = 700.0;
 const DRAWING: f64 = 200.0;
 
-/// The same where heights are on disk, and making one.
+/// The same with heights on disk, and for computing a sample.
 const MEASURING_ON_DISK: f64 = 2500.0;
 const MAKING: f64 = 200.0;
 
-/// Where the heights are while they are measured.
+/// Where the heights are held during the measurement.
 enum Held {
-    /// In memory: how they are made, and what is reserved for measuring them.
+    /// In memory: the plan for them, and the memory reserved for measuring.
     InMemory(Plan, Reservation),
-    /// On disk; measuring and drawing take so many bytes.
+    /// On disk; measuring and drawing take this many bytes.
     OnDisk(u64),
 }
 
 impl Held {
-    /// In memory if they fit there with all that is measured at once, else on disk.
+    /// In memory if they fit there together with the memory for measuring, otherwise on disk.
     fn of(args: &Args, world: &World, window: &Window) -> Result<Held, Error> {
         let page = if args.out.is_some() { page::MEMORY } else { 0 };
-        // The heights are part of a plan and of what measuring takes.
+        // The heights count in the plan and in the memory for measuring.
         let measuring = Measures::memory(window.len() as u64).saturating_sub(4 * window.len() as u64);
         if let Ok(reserved) = world.budget().reserve(measuring.saturating_add(page))
             && let Ok(plan) = world.plan(&[&args.layer], window)
@@ -155,7 +155,7 @@ impl Held {
             let message = "at most 2^32 samples can be measured at once; use a smaller window or a larger cell";
             return Err(Error::new(ErrorKind::Request, message));
         }
-        // The page is drawn when all is measured.
+        // The page is drawn after the measurement.
         let drawing = if page > 0 { page + page::rows_memory(window) } else { 0 };
         let working = Measures::memory_on_disk(window).max(drawing);
         world.budget().afford(working.saturating_add(Raster::memory_on_disk(window)))?;
@@ -164,13 +164,13 @@ impl Held {
 }
 
 impl Args {
-    /// The work of drawing, if something is drawn.
+    /// The work of drawing, if there is a page.
     fn drawing(&self, window: &Window) -> f64 {
         if self.out.is_some() { DRAWING * window.len() as f64 } else { 0.0 }
     }
 }
 
-/// What was measured, and the page if one is wanted.
+/// The measurements, and the page if one was requested.
 fn shown(
     args: &Args,
     world: &World,
@@ -250,6 +250,6 @@ fn json(args: &Args, window: &Window, measures: &Measures) -> String {
         "spectrum": bands,
         "strahler_order": measures.water.order,
     });
-    // A tree of numbers and strings always has a JSON text.
+    // A tree of numbers and strings can always be serialised.
     serde_json::to_string_pretty(&whole).unwrap_or_default() + "\n"
 }

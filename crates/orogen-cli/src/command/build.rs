@@ -67,7 +67,7 @@ enum Tiles {
     TerrainRgb,
 }
 
-/// Builds it.
+/// Runs the build.
 pub fn run(args: &Args) -> Result<(), Failure> {
     Seeds::each(args.samples.view.seed.as_ref(), Some(&args.out), |seed, out| {
         let view = View { seed, ..args.samples.view.clone() };
@@ -115,7 +115,7 @@ fn build(args: &Args) -> Result<(), Failure> {
     if args.quiet { Ok(()) } else { say::out(&closing(args, &spec, &report, begun.elapsed().as_secs_f64())) }
 }
 
-/// What OUT and --tiles say together.
+/// The form of the result, from OUT and --tiles.
 fn form(args: &Args) -> Result<Form, Failure> {
     let tiles = args.tiles.map(|tiles| match tiles {
         Tiles::Png => Form::Tiles(Samples::Png),
@@ -137,7 +137,7 @@ fn form(args: &Args) -> Result<Form, Failure> {
     }
 }
 
-/// The samples that are asked for.
+/// The requested window.
 fn window(args: &Args, world: &World, form: Form) -> Result<Window, Failure> {
     let SizedView { view, size } = &args.samples;
     let cell = view.cell.unwrap_or(match form {
@@ -158,13 +158,13 @@ fn window(args: &Args, world: &World, form: Form) -> Result<Window, Failure> {
         None => world.full_window(cell)?,
     };
     Ok(match form {
-        // Up to the far edge, which tiles share with the neighbours they do not have.
+        // Including the far edge, which tiles share with neighbours that do not exist here.
         Form::Tiles(_) => Window { width: whole.width + 1, height: whole.height + 1, ..whole },
         _ => whole,
     })
 }
 
-/// Says what it takes, and refuses what there is no room for.
+/// Prints the requirements, and fails if they are not met.
 fn needs(args: &Args, build: &Build, start: Start) -> Result<(), Failure> {
     let (disk, there) = build.disk();
     let free = disk::free_at(&args.out);
@@ -188,7 +188,7 @@ fn needs(args: &Args, build: &Build, start: Start) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The closing words.
+/// The final message.
 fn closing(args: &Args, spec: &BuildSpec, report: &Report, seconds: f64) -> String {
     let Window { width, height, cell, .. } = spec.window;
     let made = match report {

@@ -57,7 +57,7 @@ struct Clear {
     quiet: bool,
 }
 
-/// How long something has not been used.
+/// The time since the last use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Age(Duration);
 
@@ -111,7 +111,7 @@ fn list(args: &List) -> Result<(), Failure> {
             })
             .collect();
         let whole = json!({ "folder": cache.folder.display().to_string(), "bytes": total, "solutions": entries });
-        // A tree of numbers and strings always has a JSON text.
+        // A tree of numbers and strings can always be serialised.
         return say::out(&(serde_json::to_string_pretty(&whole).unwrap_or_default() + "\n"));
     }
     let mut text = String::new();
@@ -134,7 +134,7 @@ fn clear(args: &Clear) -> Result<(), Failure> {
     let stored = cache.stored()?;
     let mut left: u64 = stored.iter().map(|stored| stored.bytes).sum();
     let (mut removed, mut freed) = (0, 0);
-    // The longest unused first.
+    // The least recently used first.
     for stored in &stored {
         let is_old = args.older_than.is_none_or(|Age(limit)| age(stored) >= limit);
         let is_much = args.keep.is_none_or(|Bytes(keep)| left > keep);
@@ -158,12 +158,12 @@ fn clear(args: &Clear) -> Result<(), Failure> {
     }
 }
 
-/// How long it has not been used.
+/// The time since the last use.
 fn age(stored: &Stored) -> Duration {
     SystemTime::now().duration_since(stored.used).unwrap_or_default()
 }
 
-/// A span of time in the unit that suits it.
+/// A duration in a suitable unit.
 fn ago(age: Duration) -> String {
     let seconds = age.as_secs();
     let (unit, length) = match seconds {
@@ -175,7 +175,7 @@ fn ago(age: Duration) -> String {
     format!("{} ago", count((seconds / length) as usize, unit))
 }
 
-/// What it holds.
+/// The content of a solution.
 fn holds(stored: &Stored) -> String {
     match stored.layers.as_deref() {
         None => "damaged; it is computed again when needed".into(),

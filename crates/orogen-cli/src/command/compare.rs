@@ -43,7 +43,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let sink = Sink::new(&args.out, &args.replace.anywhere())?;
     let (rows, side) = (row::rows(args.seed), usize::from(args.size));
     let [width, height] = page::size(rows.len(), side);
-    // The page, and of each noise its pictures, its heights twice and what they are made of.
+    // The page, and for each noise its pictures, its heights twice and their inputs.
     let noises: usize = rows.iter().map(|row| row.noises.len()).sum();
     memory::budget(args.memory, memory::cores()).afford((3 * width * height + noises * side * side * 24) as u64)?;
     let (bar, progress) = Bar::new(args.quiet);

@@ -34,7 +34,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     })
 }
 
-/// The recipe's parameters, one a line: name, value, unit and range, and what it does.
+/// The recipe's parameters, one per line: name, value, unit and range, description.
 fn parameters(recipe: &Recipe) -> String {
     let parameters = recipe.parameters();
     if parameters.is_empty() {

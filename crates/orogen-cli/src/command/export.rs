@@ -72,10 +72,10 @@ fn layers() -> String {
     format!("Layers derived from the heights:\n{}", lines.collect::<Vec<_>>().join("\n"))
 }
 
-/// Columns of a help text whose lines hang below each other: those of the narrowest usual terminal.
+/// Width of the help text of lists, in columns: that of narrow terminals.
 const HELP_WIDTH: usize = 80;
 
-/// The lines of a text that breaks between words.
+/// The lines of a text, broken between words.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split(' ') {
@@ -91,11 +91,11 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// A value that is the name of one of a list of things, with a line of help for each.
+/// The parser of a value that is one of several names, with a line of help for each.
 #[derive(Clone)]
 struct NameOf {
     all: Vec<PossibleValue>,
-    /// The name that the library declares, of a name or another spelling of it.
+    /// The declared name, for a name or an alternative spelling.
     declared: fn(&str) -> Option<&'static str>,
 }
 
@@ -168,7 +168,7 @@ fn export(args: &Args) -> Result<(), Failure> {
     let source = exporting::source(format, &world, &args.layer, window, &progress)?;
     let Written { words, count } = match &sink {
         Sink::Stdout => sink.write(|out| exporting::to_stream(format, source, &options, out))?,
-        // With what stands beside it.
+        // Including sidecars.
         Sink::File(output) => exporting::to_file(format, source, &options, output)
             .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?,
     };
@@ -236,7 +236,7 @@ fn for_engine(
     say::out(&text)
 }
 
-/// The format that is asked for: by name, else by extension, else an array.
+/// The requested format: by name, otherwise by extension, otherwise an array.
 fn format(args: &Args) -> Result<&'static Format, Failure> {
     let named = args.format.and_then(registry::named);
     if is_stdout(&args.out) {

@@ -54,10 +54,10 @@ pub struct Args {
     quiet: bool,
 }
 
-/// Bytes of a sample that is measured.
+/// Memory for measuring a sample, in bytes.
 const MEASURED: u64 = 64;
 
-/// Finds a recipe, judges it by worlds of other seeds beside the default preset, and writes it.
+/// Finds a recipe, compares it with the default preset in worlds of other seeds, and writes it.
 pub fn run(args: &Args) -> Result<(), Failure> {
     if !is_stdout(&args.out) && args.out.extension().is_none_or(|extension| extension != "toml") {
         return Err(Failure::Usage(format!(
@@ -68,7 +68,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let sink = Sink::new(&args.out, &args.replace.policy([&args.place]))?;
     let budget = args.limits.budget();
     let place = PreparedDem::read(&args.place, None, budget.left().unwrap_or(DEFAULT_MEMORY))?;
-    // The place, and what a window takes while it is measured.
+    // The place, and the memory for measuring a window.
     budget.reserve(place.memory() + MEASURED * (SIDE * SIDE) as u64)?.keep();
     if !args.quiet {
         place.notes.iter().for_each(|note| say::error(&format!("note: {}: {note}", args.place.display())));
@@ -82,7 +82,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let options = args.limits.options(&budget);
     let (bar, progress) = Bar::new(args.quiet);
     let default = preset(presets::DEFAULT)?.recipe()?;
-    // Each judge is a world of the recipe found, which is about as much work as the default preset, and one of that.
+    // Each comparison makes a world of the fitted recipe, about as much work as the default preset, and one of that
+    // preset.
     let judging = 2.0 * f64::from(args.judges) * land_work(args, &budget, default.clone(), &target)?;
     let [searching, judging] = progress.parts([effort.work(&target, &options)?, judging]);
     judging.expect(2.0 * f64::from(args.judges));
@@ -92,7 +93,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let about = format!("Synthetic terrain with the statistics of {name}; it contains none of its heights");
     let recipe = found.recipe(&target, args.seed, &about);
     let mut lands = [windows(&place.grid, &target), Vec::new(), Vec::new()];
-    // Judged by worlds that the search has not seen.
+    // Compared in worlds that the search has not used.
     for seed in (1..=u64::from(args.judges)).map(|k| args.seed.wrapping_add(1000 * k)) {
         let ours = land(args, &budget, recipe.clone(), seed, &target, &judging.part(1.0))?;
         lands[1].append(&mut windows(&ours, &target));
@@ -108,14 +109,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         (false, false) => report.words(args, &name, &target, found.tried),
     };
     match sink {
-        // The recipe has standard output for itself.
+        // The recipe occupies standard output.
         Sink::Stdout => say::error(text.trim_end()),
         Sink::File(_) => say::out(&text)?,
     }
     Ok(())
 }
 
-/// The samples that are compared with the place's.
+/// The window that is compared with the place.
 fn land_window(world: &World, target: &FitTarget) -> Result<Window, Failure> {
     let whole = world.full_window(target.cell)?;
     let [width, height] = target.size;
@@ -129,7 +130,7 @@ fn land_work(args: &Args, budget: &Budget, recipe: Recipe, target: &FitTarget) -
     Ok(world.work(&plan))
 }
 
-/// A world of another seed at the place's cell, as much of it as the place has.
+/// The heights of a world with another seed at the place's cell, of the place's size.
 fn land(
     args: &Args,
     budget: &Budget,
@@ -145,17 +146,17 @@ fn land(
     grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "nothing was asked for").into())
 }
 
-/// The measures of windows of a land, those left out that cannot be measured.
+/// The measurements of windows, without those that cannot be measured.
 fn windows(land: &Grid, target: &FitTarget) -> Vec<Measures> {
     let windows = features::windows(land.window(), target.side, MAX_WINDOWS);
     windows.into_iter().filter_map(|window| Measures::of(&land.crop(&window)?, None)).collect()
 }
 
-/// Three lands side by side: the place, the recipe's, the default preset's.
+/// Three terrains side by side: the place, the fitted recipe's, the default preset's.
 struct Report {
-    /// Windows and the median distance of each from the place's middle.
+    /// Number of windows, and the median distance from the place's median.
     distances: [(usize, f64); 3],
-    /// Each figure's median over the windows of each land.
+    /// The median of each statistic over the windows of each terrain.
     figures: Vec<[Option<f64>; 3]>,
 }
 

@@ -44,7 +44,7 @@ pub struct Args {
     watch: bool,
 }
 
-/// Bytes that writing the pictures takes beside the heights.
+/// Memory for writing the pictures beside the heights, in bytes.
 const ENCODERS: u64 = 2 << 20;
 
 /// Makes the terrain.
@@ -86,10 +86,10 @@ fn generate(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// Nanoseconds that a sample takes to be painted, packed and written, about.
+/// Approximate time for painting, compressing and writing a sample, in nanoseconds.
 const WRITING: f64 = 150.0;
 
-/// Makes it once, and returns what there is to say on standard output.
+/// Makes the terrain once, and returns the text for standard output.
 fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Failure> {
     let begun = Instant::now();
     let budget = args.limits.budget();
@@ -101,7 +101,7 @@ fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Fai
     let outputs = pictures::outputs(&args.out, &policy)?;
     let plan = world.plan(&[orogen::world::HEIGHT], &window)?;
     let folder = Folder::ready(&args.out)?;
-    // The pictures are encoded side by side, some rows at a time.
+    // The pictures are encoded in parallel, in bands of rows.
     let _pictures = budget.reserve(ENCODERS)?;
     let [making, writing] = progress.parts([world.work(&plan), WRITING * window.len() as f64]);
     let mut grids = world.run(&plan, &making)?;
@@ -119,7 +119,7 @@ fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Fai
     })
 }
 
-/// The closing words.
+/// The final message.
 fn words(report: &Report, folder: &Path) -> String {
     let Report { seed, width, height, cell, height_min, height_max, height_mean, land_share, seconds, .. } = report;
     let across = |samples: &usize| *samples as f64 * cell / 1000.0;

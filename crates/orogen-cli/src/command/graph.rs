@@ -60,10 +60,10 @@ enum Kind {
 const KINDS: [(Kind, &[&str]); 4] =
     [(Kind::Svg, &["svg"]), (Kind::Pdf, &["pdf"]), (Kind::Png, &["png"]), (Kind::Dot, &["dot", "gv"])];
 
-/// Most boxes of a drawing; Graphviz may take more.
+/// Maximum number of boxes of a drawing; Graphviz may handle more.
 const MAX_BLOCKS: usize = 2000;
 
-/// Most pixels of a picture.
+/// Maximum number of pixels of a picture.
 const MAX_PIXELS: f32 = 4e8;
 
 /// Draws the graph.

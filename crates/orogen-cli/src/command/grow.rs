@@ -114,16 +114,16 @@ fn write(
     let window = args.samples.window(&world)?;
     let (width, height) = (window.width, window.height);
     let pixels = (width * height) as u64;
-    // Two frames' heights and what they are mixed to; the picture; and what packs it.
+    // Memory of two frames' heights and their interpolation; of the picture; and of the encoder.
     let _frames = budget.reserve(pixels.saturating_mul(3 + 12).saturating_add(target.reserved(pixels)))?;
     let growth = Growth::new(&world, HEIGHT, window)?;
     let growth = if args.exact { growth.in_full() } else { growth };
     let frames = Frames::new(args.frames, growth.steps());
     let plan = world.plan(&[HEIGHT], &window)?;
-    // Growing is the terrain itself and what each frame takes after its step, about a twentieth of that.
+    // Growing takes the time of the terrain, and for each frame the work after its step, about a twentieth of that.
     let growing = world.work(&plan) * (1.0 + frames.steps.len() as f64 / 20.0);
     let [growing, painting] = progress.parts([growing, PAINTING * pixels as f64 * f64::from(args.frames)]);
-    // The last frame's colours are those of all: the heights wait until it is made.
+    // All frames use the last frame's colours, so heights wait until it is made.
     let heights = Mutex::new(FrameSpool::new(Spool::beside(&args.out), window));
     growth.run(&frames.steps, &growing, &|step, grid| {
         let mut heights = heights.lock().unwrap_or_else(PoisonError::into_inner);
@@ -138,7 +138,7 @@ fn write(
     let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", &software)] };
     let animation = Animation { frames: u32::from(args.frames), delay: args.delay };
     let painted = |ground: &Grid, bytes: &mut [u8]| painter.paint(ground, 0..height, bytes);
-    // The beginning is smooth and the end is rough: colours and shades of both.
+    // The start is smooth and the end is rough: colours and shades are fitted to both.
     let sample = || {
         let mut bytes = vec![0; width * height * 6];
         let (one, other) = bytes.split_at_mut(width * height * 3);
@@ -157,15 +157,15 @@ fn write(
     Ok(format!("{}: {} of {width} x {height} pixels\n", args.out.display(), count(usize::from(args.frames), "frame")))
 }
 
-/// Nanoseconds that painting and packing a pixel takes, about.
+/// Approximate time for painting and encoding a pixel, in nanoseconds.
 const PAINTING: f64 = 150.0;
 
-/// Which steps the frames show.
+/// The steps that frames show.
 struct Frames {
     count: u32,
-    /// Of the terrain.
+    /// Number of steps of the terrain.
     all: u32,
-    /// Those that are made.
+    /// The steps that are made.
     steps: BTreeSet<u32>,
 }
 
@@ -177,14 +177,15 @@ impl Frames {
         frames
     }
 
-    /// The step that frame `k` shows: a whole one where there are as many steps as frames, else on the way between two.
+    /// The step of frame `k`: an integer if there are at least as many steps as frames, otherwise a fraction between
+    /// two steps.
     fn at(&self, k: u32) -> f64 {
         let at = f64::from(self.all) * f64::from(k) / f64::from(self.count - 1);
         if self.all >= self.count - 1 { at.round() } else { at }
     }
 }
 
-/// Heights after steps.
+/// The heights after steps.
 struct Land {
     heights: RefCell<FrameSpool>,
 }
@@ -195,7 +196,7 @@ impl Land {
         self.heights.borrow_mut().get(step)
     }
 
-    /// The heights on the way from one step to the next, as far as the fraction says.
+    /// Heights interpolated between two steps.
     fn between(&self, step: f64) -> io::Result<Grid> {
         let mut grid = self.at(step.floor() as u32)?;
         let share = step.fract() as f32;

@@ -190,20 +190,21 @@ enum Kind {
 
 const KINDS: [(Kind, &[&str]); 3] = [(Kind::Png, &["png"]), (Kind::Svg, &["svg"]), (Kind::Pdf, &["pdf"])];
 
-/// The palette of a layer that has none of its name.
+/// The palette of a layer without a palette of its name.
 const LAYER_PALETTE: &str = "viridis";
 
-/// Millimetres of the longer side of a map on a page that fits it.
+/// Longer side of a map on a fitted page, in millimetres.
 const LONGER: f64 = 240.0;
 
-/// Pixels an inch, where nobody says: of pictures, and of those on paper and in vector files.
+/// Default resolution in pixels per inch: of pictures, and on paper and in vector files.
 const SCREEN: f64 = 150.0;
 const PRINT: f64 = 220.0;
 
-/// Most pixels of a page.
+/// Maximum number of pixels of a page.
 const MOST: f64 = 4e8;
 
-/// Nanoseconds that drawing takes for each sample of the heights, and drawing and writing for each pixel of the page, about.
+/// Approximate time of drawing per sample of the heights, and of drawing and writing per pixel of the page, in
+/// nanoseconds.
 const DRAWING: f64 = 400.0;
 const WRITING: f64 = 60.0;
 
@@ -278,7 +279,7 @@ fn map(args: &Args) -> Result<(), Failure> {
         Kind::Png => {
             let page = raster::draw(&sheet.scene, sheet.dpi);
             let mut notes = vec![("Software", software.as_str())];
-            // PNG's plain notes hold Latin letters only.
+            // PNG text chunks contain Latin-1 only.
             if options.title.chars().all(|letter| letter <= '\u{ff}' && !letter.is_control()) {
                 notes.push(("Title", &options.title));
             }
@@ -323,14 +324,14 @@ fn map(args: &Args) -> Result<(), Failure> {
     sink.tell(args.quiet, &words)
 }
 
-/// Where the pixels of a page lie whose ground lies so.
+/// The transform from pixels of a page to map coordinates, from that of the ground on it.
 fn on_page(samples: &Affine, window: &Window, sheet: &Sheet) -> Affine {
     let [left, top, width, height] = sheet.ground.map(|millimetres| f64::from(millimetres) * sheet.dpi / 25.4);
     let scale = [(window.width - 1) as f64 / width, (window.height - 1) as f64 / height];
     samples.resampled(scale, [(0.5 - left) * scale[0], (0.5 - top) * scale[1]])
 }
 
-/// `--range` as two values.
+/// The two values of `--range`.
 fn range(args: &Args) -> Result<Option<[f32; 2]>, Failure> {
     if args.layer == HEIGHT && args.ramp.is_some() {
         return Err(Failure::Usage("--ramp needs a --layer other than height".into()));
@@ -378,7 +379,7 @@ fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: b
         None => Page::Fitted(LONGER),
     };
     let without = &args.without;
-    // Lines and water would hide what another layer shows.
+    // Lines and water would hide the other layer.
     let is_height = args.layer == HEIGHT;
     let parts = Parts {
         title: !without.no_title,
@@ -387,7 +388,8 @@ fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: b
         labels: !without.no_labels,
         summits: !without.no_summits && is_height,
         rivers: !without.no_rivers && is_height,
-        // Depressions of a real place are mostly gorges that coarse samples dam; its lakes are as level as their outlets.
+        // Most depressions of a real place are gorges dammed by coarse samples, and its lakes are level in the data
+        // already.
         lakes: !without.no_lakes && !is_place && is_height,
         legend: !without.no_legend,
         colors: !without.no_color,
@@ -421,7 +423,7 @@ fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: b
         parts,
         page,
         resolution,
-        // A file of heights tells nothing of a sea: all of it is land.
+        // A file of heights has no sea level: all of it is land.
         sea_level: (!is_place).then_some(recipe.world.sea_level),
         coloring: Coloring::Heights,
         range: None,
@@ -429,7 +431,7 @@ fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: b
     }
 }
 
-/// The longer side of a page in millimetres, about.
+/// Approximate longer side of a page, in millimetres.
 fn longer(page: Page) -> f64 {
     match page {
         Page::Fitted(longer) => longer + 36.0,
@@ -437,7 +439,7 @@ fn longer(page: Page) -> f64 {
     }
 }
 
-/// Pixels of a square that the page fits in.
+/// Pixels of a square that contains the page.
 fn pixels(options: &Options) -> f64 {
     let side = match options.resolution {
         Resolution::Inch(dpi) => longer(options.page) * dpi / 25.4,
@@ -446,7 +448,7 @@ fn pixels(options: &Options) -> f64 {
     side * side
 }
 
-/// Bytes that drawing takes beside the heights, or the reason why no memory holds the page.
+/// Memory of drawing beside the heights, in bytes, or an error if the page is too large.
 fn drawing(options: &Options, window: &Window, args: &Args) -> Result<u64, Failure> {
     let side = pixels(options).sqrt();
     if side * side > MOST {
@@ -456,11 +458,12 @@ fn drawing(options: &Options, window: &Window, args: &Args) -> Result<u64, Failu
         )));
     }
     let lines = lines_at(longer(options.page)) as f64;
-    // First the water and the contours are found; then they are held beside the page twice, the picture and its heights.
+    // First the water and the contours are computed; then they are held beside the page twice, the picture and its
+    // heights.
     let page = f64::max(64.0 * lines * lines, 20.0 * side * side + 16.0 * lines * lines);
-    // The heights are part of the world's plan; another layer is held beside them, twice while it is made.
+    // The heights count in the world's plan; another layer is held beside them, twice while it is computed.
     let layer = if args.layer == HEIGHT { 0.0 } else { 8.0 * window.len() as f64 };
-    // The albedo of the surfaces is also held at the pixels of the page.
+    // The albedo of the surfaces is also held at the resolution of the page.
     let cover = match args.color {
         ColorOf::Palette => 0.0,
         ColorOf::Surfaces => sheet_cover::memory(window) as f64 + 12.0 * side * side,

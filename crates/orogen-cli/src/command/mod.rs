@@ -1,4 +1,4 @@
-//! The commands, one a file: what each takes and does.
+//! The commands, one per file.
 
 pub mod analyze;
 pub mod build;

@@ -41,7 +41,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     ))
 }
 
-/// NAME.toml, in the folder the name may carry.
+/// The path NAME.toml, in the folder that is part of the name.
 fn path(args: &Args) -> Result<PathBuf, Failure> {
     let Some(name) = args.name.file_name() else {
         return Err(Failure::Usage(format!("`{}` is not a file name", args.name.display())));

@@ -24,16 +24,16 @@ use crate::sink::{Sink, is_stdout};
 use crate::size::{Bytes, MOST, Size, finite, positive, seed, wavelength};
 use crate::{disk, interrupt, memory, say};
 
-/// Milliseconds that a frame is shown.
+/// Duration of a frame, in milliseconds.
 const DELAY: u16 = 40;
 
-/// How many frames an animation takes for the way of one wavelength, on average.
+/// Mean number of frames of an animation per wavelength.
 const FRAMES_A_WAVELENGTH: f64 = 24.0;
 
-/// Bytes of samples that are made at a time.
+/// Bytes of samples that are computed at a time.
 const BAND: usize = 1 << 22;
 
-/// Most bytes of an array file before its samples.
+/// Maximum size of the header of an array file, in bytes.
 const HEADER: u64 = 256;
 
 /// Arguments of the command.
@@ -105,7 +105,7 @@ pub struct Args {
     quiet: bool,
 }
 
-/// The bases there are, whichever the library has.
+/// Parser of the noise bases of the library.
 fn basis() -> impl TypedValueParser<Value = Basis> {
     let names = PossibleValuesParser::new(Basis::all().iter().map(|basis| basis.name()));
     names.try_map(|name| Basis::from_name(&name).ok_or("it is not known"))
@@ -115,7 +115,7 @@ fn octaves() -> impl TypedValueParser<Value = u32> {
     clap::value_parser!(u32).range(1..=i64::from(MAX_OCTAVES))
 }
 
-/// What is to be drawn, all of it settled and checked.
+/// The checked drawing task.
 struct Task<'a> {
     args: &'a Args,
     out: &'a Path,
@@ -131,8 +131,8 @@ struct Task<'a> {
 pub fn run(args: &Args) -> Result<(), Failure> {
     let default = if args.volume.is_some() { "noise.npy" } else { "noise.png" };
     let out = args.out.as_deref().unwrap_or(Path::new(default));
-    // Noise has no position on the earth: formats of maps do not apply.
-    // Frames may also go into what no single picture does.
+    // Noise has no position on the earth, so map formats do not apply.
+    // Frames may also be written in formats for animations.
     let target = match args.frames.filter(|_| out.extension().is_none_or(|extension| extension != "npy")) {
         Some(_) => Some(AnimationTarget::of(out).map_err(Failure::Usage)?),
         None => None,
@@ -189,7 +189,7 @@ fn noise(args: &Args) -> Result<Fractal, Failure> {
 }
 
 impl Task<'_> {
-    /// What contradicts itself.
+    /// Checks for contradicting options.
     fn check(&self) -> Result<(), Failure> {
         let Args { texture, frames, volume, gradient, basis, .. } = self.args;
         let (png, deep) = (self.format == Format::Png, self.deep());
@@ -226,19 +226,19 @@ impl Task<'_> {
         Err(Failure::Usage(wrong))
     }
 
-    /// Whether there is memory enough.
+    /// Checks that memory suffices.
     fn afford(&self) -> Result<(), Failure> {
         let wide = |width: usize, bytes: usize| width as u64 * bytes as u64;
-        // A band of samples with its slopes, columns and pixels, and the rows the encoder keeps.
+        // A band of samples with its derivatives, columns and pixels, and the rows that the encoder keeps.
         let band = wide(self.rows_a_band() * self.width, 32).saturating_add(wide(self.width, 48));
         let frame = match self.args.frames {
-            // The frame as it is, as it is filtered and as it is packed; and the samples behind it.
+            // The raw, the filtered and the compressed frame, and its samples.
             Some(_) => wide(self.width, 4 * self.drawing().pixel().bytes() + 32).saturating_mul(self.height as u64),
             None => 0,
         };
         let needed = band.saturating_add(frame);
         memory::budget(self.args.memory, memory::cores()).afford(needed)?;
-        // How large a picture gets is known once it is packed.
+        // The size of a picture is known only after compression.
         let array = |grids: u64| {
             let samples = (self.width as u64).saturating_mul(self.height as u64).saturating_mul(grids);
             samples.saturating_mul(4).saturating_add(HEADER)
@@ -260,7 +260,7 @@ impl Task<'_> {
         Drawing::new(self.slice(None), self.look, self.deep())
     }
 
-    /// The samples, at a depth or in the plane.
+    /// The samples at a depth, or of 2D noise.
     fn slice(&self, depth: Option<f64>) -> Slice {
         let through = match (self.args.frames, self.args.volume) {
             (Some(frames), _) => self.waves(frames) * self.noise.wavelength,
@@ -271,7 +271,7 @@ impl Task<'_> {
         Slice { noise: self.noise, width: self.width, depth, stretch: 1.0, repeat }
     }
 
-    /// How many whole wavelengths an animation goes through.
+    /// Number of whole wavelengths that an animation passes.
     fn waves(&self, frames: u32) -> f64 {
         (f64::from(frames) / FRAMES_A_WAVELENGTH).round().max(1.0)
     }
@@ -323,7 +323,8 @@ impl Task<'_> {
         })
     }
 
-    /// Where a frame cuts. Noise that repeats is gone through; in other noise a walk in a circle would need a fourth dimension, so
+    /// The depth of a frame. Tileable noise is passed once; in other noise a circular path would need a fourth
+    /// dimension, so the path goes forward and back along a cosine.
     /// this one goes there and back on a cosine.
     fn depth(&self, frame: u32, frames: u32) -> f64 {
         let turn = f64::from(frame) / f64::from(frames);
@@ -366,7 +367,7 @@ impl Task<'_> {
         self.bands(out, |rows, value| slice.fill(rows, value))
     }
 
-    /// Writes all rows, some at a time, as `fill` makes them.
+    /// Writes all rows in bands that `fill` computes.
     fn bands(&self, out: &mut dyn Write, mut fill: impl FnMut(std::ops::Range<usize>, &mut [f32])) -> io::Result<()> {
         let mut band = vec![0.0; self.rows_a_band() * self.width];
         for first in (0..self.height).step_by(self.rows_a_band()) {
@@ -380,7 +381,7 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// What was drawn, in one line.
+    /// A one-line description of the drawing.
     fn description(&self) -> String {
         let Fractal { basis, seed, octaves, .. } = self.noise;
         let sum = match self.look {
@@ -396,7 +397,7 @@ impl Task<'_> {
         ))
     }
 
-    /// The wavelength drawn: along each axis, where they differ.
+    /// The actual wavelength: per axis, if they differ.
     fn wavelength(&self) -> String {
         let asked = self.noise.wavelength;
         if !self.args.tileable {
@@ -404,12 +405,12 @@ impl Task<'_> {
         }
         let slice = self.look.made_of(&self.slice(None));
         let [x, y] = slice.fit().wavelengths(asked);
-        // A material may be drawn out.
+        // A texture may be stretched.
         let [x, y] = [x, y / slice.stretch].map(|wavelength| (wavelength * 100.0).round() / 100.0);
         if x == y { x.to_string() } else { format!("{x} x {y}") }
     }
 
-    /// What was rounded.
+    /// A note about rounding.
     fn note(&self) -> Option<String> {
         let (asked, drawn) = (self.noise.wavelength, self.wavelength());
         let fit = self.look.made_of(&self.slice(None)).fit();

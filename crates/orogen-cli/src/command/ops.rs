@@ -17,7 +17,7 @@ pub struct Args {
     markdown: bool,
 }
 
-/// Prints the list, or all about one op: its inputs and its parameters with units, ranges and defaults.
+/// Prints the list, or the description of one op: its inputs and its parameters with units, ranges and defaults.
 pub fn run(args: &Args) -> Result<(), Failure> {
     match &args.op {
         _ if args.markdown => say::out(&reference::markdown()),

@@ -132,13 +132,13 @@ enum Dress {
     Clay,
 }
 
-/// Where the camera stands if nobody says: a little west of south, looking down a little.
+/// Default direction of the camera: slightly west of south, looking slightly down.
 const CAMERA: [f64; 2] = [200.0, 24.0];
 
-/// Bytes of a sample of the land beside its layers.
+/// Memory per sample of the land beside its layers, in bytes.
 const LAND: u64 = 116;
 
-/// Draws the picture.
+/// Renders the picture.
 pub fn run(args: &Args) -> Result<(), Failure> {
     Seeds::each(args.view.seed.as_ref(), Some(&args.out), |seed, out| {
         let view = View { seed, ..args.view.clone() };
@@ -176,7 +176,7 @@ fn render(args: &Args) -> Result<(), Failure> {
     let world = args.limits.open(recipe, &budget)?;
     let window = args.view.window(&world)?;
     let pixels = (width * height) as u64;
-    // Of each sample of the land: the pyramid, slopes, and light twice while it is made.
+    // Memory per sample of the land: the pyramid, slopes, and light twice while it is computed.
     let land = (window.len() as u64).saturating_mul(LAND);
     let needed = land.saturating_add(3 * pixels).saturating_add(target.reserved(pixels));
     let _drawing = budget.reserve(needed)?;
@@ -190,7 +190,7 @@ fn render(args: &Args) -> Result<(), Failure> {
     shooting.outputs[0].tell(args.quiet, &words)
 }
 
-/// The picture's size.
+/// The size of the picture.
 fn size(args: &Args) -> Result<[usize; 2], Failure> {
     let [width, height] = match args.size {
         Size::Longer(n) => [n, (n * 9).div_ceil(16)],
@@ -204,7 +204,7 @@ fn size(args: &Args) -> Result<[usize; 2], Failure> {
     }
 }
 
-/// How it is to look.
+/// The style of the scene.
 fn style<'a>(args: &Args, palette: Option<&'a Palette>) -> Result<Style<'a>, Failure> {
     let usage = |message: String| Err(Failure::Usage(message));
     if !(1.0..=150.0).contains(&args.fov) {
@@ -241,7 +241,7 @@ fn style<'a>(args: &Args, palette: Option<&'a Palette>) -> Result<Style<'a>, Fai
     })
 }
 
-/// Where the sun stands.
+/// The position of the sun.
 fn sun(args: &Args) -> Result<[f64; 2], Failure> {
     let usage = |message: String| Err(Failure::Usage(message));
     if let Some(hour) = args.time {
@@ -275,7 +275,7 @@ fn sun(args: &Args) -> Result<[f64; 2], Failure> {
     }
 }
 
-/// Below this nothing is to be seen.
+/// With the sun below this elevation the picture would be black.
 const LOWEST_SUN: f64 = -6.0;
 
 fn hours(hour: f64) -> String {
@@ -283,7 +283,7 @@ fn hours(hour: f64) -> String {
     format!("{:02}:{:02}", minutes / 60, minutes % 60)
 }
 
-/// From where it is taken.
+/// The view.
 fn shot(args: &Args) -> Result<Shot, Failure> {
     let usage = |message: String| Err(Failure::Usage(message));
     let camera = args.camera.as_ref().map(|camera| camera.0.as_slice());
@@ -321,20 +321,20 @@ fn shot(args: &Args) -> Result<Shot, Failure> {
     }
 }
 
-/// Layers that a picture makes use of where a recipe has them.
+/// Layers that a picture uses if the recipe has them.
 const LAYERS: [&str; 3] = [HEIGHT, "surface", "flow"];
 
 /// The layers that show surfaces.
 const COVER: [&Derived; 2] = [&albedo::LAYER, &roughness::LAYER];
 
-/// Nanoseconds that preparing a sample of the land takes, and a ray through a pixel, about.
+/// Approximate time for preparing a sample of the land, and for a ray of a pixel, in nanoseconds.
 const PREPARING: f64 = 1600.0;
 const RAY: f64 = 500.0;
 
-/// The pixels that a GIF's colours are taken from, as a share of a frame's.
+/// The share of a frame's pixels from which a GIF's colours are taken.
 const PREVIEW: f64 = 0.25;
 
-/// What is to be drawn, all of it settled.
+/// The checked rendering task.
 struct Shooting<'a> {
     target: AnimationTarget,
     outputs: Vec<Sink>,
@@ -401,11 +401,11 @@ fn draw(
     if let (Some(frames), Shot::Around { azimuth, elevation, distance }) = (args.turntable, *shot) {
         let turn = |frame: u32| azimuth + 360.0 * f64::from(frame) / f64::from(frames);
         let sides = (0..frames).map(|frame| [turn(frame), elevation]);
-        // As near as every frame allows: the land must not breathe as it turns.
+        // The closest distance at which all frames fit: a changing distance would make the land pulsate.
         let distance =
             distance.unwrap_or_else(|| Camera::distance(sides, scene.relief(), size, args.fov, &scene.frame()));
         let side = |frame: u32| camera(&Shot::Around { azimuth: turn(frame), elevation, distance: Some(distance) });
-        // Four sides, small: enough to know the colours by.
+        // Four small views suffice for the colours.
         let sample = || {
             let small = size.map(|side| side.div_ceil(4));
             previewing.expect(4.0);

@@ -54,10 +54,10 @@ pub struct Args {
     quiet: bool,
 }
 
-/// Pictures where nobody says how many.
+/// Default number of pictures.
 const DEFAULT_SEEDS: u8 = 9;
 
-/// Samples along a side of a world without bounds that are shown, at its own cell.
+/// Samples shown along a side of an unbounded world, at its own cell.
 const UNBOUNDED: f64 = 1024.0;
 
 /// Values of a parameter, evenly spaced.
@@ -90,13 +90,13 @@ impl Sweep {
     fn values(&self) -> impl Iterator<Item = f64> + '_ {
         let [first, last] = self.ends;
         let steps = f64::from(self.count - 1);
-        // The last value is the one that was asked for, not a sum.
+        // The last value is exactly the given one, without summation errors.
         (0..self.count)
             .map(move |k| if k + 1 == self.count { last } else { first + (last - first) * f64::from(k) / steps })
     }
 }
 
-/// One picture to make.
+/// A picture to make.
 struct Asked {
     label: String,
     seed: Option<u64>,
@@ -147,7 +147,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     sink.tell(args.quiet, &format!("{}: {} pictures, {width} x {height} pixels\n", args.out.display(), variants.len()))
 }
 
-/// What the pictures are of.
+/// The pictures to make.
 fn asked(args: &Args, recipe: &Recipe) -> Result<Vec<Asked>, Failure> {
     let Some(sweep) = &args.sweep else {
         let first = args.seed.unwrap_or(recipe.world.seed);
@@ -169,7 +169,7 @@ fn asked(args: &Args, recipe: &Recipe) -> Result<Vec<Asked>, Failure> {
     Ok(asked.collect())
 }
 
-/// Makes one.
+/// Makes one picture.
 fn make(
     args: &Args,
     source: &Source,
@@ -188,7 +188,7 @@ fn make(
     Ok((Variant { label: asked.label, grid }, held))
 }
 
-/// The whole world, or as much of one without bounds as other commands show.
+/// The window of the whole world, or of an unbounded world the part that other commands show.
 fn window(world: &World, samples: usize) -> Result<Window, Failure> {
     match world.recipe().world.size {
         Some(_) => Ok(world.window_fitting(samples)?),
@@ -196,7 +196,7 @@ fn window(world: &World, samples: usize) -> Result<Window, Failure> {
     }
 }
 
-/// The command that makes the sheet again.
+/// The command line that reproduces the sheet.
 fn words(args: &Args, recipe: &Recipe) -> String {
     let name = if is_stdout(&args.recipe) { Path::new("-") } else { &args.recipe };
     let what = match &args.sweep {

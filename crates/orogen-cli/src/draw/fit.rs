@@ -1,21 +1,21 @@
-//! Wavelengths that fit a picture a whole number of times.
+//! Wavelengths that fit into a picture a whole number of times.
 
-/// How many samples there are until a picture repeats, along x, y and through the depth; 0 where it does not repeat.
+/// Period of a picture in samples, along x, y and the depth; 0 where it does not repeat.
 pub type Lengths = [f64; 3];
 
-/// How a noise fits.
+/// The adjusted wavelengths of a noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fit {
-    /// How many wavelengths along x, y and through the depth; 0 where the noise goes on.
+    /// Number of wavelengths along x, y and the depth; 0 where the noise does not repeat.
     pub cells: [u32; 3],
-    /// From one sample to the next, in the noise's unit: 1 where a whole number of wavelengths fits by itself.
+    /// Distance between samples in the noise's unit: 1 if a whole number of wavelengths fits without adjustment.
     pub steps: [f64; 3],
 }
 
 impl Fit {
-    /// A wavelength rounded along each axis so that a whole number of it fits, at least one.
+    /// Rounds a wavelength along each axis so that a whole number of them fits, at least one.
     pub fn new(wavelength: f64, lengths: Lengths) -> Fit {
-        // What is too much for u32 is too much for any lattice too, and is told by the noise.
+        // Numbers beyond u32 are too large for any lattice as well, and the noise reports them.
         let cells = lengths.map(|length| if length > 0.0 { (length / wavelength).round().max(1.0) as u32 } else { 0 });
         let step = |axis: usize| match lengths[axis] {
             length if length > 0.0 => f64::from(cells[axis]) * wavelength / length,

@@ -1,4 +1,4 @@
-//! What a sample of a noise looks like: a grey, a direction or a colour.
+//! The appearance of a noise's samples: grey values, directions or colours.
 
 use std::ops::Range;
 
@@ -8,21 +8,21 @@ use orogen::format::png::Pixel;
 use super::slice::Slice;
 use super::texture::{Painter, Texture};
 
-/// How high the ground of a normal picture is, in wavelengths: its slopes then neither vanish nor turn to walls.
+/// Height of the ground of a normal map, in wavelengths, which gives moderate slopes.
 const RELIEF: f64 = 0.25;
 
-/// What is drawn of a noise.
+/// The kind of drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Look {
-    /// Its values: -1 black, 1 white.
+    /// Values: -1 is black, 1 is white.
     Grey,
-    /// Where its slope faces.
+    /// Normals of the slope.
     Normal,
-    /// A material made of it.
+    /// A texture.
     Texture(Texture),
 }
 
-/// A noise and its look.
+/// A noise and its appearance.
 #[derive(Debug)]
 pub struct Drawing {
     slice: Slice,
@@ -32,7 +32,7 @@ pub struct Drawing {
 }
 
 impl Look {
-    /// What is drawn of a slice: a material changes how octaves are summed, and may draw it out.
+    /// The slice to draw: a texture changes how octaves are summed, and may stretch the noise.
     pub fn made_of(self, slice: &Slice) -> Slice {
         match self {
             Look::Texture(texture) => texture.made_of(slice),
@@ -42,12 +42,12 @@ impl Look {
 }
 
 impl Drawing {
-    /// Of a slice at any depth, with 16 bits a number if `deep` and not a texture.
+    /// A drawing of a slice, with 16 bits per component if `deep` and not a texture.
     pub fn new(slice: Slice, look: Look, deep: bool) -> Drawing {
         Drawing { slice, deep, look, painter: Painter::default() }
     }
 
-    /// What its pixels are.
+    /// The type of its pixels.
     pub fn pixel(&self) -> Pixel {
         match (self.look, self.deep) {
             (Look::Grey, false) => Pixel::Grey8,
@@ -58,7 +58,7 @@ impl Drawing {
         }
     }
 
-    /// Draws some rows, at a depth or in the plane.
+    /// Draws some rows, at a depth or of 2D noise.
     pub fn paint(&self, depth: Option<f64>, rows: Range<usize>, bytes: &mut [u8]) {
         let slice = Slice { depth, ..self.slice };
         let mut value = vec![0.0; rows.len() * slice.width];
@@ -79,7 +79,7 @@ impl Drawing {
         }
     }
 
-    /// Numbers of -1 to 1 over all levels.
+    /// Numbers from -1 to 1 mapped to all levels.
     fn numbers(&self, numbers: &[f32], bytes: &mut [u8]) {
         let levels = Levels::new(-1.0, 1.0);
         match self.deep {
@@ -92,8 +92,8 @@ impl Drawing {
     }
 }
 
-/// The upward normal of ground that rises by `dx` eastwards and by `dy` southwards: its parts east, north and up. North is
-/// up in the picture, as most programs have it.
+/// The upward normal of ground that rises by `dx` eastward and by `dy` southward: east, north and up. North is up in
+/// the picture, the common convention.
 fn normal(dx: f32, dy: f32) -> [f32; 3] {
     let length = (1.0 + dx * dx + dy * dy).sqrt();
     [-dx / length, dy / length, 1.0 / length]

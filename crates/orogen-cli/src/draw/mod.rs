@@ -1,4 +1,4 @@
-//! Pictures of a noise by itself, one sample a pixel.
+//! Drawings of a single noise, one pixel per sample.
 
 pub mod fit;
 pub mod look;

@@ -1,4 +1,4 @@
-//! The samples of a noise over a lattice one apart.
+//! The samples of a noise on a lattice of unit distance.
 
 use std::ops::Range;
 
@@ -7,33 +7,33 @@ use rayon::prelude::*;
 
 use super::fit::{Fit, Lengths};
 
-/// How many samples one thread makes at a time.
+/// Samples that a thread computes at a time.
 const PIECE: usize = 1 << 16;
 
-/// A noise in the plane, or a slice of it in space. Sample (i, j) stands at (i, stretch j), unless the picture repeats: then
-/// steps are a little longer or shorter, so that a whole number of wavelengths fits.
+/// 2D noise, or a slice of 3D noise. Sample (i, j) is at (i, stretch j), unless the picture repeats: then steps are
+/// adjusted slightly, so that a whole number of wavelengths fits.
 #[derive(Debug, Clone, Copy)]
 pub struct Slice {
     /// The noise.
     pub noise: Fractal,
-    /// Samples a row.
+    /// Samples per row.
     pub width: usize,
-    /// Where it cuts through space, in samples; nowhere is the noise of the plane, another one.
+    /// Depth of the slice, in samples; `None` for 2D noise, which differs from any slice.
     pub depth: Option<f64>,
-    /// From one row to the next.
+    /// Distance between rows.
     pub stretch: f64,
-    /// Until it repeats.
+    /// Periods of the picture.
     pub repeat: Lengths,
 }
 
 impl Slice {
-    /// How the noise fits what is to repeat.
+    /// The adjusted wavelengths.
     pub fn fit(&self) -> Fit {
         let [x, y, depth] = self.repeat;
         Fit::new(self.noise.wavelength, [x, y * self.stretch, depth])
     }
 
-    /// The noise, made to repeat where it is to.
+    /// The noise with its periods.
     pub fn tiled(&self) -> Result<Tiled, TileError> {
         self.noise.tiled(self.fit().cells)
     }
@@ -52,7 +52,7 @@ impl Slice {
         });
     }
 
-    /// The slopes of some rows along x and along y, per sample.
+    /// The derivatives of some rows along x and along y, per sample.
     pub fn fill_slopes(&self, rows: Range<usize>, dx: &mut [f32], dy: &mut [f32]) {
         let piece = self.rows_a_piece();
         let xs = self.columns();
@@ -84,15 +84,15 @@ impl Slice {
         (0..self.width).map(|i| i as f64 * step).collect()
     }
 
-    /// Where the rows of a piece stand that begins `skip` rows into `rows` and has `samples`.
+    /// The southings of the rows of a piece that starts `skip` rows into `rows` and has `samples`.
     fn southings(&self, rows: &Range<usize>, skip: usize, samples: usize) -> Vec<f64> {
         let first = rows.start + skip;
         let step = self.stretch * self.fit().steps[1];
         (first..first + samples / self.width).map(|j| j as f64 * step).collect()
     }
 
-    /// The slices above always have the length of their points, and whether a noise can repeat is asked before; were either ever wrong,
-    /// it would be NaN and seen.
+    /// The slices above always have the length of their points, and the periods were checked before. An unexpected
+    /// error would give visible NaN.
     fn settle(&self, out: &mut [f32], fill: impl FnOnce(&Tiled, &mut [f32]) -> Result<(), LengthMismatch>) {
         match self.tiled() {
             Ok(noise) if fill(&noise, out).is_ok() => {}

@@ -85,12 +85,12 @@ impl Options {
         self.fractal.unwrap_or(Sum::Fbm)
     }
 
-    /// How many octaves there are where nobody says: whoever asks for a fractal wants more than one.
+    /// The default number of octaves for a fractal.
     pub fn octaves(&self) -> u32 {
         if self.fractal.is_some() { 6 } else { 1 }
     }
 
-    /// The kind, or which parameter is another kind's.
+    /// The kind of fractal, or an error about a parameter of another kind.
     pub fn kind(&self) -> Result<Kind, String> {
         let owners = [
             ("--k", self.k.is_some(), &[Sum::Weighted][..]),
@@ -125,7 +125,7 @@ impl Options {
 }
 
 impl Sum {
-    /// Its name on the command line.
+    /// The name on the command line.
     pub fn name(self) -> String {
         self.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default()
     }

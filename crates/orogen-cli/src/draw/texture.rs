@@ -1,4 +1,4 @@
-//! Materials made of noise, by the textbooks' recipes.
+//! Textbook textures made of noise.
 //!
 //! K. Perlin, "An Image Synthesizer" (SIGGRAPH 1985) for marble; D. Ebert and others, "Texturing and Modeling" for all three.
 
@@ -25,12 +25,12 @@ pub enum Texture {
 }
 
 impl Texture {
-    /// Its name on the command line.
+    /// The name on the command line.
     pub fn name(self) -> String {
         self.to_possible_value().map(|value| value.get_name().to_string()).unwrap_or_default()
     }
 
-    /// The octaves it looks best with.
+    /// The default number of octaves.
     pub fn octaves(self) -> u32 {
         match self {
             Texture::Clouds => 8,
@@ -39,7 +39,7 @@ impl Texture {
         }
     }
 
-    /// The wavelength it looks best with in a picture of 512 samples.
+    /// The default wavelength for a picture of 512 samples.
     pub fn wavelength(self) -> f64 {
         match self {
             Texture::Clouds => 200.0,
@@ -48,7 +48,7 @@ impl Texture {
         }
     }
 
-    /// The noise behind it: how its octaves are summed is the material's own matter.
+    /// The noise of the texture, which determines how octaves are summed.
     pub fn made_of(self, slice: &Slice) -> Slice {
         let (kind, stretch) = match self {
             Texture::Clouds => (Kind::Fbm, 1.0),
@@ -59,14 +59,14 @@ impl Texture {
     }
 }
 
-/// What of fbm is sky, and how soon clouds behind it are white.
+/// The threshold of clouds, and the range over which they turn white.
 const COVER: f32 = -0.05;
 const DENSITY: f32 = 5.0;
 
-/// By how many wavelengths turbulence moves the sine of marble.
+/// Displacement of marble's sine wave by turbulence, in wavelengths.
 const TURBULENCE: f32 = 1.5;
 
-/// How many rings a noise from 0 to 1 counts, and how many times longer than wide they are drawn.
+/// Number of rings for a noise from 0 to 1, and their ratio of length to width.
 const RINGS: f32 = 9.0;
 const STRETCH: f64 = 6.0;
 
@@ -90,7 +90,7 @@ const TIMBER: [(f32, [u8; 3]); 5] = [
     (1.0, [190, 138, 84]),
 ];
 
-/// Paints materials.
+/// Paints textures.
 #[derive(Debug)]
 pub struct Painter {
     sky: Ramp,
@@ -106,7 +106,7 @@ impl Default for Painter {
 }
 
 impl Painter {
-    /// Paints some rows of a material made of a slice's noise.
+    /// Paints some rows of a texture made of a slice's noise.
     pub fn paint(&self, texture: Texture, slice: &Slice, rows: Range<usize>, bytes: &mut [u8]) {
         let made_of = texture.made_of(slice);
         let mut value = vec![0.0; rows.len() * slice.width];
@@ -120,7 +120,7 @@ impl Painter {
             let color = match texture {
                 Texture::Clouds => self.sky.at(1.0 - libm::expf(-DENSITY * (value - COVER).max(0.0))),
                 Texture::Marble => {
-                    // In f64 until it is within one wave: a wide picture has no fewer veins at its far end.
+                    // In f64 until it is reduced to one wave: a wide picture has the same veins at its far end.
                     let waves = (k % slice.width) as f64 / wavelength;
                     let turns = (waves - waves.floor()) as f32 + TURBULENCE * (value + 1.0) / 2.0;
                     self.stone.at(0.5 + 0.5 * libm::sinf(TAU * (turns - turns.floor())))
@@ -136,7 +136,7 @@ impl Painter {
     }
 }
 
-/// The fibres of wood: how much lighter each sample is, mostly along y the same.
+/// The fibres of wood: the brightness of each sample, mostly constant along y.
 fn grain(slice: &Slice, rows: Range<usize>) -> Vec<f32> {
     let noise =
         Fractal { kind: Kind::Fbm, seed: slice.noise.seed ^ 1, wavelength: 3.0, octaves: 2, ..Fractal::default() };

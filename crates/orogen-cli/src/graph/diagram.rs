@@ -7,14 +7,14 @@ use orogen::value::Value;
 use orogen::words::number;
 use orogen::{Recipe, Result};
 
-/// What a box stands for.
+/// The kind of a box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A node that looks at one position.
+    /// A node that depends on one position.
     Field,
-    /// A node that looks at a finite halo.
+    /// A node that depends on a finite halo.
     Filter,
-    /// A node that looks at the whole world.
+    /// A node that depends on the whole world.
     Solver,
     /// An output of the recipe.
     Output,
@@ -24,7 +24,7 @@ impl Kind {
     /// All kinds.
     pub const ALL: [Kind; 4] = [Kind::Field, Kind::Filter, Kind::Solver, Kind::Output];
 
-    /// Its name.
+    /// The name.
     pub fn name(self) -> &'static str {
         match self {
             Kind::Field => "field",
@@ -38,13 +38,13 @@ impl Kind {
 /// A box.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Block {
-    /// What it stands for.
+    /// The kind.
     pub kind: Kind,
-    /// The node's name, or the output's.
+    /// The node's or the output's name.
     pub name: String,
-    /// The op; empty of an output.
+    /// The op; empty for an output.
     pub op: &'static str,
-    /// Lines beneath its name: inputs, then parameters that differ from their defaults.
+    /// The lines below its name: inputs, then parameters that differ from their defaults.
     pub rows: Vec<String>,
     /// Whether an output depends on it.
     pub used: bool,
@@ -55,27 +55,27 @@ pub struct Block {
 pub struct Wire {
     /// The box that is read.
     pub from: usize,
-    /// The layer of it that is read, where it is not the first.
+    /// The layer that is read, unless it is the first.
     pub layer: Option<&'static str>,
     /// The box that reads.
     pub to: usize,
-    /// The row that it ends at; none of an output, which has no rows.
+    /// The row at which it ends; `None` for an output, which has no rows.
     pub row: Option<usize>,
 }
 
 /// Boxes and wires.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Diagram {
-    /// The nodes in the order they are made, then the outputs.
+    /// The nodes in the order of evaluation, then the outputs.
     pub blocks: Vec<Block>,
     /// The wires.
     pub wires: Vec<Wire>,
 }
 
-/// Most lines of parameters that a box shows.
+/// Maximum number of parameter lines of a box.
 const MAX_PARAMS: usize = 6;
 
-/// Most characters of a name or a line.
+/// Maximum number of characters of a name or a line.
 const MAX_LETTERS: usize = 40;
 
 impl Diagram {
@@ -135,7 +135,7 @@ impl Diagram {
             }
             diagram.blocks.push(Block { kind: Kind::Output, name: cut(name), op: "", rows, used: true });
         }
-        // What is read stands before what reads it, so one pass from the outputs back is enough.
+        // A box comes after those that it reads, so one pass backwards from the outputs suffices.
         let mut wires: Vec<&Wire> = diagram.wires.iter().collect();
         wires.sort_by_key(|wire| std::cmp::Reverse(wire.to));
         for wire in wires {
@@ -146,7 +146,7 @@ impl Diagram {
     }
 }
 
-/// The parameters that are not as they are by default, as "name value unit".
+/// The parameters that differ from their defaults, as "name value unit".
 fn params(node: &Node) -> Vec<String> {
     let spec = node.spec();
     let usual = Node::named(spec.op);
@@ -159,7 +159,7 @@ fn params(node: &Node) -> Vec<String> {
         .collect()
 }
 
-/// A value in few letters.
+/// A short form of a value.
 fn brief(value: &Value) -> String {
     match value {
         Value::Number(value) => number(*value),

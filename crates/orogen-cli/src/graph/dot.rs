@@ -1,11 +1,11 @@
-//! The diagram as a text for Graphviz.
+//! The diagram as Graphviz source.
 
 use std::fmt::Write;
 
 use super::diagram::{Block, Diagram};
 use super::draw::color;
 
-/// The text: boxes with their lines, coloured by kind, and wires with the layers that they carry.
+/// The source: boxes with their lines, coloured by kind, and wires labelled with layers.
 pub fn text(diagram: &Diagram, title: &str) -> String {
     let mut text = format!(
         "digraph {} {{\n  rankdir = LR;\n  node [shape = box, style = \"filled,rounded\", fontname = \"sans-serif\", fontcolor = white];\n  \
@@ -29,7 +29,7 @@ pub fn text(diagram: &Diagram, title: &str) -> String {
     text + "}\n"
 }
 
-/// The box's name, op and what is set, without the inputs that wires lead to.
+/// The box's name, op and parameters, without the inputs that wires show.
 fn label(block: &Block) -> String {
     let head = if block.op.is_empty() { block.kind.name() } else { block.op };
     let settings = block.rows.iter().filter(|row| row.contains(' ')).cloned();
@@ -37,7 +37,7 @@ fn label(block: &Block) -> String {
     quoted(&lines.join("\n"))
 }
 
-/// A string of the language DOT.
+/// A quoted string of DOT.
 fn quoted(text: &str) -> String {
     format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n"))
 }

@@ -1,4 +1,4 @@
-//! The diagram as a scene: what pictures, SVG and PDF are drawn from.
+//! The diagram as a scene, for PNG, SVG and PDF.
 
 use orogen::Result;
 use orogen::map::text::Face;
@@ -9,27 +9,27 @@ use orogen::sheet::scene::{INK, Point, Scene, Step, polygon};
 use super::diagram::{Block, Diagram, Kind};
 use super::layout::{Layout, Link, Size};
 
-/// Around everything, and the room of heading and legend.
+/// Margin of the page, and the room of heading and legend.
 const MARGIN: f32 = 8.0;
 const HEADING: f32 = 12.0;
 const FOOT: f32 = 9.0;
-/// Sizes of words, an em in millimetres.
+/// Text sizes, the em in millimetres.
 const TITLE: f32 = 5.6;
 const NAME: f32 = 3.3;
 const SMALL: f32 = 2.7;
-/// A box: its header, its lines, what is left free at its sides, its least width.
+/// A box: height of its header and of its lines, inner margin, minimum width.
 const HEAD: f32 = 6.2;
 const ROW: f32 = 4.3;
 const PAD: f32 = 2.6;
 const LEAST: f32 = 24.0;
-/// How far below the top of a box the wire begins that leads on.
+/// The distance from the top of a box to the start of outgoing wires.
 const PORT: f32 = HEAD / 2.0;
 
 const PAPER: Rgb = [251, 250, 248];
 const BODY: Rgb = [255, 255, 255];
 const SOFT: Rgb = [98, 96, 94];
 const EDGE: Rgb = [150, 148, 146];
-/// How much of its ink a box has that no output needs.
+/// Opacity of boxes that no output depends on.
 const FAINT: f32 = 0.35;
 
 /// The colour of a kind's header.
@@ -102,7 +102,7 @@ fn size(block: &Block, letters: &FontSet) -> Size {
     Size { width: (head.max(rows) + 2.0 * PAD).max(LEAST), height: HEAD + below }
 }
 
-/// A wire: level past boxes, and between columns a curve that leaves and arrives level.
+/// A wire: horizontal past boxes, and between columns a curve with horizontal ends.
 fn curve(way: &[[f32; 3]], [x, y]: [f32; 2]) -> Vec<Point> {
     const STEPS: usize = 24;
     let mut line = Vec::new();
@@ -110,7 +110,7 @@ fn curve(way: &[[f32; 3]], [x, y]: [f32; 2]) -> Vec<Point> {
         let ([left, from, above], [to, _, below]) = (pair[0], pair[1]);
         line.push([left + x, above + y]);
         line.extend((0..=STEPS).map(|k| {
-            // The cubic of Bezier whose handles lie level, halfway across.
+            // A cubic Bezier curve with horizontal handles, half of the distance long.
             let t = k as f32 / STEPS as f32;
             let across = 1.5 * t * (1.0 - t) + t * t * t;
             let down = t * t * (3.0 - 2.0 * t);
@@ -126,14 +126,14 @@ struct Page<'a> {
 }
 
 impl Page<'_> {
-    /// Writes words from a place on; returns how long they are.
+    /// Draws text at a position; returns its width.
     fn words(&mut self, text: &str, face: Face, size: f32, ink: Rgb, at: Point, cover: f32) -> f32 {
         let outline = self.letters.write(text, face, size, at, 0.0);
         self.scene.area(outline, ink, cover);
         self.letters.width(text, face, size)
     }
 
-    /// How much higher a layer's name stands than that of the layer before: several may leave one box.
+    /// The offset of a layer's label from the previous one: several may leave one box.
     fn lift(&self, diagram: &Diagram, from: usize, layer: &str) -> f32 {
         let mut names: Vec<&str> =
             diagram.wires.iter().filter(|wire| wire.from == from).filter_map(|wire| wire.layer).collect();
@@ -174,7 +174,7 @@ impl Page<'_> {
         self.scene.lines(vec![ring], 0.2, EDGE, 0.8 * cover);
     }
 
-    /// Where a wire ends.
+    /// The dot at the end of a wire.
     fn dot(&mut self, [x, y]: Point, ink: Rgb) {
         let corners: Vec<Point> = (0..16)
             .map(|k| std::f32::consts::TAU * k as f32 / 16.0)
@@ -184,7 +184,7 @@ impl Page<'_> {
     }
 }
 
-/// The outline of a rectangle with round corners, of straight lines.
+/// The outline of a rectangle with rounded corners, made of straight lines.
 fn rounded([left, top, width, height]: [f32; 4]) -> Vec<Step> {
     const RADIUS: f32 = 1.4;
     const STEPS: usize = 5;

@@ -1,4 +1,4 @@
-//! Where boxes stand and wires run, in millimetres.
+//! The positions of boxes and wires, in millimetres.
 
 use super::order::{Columns, Slot};
 
@@ -11,36 +11,36 @@ pub struct Size {
     pub height: f32,
 }
 
-/// A wire to lead.
+/// A wire to route.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Link {
-    /// The box it comes from, and how far below its top.
+    /// The box at its start, and the distance below its top.
     pub from: (usize, f32),
-    /// The box it leads to, and how far below its top.
+    /// The box at its end, and the distance below its top.
     pub to: (usize, f32),
 }
 
-/// What is placed.
+/// The result.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Layout {
-    /// Width and height of it all.
+    /// Width and height of the drawing.
     pub size: [f32; 2],
     /// Left and top of each box.
     pub places: Vec<[f32; 2]>,
-    /// For each wire the level stretches that it runs along, [left, right, height]: from its box, past others, to its box.
+    /// For each wire its horizontal parts, [left, right, height]: from its first box, past others, to its last box.
     pub ways: Vec<Vec<[f32; 3]>>,
 }
 
-/// Between two boxes of a column, and between a box and a wire.
+/// Distance between two boxes of a column, and between a box and a wire.
 const GAP: f32 = 6.0;
 const WIRE_GAP: f32 = 3.0;
-/// Between two columns, and for each wire that turns there.
+/// Distance between two columns, and more for each wire that turns there.
 const ALLEY: f32 = 16.0;
 /// Rounds of straightening.
 const ROUNDS: usize = 40;
 
 impl Layout {
-    /// Places boxes; a box stands after those that it reads.
+    /// Places boxes; a box comes after those that it reads.
     pub fn new(sizes: &[Size], links: &[Link]) -> Layout {
         let wires: Vec<(usize, usize)> = links.iter().map(|link| (link.from.0, link.to.0)).collect();
         let columns = Columns::new(sizes.len(), &wires);
@@ -52,7 +52,7 @@ impl Layout {
             (Slot::Block(_), Slot::Block(_)) => GAP,
             _ => WIRE_GAP,
         };
-        // What leads where: (slot, how far below its own top, the other slot, how far below that one's).
+        // The connections of each slot: (slot, offset below its own top, the other slot, offset below that one's top).
         let mut left: Vec<Vec<(f32, usize, f32)>> = vec![Vec::new(); columns.slots.len()];
         let mut right = left.clone();
         for (way, link) in columns.ways.iter().zip(links) {
@@ -119,7 +119,7 @@ impl Layout {
                     .map(|(k, slot)| {
                         let (start, width) = (lefts[column_of[*slot]], widths[column_of[*slot]]);
                         match k {
-                            // From the box's own side to its column's, where the box is narrower.
+                            // From the box's own side to its column's, if the box is narrower.
                             0 => [start + sizes[*slot].width, start + width, tops[*slot] + link.from.1],
                             k if k + 1 == way.len() => [start, start, tops[*slot] + link.to.1],
                             _ => [start, start + width, tops[*slot]],
@@ -133,8 +133,8 @@ impl Layout {
     }
 }
 
-/// Sets the tops of a column's slots as near to where they are wanted as their order and distances allow: least squares, by pooling neighbours
-/// that are too close (the algorithm of isotonic regression).
+/// Sets the tops of a column's slots as close to the wanted positions as their order and distances allow: least
+/// squares, by pooling adjacent slots that are too close (the algorithm of isotonic regression).
 fn set(
     tops: &mut [f32],
     column: &[usize],
@@ -142,12 +142,12 @@ fn set(
     height: &impl Fn(usize) -> f32,
     apart: &impl Fn(usize, usize) -> f32,
 ) {
-    // How far each is below the first if all are as close as they may be.
+    // The minimum offset of each slot below the first.
     let mut below = vec![0.0f32; column.len()];
     for k in 1..column.len() {
         below[k] = below[k - 1] + height(column[k - 1]) + apart(column[k - 1], column[k]);
     }
-    // Pools of slots that touch: the sum of where they want the pool's first to be, and how many they are.
+    // Pools of adjacent slots: the sum of wanted positions of the pool's first slot, and the number of slots.
     let mut pools: Vec<(f32, usize)> = Vec::new();
     for (wanted, below) in wanted.iter().zip(&below) {
         pools.push((wanted - below, 1));

@@ -1,5 +1,5 @@
-//! A recipe's graph as a drawing: boxes and wires ([`diagram`]), where they stand ([`layout`], after [`order`]), and the same as a scene
-//! ([`draw`]) and as a text for Graphviz ([`dot`]).
+//! A recipe's graph as a drawing: boxes and wires ([`diagram`]), their order ([`order`]) and positions ([`layout`]), as
+//! a scene ([`draw`]) and as Graphviz source ([`dot`]).
 
 pub mod diagram;
 pub mod dot;

@@ -1,7 +1,7 @@
-//! Columns, and the order within them: the first two steps of Sugiyama, Tagawa and Toda (1981), "Methods for visual understanding of
-//! hierarchical system structures".
+//! Columns, and the order within them: the first two steps of Sugiyama, Tagawa and Toda (1981), "Methods for visual
+//! understanding of hierarchical system structures".
 
-/// What stands in a column: a box, or a wire on its way past.
+/// An element of a column: a box, or a wire that passes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Slot {
     /// The box of this number.
@@ -10,23 +10,24 @@ pub enum Slot {
     Pass(usize),
 }
 
-/// Slots in columns, and what leads from one to the next column.
+/// Slots in columns, and their connections to the next column.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Columns {
     /// All slots.
     pub slots: Vec<Slot>,
-    /// The slots of each column, from the left, each from the top.
+    /// The slots of each column, from the left; each column from the top.
     pub columns: Vec<Vec<usize>>,
-    /// For each wire its slots from the left: the box it comes from, those it passes, the box it leads to.
+    /// For each wire its slots from the left: its first box, the slots it passes, its last box.
     pub ways: Vec<Vec<usize>>,
 }
 
-/// Rounds of moving slots to where their neighbours are.
+/// Rounds of sorting slots by their neighbours.
 const ROUNDS: usize = 24;
 
 impl Columns {
-    /// Lays out boxes in columns, each left of all that read it and as near to them as it can be, in an order with few crossings.
-    /// `wires` are pairs of boxes, from the one that is read; they make no circle, and a box stands after those it reads.
+    /// Arranges boxes in columns, each left of all boxes that read it and as close to them as possible, in an order
+    /// with few crossings. `wires` are pairs of boxes, the one that is read first. There are no cycles, and a box comes
+    /// after those that it reads.
     pub fn new(blocks: usize, wires: &[(usize, usize)]) -> Columns {
         let mut rank = vec![0usize; blocks];
         let mut sorted: Vec<&(usize, usize)> = wires.iter().collect();
@@ -54,7 +55,8 @@ impl Columns {
         self.slots.len() - 1
     }
 
-    /// Moves slots within their columns until wires cross seldom: by the mean of their neighbours, left and right in turns, keeping the best.
+    /// Reduces crossings: sorts slots by the mean position of their neighbours, left and right in turns, and keeps the
+    /// best order.
     fn sort(&mut self) {
         let mut left: Vec<Vec<usize>> = vec![Vec::new(); self.slots.len()];
         let mut right = left.clone();
@@ -77,7 +79,7 @@ impl Columns {
                         false => around.iter().map(|slot| place[*slot] as f64).sum::<f64>() / around.len() as f64,
                     }
                 };
-                // A stable sort: equals stay as they are, so the same recipe is always drawn the same.
+                // A stable sort keeps the order of ties, so the same recipe always gives the same drawing.
                 self.columns[column].sort_by(|a, b| mean(*a).total_cmp(&mean(*b)));
             }
             let crossings = self.crossings(&right);
@@ -88,7 +90,7 @@ impl Columns {
         self.columns = best.1;
     }
 
-    /// The place of each slot in its column.
+    /// The position of each slot in its column.
     fn places(&self) -> Vec<usize> {
         let mut places = vec![0; self.slots.len()];
         for column in &self.columns {
@@ -97,7 +99,7 @@ impl Columns {
         places
     }
 
-    /// How often wires cross, between all neighbouring columns.
+    /// Number of crossings of wires, between all adjacent columns.
     fn crossings(&self, right: &[Vec<usize>]) -> usize {
         let place = self.places();
         self.columns
@@ -108,7 +110,7 @@ impl Columns {
                 for slot in column {
                     let mut ends: Vec<usize> = right[*slot].iter().map(|slot| place[*slot]).collect();
                     ends.sort_unstable();
-                    // What already ends further down is crossed.
+                    // Wires that end further down are crossed.
                     crossings +=
                         ends.iter().map(|end| seen.len() - seen.partition_point(|other| other <= end)).sum::<usize>();
                     for end in ends {

@@ -8,16 +8,16 @@ use rayon::prelude::*;
 use super::panel::{self, Pictures};
 use super::row::{COLUMNS, Row, SIDE};
 
-/// All of them greys: the page is then written as greys, in half the bytes.
+/// All inks are grey, so that the page is written as greyscale, in half the bytes.
 const PAPER: Ink = [253; 3];
 const INK: Ink = [28; 3];
 const SOFT: Ink = [97; 3];
 const LINE: Ink = [194; 3];
 
-/// Measures for pictures of [`SIDE`] samples; larger ones have everything larger.
+/// Dimensions for pictures of [`SIDE`] samples; they scale with the pictures.
 const MARGIN: f64 = 52.0;
 const GUTTER: f64 = 22.0;
-/// Between the two pictures of a noise.
+/// Distance between the two pictures of a noise.
 const SEAM: f64 = 4.0;
 const HEADER: f64 = 76.0;
 const ROW_HEADING: f64 = 44.0;
@@ -25,7 +25,7 @@ const CAPTION: f64 = 48.0;
 const ROW_GAP: f64 = 22.0;
 const FOOTER: f64 = 20.0;
 
-/// Lays the page out.
+/// The layout of the page.
 struct Layout<'a> {
     rows: &'a [Row],
     side: usize,
@@ -34,7 +34,7 @@ struct Layout<'a> {
     canvas: Canvas,
 }
 
-/// The size of a page whose pictures have `side` samples a side.
+/// The size of a page with pictures of `side` samples per side.
 pub fn size(rows: usize, side: usize) -> [usize; 2] {
     let at = |measure: f64| measure * scale(side);
     let width = 2.0 * at(MARGIN) + COLUMNS as f64 * side as f64 + (COLUMNS - 1) as f64 * at(GUTTER);
@@ -50,7 +50,7 @@ fn scale(side: usize) -> f64 {
 /// Draws the page.
 ///
 /// # Errors
-/// If there is no font, or the work is cancelled.
+/// If the font cannot be loaded, or the work is cancelled.
 pub fn draw(rows: &[Row], side: usize, seed: u64, progress: &Progress) -> orogen::Result<Canvas> {
     let [width, height] = size(rows.len(), side);
     let canvas = Canvas::new(width, height, PAPER);
@@ -97,7 +97,7 @@ impl Layout<'_> {
         Style { face, size: self.at(size) as f32, ink }
     }
 
-    /// Writes from `x` on and returns where it ends.
+    /// Draws text at `x` and returns its end.
     fn write(&mut self, text: &str, [x, baseline]: [f64; 2], style: Style) -> f64 {
         f64::from(self.font.write(&mut self.canvas, x as f32, baseline.round() as i64, text, style))
     }
@@ -108,7 +108,7 @@ impl Layout<'_> {
         self.canvas.fill(columns, rows, if thickness > 1.0 { INK } else { LINE });
     }
 
-    /// Returns where the rows begin.
+    /// Draws the header; returns the top of the rows.
     fn header(&mut self) -> f64 {
         let (left, top) = (self.at(MARGIN), self.at(MARGIN));
         let noises: usize = self.rows.iter().map(|row| row.noises.len()).sum();
@@ -128,7 +128,7 @@ impl Layout<'_> {
         self.write(row.about, [end + self.at(12.0), baseline], soft);
     }
 
-    /// Puts the two pictures of a noise in their place and returns where its caption begins.
+    /// Draws the two pictures of a noise and returns the baseline of its caption.
     fn pictures(&mut self, pictures: &Pictures, left: f64, top: f64) -> f64 {
         let below = (top + self.side as f64 + self.at(SEAM)).round();
         for (greys, top) in [(&pictures.heights, top.round()), (&pictures.shade, below)] {
@@ -150,7 +150,7 @@ impl Layout<'_> {
         self.write(about, [left, baseline + self.at(18.0)], soft);
     }
 
-    /// How to read it, in the place that the last row leaves free; `bottom` is where that row ends.
+    /// The explanation in the free space of the last row; `bottom` is the end of that row.
     fn note(&mut self, bottom: f64, seed: u64) {
         let free = self.rows.last().map_or(COLUMNS, |row| row.noises.len());
         if free >= COLUMNS {

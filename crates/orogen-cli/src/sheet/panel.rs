@@ -1,4 +1,4 @@
-//! One noise as two pictures.
+//! The two pictures of a noise.
 
 use orogen::analysis::hillshade::{Light, hillshade};
 use orogen::format::levels::Levels;
@@ -6,31 +6,31 @@ use orogen::{Grid, Window};
 
 use super::row::{SIDE, Shown};
 
-/// How high the ground of a hillshade is, from black to white, in the unit of [`SIDE`].
+/// Height of a hillshade's ground between black and white, in the unit of [`SIDE`].
 const RELIEF: f32 = 25.0;
 
-/// The share of the samples that is left black, and of those left white: a single peak should not turn all else grey.
+/// The share of samples clipped to black, and to white, so that single peaks do not darken the rest.
 const OUTSIDE: f64 = 0.005;
 
-/// Greys, row after row, of `side` x `side` samples.
+/// Grey values, row-major, of `side` x `side` samples.
 #[derive(Debug)]
 pub struct Pictures {
-    /// Black the lowest samples, white the highest.
+    /// The heights: black is low, white is high.
     pub heights: Vec<u8>,
-    /// The light on it.
+    /// The hillshade.
     pub shade: Vec<u8>,
 }
 
 /// Draws a noise.
 pub fn draw(shown: &Shown, side: usize) -> Pictures {
-    // One sample more all around, where slopes at the edge look.
+    // With a border of one sample for slopes at the edge.
     let window = Window::new(side, side, SIDE / side as f64).grown(1);
     let mut grid = Grid::filled(window, f32::NAN);
-    // The lengths always fit; were one ever wrong, the picture would be black and seen.
+    // The lengths always agree; an unexpected error would give a visibly black picture.
     let _ = shown.noise.fill(&window.eastings(), &window.southings(), grid.data_mut());
     let levels = levels(&grid);
     let heights = (1..=side).flat_map(|j| grid.row(j)[1..=side].iter().map(|&h| levels.to_u8(h))).collect();
-    // However far a noise reaches into -1 to 1, here it has the same relief.
+    // All noises are shown with the same relief, whatever their range.
     let stretch = RELIEF / (levels.high() - levels.low()).max(f32::MIN_POSITIVE);
     grid.data_mut().iter_mut().for_each(|h| *h = (*h - levels.low()) * stretch);
     let light = hillshade(&grid, &Light::default());

@@ -1,56 +1,56 @@
-//! What the page shows: its rows and the noises in them.
+//! The rows of the page and their noises.
 
 use orogen::Progress;
 use orogen::aggregate::relief::{self, Ridges};
 use orogen::aggregate::single;
 use orogen_noise::{Basis, Falloff, Feature, Fractal, Kind, LengthMismatch, Points, Worley};
 
-/// A row of noises that belong together.
+/// A row of related noises.
 #[derive(Debug)]
 pub struct Row {
-    /// Its heading.
+    /// The heading.
     pub title: &'static str,
-    /// What its noises have in common.
+    /// The common property of its noises.
     pub about: &'static str,
     /// The noises, at most [`COLUMNS`].
     pub noises: Vec<Shown>,
 }
 
-/// A noise of the page.
+/// A noise on the page.
 #[derive(Debug)]
 pub struct Shown {
-    /// What it is called.
+    /// The name.
     pub name: &'static str,
-    /// Its parameters.
+    /// The parameters.
     pub about: &'static str,
-    /// The noise itself.
+    /// The noise.
     pub noise: Noise,
 }
 
-/// What a picture is made of.
+/// The source of a picture.
 #[derive(Debug)]
 pub enum Noise {
-    /// Octaves, or one.
+    /// A fractal, or a single octave.
     Fractal(Fractal),
-    /// Cells.
+    /// Cellular noise.
     Worley(Worley),
-    /// Octaves read through a warp.
+    /// A fractal displaced by another one.
     Warped {
-        /// What is read.
+        /// The fractal that is displaced.
         noise: Fractal,
-        /// What moves it: a noise for each direction, the other of the next seed.
+        /// The displacement: one noise for each direction, with different seeds.
         by: Fractal,
-        /// How far a noise of 1 moves.
+        /// Displacement per unit of noise.
         strength: f32,
     },
-    /// No noise: a diffusion-limited aggregate, 1 where it is.
+    /// A diffusion-limited aggregate: 1 in its cells.
     Aggregate(u64),
-    /// Mountains made of such aggregates.
+    /// Mountains made of aggregates.
     Peaks(u64),
 }
 
 impl Noise {
-    /// Its samples over columns and rows.
+    /// The samples over columns and rows.
     pub fn fill(&self, xs: &[f64], ys: &[f64], out: &mut [f32]) -> Result<(), LengthMismatch> {
         let lattice = Points::Lattice { xs, ys };
         match *self {
@@ -59,7 +59,7 @@ impl Noise {
             Noise::Warped { noise, by, strength } => {
                 let (mut dx, mut dy) = (vec![0.0; out.len()], vec![0.0; out.len()]);
                 by.fill(&lattice, &mut dx)?;
-                // A neighbouring seed is another noise altogether.
+                // Another seed gives an independent noise.
                 Fractal { seed: by.seed ^ 1, ..by }.fill(&lattice, &mut dy)?;
                 for part in dx.iter_mut().chain(&mut dy) {
                     *part *= strength;
@@ -73,7 +73,7 @@ impl Noise {
             }
             Noise::Peaks(seed) => {
                 let ridges = Ridges { seed, reach: 0.95, density: 0.2, gain: 0.65, taper: 8.0 };
-                // Nobody cancels a part of a second.
+                // It takes a fraction of a second and is never cancelled.
                 if let Ok((across, _, heights)) =
                     relief::heights(SIDE as usize, SIDE as usize, &ridges, &Progress::none())
                 {
@@ -85,7 +85,7 @@ impl Noise {
     }
 }
 
-/// Reads a square of `across` cells a side, laid over the picture, at the cell that each position is in.
+/// Samples a square of `across` cells per side over the picture, with nearest-neighbour interpolation.
 fn sample(cells: &[f32], across: usize, xs: &[f64], ys: &[f64], out: &mut [f32]) {
     let index = |at: f64| ((at / SIDE * across as f64) as usize).min(across - 1);
     for (row, y) in out.chunks_mut(xs.len().max(1)).zip(ys) {
@@ -93,10 +93,10 @@ fn sample(cells: &[f32], across: usize, xs: &[f64], ys: &[f64], out: &mut [f32])
     }
 }
 
-/// How many noises stand side by side.
+/// Number of noises per row.
 pub const COLUMNS: usize = 6;
 
-/// The side of each picture in the noises' unit of length: however many samples it has, it shows the same.
+/// Side of each picture in the noises' unit of length, independent of the number of samples.
 pub const SIDE: f64 = 200.0;
 
 /// The rows, with every noise from `seed`.

@@ -1,16 +1,16 @@
-//! What a chunk is called.
+//! Identifiers of chunks.
 
-/// A chunk: a square of ground at a level of detail.
+/// A chunk: a square of terrain at a level of detail.
 ///
-/// Level 0 is the finest. A chunk of level l + 1 covers exactly four chunks of level l, with cells twice as large. Ids mean the same
-/// whatever the viewer does: chunk (l, x, y) is always the same ground, so ids are good keys for caches and files.
+/// Level 0 is the finest. A chunk of level l + 1 covers exactly four chunks of level l, with cells twice as large. Ids
+/// do not depend on the viewer: chunk (l, x, y) is always the same terrain, so ids are good keys for caches and files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ChunkId {
     /// Level of detail.
     pub level: u8,
-    /// Row among the chunks of its level; row 0 begins at the origin, and rows grow south.
+    /// Row among the chunks of its level; row 0 starts at the origin, and rows increase southward.
     pub y: i64,
-    /// Column among the chunks of its level; column 0 begins at the origin, and columns grow east.
+    /// Column among the chunks of its level; column 0 starts at the origin, and columns increase eastward.
     pub x: i64,
 }
 
@@ -20,7 +20,7 @@ impl ChunkId {
         ChunkId { level: self.level.saturating_add(1), y: self.y.div_euclid(2), x: self.x.div_euclid(2) }
     }
 
-    /// The four chunks of the next finer level that cover this one, from the north-west row by row; none below level 0.
+    /// The four chunks of the next finer level that cover this one, row by row from the north-west; none for level 0.
     pub fn children(self) -> impl Iterator<Item = ChunkId> {
         let four = self.level.checked_sub(1).map(|level| {
             [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[x, y]| ChunkId { level, y: self.y * 2 + y, x: self.x * 2 + x })
@@ -28,19 +28,19 @@ impl ChunkId {
         four.into_iter().flatten()
     }
 
-    /// The chunk of the same level so many columns further east and rows further south.
+    /// The chunk of the same level at an offset of columns eastward and rows southward.
     pub fn beside(self, columns: i64, rows: i64) -> ChunkId {
         ChunkId { level: self.level, y: self.y + rows, x: self.x + columns }
     }
 
-    /// Whether all ground of `other` is ground of this chunk.
+    /// Whether this chunk contains `other`.
     pub fn covers(self, other: ChunkId) -> bool {
         let Some(levels) = self.level.checked_sub(other.level) else { return false };
         let up = |n: i64| n >> levels.min(63);
         up(other.x) == self.x && up(other.y) == self.y
     }
 
-    /// Whether the two have ground in common: one then covers the other.
+    /// Whether the two overlap; one then contains the other.
     pub fn overlaps(self, other: ChunkId) -> bool {
         self.covers(other) || other.covers(self)
     }

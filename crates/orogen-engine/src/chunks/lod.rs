@@ -1,36 +1,37 @@
-//! How the ground around a viewer is cut into chunks.
+//! Levels of detail around a viewer.
 
 use super::id::ChunkId;
 use crate::plan::planner::world_windows;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 
-/// How the ground around a viewer is cut into chunks: square rings around it, each with cells twice as large as the one inside.
+/// Configuration of the chunks around a viewer: square rings, each with cells twice as large as the ring inside.
 ///
-/// **Which chunks.** A chunk of level l has sides of `cells * cell * 2^l` metres. Within `range` of the viewer the ground is cut into
-/// chunks of the coarsest level; each that the viewer is nearer to than `detail` of its sides is replaced by the four finer ones
-/// that cover it, down to level 0. Distances are the greater of those east and south, so rings are square. What results covers the
-/// ground once, and neighbours differ by one level at most.
+/// **Chunks.** A chunk of level l has sides of `cells * cell * 2^l` metres. The terrain within `range` of the viewer is
+/// divided into chunks of the coarsest level. Each chunk that is closer to the viewer than `detail` of its sides is
+/// replaced by the four finer ones that cover it, down to level 0. Distances are Chebyshev distances (the greater of
+/// those east and south), so rings are square. The chunks cover the terrain once, and neighbours differ by at most one
+/// level.
 ///
-/// **Borders.** A chunk has `cells + 1` samples a side: its last row and column are its neighbour's first, with the same bits. Where
-/// the neighbour is one level coarser, its samples are every second one of the finer chunk's, with the same bits unless the recipe
-/// has filters (what a filter makes depends on the cell): see [`stitch`](super::seam::stitch).
+/// **Borders.** A chunk has `cells + 1` samples per side: its last row and column are its neighbour's first, with the
+/// same bits. If the neighbour is one level coarser, its samples are every second one of the finer chunk's, with the
+/// same bits unless the recipe has filters (whose results depend on the cell): see [`stitch`](super::seam::stitch).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LodConfig {
     /// Cells along a chunk's side: an even number from 2 to 4096. Default 64.
     pub cells: usize,
-    /// Metres from one sample to the next at level 0. Default 1.
+    /// Distance between samples at level 0, in metres. Default 1.
     pub cell: f64,
-    /// How many levels there are, 1 to 24. Default 6.
+    /// Number of levels, 1 to 24. Default 6.
     pub levels: u8,
-    /// How near the viewer comes to a chunk, in sides of that chunk, before finer ones replace it: 1 + `slack` to 16. Twice as
-    /// much makes about four times as many chunks. Default 1.5.
+    /// Distance to the viewer below which a chunk is replaced by finer ones, in sides of that chunk: 1 + `slack` to 16.
+    /// Twice the distance gives about four times as many chunks. Default 1.5.
     pub detail: f64,
-    /// How far the viewer sees, metres. Default 8000.
+    /// Range of sight, in metres. Default 8000.
     pub range: f64,
-    /// How much farther than `detail` (in sides) and `range` (in sides of the coarsest chunks) the viewer must go before what
-    /// came is given up again, so that a viewer who goes to and fro does not make the same chunks over and over: 0 to 1.
-    /// Default 0.25.
+    /// Hysteresis: the distance beyond `detail` (in sides) and `range` (in sides of the coarsest chunks) at which a
+    /// chunk is dropped again, so that a viewer who moves back and forth does not cause the same chunks to be made
+    /// repeatedly: 0 to 1. Default 0.25.
     pub slack: f64,
 }
 
@@ -40,14 +41,14 @@ impl Default for LodConfig {
     }
 }
 
-/// The most chunks that the coarsest level may have along the way from one end of the range to the other.
+/// Maximum number of chunks of the coarsest level along the diameter of the range.
 const MAX_ACROSS: f64 = 256.0;
 
 impl LodConfig {
-    /// Whether these are rings at all.
+    /// Checks the configuration.
     ///
     /// # Errors
-    /// Says which number cannot be, and what can.
+    /// The message names the invalid number and its range.
     pub fn check(&self) -> Result<()> {
         let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
         if !(2..=4096).contains(&self.cells) || self.cells % 2 == 1 {
@@ -85,26 +86,26 @@ impl LodConfig {
         }
     }
 
-    /// Metres from one sample to the next at a level.
+    /// Distance between samples at a level, in metres.
     pub fn cell_of(&self, level: u8) -> f64 {
-        // A power of two: exact, so that the samples that two levels share stand at the same position to the last bit.
+        // A power of two: exact, so that samples shared by two levels have bit-equal positions.
         self.cell * (1u64 << level.min(63)) as f64
     }
 
-    /// Metres along the side of a chunk of a level.
+    /// Side of a chunk of a level, in metres.
     pub fn side(&self, level: u8) -> f64 {
         self.cells as f64 * self.cell_of(level)
     }
 
-    /// The samples of a chunk, its far edges included.
+    /// The samples of a chunk, including its far edges.
     pub fn window(&self, id: ChunkId) -> Window {
         let samples = self.cells + 1;
         let first = |index: i64| index.saturating_mul(self.cells as i64);
         Window::new(samples, samples, self.cell_of(id.level)).at(first(id.x), first(id.y))
     }
 
-    /// The samples of a chunk in a world of these measures; `None` if it has no ground there. A chunk at the world's far edges is
-    /// cut where its samples end.
+    /// The samples of a chunk in a world of this size, in metres; `None` if they do not overlap. A chunk at the world's
+    /// far edges is clipped to its samples.
     pub(super) fn window_within(&self, id: ChunkId, size: Option<[f64; 2]>) -> Option<Window> {
         let window = self.window(id);
         let Some(size) = size else { return Some(window) };
@@ -118,7 +119,7 @@ impl LodConfig {
         Some(Window { width, height, ..window })
     }
 
-    /// How far a viewer is from a chunk, in metres; 0 if above it.
+    /// The distance of a viewer from a chunk, in metres; 0 above it.
     pub fn distance(&self, id: ChunkId, [x, y]: [f64; 2]) -> f64 {
         let side = self.side(id.level);
         let along = |at: f64, index: i64| {
@@ -128,7 +129,7 @@ impl LodConfig {
         along(x, id.x).max(along(y, id.y))
     }
 
-    /// How far a viewer is from a chunk's middle, in metres.
+    /// The distance of a viewer from a chunk's centre, in metres.
     pub(super) fn distance_to_middle(&self, id: ChunkId, [x, y]: [f64; 2]) -> f64 {
         let side = self.side(id.level);
         let along = |at: f64, index: i64| (at - (index as f64 + 0.5) * side).abs();

@@ -1,4 +1,4 @@
-//! Ground around a moving viewer, in chunks with levels of detail.
+//! Terrain around a moving viewer, in chunks with levels of detail.
 
 pub mod id;
 pub mod lod;

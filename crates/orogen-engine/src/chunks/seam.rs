@@ -1,4 +1,4 @@
-//! Where a chunk meets one of the next coarser level.
+//! Seams between a chunk and coarser neighbours.
 
 use orogen_grid::grid::Grid;
 
@@ -15,11 +15,10 @@ pub struct Sides {
     pub west: bool,
 }
 
-/// Closes the cracks between a chunk and coarser neighbours: along the given sides every second sample, which the neighbour does
-/// not have, moves onto the straight line between those that it has, where the edges of the neighbour's triangles are.
+/// Closes the cracks between a chunk and coarser neighbours. Along the given sides every second sample, which the
+/// neighbour lacks, is moved to the line between its two neighbours, which is the edge of the neighbour's triangle.
 ///
-/// The samples that both have are left alone. They are the same unless the recipe has filters; then let meshes hang a skirt
-/// down from their edges instead.
+/// Shared samples do not change. They are equal unless the recipe has filters; with filters, use skirts instead.
 pub fn stitch(grid: &mut Grid, sides: Sides) {
     let window = *grid.window();
     if window.is_empty() {
@@ -44,7 +43,7 @@ pub fn stitch(grid: &mut Grid, sides: Sides) {
     }
 }
 
-/// The samples between others that stand at odd places of the lattice: a coarser lattice has the even ones.
+/// The samples at odd positions of the lattice, between others; a coarser lattice has the even ones.
 fn odd(first: i64, count: usize) -> impl Iterator<Item = usize> {
     let start = if first.rem_euclid(2) == 0 { 1 } else { 2 };
     (start..count.saturating_sub(1)).step_by(2)

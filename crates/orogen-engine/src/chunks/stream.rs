@@ -1,4 +1,4 @@
-//! Which chunks to make and which to give up, as the viewer moves.
+//! The chunks to make and to drop as the viewer moves.
 
 use super::id::ChunkId;
 use super::lod::LodConfig;
@@ -7,20 +7,21 @@ use crate::world::World;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 
-/// What is to be done next.
+/// The next step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ChunkStep {
     /// Make this chunk and show it.
     Make(ChunkId),
-    /// Give this chunk up: it is out of sight, or others that cover its ground have been made.
+    /// Drop this chunk: it is out of range, or others that cover its terrain have been made.
     Drop(ChunkId),
 }
 
-/// The chunks around a viewer: told where the viewer is, it says which to make (nearest first) and which to give up.
+/// The chunks around a viewer: for each position of the viewer, it returns the chunks to make (nearest first) and to
+/// drop.
 ///
-/// It only keeps the list; the samples come from a [`Sampler`](crate::Sampler), on any thread. A chunk is given up only when whatever
-/// replaces it has been made, so that the ground never has a hole; until then some of it is there twice. How the ground is
-/// cut and how chunks fit together: [`LodConfig`].
+/// It only keeps the lists; the samples come from a [`Sampler`](crate::Sampler), on any thread. A chunk is dropped only
+/// after its replacement has been made, so that the terrain never has holes; until then parts of it are covered twice.
+/// See [`LodConfig`] for the division into chunks and for their borders.
 ///
 /// ```
 /// use orogen_engine::{ChunkStep, Recipe, LodConfig, Sampler, World};
@@ -43,31 +44,31 @@ pub enum ChunkStep {
 /// # Ok::<(), orogen_engine::Error>(())
 /// ```
 ///
-/// **Chunks made on other threads.** [`Chunks::take`] hands out the nearest chunk that nobody makes yet; tell [`Chunks::done`] when it
-/// is made, or [`Chunks::forget`] if it could not be; [`Chunks::evict`] hands out the chunks to drop. [`Chunks::next_step`] is these in
-/// a row, for callers that make each chunk before they ask for the next step.
+/// **Chunks made on other threads.** [`Chunks::take`] returns the nearest chunk that is not being made yet. Call
+/// [`Chunks::done`] when it is made, or [`Chunks::forget`] if it failed. [`Chunks::evict`] returns the chunks to drop.
+/// [`Chunks::next_step`] combines these, for callers that make each chunk before they ask for the next step.
 ///
-/// Once its lists have grown to their size, none of this asks for memory.
+/// After its lists have reached their final size, it allocates no memory.
 #[derive(Debug, Clone)]
 pub struct Chunks {
     lod: LodConfig,
     size: Option<[f64; 2]>,
     /// The chunks that cover the ground, sorted.
     wanted: Vec<ChunkId>,
-    /// Those that nobody makes yet, the nearest last.
+    /// Those that are not being made yet, the nearest last.
     queue: Vec<ChunkId>,
-    /// Those handed out, sorted.
+    /// Those returned by [`Chunks::take`], sorted.
     known: Vec<Known>,
     /// Those made and no longer wanted.
     leaving: Vec<ChunkId>,
-    /// Chunks that are replaced by finer ones, and chunks of the coarsest level that are in range, both sorted: they stay so a little
-    /// longer than they became so.
+    /// Chunks that are replaced by finer ones, and chunks of the coarsest level in range, both sorted. Both change with
+    /// hysteresis.
     split: Vec<ChunkId>,
     roots: Vec<ChunkId>,
-    /// Lists in the making.
+    /// Scratch lists.
     stack: Vec<ChunkId>,
     fresh: Vec<ChunkId>,
-    /// What [`Chunks::next_step`] has handed out last.
+    /// The last chunk returned by [`Chunks::next_step`].
     handed: Option<ChunkId>,
 }
 
@@ -78,21 +79,21 @@ struct Known {
 }
 
 impl World {
-    /// The chunks around a viewer of this world, to begin with none. In a world with bounds there is no chunk beyond them, and
-    /// those at its far edges are cut where its samples end.
+    /// The chunks around a viewer of this world, initially none. In a bounded world there are no chunks outside of it,
+    /// and those at its far edges are clipped.
     ///
     /// # Errors
-    /// If the rings cannot be: see [`LodConfig::check`].
+    /// If the configuration is invalid: see [`LodConfig::check`].
     pub fn chunks(&self, lod: LodConfig) -> Result<Chunks> {
         Chunks::new(lod, self.recipe().world.size)
     }
 }
 
 impl Chunks {
-    /// The chunks around a viewer, of a world of `size` metres east and south, or one without bounds.
+    /// The chunks around a viewer of a world of `size` metres east and south, or of an unbounded one.
     ///
     /// # Errors
-    /// If the rings cannot be: see [`LodConfig::check`].
+    /// If the configuration is invalid: see [`LodConfig::check`].
     pub fn new(lod: LodConfig, size: Option<[f64; 2]>) -> Result<Chunks> {
         lod.check()?;
         Ok(Chunks {
@@ -110,17 +111,17 @@ impl Chunks {
         })
     }
 
-    /// How the ground is cut.
+    /// The configuration.
     pub fn lod(&self) -> &LodConfig {
         &self.lod
     }
 
-    /// The samples of a chunk, its far edges included; at the far edges of a world with bounds, those that it has.
+    /// The samples of a chunk, including its far edges, clipped to a bounded world.
     pub fn window(&self, id: ChunkId) -> Window {
         self.lod.window_within(id, self.size).unwrap_or_else(|| self.lod.window(id))
     }
 
-    /// The chunks that cover the ground around the viewer, made or not, sorted.
+    /// The chunks that cover the terrain around the viewer, whether made or not, sorted.
     pub fn wanted(&self) -> &[ChunkId] {
         &self.wanted
     }
@@ -128,9 +129,9 @@ impl Chunks {
     /// Moves the viewer to x metres east and y metres south of the origin.
     ///
     /// # Errors
-    /// If that is no position, or so far out that positions are no longer exact; nothing has changed then.
+    /// If the position is not finite, or so far away that positions are no longer exact; then nothing changes.
     pub fn set_viewer(&mut self, x: f64, y: f64) -> Result<()> {
-        // Samples have exact positions up to 2^53; the ground in sight must lie before that.
+        // Samples have exact positions up to 2^53; the terrain in range must be closer.
         let farthest = (1u64 << 52) as f64 * self.lod.cell;
         if !(x.abs() <= farthest && y.abs() <= farthest) {
             let message = match x.is_finite() && y.is_finite() {
@@ -159,7 +160,7 @@ impl Chunks {
         Ok(())
     }
 
-    /// Finds the chunks of the coarsest level that are in range.
+    /// Finds the chunks of the coarsest level in range.
     fn see(&mut self, viewer: [f64; 2]) {
         let level = self.lod.levels - 1;
         let side = self.lod.side(level);
@@ -176,11 +177,11 @@ impl Chunks {
                 }
             }
         }
-        // Row by row is sorted already.
+        // Row-by-row order is sorted already.
         std::mem::swap(&mut self.fresh, &mut self.roots);
     }
 
-    /// Cuts them into finer ones.
+    /// Splits them into finer ones.
     fn cut(&mut self, viewer: [f64; 2]) {
         self.wanted.clear();
         self.fresh.clear();
@@ -205,7 +206,7 @@ impl Chunks {
         std::mem::swap(&mut self.fresh, &mut self.split);
     }
 
-    /// Whether any of a chunk's ground is the world's.
+    /// Whether a chunk overlaps the world.
     fn has_ground(&self, id: ChunkId) -> bool {
         let Some([east, south]) = self.size else { return true };
         let side = self.lod.side(id.level);
@@ -213,7 +214,7 @@ impl Chunks {
         within(id.x, east) && within(id.y, south)
     }
 
-    /// Hands out the nearest chunk that is wanted and that nobody makes yet.
+    /// Returns the nearest wanted chunk that is not being made yet.
     pub fn take(&mut self) -> Option<ChunkId> {
         let id = self.queue.pop()?;
         if let Err(place) = find(&self.known, id) {
@@ -222,7 +223,7 @@ impl Chunks {
         Some(id)
     }
 
-    /// A chunk that was taken has been made and is shown.
+    /// Reports that a taken chunk has been made and is shown.
     pub fn done(&mut self, id: ChunkId) {
         let Ok(place) = find(&self.known, id) else { return };
         let known = &mut self.known[place];
@@ -231,8 +232,8 @@ impl Chunks {
         }
     }
 
-    /// A chunk that was taken is not there, because it could not be made or was lost: it is handed out again when it is wanted, after
-    /// all others.
+    /// Reports that a taken chunk could not be made or was lost. If it is wanted, it is returned again after all
+    /// others.
     pub fn forget(&mut self, id: ChunkId) {
         let Ok(place) = find(&self.known, id) else { return };
         self.known.remove(place);
@@ -242,7 +243,7 @@ impl Chunks {
         }
     }
 
-    /// Hands out a chunk that is to be given up; it is forgotten.
+    /// Returns a chunk to drop, and removes it from the lists.
     pub fn evict(&mut self) -> Option<ChunkId> {
         let replaced = |id: &ChunkId| {
             let missing = |other: &Known| !other.made && other.id.overlaps(*id) && is_wanted(&self.wanted, other.id);
@@ -256,8 +257,8 @@ impl Chunks {
         Some(id)
     }
 
-    /// What is to be done next; `None` when the ground is complete until the viewer moves. A chunk that was to be made counts as made
-    /// from the next call on.
+    /// The next step; `None` if the terrain is complete until the viewer moves. A chunk to make counts as made at the
+    /// next call.
     pub fn next_step(&mut self) -> Option<ChunkStep> {
         if let Some(id) = self.handed.take() {
             self.done(id);
@@ -269,7 +270,8 @@ impl Chunks {
         self.handed.map(ChunkStep::Make)
     }
 
-    /// The sides of a chunk along which its neighbour is coarser, for [`stitch`](super::seam::stitch). It changes as the viewer moves.
+    /// The sides of a chunk with a coarser neighbour, for [`stitch`](super::seam::stitch). They change as the viewer
+    /// moves.
     pub fn coarser(&self, id: ChunkId) -> Sides {
         let coarser = |columns, rows| {
             let mut beside = id.beside(columns, rows);

@@ -1,15 +1,15 @@
-//! What every op implements by its declaration.
+//! The trait that every op implements through its declaration.
 
 use super::input::{Input, InputName};
 use super::spec::Spec;
 use crate::value::Value;
 use orogen_io::dem::file_ref::FileRef;
 
-/// What an `op!` block implements: reaching a node's inputs and parameters by their index in the [`Spec`].
+/// The implementation by an `op!` block: access to a node's inputs and parameters by their index in the [`Spec`].
 pub trait Declared {
-    /// What was declared.
+    /// The declaration.
     fn spec(&self) -> &'static Spec;
-    /// The inputs it has: those declared, or those that its expression names.
+    /// The inputs: those declared, or the names in the expression.
     fn inputs(&self) -> Vec<InputName<'_>> {
         self.spec().inputs.iter().map(|input| InputName { name: input.name, required: input.required }).collect()
     }
@@ -19,12 +19,12 @@ pub trait Declared {
     fn set_input(&mut self, i: usize, input: Input);
     /// Parameter `i`.
     fn param(&self, i: usize) -> Value;
-    /// Sets parameter `i`, or says what was expected.
+    /// Sets parameter `i`; the error describes the valid values.
     fn set_param(&mut self, i: usize, value: &Value) -> Result<(), String>;
-    /// What of parameter `i` decides about results.
+    /// The part of parameter `i` that affects results.
     fn param_key(&self, i: usize) -> Value;
     /// The files that parameters name.
     fn files(&mut self) -> Vec<&mut FileRef>;
-    /// What a single parameter cannot see: a message if parameters contradict each other, with the key it is about.
+    /// Checks that parameters do not contradict each other; the error has a key and a message.
     fn consistent(&self) -> Result<(), (&'static str, String)>;
 }

@@ -1,25 +1,25 @@
-//! What a node reads.
+//! Inputs of nodes.
 
 use serde::{Deserialize, Serialize};
 
 /// An input of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct InputName<'a> {
-    /// Its key.
+    /// The key.
     pub name: &'a str,
-    /// Whether the node cannot do without.
+    /// Whether the input is required.
     pub required: bool,
 }
 
-/// What an op reads: another node's output, or a constant.
+/// The value of an input: another node's output, or a constant.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub enum Input {
-    /// Nothing: an optional input left out, or a required one still missing.
+    /// An optional input that is omitted, or a required one that is missing.
     #[default]
     None,
     /// A node by name, or one of its layers as `node.layer`.
     Node(String),
-    /// The same number everywhere.
+    /// A constant.
     Value(f64),
 }
 
@@ -41,7 +41,7 @@ impl From<f64> for Input {
     }
 }
 
-/// Sets what a name in an expression stands for, and keeps the names in the expression's order.
+/// Sets the value of a name in an expression, and keeps the order of names in the expression.
 pub fn set_named(inputs: &mut Vec<(String, Input)>, names: &[String], name: String, input: Input) {
     inputs.retain(|(other, _)| *other != name);
     inputs.push((name, input));

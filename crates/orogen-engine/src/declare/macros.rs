@@ -1,7 +1,7 @@
 //! `op!` and `choice!`.
 
-/// A choice between names, each variant with its doc: `choice! { /// .. pub enum Unit { /// .. Degrees = "degrees", .. } }`.
-/// The first variant is the default.
+/// An enum of named choices, each variant with its doc: `choice! { /// .. pub enum Unit { /// .. Degrees = "degrees",
+/// .. } }`. The first variant is the default.
 macro_rules! choice {
     (
         $(#[doc = $doc:literal])+
@@ -37,12 +37,13 @@ macro_rules! choice {
 
 /// Declares an op: see any file in `field/`, `filter/` or `solver/`.
 ///
-/// What a filter or solver makes besides one layer of heights is declared in a block `layers`: each with its doc, how it is
-/// read between samples (`height`, `label`, `flow`, or as its `source`) and its unit.
+/// Layers of a filter or solver other than a single layer of heights are declared in a block `layers`: each with its
+/// doc, its interpolation (`height`, `label`, `flow`, or as its `source`) and its unit.
 ///
-/// With `inputs of NAME;` it reads whatever the expression in its parameter NAME names.
+/// With `inputs of NAME;` its inputs are the names in the expression of its parameter NAME.
 ///
-/// With `octaves;` after its name the op is a fractal: it gets the parameters all fractals share, beside its own.
+/// With `octaves;` after its name the op is a fractal: it has the common parameters of fractals, in addition to its
+/// own.
 macro_rules! op {
     (
         $(#[doc = $doc:literal])+
@@ -71,7 +72,7 @@ macro_rules! op {
         }
 
         impl $name {
-            /// The octaves as the noise library sums them.
+            /// The octaves, as the noise library sums them.
             fn fractal(&self, world_params: &$crate::op::WorldParams, kind: orogen_noise::Kind) -> orogen_noise::Fractal {
                 orogen_noise::Fractal {
                     basis: self.basis,

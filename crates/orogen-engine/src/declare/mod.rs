@@ -1,13 +1,13 @@
-//! Declarations: what an op is called, reads and can be told, said once.
+//! Declarations of ops: name, inputs, parameters and layers.
 //!
-//! One `op!` block gives the struct, its defaults, reading and checking from a recipe, writing back, the JSON Schema, the
-//! command line's help and a user interface's sliders.
+//! One `op!` block gives the struct, its defaults, parsing and validation, serialisation, the JSON Schema, the help of
+//! the command line and the sliders of a user interface.
 //!
-//! - [`spec`]: what is declared of an op, its inputs and its parameters
-//! - [`input`]: what a node reads
-//! - [`param`]: the types that parameters can have
-//! - [`declared`]: what every op implements
-//! - `macros`: `op!` and `choice!`, which write all of it
+//! - [`spec`]: the declaration of an op, its inputs and its parameters
+//! - [`input`]: the inputs of a node
+//! - [`param`]: the types of parameters
+//! - [`declared`]: the trait that every op implements
+//! - `macros`: `op!` and `choice!`, which generate the code
 
 #[macro_use]
 mod macros;

@@ -1,15 +1,15 @@
-//! The types that parameters can have, read from values and written as such.
+//! Types of parameters, with conversion from and to values.
 
 use super::spec::{ParamSpec, Shape};
 use crate::expression::text::Expression;
 use crate::value::{Spanned, Value};
 use orogen_io::dem::file_ref::{FileRef, Picture};
 
-/// A type that a parameter can have.
+/// A type of parameters.
 pub trait Param: Sized {
-    /// What kind of value it is read from.
+    /// The kind of value that it is read from.
     const SHAPE: Shape;
-    /// The parameter from a value, if the value is of the right kind.
+    /// The parameter from a value; `None` if the value has another kind.
     fn read(value: &Value) -> Option<Self>;
     /// The parameter as a value.
     fn write(&self) -> Value;
@@ -18,7 +18,7 @@ pub trait Param: Sized {
         let _ = range;
         true
     }
-    /// What decides about results: the parameter itself, or of a file what is in it.
+    /// The part that affects results: the parameter itself, or the content of a file.
     fn key(&self) -> Value {
         self.write()
     }
@@ -102,7 +102,7 @@ impl Param for u32 {
     const SHAPE: Shape = Shape::Integer;
     fn read(value: &Value) -> Option<u32> {
         match value {
-            // What does not fit is out of every declared range too: saturate, so that the range is what the message names.
+            // Values that do not fit are out of every declared range: saturate, so that the message states the range.
             Value::Integer(integer) => Some(u32::try_from(*integer).unwrap_or(u32::MAX)),
             _ => None,
         }
@@ -178,7 +178,7 @@ impl Param for Vec<[f64; 2]> {
     }
 }
 
-/// Reads one parameter: the right kind, in range; or what was expected.
+/// Reads a parameter; the error describes the valid kind and range.
 pub fn read_param<T: Param>(spec: &ParamSpec, value: &Value) -> Result<T, String> {
     match T::read(value) {
         Some(param) if param.within(spec.range) => Ok(param),

@@ -1,5 +1,5 @@
-//! A program on the calling thread alone, into samples that the caller holds: no pool, no grid, and no memory asked for once
-//! the buffers have grown to their size.
+//! Running a program on the calling thread into the caller's samples: without the pool, without grids, and without
+//! allocation once the buffers have their final size.
 
 use super::interpreter::{Bindings, Buffers, Interpreter};
 use super::run::{Engine, Solutions};
@@ -8,7 +8,7 @@ use crate::plan::steps::Plan;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
-/// A program for points with all that it reads made.
+/// A program for points, with all its inputs computed.
 pub struct PreparedProgram {
     program: Program,
     solutions: Solutions,
@@ -17,22 +17,22 @@ pub struct PreparedProgram {
 }
 
 impl PreparedProgram {
-    /// Whether it answers for every point and every window, not just for points within the window it was planned for.
+    /// Whether it is valid for every point and every window, not only for the window it was planned for.
     pub fn anywhere(&self) -> bool {
         self.anywhere
     }
 }
 
 impl Engine<'_> {
-    /// Makes all that a plan for points needs before it is asked; `None` if the plan is for no points.
+    /// Computes everything that a plan for points needs before evaluation; `None` if the plan is not for points.
     pub fn ready(&self, plan: &Plan) -> Result<Option<PreparedProgram>> {
         let Some(program) = plan.asked() else { return Ok(None) };
         let (solutions, grids) = self.before_points(plan)?;
         Ok(Some(PreparedProgram { program: program.clone(), solutions, grids, anywhere: plan.is_pointwise() }))
     }
 
-    /// Makes the samples of a window, row-major, into `out`, which must have its length; gives the buffers back. Only for what
-    /// answers [anywhere](PreparedProgram::anywhere).
+    /// Computes the samples of a window, row-major, into `out`, which must have its length; returns the buffers. Only
+    /// if it is valid [anywhere](PreparedProgram::anywhere).
     pub fn fill_inline(
         &self,
         ready: &PreparedProgram,
@@ -62,7 +62,7 @@ impl Engine<'_> {
         })
     }
 
-    /// Makes the values at points into `out`, which must have as many; gives the buffers back.
+    /// Computes the values at points into `out`, which must have the same length; returns the buffers.
     pub fn points_inline(
         &self,
         ready: &PreparedProgram,
@@ -96,8 +96,8 @@ impl Engine<'_> {
     }
 }
 
-/// Columns and rows of the blocks that a window so wide is cut into: about [`BLOCK_WIDTH`] columns, so that a chunk with its
-/// far edge (257 samples) is not cut into a block and a sliver, and no more samples than a block has.
+/// Columns and rows of the blocks of a window with this width: about [`BLOCK_WIDTH`] columns, so that a chunk including
+/// its far edge (257 samples) is not split into a block and a sliver, and at most the samples of a block.
 fn block(width: usize) -> (usize, usize) {
     let across = ((width + BLOCK_WIDTH / 2) / BLOCK_WIDTH).max(1);
     let columns = width.div_ceil(across).max(1);

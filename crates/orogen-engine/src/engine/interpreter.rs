@@ -1,4 +1,4 @@
-//! Runs a program over one block of samples.
+//! The interpreter of programs over a block of samples.
 
 use crate::expression::function::{Argument, MAX_ARGUMENTS};
 use crate::layer::LayerKind;
@@ -10,7 +10,7 @@ use orogen_grid::resample::{self, NOWHERE};
 use orogen_noise::Points;
 use std::sync::Arc;
 
-/// What a program's instructions refer to.
+/// The data that a program's instructions refer to.
 pub struct Bindings<'a> {
     pub world_params: &'a WorldParams,
     pub fields: &'a (dyn Fn(usize) -> Option<&'a dyn Field> + Sync),
@@ -18,7 +18,7 @@ pub struct Bindings<'a> {
     pub grids: &'a [Option<Grid>],
 }
 
-/// How a coordinate set's buffers are to be understood.
+/// The representation of a coordinate set.
 #[derive(Clone, Copy, Default, PartialEq)]
 enum Shape {
     #[default]
@@ -46,14 +46,14 @@ impl CoordSet {
     }
 }
 
-/// Registers and coordinate sets between two runs: handed to the next interpreter, they spare it asking for memory.
+/// Registers and coordinate sets that can be passed to the next interpreter to avoid allocation.
 #[derive(Default)]
 pub struct Buffers {
     registers: Vec<Vec<f32>>,
     coord_sets: Vec<CoordSet>,
 }
 
-/// Registers and coordinate sets, used again from block to block.
+/// An interpreter, which reuses registers and coordinate sets from block to block.
 pub struct Interpreter<'p> {
     program: &'p Program,
     registers: Vec<Vec<f32>>,
@@ -61,12 +61,12 @@ pub struct Interpreter<'p> {
 }
 
 impl<'p> Interpreter<'p> {
-    /// A interpreter for a program.
+    /// An interpreter for a program.
     pub fn new(program: &'p Program) -> Interpreter<'p> {
         Interpreter::with(program, Buffers::default())
     }
 
-    /// A interpreter for a program, over buffers that another has left.
+    /// An interpreter for a program that reuses the buffers of another one.
     pub fn with(program: &'p Program, buffers: Buffers) -> Interpreter<'p> {
         let Buffers { mut registers, mut coord_sets } = buffers;
         registers.resize_with(program.registers, Vec::new);
@@ -90,7 +90,7 @@ impl<'p> Interpreter<'p> {
         self.run(Some(block), block.len(), bindings)
     }
 
-    /// Runs the program at any points.
+    /// Runs the program at arbitrary points.
     pub fn run_points(&mut self, x: &[f64], y: &[f64], bindings: &Bindings) -> Result<()> {
         let coords = &mut self.coord_sets[0];
         coords.shape = Shape::Scattered;
@@ -150,7 +150,7 @@ impl<'p> Interpreter<'p> {
             Instruction::Grid { grid, kind, coords, out } => {
                 let grid = bindings.grids.get(*grid).and_then(Option::as_ref);
                 let grid = grid.ok_or_else(|| internal("a grid was read before it was made"))?;
-                // Only the block itself lies on the lattice that the grid was made on.
+                // Only the block itself is on the lattice of the grid.
                 let block = block.filter(|_| *coords == 0);
                 let mut samples = std::mem::take(&mut self.registers[*out]);
                 copy_or_read(grid, *kind, block, &self.coord_sets[*coords].points(), &mut samples);
@@ -177,7 +177,7 @@ impl<'p> Interpreter<'p> {
             Instruction::Displace { from, east, south, strength, reach, to } => {
                 let mut moved = std::mem::take(&mut self.coord_sets[*to]);
                 let metres = |input: f32| {
-                    // A displacement that is no number moves nothing: the source then decides what shows.
+                    // A displacement that is NaN does not move the position; the source then decides the result.
                     let metres = (f64::from(input) * strength).clamp(-reach, *reach) as f32;
                     if metres.is_nan() { 0.0 } else { metres }
                 };
@@ -210,7 +210,7 @@ impl<'p> Interpreter<'p> {
         Ok(())
     }
 
-    /// Lends the inputs and takes the output out while an op works, so that both can be borrowed at once.
+    /// Lends the inputs and takes the output out during an op, so that both can be borrowed at once.
     fn with_inputs<T>(
         &mut self,
         coords: usize,
@@ -241,7 +241,7 @@ fn internal(message: &str) -> Error {
     Error::new(ErrorKind::Internal, message)
 }
 
-/// Copies a block out of a grid on its own lattice, or reads it between samples.
+/// Copies a block from a grid on its own lattice, or interpolates.
 fn copy_or_read(grid: &Grid, kind: LayerKind, block: Option<&Window>, points: &Points, out: &mut [f32]) {
     match block {
         Some(block) if grid.window().contains(block) => {
@@ -255,8 +255,8 @@ fn copy_or_read(grid: &Grid, kind: LayerKind, block: Option<&Window>, points: &P
     }
 }
 
-/// Moves every point. From a lattice the columns and rows stay known beside the displacements; from anywhere else the new
-/// positions are plain points. Either way a position is the f64 sum of where it was and the f32 it moved.
+/// Displaces every point. From a lattice, the columns and rows stay known beside the displacements; from other sets the
+/// new positions are plain points. In both cases a position is the f64 sum of its old value and the f32 displacement.
 fn displace(from: &CoordSet, count: usize, by: impl Fn(usize) -> (f32, f32), to: &mut CoordSet) {
     to.x.clear();
     to.y.clear();

@@ -1,4 +1,4 @@
-//! The engine: runs plans.
+//! The engine, which runs plans.
 
 pub(crate) mod inline;
 pub(crate) mod interpreter;

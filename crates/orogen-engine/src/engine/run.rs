@@ -1,4 +1,4 @@
-//! Runs a plan's steps.
+//! Running the steps of a plan.
 
 use super::interpreter::{Bindings, Interpreter};
 use crate::budget::Budget;
@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// What runs plans of one recipe.
+/// Runs plans of one recipe.
 #[derive(Clone, Copy)]
 pub struct Engine<'a> {
     pub recipe: &'a Recipe,
@@ -28,13 +28,13 @@ pub struct Engine<'a> {
     /// The content keys of the nodes.
     pub keys: &'a [Key],
     pub store: &'a Store,
-    /// Where the grids of expensive filters are kept, if they are.
+    /// The store of expensive filters' grids, if there is one.
     pub grids: Option<&'a GridStore>,
     pub budget: &'a Budget,
-    /// The threads that work is shared out to. What only waits, waits on the calling thread.
+    /// The thread pool. Waiting happens only on the calling thread.
     pub pool: &'a Pool,
     pub progress: &'a Progress,
-    /// Who observes the steps of which node's solver. That node is solved even if its solution is stored.
+    /// The observer of a solver's steps, with the node. That node is solved even if its solution is stored.
     pub observer: Option<(usize, &'a (dyn StepObserver + Sync))>,
 }
 
@@ -45,11 +45,11 @@ struct Filling<'a> {
     outputs: usize,
 }
 
-/// What solvers found, by node.
+/// Solutions by node.
 pub type Solutions = HashMap<usize, Arc<Solution>>;
 
 impl<'a> Engine<'a> {
-    /// Makes a plan's output grids.
+    /// Computes the output grids of a plan.
     pub fn run(&self, plan: &Plan) -> Result<Vec<Grid>> {
         let work = cost::steps(plan, self.recipe);
         self.progress.expect(work);
@@ -60,7 +60,7 @@ impl<'a> Engine<'a> {
         Ok(grids)
     }
 
-    /// Makes a plan's output grids, all that it reads being solved.
+    /// Computes the output grids of a plan, with all its solvers solved.
     pub(super) fn steps(&self, plan: &Plan, solutions: &Solutions, progress: &Progress) -> Result<Vec<Grid>> {
         progress.expect(cost::steps(plan, self.recipe));
         let mut grids: Vec<Option<Grid>> = plan.grids.iter().map(|_| None).collect();
@@ -80,12 +80,12 @@ impl<'a> Engine<'a> {
                 }
             }
         }
-        // One grid may be several outputs only by being made several times: each output has a slot of its own.
+        // Each output has its own slot, so a grid is an output only once.
         Ok(plan.outputs.iter().filter_map(|&slot| grids[slot].take()).collect())
     }
 
-    /// Takes the grids of expensive filters that are kept from earlier requests. Returns which steps still have to be made: those whose grids are
-    /// read by others that have to be, or are results.
+    /// Takes kept grids of expensive filters from earlier requests. Returns which steps are still needed: those whose
+    /// grids are results or are read by needed steps.
     fn kept_grids(&self, plan: &Plan, grids: &mut [Option<Grid>]) -> Vec<bool> {
         let mut needed = vec![true; plan.steps.len()];
         let Some(store) = self.grids.filter(|store| store.is_used()) else { return needed };
@@ -105,7 +105,7 @@ impl<'a> Engine<'a> {
         needed
     }
 
-    /// What the grids of a step are kept under; `None` if they are not worth it.
+    /// The keys of a step's grids; `None` if they are not worth keeping.
     fn grid_keys(&self, step: &Step) -> Option<Vec<GridKey>> {
         let Step::Apply { node, window, out, .. } = step else { return None };
         let Op::Filter(filter) = self.recipe.nodes().get(*node)?.node.op() else { return None };
@@ -114,14 +114,14 @@ impl<'a> Engine<'a> {
             .then(|| layers.map(|layer| GridKey::new(self.keys[*node], layer, window)).collect())
     }
 
-    /// Makes a scattered plan's values at points, output after output.
+    /// Computes the values of a scattered plan at points, one output after the other.
     pub fn run_points(&self, plan: &Plan, x: &[f64], y: &[f64]) -> Result<Vec<Vec<f32>>> {
         let (solutions, grids) = self.before_points(plan)?;
         let Some(program) = plan.asked() else { return Ok(Vec::new()) };
         self.pool.install(|| self.at_points(program, x, y, &solutions, &grids))
     }
 
-    /// All that a scattered plan makes before it is asked at any point.
+    /// Computes everything that a scattered plan needs before its points.
     pub fn before_points(&self, plan: &Plan) -> Result<(Solutions, Vec<Option<Grid>>)> {
         let solutions = self.solve(plan)?;
         let mut grids: Vec<Option<Grid>> = plan.grids.iter().map(|_| None).collect();
@@ -152,7 +152,7 @@ impl<'a> Engine<'a> {
         Ok(())
     }
 
-    /// Keeps the grids of an expensive filter for the next request.
+    /// Keeps the grids of an expensive filter for later requests.
     fn keep_grids(&self, step: &Step, made: &[Grid]) {
         let Some(store) = self.grids.filter(|store| store.is_used()) else { return };
         for (key, grid) in self.grid_keys(step).into_iter().flatten().zip(made) {
@@ -198,7 +198,7 @@ impl<'a> Engine<'a> {
         Ok(values)
     }
 
-    /// Runs a program over a window: bands of rows side by side, each band block by block.
+    /// Runs a program over a window: bands of rows in parallel, each band block by block.
     fn fill(
         &self,
         filling: &Filling,
@@ -214,7 +214,7 @@ impl<'a> Engine<'a> {
         let fields = |node| self.field(node);
         let solvers = |node| self.solver(node, solutions);
         let bindings = Bindings { world_params: self.world_params, fields: &fields, solvers: &solvers, grids };
-        // Enough bands for every thread to have some, none so thin that rows of noise lattice are made over and over.
+        // Enough bands for all threads, but not so thin that rows of noise lattices are computed repeatedly.
         let rows = window.height.div_ceil(2 * rayon::current_num_threads()).clamp(8, BLOCK_HEIGHT);
         progress.expect(window.height as f64);
         let mut bands: Vec<Vec<&mut [f32]>> = (0..window.height.div_ceil(rows)).map(|_| Vec::new()).collect();
@@ -258,7 +258,7 @@ impl<'a> Engine<'a> {
             return Err(Error::new(ErrorKind::Internal, "a node that is not a filter was to be applied"));
         };
         let grown = window.grown(*halo);
-        // An input may have been made for others too, over more samples: the filter gets just what it declared.
+        // An input may cover more samples because other steps read it too: it is cropped to the declared halo.
         let cropped: Vec<Option<Grid>> = inputs
             .iter()
             .map(|input| {

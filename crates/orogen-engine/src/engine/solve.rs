@@ -1,4 +1,4 @@
-//! Solves what a plan needs solved.
+//! Solving the solvers of a plan.
 
 use super::run::{Engine, Solutions};
 use super::tiles::Tiles;
@@ -14,12 +14,12 @@ use orogen_grid::progress::Progress;
 use std::sync::Arc;
 
 impl Engine<'_> {
-    /// The solutions that a plan's steps read: found in the store, or made, after those that their own sources read. What only a
-    /// solution that is found would read is not even looked for.
+    /// The solutions that a plan's steps read: found in the store, or computed after those that their sources read.
+    /// Solvers that only a stored solution would read are skipped.
     pub(super) fn solve(&self, plan: &Plan) -> Result<Solutions> {
         let mut wanted = plan.solvers_read();
         let (mut there, mut missing) = (Solutions::new(), Vec::new());
-        // Sources come first in the plan: backwards, whoever reads a solution is known before the solution is looked for.
+        // Sources come first in the plan: in reverse order, all readers of a solution are known before it is looked up.
         for order in plan.solves.iter().rev() {
             if !wanted.contains(&order.node) {
                 continue;
@@ -43,7 +43,8 @@ impl Engine<'_> {
             };
             let solution = match begun {
                 Begun::Found(solution) => solution,
-                // It is stored on a thread of the pool: the calling thread may have been lent to another request that waits for it.
+                // It is stored on a thread of the pool: the calling thread may run work of another request that waits
+                // for it.
                 Begun::Make(making) => {
                     self.pool.install(|| Ok::<_, Error>(making.finish(self.solved(order, &there, &part)?)))?
                 }
@@ -54,18 +55,18 @@ impl Engine<'_> {
         Ok(there)
     }
 
-    /// Whether this thread may wait for a solution that another request is making. A thread of the pool may not: that request could be further down
-    /// its own stack.
+    /// Whether this thread may wait for a solution that another request is computing. A thread of the pool may not:
+    /// that request could be further down its own stack.
     fn may_wait(&self) -> bool {
         !self.pool.is_current()
     }
 
-    /// Whether somebody wants to see the steps of a node's solver, which is then solved even if its solution is stored.
+    /// Whether the steps of a node's solver are observed; it is then solved even if its solution is stored.
     fn is_observed(&self, node: usize) -> bool {
         self.observer.is_some_and(|(observed, _)| observed == node)
     }
 
-    /// Nanoseconds of one core that solving takes before a plan's steps can be run, about.
+    /// Approximate time of solving before the steps of a plan, on one core, in nanoseconds.
     pub fn solving_work(&self, plan: &Plan) -> f64 {
         let mut wanted = plan.solvers_read();
         let mut work = 0.0;
@@ -78,7 +79,7 @@ impl Engine<'_> {
         work
     }
 
-    /// A solution that two requests made at once may be in memory though this one wants it on disk.
+    /// A solution that two requests computed at once may be in memory although this request needs it on disk.
     fn moved(&self, order: &Solve, solution: Arc<Solution>) -> Result<Arc<Solution>> {
         match order.on_disk {
             true => Ok(self.store.find(&order.key, true)?.unwrap_or(solution)),
@@ -86,7 +87,7 @@ impl Engine<'_> {
         }
     }
 
-    /// Solves one solver, all that its sources read being there.
+    /// Solves one solver; all solutions that its sources read are in `there`.
     fn solved(&self, order: &Solve, there: &Solutions, progress: &Progress) -> Result<Solution> {
         let Op::Solver(solver) = self.recipe.nodes()[order.node].node.op() else {
             return Err(Error::new(ErrorKind::Internal, "a node that is not a solver was to be solved"));
@@ -96,7 +97,7 @@ impl Engine<'_> {
         sources.expect(order.source_work);
         let make = |link: Link, tile: Window| {
             let plan = planner.source(link, tile)?;
-            // The solution is kept, what it was made of is not.
+            // The solution is kept, its sources are not.
             let engine = Engine { grids: None, ..*self };
             engine.steps(&plan, there, &sources.part(cost::steps(&plan, self.recipe)))
         };

@@ -1,4 +1,4 @@
-//! A solver's sources, made tile by tile as it asks.
+//! The sources of a solver, computed tile by tile on request.
 
 use crate::op::Sources;
 use crate::plan::steps::Solve;
@@ -9,12 +9,12 @@ use orogen_io::pages::Pages;
 use orogen_io::raster::Raster;
 use std::path::Path;
 
-/// The inputs of one solver; `make` makes an input over a tile.
+/// The inputs of a solver; `make` computes an input over a tile.
 pub struct Tiles<'a> {
     pub links: &'a [Link],
     pub order: &'a Solve,
     pub make: &'a dyn Fn(Link, Window) -> Result<Vec<Grid>>,
-    /// The folder for what is to be on disk.
+    /// The folder for rasters on disk.
     pub scratch: &'a Path,
 }
 

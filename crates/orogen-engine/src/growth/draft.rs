@@ -1,10 +1,11 @@
-//! Drafts: frames of an early stage, made of a quarter of the samples and without the stages after it.
+//! Drafts: frames of an early stage with a quarter of the samples and without later stages.
 //!
-//! A frame of a stage that others follow would need all of them, over the whole world at their own cell, to show what it does at its coarser one.
-//! A draft leaves them out: their source passes through. It is made at twice the cell, without the octaves of gullies too fine for it, and read
-//! between its samples. What it lacks is known where
-//! the stage ends, since the frame there is made in full: the difference between the two is added to every frame before, the more the nearer it is
-//! to the end. So detail comes in evenly, and the last frame of the stage goes over into the first of the next without a jump.
+//! A full frame of a stage that others follow needs all later stages, over the whole world at their own cell. A draft
+//! skips them: they pass their source through. It is made at twice the cell, without the octaves of gullies that are
+//! too fine for it, and is interpolated. At the end of the stage the frame is made in full, so the difference to its
+//! draft is known there. That difference, with a weight that increases towards the end, is added to every earlier
+//! frame. Detail therefore appears gradually, and the last frame of the stage continues in the first one of the next
+//! stage without a jump.
 
 use crate::field::add::Add;
 use crate::field::gullies::Gullies;
@@ -17,13 +18,13 @@ use orogen_grid::resample;
 use orogen_noise::Points;
 use std::collections::BTreeSet;
 
-/// A draft's cell in cells of its frame.
+/// The ratio of a draft's cell to its frame's cell.
 const COARSER: i64 = 2;
 
-/// Samples that the interpolating cubic reads beyond a position.
+/// Samples that the interpolating cubic reads around a position.
 const MARGIN: usize = 2;
 
-/// The samples that a draft of the frame over `window` is made at.
+/// The window of the draft of a frame over `window`.
 pub fn window(window: &Window) -> Window {
     let first = |start: i64| start.div_euclid(COARSER);
     let count = |start: i64, end: i64| (end - 1).div_euclid(COARSER) + 2 - first(start);
@@ -38,7 +39,8 @@ pub fn window(window: &Window) -> Window {
     .grown(MARGIN)
 }
 
-/// The recipe of a draft of a frame over `window`: solvers work at the draft's cell, and the nodes in `later` show their source.
+/// The recipe of a draft of a frame over `window`: solvers use the draft's cell, and the nodes in `later` pass their
+/// source through.
 pub fn recipe(mut recipe: Recipe, later: &BTreeSet<usize>, window: &Window) -> Recipe {
     recipe.world.cell = recipe.world.cell.max(window.cell) * COARSER as f64;
     let mut passing = recipe.clone();
@@ -53,23 +55,24 @@ pub fn recipe(mut recipe: Recipe, later: &BTreeSet<usize>, window: &Window) -> R
         }
         index += 1;
     });
-    // Where another layer of such a node is read, it has to be solved.
+    // If another layer of such a node is read, it must be solved.
     if Graph::resolve(&passing).is_ok() { passing } else { recipe }
 }
 
-/// How many octaves of gullies can be seen at a cell: those whose gullies are at least two samples apart, and the first.
+/// Number of octaves of gullies that are visible at a cell: those whose gullies are at least two samples apart, and the
+/// first.
 fn octaves(gullies: &Gullies, cell: f64) -> u32 {
     let apart = |octave: u32| gullies.wavelength / libm::pow(gullies.lacunarity, f64::from(octave));
     (1..gullies.octaves).find(|octave| apart(*octave) < 2.0 * cell).unwrap_or(gullies.octaves)
 }
 
-/// How much of what drafts lack at their stage's end is added at a share of its steps: as a cube, since half way the fine detail of the end is not
-/// there yet.
+/// The weight of the difference at a share of the stage's steps: its cube, because half way the fine detail of the end
+/// does not exist yet.
 pub fn share(steps: f64) -> f32 {
     (steps * steps * steps) as f32
 }
 
-/// A draft at every sample of its frame's window.
+/// A draft interpolated to the samples of its frame's window.
 pub fn refined(draft: &Grid, window: &Window) -> Grid {
     let mut out = Grid::filled(*window, 0.0);
     let (xs, ys) = (window.eastings(), window.southings());
@@ -77,7 +80,7 @@ pub fn refined(draft: &Grid, window: &Window) -> Grid {
     out
 }
 
-/// What the draft lacks of a frame.
+/// The difference between a frame and its draft.
 pub fn lacking(draft: &Grid, frame: &Grid) -> Grid {
     let mut out = refined(draft, frame.window());
     for (out, height) in out.data_mut().iter_mut().zip(frame.data()) {
@@ -86,7 +89,7 @@ pub fn lacking(draft: &Grid, frame: &Grid) -> Grid {
     out
 }
 
-/// A frame from its draft and a share of what drafts lack at the stage's end.
+/// A frame from its draft and a weighted difference.
 pub fn frame(draft: &Grid, lacking: &Grid, share: f32) -> Grid {
     let mut out = refined(draft, lacking.window());
     for (out, lacking) in out.data_mut().iter_mut().zip(lacking.data()) {

@@ -1,28 +1,28 @@
-//! Frames that wait until they are shown: heights after steps, in memory while they are few, else on disk.
+//! Storage of frames until they are shown, in memory if they are few, otherwise on disk.
 
 use orogen_grid::grid::{Grid, Window};
 use orogen_io::spool::Spool;
 use std::collections::BTreeMap;
 use std::io;
 
-/// Heights over one window after some steps.
+/// Heights over one window after several steps.
 pub struct FrameSpool {
     spool: Spool,
     window: Window,
-    /// Where those after each step begin.
+    /// The position of the heights after each step.
     starts: BTreeMap<u32, u64>,
 }
 
 impl FrameSpool {
-    /// An empty one, for grids over `window`.
+    /// An empty spool for grids over `window`.
     pub fn new(spool: Spool, window: Window) -> FrameSpool {
         FrameSpool { spool, window, starts: BTreeMap::new() }
     }
 
-    /// Stores the heights after a step. They must be those of the spool's window.
+    /// Stores the heights after a step, which must have the spool's window.
     ///
     /// # Errors
-    /// If the disk takes no more.
+    /// If the disk is full or fails.
     pub fn put(&mut self, step: u32, heights: &Grid) -> io::Result<()> {
         if heights.window() != &self.window {
             return Err(io::ErrorKind::InvalidInput.into());
@@ -37,7 +37,7 @@ impl FrameSpool {
         Ok(())
     }
 
-    /// The heights after a step. Once one was read, none can be stored any more.
+    /// The heights after a step. After the first call no more can be stored.
     ///
     /// # Errors
     /// If there are none after that step, or the disk fails.

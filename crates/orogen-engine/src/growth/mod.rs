@@ -1,4 +1,4 @@
-//! A terrain after each of the steps that eroded it, from one run of them.
+//! Terrain after each of its erosion steps, from a single run.
 
 pub(crate) mod draft;
 pub mod frame_spool;

@@ -1,9 +1,9 @@
-//! One run of a recipe's stages, observed.
+//! An observed run of a recipe's stages.
 //!
-//! A recipe's `stream-power` nodes are its stages. They run one after the other, in the order in which they read each other: while one goes
-//! through its steps, those before it are done and those after it have not begun. What no stage changes is solved once; each stage runs once,
-//! observed; and for a step that is asked for only what lies downstream of the stage is made. Frames of stages that others follow are made from
-//! drafts.
+//! The `stream-power` nodes of a recipe are its stages. They run one after the other, in the order of their
+//! dependencies: during the steps of one, earlier stages are complete and later ones have not started. Nodes that no
+//! stage affects are solved once. Each stage runs once and is observed. For a requested step, only the nodes downstream
+//! of the stage are computed. Frames of stages that others follow are made from drafts.
 
 use super::draft;
 use super::frame_spool::FrameSpool;
@@ -24,26 +24,26 @@ use std::io;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The steps of a layer of a world over a window.
+/// The erosion steps of a layer over a window.
 pub struct Growth<'w> {
     world: &'w World,
     layer: String,
     window: Window,
     plan: Plan,
     stages: Vec<Stage>,
-    /// Layers that the layer asked for is made of.
+    /// The layers that the requested layer depends on.
     read: BTreeSet<LayerRef>,
     /// Whether frames of stages that others follow are made from drafts.
     drafted: bool,
 }
 
-/// A node that goes step by step.
+/// A node that runs step by step.
 #[derive(Debug, Clone, Copy)]
 struct Stage {
     node: usize,
     years: f64,
     steps: u32,
-    /// Steps of the stages before it.
+    /// Number of steps of all earlier stages.
     before: u32,
 }
 
@@ -54,26 +54,26 @@ impl Stage {
     }
 }
 
-/// A stage's solution.
+/// The solution of a stage.
 type Solved = (usize, Arc<Solution>);
 
-/// How many solutions a run made, not found.
+/// The number of solutions that a run computed (not found in the store).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Solves {
-    /// Those that all frames share: each stage, and what no stage changes.
+    /// Solutions shared by all frames: of each stage, and of nodes that no stage affects.
     pub shared: usize,
-    /// Those of single frames: what lies downstream of the stages.
+    /// Solutions of single frames: of nodes downstream of the stages.
     pub in_frames: usize,
 }
 
-/// Takes a layer after a step.
+/// Receives a step and the layer after it.
 pub type Visit<'a> = &'a (dyn Fn(u32, &Grid) -> Result<()> + Sync);
 
 impl<'w> Growth<'w> {
-    /// Looks for the stages of a layer.
+    /// Finds the stages of a layer.
     ///
     /// # Errors
-    /// If there are none, or as [`World::plan`].
+    /// If there are none, or the errors of [`World::plan`].
     pub fn new(world: &'w World, layer: &str, window: Window) -> Result<Growth<'w>> {
         let plan = world.plan(&[layer], &window)?;
         let solved: BTreeSet<usize> = plan.solves.iter().map(|solve| solve.node).collect();
@@ -89,31 +89,32 @@ impl<'w> Growth<'w> {
                 format!("the layer `{layer}` reads no node with op = \"stream-power\", whose steps `grow` draws");
             return Err(Error::new(ErrorKind::Request, message));
         }
-        // Labels and flows cannot be mixed as heights are.
+        // Labels and flows cannot be blended like heights.
         let drafted = world.kind(layer)? == LayerKind::Height;
         let read = world.layers_read(layer)?;
         Ok(Growth { world, layer: layer.to_string(), window, plan, stages, read, drafted })
     }
 
-    /// The same with every frame made in full, which takes several times as long where a recipe has more than one stage. Each frame then has the
-    /// bits of the recipe whose stages have that many steps of the same length.
+    /// The same with every frame computed in full, which takes several times as long if a recipe has several stages.
+    /// Each frame then has the bits of a recipe whose stages have that many steps of the same length.
     #[must_use]
     pub fn in_full(self) -> Growth<'w> {
         Growth { drafted: false, ..self }
     }
 
-    /// How many steps all stages have together.
+    /// Total number of steps of all stages.
     pub fn steps(&self) -> u32 {
         self.stages.iter().map(|stage| stage.steps).sum()
     }
 
-    /// Calls `visit` with the layer after each of the steps in `wanted`, in order: 0 is the beginning, [`Growth::steps`] is the layer itself.
+    /// Calls `visit` with the layer after each of the steps in `wanted`, in order: 0 is the start, [`Growth::steps`] is
+    /// the layer itself.
     ///
-    /// Frames of the last stage, and those at the ends of the others, have the bits of the recipe whose stages have that many steps of the same
-    /// length. The others are near that: see `draft`.
+    /// Frames of the last stage, and those at the ends of the other stages, have the bits of a recipe whose stages have
+    /// that many steps of the same length. The others are approximations: see `draft`.
     ///
     /// # Errors
-    /// As [`World::run`], and what `visit` fails with.
+    /// The errors of [`World::run`] and of `visit`.
     pub fn run(&self, wanted: &BTreeSet<u32>, progress: &Progress, visit: Visit) -> Result<Solves> {
         let before = self.world.solutions_made();
         let solving = self.world.work(&self.plan);
@@ -122,7 +123,7 @@ impl<'w> Growth<'w> {
         let full = (wanted.len() - drafts) as f64;
         progress.expect(solving + frame * (full + DRAFT * drafts as f64));
         let frames = Frames { growth: self, progress, work: frame, solves: AtomicUsize::new(0) };
-        // What drafts need beside themselves: a frame in full, what drafts lack of it, and a frame.
+        // Memory of drafts: a full frame, the difference to its draft, and a frame.
         let samples = if drafts > 0 { 3 * self.window.len() + draft::window(&self.window).len() } else { 0 };
         let _grids = self.world.budget().reserve(4 * samples as u64)?;
         let runs: Vec<usize> = (0..self.stages.len()).filter(|index| self.has_to_run(*index, wanted)).collect();
@@ -137,7 +138,8 @@ impl<'w> Growth<'w> {
         Ok(Solves { shared: self.world.solutions_made() - before, in_frames: frames.solves.into_inner() })
     }
 
-    /// Whether a stage has to run for the frames that are wanted: for its own, and as the drafts of the one before wait for its beginning.
+    /// Whether a stage has to run for the wanted frames: for its own, or because drafts of the previous stage need its
+    /// first frame.
     fn has_to_run(&self, index: usize, wanted: &BTreeSet<u32>) -> bool {
         let stage = self.stages[index];
         let drafts =
@@ -145,13 +147,13 @@ impl<'w> Growth<'w> {
         drafts || wanted.range(stage.before..=stage.end()).next().is_some()
     }
 
-    /// Whether the frame after a step is made from a draft: not where a stage ends, nor in the last.
+    /// Whether the frame after a step is made from a draft: not at the end of a stage, and not in the last stage.
     fn is_drafted(&self, step: u32) -> bool {
         let last = self.stages.last().map_or(0, |stage| stage.before);
         self.drafted && step < last && (step == 0 || self.stages.iter().all(|stage| stage.before != step))
     }
 
-    /// The recipe after so many steps.
+    /// The recipe after this many steps.
     fn recipe(&self, step: u32) -> Recipe {
         let mut recipe = self.world.recipe().clone();
         let mut node = 0;
@@ -161,7 +163,7 @@ impl<'w> Growth<'w> {
             let (Some(stage), Node::StreamPower(law)) = (stage, changed) else { return };
             let done = step.saturating_sub(stage.before).min(stage.steps);
             if done < stage.steps {
-                // What has not begun runs for no time: water still finds its way.
+                // A stage that has not started runs for zero years: water is still routed.
                 law.years = stage.years / f64::from(stage.steps) * f64::from(done);
                 law.steps = done.max(1);
             }
@@ -169,10 +171,10 @@ impl<'w> Growth<'w> {
         recipe
     }
 
-    /// The solvers that the stages from one on change, those stages among them.
+    /// The solvers that the stages from index `from` affect, including those stages.
     fn is_changed(&self, from: usize) -> BTreeSet<usize> {
         let mut changed: BTreeSet<usize> = self.stages[from..].iter().map(|stage| stage.node).collect();
-        // Sources come first in a plan.
+        // In a plan, sources come first.
         for solve in &self.plan.solves {
             if solve.reads.iter().any(|read| changed.contains(read)) {
                 changed.insert(solve.node);
@@ -181,7 +183,7 @@ impl<'w> Growth<'w> {
         changed
     }
 
-    /// Solves what no stage from one on changes, once for all steps.
+    /// Solves the nodes that no stage from this index affects, once for all steps.
     fn settle(&self, stage: usize, progress: &Progress) -> Result<()> {
         let changed = self.is_changed(stage);
         let steady: Vec<usize> =
@@ -192,7 +194,7 @@ impl<'w> Growth<'w> {
         Ok(())
     }
 
-    /// The work of what lies downstream of the stages, with what each of them does when it ends.
+    /// The work of the nodes downstream of the stages, including the final work of each stage.
     fn frame_work(&self) -> f64 {
         let changed = self.is_changed(0);
         let of_stage = |node: usize| self.stages.iter().find(|stage| stage.node == node);
@@ -204,39 +206,39 @@ impl<'w> Growth<'w> {
         solving.sum::<f64>() + self.world.steps_work(&self.plan)
     }
 
-    /// Frames that wait for the end of their stage.
+    /// The spool for frames that wait for the end of their stage.
     fn spool(&self) -> Result<FrameSpool> {
         let folder = self.world.scratch();
         std::fs::create_dir_all(folder).map_err(|cause| Error::file("work in", folder, &cause))?;
         Ok(FrameSpool::new(Spool::beside(&folder.join("drafts")), draft::window(&self.window)))
     }
 
-    /// The error of a spool.
+    /// The error for a failure of the spool.
     fn lost(&self, cause: &io::Error) -> Error {
         Error::file("work in", self.world.scratch(), cause)
     }
 }
 
-/// The work of a draft, in frames.
+/// The work of a draft relative to a frame.
 const DRAFT: f64 = 0.1;
 
-/// What makes the layer after a step.
+/// Computes the layer after a step.
 struct Frames<'a> {
     growth: &'a Growth<'a>,
     progress: &'a Progress,
-    /// The work of one.
+    /// The work of a frame.
     work: f64,
-    /// Solutions made.
+    /// Number of computed solutions.
     solves: AtomicUsize,
 }
 
 impl Frames<'_> {
-    /// Makes it in full, given the solution of the stage that has done the step.
+    /// A full frame, from the solution of the stage after the step.
     fn full(&self, step: u32, solved: Option<Solved>) -> Result<Grid> {
         self.make(self.growth.recipe(step), &self.growth.window, solved, self.work)
     }
 
-    /// Makes its draft, given that solution; without one, the beginning.
+    /// A draft, from that solution; without one, at the start.
     fn draft(&self, step: u32, solved: Option<Solved>) -> Result<Grid> {
         let growth = self.growth;
         let given = solved.as_ref().map(|(node, _)| *node);
@@ -258,7 +260,7 @@ impl Frames<'_> {
         for solve in &growth.plan.solves {
             let key = keys[solve.node];
             if !changed.contains(&solve.node) {
-                // What is done by now, at whatever cell it was solved.
+                // Solutions computed so far, at any cell.
                 if let Some(solution) = growth.world.solution(&solve.key, solve.on_disk)? {
                     known.insert(key, solution);
                 }
@@ -275,7 +277,7 @@ impl Frames<'_> {
     }
 }
 
-/// Drafts of a stage, waiting for the frame at its end: what the next one begins with.
+/// Drafts of a stage that wait for the frame at its end, which is the first of the next stage.
 struct Waiting {
     stage: Stage,
     drafts: Mutex<FrameSpool>,
@@ -283,13 +285,13 @@ struct Waiting {
     end: Grid,
 }
 
-/// A stage that runs, and the frames that it shows.
+/// A running stage and its frames.
 struct StageRun<'a> {
     stage: Stage,
     wanted: &'a BTreeSet<u32>,
     frames: &'a Frames<'a>,
     visit: Visit<'a>,
-    /// Those of the stage before.
+    /// The waiting drafts of the previous stage.
     waiting: Option<Waiting>,
 }
 
@@ -315,7 +317,7 @@ impl StageRun<'_> {
             let end = self.frames.draft(stage.end(), Some(solved))?;
             return Ok(Some(Waiting { stage, drafts, end }));
         }
-        // Where another stage follows, it shows this one's end.
+        // If another stage follows, it shows this stage's last frame.
         let is_last = growth.steps() == stage.end();
         if is_last && self.wanted.contains(&stage.end()) {
             self.show(stage.end(), &self.frames.full(stage.end(), Some(solved))?)?;
@@ -323,7 +325,7 @@ impl StageRun<'_> {
         Ok(None)
     }
 
-    /// Shows a frame, before the first of the stage those that wait for it.
+    /// Shows a frame; before the first one of the stage, the waiting frames.
     fn show(&self, step: u32, frame: &Grid) -> Result<()> {
         if let Some(waiting) = self.waiting.as_ref().filter(|_| step == self.stage.before) {
             self.show_waiting(waiting, frame)?;
@@ -344,7 +346,7 @@ impl StageRun<'_> {
         Ok(())
     }
 
-    /// Whether the layer after a step is made: as a frame, as a draft, or for drafts that wait for it.
+    /// Whether the layer after a step is computed: as a frame, as a draft, or for waiting drafts.
     fn makes(&self, step: u32) -> bool {
         let begins = step == self.stage.before;
         if begins && self.waiting.is_some() {
@@ -353,7 +355,7 @@ impl StageRun<'_> {
         self.wanted.contains(&step) && !(begins && self.frames.growth.is_drafted(step))
     }
 
-    /// Runs the stage, `take` taking its solutions after the steps before its last, and returns the last.
+    /// Runs the stage; `take` receives its solutions after the steps before the last. Returns the last one.
     fn observed(&self, progress: &Progress, take: &(dyn Fn(u32, Solved) -> Result<()> + Sync)) -> Result<Solved> {
         let growth = self.frames.growth;
         let node = self.stage.node;
@@ -366,7 +368,7 @@ impl StageRun<'_> {
     }
 }
 
-/// Hands on what a stage comes to after the steps that are wanted.
+/// Passes on the solutions of a stage after the wanted steps.
 struct StageObserver<'a> {
     run: &'a StageRun<'a>,
     take: &'a (dyn Fn(u32, Solved) -> Result<()> + Sync),

@@ -1,8 +1,8 @@
-//! From nodes to a program: the part of the graph that can be evaluated point by point, flattened.
+//! The compiler from nodes to a program: it flattens the part of the graph that can be evaluated point by point.
 //!
-//! A node is evaluated *at a coordinate set*: the block itself, or where warps and transforms lead from there. Each (layer, coords) pair
-//! becomes one instruction, however often it is read. Work is kept on an explicit stack, so a chain of any length is
-//! flattened without recursion.
+//! A node is evaluated *at a coordinate set*: the block itself, or the positions to which warps and transforms lead
+//! from there. Each (layer, coordinate set) pair becomes one instruction, however many nodes read it. The traversal
+//! uses an explicit stack, so chains of any length need no recursion.
 
 use super::program::{CoordSet, Instruction, Operand, Program, Register};
 use crate::expression::function::{Function, MAX_ARGUMENTS};
@@ -15,25 +15,25 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use std::collections::{HashMap, HashSet};
 
-/// Most instructions a program may have. Only warps within warps multiply them.
+/// Maximum number of instructions of a program. Only nested warps multiply them.
 const MAX_INSTRUCTIONS: usize = 1 << 20;
 
-/// A grid that an earlier step must make: a node's layer over a window.
+/// A request for a grid that an earlier step must make: a node's layer over a window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GridRequest {
     /// The layer.
     pub target: LayerRef,
-    /// What the filter itself made, before its mask; otherwise the node's result.
+    /// Whether the filter's own result is requested, before its mask; otherwise the node's result.
     pub raw: bool,
-    /// The samples needed.
+    /// The window.
     pub window: Window,
 }
 
-/// A program before grids have numbers: `Instruction::Grid` counts the requests.
+/// A program whose `Instruction::Grid` refers to requests instead of grids.
 pub struct Draft {
     pub program: Program,
     pub requests: Vec<GridRequest>,
-    /// Fields and solvers evaluated at the block itself.
+    /// Fields and solvers that are evaluated at the block itself.
     pub evaluated: Vec<usize>,
 }
 
@@ -47,18 +47,18 @@ enum Work {
 pub struct Compiler<'a> {
     recipe: &'a Recipe,
     graph: &'a Graph,
-    /// Nodes whose result is read from a grid when asked for at the block itself.
+    /// Nodes whose result is read from a grid at the block itself.
     kept: &'a HashSet<usize>,
-    /// The node this program is to make, which must not be read from the grid it makes.
+    /// The node that this program computes, which must not be read from the grid that it fills.
     own: Option<usize>,
     instructions: Vec<Instruction>,
     values: usize,
     made: HashMap<(LayerRef, CoordSet), Register>,
     constants: HashMap<u32, Register>,
-    /// The samples around each coordinate set, on the lattice that filters are made on.
+    /// The samples around each coordinate set, on the lattice of filters.
     windows: Vec<Window>,
     entered: HashMap<(usize, CoordSet), CoordSet>,
-    /// The first of the four coordinate sets around a coordinate set, by the bits of how far they are from it.
+    /// The first of the four coordinate sets around a coordinate set, by the bits of their distance.
     surrounded: HashMap<(u64, CoordSet), CoordSet>,
     requests: Vec<GridRequest>,
     evaluated: Vec<usize>,
@@ -120,7 +120,7 @@ impl<'a> Compiler<'a> {
         Ok(())
     }
 
-    /// Whether the node's result is a grid already when asked for here.
+    /// Whether the node's result is available as a grid here.
     fn is_kept(&self, node: usize, coords: CoordSet) -> bool {
         coords == 0 && self.own != Some(node) && self.kept.contains(&node)
     }
@@ -157,7 +157,7 @@ impl<'a> Compiler<'a> {
             here.extend(self.masked_source(target));
             here.push(self.graph.masks[node]);
         }
-        // Last pushed is first visited: inputs in the order of their declaration.
+        // The last one pushed is visited first: inputs are in the order of their declaration.
         for link in here.iter().rev() {
             if let Link::Node(source) = link {
                 stack.push(Work::Visit(*source, coords));
@@ -165,12 +165,13 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// What shows where a node's mask is 0: its first input. Layers but the first have no counterpart there.
+    /// The layer that replaces a node's result where its mask is 0: its first input. Layers other than the first have
+    /// none.
     fn masked_source(&self, target: LayerRef) -> Option<Link> {
         self.graph.links[target.node].first().copied().filter(|link| target.layer == 0 && *link != Link::None)
     }
 
-    /// Makes the coordinate set that a moving field reads its source at.
+    /// Makes the coordinate set at which a field with a coordinate map reads its source.
     fn enter(&mut self, target: LayerRef, coords: CoordSet, stack: &mut Vec<Work>) -> Result<()> {
         let Op::Field(field) = self.recipe.nodes()[target.node].node.op() else { return Ok(()) };
         let Some(map) = field.coord_map() else { return Ok(()) };
@@ -211,7 +212,7 @@ impl<'a> Compiler<'a> {
         Ok(())
     }
 
-    /// Makes the four coordinate sets around one that a field with slopes reads its source at.
+    /// Makes the four coordinate sets at which a field with a stencil reads its source.
     fn surround(&mut self, target: LayerRef, coords: CoordSet, stack: &mut Vec<Work>) {
         let Some((stencil, around)) = self.stencil(target.node, coords) else { return };
         if let Link::Node(source) = self.graph.links[target.node][stencil.source] {
@@ -219,7 +220,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// What a field with slopes reads around a coordinate set, and the four coordinate sets there.
+    /// The stencil of a field at a coordinate set, and the four coordinate sets around it.
     fn stencil(&mut self, node: usize, coords: CoordSet) -> Option<(Stencil, [CoordSet; 4])> {
         let Op::Field(field) = self.recipe.nodes()[node].node.op() else { return None };
         let stencil = field.stencil()?;
@@ -305,7 +306,7 @@ impl<'a> Compiler<'a> {
         out
     }
 
-    /// Emits what a field computes sample by sample. Of numbers alone nothing is emitted but their result.
+    /// Emits the arithmetic of a field. Constant terms are folded.
     fn evaluate(&mut self, terms: &[Term], links: &[Link], coords: CoordSet) -> Result<Register> {
         let mut used = vec![false; terms.len()];
         if let Some(last) = used.last_mut() {
@@ -340,7 +341,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// A function of operands: of numbers alone, a number.
+    /// A function of operands; of constants only, a constant.
     fn apply(&mut self, function: Function, arguments: Vec<Operand>) -> Operand {
         let mut numbers = [0.0; MAX_ARGUMENTS];
         for (number, argument) in numbers.iter_mut().zip(&arguments) {
@@ -354,7 +355,8 @@ impl<'a> Compiler<'a> {
         Operand::Number(function.of_f32(numbers))
     }
 
-    /// Remembers what is evaluated at the block itself: what several programs do so may be better kept.
+    /// Records a node that is evaluated at the block itself: if several programs evaluate it, keeping its grid may be
+    /// better.
     fn note(&mut self, node: usize, coords: CoordSet) {
         if coords == 0 {
             self.evaluated.push(node);
@@ -370,7 +372,7 @@ impl<'a> Compiler<'a> {
         links.iter().map(|link| (*link != Link::None).then(|| self.value(link, coords)).transpose()).collect()
     }
 
-    /// The register of what a link gives at a coordinate set where it has been visited.
+    /// The register with the value of a link at a coordinate set that has been visited.
     fn value(&mut self, link: &Link, coords: CoordSet) -> Result<Register> {
         let constant = match link {
             Link::Node(target) => match self.made.get(&(*target, coords)) {
@@ -396,10 +398,10 @@ fn internal(message: &str) -> Error {
     Error::new(ErrorKind::Internal, message)
 }
 
-/// Samples beyond a position that the interpolating cubic reads.
+/// Samples that the interpolating cubic reads around a position.
 const MARGIN: usize = 2;
 
-/// The samples around everywhere that a map leads from a window.
+/// The samples around all positions that a map leads to from a window.
 fn mapped(window: &Window, map: &crate::op::Affine) -> Window {
     let (right, bottom) = (window.east(window.width), window.south(window.height));
     let corners =
@@ -408,7 +410,7 @@ fn mapped(window: &Window, map: &crate::op::Affine) -> Window {
     let span = |values: [f64; 4]| {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min) / window.cell;
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max) / window.cell;
-        // What is farther than any lattice reaches is refused for its memory; here it only must not overflow.
+        // Positions beyond any lattice are rejected later for their memory; here they must only not overflow.
         const FAR: f64 = (1u64 << 60) as f64;
         let start = low.floor().clamp(-FAR, FAR) as i64 - MARGIN as i64;
         let end = high.ceil().clamp(-FAR, FAR) as i64 + MARGIN as i64 + 1;

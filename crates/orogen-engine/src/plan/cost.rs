@@ -1,9 +1,10 @@
-//! How long a plan takes, about.
+//! Estimates of a plan's time.
 //!
-//! The figures are nanoseconds of one core and were measured once: each op alone over 1024 x 1024 samples at 10 m, on its lattice
-//! and behind a warp, on an AMD EPYC with AVX-512, what an empty program takes subtracted. Machines differ by a factor of three
-//! or so either way, and noise of short wavelengths takes longer than what was measured: an estimate tells seconds from hours, not
-//! more. There it was within a third of what the presets took at 4096 samples a side.
+//! Costs are in nanoseconds on one core. They were measured once, for each op alone over 1024 x 1024 samples at 10 m,
+//! on its lattice and after a warp, on an AMD EPYC with AVX-512, minus the time of an empty program. Other machines
+//! differ by a factor of up to about three, and noise of short wavelengths takes longer, so an estimate only
+//! distinguishes seconds from hours. On that machine it was within a third of the time of the presets at 4096 samples
+//! per side.
 
 use super::program::{Instruction, Program};
 use super::steps::{Plan, Solve, Step};
@@ -14,19 +15,19 @@ use crate::recipe::document::Recipe;
 const STORED: f64 = 0.2;
 /// A sample of a grid or solution on its own lattice.
 const COPIED: f64 = 0.3;
-/// A sample between a grid's own.
+/// An interpolated sample.
 const BETWEEN: f64 = 25.0;
-/// A position moved.
+/// Moving a position.
 const MOVED: f64 = 3.0;
-/// A sample of a mask.
+/// Applying a mask to a sample.
 const MASKED: f64 = 0.5;
 
-/// Nanoseconds of one core that a plan's steps take.
+/// Time of a plan's steps on one core, in nanoseconds.
 pub fn steps(plan: &Plan, recipe: &Recipe) -> f64 {
     plan.steps.iter().map(|one| step(one, plan, recipe)).sum()
 }
 
-/// Nanoseconds of one core that a step takes.
+/// Time of a step on one core, in nanoseconds.
 pub fn step(step: &Step, plan: &Plan, recipe: &Recipe) -> f64 {
     let sample = match step {
         Step::Fill { program, out, .. } => program_cost(program, plan.scattered && out.is_empty(), recipe),
@@ -38,12 +39,12 @@ pub fn step(step: &Step, plan: &Plan, recipe: &Recipe) -> f64 {
     sample * step.window().len() as f64
 }
 
-/// Nanoseconds of one core that a plan takes with nothing solved before.
+/// Time of a plan without stored solutions on one core, in nanoseconds.
 pub fn needed(plan: &Plan, recipe: &Recipe) -> f64 {
     plan.solves.iter().map(Solve::work).sum::<f64>() + steps(plan, recipe)
 }
 
-/// Nanoseconds a sample.
+/// Nanoseconds per sample.
 fn program_cost(program: &Program, scattered: bool, recipe: &Recipe) -> f64 {
     let mut moved = vec![false; program.coord_sets.max(1)];
     moved[0] = scattered;

@@ -1,4 +1,4 @@
-//! A plan in words.
+//! The description of a plan for users.
 
 use super::steps::{Plan, Step};
 use super::{cost, memory};
@@ -10,7 +10,7 @@ use orogen_grid::grid::Window;
 use orogen_grid::words::{bytes, count, number};
 use std::fmt::Write as _;
 
-/// What a plan does: the nodes in order with their locality and halo, then the steps with their windows and memory.
+/// Describes a plan: the nodes in order with their locality and halo, then the steps with their windows and memory.
 pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> String {
     let mut text = String::new();
     let cell = plan.window.cell;
@@ -120,7 +120,7 @@ fn extent(window: &Window) -> String {
     format!("{} x {} at ({}, {})", window.width, window.height, window.x, window.y)
 }
 
-/// A number of samples as people read it.
+/// A number of samples, formatted for users.
 fn about(samples: u64) -> String {
     match samples as f64 {
         n if n >= 1e9 => format!("{:.1} thousand million", n / 1e9),
@@ -130,7 +130,7 @@ fn about(samples: u64) -> String {
     }
 }
 
-/// A time as people read it, to one figure or two: no estimate knows more. None if it is over at once.
+/// A time, formatted with one or two digits; `None` if it is negligible.
 fn duration(nanoseconds: f64) -> Option<String> {
     Some(match nanoseconds / 1e9 {
         s if s < 0.1 => return None,
@@ -141,7 +141,7 @@ fn duration(nanoseconds: f64) -> Option<String> {
     })
 }
 
-/// The first message, cut at a word where it is too long for a line.
+/// The first sentence, cut at a word if it is too long for a line.
 fn brief(doc: &str) -> String {
     const LONGEST: usize = 60;
     let message = doc.split(". ").next().unwrap_or_default().trim_end_matches('.');

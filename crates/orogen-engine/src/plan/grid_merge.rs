@@ -1,16 +1,15 @@
-//! Which grids serve which requests.
+//! Merging of grid requests.
 
 use super::compile::GridRequest;
 use orogen_grid::grid::Window;
 
-/// One grid to make, and the requests it serves.
+/// A grid to make, and the requests that it serves.
 pub struct Cluster {
     pub window: Window,
     pub serves: Vec<usize>,
 }
 
-/// Joins windows that lie near each other: two become one wherever that makes at most a quarter more samples than the two
-/// apart.
+/// Merges nearby windows: two become one if the union has at most a quarter more samples than both together.
 pub fn clusters(requests: &[GridRequest], wanted: impl Iterator<Item = usize>) -> Vec<Cluster> {
     let mut clusters: Vec<Cluster> = wanted.map(|i| Cluster { window: requests[i].window, serves: vec![i] }).collect();
     let samples = |window: &Window| window.width as f64 * window.height as f64;
@@ -30,7 +29,7 @@ pub fn clusters(requests: &[GridRequest], wanted: impl Iterator<Item = usize>) -
                 j += 1;
             }
         }
-        // A cluster that grew may now reach others.
+        // A cluster that grew may now overlap others.
         if !joined {
             i += 1;
         }

@@ -1,4 +1,4 @@
-//! Content keys: what a node's result depends on, and nothing else.
+//! Content keys: hashes of everything that a node's result depends on.
 
 use crate::declare::{Shape, Spec};
 use crate::node::Node;
@@ -7,8 +7,8 @@ use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, Link};
 use sha2::{Digest, Sha256};
 
-/// A hash of all that a node's result depends on: the op, its revision, its parameters, its sources' keys, and those of the world's facts that it reads.
-/// Names do not enter it.
+/// A hash of everything that a node's result depends on: the op, its revision, its parameters, the keys of its sources,
+/// and the properties of the world that it reads. Names are not included.
 pub type Key = [u8; 32];
 
 /// The key of every node, by index.
@@ -37,7 +37,7 @@ pub fn keys(recipe: &Recipe, graph: &Graph) -> Vec<Key> {
     keys
 }
 
-/// The key of what a link leads to, given those of all nodes.
+/// The key of a link's target, given the keys of all nodes.
 pub fn link_key(link: &Link, keys: &[Key]) -> Key {
     let mut hash = Sha256::new();
     put_link(&mut hash, link, keys);
@@ -59,8 +59,8 @@ fn put_link(hash: &mut Sha256, link: &Link, keys: &[Key]) {
     }
 }
 
-/// What a node reads of the world: its seed, if the node has one of its own; its extent and the lattice that it is solved on, if it looks at the whole
-/// world; the sea level, if the op says so.
+/// Adds what a node reads of the world: the seed, if the node has a seed; the extent and the solvers' lattice, if the
+/// node depends on the whole world; the sea level, if the op declares it.
 fn put_world(hash: &mut Sha256, node: &Node, world: &WorldParams) {
     let mut put = |number: Option<u64>| {
         hash.update([u8::from(number.is_some())]);
@@ -80,7 +80,8 @@ fn put_world(hash: &mut Sha256, node: &Node, world: &WorldParams) {
     put(sea.then_some(world.sea_level.to_bits()));
 }
 
-/// What a plan is known by: the keys of all nodes, in the order of the recipe. Plans refer to nodes by their index.
+/// The identity of a recipe for plans: the keys of all nodes, in the order of the recipe. Plans refer to nodes by
+/// index.
 pub fn identity(keys: &[Key]) -> Key {
     let mut hash = Sha256::new();
     keys.iter().for_each(|key| hash.update(key));

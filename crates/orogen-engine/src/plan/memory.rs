@@ -1,4 +1,4 @@
-//! How much memory a plan takes, known before the first sample.
+//! Memory of a plan, known before the first sample.
 
 use super::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use super::steps::{Plan, Solve, Step};
@@ -7,19 +7,19 @@ use crate::recipe::document::Recipe;
 use orogen_grid::grid::Window;
 use orogen_io::pages;
 
-/// Bytes of one grid over a window.
+/// Memory of a grid over a window, in bytes.
 pub fn grid_bytes(window: &Window) -> u64 {
     (window.width as u64).saturating_mul(window.height as u64).saturating_mul(4)
 }
 
-/// Registers and coordinate sets of one thread.
+/// Memory of the registers and coordinate sets of one thread.
 fn block_bytes(program: &Program) -> u64 {
     let block = (BLOCK_WIDTH * BLOCK_HEIGHT) as u64;
-    // A coordinate set may hold two f64 a sample.
+    // A coordinate set may hold two f64 per sample.
     block * 4 * program.registers as u64 + block * 16 * program.coord_sets as u64
 }
 
-/// The most that grids take together at any step.
+/// Maximum memory of all grids at any step.
 pub fn grids(plan: &Plan) -> u64 {
     let mut born = vec![usize::MAX; plan.grids.len()];
     for (at, step) in plan.steps.iter().enumerate() {
@@ -27,7 +27,7 @@ pub fn grids(plan: &Plan) -> u64 {
             born[grid] = at;
         }
     }
-    // Grids are born at a step and die after one: sum the changes instead of all grids at all steps.
+    // Grids are created at a step and dropped after one: sum the changes instead of all grids at all steps.
     let mut change = vec![(0u64, 0u64); plan.steps.len() + 2];
     for (grid, born) in plan.grids.iter().zip(&born) {
         if *born != usize::MAX {
@@ -45,12 +45,12 @@ pub fn grids(plan: &Plan) -> u64 {
     most
 }
 
-/// What the steps take beside the grids: registers for each thread, or a filter's own.
+/// Memory of the steps beside the grids: registers of each thread, or a filter's own memory.
 fn beside(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
     let step = |step: &Step| match step {
         Step::Fill { program, .. } => block_bytes(program).saturating_mul(threads as u64),
         Step::Apply { node, inputs, window, halo, .. } => {
-            // An input that was made for others too is cut to what the filter may see.
+            // A grid that was made for other steps too is cropped for the filter.
             let cut = |slot: &usize| plan.grids[*slot].window != window.grown(*halo);
             let cuts = inputs.iter().flatten().filter(|slot| cut(slot)).count() as u64;
             let own = match recipe.nodes()[*node].node.op() {
@@ -63,24 +63,24 @@ fn beside(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
     plan.steps.iter().map(step).max().unwrap_or(0)
 }
 
-/// Bytes that a plan's steps take at most, what they read being solved: those of a solver's tile.
+/// Maximum memory of a plan's steps, in bytes, with all solvers solved: that of a solver's tile.
 pub fn steps(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
     grids(plan).saturating_add(beside(plan, recipe, threads))
 }
 
-/// Bytes of memory that a solver's rasters take.
+/// Memory of a solver's rasters, in bytes.
 pub fn rasters(solve: &Solve) -> u64 {
     let one = if solve.on_disk { pages::memory(&solve.padded) } else { grid_bytes(&solve.padded) };
     one.saturating_mul(solve.rasters as u64)
 }
 
-/// Bytes of memory that solving takes beside them.
+/// Memory of solving beside the rasters, in bytes.
 fn scratch(solve: &Solve) -> u64 {
     if solve.on_disk { solve.scratch_on_disk } else { solve.scratch }
 }
 
-/// Bytes a plan needs at most at any time, for `threads` threads: its text, the files that the recipe names, grids, registers, solutions, and making solvers'
-/// sources.
+/// Maximum memory of a plan on `threads` threads, in bytes: its own size, the files that the recipe names, grids,
+/// registers, solutions, and the computation of solvers' sources.
 pub fn needed(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
     let solving = plan.solves.iter().map(|solve| solve.tile.saturating_add(scratch(solve))).max().unwrap_or(0);
     let kept = plan.solves.iter().fold(0u64, |sum, solve| sum.saturating_add(rasters(solve)));
@@ -88,7 +88,7 @@ pub fn needed(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
     own.saturating_add(recipe.held()).saturating_add(kept).saturating_add(steps(plan, recipe, threads).max(solving))
 }
 
-/// Bytes that a step itself takes, as a value.
+/// Size of a step as a value, in bytes.
 fn own_bytes(step: &Step) -> u64 {
     match step {
         Step::Fill { program, .. } => 128 * program.instructions.len() as u64,
@@ -96,14 +96,14 @@ fn own_bytes(step: &Step) -> u64 {
     }
 }
 
-/// Bytes of disk that a plan needs at most for what does not fit in memory.
+/// Maximum disk space for data that does not fit in memory, in bytes.
 pub fn disk(plan: &Plan) -> u64 {
     let on_disk = plan.solves.iter().filter(|solve| solve.on_disk);
     on_disk.fold(0u64, |sum, solve| sum.saturating_add(pages::disk(&solve.padded).saturating_mul(solve.rasters as u64)))
 }
 
-/// Moves rasters to the disk, the largest first, until the plan fits in `allowed` bytes or there are no more to move. Returns whether it
-/// fits.
+/// Moves rasters to disk, the largest first, until the plan fits in `allowed` bytes or none are left. Returns whether
+/// it fits.
 pub fn fit(plan: &mut Plan, recipe: &Recipe, threads: usize, allowed: u64) -> bool {
     while needed(plan, recipe, threads) > allowed {
         let bytes = |solve: &Solve| rasters(solve).saturating_add(scratch(solve));

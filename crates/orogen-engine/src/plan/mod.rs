@@ -1,4 +1,4 @@
-//! Plans: what will be done, in which order, with which memory, before any sample is made.
+//! Plans: the steps of a computation, their order and their memory, known before any sample is made.
 
 mod compile;
 pub(crate) mod cost;

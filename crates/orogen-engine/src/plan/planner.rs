@@ -1,4 +1,4 @@
-//! From a recipe and a window to a plan.
+//! The planner: from a recipe and a window to a plan.
 
 use super::compile::{Compiler, Draft, GridRequest};
 use super::cost;
@@ -14,15 +14,16 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-/// What solvers' tiles may measure, the best first: large enough that halos cost little, small enough for any memory.
+/// Sides of solvers' tiles, in order of preference: large enough to keep the cost of halos small, small enough for any
+/// memory.
 pub const TILES: [usize; 3] = [1024, 512, 256];
 
-/// Samples that readers may go beyond a world's edge.
+/// Samples beyond a world's edge that readers may need.
 pub const WORLD_MARGIN: usize = 2;
 
-/// The samples of a world on a lattice, without and with margin.
+/// The samples of a world on a lattice, without and with the margin.
 pub fn world_windows(size: [f64; 2], cell: f64) -> (Window, Window) {
-    // A side that is a whole number of cells up to rounding has its far edge: 1000 / 0.1 is 10 000 cells.
+    // A side that is a whole number of cells up to rounding includes its far edge: 1000 / 0.1 is 10 000 cells.
     let samples = |length: f64| {
         let steps = length / cell;
         let whole = if (steps - steps.round()).abs() < 1e-6 { steps.round() } else { steps.floor() };
@@ -32,15 +33,15 @@ pub fn world_windows(size: [f64; 2], cell: f64) -> (Window, Window) {
     (world, world.grown(WORLD_MARGIN))
 }
 
-/// Plans.
+/// A planner for one recipe.
 pub struct Planner<'a> {
     recipe: &'a Recipe,
     graph: &'a Graph,
     world_params: WorldParams,
     keys: &'a [Key],
-    /// Samples along a side of the tiles that solvers' sources are made in.
+    /// Side of the tiles in which solvers' sources are made, in samples.
     side: usize,
-    /// Threads that the plan will run on.
+    /// Number of threads that the plan will run on.
     threads: usize,
 }
 
@@ -50,11 +51,11 @@ impl<'a> Planner<'a> {
         Planner { recipe, graph, world_params: recipe.world.world_params(), keys, side: TILES[0], threads: 1 }
     }
 
-    /// A plan for layers over a window that needs at most `allowed` bytes on `threads` threads where that can be: solutions that
-    /// are too large go to the disk, and solvers' sources are made in smaller tiles.
+    /// A plan for layers over a window that needs at most `allowed` bytes on `threads` threads, if possible: large
+    /// solutions are moved to disk, and solvers' sources are made in smaller tiles.
     ///
     /// # Errors
-    /// As [`Planner::plan`]. A plan that does not fit is no error: what it needs tells.
+    /// The errors of [`Planner::plan`]. A plan that does not fit is not an error; its memory tells.
     pub fn fitting(
         self,
         targets: &[Link],
@@ -82,7 +83,7 @@ impl<'a> Planner<'a> {
     /// A plan for layers over a window.
     ///
     /// # Errors
-    /// If the recipe multiplies into more evaluations than can be planned.
+    /// If nested warps lead to more evaluations than can be planned.
     pub fn plan(&self, targets: &[Link], window: Window, scattered: bool) -> Result<Plan> {
         let mut plan = self.steps(targets, window, scattered)?;
         plan.recipe = identity(self.keys);
@@ -90,14 +91,16 @@ impl<'a> Planner<'a> {
         Ok(plan)
     }
 
-    /// A plan for a solver's source over a tile. What it reads is solved by then, and so is not part of it.
+    /// A plan for a solver's source over a tile. The solvers that it reads are solved by then, so they are not part of
+    /// it.
     pub fn source(&self, link: Link, tile: Window) -> Result<Plan> {
         self.steps(&[link], tile, false)
     }
 
-    /// A plan's steps, without what must be solved first.
+    /// The steps of a plan, without solvers.
     fn steps(&self, targets: &[Link], window: Window, scattered: bool) -> Result<Plan> {
-        // First what is a grid anyway is read instead of made again; of what is still made by several programs, what is expensive.
+        // First, results that are grids anyway are read instead of computed again; then expensive nodes that several
+        // programs compute are kept.
         let mut kept = HashSet::new();
         let mut attempt = Attempt::new(self, HashSet::new(), scattered).run(targets, window)?;
         for choose in [Attempt::grids_made_again, Attempt::expensive_made_again] {
@@ -146,7 +149,7 @@ impl<'a> Planner<'a> {
         })
     }
 
-    /// The solvers read and those that their sources read, sources first.
+    /// The solvers that are read and those that their sources read, sources first.
     fn solves(&self, read: BTreeSet<usize>) -> Result<Vec<Solve>> {
         let mut rank = vec![0usize; self.recipe.nodes().len()];
         self.graph.order.iter().enumerate().for_each(|(position, &node)| rank[node] = position);
@@ -164,26 +167,26 @@ impl<'a> Planner<'a> {
     }
 }
 
-/// Steps in the making, last first: what a step requests is known before the step that makes it is.
+/// The steps under construction, last step first: the requests of a step are known before the steps that serve them.
 struct Attempt<'a> {
     planner: &'a Planner<'a>,
     kept: HashSet<usize>,
     scattered: bool,
     requests: Vec<GridRequest>,
-    /// Demands by the node they ask for.
+    /// Requests by node.
     by_node: HashMap<usize, Vec<usize>>,
     /// The grid that serves each request.
     served: Vec<usize>,
     grids: Vec<(Window, usize)>,
     steps: Vec<DraftStep>,
     outputs: Vec<usize>,
-    /// Field nodes that were a step's target, and how often each was evaluated at a block itself.
+    /// Fields that were a step's target, and how often each was evaluated at the block itself.
     filled: HashSet<usize>,
     evaluated: HashMap<usize, usize>,
 }
 
 enum DraftStep {
-    /// A program whose grids are requests from `first` on.
+    /// A program whose grids are the requests from `first` on.
     Fill { program: Program, first: usize, window: Window, out: Vec<usize> },
     /// A filter whose inputs are requests.
     Apply { node: usize, inputs: Vec<Option<usize>>, window: Window, halo: usize, out: Vec<Option<usize>> },
@@ -208,7 +211,7 @@ impl<'a> Attempt<'a> {
 
     fn run(mut self, targets: &[Link], window: Window) -> Result<Attempt<'a>> {
         let nothing_kept = HashSet::new();
-        // Scattered points lie on no lattice: nothing is kept for them, filters are read between samples.
+        // Scattered points are not on a lattice: nothing is kept for them, and filters are interpolated.
         let kept = if self.scattered { nothing_kept } else { self.kept.clone() };
         let draft = Compiler::compile(self.planner.recipe, self.planner.graph, &kept, None, targets, window)?;
         let out = match self.scattered {
@@ -217,7 +220,7 @@ impl<'a> Attempt<'a> {
         };
         self.outputs.clone_from(&out);
         self.fill(draft, window, out);
-        // Backwards through the order: all that reads a node has been planned before the node is.
+        // In reverse order: all readers of a node have been planned before the node.
         for &node in self.planner.graph.order.iter().rev() {
             self.make_results(node)?;
             self.make_raw(node)?;
@@ -249,7 +252,7 @@ impl<'a> Attempt<'a> {
         index
     }
 
-    /// What asks for a node's result: each layer by a program of its own.
+    /// Serves the requests for a node's result: one program per layer.
     fn make_results(&mut self, node: usize) -> Result<()> {
         let mut layers: Vec<usize> = Vec::new();
         for &i in self.by_node.get(&node).into_iter().flatten().filter(|&&i| !self.requests[i].raw) {
@@ -282,7 +285,7 @@ impl<'a> Attempt<'a> {
         Ok(())
     }
 
-    /// What asks for a filter's own layers: one application for all of them.
+    /// Serves the requests for a filter's own layers: one application for all of them.
     fn make_raw(&mut self, node: usize) -> Result<()> {
         let Op::Filter(filter) = self.planner.recipe.nodes()[node].node.op() else { return Ok(()) };
         let wanted: Vec<usize> =
@@ -317,7 +320,7 @@ impl<'a> Attempt<'a> {
                     }
                 });
             }
-            // A constant input becomes a grid of that number, made by a step of its own right before.
+            // A constant input becomes a grid with that value, filled by a step right before.
             let mut fills = Vec::new();
             for (i, link) in constants {
                 let index = self.requests.len();
@@ -340,12 +343,12 @@ impl<'a> Attempt<'a> {
         Ok(())
     }
 
-    /// Nodes that were made for a filter and that other programs make too.
+    /// Nodes that were made for a filter and that other programs compute again.
     fn grids_made_again(&self, _: &Planner) -> HashSet<usize> {
         self.filled.iter().filter(|node| self.evaluated.get(node).is_some_and(|count| *count >= 2)).copied().collect()
     }
 
-    /// Expensive fields that several programs make.
+    /// Expensive fields that several programs compute.
     fn expensive_made_again(&self, planner: &Planner) -> HashSet<usize> {
         const EXPENSIVE: f64 = 1.0;
         let is_expensive = |node: &usize| match planner.recipe.nodes()[*node].node.op() {

@@ -1,14 +1,15 @@
-//! A program: fused fields as a flat list of instructions over block registers.
+//! Programs: fused fields as a flat list of instructions over block registers.
 
 use crate::expression::function::Function;
 use crate::layer::LayerKind;
 use crate::op::Affine;
 use serde::{Deserialize, Serialize};
 
-/// Samples a row of a block: wide enough that noise on a lattice runs at full speed.
+/// Samples per row of a block: wide enough for the full speed of noise on a lattice.
 pub const BLOCK_WIDTH: usize = 256;
 
-/// Most rows of a block: 256 x 64 samples of 4 bytes are 64 KiB a register, a few of which stay in cache.
+/// Maximum number of rows of a block: 256 x 64 samples of 4 bytes are 64 KiB per register, and several of them fit in
+/// cache.
 pub const BLOCK_HEIGHT: usize = 64;
 
 /// Index of a register: one block of samples.
@@ -17,10 +18,10 @@ pub type Register = usize;
 /// Index of a coordinate set: the points at which samples are evaluated. Set 0 is the block itself.
 pub type CoordSet = usize;
 
-/// What a function is given.
+/// An operand of a function.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Operand {
-    /// The same number everywhere.
+    /// A constant.
     Number(f32),
     /// A block of samples.
     Register(Register),
@@ -35,109 +36,109 @@ impl Operand {
     }
 }
 
-/// One instruction. It runs once a block, whatever reads its result.
+/// An instruction. It runs once per block, however many others read its result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Instruction {
-    /// The same number everywhere.
+    /// A constant.
     Constant {
         /// The number.
         value: f32,
-        /// Where it goes.
+        /// The result.
         out: Register,
     },
     /// A field at a coordinate set.
     Field {
         /// The node.
         node: usize,
-        /// Where it is asked.
+        /// The coordinate set.
         coords: CoordSet,
-        /// Its inputs there.
+        /// Its inputs at that coordinate set.
         inputs: Vec<Option<Register>>,
-        /// Where it goes.
+        /// The result.
         out: Register,
     },
-    /// A function of samples: what arithmetic is made of, in nodes and in expressions.
+    /// A function of samples, from nodes and from expressions.
     Apply {
         /// The function.
         function: Function,
         /// Its arguments.
         arguments: Vec<Operand>,
-        /// Where it goes.
+        /// The result.
         out: Register,
     },
-    /// A layer of a solved solver at a coordinate set.
+    /// A layer of a solver's solution at a coordinate set.
     Solved {
         /// The node.
         node: usize,
-        /// Which of its layers.
+        /// Index of the layer.
         layer: usize,
-        /// How the layer is read between its samples.
+        /// The interpolation of the layer.
         kind: LayerKind,
-        /// Where it is asked.
+        /// The coordinate set.
         coords: CoordSet,
-        /// Its inputs there, if it reads them.
+        /// Its inputs there, if it has any.
         inputs: Vec<Option<Register>>,
-        /// Where it goes.
+        /// The result.
         out: Register,
     },
     /// A grid made by an earlier step, at a coordinate set.
     Grid {
         /// Index of the grid in the plan.
         grid: usize,
-        /// How it is read between its samples.
+        /// The interpolation.
         kind: LayerKind,
-        /// Where it is asked.
+        /// The coordinate set.
         coords: CoordSet,
-        /// Where it goes.
+        /// The result.
         out: Register,
     },
-    /// source + (result - source) * mask, the mask cut to 0 ..= 1; without a source it is 0.
+    /// source + (result - source) * mask, with the mask clamped to 0 ..= 1; a missing source is 0.
     Mask {
-        /// What shows where the mask is 0.
+        /// The value where the mask is 0.
         source: Option<Register>,
-        /// What shows where it is 1.
+        /// The value where the mask is 1.
         result: Register,
         /// The mask.
         mask: Register,
-        /// Where it goes.
+        /// The output register.
         out: Register,
     },
-    /// A coordinate set moved by two registers times a strength, each cut to the reach.
+    /// Displaces a coordinate set by two registers times a strength, each clamped to the reach.
     Displace {
-        /// The coordinate set moved.
+        /// The source coordinate set.
         from: CoordSet,
-        /// Moves it east.
+        /// Displacement east.
         east: Register,
-        /// Moves it south.
+        /// Displacement south.
         south: Register,
-        /// Metres for an input of 1.
+        /// Metres per unit of the registers.
         strength: f64,
-        /// Most metres along an axis.
+        /// Maximum displacement along an axis, in metres.
         reach: f64,
-        /// The new coords.
+        /// The new coordinate set.
         to: CoordSet,
     },
-    /// A coordinate set mapped.
+    /// Maps a coordinate set.
     Map {
-        /// The coordinate set mapped.
+        /// The source coordinate set.
         from: CoordSet,
         /// The map.
         map: Affine,
-        /// The new coords.
+        /// The new coordinate set.
         to: CoordSet,
     },
 }
 
-/// A program over registers and coordinate sets, each used again as soon as it is free.
+/// A program over registers and coordinate sets, which are reused as soon as they are free.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Program {
-    /// In the order they run.
+    /// The instructions in the order of execution.
     pub instructions: Vec<Instruction>,
-    /// How many registers there are.
+    /// Number of registers.
     pub registers: usize,
-    /// How many coordinate sets there are.
+    /// Number of coordinate sets.
     pub coord_sets: usize,
-    /// The registers that hold the results at the end.
+    /// The registers with the results.
     pub outputs: Vec<Register>,
 }
 
@@ -207,7 +208,7 @@ impl Instruction {
     }
 }
 
-/// Numbers handed out anew as soon as they are free.
+/// Indices that are reused as soon as they are free.
 struct Pool {
     slot: Vec<usize>,
     free: Vec<usize>,
@@ -230,7 +231,8 @@ impl Pool {
 }
 
 impl Program {
-    /// From instructions in which every register and coordinate set is written once (coords 0 by nobody) to as few of both as it takes.
+    /// Assigns registers and coordinate sets. In the input, each is written once (coordinate set 0 never); the output
+    /// reuses them.
     pub(super) fn allocate(
         mut instructions: Vec<Instruction>,
         values: usize,
@@ -251,7 +253,7 @@ impl Program {
         for (i, instruction) in instructions.iter_mut().enumerate() {
             let (reads, coords) = instruction.reads();
             instruction.rename(|value| registers.slot[value], |coords| spots.slot[coords]);
-            // The result is placed before its inputs are freed: an instruction never writes over what it reads.
+            // The result is assigned before the inputs are freed: an instruction never overwrites its inputs.
             let fresh = instruction.out().map(|out| {
                 let value = *out;
                 *out = registers.take(value);
@@ -262,7 +264,7 @@ impl Program {
                 *to = spots.take(value);
                 value
             });
-            // A value nobody reads is free at once.
+            // A value that is never read is freed at once.
             for value in reads.into_iter().chain(fresh) {
                 if last_value[value] <= i && registers.slot[value] != usize::MAX {
                     registers.free.push(std::mem::replace(&mut registers.slot[value], usize::MAX));

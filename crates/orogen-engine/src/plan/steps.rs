@@ -1,4 +1,4 @@
-//! What a plan is: steps, solvers and grids, as plain data.
+//! The data of a plan: steps, solvers and grids.
 
 use super::key::Key;
 use super::program::{Instruction, Program};
@@ -8,26 +8,26 @@ use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 use std::fmt::{self, Write};
 
-/// What will be done to make some layers over a window: an owned value that touches no sample.
+/// A plan for layers over a window: an owned value, made without computing any sample.
 ///
-/// It may be stored or sent (serde): it carries the version of the library, the identity of its recipe and a checksum. A plan of another version and a
-/// damaged one are not read; a plan of another recipe is not run.
+/// It can be stored and sent (serde). It contains the version of the library, the identity of its recipe and a
+/// checksum. Deserialisation fails for other versions and for damaged plans; a plan of another recipe cannot be run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "StoredPlan", into = "StoredPlan")]
 pub struct Plan {
-    /// The identity of its recipe: the content keys of all nodes.
+    /// The identity of its recipe: a hash of the content keys of all nodes.
     pub(crate) recipe: Key,
-    /// What is made.
+    /// The window.
     pub(crate) window: Window,
-    /// Whether the program is asked at the window's lattice, or at points that lie anywhere within it.
+    /// Whether the program is evaluated at arbitrary points within the window instead of its lattice.
     pub(crate) scattered: bool,
     /// The solvers that must be solved first, in order.
     pub(crate) solves: Vec<Solve>,
-    /// What is then done, in order.
+    /// The steps, in order.
     pub(crate) steps: Vec<Step>,
-    /// The grids that steps make.
+    /// The grids of the steps.
     pub(crate) grids: Vec<GridSlot>,
-    /// The grids that hold the results (empty if scattered: then the last step's program makes them).
+    /// The grids with the results (empty if scattered: then the last step's program computes them).
     pub(crate) outputs: Vec<usize>,
 }
 
@@ -36,64 +36,64 @@ pub struct Plan {
 pub struct Solve {
     /// The node.
     pub node: usize,
-    /// What its solution is stored under.
+    /// The key of its solution.
     pub key: Key,
-    /// The samples of the world on its lattice.
+    /// The window of the world on its lattice.
     pub world: Window,
-    /// Those with the margin for readers.
+    /// The same with the margin for readers.
     pub padded: Window,
-    /// Rasters that it keeps or works in, each over `padded`.
+    /// Number of rasters that it keeps or works in, each over `padded`.
     pub rasters: usize,
     /// Whether they are on disk.
     pub on_disk: bool,
-    /// Bytes of memory that solving takes beside them.
+    /// Memory of solving beside the rasters, in bytes.
     pub scratch: u64,
-    /// The same when they are on disk.
+    /// The same if the rasters are on disk.
     pub scratch_on_disk: u64,
-    /// Samples along a side of the tiles that its sources are made in.
+    /// Side of the tiles in which its sources are made, in samples.
     pub side: usize,
-    /// Bytes that making a tile of its sources takes at most.
+    /// Maximum memory for making a tile of its sources, in bytes.
     pub tile: u64,
     /// The solvers that its sources read.
     pub reads: Vec<usize>,
-    /// Samples made for its sources, about.
+    /// Approximate number of samples that are made for its sources.
     pub samples: u64,
-    /// Nanoseconds of one core that making its sources takes, about.
+    /// Approximate time for making its sources on one core, in nanoseconds.
     pub source_work: f64,
-    /// Nanoseconds of one core that solving takes beside them, about.
+    /// Approximate time for solving without the sources, in nanoseconds.
     pub own_work: f64,
 }
 
 impl Solve {
-    /// Nanoseconds of one core that it takes, about.
+    /// Approximate time on one core, in nanoseconds.
     pub fn work(&self) -> f64 {
         self.source_work + self.own_work
     }
 }
 
-/// One step of a plan.
+/// A step of a plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Step {
     /// Runs a program over a window, block by block.
     Fill {
         /// The program.
         program: Program,
-        /// The samples made.
+        /// The window.
         window: Window,
-        /// The grids its outputs go to (none if scattered).
+        /// The grids for its outputs (empty if scattered).
         out: Vec<usize>,
     },
     /// Applies a filter.
     Apply {
         /// The node.
         node: usize,
-        /// The grids its inputs are in, each holding at least the window grown by the halo.
+        /// The grids of its inputs, each covering at least the window grown by the halo.
         inputs: Vec<Option<usize>>,
-        /// The samples made.
+        /// The window.
         window: Window,
-        /// Samples its inputs are read beyond them.
+        /// Halo, in samples.
         halo: usize,
-        /// The grids its layers go to; none for a layer that nobody reads.
+        /// The grids for its layers; `None` for a layer that is not read.
         out: Vec<Option<usize>>,
     },
 }
@@ -101,16 +101,16 @@ pub enum Step {
 /// A grid of a plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GridSlot {
-    /// Its samples.
+    /// Its window.
     pub window: Window,
     /// The node it holds.
     pub node: usize,
-    /// The last step that reads it; the number of steps if it is an output.
+    /// The last step that reads it; the number of steps for an output.
     pub last_use: usize,
 }
 
 impl Step {
-    /// The grids it reads.
+    /// The grids that it reads.
     pub fn reads(&self) -> Vec<usize> {
         match self {
             Step::Fill { program, .. } => program
@@ -125,7 +125,7 @@ impl Step {
         }
     }
 
-    /// The grids it makes.
+    /// The grids that it makes.
     pub fn writes(&self) -> Vec<usize> {
         match self {
             Step::Fill { out, .. } => out.clone(),
@@ -133,7 +133,7 @@ impl Step {
         }
     }
 
-    /// The samples it makes.
+    /// The window of the result.
     pub fn window(&self) -> &Window {
         match self {
             Step::Fill { window, .. } | Step::Apply { window, .. } => window,
@@ -142,7 +142,7 @@ impl Step {
 }
 
 impl Plan {
-    /// The samples that are made.
+    /// The window of the result.
     pub fn window(&self) -> &Window {
         &self.window
     }
@@ -152,24 +152,24 @@ impl Plan {
         &self.solves
     }
 
-    /// What is then done, in order.
+    /// The steps, in order.
     pub fn steps(&self) -> &[Step] {
         &self.steps
     }
 
-    /// Solves on disk, and makes solvers' sources in tiles of `side` samples, as the planner does where memory is short.
+    /// Solves on disk, with solvers' sources in tiles of `side` samples, as the planner does if memory is short.
     pub fn solve_on_disk(&mut self, side: usize) {
         for solve in &mut self.solves {
             (solve.on_disk, solve.side) = (true, side);
         }
     }
 
-    /// Whether the same program answers for every point: no step depends on where the points lie.
+    /// Whether one program serves all points: no step depends on their positions.
     pub fn is_pointwise(&self) -> bool {
         self.scattered && self.steps.len() == 1 && self.grids.is_empty()
     }
 
-    /// The program that a scattered plan asks at points, after all else is made.
+    /// The program that a scattered plan evaluates at points, after all other steps.
     pub fn asked(&self) -> Option<&Program> {
         match self.steps.last() {
             Some(Step::Fill { program, out, .. }) if self.scattered && out.is_empty() => Some(program),
@@ -191,13 +191,13 @@ impl Plan {
         read
     }
 
-    /// Samples that will be made, solvers' sources not counted.
+    /// Number of samples to be made, without solvers' sources.
     pub fn samples(&self) -> u64 {
         self.steps.iter().fold(0u64, |sum, step| sum.saturating_add(step.window().len() as u64))
     }
 }
 
-/// What is written of a plan.
+/// The serialised form of a plan.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct StoredPlan {
     orogen: String,
@@ -211,7 +211,7 @@ struct StoredPlan {
     outputs: Vec<usize>,
 }
 
-/// SHA-256 of a plan's debug text, which tells every bit but those of NaNs apart.
+/// SHA-256 of a plan's debug text, which distinguishes all bits except those of NaNs.
 fn checksum(plan: &Plan) -> Key {
     struct Text(Sha256);
     impl Write for Text {

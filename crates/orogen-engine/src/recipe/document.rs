@@ -23,25 +23,24 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The version of recipes that this program writes.
+/// The version of the recipe format that this library writes.
 pub const VERSION: i64 = 1;
 
-/// Most nodes a recipe may have.
+/// Maximum number of nodes of a recipe.
 pub const MAX_NODES: usize = 65_536;
 
-/// What a recipe says of its world. Lengths are metres.
+/// The `[world]` of a recipe. Lengths are in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorldSpec {
-    /// The seed that every node's own seed is hashed with.
+    /// The seed of the world, which is hashed with every node's own seed.
     pub seed: u64,
-    /// Extent east and south; `None` for a world without bounds.
+    /// Extent east and south; `None` for an unbounded world.
     pub size: Option<[f64; 2]>,
-    /// Metres from one sample to the next of the world's own lattice: where solvers work, and what is drawn if nobody asks
-    /// for another.
+    /// Distance between samples of the world's own lattice: the cell of solvers, and the default cell of requests.
     pub cell: f64,
-    /// Height of the sea's surface.
+    /// Height of the sea level.
     pub sea_level: f64,
-    /// The map that the world lies on; `None` for a world in metres of its own, or on the map of a real place in it.
+    /// The map of the world; `None` for local metres, or for the map of a real place in the recipe.
     pub crs: Option<Crs>,
     /// East and north of the world's first sample, its north-west corner, in the units of `crs`.
     pub origin: Option<[f64; 2]>,
@@ -54,13 +53,13 @@ impl Default for WorldSpec {
 }
 
 impl WorldSpec {
-    /// What every op is told.
+    /// The parameters of the world for ops.
     pub fn world_params(&self) -> WorldParams {
         WorldParams { seed: self.seed, size: self.size, cell: self.cell, sea_level: self.sea_level }
     }
 
-    /// How the world lies on the map of its `crs`, if it has both that and an `origin`. In degrees, metres are counted by the length of a
-    /// degree at the world's middle latitude.
+    /// The position of the world on the map of its `crs`, if it has both that and an `origin`. In degrees, metres are
+    /// converted with the length of a degree at the world's middle latitude.
     fn georeference(&self) -> Option<Georeference> {
         let (crs, origin) = (self.crs?, self.origin?);
         let per_metre = match crs.unit() {
@@ -78,15 +77,15 @@ impl WorldSpec {
 /// A node with its name and its mask.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedNode {
-    /// What other nodes call it.
+    /// The name.
     pub name: String,
     /// The op.
     pub node: Node,
-    /// Where the op takes effect: 1 fully, 0 not at all (the first input, or 0, shows instead).
+    /// The weight of the op: where it is 1 the op has full effect; where it is 0 the result is the first input, or 0.
     pub mask: Input,
 }
 
-/// A recipe: all that is needed to make a world.
+/// A recipe: the complete description of a world.
 ///
 /// ```
 /// use orogen_engine::field::fbm::Fbm;
@@ -144,24 +143,25 @@ impl Recipe {
         }
     }
 
-    /// Adds a node. What is wrong with it is told when the world is opened.
+    /// Adds a node. Errors in it are reported when the world is opened.
     pub fn add(&mut self, name: &str, node: impl Into<Node>) -> &mut Recipe {
         self.add_masked(name, node, Input::None)
     }
 
-    /// Adds a node that takes effect where `mask` is 1.
+    /// Adds a node with a mask: it has full effect where `mask` is 1.
     pub fn add_masked(&mut self, name: &str, node: impl Into<Node>, mask: impl Into<Input>) -> &mut Recipe {
         self.nodes.push(NamedNode { name: name.to_string(), node: node.into(), mask: mask.into() });
         self
     }
 
-    /// Names a node's result for the world outside. `height` is what maps and meshes are made from.
+    /// Makes a node's result an output. Maps and meshes are made from the output `height`.
     pub fn output(&mut self, layer: &str, node: impl Into<Input>) -> &mut Recipe {
         self.outputs.push((layer.to_string(), node.into()));
         self
     }
 
-    /// Adds a surface on top of those there are. Without any, those of [`standard`](super::surface::standard) cover the ground.
+    /// Adds a surface on top of the existing ones. A recipe without surfaces has those of
+    /// [`standard`](super::surface::standard).
     pub fn surface(&mut self, surface: Surface) -> &mut Recipe {
         self.surfaces.push(surface);
         self
@@ -172,43 +172,43 @@ impl Recipe {
         &self.surfaces
     }
 
-    /// Its surfaces as far as nodes compute them: after [`expand`](super::surface::expand::expand).
+    /// Its surfaces with the nodes that compute them, after [`expand`](super::surface::expand::expand).
     pub fn expanded(&self) -> &[Expanded] {
         &self.expanded
     }
 
-    /// Notes which nodes compute its surfaces. They are not written out with the recipe.
+    /// Sets the surfaces with the nodes that compute them. These are not written with the recipe.
     pub(super) fn set_expanded(&mut self, expanded: Vec<Expanded>) {
         self.expanded = expanded;
     }
 
-    /// The numbers that it offers: what they are called, what they may be and what they are. [`Recipe::read_with`] and
-    /// [`Recipe::parse_with`] read it with others.
+    /// Its parameters, with their values. [`Recipe::read_with`] and [`Recipe::parse_with`] read a recipe with other
+    /// values.
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters.list
     }
 
-    /// Notes its parameters, and where formulas of them stood.
+    /// Sets its parameters, and the positions of formulas.
     pub(super) fn set_parameters(&mut self, parameters: Parameters) {
         self.parameters = parameters;
     }
 
-    /// Where formulas stood.
+    /// The formulas.
     pub(super) fn formulas(&self) -> &[Formula] {
         &self.parameters.formulas
     }
 
-    /// The files of the recipes that it uses, and of those that they use.
+    /// The files of the recipes that it uses, directly and indirectly.
     pub fn used(&self) -> &[PathBuf] {
         &self.used
     }
 
-    /// Notes the files of the recipes that it uses.
+    /// Sets the files of the recipes that it uses.
     pub(super) fn set_used(&mut self, used: Vec<PathBuf>) {
         self.used = used;
     }
 
-    /// Puts others in the places of names that its nodes, outputs and surfaces read.
+    /// Renames the inputs of its nodes, outputs and surfaces.
     pub(super) fn rename_inputs(&mut self, of: impl Fn(&str) -> Option<Input>) {
         let other = |input: &Input| match input {
             Input::Node(name) => of(name),
@@ -232,17 +232,17 @@ impl Recipe {
         self.surfaces.iter_mut().for_each(|surface| surface.rename_inputs(&of));
     }
 
-    /// The nodes in the order they were written.
+    /// The nodes in the order of the text.
     pub fn nodes(&self) -> &[NamedNode] {
         &self.nodes
     }
 
-    /// Changes nodes in their places; their names and masks stay.
+    /// Changes nodes in place; names and masks stay.
     pub fn change(&mut self, change: impl FnMut(&mut Node)) {
         self.nodes.iter_mut().map(|named| &mut named.node).for_each(change);
     }
 
-    /// Says which folder the paths in it count from: that of its file.
+    /// Sets the folder that relative paths in it refer to: that of its file.
     pub fn set_base_dir(&mut self, folder: &Path) {
         let nodes = self.nodes.iter_mut().flat_map(|named| named.node.files());
         nodes
@@ -250,7 +250,8 @@ impl Recipe {
             .for_each(|file| file.set_base_dir(folder));
     }
 
-    /// The files that its nodes and surfaces name, those that these are composed of, and the recipes that it uses.
+    /// The files that its nodes and surfaces name, the parts of virtual rasters and tile folders, and the recipes that
+    /// it uses.
     pub fn files(&self) -> Vec<PathBuf> {
         let mut nodes: Vec<Node> = self.nodes.iter().map(|named| named.node.clone()).collect();
         let files = nodes.iter_mut().flat_map(Node::files).filter(|file| !file.is_empty()).map(|file| file.path());
@@ -259,12 +260,13 @@ impl Recipe {
         files.iter().flat_map(|path| open::files(path)).chain(self.used.iter().cloned()).collect()
     }
 
-    /// Reads the files that its nodes name, each once and not again where it was read, so that together their heights take no more than `allowed` bytes.
+    /// Reads the files that its nodes name. Each is read only once; their heights together take at most `allowed`
+    /// bytes.
     ///
     /// # Errors
-    /// If one cannot be read: with the node that names it, and its place if the recipe was read from a text.
+    /// If one cannot be read: the message contains the node, and the location if the recipe was read from a text.
     pub fn load(&mut self, allowed: u64) -> Result<()> {
-        // One file may be heights to one node and a picture to another.
+        // One file may be heights for one node and a picture for another.
         let mut known: BTreeMap<(PathBuf, bool, Option<u32>), Arc<PreparedDem>> = BTreeMap::new();
         self.held = 0;
         for NamedNode { name, node, .. } in &mut self.nodes {
@@ -305,8 +307,8 @@ impl Recipe {
         self.check_map()
     }
 
-    /// How its metres lie on a map: as the first real place in it says, else as its world's `crs` and `origin` say. A place that names no
-    /// coordinate system is taken to be in that of the world. Known once its files are read.
+    /// The position of the world on a map: that of the first real place in the recipe, otherwise that of the world's
+    /// `crs` and `origin`. A place without a coordinate system is in that of the world. Known after the files are read.
     pub fn georeference(&self) -> Option<Georeference> {
         match (self.place(), self.world.georeference()) {
             (Some(place), _) if place.is_on_map() => Some(place),
@@ -319,7 +321,7 @@ impl Recipe {
         }
     }
 
-    /// How its metres lie on the map of the first real place in it.
+    /// The position of the first real place on its map.
     fn place(&self) -> Option<Georeference> {
         self.nodes.iter().find_map(|named| match named.node.op() {
             Op::Field(field) => field.georeference(),
@@ -327,7 +329,7 @@ impl Recipe {
         })
     }
 
-    /// Refuses a `crs` or an `origin` that contradicts the place in the recipe's files, or lacks the other.
+    /// Checks that `crs` and `origin` are given together and agree with the place in the recipe's files.
     fn check_map(&self) -> Result<()> {
         let place = self.place();
         let message = match (&place, self.world.crs, self.world.origin) {
@@ -357,7 +359,7 @@ impl Recipe {
         Err(Error::new(ErrorKind::Recipe, message))
     }
 
-    /// A recipe of nothing but a real place at hand, which makes its very samples.
+    /// A recipe that consists of a real place, with its exact samples.
     pub fn from_dem(path: &Path, ground: &Arc<PreparedDem>) -> Recipe {
         let window = *ground.grid.window();
         let size = [window.width, window.height].map(|samples| samples as f64 * window.cell);
@@ -372,23 +374,24 @@ impl Recipe {
         recipe
     }
 
-    /// Bytes of memory that its files take, once they are read.
+    /// Memory of its files after they are read, in bytes.
     pub fn held(&self) -> u64 {
         self.held
     }
 
-    /// The names of the layers it offers.
+    /// The names of its outputs.
     pub fn outputs(&self) -> impl Iterator<Item = &str> + Clone {
         self.outputs.iter().map(|(name, _)| name.as_str())
     }
 
-    /// The outputs with what they show.
+    /// The outputs with their inputs.
     pub fn output_inputs(&self) -> &[(String, Input)] {
         &self.outputs
     }
 
-    /// The recipe as TOML with every default written out: self-contained, it makes the same world whatever the defaults of
-    /// a later version are; recipes that it uses are nodes of it. Its parameters are kept, with the values that they have now as their defaults, and so are formulas of them.
+    /// The recipe as TOML with all defaults written out, so that it makes the same world even if a later version has
+    /// other defaults. Recipes that it uses become nodes of it. Parameters keep their current values as defaults, and
+    /// formulas are kept.
     pub fn to_toml(&self) -> String {
         let mut text = format!("orogen = {VERSION}\n");
         if !self.about.is_empty() {
@@ -423,7 +426,7 @@ impl Recipe {
                     let _ = writeln!(text, "{} = {}", param.name, node.param(i).to_toml());
                 }
             };
-            // An expression stands before what it names.
+            // An expression is written before the names in it.
             if spec.named_inputs {
                 params(&mut text);
                 inputs(&mut text);
@@ -441,7 +444,7 @@ impl Recipe {
         self.parameters.restore(text)
     }
 
-    /// Whether a name in an expression means this without being told.
+    /// Whether a name in an expression refers to this input by default.
     fn is_meant(&self, bound: &HashSet<(&str, &str)>, node: &str, name: &str, input: &Input) -> bool {
         match (self.parameters.value(name), input) {
             (Some(value), Input::Value(number)) => value == *number && bound.contains(&(node, name)),

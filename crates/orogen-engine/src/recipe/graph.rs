@@ -1,4 +1,4 @@
-//! A recipe's nodes as a graph: names resolved, order found, keys computed.
+//! The graph of a recipe's nodes: resolved names, order, keys.
 
 use super::document::{MAX_NODES, Recipe};
 use crate::declare::Input;
@@ -9,21 +9,21 @@ use orogen_grid::error::{Diagnostic, Error, ErrorKind};
 use orogen_grid::words::suggestion;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-/// Deepest nesting of recipes in recipes.
+/// Maximum nesting of recipes in recipes.
 pub const MAX_USE_DEPTH: usize = 16;
 
-/// Most samples along a side of a world's own lattice.
+/// Maximum number of samples along a side of a world's lattice.
 pub const MAX_SAMPLES: f64 = (1u64 << 31) as f64;
 
-/// Most diagnostics told at once: finding the nearest name for each of a million would take for ever and help nobody.
+/// Maximum number of diagnostics reported at once; finding suggestions for a million of them would take very long.
 pub const MAX_FAULTS: usize = 20;
 
-/// What an input resolves to.
+/// The target of an input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Link {
-    /// Nothing given.
+    /// No input.
     None,
-    /// The same number everywhere.
+    /// A constant.
     Value(f32),
     /// A node's layer.
     Node(LayerRef),
@@ -41,20 +41,20 @@ pub struct LayerRef {
 /// The resolved graph.
 #[derive(Debug, Clone)]
 pub struct Graph {
-    /// Each node's inputs in the order of the declaration.
+    /// The inputs of each node, in the order of the declaration.
     pub links: Vec<Vec<Link>>,
-    /// Each node's mask.
+    /// The mask of each node.
     pub masks: Vec<Link>,
-    /// Node indices so that every node comes after those it reads.
+    /// Node indices in an order where every node comes after those that it reads.
     pub order: Vec<usize>,
-    /// What each output shows, in the recipe's order.
+    /// The targets of the outputs, in the recipe's order.
     pub outputs: Vec<Link>,
 }
 
-/// Where in a recipe something is wrong.
+/// The position of a problem in a recipe.
 #[derive(Debug, Clone, PartialEq)]
 pub enum At {
-    /// A node's key; the empty key is the node itself.
+    /// A key of a node; the empty key is the node itself.
     Node(usize, String),
     /// An output.
     Output(usize),
@@ -62,23 +62,23 @@ pub enum At {
     World,
 }
 
-/// One thing that is wrong.
+/// A problem in a recipe.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GraphDiagnostic {
-    /// Where.
+    /// Its position.
     pub at: At,
-    /// What, and what to do.
+    /// The message: what is wrong, and what to do.
     pub message: String,
 }
 
-/// Whether a name can be a node's or a layer's.
+/// Whether a name is valid for a node or a layer.
 pub(super) fn is_name(name: &str) -> bool {
     (1..=64).contains(&name.len())
         && name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
         && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-')
 }
 
-/// Whether a name can be a node's: a name, behind those of the recipes that it was taken from.
+/// Whether a name is valid for a node, including the names of recipes that it comes from.
 fn is_path(name: &str) -> bool {
     name.split('/').count() <= MAX_USE_DEPTH + 1 && name.split('/').all(is_name)
 }
@@ -86,7 +86,7 @@ fn is_path(name: &str) -> bool {
 const NAME_RULE: &str = "a name must have 1 to 64 letters, digits, `_` and `-`, and must not start with a digit";
 
 impl Graph {
-    /// Resolves names, checks every value and finds an order, or says what is wrong: all of it, up to [`MAX_FAULTS`].
+    /// Resolves names, checks all values and finds an order, or returns all problems, up to [`MAX_FAULTS`].
     pub fn resolve(recipe: &Recipe) -> Result<Graph, Vec<GraphDiagnostic>> {
         let nodes = recipe.nodes();
         if nodes.len() > MAX_NODES {
@@ -108,7 +108,7 @@ impl Graph {
         Ok(graph)
     }
 
-    /// The nodes that a node reads, mask included.
+    /// The nodes that a node reads, including its mask.
     pub fn sources(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
         self.links[node].iter().chain([&self.masks[node]]).filter_map(|link| match link {
             Link::Node(target) => Some(target.node),
@@ -116,7 +116,7 @@ impl Graph {
         })
     }
 
-    /// Kahn's algorithm; nodes keep the order they were written in where they can. On a cycle: the nodes of one.
+    /// Kahn's algorithm; nodes keep the order of the text where possible. On failure, the nodes of a cycle.
     fn sort(&self) -> Result<Vec<usize>, Vec<usize>> {
         let count = self.links.len();
         let mut waiting: Vec<usize> = (0..count).map(|node| self.sources(node).count()).collect();
@@ -140,7 +140,7 @@ impl Graph {
         if order.len() == count {
             return Ok(order);
         }
-        // Every node left reads another that is left: walking upstream must come round.
+        // Every remaining node reads another one that remains: going upstream must repeat.
         let left = |node: &usize| waiting[*node] > 0;
         let mut path: Vec<usize> = Vec::new();
         let mut step: HashMap<usize, usize> = HashMap::new();
@@ -181,14 +181,15 @@ impl Graph {
         GraphDiagnostic { at: At::Node(reader, key.to_string()), message }
     }
 
-    /// The error of diagnostics that have no text to point into.
+    /// The error for diagnostics without a text.
     pub fn error(diagnostics: Vec<GraphDiagnostic>) -> Error {
         let diagnostics =
             diagnostics.into_iter().map(|diagnostic| Diagnostic { message: diagnostic.message, place: None }).collect();
         Error::from_diagnostics(ErrorKind::Recipe, diagnostics)
     }
 
-    /// How a target is read between its samples. A layer that is read as its source is leads to that, and so on.
+    /// The interpolation of a target. A layer that is interpolated like its source takes the kind of that source, and
+    /// so on.
     pub fn layer_kind(&self, recipe: &Recipe, target: LayerRef) -> LayerKind {
         let mut at = target;
         loop {
@@ -203,16 +204,16 @@ impl Graph {
         }
     }
 
-    /// What `node` or `node.layer` names.
+    /// The target of `node` or `node.layer`.
     ///
     /// # Errors
-    /// A message with the nearest name, if there is no such node or layer.
+    /// A message with the closest name, if there is no such node or layer.
     pub fn find(recipe: &Recipe, text: &str) -> Result<LayerRef, String> {
         named(recipe, text, |name| recipe.nodes().iter().position(|node| node.name == name))
     }
 }
 
-/// What `node` or `node.layer` names, the node's index found by `find`.
+/// The target of `node` or `node.layer`, with the node's index from `find`.
 fn named(recipe: &Recipe, text: &str, find: impl Fn(&str) -> Option<usize>) -> Result<LayerRef, String> {
     const SHOWN: usize = 64;
     let (node, layer) = text.split_once('.').map_or((text, None), |(node, layer)| (node, Some(layer)));
@@ -233,7 +234,7 @@ fn named(recipe: &Recipe, text: &str, find: impl Fn(&str) -> Option<usize>) -> R
     }
 }
 
-/// Goes through a recipe and gathers what is wrong with it.
+/// Checks a recipe and collects problems.
 struct Resolver<'a> {
     recipe: &'a Recipe,
     names: HashMap<&'a str, usize>,
@@ -245,7 +246,7 @@ impl<'a> Resolver<'a> {
         self.diagnostics.push(GraphDiagnostic { at, message });
     }
 
-    /// Ends the search where there are more diagnostics than anybody reads.
+    /// Ends the check if there are too many diagnostics.
     fn enough(&mut self) -> Result<(), Vec<GraphDiagnostic>> {
         match self.diagnostics.len() >= MAX_FAULTS {
             true => Err(std::mem::take(&mut self.diagnostics)),
@@ -278,7 +279,7 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    /// The node for itself: its name, its parameters, and whether it can be in this world.
+    /// Checks a single node: its name, its parameters, and whether it is possible in this world.
     fn check_node(&mut self, index: usize) -> Result<(), Vec<GraphDiagnostic>> {
         let named = &self.recipe.nodes()[index];
         let name = named.name.as_str();
@@ -304,7 +305,7 @@ impl<'a> Resolver<'a> {
         self.enough()
     }
 
-    /// Values set by a program pass the same checks as those read from a text.
+    /// Values set in code pass the same checks as those read from a text.
     fn check_params(&mut self, index: usize, node: &Node) {
         let mut copy = node.clone();
         let mut sound = true;
@@ -319,7 +320,7 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    /// A node's inputs and its mask.
+    /// The inputs of a node and its mask.
     fn link_node(&mut self, index: usize) -> Result<(Vec<Link>, Link), Vec<GraphDiagnostic>> {
         let named = &self.recipe.nodes()[index];
         let inputs = named.node.inputs();
@@ -354,7 +355,7 @@ impl<'a> Resolver<'a> {
         Ok(links)
     }
 
-    /// What an input resolves to, or what is wrong with it.
+    /// The target of an input, or a message.
     fn link(&self, input: &Input, required: bool) -> Result<Link, String> {
         match input {
             Input::None if required => Err("it is missing; name the node to read, or set a number".to_string()),

@@ -1,4 +1,4 @@
-//! JSON text to a tree of values.
+//! Parsing of JSON to a tree of values.
 
 use super::text::Text;
 use crate::value::{Span, Spanned, Value};
@@ -7,15 +7,15 @@ use jsonc_parser::common::Ranged;
 use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
 use orogen_grid::error::Result;
 
-/// Deepest nesting read. A recipe needs four levels; a parser that recurses must never meet more than its stack holds.
+/// Maximum nesting. A recipe needs four levels; the limit protects recursive parsers.
 const DEEPEST: usize = 64;
 
-/// Reads the whole text; the first thing that is not JSON is the error.
+/// Parses the whole text; the error is the first syntax error.
 pub fn read(text: &Text) -> Result<Spanned<Value>> {
     if let Some(at) = too_deep(text.text) {
         return Err(text.error(&(at..at + 1), format!("the JSON is nested more than {DEEPEST} levels deep")));
     }
-    // Plain JSON: comments or loose strings would hide brackets from the count above.
+    // Strict JSON: comments or loose strings would hide brackets from the check above.
     let options = ParseOptions {
         allow_comments: false,
         allow_loose_object_property_names: false,
@@ -40,7 +40,7 @@ pub fn read(text: &Text) -> Result<Spanned<Value>> {
     }
 }
 
-/// Where nesting passes the bound, outside strings and comments.
+/// The position where nesting exceeds the limit, outside strings and comments.
 fn too_deep(text: &str) -> Option<usize> {
     let (mut depth, mut in_string, mut escaped) = (0usize, false, false);
     for (at, byte) in text.bytes().enumerate() {

@@ -1,4 +1,4 @@
-//! Recipes: the document that describes a world.
+//! Recipes: documents that describe a world.
 
 pub mod document;
 pub mod graph;

@@ -1,7 +1,7 @@
-//! Parameters: numbers that a recipe offers to whoever makes it, and formulas of them wherever a number stands.
+//! Parameters of a recipe, and formulas of them in place of numbers.
 //!
-//! A string that begins with `=` is a formula. It is computed before anything else is read, so all that follows sees plain numbers; where formulas
-//! stood is remembered, so that a recipe that is written back keeps them.
+//! A string that begins with `=` is a formula. Formulas are evaluated before anything else is read, so all later code
+//! sees plain numbers. Their positions are recorded, so that a recipe keeps them when it is written.
 
 use super::text::Text;
 use crate::expression::error::ExpressionError;
@@ -12,32 +12,32 @@ use orogen_grid::words::{number, respelled, suggestion};
 use std::collections::HashSet;
 use std::fmt::Write as _;
 
-/// Most parameters a recipe may have.
+/// Maximum number of parameters of a recipe.
 pub const MAX_PARAMETERS: usize = 256;
 
-/// Most formulas a recipe may have.
+/// Maximum number of formulas of a recipe.
 const MAX_FORMULAS: usize = 65_536;
 
 /// The keys of a parameter, for diagnostics.
 const KEYS: [&str; 4] = ["default", "unit", "range", "help"];
 
-/// A number that a recipe offers.
+/// A parameter of a recipe.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
-    /// What formulas call it.
+    /// The name in formulas.
     pub name: String,
-    /// What it does; empty if the recipe does not say.
+    /// The description; may be empty.
     pub help: String,
-    /// Its unit, or empty.
+    /// The unit, or empty.
     pub unit: String,
-    /// The lowest and the highest value it may have; infinite where there is no bound.
+    /// The minimum and maximum value; infinite if there is no bound.
     pub range: [f64; 2],
-    /// Its value: the default, unless the recipe was read with another.
+    /// The value: the default, unless the recipe was read with another.
     pub value: f64,
 }
 
 impl Parameter {
-    /// Whether it may have a value: if not, what it must be.
+    /// Checks a value; the error describes the valid values.
     pub fn check(&self, value: f64) -> Result<(), String> {
         match value.is_finite() && (self.range[0]..=self.range[1]).contains(&value) {
             true => Ok(()),
@@ -45,7 +45,7 @@ impl Parameter {
         }
     }
 
-    /// What it must be: "a number from 0 to 100 (m)".
+    /// The valid values: "a number from 0 to 100 (m)".
     pub fn expected(&self) -> String {
         let range = match self.range {
             [low, high] if low.is_finite() && high.is_finite() => format!(" from {} to {}", number(low), number(high)),
@@ -72,7 +72,7 @@ impl Parameter {
     }
 }
 
-/// A step from a table or list to what is in it.
+/// A step of a path in a tree of values.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Step {
     /// To a key's value.
@@ -81,21 +81,21 @@ pub enum Step {
     Item(usize),
 }
 
-/// A formula and where in the recipe it stands.
+/// A formula and its position in the recipe.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Formula {
-    /// The way to it from the top.
+    /// The path from the root.
     pub path: Vec<Step>,
     /// The expression, without the `=`.
     pub text: String,
 }
 
-/// What a recipe offers, and what depends on it.
+/// Parameters and formulas of a recipe.
 #[derive(Debug, Clone, Default)]
 pub struct Parameters {
-    /// In the order they were written.
+    /// The parameters in the order of the text.
     pub list: Vec<Parameter>,
-    /// Where formulas stood.
+    /// The formulas.
     pub formulas: Vec<Formula>,
 }
 
@@ -105,7 +105,7 @@ impl Parameters {
         self.list.iter().find(|parameter| parameter.name == name).map(|parameter| parameter.value)
     }
 
-    /// The value of a formula of them.
+    /// The value of a formula.
     pub fn evaluate(&self, text: &str) -> Result<f64, ExpressionError> {
         let names = self.list.iter().map(|parameter| parameter.name.as_str());
         formula::value(
@@ -115,7 +115,7 @@ impl Parameters {
         )
     }
 
-    /// The keys of nodes that are the parameter of the same name.
+    /// The keys of nodes that are bound to the parameter of the same name.
     pub fn bound(&self) -> HashSet<(&str, &str)> {
         let keys = self.formulas.iter().filter_map(|formula| match formula.path.as_slice() {
             [Step::Key(nodes), Step::Key(node), Step::Key(key)] if nodes == "nodes" && formula.text.trim() == key => {
@@ -126,10 +126,10 @@ impl Parameters {
         keys.collect()
     }
 
-    /// Changes values.
+    /// Sets values.
     ///
     /// # Errors
-    /// If there is no parameter of a name, or a value is not in its range.
+    /// If there is no such parameter, or a value is out of range.
     pub fn set(&mut self, values: &[(String, f64)]) -> Result<(), String> {
         for (name, value) in values {
             let names: Vec<String> = self.list.iter().map(|parameter| parameter.name.clone()).collect();
@@ -148,12 +148,12 @@ impl Parameters {
         Ok(())
     }
 
-    /// Their tables in TOML.
+    /// Writes the parameters as TOML tables.
     pub fn write_toml(&self, text: &mut String) {
         self.list.iter().for_each(|parameter| parameter.write_toml(text));
     }
 
-    /// Puts formulas back into the text of a recipe, where the number there is still the one that the formula makes.
+    /// Puts formulas back into the text of a recipe, if the number there is still the formula's value.
     pub fn restore(&self, text: String) -> String {
         if self.formulas.is_empty() {
             return text;
@@ -165,7 +165,7 @@ impl Parameters {
             let written = toml_string(&format!("={}", formula.text));
             let Some(found) = formula.path.iter().try_fold(&tree, |at, step| follow(at, step)) else { continue };
             let spans: Vec<&Spanned<Value>> = match &found.value {
-                // One number for both of a pair.
+                // One number for both values of a pair.
                 Value::List(items) => items.iter().collect(),
                 _ => vec![found],
             };
@@ -202,31 +202,31 @@ fn follow<'t>(at: &'t Spanned<Value>, step: &Step) -> Option<&'t Spanned<Value>>
     }
 }
 
-/// What is wrong at a part of the text.
+/// Problems with their positions in the text.
 type Diagnostics = Vec<(Span, String)>;
 
-/// What became of the formulas in a recipe.
+/// The result of resolving the formulas of a recipe.
 #[derive(Default)]
 pub struct Resolved {
-    /// The parameters, and where formulas stood.
+    /// Parameters and formulas.
     pub parameters: Parameters,
-    /// What is wrong.
+    /// The problems.
     pub diagnostics: Diagnostics,
-    /// Formulas that have no value: nothing more is to be said of them.
+    /// Formulas without a value, which need no further diagnostics.
     pub failed: Vec<Span>,
 }
 
-/// Reads the parameters of a recipe, gives those that are `set` other values, and puts numbers in place of all formulas.
+/// Reads the parameters of a recipe, applies the values in `set`, and replaces all formulas by numbers.
 ///
 /// # Errors
-/// If what is `set` cannot be.
+/// If a value in `set` is not valid.
 pub fn resolve(tree: &mut Spanned<Value>, text: &Text, set: &[(String, f64)]) -> Result<Resolved, String> {
     let mut resolved = Resolved::default();
     let Value::Table(top) = &mut tree.value else { return Ok(resolved) };
     if let Some((_, value)) = top.iter().find(|(key, _)| key.value == "parameters") {
         read(value, &mut resolved.parameters.list, &mut resolved.diagnostics);
     }
-    // Formulas of parameters that could not be read would only repeat that.
+    // If parameters could not be read, errors in formulas would only repeat that.
     let silent = !resolved.diagnostics.is_empty();
     if !silent {
         resolved.parameters.set(set)?;
@@ -257,11 +257,11 @@ impl Resolver<'_> {
         self.path.pop();
     }
 
-    /// Recursion is bounded by the parsers, which refuse deep nesting.
+    /// Recursion is bounded by the parsers, which reject deep nesting.
     fn value(&mut self, value: &mut Spanned<Value>) {
         match &mut value.value {
             Value::Table(entries) => {
-                // What the op `expr` computes is an expression of samples, and no formula.
+                // The expression of the op `expr` applies to samples; it is not a formula.
                 let is_expression =
                     entries.iter().any(|(key, value)| key.value == "op" && value.value == Value::Text("expr".into()));
                 for (key, value) in entries.iter_mut().filter(|(key, _)| !(is_expression && key.value == "expr")) {
@@ -292,7 +292,7 @@ impl Resolver<'_> {
     }
 }
 
-/// A number as recipes write it: whole ones may stand where only whole ones do.
+/// A number as recipes write it: integers without a fraction, because some keys accept only integers.
 fn plain(number: f64) -> Value {
     const EXACT: f64 = (1u64 << 53) as f64;
     match number.fract() == 0.0 && number.abs() <= EXACT {
@@ -331,7 +331,7 @@ fn read(value: &Spanned<Value>, parameters: &mut Vec<Parameter>, diagnostics: &m
     }
 }
 
-/// Reads one parameter: a number, or a table with its default and more.
+/// Reads one parameter: a number, or a table with its default and other keys.
 fn one(name: &Spanned<String>, value: &Spanned<Value>, diagnostics: &mut Diagnostics) -> Option<Parameter> {
     let range = [f64::NEG_INFINITY, f64::INFINITY];
     let mut parameter =
@@ -392,14 +392,14 @@ fn one(name: &Spanned<String>, value: &Spanned<Value>, diagnostics: &mut Diagnos
             default.value.describe()
         )),
     };
-    // A range that could not be read says nothing about the default.
+    // If the range could not be read, the default is not checked.
     if diagnostics.len() == before {
         diagnostics.extend(fault.map(|message| (default.span.clone(), message)));
     }
     (diagnostics.len() == before).then_some(parameter)
 }
 
-/// Two numbers, the lower one first; either may be infinite.
+/// Two numbers, the lower one first; both may be infinite.
 fn bounds(ends: &[Spanned<Value>]) -> Option<[f64; 2]> {
     match ends {
         [low, high] => {

@@ -1,4 +1,4 @@
-//! From a tree of values to a recipe, with every diagnostic at its own key.
+//! Conversion of a tree of values to a recipe, with diagnostics at their keys.
 
 use super::document::{MAX_NODES, Recipe, VERSION, WorldSpec};
 use super::graph::{At, Graph, MAX_FAULTS};
@@ -17,7 +17,7 @@ use orogen_io::open;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-/// Words that other programs use for what has one name here.
+/// Terms of other programs for keys that have another name here.
 const ALIASES: [(&str, &str); 8] = [
     ("persistence", "gain"),
     ("frequency", "wavelength"),
@@ -29,7 +29,7 @@ const ALIASES: [(&str, &str); 8] = [
     ("amount", "strength"),
 ];
 
-/// What a key may have meant.
+/// The message for an unknown key, with a suggestion.
 fn unknown_key(key: &str, node: &Node) -> String {
     let inputs = node.inputs();
     let params = node.spec().params.iter().map(|param| param.name);
@@ -46,15 +46,16 @@ impl Recipe {
     /// Reads a recipe from a file, TOML or JSON.
     ///
     /// # Errors
-    /// If the file cannot be read, is no text, or is no valid recipe: then every diagnostic has its line and column.
+    /// If the file cannot be read, is not text, or is not a valid recipe: then every diagnostic has its line and
+    /// column.
     pub fn read(path: &Path) -> Result<Recipe> {
         Recipe::read_with(path, &[])
     }
 
-    /// The same with other values for some of its parameters.
+    /// [`Recipe::read`] with other values for some of its parameters.
     ///
     /// # Errors
-    /// As [`Recipe::read`], and if a parameter is not there or may not have that value.
+    /// The errors of [`Recipe::read`], and if a parameter does not exist or the value is out of range.
     pub fn read_with(path: &Path, set: &[(String, f64)]) -> Result<Recipe> {
         let doing = "read the recipe";
         let Some(bytes) = open::bytes(path, doing, LONGEST_TEXT)? else {
@@ -70,25 +71,25 @@ impl Recipe {
         parse(text, &format!("recipes/{name}.toml"), set, &Origin::preset(name, &shared))
     }
 
-    /// Reads a recipe from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics call it.
+    /// Reads a recipe from a text, TOML or (if it begins with a brace) JSON; `name` is its name in diagnostics.
     ///
     /// # Errors
-    /// If it is no valid recipe. All diagnostics are told at once, in the order of the text.
+    /// If it is not a valid recipe. All diagnostics are reported at once, in the order of the text.
     pub fn parse(text: &str, name: &str) -> Result<Recipe> {
         Recipe::parse_with(text, name, &[])
     }
 
-    /// The same with other values for some of its parameters.
+    /// [`Recipe::parse`] with other values for some of its parameters.
     ///
     /// # Errors
-    /// As [`Recipe::parse`], and if a parameter is not there or may not have that value.
+    /// The errors of [`Recipe::parse`], and if a parameter does not exist or the value is out of range.
     pub fn parse_with(text: &str, name: &str, set: &[(String, f64)]) -> Result<Recipe> {
         let shared = Shared::new(parse);
         parse(text, name, set, &Origin::text(&shared))
     }
 }
 
-/// Reads a recipe, with those that it uses.
+/// Reads a recipe and those that it uses.
 fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Result<Recipe> {
     if text.len() as u64 > LONGEST_TEXT {
         return Err(too_long(name));
@@ -117,21 +118,21 @@ fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Resu
     walk.recipe(tree, set, origin)
 }
 
-/// The walk through the tree: gathers diagnostics and remembers where keys stood, for what only the whole graph can tell.
+/// A traversal of the tree that collects diagnostics and the positions of keys, which later checks of the graph need.
 struct Walk<'a> {
     text: &'a Text<'a>,
     diagnostics: Vec<Diagnostic>,
-    /// How many diagnostics were not written down because there are too many to be of use.
+    /// Number of diagnostics beyond the limit.
     more: usize,
-    /// Where the value of (node, key) stood; the empty key is the node's name.
+    /// Positions of the values of (node, key); the empty key is the node's name.
     places: HashMap<(usize, String), Span>,
-    /// Where the output names' values stood.
+    /// Positions of the outputs' values.
     names: Vec<Span>,
-    /// What formulas are made of.
+    /// The parameters of formulas.
     parameters: Parameters,
-    /// Formulas that have no value: enough has been said of them.
+    /// Formulas without a value, which need no further diagnostics.
     failed: HashSet<Span>,
-    /// What is wrong with recipes that this one uses.
+    /// Problems of recipes that this one uses.
     elsewhere: Vec<Diagnostic>,
 }
 
@@ -176,7 +177,8 @@ impl Walk<'_> {
                 "world" => recipe.world = self.world(value),
                 "nodes" => self.nodes(value, &mut recipe)?,
                 "outputs" => self.outputs(value, &mut recipe),
-                // Read last: surfaces are told whether the world has bounds, used recipes come behind its own nodes.
+                // Read last: surfaces depend on whether the world is bounded, and nodes of used recipes follow its own
+                // nodes.
                 "surface" | "use" => {}
                 unknown => {
                     let known = ["orogen", "about", "parameters", "world", "nodes", "use", "outputs", "surface"];
@@ -233,12 +235,12 @@ impl Walk<'_> {
         }
     }
 
-    /// Whether nothing is wrong so far.
+    /// Whether there are no problems so far.
     fn is_sound(&self) -> bool {
         self.diagnostics.is_empty() && self.elsewhere.is_empty()
     }
 
-    /// Takes in the recipes that this one uses.
+    /// Includes the recipes that this one uses.
     fn uses(&mut self, value: &Spanned<Value>, recipe: &mut Recipe, origin: &Origin) -> Uses {
         let mut uses = take_in(value, recipe, &mut self.parameters, origin);
         for complaint in std::mem::take(&mut uses.diagnostics) {
@@ -254,7 +256,7 @@ impl Walk<'_> {
         uses
     }
 
-    /// Reads the surfaces, and returns where each stands.
+    /// Reads the surfaces, and returns their positions.
     fn surfaces(&mut self, value: &Spanned<Value>, recipe: &mut Recipe) -> Vec<Span> {
         let read = surface::read::read(value, recipe.world.size.is_some());
         read.diagnostics.into_iter().for_each(|(span, message)| self.complain(&span, message));
@@ -264,7 +266,7 @@ impl Walk<'_> {
         read.places
     }
 
-    /// What is wrong with surfaces shows in the nodes that compute them.
+    /// Problems of surfaces appear in the nodes that compute them.
     fn check_surfaces(&mut self, recipe: &Recipe, places: &[Span]) {
         let mut whole = recipe.clone();
         surface::expand::expand(&mut whole);
@@ -274,7 +276,7 @@ impl Walk<'_> {
                 _ => None,
             };
             let span = at.and_then(|at| places.get(at)).cloned().unwrap_or(0..0);
-            // The names of nodes that nobody wrote would help nobody.
+            // Names of generated nodes would not help the user.
             let message = match (at.map(|at| &recipe.surfaces()[at].name), diagnostic.message.split_once("`: ")) {
                 (Some(name), Some((_, what))) => format!("surface `{name}`: {what}"),
                 _ => diagnostic.message,
@@ -283,7 +285,7 @@ impl Walk<'_> {
         }
     }
 
-    /// The version is checked first: nothing else in a recipe of another version can be trusted to be understood.
+    /// The version is checked first: a recipe of another version cannot be interpreted reliably.
     fn version(&self, top: &Table) -> Result<()> {
         match top.iter().find(|(key, _)| key.value == "orogen") {
             None => Err(self.text.error(
@@ -302,7 +304,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Complains of a key that stands twice in a table (TOML's parser refuses it itself, JSON's does not).
+    /// Reports a duplicate key in a table (the TOML parser rejects it itself, the JSON parser does not).
     fn repeated<'k>(&mut self, seen: &mut HashSet<&'k str>, key: &'k Spanned<String>) -> bool {
         if !seen.insert(key.value.as_str()) {
             self.complain(&key.span, format!("the key `{}` appears twice in this table", key.value));
@@ -364,8 +366,8 @@ impl Walk<'_> {
             }
             let index = recipe.nodes().len();
             self.places.insert((index, String::new()), name.span.clone());
-            // A node that cannot be read still stands for its name, so that nodes reading it draw no diagnostic of their own;
-            // the recipe is refused anyway.
+            // A node that cannot be read still defines its name, so that nodes that read it cause no further
+            // diagnostics; the recipe is rejected anyway.
             if let Some((node, mask)) = self.node(index, name, value) {
                 recipe.add_masked(&name.value, node, mask);
             }
@@ -408,7 +410,7 @@ impl Walk<'_> {
                 (Spanned { value: alias.unwrap_or(name), span: key.span.clone() }, value)
             })
             .collect();
-        // Only an expression says which inputs there are.
+        // The inputs are known only from the expression.
         if spec.named_inputs {
             entries.sort_by_key(|(key, _)| spec.param_named(&key.value).is_none());
         }
@@ -450,11 +452,11 @@ impl Walk<'_> {
         Some((node, mask))
     }
 
-    /// Complains of what is wrong within an expression, where it is wrong.
+    /// Reports errors in an expression, at their positions.
     fn expression(&mut self, index: usize, node: &Node, value: &Spanned<Value>) -> bool {
         let (Node::Expr(Expr { expr, .. }), Value::Text(text)) = (node, &value.value) else { return true };
         let Some(fault) = expr.error() else {
-            // What a name stands for is wrong where the name stands, unless a key says what it is.
+            // An unknown name is reported where it is used, unless a key defines it.
             for name in expr.names() {
                 let span = self.text.within(&value.span, text, &place_of(text, name));
                 self.places.insert((index, name.clone()), span);
@@ -466,7 +468,7 @@ impl Walk<'_> {
         false
     }
 
-    /// What an expression names and no key explains: a parameter, or else a node or layer.
+    /// Defines the names of an expression that no key defines: a parameter, otherwise a node or layer.
     fn name_inputs(&mut self, node_name: &str, node: &mut Node) {
         let names: Vec<String> = node.inputs().iter().map(|input| input.name.to_string()).collect();
         for (i, name) in names.iter().enumerate() {
@@ -485,7 +487,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Where a file is named, so that whoever cannot read it can say so.
+    /// Records the location of a file name, for errors when it is read.
     fn remember(&self, node: &mut Node, value: &Spanned<Value>) {
         let Value::Text(name) = &value.value else { return };
         let files = node.files().into_iter().filter(|file| file.location().is_none() && file.text() == *name);

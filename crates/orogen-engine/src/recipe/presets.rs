@@ -1,30 +1,30 @@
-//! The recipes that come with the program: plain files in `recipes/`, embedded.
+//! Built-in recipes: files in `recipes/`, embedded.
 
 use super::document::Recipe;
 use orogen_grid::error::Result;
 
-/// A recipe that comes with the program.
+/// A built-in recipe.
 #[derive(Debug, Clone, Copy)]
 pub struct Preset {
-    /// What it is called.
+    /// The name.
     pub name: &'static str,
-    /// Its recipe, TOML.
+    /// The recipe in TOML.
     pub text: &'static str,
 }
 
 impl Preset {
-    /// Reads it.
+    /// Parses the recipe.
     ///
     /// # Errors
-    /// None in a release: a test reads every preset.
+    /// None in a release: a test parses every preset.
     pub fn recipe(&self) -> Result<Recipe> {
         self.recipe_with(&[])
     }
 
-    /// Reads it with other values for some of its parameters.
+    /// Parses the recipe with other values for some of its parameters.
     ///
     /// # Errors
-    /// If a parameter is not there or may not have that value.
+    /// If a parameter does not exist or the value is out of range.
     pub fn recipe_with(&self, set: &[(String, f64)]) -> Result<Recipe> {
         Recipe::parse_preset(self.name, self.text, set)
     }
@@ -53,15 +53,15 @@ static PRESETS: &[Preset] = presets![
     "volcano",
 ];
 
-/// The preset that is made if nobody asks for another.
+/// The default preset.
 pub const DEFAULT: &str = "alpine";
 
-/// All of them, by name.
+/// All presets, by name.
 pub fn all() -> &'static [Preset] {
     PRESETS
 }
 
-/// The preset of that name.
+/// The preset with this name.
 pub fn find(name: &str) -> Option<&'static Preset> {
     PRESETS.iter().find(|preset| preset.name == name)
 }

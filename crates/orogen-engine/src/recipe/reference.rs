@@ -1,4 +1,4 @@
-//! The ops in words, made from their declarations.
+//! Descriptions of the ops, made from their declarations.
 
 use crate::declare::{Shape, Spec, short};
 use crate::layer::{Interpolation, Layer, ONE_LAYER};
@@ -6,7 +6,7 @@ use crate::node::Node;
 use crate::value::Value;
 use std::fmt::Write as _;
 
-/// One line an op: its name, its locality and what it does.
+/// One line per op: its name, its locality and its description.
 pub fn overview() -> String {
     let nodes = Node::all();
     let longest = nodes.iter().map(|node| node.spec().op.len()).max().unwrap_or(0);
@@ -27,7 +27,7 @@ pub fn first_sentence(spec: &Spec) -> String {
     }
 }
 
-/// All about one op, for a terminal.
+/// The complete description of an op, for a terminal.
 pub fn describe(node: &Node) -> String {
     let spec = node.spec();
     let mut text = format!("{} ({})\n\n{}\n", spec.op, spec.locality.name(), spec.doc.trim());
@@ -71,12 +71,12 @@ pub fn describe(node: &Node) -> String {
     text
 }
 
-/// Whether an op says what it makes: fields do not, they make one thing.
+/// Whether an op lists its layers; fields do not, because they have only one.
 fn names_layers(spec: &Spec) -> bool {
     spec.layers.iter().map(|layer| layer.name).ne(ONE_LAYER.iter().map(|layer| layer.name))
 }
 
-/// How a layer is read between its samples, and its unit.
+/// The interpolation of a layer, and its unit.
 fn between(layer: &Layer) -> String {
     let how = match layer.interpolation {
         Interpolation::As(kind) => kind.about(),
@@ -125,7 +125,7 @@ fn section(text: &mut String, node: &Node) {
     }
 }
 
-/// What a node can be told.
+/// The keys of a node.
 fn keys(text: &mut String, node: &Node) {
     let spec = node.spec();
     if spec.inputs.is_empty() && spec.params.is_empty() {

@@ -56,7 +56,7 @@ pub static WORLD: &[ParamSpec] = &[
     },
 ];
 
-/// The world's parameter of that name.
+/// The world's parameter with this name.
 pub fn world_param(name: &str) -> Option<&'static ParamSpec> {
     WORLD.iter().find(|spec| spec.name == name)
 }
@@ -91,7 +91,7 @@ pub fn world_values(world: &WorldSpec) -> Vec<(&'static str, Value)> {
     values
 }
 
-/// The schema (draft 7) that editors check recipes against.
+/// The schema (draft 7) for validation in editors.
 pub fn json_schema() -> Json {
     let name = json!({ "type": "string", "pattern": "^[A-Za-z_][A-Za-z0-9_-]{0,63}$" });
     let mut world: Map<String, Json> =
@@ -154,10 +154,10 @@ pub fn json_schema() -> Json {
     schema
 }
 
-/// What a formula of parameters looks like.
+/// The pattern of a formula.
 const FORMULA: &str = "^\\s*=";
 
-/// Lets a formula stand wherever a number does.
+/// Allows a formula in place of every number.
 fn take_formulas(schema: &mut Json) {
     match schema {
         Json::Object(keys) => {
@@ -175,7 +175,7 @@ fn take_formulas(schema: &mut Json) {
     }
 }
 
-/// What a recipe offers to whoever makes it.
+/// The schema of `[parameters]`.
 fn parameters_schema(name: &Json) -> Json {
     let number = json!({ "type": "number" });
     let mut name = name.clone();
@@ -207,7 +207,7 @@ fn parameters_schema(name: &Json) -> Json {
     })
 }
 
-/// Other recipes as parts of this one.
+/// The schema of `[use]`.
 fn uses_schema(name: &Json) -> Json {
     json!({
         "type": "object",
@@ -235,8 +235,8 @@ fn uses_schema(name: &Json) -> Json {
     })
 }
 
-/// A node: by its op, one of the ops' schemas. `if` and `then` rather than `oneOf`, so that a wrong key is named and not just the
-/// whole node called wrong; all keys of all ops beside them, because that is where editors look for completions.
+/// A node: selects the schema of its op. It uses `if` and `then` instead of `oneOf`, so that editors report the wrong
+/// key instead of the whole node; all keys of all ops are listed beside them for completion.
 fn node_schema() -> Json {
     let nodes = Node::all();
     let ops: Vec<Json> = nodes
@@ -258,7 +258,7 @@ fn node_schema() -> Json {
     json!({ "type": "object", "required": ["op"], "properties": properties, "allOf": ops })
 }
 
-/// A name in each of the spellings that recipes may use, its own first.
+/// All accepted spellings of a name, the canonical one first.
 fn spellings(name: &str) -> Vec<String> {
     [name.to_string()].into_iter().chain(respelled(name)).collect()
 }
@@ -271,7 +271,7 @@ fn op_name(op: &str) -> Json {
     }
 }
 
-/// What a key means: once if it means the same in all ops, else op by op.
+/// The description of a key: once if it is the same in all ops, otherwise per op.
 fn joined(docs: &[(&str, String)]) -> String {
     match docs {
         [(_, first), others @ ..] if others.iter().all(|(_, doc)| doc == first) => first.clone(),
@@ -317,7 +317,7 @@ fn op_schema(node: &Node) -> Json {
         }
     }
     properties.insert("mask".into(), mask_schema());
-    // What an expression names is an input: any key.
+    // Names in an expression are inputs, so any key is valid.
     let others = if spec.named_inputs { json!({ "$ref": "#/definitions/input" }) } else { json!(false) };
     let required: Vec<&str> =
         ["op"].into_iter().chain(spec.inputs.iter().filter(|input| input.required).map(|input| input.name)).collect();

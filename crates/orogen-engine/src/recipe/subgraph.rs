@@ -1,4 +1,4 @@
-//! Recipes within recipes: `[use.NAME]` takes the nodes of another recipe, named `NAME/node`, and makes them nodes of this one.
+//! Recipes within recipes: `[use.NAME]` adds the nodes of another recipe to this one, named `NAME/node`.
 
 use super::document::{MAX_NODES, Recipe};
 use super::graph::{MAX_USE_DEPTH, is_name};
@@ -17,52 +17,52 @@ use std::cell::Cell;
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 
-/// Most recipes that a recipe may use, those that these use counted, too.
+/// Maximum number of recipes that a recipe uses, directly and indirectly.
 pub const MAX_USES: usize = 256;
 
 /// The keys of a used recipe, for diagnostics.
 const KEYS: [&str; 4] = ["recipe", "inputs", "parameters", "seed"];
 
-/// Where a recipe comes from, as long as it is read.
+/// The origin of a recipe during reading.
 pub struct Origin<'a> {
-    /// The folder that paths in it count from; none for a text without a file.
+    /// The folder of relative paths; `None` for a text without a file.
     pub folder: Option<PathBuf>,
-    /// What it is known by, and the recipes that use it, the first one first.
+    /// Its identity, after those of the recipes that use it, the outermost first.
     chain: Vec<String>,
-    /// What all recipes of one reading share.
+    /// State shared by all recipes of one reading.
     shared: &'a Shared,
 }
 
-/// Reads a recipe from a text: what it is called, other values for parameters, and where it comes from.
+/// Parses a recipe: text, name, values for parameters, and origin.
 pub type Parse = fn(&str, &str, &[(String, f64)], &Origin) -> Result<Recipe>;
 
-/// What all recipes of one reading share: what is left to read, and how.
+/// State shared by all recipes of one reading: the remaining budget, and the parser.
 pub struct Shared {
     uses: Cell<usize>,
     bytes: Cell<u64>,
-    /// Given from outside: used recipes are read as the first one is.
+    /// Passed in, so that used recipes are parsed like the outermost one.
     parse: Parse,
 }
 
 impl Shared {
-    /// Nothing is read yet.
+    /// The state before reading.
     pub fn new(parse: Parse) -> Shared {
         Shared { uses: Cell::new(MAX_USES), bytes: Cell::new(LONGEST_TEXT), parse }
     }
 }
 
 impl<'a> Origin<'a> {
-    /// A text without a file.
+    /// The origin of a text without a file.
     pub fn text(shared: &'a Shared) -> Origin<'a> {
         Origin { folder: None, chain: Vec::new(), shared }
     }
 
-    /// A file.
+    /// The origin of a file.
     pub fn file(path: &Path, shared: &'a Shared) -> Origin<'a> {
         Origin { folder: Some(folder_of(path)), chain: vec![known_as(path)], shared }
     }
 
-    /// A preset.
+    /// The origin of a preset.
     pub fn preset(name: &str, shared: &'a Shared) -> Origin<'a> {
         Origin { folder: None, chain: vec![name.to_string()], shared }
     }
@@ -116,7 +116,7 @@ fn folder_of(path: &Path) -> PathBuf {
     path.parent().unwrap_or(Path::new("")).to_path_buf()
 }
 
-/// What a file is known by, however it is named.
+/// The identity of a file, independent of its name.
 fn known_as(path: &Path) -> String {
     path.canonicalize().unwrap_or_else(|_| path.to_path_buf()).display().to_string()
 }
@@ -125,40 +125,40 @@ fn looks_like_a_path(name: &str) -> bool {
     Path::new(name).extension().is_some() || name.contains(['/', '\\'])
 }
 
-/// What is wrong, and where: at a part of the text, or in the recipe that is used.
+/// A problem, in this text or in a used recipe.
 pub enum UseDiagnostic {
-    /// In this text.
+    /// In this text, with the position.
     Here(Span, String),
-    /// In another.
+    /// In another text.
     There(Error),
 }
 
-/// Recipes that were taken in.
+/// The recipes that were included.
 #[derive(Default)]
 pub struct Uses {
-    /// What is wrong.
+    /// The problems.
     pub diagnostics: Vec<UseDiagnostic>,
-    /// What `name` and `name.output` stand for.
+    /// The targets of `name` and `name.output`.
     pub outputs: BTreeMap<String, Input>,
-    /// Where the name stands of the recipe that each node came from, by the nodes' indices.
+    /// For ranges of node indices, the position of the name of the recipe that they came from.
     pub places: Vec<(std::ops::Range<usize>, Span)>,
-    /// The files read.
+    /// The files that were read.
     pub files: Vec<PathBuf>,
 }
 
 impl Uses {
-    /// Where the name stands of the recipe that a node came from.
+    /// The position of the name of the recipe that a node came from.
     pub fn place(&self, node: usize) -> Option<&Span> {
         self.places.iter().find(|(nodes, _)| nodes.contains(&node)).map(|(_, span)| span)
     }
 
-    /// What a name of a node or layer stands for, if it is an output of a used recipe.
+    /// The target of a name of a node or layer, if it is an output of a used recipe.
     pub fn output(&self, name: &str) -> Option<&Input> {
         self.outputs.get(name)
     }
 }
 
-/// Takes in the recipes of a table `use`: their nodes are added to `recipe`, and formulas in them to `parameters`.
+/// Includes the recipes of a table `use`: adds their nodes to `recipe`, and their formulas to `parameters`.
 pub fn take_in(value: &Spanned<Value>, recipe: &mut Recipe, parameters: &mut Parameters, origin: &Origin) -> Uses {
     let mut uses = Uses::default();
     let Value::Table(entries) = &value.value else {
@@ -181,7 +181,7 @@ pub fn take_in(value: &Spanned<Value>, recipe: &mut Recipe, parameters: &mut Par
     uses
 }
 
-/// What a table of `use` says.
+/// The content of a table in `use`.
 struct Asked<'v> {
     recipe: &'v Spanned<Value>,
     file: &'v str,
@@ -266,7 +266,7 @@ fn asked<'v>(name: &Spanned<String>, value: &'v Spanned<Value>) -> std::result::
     }
 }
 
-/// Takes in one recipe.
+/// Includes one recipe.
 fn one(
     name: &Spanned<String>,
     value: &Spanned<Value>,
@@ -277,7 +277,7 @@ fn one(
 ) -> std::result::Result<(), UseDiagnostic> {
     let asked = asked(name, value)?;
     let (used, file) = origin.read(asked.file, &asked.set).map_err(|error| {
-        // Without a place of its own it is about what is asked for here.
+        // A diagnostic without a location refers to the values given here.
         match error.diagnostics() {
             [one] if one.place.is_none() => UseDiagnostic::Here(asked.recipe.span.clone(), one.message.clone()),
             _ => UseDiagnostic::There(error),
@@ -332,19 +332,19 @@ fn one(
     Ok(())
 }
 
-/// Other seeds for all noises: each node's own hashed with that of the use.
+/// New seeds for all noises: each node's seed hashed with that of the use.
 fn reseed(node: &mut Node, seed: u64) {
     let params = node.spec().params;
     for i in (0..params.len()).filter(|i| matches!(params[*i].shape, Shape::Seed)) {
         if let Value::Integer(own) = node.param(i) {
             let mixed = (own as u64 ^ seed.wrapping_mul(0x9E37_79B9_7F4A_7C15)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-            // A seed always may be any number of 63 bits.
+            // A seed accepts any number of 63 bits.
             let _ = node.set_param(i, &Value::Integer(((mixed ^ (mixed >> 31)) >> 1) as i64));
         }
     }
 }
 
-/// Formulas in the nodes of a used recipe, with what it was given in place of its parameters.
+/// Formulas in the nodes of a used recipe, with the given values in place of its parameters.
 fn take_formulas(name: &str, used: &Recipe, parameters: &mut Parameters) {
     let given = |parameter: &str| -> Option<String> {
         let path = ["use", name, "parameters", parameter].map(|key| Step::Key(key.to_string()));
@@ -363,7 +363,7 @@ fn take_formulas(name: &str, used: &Recipe, parameters: &mut Parameters) {
     for Formula { path, text } in used.formulas() {
         let [Step::Key(nodes), Step::Key(node), rest @ ..] = path.as_slice() else { continue };
         let text = renamed(text, given);
-        // Of numbers alone it says no more than the number.
+        // A formula of constants only is replaced by its value.
         if nodes == "nodes" && !Expression::from(text.as_str()).names().is_empty() {
             let path =
                 [Step::Key(nodes.clone()), Step::Key(format!("{name}/{node}"))].into_iter().chain(rest.iter().cloned());

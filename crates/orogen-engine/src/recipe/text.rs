@@ -1,14 +1,14 @@
-//! A recipe's text and the places in it.
+//! The text of a recipe, and positions in it.
 
 use crate::value::Span;
 use orogen_grid::error::{Diagnostic, Error, ErrorKind, Location, Result};
 use orogen_grid::words::count;
 use std::path::Path;
 
-/// Longest text of a recipe, in bytes.
+/// Maximum length of a recipe's text, in bytes.
 pub const LONGEST_TEXT: u64 = 16 << 20;
 
-/// A text and what diagnostics call it.
+/// A text and its name in diagnostics.
 pub struct Text<'a> {
     pub name: &'a str,
     pub text: &'a str,
@@ -25,7 +25,7 @@ impl Text<'_> {
         Error::from_diagnostics(ErrorKind::Recipe, vec![self.diagnostic(span, message)])
     }
 
-    /// An error of several, in the order of the text, of those in other texts, and of how many `more` there are.
+    /// An error of several diagnostics: in the order of the text, then those of other texts, then the number of `more`.
     pub fn errors(&self, mut diagnostics: Vec<Diagnostic>, elsewhere: Vec<Diagnostic>, more: usize) -> Error {
         diagnostics.sort_by_key(|diagnostic| diagnostic.place.as_ref().map(|place| (place.line, place.column)));
         diagnostics.extend(elsewhere);
@@ -35,7 +35,8 @@ impl Text<'_> {
         Error::from_diagnostics(ErrorKind::Recipe, diagnostics)
     }
 
-    /// A part of a string's value, as a part of the text: exactly where the string stands as it is, all of it where it is written with escapes.
+    /// A part of a string's value as a part of the text: exact if the string has no escapes, otherwise the whole
+    /// string.
     pub fn within(&self, string: &Span, value: &str, part: &Span) -> Span {
         let source = self.text.get(string.clone()).unwrap_or_default();
         match source.find(value) {
@@ -47,13 +48,13 @@ impl Text<'_> {
         }
     }
 
-    /// A part of the text as a place.
+    /// The location of a part of the text.
     pub fn locate(&self, span: &Span) -> Location {
         let start = floor_boundary(self.text, span.start);
         let end = floor_boundary(self.text, span.end).max(start);
         let line_start = self.text[..start].rfind('\n').map_or(0, |newline| newline + 1);
         let line_end = self.text[start..].find('\n').map_or(self.text.len(), |newline| start + newline);
-        // Lines nobody can read are not shown: twenty diagnostics about one of 16 MiB would copy it twenty times.
+        // Very long lines are not shown: twenty diagnostics about a line of 16 MiB would copy it twenty times.
         const LONGEST_SHOWN: usize = 20_000;
         let line = if line_end - line_start > LONGEST_SHOWN { "" } else { &self.text[line_start..line_end] };
         Location {
@@ -85,7 +86,7 @@ pub fn too_long(name: &str) -> Error {
     )
 }
 
-/// What a file holds, if it is text.
+/// The content of a file as text.
 pub fn text_of(content: Vec<u8>, path: &Path) -> Result<String> {
     String::from_utf8(content).map_err(|fault| {
         Error::new(

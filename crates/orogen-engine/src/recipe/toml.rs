@@ -1,11 +1,11 @@
-//! TOML text to a tree of values.
+//! Parsing of TOML to a tree of values.
 
 use super::text::Text;
 use crate::value::{Spanned, Value};
 use orogen_grid::error::Result;
 use toml::de::{DeTable, DeValue};
 
-/// Reads the whole text; the first thing that is not TOML is the error.
+/// Parses the whole text; the error is the first syntax error.
 pub fn read(text: &Text) -> Result<Spanned<Value>> {
     match DeTable::parse(text.text) {
         Ok(table) => {
@@ -28,12 +28,12 @@ fn convert_table(table: DeTable) -> Value {
             (key, Spanned { value: convert(value.into_inner()), span })
         })
         .collect();
-    // The parser hands tables over sorted by name; people read them in the order of the text.
+    // The parser returns tables sorted by name; this restores the order of the text.
     entries.sort_by_key(|(key, _)| key.span.start);
     Value::Table(entries)
 }
 
-/// Recursion is bounded by the parser, which refuses deep nesting.
+/// Recursion is bounded by the parser, which rejects deep nesting.
 fn convert(value: DeValue) -> Value {
     match value {
         DeValue::Boolean(flag) => Value::Flag(flag),

@@ -1,9 +1,9 @@
-//! Solutions in a folder, found again by later runs and by other programs at work.
+//! A folder of solutions, shared by later runs and other processes.
 //!
-//! An entry is a file named by the hash of what it holds: the solver's content key and the version of this library. It appears whole
-//! or not at all, is checked in full when it is read, and is made again if it is damaged. Reading it makes it the newest; when
-//! there is more than the limit, the oldest go. Several processes may share a folder: a file that one of them removes stays readable
-//! to those that have it open.
+//! An entry is a file named by the hash of its key: the solver's content key and the version of this library. It is
+//! written atomically and verified completely when it is read; a damaged entry is computed again. Reading makes an
+//! entry the most recent one; if the folder exceeds its limit, the oldest entries are removed. Several processes may
+//! share a folder: a file that one of them removes stays readable for those that have it open.
 
 use super::entry;
 use crate::op::Solution;
@@ -15,24 +15,24 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-/// Where solutions are kept from run to run.
+/// A cache of solutions between runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cache {
-    /// The folder; made if it is not there. Nothing in it but its own files is touched.
+    /// The folder; created if it does not exist. Only the cache's own files in it are changed.
     pub folder: PathBuf,
-    /// Most bytes kept.
+    /// Maximum size of all entries, in bytes.
     pub limit: u64,
-    /// What took less long to solve is not kept.
+    /// Solutions that took less time to compute are not cached.
     pub slower_than: Duration,
 }
 
 impl Cache {
-    /// A cache in `folder` of at most 10 GiB, of what took longer than a quarter of a second.
+    /// A cache in `folder` of at most 10 GiB, for solutions that took longer than 0.25 s.
     pub fn new(folder: impl Into<PathBuf>) -> Cache {
         Cache { folder: folder.into(), limit: 10 << 30, slower_than: Duration::from_millis(250) }
     }
 
-    /// The folder that the system has for such files, if it tells: `$XDG_CACHE_HOME/orogen` or `~/.cache/orogen`,
+    /// The system's cache folder for Orogen, if it is known: `$XDG_CACHE_HOME/orogen` or `~/.cache/orogen`,
     /// `~/Library/Caches/orogen` on macOS, `%LOCALAPPDATA%\orogen\cache` on Windows.
     pub fn system_folder() -> Option<PathBuf> {
         let absolute = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
@@ -46,13 +46,13 @@ impl Cache {
         absolute("XDG_CACHE_HOME").or_else(|| home.map(|path| path.join(".cache"))).map(|path| path.join("orogen"))
     }
 
-    /// The solution stored under `key`, if there is a sound one.
+    /// The solution stored under `key`, if there is an intact one.
     pub(crate) fn find(&self, key: &Key, on_disk: bool) -> Option<Solution> {
         let (name, path) = self.place(key);
         let file = File::open(&path).ok()?;
         match entry::read(file, &path, &name, on_disk) {
             Ok(solution) => {
-                // It was just used, so it is the last to go. Where the clock cannot be set it goes a little early.
+                // It was just used, so it is removed last. If its time cannot be set, it is removed a little early.
                 if let Ok(file) = File::options().append(true).open(&path) {
                     let _ = file.set_modified(SystemTime::now());
                 }
@@ -65,13 +65,13 @@ impl Cache {
         }
     }
 
-    /// Whether there is an entry under `key`, sound or not.
+    /// Whether there is an entry under `key`, intact or not.
     pub(crate) fn has(&self, key: &Key) -> bool {
         self.place(key).1.is_file()
     }
 
-    /// Stores a solution, and removes the oldest ones if there are too many bytes now. That it could not be stored is no reason
-    /// to fail: the solution is there.
+    /// Stores a solution, and removes the oldest ones if the limit is exceeded. Failures are ignored, because the
+    /// solution is in memory.
     pub(crate) fn keep(&self, key: &Key, solution: &Solution) {
         if entry::length(solution) > self.limit || fs::create_dir_all(&self.folder).is_err() {
             return;
@@ -93,7 +93,7 @@ impl Cache {
         (name, self.folder.join(text + EXTENSION))
     }
 
-    /// The key in the name of an entry; none in any other name.
+    /// The key in the name of an entry; `None` for other names.
     pub(super) fn key_of(name: &str) -> Option<Key> {
         let digits = name.strip_suffix(EXTENSION).filter(|digits| digits.len() == 64)?;
         let mut key = [0; 32];
@@ -103,7 +103,7 @@ impl Cache {
         Some(key)
     }
 
-    /// Removes the oldest entries beyond the limit but never `newest`, and what a killed process left half written.
+    /// Removes the oldest entries beyond the limit, but not `newest`, and incomplete files of killed processes.
     fn tidy(&self, newest: &Path) {
         file::sweep(&self.folder);
         let Ok(there) = fs::read_dir(&self.folder) else { return };

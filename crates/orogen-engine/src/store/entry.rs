@@ -1,8 +1,8 @@
-//! One solution in a file.
+//! The file format of a solution.
 //!
-//! A head (magic, key, numbers, the windows of the layers, a checksum), the layers' pages one after another, the checksum of each
-//! page, and a checksum of those. Numbers are little-endian. Its length follows from its head, so that a truncated file is known at
-//! once.
+//! A header (magic, key, numbers, the windows of the layers, a checksum), the layers' pages in sequence, the checksum
+//! of each page, and a checksum of those. Numbers are little-endian. The length follows from the header, so that a
+//! truncated file is detected at once.
 
 use crate::op::Solution;
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -14,13 +14,13 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-/// What every file begins with. The number changes when the layout does.
+/// The magic of every file. Its number changes with the layout.
 const MAGIC: &[u8; 16] = b"orogen solved 1\n";
 
-/// More layers or numbers than any solver makes: what says so is damaged.
+/// More layers or numbers than any solver makes; a larger count means damage.
 const MOST: usize = 1 << 16;
 
-/// Bytes that a solution takes in a file, about.
+/// Approximate size of a solution's file, in bytes.
 pub fn length(solution: &Solution) -> u64 {
     solution.layers.iter().fold(4096, |sum, layer| sum + pages::disk(layer.window()))
 }
@@ -66,10 +66,10 @@ pub fn write(out: &mut dyn Write, key: &[u8; 32], solution: &Solution) -> io::Re
     out.write_all(&checksum(&sums).to_le_bytes())
 }
 
-/// Reads what [`write`] wrote, into memory or left on disk. Every byte is checked before anything is handed on.
+/// Reads a file of [`write`], into memory or left on disk. All bytes are verified first.
 ///
 /// # Errors
-/// If the file cannot be read, is not whole, has been damaged, or holds another solution.
+/// If the file cannot be read, is incomplete or damaged, or contains another solution.
 pub fn read(file: File, path: &Path, key: &[u8; 32], on_disk: bool) -> Result<Solution> {
     let length = file.metadata().map_err(|cause| Error::file("read", path, &cause))?.len();
     let mut reader = Reader { file: Arc::new(PageFile::open(file, path)), path, at: 0 };
@@ -82,7 +82,7 @@ pub fn read(file: File, path: &Path, key: &[u8; 32], on_disk: bool) -> Result<So
     for window in head.windows {
         let sums: Vec<Option<u32>> = sums.by_ref().take(pages::count(&window)).map(Some).collect();
         let paged = Pages::within(Arc::clone(&reader.file), base, sums, window);
-        // One pass over all of it, whether it stays on disk or not: damage is found before the work begins.
+        // One pass over the whole file in either case: damage is found before the work begins.
         let mut grid = (!on_disk).then(|| Grid::filled(window, 0.0f32));
         for part in window.tiles(SIDE) {
             let part = paged.get(&part)?;
@@ -96,10 +96,10 @@ pub fn read(file: File, path: &Path, key: &[u8; 32], on_disk: bool) -> Result<So
     Ok(Solution { layers, scalars: head.scalars })
 }
 
-/// The windows of a solution's layers, as its head tells them.
+/// The windows of a solution's layers, from its header.
 ///
 /// # Errors
-/// If the head cannot be read, is damaged, or is another solution's.
+/// If the header cannot be read, is damaged, or belongs to another solution.
 pub fn windows(file: File, path: &Path, key: &[u8; 32]) -> Result<Vec<Window>> {
     let length = file.metadata().map_err(|cause| Error::file("read", path, &cause))?.len();
     let mut reader = Reader { file: Arc::new(PageFile::open(file, path)), path, at: 0 };
@@ -176,7 +176,7 @@ impl Reader<'_> {
     }
 }
 
-/// Eight bytes as a number; what is not there is 0.
+/// Eight bytes as an integer; missing bytes give 0.
 fn word(bytes: &[u8], at: usize) -> u64 {
     let mut word = [0; 8];
     if let Some(there) = bytes.get(at..at + 8) {

@@ -1,14 +1,15 @@
-//! Grids that expensive filters have made, kept for the next request that wants them.
+//! Grids of expensive filters, kept for later requests.
 
 use crate::plan::key::Key;
 use orogen_grid::grid::{Grid, Window};
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Filters that take at least so many nanoseconds a sample are kept: copying a grid takes about one.
+/// Minimum cost of a filter whose grids are kept, in nanoseconds per sample; copying a grid takes about one.
 pub const EXPENSIVE: f64 = 25.0;
 
-/// Grids by the filter's content key, the layer and the window. The longest unused go first when there are more bytes than the limit.
+/// Grids by the filter's content key, the layer and the window. The least recently used ones are dropped if the limit
+/// is exceeded.
 pub struct GridStore {
     limit: u64,
     held: Mutex<Entries>,
@@ -19,18 +20,18 @@ struct Entries {
     grids: HashMap<GridKey, (u64, Grid)>,
     bytes: u64,
     turn: u64,
-    /// How often all grids that were asked for were there.
+    /// The number of requests whose grids were all present.
     found: u64,
 }
 
-/// What a grid is known by.
+/// The key of a grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct GridKey {
     /// The content key of the filter.
     pub node: Key,
     /// The layer.
     pub layer: usize,
-    /// First column and row, columns and rows.
+    /// First column and row, number of columns and rows.
     samples: [i64; 4],
     /// The bits of the cell.
     cell: u64,
@@ -50,12 +51,12 @@ impl GridStore {
         GridStore { limit, held: Mutex::default() }
     }
 
-    /// Whether any grid can be kept.
+    /// Whether the store can keep grids.
     pub fn is_used(&self) -> bool {
         self.limit > 0
     }
 
-    /// A copy of each of the grids, if all of them are kept.
+    /// Copies of all these grids, if all of them are present.
     pub fn find(&self, keys: &[GridKey]) -> Option<Vec<Grid>> {
         let mut held = self.lock();
         if !keys.iter().all(|key| held.grids.contains_key(key)) {
@@ -73,12 +74,13 @@ impl GridStore {
         keys.iter().map(grid).collect()
     }
 
-    /// Keeps a copy of a grid where it fits the limit and the bytes that all grids may take at the moment (`None` for no limit of these).
+    /// Keeps a copy of a grid, if it fits in the limit and in `allowed`, the bytes that all grids may take now (`None`
+    /// for no such limit).
     pub fn keep(&self, key: GridKey, grid: &Grid, allowed: Option<u64>) {
         let bytes = 4 * grid.data().len() as u64;
         let mut held = self.lock();
         let allowed = self.limit.min(allowed.unwrap_or(u64::MAX));
-        // Grids so large that few of them fit would drive all others out.
+        // A very large grid would displace all others.
         if bytes > allowed.min(self.limit / 2) || held.grids.contains_key(&key) {
             return;
         }
@@ -89,12 +91,12 @@ impl GridStore {
         held.grids.insert(key, (turn, grid.clone()));
     }
 
-    /// How often all grids that were asked for were there.
+    /// The number of requests whose grids were all present.
     pub fn found(&self) -> u64 {
         self.lock().found
     }
 
-    /// Lets go of grids until they take at most `allowed` bytes.
+    /// Drops grids until they take at most `allowed` bytes.
     pub fn make_room(&self, allowed: u64) {
         self.lock().shrink(allowed);
     }
@@ -104,7 +106,7 @@ impl GridStore {
         self.lock().bytes
     }
 
-    /// Grids go in whole, so a panic elsewhere leaves sound ones.
+    /// Grids are inserted as a whole, so the data is consistent even after a panic of another thread.
     fn lock(&self) -> MutexGuard<'_, Entries> {
         self.held.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -1,4 +1,4 @@
-//! What a cache holds, for people who want to see it or to make room.
+//! The content of a cache, for listing and removing entries.
 
 use std::fs::{self, File};
 use std::io;
@@ -13,21 +13,21 @@ use orogen_grid::grid::Window;
 /// A stored solution.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stored {
-    /// Its file.
+    /// The file.
     pub path: PathBuf,
-    /// How long that is.
+    /// Its length in bytes.
     pub bytes: u64,
-    /// When it was last used.
+    /// The time of its last use.
     pub used: SystemTime,
-    /// The windows of its layers; `None` if its head is damaged.
+    /// The windows of its layers; `None` if its header is damaged.
     pub layers: Option<Vec<Window>>,
 }
 
 impl Cache {
-    /// The stored solutions, the longest unused first. Other files in the folder are not among them.
+    /// The stored solutions, the least recently used first. Other files in the folder are ignored.
     ///
     /// # Errors
-    /// If the folder is there and cannot be read.
+    /// If the folder exists and cannot be read.
     pub fn stored(&self) -> Result<Vec<Stored>> {
         let failed = |cause: io::Error| Error::file("read the folder", &self.folder, &cause);
         let there = match fs::read_dir(&self.folder) {
@@ -38,7 +38,7 @@ impl Cache {
         for file in there {
             let file = file.map_err(failed)?;
             let Some(key) = file.file_name().to_str().and_then(Cache::key_of) else { continue };
-            // One that another process has just removed is not there any more.
+            // Another process may have removed it.
             let Ok(meta) = file.metadata() else { continue };
             if meta.is_file() {
                 let path = file.path();
@@ -51,7 +51,7 @@ impl Cache {
         Ok(stored)
     }
 
-    /// Removes a stored solution. One that is gone already is no failure.
+    /// Removes a stored solution. It is not an error if the file no longer exists.
     ///
     /// # Errors
     /// If the file cannot be removed.

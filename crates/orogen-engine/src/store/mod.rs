@@ -1,4 +1,4 @@
-//! What has been solved: in memory, and in a folder that later runs find again.
+//! Solutions in memory, and in a folder for later runs.
 
 pub mod cache;
 mod entry;

@@ -1,4 +1,4 @@
-//! What has been solved, by the key of its content.
+//! Solutions by content key.
 
 use super::cache::Cache;
 use crate::op::Solution;
@@ -10,49 +10,50 @@ use std::path::PathBuf;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Solutions in memory, and behind them those in a folder.
+/// Solutions in memory, backed by a cache.
 ///
-/// No lock is held while a solution is made, but its key is marked: whoever else wants it then waits for it ([`Store::begin`]) instead of making it
-/// again.
+/// No lock is held while a solution is computed, but its key is marked: other threads that need it wait
+/// ([`Store::begin`]) instead of computing it again.
 pub struct Store {
     held: Mutex<Entries>,
-    /// Told whenever the making of a solution ends.
+    /// Notified when the computation of a solution ends.
     ended: Condvar,
     cache: Option<Cache>,
-    /// Where rasters are put that do not fit in memory.
+    /// The folder for rasters that do not fit in memory.
     scratch: PathBuf,
 }
 
 #[derive(Default)]
 struct Entries {
     solutions: HashMap<Key, (u64, Arc<Solution>)>,
-    /// Solutions that are being made.
+    /// Keys of solutions that are being computed.
     making: HashSet<Key>,
     turn: u64,
-    /// How many were made so far.
+    /// Number of solutions computed so far.
     made: u64,
 }
 
-/// What [`Store::begin`] found.
+/// The result of [`Store::begin`].
 pub enum Begun<'a> {
-    /// The solution: somebody else has just made it.
+    /// The solution, which another thread has just computed.
     Found(Arc<Solution>),
-    /// Nobody has made it, nor is making it: the caller does.
+    /// There is no solution and no other thread computes it: the caller must do it.
     Make(Making<'a>),
 }
 
-/// The right and the duty to make a solution. If it is dropped before it is finished, the next one who wants the solution makes it.
+/// Permission to compute a solution. If it is dropped before it is finished, the next thread that needs the solution
+/// computes it.
 pub struct Making<'a> {
     store: &'a Store,
     key: Key,
-    /// Whether the key is marked: not where the same solution is being made by a thread that cannot be waited for.
+    /// Whether the key is marked: not if the same solution is being computed by a thread that cannot be waited for.
     marked: bool,
-    /// When it was begun, where a cache wants to know; not every host has a clock.
+    /// The start time, if a cache needs it; some hosts have no clock.
     begun: Option<Instant>,
 }
 
 impl Making<'_> {
-    /// Stores the solution, and in the cache's folder if it took long.
+    /// Stores the solution, also in the cache if it took long.
     pub fn finish(self, made: Solution) -> Arc<Solution> {
         if let Some(cache) = self.store.cache.as_ref()
             && self.begun.is_none_or(|begun| begun.elapsed() >= cache.slower_than)
@@ -73,12 +74,12 @@ impl Drop for Making<'_> {
     }
 }
 
-/// How often a thread that waits for a solution looks whether it was cancelled.
+/// Interval at which a waiting thread checks for cancellation.
 const PATIENCE: Duration = Duration::from_millis(20);
 
 impl Store {
-    /// A store that finds solutions of earlier runs in `cache`, and puts what does not fit in memory into `scratch`: if nobody
-    /// says, the cache's folder, or else the system's folder for temporary files.
+    /// A store backed by `cache`, with `scratch` for data that does not fit in memory: by default the cache's folder,
+    /// otherwise the system's temporary folder.
     pub fn new(cache: Option<Cache>, scratch: Option<PathBuf>) -> Store {
         let scratch = scratch.or_else(|| cache.as_ref().map(|cache| cache.folder.clone()));
         Store {
@@ -89,22 +90,22 @@ impl Store {
         }
     }
 
-    /// A store that holds these solutions, and keeps no others for later runs.
+    /// A store with these solutions and without a cache.
     pub fn holding(solutions: Vec<(Key, Arc<Solution>)>, scratch: PathBuf) -> Store {
         let solutions = solutions.into_iter().map(|(key, solution)| (key, (0, solution))).collect();
         let held = Mutex::new(Entries { solutions, ..Entries::default() });
         Store { held, ended: Condvar::new(), cache: None, scratch }
     }
 
-    /// The folder for what does not fit in memory.
+    /// The folder for data that does not fit in memory.
     pub fn scratch(&self) -> &PathBuf {
         &self.scratch
     }
 
-    /// The solution stored under `key`, with its layers on disk if they have to be.
+    /// The solution stored under `key`, with its layers moved to disk if required.
     ///
     /// # Errors
-    /// If what is in memory has to move to the disk, which takes no more.
+    /// If a solution in memory must be moved to disk, and the disk fails.
     pub fn find(&self, key: &Key, on_disk: bool) -> Result<Option<Arc<Solution>>> {
         let held = {
             let mut held = self.lock();
@@ -131,17 +132,17 @@ impl Store {
         }
     }
 
-    /// Whether a solution is stored under `key`; a file of it may still turn out to be damaged.
+    /// Whether a solution is stored under `key`; its file may still turn out to be damaged.
     pub fn has(&self, key: &Key) -> bool {
         self.lock().solutions.contains_key(key) || self.cache.as_ref().is_some_and(|cache| cache.has(key))
     }
 
-    /// Begins to make the solution of a key, unless somebody else is making it: then waits for it if `may_wait`, and makes it a second time if not (the
-    /// bits are the same, and the first is kept). A thread may not wait if the solution could be made further down its own stack, as on the threads of
-    /// the pool that solves it.
+    /// Starts the computation of a solution. If another thread is computing it, waits for it if `may_wait`, otherwise
+    /// computes it a second time (the bits are the same, and the first result is kept). A thread must not wait if the
+    /// solution may be computed further down its own stack, as on the threads of the pool that solves it.
     ///
     /// # Errors
-    /// If `progress` is cancelled while it waits.
+    /// If `progress` is cancelled during the wait.
     pub fn begin(&self, key: &Key, may_wait: bool, progress: &Progress) -> Result<Begun<'_>> {
         let mut held = self.lock();
         loop {
@@ -161,22 +162,23 @@ impl Store {
         Making { store: self, key, marked, begun: self.cache.is_some().then(Instant::now) }
     }
 
-    /// Begins to make a solution whether it is stored or not.
+    /// Starts the computation of a solution, whether it is stored or not.
     pub fn begin_again(&self, key: &Key) -> Begun<'_> {
         Begun::Make(self.making(*key, false))
     }
 
-    /// How many solutions were made, those found again not counted.
+    /// Number of solutions computed, without reused ones.
     pub fn made(&self) -> u64 {
         self.lock().made
     }
 
-    /// Bytes of the solutions in memory.
+    /// Memory of the solutions, in bytes.
     pub fn memory(&self) -> u64 {
         self.lock().solutions.values().map(|(_, solution)| solution.memory()).sum()
     }
 
-    /// Lets go of solutions in memory, the longest unused first, until those not among `needed` take at most `allowed` bytes.
+    /// Drops solutions from memory, the least recently used first, until those not in `needed` take at most `allowed`
+    /// bytes.
     pub fn make_room(&self, allowed: u64, needed: &[Key]) {
         let mut held = self.lock();
         let mut others: Vec<(u64, Key, u64)> = held
@@ -207,13 +209,13 @@ impl Store {
         Arc::clone(&held.solutions.entry(key).or_insert((turn, solution)).1)
     }
 
-    /// A lock whose holder panicked still guards sound data: solutions go in whole.
+    /// The data is consistent even if a thread panicked with the lock: solutions are inserted as a whole.
     fn lock(&self) -> MutexGuard<'_, Entries> {
         self.held.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// The system's folder for temporary files. A host without files has none, and does not get to the point of needing it.
+/// The system's temporary folder. A host without files has none, and never needs it.
 fn temporary_folder() -> PathBuf {
     match cfg!(all(target_family = "wasm", not(target_os = "wasi"))) {
         true => PathBuf::new(),

@@ -1,4 +1,4 @@
-//! Diffusion-limited aggregation: branching figures that grow by what wanders into them, and mountains made of them.
+//! Diffusion-limited aggregation: branching clusters of random walkers that stick together, and mountains made of them.
 
 pub mod random;
 pub mod relief;

@@ -1,11 +1,11 @@
-//! Numbers by chance, the same on every machine.
+//! Pseudo-random numbers, the same on every machine.
 
-/// A generator of 64 bits of state (splitmix64, Steele, Lea and Flood 2014).
+/// A generator with 64 bits of state (splitmix64, Steele, Lea and Flood 2014).
 #[derive(Debug, Clone)]
 pub struct Random(u64);
 
 impl Random {
-    /// A sequence of its own for each pair of numbers.
+    /// A separate sequence for each pair of `seed` and `stream`.
     pub fn new(seed: u64, stream: u64) -> Random {
         let mut random = Random(seed ^ stream.wrapping_mul(0xD1B5_4A32_D192_ED03));
         random.0 = random.draw().wrapping_add(stream);
@@ -22,7 +22,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A number below `n`.
+    /// A number in `0..n`.
     #[inline]
     pub fn below(&mut self, n: usize) -> usize {
         ((u128::from(self.draw()) * n as u128) >> 64) as usize

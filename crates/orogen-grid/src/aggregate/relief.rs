@@ -1,4 +1,4 @@
-//! Mountains of aggregates: coarse branches become ranges, the finer ones that grow on them their spurs.
+//! Mountains made of aggregates: coarse branches become ranges, finer ones become their spurs.
 
 use super::random::Random;
 use super::tree::Tree;
@@ -6,29 +6,31 @@ use crate::error::Result;
 use crate::progress::Progress;
 use rayon::prelude::*;
 
-/// What a relief is made of.
+/// Parameters of a relief.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ridges {
     /// Seed of the random choices.
     pub seed: u64,
-    /// How far it grows from the middle, as a share of the way to the edges.
+    /// Maximum distance from the centre, as a share of the distance to the edges.
     pub reach: f64,
-    /// The share of the cells that ridges cover, at every scale.
+    /// The share of cells that ridges cover, at every scale.
     pub density: f64,
-    /// How high spurs half as long are, beside the ranges they grow on.
+    /// Height of the next finer scale relative to the previous one.
     pub gain: f64,
-    /// How many cells from its tip a ridge has half its height.
+    /// Distance from the tip, in cells, at which a ridge has half its height.
     pub taper: f64,
 }
 
 /// Cells along the longer side of the coarsest grid.
 const COARSEST: usize = 12;
 
-/// Heights from 0 to about 1 over a grid at least as fine as `width` x `height`, with the size of that grid, row by row.
+/// Heights from 0 to about 1 over a grid of at least `width` x `height` samples: the size of that grid, and the heights
+/// row by row.
 ///
-/// On the coarsest grid an aggregate grows from the middle. Each finer grid takes it over bent a little (see [`Tree::refined`]) and lets it
-/// grow on. At every scale a ridge is high by how far it is from the tips of what grew on it, 1 - 1 / (1 + d / taper); the heights of all
-/// scales are added, those of the coarser ones smoothed each time the grid gets finer. Costs O(cells).
+/// On the coarsest grid an aggregate grows from the centre. Each finer grid takes it over with small random bends (see
+/// [`Tree::refined`]) and continues its growth. At every scale the height of a ridge depends on the distance d to the
+/// farthest tip that grew on it: 1 - 1 / (1 + d / taper). The heights of all scales are added; those of coarser scales
+/// are smoothed at each refinement. Costs O(cells).
 ///
 /// # Errors
 /// If the work is cancelled.
@@ -47,7 +49,7 @@ pub fn heights(width: usize, height: usize, ridges: &Ridges, progress: &Progress
     tree.put(across as i64 / 2, down as i64 / 2, None);
     let mut map = vec![0.0f32; across * down];
     let (mut weight, mut total) = (1.0f32, 0.0f32);
-    // Each scale has four times the cells of the one before.
+    // Each scale has four times the cells of the previous one.
     let cells = |scale: u32| (1u64 << (2 * scale)) as f64;
     (0..=scales).for_each(|scale| progress.expect(cells(scale)));
     for scale in 0..=scales {
@@ -65,7 +67,7 @@ pub fn heights(width: usize, height: usize, ridges: &Ridges, progress: &Progress
             progress.check()?;
             (across, down) = (finer_across, finer_down);
         }
-        // The coarsest, a few cells wide, has to reach all around.
+        // The coarsest aggregate, a few cells wide, has to extend in all directions.
         let share = if scale == 0 { ridges.density.max(0.3) } else { ridges.density };
         refining.finish();
         tree.grow((tree.room() as f64 * share) as usize, &mut random, &growing)?;
@@ -83,12 +85,12 @@ pub fn heights(width: usize, height: usize, ridges: &Ridges, progress: &Progress
     Ok((across, down, map))
 }
 
-/// A grid of twice as many cells a side, bilinear between the middles of the old.
+/// A grid with twice as many cells along each side, by bilinear interpolation between cell centres.
 fn doubled(map: &[f32], across: usize, finer_across: usize, finer_down: usize) -> Vec<f32> {
     let down = map.len() / across;
     let mut finer = vec![0.0f32; finer_across * finer_down];
     finer.par_chunks_mut(finer_across).enumerate().for_each(|(j, row)| {
-        // A fine cell's middle lies a quarter of a coarse cell from that of the coarse one it is in.
+        // The centre of a fine cell is a quarter of a coarse cell away from the centre of its coarse cell.
         let near = (j / 2).min(down - 1);
         let far = if j % 2 == 0 { near.max(1) - 1 } else { (near + 1).min(down - 1) };
         let (near, far) = (&map[near * across..(near + 1) * across], &map[far * across..(far + 1) * across]);
@@ -102,7 +104,7 @@ fn doubled(map: &[f32], across: usize, finer_across: usize, finer_down: usize) -
     finer
 }
 
-/// Each cell with a quarter of each side's mixed in twice: weights 1, 2, 1 along both axes.
+/// Mixes each cell with its neighbours: weights 1, 2, 1 along both axes.
 fn blurred(map: &[f32], across: usize) -> Vec<f32> {
     let down = map.len() / across;
     let mut rows = vec![0.0f32; map.len()];

@@ -1,12 +1,12 @@
-//! One aggregate as Witten and Sander grew it.
+//! A single aggregate, grown as by Witten and Sander.
 
 use super::random::Random;
 
-/// Grows an aggregate of `members` cells from the middle of a square of `side` cells, each walker sent from far away; 1 for each cell of it.
-/// It ends early where it comes near the square's edge.
+/// Grows an aggregate of `members` cells from the centre of a square of `side` cells, with walkers that start far away.
+/// Returns whether each cell belongs to it. Growth ends early if it comes near the edge.
 ///
-/// Walkers step to one of four sides and stick beside a cell (Witten and Sander 1981). One that has strayed to more than twice the
-/// aggregate's reach is given up. Its cells grow in number as its reach to the power of 1.71.
+/// Walkers step to one of the four neighbours and stick beside a cell (Witten and Sander 1981). A walker farther away
+/// than twice the aggregate's radius is dropped. The number of cells grows as the radius to the power of 1.71.
 pub fn aggregate(side: usize, members: usize, seed: u64) -> Vec<bool> {
     let mut cells = vec![false; side * side];
     let middle = side as i64 / 2;
@@ -18,7 +18,7 @@ pub fn aggregate(side: usize, members: usize, seed: u64) -> Vec<bool> {
     let mut random = Random::new(seed, 0);
     let (mut reach, mut count) = (1i64, 1);
     while count < members && reach + 3 < middle {
-        // From a square around it: by the time a walker comes near it has forgotten where it started.
+        // From a square around it: a walker that arrives has no memory of its start.
         let launch = reach + 2;
         let along = random.below(2 * launch as usize + 1) as i64 - launch;
         let (mut i, mut j) = [(along, launch), (along, -launch), (launch, along), (-launch, along)][random.below(4)];

@@ -1,10 +1,10 @@
-//! A growing figure on a grid: cells, each but the first beside the one it stuck to.
+//! An aggregate on a grid, as a tree of cells: each cell except the first is attached to a neighbour.
 
 use super::random::Random;
 use crate::error::Result;
 use crate::progress::Progress;
 
-/// Columns east and rows south to the eight neighbours, sides first.
+/// Columns east and rows south to the eight neighbours, axial ones first.
 const AROUND: [(i64, i64); 8] = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];
 
 const FREE: u32 = u32::MAX;
@@ -12,10 +12,10 @@ const FREE: u32 = u32::MAX;
 /// Members between two reports of progress.
 const REPORTED: usize = 1 << 10;
 
-/// Steps of walkers between two questions whether the work is still wanted.
+/// Steps of walkers between two checks for cancellation.
 const UNCHECKED: u32 = 1 << 16;
 
-/// An aggregate on a grid of its own, of `width` x `height` cells.
+/// An aggregate on its own grid of `width` x `height` cells.
 #[derive(Debug, Clone)]
 pub struct Tree {
     width: usize,
@@ -24,40 +24,40 @@ pub struct Tree {
     members: Vec<u32>,
     /// The cell of each member.
     cells: Vec<u32>,
-    /// The member that each stuck to, which came before it; the first ones stuck to nothing.
+    /// The member that each is attached to, which is older; none for the first ones.
     parents: Vec<Option<u32>>,
-    /// Where it may grow: within an ellipse about the middle, whose axes are this share of the grid's.
+    /// Limit of growth: an ellipse around the centre, whose axes are this share of the grid's.
     reach: f64,
 }
 
 impl Tree {
-    /// Nothing yet; it grows no farther from the middle than `reach` times half the grid.
+    /// An empty tree that grows at most `reach` times half the grid from the centre.
     pub fn new(width: usize, height: usize, reach: f64) -> Tree {
         Tree { width, height, members: vec![FREE; width * height], cells: Vec::new(), parents: Vec::new(), reach }
     }
 
-    /// Columns.
+    /// Number of columns.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// The cells of the members, in the order in which they came.
+    /// The cells of the members, oldest first.
     pub fn cells(&self) -> &[u32] {
         &self.cells
     }
 
-    /// How many cells it may grow over.
+    /// Number of cells within the limit of growth.
     pub fn room(&self) -> usize {
         let rows = (0..self.height).map(|j| (0..self.width).filter(|i| self.holds(*i as i64, j as i64)).count());
         rows.sum()
     }
 
-    /// Whether it may grow over a cell.
+    /// Whether a cell is within the limit of growth.
     fn holds(&self, i: i64, j: i64) -> bool {
         if i < 0 || j < 0 || i >= self.width as i64 || j >= self.height as i64 {
             return false;
@@ -71,7 +71,7 @@ impl Tree {
         j as usize * self.width + i as usize
     }
 
-    /// Puts a member into a cell, unless there is one; returns the one there is then.
+    /// Adds a member in a cell; if the cell has one already, returns that one.
     pub fn put(&mut self, i: i64, j: i64, parent: Option<u32>) -> u32 {
         let cell = self.index(i, j);
         if self.members[cell] == FREE {
@@ -82,7 +82,7 @@ impl Tree {
         self.members[cell]
     }
 
-    /// A member beside a cell, by chance if there are several; those across a corner count.
+    /// A member in a neighbouring cell, including diagonal ones; random if there are several.
     fn beside(&self, i: i64, j: i64, random: &mut Random) -> Option<u32> {
         let mut found = [0; 8];
         let mut count = 0;
@@ -103,11 +103,12 @@ impl Tree {
         }
     }
 
-    /// Lets walkers wander from anywhere until they touch the aggregate, and stick, up to `members` of them (Witten and Sander,
-    /// "Diffusion-limited aggregation, a kinetic critical phenomenon", 1981; there one walker starts from far away).
+    /// Grows to `members` members: random walkers start at any free cell and stick where they touch the aggregate
+    /// (Witten and Sander, "Diffusion-limited aggregation, a kinetic critical phenomenon", 1981; there one walker at a
+    /// time starts far away).
     ///
-    /// Walkers that start everywhere find the gaps between branches, which get filled about evenly; each wanders about as many steps as the
-    /// square of the gap's width.
+    /// Walkers that start everywhere find the gaps between branches, which are filled evenly. A walk takes about as
+    /// many steps as the square of the gap's width.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -143,8 +144,9 @@ impl Tree {
         progress.check()
     }
 
-    /// The same aggregate on a grid of `width` x `height` cells, about twice as many each way: every cell becomes one of the four in its place by
-    /// chance, and the branches between them bend. The first, which has to be the middle one, stays in the middle.
+    /// The same aggregate on a grid of `width` x `height` cells, about twice as many along each side. Every cell moves
+    /// to a random one of its four subcells, and the branches between them bend. The first member, which must be the
+    /// central one, stays at the centre.
     pub fn refined(&self, width: usize, height: usize, random: &mut Random) -> Tree {
         let mut fine = Tree::new(width, height, self.reach);
         let mut places: Vec<(i64, i64)> = Vec::with_capacity(self.cells.len());
@@ -155,11 +157,11 @@ impl Tree {
             let end = (2 * i + (chance & 1) as i64, 2 * j + (chance >> 1 & 1) as i64);
             let end = (end.0.min(width as i64 - 1), end.1.min(height as i64 - 1));
             let member = match parent {
-                // In the middle, where it may grow however small its reach: walkers have to find it.
+                // At the centre, which is within the limit of growth even if that is small: walkers have to find it.
                 None => fine.put(width as i64 / 2, height as i64 / 2, None),
                 Some(parent) => {
                     let start = places[*parent as usize];
-                    // Half way it bends by a cell to either side.
+                    // At half way it bends by up to one cell to either side.
                     let bend = ((chance >> 2) % 3) as i64 - 1;
                     let across = if (end.0 - start.0).abs() > (end.1 - start.1).abs() { (0, bend) } else { (bend, 0) };
                     let middle = ((start.0 + end.0) / 2 + across.0, (start.1 + end.1) / 2 + across.1);
@@ -175,7 +177,7 @@ impl Tree {
         fine
     }
 
-    /// Puts members along a line from one to a cell; where one stands in the way the line goes on from that.
+    /// Adds members along a line from a member to a cell; if it meets another member, the line continues from that one.
     fn line(&mut self, from: u32, (to_i, to_j): (i64, i64)) -> u32 {
         let cell = self.cells[from as usize] as usize;
         let (mut i, mut j) = ((cell % self.width) as i64, (cell / self.width) as i64);
@@ -187,7 +189,7 @@ impl Tree {
         at
     }
 
-    /// How far each member is from the farthest tip of what grew on it, in members.
+    /// The distance of each member to the farthest tip that grew on it, in members.
     pub fn to_tips(&self) -> Vec<u32> {
         let mut steps = vec![0u32; self.cells.len()];
         for (member, parent) in self.parents.iter().enumerate().rev() {

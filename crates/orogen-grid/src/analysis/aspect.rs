@@ -1,15 +1,16 @@
-//! Which way the ground faces.
+//! Aspect: the downhill direction of the ground.
 
 use super::slope::{Gradient, from_gradients};
 use crate::grid::Grid;
 
-/// The direction downhill, in degrees clockwise from north, 0 up to but not 360; NaN where the ground is level or a sample is
-/// missing. Horn's gradients (see [`slope`](super::slope)): the result is smaller than `grid` by a border of one sample.
+/// The downhill direction in degrees clockwise from north, in 0.0..360.0; NaN where the ground is level or a sample is
+/// not finite. Uses Horn's gradients (see [`slope`](super::slope)). The result is smaller than `grid` by a border of
+/// one sample.
 pub fn aspect(grid: &Grid) -> Grid {
     from_gradients(grid, aspect_of)
 }
 
-/// The aspect of one gradient.
+/// The aspect of one gradient, in degrees clockwise from north; NaN on level ground.
 pub fn aspect_of(gradient: Gradient) -> f32 {
     if gradient.east == 0.0 && gradient.north == 0.0 {
         return f32::NAN;

@@ -1,39 +1,40 @@
-//! How much light of the sun comes through a clear sky, directly, from the sky and from the ground around.
+//! Solar irradiance under a clear sky: direct, diffuse and reflected by the surrounding ground.
 //!
-//! The model of the European Solar Radiation Atlas (Rigollier, Bauer and Wald, "On the clear sky model of the ESRA", Solar Energy 68, 2000), with Muneer's model
-//! (1990) of the sky's light on slopes, as put together for maps by Šúri and Hofierka ("A new GIS-based solar radiation model", Transactions in GIS 8, 2004).
+//! The model of the European Solar Radiation Atlas (Rigollier, Bauer and Wald, "On the clear sky model of the ESRA",
+//! Solar Energy 68, 2000), with Muneer's model (1990) of diffuse light on slopes, as combined for maps by Šúri and
+//! Hofierka ("A new GIS-based solar radiation model", Transactions in GIS 8, 2004).
 
-/// The sun's light outside the air at its mean distance, in W/m^2.
+/// Solar irradiance outside the atmosphere at the sun's mean distance, in W/m^2.
 const SOLAR_CONSTANT: f64 = 1367.0;
 
-/// Height over which the air's pressure falls by a factor e, in metres.
+/// Height over which the air pressure falls by a factor of e, in metres.
 const PRESSURE_SCALE: f64 = 8434.5;
 
-/// Heights at which the beam is worked out; linear between them.
+/// Number of heights at which the beam is computed; linear between them.
 const LEVELS: usize = 64;
 
-/// The air and the ground.
+/// Parameters of the atmosphere and the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClearSky {
-    /// Linke's turbidity for an air mass of 2: 1 is clean dry air, 3 usual, 6 hazy.
+    /// Linke turbidity for an air mass of 2: 1 is clean dry air, 3 is typical, 6 is hazy.
     pub turbidity: f64,
-    /// The share of light that the ground around reflects.
+    /// Albedo: the share of light that the surrounding ground reflects, 0 to 1.
     pub albedo: f64,
 }
 
-/// A slope as light sees it.
+/// Orientation of a slope, with the factors that the light model needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Facet {
     /// The upward normal: east, south and up, of length 1.
     normal: [f64; 3],
-    /// The share of an even sky that it sees: (1 + cos slope) / 2.
+    /// The share of an isotropic sky that it sees: (1 + cos slope) / 2.
     sky: f64,
-    /// sin - slope cos - pi sin^2 (slope / 2): how unlike an even sky Muneer's is.
+    /// sin - slope cos - pi sin^2 (slope / 2): the anisotropic term of Muneer's sky.
     uneven: f64,
 }
 
 impl Facet {
-    /// Of the rise per metre towards the east and the south.
+    /// A facet from its gradient: rise per metre eastward and southward.
     pub fn new(east: f64, south: f64) -> Facet {
         let length = (1.0 + east * east + south * south).sqrt();
         let up = 1.0 / length;
@@ -43,26 +44,26 @@ impl Facet {
     }
 }
 
-/// The sun at one moment, and its light at any height.
+/// The sun at one moment, and its irradiance at any height.
 #[derive(Debug, Clone)]
 pub struct Sunlight {
-    /// Towards the sun: east, south and up, of length 1.
+    /// Unit vector to the sun: east, south and up.
     pub towards: [f64; 3],
     elevation: f64,
-    /// Outside the air, on a plane that faces the sun, in W/m^2.
+    /// Irradiance outside the atmosphere on a plane that faces the sun, in W/m^2.
     outside: f64,
-    /// Of the sky on level ground.
+    /// Diffuse irradiance on level ground, in W/m^2.
     diffuse: f64,
     albedo: f64,
-    /// On a plane that faces the sun, at heights from `lowest`, `step` apart.
+    /// Beam irradiance on a plane that faces the sun, in W/m^2, at heights from `lowest`, `step` apart.
     beam: Vec<f64>,
     lowest: f64,
     step: f64,
 }
 
 impl ClearSky {
-    /// The light of a sun at `azimuth` (clockwise from north) and `elevation`, in degrees, the elevation above 0, on a day of the year (from 1) for ground
-    /// from `lowest` to `highest` metres.
+    /// The irradiance of a sun at `azimuth` (degrees clockwise from north) and `elevation` (degrees, above 0) on day
+    /// `day` of the year (from 1), for ground between `lowest` and `highest` metres.
     pub fn sunlight(&self, day: f64, [azimuth, elevation]: [f64; 2], [lowest, highest]: [f64; 2]) -> Sunlight {
         let angle = elevation.to_radians();
         let (sine, cosine) = libm::sincos(angle);
@@ -83,7 +84,7 @@ impl ClearSky {
         }
     }
 
-    /// The share of the beam that comes through the air above `height` metres.
+    /// The share of the beam that passes through the air above `height` metres.
     fn transmittance(&self, elevation: f64, height: f64) -> f64 {
         // Refraction, and the relative optical air mass (Kasten and Young 1989).
         let h = elevation;
@@ -99,7 +100,8 @@ impl ClearSky {
         libm::exp(-0.8662 * self.turbidity * mass * thickness)
     }
 
-    /// The sky's light on level ground as a share of the sun's outside the air, by the sine of the sun's elevation.
+    /// Diffuse irradiance on level ground as a share of the irradiance outside the atmosphere, by the sine of the sun's
+    /// elevation.
     fn diffuse(&self, sine: f64) -> f64 {
         let t = self.turbidity;
         let zenith = -0.015843 + 0.030543 * t + 0.0003797 * t * t;
@@ -112,7 +114,7 @@ impl ClearSky {
 }
 
 impl Sunlight {
-    /// The light that comes to a facet at `height` metres, in W/m^2; not `lit`, it lies in the shadow of other ground.
+    /// The irradiance of a facet at `height` metres, in W/m^2. `lit` is false in the shadow of other ground.
     pub fn on(&self, facet: &Facet, height: f64, lit: bool) -> f64 {
         let [east, south, up] = self.towards;
         let at = ((height - self.lowest) / self.step).clamp(0.0, LEVELS as f64);

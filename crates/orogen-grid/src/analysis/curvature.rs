@@ -1,4 +1,4 @@
-//! How the ground bends.
+//! Curvature of the ground.
 //!
 //! Over the 3 x 3 neighbourhood a b c / d e f / g h i of cells of c metres, a quadric is fitted (Zevenbergen and Thorne,
 //! "Quantitative analysis of land surface topography", 1987):
@@ -8,24 +8,24 @@
 //! p = (f - d) / 2 c            q = (h - b) / 2 c
 //! ```
 //!
-//! with p and r along x, q and t along y (south). Curvatures are positive where the ground is convex, such as on ridges and
-//! brows, and in 1/m.
+//! where p and r are along x, and q and t along y (south). Curvatures are in 1/m and positive where the ground is
+//! convex, for example on ridges.
 
 use super::slope::inner;
 use crate::grid::Grid;
 
-/// A curvature of the ground at one sample.
+/// The kinds of curvature.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Curvature {
-    /// Down the slope: convex where it gets steeper downhill. 0 on level ground, which has no downhill.
+    /// Profile curvature, along the slope line: positive where the slope steepens downhill. 0 on level ground.
     Profile,
-    /// Along the contour, seen from above: convex where water spreads. 0 on level ground.
+    /// Plan curvature, along the contour: positive where water diverges. 0 on level ground.
     Plan,
-    /// Both axes together: minus the Laplacian, -(r + t). Convex on tops, concave in pits.
+    /// Total curvature: the negative Laplacian, -(r + t). Positive on summits, negative in pits.
     Total,
 }
 
-/// The curvature at every sample of `grid` but those of its border; NaN where a sample of the nine is not finite.
+/// The curvature in 1/m at every sample of `grid` except its border; NaN where one of the nine samples is not finite.
 pub fn curvature(grid: &Grid, kind: Curvature) -> Grid {
     let window = inner(grid.window());
     let mut out = Grid::filled(window, 0.0f32);
@@ -41,7 +41,7 @@ pub fn curvature(grid: &Grid, kind: Curvature) -> Grid {
     out
 }
 
-/// The curvature in the middle of nine heights `c` metres apart, rows from the north; NaN where one is not finite.
+/// The curvature at the centre of nine heights `c` metres apart, rows from the north; NaN where one is not finite.
 pub fn bend(z: [[f64; 3]; 3], c: f64, kind: Curvature) -> f32 {
     let r = (z[1][0] - 2.0 * z[1][1] + z[1][2]) / (c * c);
     let t = (z[0][1] - 2.0 * z[1][1] + z[2][1]) / (c * c);
@@ -57,7 +57,7 @@ pub fn bend(z: [[f64; 3]; 3], c: f64, kind: Curvature) -> f32 {
         }
         Curvature::Plan => -(r * q * q - 2.0 * s * p * q + t * p * p) / (steep * steep.sqrt()),
     };
-    // The corners enter only by s; a missing one must not go unnoticed.
+    // The corners enter only through s; this check catches a corner that is not finite.
     if s.is_finite() { bend as f32 } else { f32::NAN }
 }
 

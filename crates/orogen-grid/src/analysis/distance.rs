@@ -1,24 +1,24 @@
-//! How far it is to the nearest sample that is marked.
+//! Distance to the nearest marked sample.
 
 use crate::grid::Grid;
 use rayon::prelude::*;
 
-/// The exact Euclidean distance in samples, up to `reach`, of each sample without a border of `reach` to the nearest
-/// whose value is at least `threshold`; infinite where none is so near.
+/// The exact Euclidean distance, in samples, to the nearest sample whose value is at least `threshold`; infinite if
+/// there is none within `reach`. The result is smaller than `grid` by a border of `reach` samples.
 ///
-/// Down the columns first, then along the rows by the lower envelope of parabolas in whole numbers (A. Meijster, J.
-/// Roerdink and W. Hesselink, "A general algorithm for computing distance transforms in linear time", 2000): O(samples)
-/// whatever the reach.
+/// Scans the columns first, then the rows with the lower envelope of parabolas in integers (A. Meijster, J. Roerdink
+/// and W. Hesselink, "A general algorithm for computing distance transforms in linear time", 2000): O(samples) for any
+/// reach.
 pub fn nearest(grid: &Grid, threshold: f32, reach: usize) -> Grid {
     nearest_within(grid, threshold, reach, reach)
 }
 
-/// The same of every sample of `grid`, however far the nearest is.
+/// [`nearest`] for every sample of `grid` and without a limit of distance.
 pub fn nearest_in_whole(grid: &Grid, threshold: f32) -> Grid {
     nearest_within(grid, threshold, 0, grid.width() + grid.height())
 }
 
-/// The distance of each sample without a border of `border`, up to `reach`.
+/// The distance of each sample inside a border of `border`, up to `reach`.
 fn nearest_within(grid: &Grid, threshold: f32, border: usize, reach: usize) -> Grid {
     let window = grid.window().shrunk(border);
     let mut out = Grid::filled(window, f32::INFINITY);
@@ -31,10 +31,10 @@ fn nearest_within(grid: &Grid, threshold: f32, border: usize, reach: usize) -> G
     out
 }
 
-/// Farther than anything counts.
+/// Larger than every distance that counts.
 const NONE: u32 = u32::MAX / 2;
 
-/// Samples to the nearest marked one in the same column, row after row of the inner ones.
+/// Distance to the nearest marked sample of the same column, row by row of the inner ones.
 fn down_columns(grid: &Grid, threshold: f32, border: usize, height: usize) -> Vec<u32> {
     let width = grid.width();
     let mut out = vec![NONE; width * height];
@@ -61,7 +61,7 @@ struct Lowest {
     from: i64,
 }
 
-/// Distances of a row's inner samples from what is told of its columns.
+/// Distances of a row's inner samples, from the distances within their columns.
 fn along_row(down: &[u32], border: usize, reach: usize, hull: &mut Vec<Lowest>, out: &mut [f32]) {
     hull.clear();
     let columns = down.iter().enumerate().filter(|(_, steps)| (**steps as usize) <= reach);
@@ -69,7 +69,7 @@ fn along_row(down: &[u32], border: usize, reach: usize, hull: &mut Vec<Lowest>, 
         let (column, square) = (column as i64, i64::from(*steps) * i64::from(*steps));
         let mut from = 0;
         while let Some(last) = hull.last() {
-            // The first column at which the new one is nearer.
+            // The first column at which the new parabola is lower.
             let doubled = 2 * (column - last.column);
             let sum = column * column - last.column * last.column + square - last.square;
             from = (sum.div_euclid(doubled) + 1).max(0);

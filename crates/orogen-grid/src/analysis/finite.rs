@@ -1,34 +1,34 @@
-//! How many samples are numbers that mean something: what is NaN or infinite is counted, told, and left out of every summary.
+//! Counts of finite samples. Samples that are NaN or infinite are counted, reported, and ignored by every summary.
 
 use crate::error::{Error, ErrorKind};
 use crate::words::percent;
 
-/// Samples, and how many of them are finite.
+/// The number of samples, and how many of them are finite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct FiniteCount {
-    /// How many there are.
+    /// Number of samples.
     pub samples: u64,
-    /// How many of them are neither NaN nor infinite.
+    /// Number of samples that are neither NaN nor infinite.
     pub finite: u64,
 }
 
 impl FiniteCount {
-    /// Of these samples.
+    /// Counts these samples.
     pub fn of(samples: &[f32]) -> FiniteCount {
         let finite = samples.iter().filter(|sample| sample.is_finite()).count();
         FiniteCount { samples: samples.len() as u64, finite: finite as u64 }
     }
 
-    /// Of both.
+    /// The sum of both counts.
     pub fn and(self, other: FiniteCount) -> FiniteCount {
         FiniteCount { samples: self.samples + other.samples, finite: self.finite + other.finite }
     }
 
-    /// Refuses samples of which none is finite. Returns what a person has to know if some are not; `what` says whose samples they are:
-    /// "the layer `height`".
+    /// Rejects samples of which none is finite. Returns a warning if some are not. `what` names the samples in
+    /// messages: "the layer `height`".
     ///
     /// # Errors
-    /// If there are samples and none is finite.
+    /// If there are samples and none of them is finite.
     pub fn check(self, what: &str) -> Result<Option<String>, Error> {
         let FiniteCount { samples, finite } = self;
         match samples - finite {

@@ -1,7 +1,8 @@
-//! The discrete Fourier transform of lengths that are powers of two.
+//! The discrete Fourier transform for lengths that are powers of two.
 
-/// Transforms `values` (real and imaginary parts) in place: X(k) = sum over n of x(n) exp(-2 pi i k n / N), by Cooley and Tukey's
-/// halving (1965). A length that is no power of two is left as it is. The order of the sums is fixed: the same bits everywhere.
+/// Transforms `values` (real and imaginary parts) in place with the algorithm of Cooley and Tukey (1965): X(k) = sum
+/// over n of x(n) exp(-2 pi i k n / N). Does nothing if the length is not a power of two. The order of the sums is
+/// fixed, so the bits are the same on every machine.
 pub fn transform(values: &mut [[f64; 2]]) {
     let count = values.len();
     if !count.is_power_of_two() || count == 1 {
@@ -35,7 +36,7 @@ pub fn transform(values: &mut [[f64; 2]]) {
     }
 }
 
-/// The power |X|^2 of a square of `side` x `side` real samples, row-major; both frequencies 0 come first.
+/// The power |X|^2 of a square of `side` x `side` real samples, row-major. The first value is that of frequency (0, 0).
 pub fn power(samples: &[f64], side: usize) -> Vec<f64> {
     let mut values: Vec<[f64; 2]> = samples.iter().map(|sample| [*sample, 0.0]).collect();
     values.chunks_exact_mut(side).for_each(transform);

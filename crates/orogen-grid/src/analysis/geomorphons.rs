@@ -1,17 +1,17 @@
-//! Geomorphons: what form the ground has, from what is seen around.
+//! Geomorphons: landforms classified by lines of sight.
 //!
-//! Jasiewicz and Stepinski, "Geomorphons: a pattern recognition approach to classification and mapping of landforms" (2013): in
-//! each of the eight directions, the ground as far as one looks is higher, lower or level, by the angles from nadir and from
-//! zenith to the horizon; how many are higher and how many lower names the form.
+//! Jasiewicz and Stepinski, "Geomorphons: a pattern recognition approach to classification and mapping of landforms"
+//! (2013). In each of eight directions the ground within a search radius is higher, lower or level, by the zenith and
+//! nadir angles of its horizon. The numbers of higher and of lower directions determine the form.
 
 use crate::grid::{Grid, Window};
 use rayon::prelude::*;
 
-/// The ten forms, in the order of their codes from 1.
+/// The ten landforms, in the order of their codes from 1.
 pub const FORMS: [&str; 10] =
     ["flat", "peak", "ridge", "shoulder", "spur", "slope", "hollow", "footslope", "valley", "pit"];
 
-/// The code of a form by how many directions are lower (row) and higher (column): the paper's table.
+/// The code of a form by the number of lower (row) and higher (column) directions: the paper's table.
 const CODES: [[u8; 9]; 9] = [
     [1, 1, 1, 8, 8, 9, 9, 9, 10],
     [1, 1, 8, 8, 8, 9, 9, 9, 0],
@@ -26,35 +26,36 @@ const CODES: [[u8; 9]; 9] = [
 
 const STEPS: [(isize, isize); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
-/// When a direction counts as level.
+/// The rule for a level direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Level {
-    /// If the angles from zenith and nadir to its horizon differ by no more than the limit, as in the paper.
+    /// The zenith and nadir angles of the horizon differ by no more than the limit, as in the paper.
     ByDifference,
-    /// If neither the highest nor the lowest line of sight is steeper than the limit, as in r.geomorphon; else the steeper of the two counts.
+    /// Neither the highest nor the lowest line of sight is steeper than the limit, as in r.geomorphon; otherwise the
+    /// steeper of the two decides.
     BySteepest,
 }
 
-/// How far one looks, and what is level.
+/// The search radius and the rule for level directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Look {
-    /// Samples along the axes.
+    /// Search radius along the axes, in samples.
     pub straight: usize,
-    /// Samples along the diagonals, no more than along the axes.
+    /// Search radius along the diagonals, in steps; at most `straight`.
     pub diagonal: usize,
-    /// The limit of level ground, in degrees.
+    /// The angle limit of level ground, in degrees.
     pub flat: f64,
-    /// What it limits.
+    /// The rule to which the limit applies.
     pub level: Level,
 }
 
 impl Look {
-    /// As many samples each way, by the paper's rule.
+    /// The same number of steps in all directions, with the paper's rule.
     pub fn square(radius: usize, flat: f64) -> Look {
         Look { straight: radius, diagonal: radius, flat, level: Level::ByDifference }
     }
 
-    /// As far along the diagonals as along the axes: `reach` cells.
+    /// The same distance in all directions: `reach` cells.
     pub fn round(reach: f64, flat: f64, level: Level) -> Look {
         let straight = (reach as usize).max(1);
         let diagonal = ((reach * std::f64::consts::FRAC_1_SQRT_2) as usize).clamp(1, straight);
@@ -62,10 +63,10 @@ impl Look {
     }
 }
 
-/// The form of every sample of `grid` that is `straight` samples or more from its border, as a code from 1 (see [`FORMS`]); 0
-/// where it or a sample in sight is not finite.
+/// The form of every sample of `grid` that is at least `straight` samples from its border, as a code from 1 (see
+/// [`FORMS`]). The code is 0 if the sample or a sample in its lines of sight is not finite.
 ///
-/// Costs O(samples times 8 radius); rows side by side.
+/// Costs O(samples times 8 radius). Rows are computed in parallel.
 pub fn geomorphons(grid: &Grid, look: &Look) -> Grid<u8> {
     let radius = look.straight;
     let from = *grid.window();
@@ -89,12 +90,13 @@ pub fn geomorphons(grid: &Grid, look: &Look) -> Grid<u8> {
     out
 }
 
-/// The form of one sample; `limit` is the tangent of the limit of level ground.
+/// The form of one sample; `limit` is the tangent of the angle limit of level ground.
 fn form_at(grid: &Grid, [i, j]: [usize; 2], look: &Look, limit: f64) -> Option<u8> {
     let here = f64::from(grid[(i, j)]);
     let (mut lower, mut higher) = (0usize, 0usize);
     for (east, south) in STEPS {
-        // Rise per step: of equal slopes the quotients are the same number, so that those up and down cancel where heights are whole metres.
+        // Rise per step: equal slopes give equal quotients, so that slopes up and down cancel if heights are whole
+        // metres.
         let (mut up, mut down) = (f64::NEG_INFINITY, f64::INFINITY);
         let farthest = if east * south == 0 { look.straight } else { look.diagonal };
         for step in 1..=farthest as isize {
@@ -110,7 +112,8 @@ fn form_at(grid: &Grid, [i, j]: [usize; 2], look: &Look, limit: f64) -> Option<u
         (up, down) = (up / length, down / length);
         let sum = up + down;
         let tells = match look.level {
-            // With the highest line of sight at angle b and the lowest at d, nadir less zenith is b + d; its tangent is sum / rest.
+            // With the highest line of sight at angle b and the lowest at d, nadir minus zenith angle is b + d; its
+            // tangent is sum / rest.
             Level::ByDifference => {
                 let rest = 1.0 - up * down;
                 rest <= 0.0 || sum.abs() > limit * rest
@@ -124,12 +127,12 @@ fn form_at(grid: &Grid, [i, j]: [usize; 2], look: &Look, limit: f64) -> Option<u
     Some(CODES[lower][higher])
 }
 
-/// Counts the samples of each code, 0 first.
+/// Counts the samples of each code, starting with code 0.
 pub fn count(forms: &Grid<u8>, counts: &mut [u64; 11]) {
     forms.data().iter().for_each(|form| counts[usize::from(*form).min(10)] += 1);
 }
 
-/// The share of each form among the samples that have one, in the order of [`FORMS`], of what was counted; zeros if none has.
+/// The share of each form, in the order of [`FORMS`], among the counted samples that have a form; zeros if none has.
 pub fn shares(counts: &[u64; 11]) -> [f64; 10] {
     let total: u64 = counts[1..].iter().sum();
     std::array::from_fn(|k| if total == 0 { 0.0 } else { counts[k + 1] as f64 / total as f64 })

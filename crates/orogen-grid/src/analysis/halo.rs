@@ -1,22 +1,22 @@
-//! The samples just around a grid: what lies there decides the normals of its border.
+//! The samples just outside a grid, which the normals at its border depend on.
 
 use super::slope::{beyond, extend_row};
 use crate::grid::{Grid, Window};
 
-/// One sample around a grid on each side, as far as there is ground. Where there is none, the land is taken to go on in straight lines, as at the
-/// ends of a world.
+/// One sample around a grid on each side, where the world has ground. Where it has none, heights are extrapolated
+/// linearly, as at the edges of a world.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Halo {
-    /// The rows north and south of the grid, one sample longer on either side.
+    /// The rows north and south of the grid, one sample longer at each end.
     north: Option<Vec<f32>>,
     south: Option<Vec<f32>>,
-    /// The columns west and east of it.
+    /// The columns west and east of the grid.
     west: Option<Vec<f32>>,
     east: Option<Vec<f32>>,
 }
 
 impl Halo {
-    /// The halo of a window, its samples still to come, where there is ground in a window around it.
+    /// An empty halo of `window`, for the parts of it that lie inside the window `there`.
     pub fn new(window: &Window, there: &Window) -> Halo {
         let row = |is_there: bool| is_there.then(|| vec![f32::NAN; window.width + 2]);
         let column = |is_there: bool| is_there.then(|| vec![f32::NAN; window.height]);
@@ -28,7 +28,7 @@ impl Halo {
         }
     }
 
-    /// Takes what a band of the ground around a window has of it.
+    /// Copies the halo's samples that lie in `band`, a band of rows of the ground around `window`.
     pub fn take(&mut self, window: &Window, band: &Grid) {
         let there = band.window();
         let inside = usize::try_from(window.x - there.x).unwrap_or(0).min(1);
@@ -51,7 +51,7 @@ impl Halo {
         }
     }
 
-    /// Gives `change` all samples that there are, some at a time.
+    /// Calls `change` with slices that together hold all samples of the halo.
     pub fn each(&mut self, mut change: impl FnMut(&mut [f32])) {
         [&mut self.north, &mut self.south, &mut self.west, &mut self.east]
             .into_iter()
@@ -59,7 +59,7 @@ impl Halo {
             .for_each(|samples| change(samples));
     }
 
-    /// Row `j` of the grid and its neighbours, each with one sample more on either side. `wide` is where they are made.
+    /// Row `j` of the grid and the rows next to it, each extended by one sample at both ends. `wide` is scratch space.
     #[doc(hidden)]
     pub fn rows<'w>(&self, grid: &Grid, j: usize, wide: &'w mut Vec<f32>) -> [&'w [f32]; 3] {
         let (width, last) = (grid.width() + 2, grid.height() - 1);
@@ -89,7 +89,7 @@ impl Halo {
             }
             (true, None) => false,
         };
-        // Past an end of the world, on in a line from the other side; a single row is level.
+        // Beyond an edge of the world: linear extrapolation from the opposite row. A single row is level.
         let run_on = |out: &mut [f32], other: &[f32]| {
             out.iter_mut().zip(&*here).zip(other).for_each(|((out, here), other)| *out = beyond(*here, *other));
         };
@@ -111,13 +111,13 @@ impl Halo {
     }
 }
 
-/// A row with the samples west and east of it, where there are such; else it goes on in a straight line.
+/// Extends a row by the samples west and east of it, or by linear extrapolation where there is none.
 fn widen(row: &[f32], [west, east]: [Option<f32>; 2], out: &mut [f32]) {
     extend_row(row, out);
     let last = out.len() - 1;
     out[0] = west.unwrap_or(out[0]);
     out[last] = east.unwrap_or(out[last]);
-    // Where the row is a single sample, the line comes from the other side.
+    // With a single sample, extrapolate from the opposite side.
     if row.len() == 1 {
         match (west, east) {
             (Some(west), None) => out[last] = beyond(row[0], west),

@@ -1,4 +1,4 @@
-//! Hillshade: how much light a slope catches.
+//! Hillshade: the illumination of slopes by a distant light.
 //!
 //! For the light's azimuth a (degrees clockwise from north) and altitude, z the zenith angle, s the slope and b its aspect
 //! (Horn 1981): `cos z cos s + sin z sin s cos(a - b)`, clamped to 0. With the gradient (p, q) and the z factor k this is the
@@ -8,13 +8,14 @@
 //! (L_up - k (p L_east + q L_north)) / sqrt(1 + k^2 (p^2 + q^2))
 //! ```
 //!
-//! which needs no angle per sample. 1 is full light, level ground gets the sine of the altitude. A missing sample is dark: 0.
+//! This form needs no angle per sample. 1 is full illumination; level ground gets the sine of the altitude. A missing
+//! sample gives 0.
 
 use super::slope::{Gradient, gradients_between, inner};
 use crate::grid::Grid;
 use orogen_simd::{Body, Simd, dispatch};
 
-/// Where the light comes from, ready to be asked.
+/// The direction of the light, prepared for evaluation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {
     east: f32,
@@ -24,15 +25,15 @@ pub struct Light {
 }
 
 impl Default for Light {
-    /// The cartographer's light: from the north-west, half way up, heights as they are.
+    /// Light from the north-west at 45 degrees altitude, z factor 1.
     fn default() -> Light {
         Light::new(315.0, 45.0, 1.0)
     }
 }
 
 impl Light {
-    /// Light from `azimuth` degrees (clockwise from north) and `altitude` degrees above the horizon; heights count
-    /// `z_factor` times.
+    /// Light from `azimuth` degrees (clockwise from north) and `altitude` degrees above the horizon; heights are
+    /// multiplied by `z_factor`.
     pub fn new(azimuth: f64, altitude: f64, z_factor: f64) -> Light {
         let (azimuth, altitude) = (azimuth.to_radians(), altitude.to_radians());
         Light {
@@ -43,17 +44,17 @@ impl Light {
         }
     }
 
-    /// The share of light, 0 to 1, that ground of this gradient gets; 0 if the gradient is not a number.
+    /// The illumination of ground with this gradient, 0 to 1; 0 if the gradient is not a number.
     #[inline(always)]
     pub fn on(&self, gradient: Gradient) -> f32 {
         let (p, q) = (self.z_factor * gradient.east, self.z_factor * gradient.north);
         let light = self.toward(p, q) / (1.0 + p * p + q * q).sqrt();
-        // Written so that NaN, which is above nothing, falls to 0 as well.
+        // Written so that NaN also gives 0.
         let light = if light > 0.0 { light } else { 0.0 };
         if light < 1.0 { light } else { 1.0 }
     }
 
-    /// The share that level ground gets.
+    /// The illumination of level ground.
     pub fn on_level(&self) -> f32 {
         self.up
     }
@@ -64,7 +65,7 @@ impl Light {
     }
 }
 
-/// The hillshade of every sample of `grid` but those of its border.
+/// The hillshade, 0 to 1, of every sample of `grid` except its border.
 pub fn hillshade(grid: &Grid, light: &Light) -> Grid {
     let window = inner(grid.window());
     let mut out = Grid::filled(window, 0.0);
@@ -77,7 +78,7 @@ pub fn hillshade(grid: &Grid, light: &Light) -> Grid {
     out
 }
 
-/// A row of samples none of which is missing; tells whether that was so.
+/// The hillshade of a row without missing samples; returns whether none is missing.
 struct Sound<'a> {
     rows: [&'a [f32]; 3],
     cell: f64,
@@ -95,11 +96,11 @@ impl Body for Sound<'_> {
         let (scale, light) = ((1.0 / (8.0 * self.cell)) as f32, *self.light);
         let mut missing = 0u32;
         for (i, out) in self.out.iter_mut().enumerate() {
-            // The sums of `gradients_between` in their order: the same bits.
+            // The sums of `gradients_between` in the same order, for the same bits.
             let east = ((c[i] - a[i]) + 2.0 * (f[i] - d[i]) + (k[i] - g[i])) * scale;
             let north = ((a[i] - g[i]) + 2.0 * (b[i] - h[i]) + (c[i] - k[i])) * scale;
             *out = light.on(Gradient { east, north });
-            // What is not finite is no 0 even times 0.
+            // A value that is not finite gives NaN, also when multiplied by 0.
             let zero = ((east + north) + e[i]) * 0.0;
             missing |= u32::from(zero != 0.0);
         }

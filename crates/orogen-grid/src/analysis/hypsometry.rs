@@ -1,9 +1,9 @@
-//! How much of the ground lies how high.
+//! Hypsometry: the distribution of area over heights.
 
 use crate::grid::Grid;
 
-/// The hypsometric curve (Strahler 1952): the share of the area, 0 to 1, that lies at or above each of `steps` + 1 heights
-/// from the lowest to the highest, evenly spaced. None if no sample is finite or `steps` is 0.
+/// The hypsometric curve (Strahler 1952): the share of the area, 0 to 1, at or above each of `steps` + 1 evenly spaced
+/// heights from the lowest to the highest. None if no sample is finite or `steps` is 0.
 pub fn curve(grid: &Grid, steps: usize) -> Option<Vec<f64>> {
     let (low, high) = range(grid)?;
     if steps == 0 {
@@ -13,7 +13,7 @@ pub fn curve(grid: &Grid, steps: usize) -> Option<Vec<f64>> {
     let scale = steps as f64 / (high - low);
     let mut total = 0u64;
     for h in grid.data().iter().filter(|h| h.is_finite()) {
-        // The highest of the heights that it reaches.
+        // The highest step that this height reaches.
         let step = if high > low { ((f64::from(*h) - low) * scale) as usize } else { steps };
         counts[step.min(steps)] += 1;
         total += 1;
@@ -31,7 +31,7 @@ pub fn curve(grid: &Grid, steps: usize) -> Option<Vec<f64>> {
     Some(curve)
 }
 
-/// The hypsometric integral, 0 to 1: how high the mean lies between the lowest and the highest. None without relief.
+/// The hypsometric integral, 0 to 1: (mean - lowest) / (highest - lowest). None if there is no relief.
 pub fn integral(grid: &Grid) -> Option<f64> {
     let (low, high) = range(grid)?;
     let (mut sum, mut count) = (0.0, 0u64);

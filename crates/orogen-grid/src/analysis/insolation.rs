@@ -1,4 +1,4 @@
-//! The sun's light over days: direct, from the sky and from the ground around, with the shadows of mountains.
+//! Insolation over days: direct, diffuse and reflected light, with cast shadows.
 
 use rayon::prelude::*;
 
@@ -11,25 +11,25 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::progress::Progress;
 
-/// When and where the sun shines.
+/// The time and the latitude.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Period {
-    /// Degrees north.
+    /// Latitude in degrees north.
     pub latitude: f64,
-    /// The first and the last day, 1 to 365; a first one after the last runs over the turn of the year.
+    /// The first and the last day, 1 to 365. If the first is after the last, the period spans the turn of the year.
     pub days: [u16; 2],
-    /// The longest step through a day, in hours.
+    /// The longest time step within a day, in hours.
     pub step: f64,
 }
 
-/// Days that one stands for at most.
+/// Maximum number of days that one sampled day represents.
 const DAYS: usize = 30;
 
-/// Suns whose shadows are held at a time.
+/// Number of suns whose shadows are held at a time.
 const AT_ONCE: usize = 8;
 
 impl Period {
-    /// Days in the middle of equal parts of the period.
+    /// The sampled days: the middles of equal parts of the period.
     fn sampled_days(&self) -> Vec<u16> {
         let [first, last] = self.days.map(usize::from);
         let length = if last >= first { last - first + 1 } else { last + 365 - first + 1 };
@@ -37,7 +37,7 @@ impl Period {
         (0..parts).map(|k| ((first - 1 + (2 * k + 1) * length / (2 * parts)) % 365 + 1) as u16).collect()
     }
 
-    /// The suns of the period above the horizon, and for how many hours of an average day each stands.
+    /// The suns of the period above the horizon, with the hours of an average day that each represents.
     fn suns(&self, sky: &ClearSky, heights: [f64; 2]) -> Vec<(Sunlight, f64)> {
         let days = self.sampled_days();
         let mut suns = Vec::new();
@@ -57,11 +57,11 @@ impl Period {
     }
 }
 
-/// The light that comes to each sample on an average day of the period, in kWh/m^2. Slopes are Horn's; beyond the grid the ground goes on in straight lines and
-/// casts no shadow.
+/// The insolation of each sample on an average day of the period, in kWh/m^2. Slopes use Horn's method. Beyond the grid
+/// heights are extrapolated linearly and cast no shadow.
 ///
-/// Takes a sun in the middle of each step from sunrise to sunset, on one day in at most 30, in the middle of equal parts of the period. Holds 16 bytes a
-/// sample beside the heights. Costs O(samples) a sun.
+/// Samples the sun at the middle of each time step from sunrise to sunset, on one day in at most 30. Holds 16 bytes per
+/// sample beside the heights. Costs O(samples) per position of the sun.
 ///
 /// # Errors
 /// If `progress` is cancelled.
@@ -80,7 +80,7 @@ pub fn insolation(heights: &Grid, period: &Period, sky: &ClearSky, progress: &Pr
     let beyond = Halo::default();
     let shadows = Shadows::new(heights.data(), window.width, window.cell);
     let suns = period.suns(sky, ends);
-    // Shadows take about as long as the light.
+    // Shadows take about as long as the irradiance.
     progress.expect(2.0 * suns.len() as f64);
     for suns in suns.chunks(AT_ONCE) {
         let lit = suns.par_iter().map(|(sun, _)| {

@@ -1,4 +1,4 @@
-//! What can be said about a grid: pure functions from grids to grids and numbers.
+//! Terrain analysis: pure functions from grids to grids and numbers.
 
 pub mod aspect;
 pub mod clear_sky;

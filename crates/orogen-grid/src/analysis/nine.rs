@@ -1,11 +1,12 @@
-//! What follows from a sample and its eight neighbours.
+//! Functions of a sample and its eight neighbours.
 
 use rayon::prelude::*;
 
 use super::slope::inner;
 use crate::grid::Grid;
 
-/// A value made of the 3 x 3 heights around every sample of `grid` but those of its border, rows of the nine from the north. Rows side by side.
+/// Applies `value` to the 3 x 3 heights around every sample of `grid` except its border, rows from the north. Rows are
+/// computed in parallel.
 pub fn over_nine(grid: &Grid, value: impl Fn([[f64; 3]; 3]) -> f32 + Sync) -> Grid {
     let window = inner(grid.window());
     let mut out = Grid::filled(window, 0.0f32);

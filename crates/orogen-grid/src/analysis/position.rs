@@ -1,37 +1,38 @@
-//! Topographic position: how high a sample lies among those around it.
+//! Topographic position: the height of a sample relative to its surroundings.
 //!
-//! The difference from the mean height of a disc, and the same over the standard deviation of the heights in it (Weiss, "Topographic position and landforms
-//! analysis", 2001; Wilson and Gallant, "Terrain Analysis", 2000, ch. 3). Heights are counted in 256ths of a metre, so that every sum is exact and a tile
-//! equals the crop of the whole.
+//! The difference from the mean height in a disc, and the same divided by the standard deviation of the heights in it
+//! (Weiss, "Topographic position and landforms analysis", 2001; Wilson and Gallant, "Terrain Analysis", 2000, ch. 3).
+//! Heights are rounded to 1/256 m, so that all sums are exact and a tile equals the crop of the whole.
 
 use rayon::prelude::*;
 
 use crate::grid::Grid;
 
-/// Counts in a metre.
+/// Units per metre.
 const COUNTS: f64 = 256.0;
 
-/// Heights beyond this many metres count as that high.
+/// Heights are clamped to this many metres.
 const HIGHEST: f64 = 131_072.0;
 
-/// How high a sample lies among those around it.
+/// The topographic position of one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Position {
-    /// Metres above the mean of the disc.
+    /// Height above the mean of the disc, in metres.
     pub above_mean: f32,
-    /// The same in standard deviations of the heights in the disc; 0 where they are all alike.
+    /// The same divided by the standard deviation of the heights in the disc; 0 if they are all equal.
     pub deviation: f32,
 }
 
-/// Samples east and west of the middle in each row of a disc, from the row `radius` north of it to the one as far south.
+/// Half width, in samples, of each row of a disc, from the northernmost to the southernmost row.
 fn half_widths(radius: usize) -> Vec<usize> {
     let square = radius * radius;
     (0..=2 * radius).map(|row| (square - row.abs_diff(radius) * row.abs_diff(radius)).isqrt()).collect()
 }
 
-/// The position of every sample of `grid` that is `radius` samples or more from its border, in the disc of that radius, the sample itself included.
+/// The position of every sample of `grid` that is at least `radius` samples from its border, within the disc of that
+/// radius, including the sample itself.
 ///
-/// Holds 16 bytes a sample of `grid`. Costs O(samples times radius); rows side by side.
+/// Holds 16 bytes per sample of `grid`. Costs O(samples times radius). Rows are computed in parallel.
 pub fn positions(grid: &Grid, radius: usize) -> Grid<Position> {
     let window = grid.window().shrunk(radius);
     let mut out = Grid::filled(window, Position { above_mean: 0.0, deviation: 0.0 });
@@ -48,13 +49,13 @@ pub fn positions(grid: &Grid, radius: usize) -> Grid<Position> {
             for (row, half) in sums[j..].iter().zip(&disc) {
                 let ([s0, q0], [s1, q1]) = (row[middle - half], row[middle + half + 1]);
                 sum = sum.wrapping_add(s1.wrapping_sub(s0));
-                // Running sums may wrap around; a difference of two within a disc is right all the same.
+                // Running sums may wrap around; differences within a disc are still right.
                 squares += i128::from(q1.wrapping_sub(q0));
             }
             let mean = sum as f64 / count;
             let variance = (squares as f64 - sum as f64 * mean) / count;
             let above = f64::from(grid[(middle, j + radius)]) - mean / COUNTS;
-            // Less than one count is rounding.
+            // A variance below one unit is rounding.
             let deviation = if variance < 1.0 { 0.0 } else { above * COUNTS / variance.sqrt() };
             *position = Position { above_mean: above as f32, deviation: deviation as f32 };
         }
@@ -62,7 +63,7 @@ pub fn positions(grid: &Grid, radius: usize) -> Grid<Position> {
     out
 }
 
-/// Sums of counts and of their squares before each sample of a row, and after the last.
+/// Sums of heights and of their squares before each sample of a row, and after the last.
 fn prefix_sums(row: &[f32]) -> Vec<[i64; 2]> {
     let mut sums = Vec::with_capacity(row.len() + 1);
     let mut last = [0i64; 2];

@@ -1,11 +1,11 @@
-//! How rough the ground is underfoot.
+//! Ruggedness of the ground.
 
 use super::nine::over_nine;
 use super::slope::inner;
 use crate::grid::Grid;
 
-/// The ruggedness index: the mean absolute difference in metres between a sample and its eight neighbours (Wilson and others 2007, after
-/// Riley 1999). Smaller than `grid` by a border of one sample; NaN where one of the nine is missing.
+/// The mean absolute difference, in metres, between a sample and its eight neighbours (Wilson and others 2007, after
+/// Riley 1999). Smaller than `grid` by a border of one sample; NaN where one of the nine samples is not finite.
 pub fn ruggedness(grid: &Grid) -> Grid {
     let window = inner(grid.window());
     let mut out = Grid::filled(window, 0.0f32);
@@ -20,9 +20,10 @@ pub fn ruggedness(grid: &Grid) -> Grid {
     out
 }
 
-/// The terrain ruggedness index: the square root of the sum of squared differences in metres between a sample and its eight neighbours (Riley, DeGloria and
-/// Elliot, "A terrain ruggedness index that quantifies topographic heterogeneity", 1999). Smaller than `grid` by a border of one sample; NaN where one of
-/// the nine is missing.
+/// The terrain ruggedness index: the square root of the sum of squared differences, in metres, between a sample and its
+/// eight neighbours (Riley, DeGloria and Elliot, "A terrain ruggedness index that quantifies topographic
+/// heterogeneity", 1999). Smaller than `grid` by a border of one sample; NaN where one of the nine samples is not
+/// finite.
 pub fn riley(grid: &Grid) -> Grid {
     over_nine(grid, |z| {
         let here = z[1][1];

@@ -1,6 +1,6 @@
-//! A range of values with soft ends, as a mask.
+//! Masks that select a range of values with smooth ends.
 
-/// 1 within a range, falling smoothly to 0 on both sides of it.
+/// 1 within a range, decreasing smoothly to 0 on both sides of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Selection {
     low: f32,
@@ -10,15 +10,15 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// 1 from `range[0]` to `range[1]`, and 0 from `falloff[0]` below it and from `falloff[1]` above it on; a fall-off
-    /// of 0 is a sharp end.
+    /// 1 from `range[0]` to `range[1]`; 0 from `falloff[0]` below and from `falloff[1]` above the range. A fall-off of
+    /// 0 is a sharp end.
     pub fn new(range: [f64; 2], falloff: [f64; 2]) -> Selection {
         let [low, high] = range.map(|bound| bound as f32);
         let [below, above] = falloff.map(|width| width as f32);
         Selection { low, high, below, above }
     }
 
-    /// How far a value is selected, 0 to 1; 0 for what is no number.
+    /// The weight of a value, 0 to 1; 0 for NaN.
     pub fn of(&self, value: f32) -> f32 {
         if value >= self.low && value <= self.high {
             1.0
@@ -30,7 +30,7 @@ impl Selection {
     }
 }
 
-/// From 1 at 0 to 0 at `width`, by Hermite's smooth step; 0 where that is not told.
+/// From 1 at 0 to 0 at `width`, by Hermite's smoothstep; 0 for NaN.
 fn fall(beyond: f32, width: f32) -> f32 {
     if beyond < width {
         let t = 1.0 - beyond / width;

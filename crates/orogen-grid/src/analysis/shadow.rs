@@ -1,8 +1,8 @@
-//! Which ground lies in the shadow of other ground.
+//! Cast shadows.
 
 use crate::grid::transposed;
 
-/// Heights that shadows are cast over, and the same with rows and columns exchanged.
+/// Heights that cast shadows, also with rows and columns exchanged.
 pub struct Shadows<'a> {
     heights: &'a [f32],
     turned: Vec<f32>,
@@ -15,17 +15,18 @@ pub struct Shadows<'a> {
 const NOTHING: f32 = -1e30;
 
 impl<'a> Shadows<'a> {
-    /// Over rows of `columns` heights, `cell` metres apart. Holds 4 bytes a sample.
+    /// Prepares rows of `columns` heights, `cell` metres apart. Holds 4 bytes per sample.
     pub fn new(heights: &'a [f32], columns: usize, cell: f64) -> Shadows<'a> {
         let rows = heights.len() / columns.max(1);
         Shadows { heights, turned: transposed(heights, columns), columns, rows, cell }
     }
 
-    /// Whether each sample is lit by a sun towards which `towards` points: east, south and up, of length 1.
+    /// Whether each sample is lit. `towards` is the unit vector to the sun: east, south and up.
     ///
-    /// Along every line that leads away from the sun through the lattice, the height up to which the air is in shadow is carried on from row to row (or from
-    /// column to column, whichever the sun is nearer to): it is the ground where that is higher, and falls as steeply as the sun stands. Heights between samples
-    /// are linear, and so is the shadow between two lines. Every line is walked to its end, so a shadow has no limit. Costs O(samples), 1 byte a sample.
+    /// Along every line through the lattice that leads away from the sun, the height of the shadow is carried from row
+    /// to row (or from column to column, whichever is closer to the sun's direction). It is raised to the ground where
+    /// that is higher, and falls with the sun's elevation. Heights between samples are linear, and so is the shadow
+    /// between two lines. Shadows have unlimited length. Costs O(samples) and 1 byte per sample.
     pub fn lit(&self, towards: [f64; 3]) -> Vec<bool> {
         let [east, south, up] = towards;
         if south.abs() >= east.abs() {
@@ -35,28 +36,30 @@ impl<'a> Shadows<'a> {
         }
     }
 
-    /// The same over rows of `width`; `along` is the part of the sun's direction across the rows, its second part, which is the greater, from row to row.
+    /// [`Shadows::lit`] over rows of `width`. `along` is the sun's direction: its part across the rows, then its larger
+    /// part, from row to row.
     fn sweep(&self, heights: &[f32], width: usize, along: [f64; 2], up: f64) -> Vec<bool> {
         let count = heights.len() / width.max(1);
         let mut lit = vec![true; heights.len()];
         if width == 0 || along[1] == 0.0 {
-            // The sun stands in the zenith.
+            // The sun is at the zenith.
             return lit;
         }
-        // From one row to the next, away from the sun: columns that a line moves, and metres that the shadow falls.
+        // From one row to the next, away from the sun: the columns that a line moves, and the metres that the shadow
+        // falls.
         let shift = -along[0] / along[1].abs();
         let drop = (up / along[1].abs() * self.cell) as f32;
-        // Line l stands at column l + k shift in the k-th row; these cross the ground, and one on each side.
+        // Line l is at column l + k shift in the k-th row. These lines cross the ground, plus one on each side.
         let drift = shift * (count - 1) as f64;
         let first = (-drift.max(0.0)).floor() as i64 - 1;
         let last = (width - 1) as i64 + (-drift.min(0.0)).ceil() as i64 + 1;
         let mut ceilings = vec![NOTHING; (last - first + 1) as usize];
         for k in 0..count {
-            // The rows towards the sun come first.
+            // Start with the rows closest to the sun.
             let j = if along[1] > 0.0 { count - 1 - k } else { k };
             let row = &heights[j * width..(j + 1) * width];
             let place = k as f64 * shift;
-            // Of the line that stands at or before column 0: whole columns back, and how far before.
+            // The line at or before column 0: whole columns, and the fraction before column 0.
             let whole = (-place).floor();
             let share = (-place - whole) as f32;
             let start = (whole as i64 - first) as usize;
@@ -65,7 +68,7 @@ impl<'a> Shadows<'a> {
             for ((out, height), ceiling) in out.iter_mut().zip(row).zip(lines.windows(2)) {
                 *out = *height >= ceiling[0] + (ceiling[1] - ceiling[0]) * share;
             }
-            // What each line passes: line 0 of these stands `share` before column 0.
+            // The ground under each line: line 0 is `share` before column 0.
             let (west, east) = (row[0], row[width - 1]);
             let at = |column: usize| row.get(column).copied().unwrap_or(east);
             lines[0] = lines[0].max(west);

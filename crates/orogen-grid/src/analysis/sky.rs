@@ -1,26 +1,27 @@
-//! How much of the sky the ground sees: the ambient occlusion of terrain.
+//! Sky-view factor: the ambient occlusion of terrain.
 //!
-//! The sky-view factor (Zakšek, Oštir and Kokalj, "Sky-view factor as a relief visualization technique", Remote Sensing 3, 2011): the share of the
-//! hemisphere above that no ground hides, 1 - mean(sin g) over the directions round about, g the height of the horizon there, none below 0. Level
-//! ground sees all of it: 1.
+//! The sky-view factor (Zakšek, Oštir and Kokalj, "Sky-view factor as a relief visualization technique", Remote Sensing
+//! 3, 2011) is the visible share of the hemisphere above: 1 - mean(sin g) over the directions, g the elevation angle of
+//! the horizon, at least 0. It is 1 on level ground.
 //!
-//! Horizons are looked for in 16 directions along the lattice (the axes, the diagonals and the knight's moves between them, each standing for the angle
-//! halfway to its neighbours), at 1, 2, 3, 4, 6, 8, 12, 16, 24 ... steps: a far ridge narrower than the gap between two steps may be missed.
+//! Horizons are searched in 16 directions along the lattice: the axes, the diagonals and the knight's moves between
+//! them, each weighted by its share of the circle. The steps are at 1, 2, 3, 4, 6, 8, 12, 16, 24 ... samples; a far
+//! ridge narrower than the gap between two steps may be missed.
 
 use crate::grid::{Grid, Window};
 
-/// The directions of one quarter and the degrees that each stands for; turned three times, they are all.
+/// The directions of one quadrant and the degrees that each represents; rotations give the others.
 const QUARTER: [([i64; 2], f64); 4] =
     [([1, 0], 26.565_051_177_077_99), ([2, 1], 22.5), ([1, 1], 18.434_948_822_922_01), ([1, 2], 22.5)];
 
-/// One look: how far it is away on the lattice, how much farther in metres, and which direction it belongs to.
+/// A step of a direction: its offset on the lattice, its distance in metres, and the direction.
 struct Look {
     offset: [i64; 2],
     per_metre: f32,
     direction: usize,
 }
 
-/// The looks of all directions up to `reach` samples away.
+/// The steps of all directions up to `reach` samples.
 fn looks(reach: usize, cell: f64) -> (Vec<Look>, Vec<f64>) {
     let (mut looks, mut shares) = (Vec::new(), Vec::new());
     for (forward, degrees) in QUARTER {
@@ -45,8 +46,8 @@ fn steps() -> impl Iterator<Item = i64> {
     [1, 2, 3].into_iter().chain((1..40).flat_map(|power| [4 << (power - 1), 6 << (power - 1)]))
 }
 
-/// The sky-view factor, 0 to 1, at the samples of `window`, looking up to `reach` samples far. `heights` holds the window and what there is around it;
-/// beyond it the sky is open. NaN where there is no height; samples without one hide nothing.
+/// The sky-view factor, 0 to 1, at the samples of `window`, with horizons up to `reach` samples away. `heights` covers
+/// the window and its surroundings; beyond it the sky is open. NaN at samples that are not finite; they hide nothing.
 pub fn view(heights: &Grid, window: &Window, reach: usize) -> Grid {
     let (looks, shares) = looks(reach, window.cell);
     let all = heights.window();
@@ -64,7 +65,7 @@ pub fn view(heights: &Grid, window: &Window, reach: usize) -> Grid {
                 let (x, y) = (x + look.offset[0], y + look.offset[1]);
                 if (0..all.width as i64).contains(&x) && (0..all.height as i64).contains(&y) {
                     let rise = (heights[(x as usize, y as usize)] - here) * look.per_metre;
-                    // False for NaN, too.
+                    // False for NaN as well.
                     if rise > steepest[look.direction] {
                         steepest[look.direction] = rise;
                     }

@@ -8,20 +8,20 @@
 //! q = ((a - g) + 2 (b - h) + (c - i)) / 8c      towards the north (up the page)
 //! ```
 //!
-//! Every function here takes a grid with one sample more on each side than it returns, so that a tile and a crop agree; at the
-//! end of a world, [`extended`] makes that border up.
+//! Every function here takes a grid with one sample more on each side than it returns, so that a tile equals the crop
+//! of the whole. At the edge of a world, [`extended`] adds that border.
 //!
-//! **Where samples are missing.** A sample that is not finite has no slope: NaN. A neighbour that is not finite counts as level
-//! with its middle.
+//! **Missing samples.** The slope of a sample that is not finite is NaN. A neighbour that is not finite counts as level
+//! with the centre.
 
 use crate::grid::{Grid, Window};
 
-/// The rise per metre at one sample.
+/// The gradient at one sample, in metres per metre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Gradient {
-    /// p: how much higher it gets a metre further east.
+    /// p: the rise per metre eastward.
     pub east: f32,
-    /// q: how much higher it gets a metre further north, which is up the page.
+    /// q: the rise per metre northward (up the page).
     pub north: f32,
 }
 
@@ -31,30 +31,30 @@ impl Gradient {
         (self.east * self.east + self.north * self.north).sqrt()
     }
 
-    /// The upward normal of length 1: its parts east, north and up.
+    /// The upward unit normal: east, north and up.
     pub fn normal(&self) -> [f32; 3] {
         let length = (1.0 + self.east * self.east + self.north * self.north).sqrt();
         [-self.east / length, -self.north / length, 1.0 / length]
     }
 }
 
-/// Gradients at the inner samples of three neighbouring rows, from the north: at columns 1 to width - 2, handed to `each` with
-/// their index from 0.
+/// Computes gradients at the inner samples of three adjacent rows, from the north. Calls `each` for the columns 1 to
+/// width - 2, with their index from 0.
 pub fn gradients_between(rows: [&[f32]; 3], cell: f64, mut each: impl FnMut(usize, Gradient)) {
     let scale = (1.0 / (8.0 * cell)) as f32;
     let [above, here, below] = rows;
     let triples = above.windows(3).zip(here.windows(3)).zip(below.windows(3));
     for (i, ((n, m), s)) in triples.enumerate() {
-        // Differences first: neighbouring heights are alike, so little is lost to rounding even far above zero.
+        // Differences first: neighbouring heights are similar, so little precision is lost far above zero.
         let east = ((n[2] - n[0]) + 2.0 * (m[2] - m[0]) + (s[2] - s[0])) * scale;
         let north = ((n[0] - s[0]) + 2.0 * (n[1] - s[1]) + (n[2] - s[2])) * scale;
         let gradient = Gradient { east, north };
-        // One test clears the good samples; missing ones, and differences that overflow, take the slow road.
+        // One test covers the usual case; missing samples and differences that overflow take the slow path.
         each(i, if (east + north).is_finite() && m[1].is_finite() { gradient } else { repaired([n, m, s], cell) });
     }
 }
 
-/// The gradient where some sample is not finite or a difference does not fit f32.
+/// The gradient if a sample is not finite or a difference overflows f32.
 #[cold]
 fn repaired(rows: [&[f32]; 3], cell: f64) -> Gradient {
     let middle = rows[1][1];
@@ -68,7 +68,7 @@ fn repaired(rows: [&[f32]; 3], cell: f64) -> Gradient {
     Gradient { east: fit(east), north: fit(north) }
 }
 
-/// A value made from the gradient at every sample of `grid` but those of its border.
+/// Applies `value` to the gradient at every sample of `grid` except its border.
 pub fn from_gradients(grid: &Grid, value: impl Fn(Gradient) -> f32) -> Grid {
     let window = inner(grid.window());
     let mut out = Grid::filled(window, 0.0);
@@ -80,7 +80,7 @@ pub fn from_gradients(grid: &Grid, value: impl Fn(Gradient) -> f32) -> Grid {
     out
 }
 
-/// The steepest rise per metre.
+/// The slope, rise over run, at every sample except the border.
 pub fn steepness(grid: &Grid) -> Grid {
     from_gradients(grid, |gradient| gradient.steepness())
 }
@@ -90,7 +90,7 @@ pub fn degrees(grid: &Grid) -> Grid {
     from_gradients(grid, |gradient| libm::atanf(gradient.steepness()).to_degrees())
 }
 
-/// The window without its border of one sample; empty if that is all it has.
+/// The window without a border of one sample; possibly empty.
 pub fn inner(window: &Window) -> Window {
     let (width, height) = (window.width.saturating_sub(2), window.height.saturating_sub(2));
     match width == 0 || height == 0 {
@@ -99,8 +99,8 @@ pub fn inner(window: &Window) -> Window {
     }
 }
 
-/// The grid with one sample more on each side, where the last two run on in a straight line: for the ends of a world, where
-/// there is nothing to ask. (With Horn's weights this gives the border the one-sided slope.)
+/// The grid extended by one sample on each side with linear extrapolation, for the edges of a world. (With Horn's
+/// weights this gives one-sided slopes at the border.)
 pub fn extended(grid: &Grid) -> Grid {
     let mut out = Grid::filled(grid.window().grown(1), f32::NAN);
     let (width, height) = (grid.width(), grid.height());
@@ -120,7 +120,7 @@ pub fn extended(grid: &Grid) -> Grid {
     out
 }
 
-/// `row` into the middle of `out`, which is longer by one at each end.
+/// Copies `row` to the middle of `out`, which is longer by one at each end, and extrapolates the ends.
 #[doc(hidden)]
 pub fn extend_row(row: &[f32], out: &mut [f32]) {
     let width = row.len();
@@ -129,7 +129,7 @@ pub fn extend_row(row: &[f32], out: &mut [f32]) {
     out[width + 1] = beyond(row[width - 1], row[width.saturating_sub(2)]);
 }
 
-/// The sample that follows `last` on the line from `before`.
+/// Linear extrapolation: the value after `last` on the line from `before`.
 #[doc(hidden)]
 pub fn beyond(last: f32, before: f32) -> f32 {
     let next = last + (last - before);

@@ -1,39 +1,41 @@
-//! How deep soil is where production keeps up with erosion.
+//! Steady-state soil depth, where production balances erosion.
 //!
-//! Bedrock turns into soil at P0 exp(-h / h*) below soil of depth h (Heimsath, Dietrich, Nishiizumi and Finkel, "The soil production function and landscape
-//! equilibrium", Nature 388, 1997). Soil creeps downhill by q = K S / (1 - (S / Sc)^2), S the slope and Sc the slope at which it slides (Roering, Kirchner
-//! and Dietrich 1999). Where the depth stays the same, production makes up for what the divergence of q carries away (the balance that Pelletier and
-//! Rasmussen, "Geomorphically based predictive mapping of soil thickness in upland watersheds", 2009, solve with either law of transport):
+//! Bedrock turns into soil at the rate P0 exp(-h / h*) below soil of depth h (Heimsath, Dietrich, Nishiizumi and
+//! Finkel, "The soil production function and landscape equilibrium", Nature 388, 1997). Soil creeps downhill with the
+//! flux q = K S / (1 - (S / Sc)^2), where S is the slope and Sc the critical slope (Roering, Kirchner and Dietrich
+//! 1999). In steady state production equals the divergence of q (the balance that Pelletier and Rasmussen,
+//! "Geomorphically based predictive mapping of soil thickness in upland watersheds", 2009, solve with either law of
+//! transport):
 //!
 //! ```text
 //! h = h* ln(ratio P0 / div q)
 //! ```
 //!
-//! with `ratio` the density of rock over that of soil. Where more is carried away than bare rock makes there is no soil; where soil is brought rather than
-//! carried away (hollows, foot slopes) the balance has no solution, and the depth is the greatest.
+//! where `ratio` is the density of rock divided by that of soil. There is no soil where more is removed than bare rock
+//! produces. Where soil accumulates (hollows, foot slopes) the balance has no solution, and the depth is `deepest`.
 
 use super::nine::over_nine;
 use crate::grid::Grid;
 
-/// The figures of the balance.
+/// Parameters of the soil balance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Soil {
-    /// P0: production from bare rock, in metres a year.
+    /// P0: soil production from bare rock, in metres per year.
     pub production: f64,
-    /// h*: the depth over which it falls by a factor e, in metres.
+    /// h*: the depth over which production falls by a factor of e, in metres.
     pub decay: f64,
-    /// K: how fast soil creeps, in m^2 a year.
+    /// K: the creep coefficient, in m^2 per year.
     pub creep: f64,
-    /// Sc: the slope at which it slides, rise over run.
+    /// Sc: the critical slope, rise over run.
     pub critical_slope: f64,
     /// Density of rock over density of soil.
     pub density_ratio: f64,
-    /// The greatest depth, in metres.
+    /// The maximum depth, in metres.
     pub deepest: f64,
 }
 
 impl Soil {
-    /// The depth where so much is carried away, in m a year (negative where it is brought).
+    /// The depth, in metres, where `carried` metres per year are removed (negative where soil accumulates).
     pub fn depth(&self, carried: f64) -> f64 {
         if carried.is_nan() {
             return f64::NAN;
@@ -45,16 +47,18 @@ impl Soil {
         }
     }
 
-    /// K S / (1 - (S / Sc)^2) along an axis of which the slope's part is `along`, its part across being `across`; infinite at Sc.
+    /// K S / (1 - (S / Sc)^2) along one axis, for a slope with the parts `along` that axis and `across` it; infinite at
+    /// Sc.
     fn flux(&self, along: f64, across: f64) -> f64 {
         let share = (along * along + across * across) / (self.critical_slope * self.critical_slope);
         if share >= 1.0 { f64::INFINITY.copysign(along) } else { self.creep * along / (1.0 - share) }
     }
 
-    /// The depth in the middle of 3 x 3 heights `c` metres apart, rows from the north: from the fluxes through the four sides of its cell. Where it is too
-    /// steep for soil on any side there is none. NaN where one of the nine is not finite.
+    /// The depth, in metres, at the centre of 3 x 3 heights `c` metres apart, rows from the north: from the fluxes
+    /// through the four sides of its cell. 0 if a side is steeper than the critical slope. NaN if one of the nine
+    /// heights is not finite.
     pub fn depth_at(&self, z: [[f64; 3]; 3], c: f64) -> f64 {
-        // Downhill flux: by the fall across a side, and the mean fall along it.
+        // Downhill flux: by the drop across a side, and the mean drop along it.
         let east = |x: usize| {
             let along_it = ((z[0][x] + z[0][x + 1]) - (z[2][x] + z[2][x + 1])) / (4.0 * c);
             self.flux((z[1][x] - z[1][x + 1]) / c, along_it)
@@ -71,7 +75,7 @@ impl Soil {
         }
     }
 
-    /// The depth at every sample of `grid` but those of its border. Rows side by side.
+    /// The depth, in metres, at every sample of `grid` except its border. Rows are computed in parallel.
     pub fn depths(&self, grid: &Grid) -> Grid {
         let cell = grid.window().cell;
         over_nine(grid, |z| self.depth_at(z, cell) as f32)

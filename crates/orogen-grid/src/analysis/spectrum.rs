@@ -1,31 +1,31 @@
-//! How rough the ground is at each wavelength: its power spectrum, and its structure function.
+//! Roughness by wavelength: power spectrum and structure function.
 
 use super::fourier::power;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 use std::ops::Range;
 
-/// The largest square that is transformed; larger grids are covered by several.
+/// Side of the largest square that is transformed; larger grids use several squares.
 const LARGEST: usize = 512;
 
-/// Classes of wavelength a factor of two.
+/// Wavelength classes per octave.
 const CLASSES_AN_OCTAVE: f64 = 3.0;
 
-/// The distances, in cells, over which [`hurst`] compares heights.
+/// The distances, in cells, at which [`hurst`] compares heights.
 const LAGS: [usize; 7] = [2, 3, 4, 6, 8, 12, 16];
 
-/// Mean power of a class of wavelengths.
+/// Mean power of a wavelength class.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
-    /// Its wavelength in metres.
+    /// Wavelength of the class, in metres.
     pub wavelength: f64,
-    /// Power density, in m^2 times m^2 of area.
+    /// Power density, in m^4: m^2 of height variance times m^2 of area.
     pub power: f64,
 }
 
-/// The power of the ground by wavelength, averaged over all directions, from two cells to half a side. Squares of 2^n samples, at
-/// most 512, are laid over the grid, each less its plane of least squares and under Hann's window; their powers are averaged. Empty if
-/// the grid has fewer than 16 samples a side. NaN counts as the plane.
+/// The power spectrum, averaged over all directions, for wavelengths from two cells to half a side. The grid is covered
+/// by squares of 2^n samples, at most 512. Their least-squares planes are subtracted, Hann's window is applied, and
+/// their powers are averaged. Empty if the grid has fewer than 16 samples along a side. NaN counts as the plane.
 pub fn spectrum(grid: &Grid) -> Vec<Band> {
     let window = grid.window();
     let rows = |rows: Range<usize>| {
@@ -35,7 +35,7 @@ pub fn spectrum(grid: &Grid) -> Vec<Band> {
     spectrum_of_rows(window, rows).unwrap_or_default()
 }
 
-/// The same of a window of which some rows at a time can be had, at most 512.
+/// [`spectrum`] of a window that is read in bands of at most 512 rows.
 ///
 /// # Errors
 /// Those of `rows`.
@@ -66,7 +66,7 @@ pub fn spectrum_of_rows(window: &Window, rows: impl Fn(Range<usize>) -> Result<G
             squares += 1.0;
         }
     }
-    // Of a density: power a unit of area of frequencies, the window's own energy taken out.
+    // Normalised to a density: power per unit area of frequencies, divided by the energy of Hann's window.
     let scale = cell * cell / (energy * energy * squares);
     let classes = (f64::from(side.ilog2() - 2) * CLASSES_AN_OCTAVE) as usize;
     let mut bands = vec![(0.0, 0.0, 0.0); classes];
@@ -92,8 +92,9 @@ pub fn spectrum_of_rows(window: &Window, rows: impl Fn(Range<usize>) -> Result<G
     Ok(mean.collect())
 }
 
-/// The exponent beta of P ~ wavelength^beta (as a power of the frequency, -beta), between 4 and 64 cells. Real land has 3.2 to 4.4 at 30 to
-/// 90 m; beta = 2 H + 2 for a surface of Hurst exponent H.
+/// The exponent beta of P ~ wavelength^beta (-beta as a power of the frequency), fitted between 4 and 64 cells. Real
+/// terrain has 3.2 to 4.4 at 30 to 90 m. A surface of Hurst exponent H has beta = 2 H + 2. None if there are too few
+/// classes.
 pub fn slope(bands: &[Band], cell: f64) -> Option<f64> {
     let points: Vec<(f64, f64)> = bands
         .iter()
@@ -103,8 +104,8 @@ pub fn slope(bands: &[Band], cell: f64) -> Option<f64> {
     line(&points)
 }
 
-/// Half the slope of the structure function: mean squared differences of heights over 2 to 16 cells along both axes, in logarithms. For
-/// fractional Brownian surfaces this is Hurst's exponent H. None if there is no relief.
+/// Half the slope of the structure function in logarithms: mean squared height differences at 2 to 16 cells along both
+/// axes. For fractional Brownian surfaces this is the Hurst exponent H. None if there is no relief.
 pub fn hurst(grid: &Grid) -> Option<f64> {
     let mut rises = Rises::default();
     rises.add(grid, grid.height());
@@ -119,10 +120,10 @@ pub struct Rises {
 }
 
 impl Rises {
-    /// Rows that [`Rises::add`] looks at below those that it takes, as far as there are any.
+    /// Number of rows below the added ones that [`Rises::add`] reads, if they exist.
     pub const BELOW: usize = LAGS[LAGS.len() - 1];
 
-    /// Takes the differences from the first `rows` rows of `band` on; those below are there to be looked at.
+    /// Adds the differences that start in the first `rows` rows of `band`; it only reads the rows below them.
     pub fn add(&mut self, band: &Grid, rows: usize) {
         for ((lag, sum), count) in LAGS.into_iter().zip(&mut self.sums).zip(&mut self.counts) {
             for j in 0..rows {
@@ -141,7 +142,7 @@ impl Rises {
         }
     }
 
-    /// The exponent of a window all of whose rows were taken.
+    /// The exponent, after all rows of the window were added.
     pub fn hurst(&self, window: &Window) -> Option<f64> {
         if window.width.min(window.height) <= Rises::BELOW {
             return None;
@@ -156,7 +157,7 @@ impl Rises {
     }
 }
 
-/// A square of the grid less its plane of least squares.
+/// A square of the grid minus its least-squares plane.
 fn level(grid: &Grid, left: usize, top: usize, side: usize) -> Vec<f64> {
     let middle = (side as f64 - 1.0) / 2.0;
     let at = |i: usize, j: usize| f64::from(grid[(left + i, top + j)]);
@@ -184,7 +185,7 @@ fn level(grid: &Grid, left: usize, top: usize, side: usize) -> Vec<f64> {
     out
 }
 
-/// The slope of the line of least squares, of four points or more.
+/// The slope of the least-squares line through at least four points.
 fn line(points: &[(f64, f64)]) -> Option<f64> {
     let count = points.len() as f64;
     let (sx, sy) = points.iter().fold((0.0, 0.0), |(sx, sy), (x, y)| (sx + x, sy + y));

@@ -1,9 +1,9 @@
-//! The few numbers that say what a grid holds.
+//! Summary statistics of a grid.
 
 use sha2::{Digest, Sha256};
 
-/// Gathers a [`Summary`] from samples handed over row after row, any number at a time. The sum behind the mean is made in that
-/// order in f64, so it is the same however the rows were made.
+/// Accumulates a [`Summary`] from samples in row-major order, in chunks of any size. The mean is summed in that order
+/// in f64, so it does not depend on the chunks.
 #[derive(Debug, Clone)]
 pub struct Gatherer {
     sea_level: f32,
@@ -17,27 +17,27 @@ pub struct Gatherer {
     bytes: Vec<u8>,
 }
 
-/// What a grid holds.
+/// Summary statistics of a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
-    /// How many samples there are.
+    /// Number of samples.
     pub samples: u64,
-    /// How many of them are finite numbers. Only these count below, except in the hash.
+    /// Number of finite samples. The statistics below use only these, except the hash.
     pub finite: u64,
-    /// The lowest, NaN if there is none.
+    /// Minimum; NaN if there are no finite samples.
     pub min: f32,
-    /// The highest, NaN if there is none.
+    /// Maximum; NaN if there are no finite samples.
     pub max: f32,
-    /// Their mean, NaN if there is none.
+    /// Mean; NaN if there are no finite samples.
     pub mean: f64,
-    /// The share of them, 0 to 1, that is above (not at) sea level.
+    /// The share of finite samples above (not at) sea level, 0 to 1.
     pub land_share: f64,
     /// SHA-256 of all samples as f32 little-endian, row-major, in hexadecimal.
     pub sha256: String,
 }
 
 impl Gatherer {
-    /// Begins with nothing; land is what is above `sea_level`.
+    /// An empty summary; samples above `sea_level` count as land.
     pub fn new(sea_level: f64) -> Gatherer {
         Gatherer {
             sea_level: sea_level as f32,
@@ -52,7 +52,7 @@ impl Gatherer {
         }
     }
 
-    /// Takes the next samples.
+    /// Adds the next samples.
     pub fn add(&mut self, samples: &[f32]) {
         for piece in samples.chunks(1 << 14) {
             self.bytes.clear();
@@ -69,7 +69,7 @@ impl Gatherer {
         self.samples += samples.len() as u64;
     }
 
-    /// The summary of all that was taken.
+    /// The summary of all samples added.
     pub fn finish(self) -> Summary {
         let count = self.finite as f64;
         let none = self.finite == 0;

@@ -1,22 +1,23 @@
-//! Where the sun stands.
+//! Position of the sun.
 
-/// A place and a time for the sun.
+/// A latitude and a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moment {
     /// Degrees north of the equator.
     pub latitude: f64,
     /// Day of the year, from 1.
     pub day: u16,
-    /// Hours after midnight by the sun: at 12 it stands highest.
+    /// True solar time in hours after midnight: the sun is highest at 12.
     pub hour: f64,
 }
 
 impl Moment {
-    /// The sun's azimuth, degrees clockwise from north, and its elevation, degrees above the horizon (below it if negative).
+    /// The sun's azimuth, in degrees clockwise from north, and its elevation, in degrees above the horizon (negative
+    /// below it).
     ///
-    /// Declination by J. W. Spencer's series ("Fourier series representation of the position of the sun", Search 2(5), 1971): right
-    /// to 0.04 degrees. Time is true solar time, so neither longitude nor the equation of time enters; the air's refraction, half a
-    /// degree at the horizon, is left out.
+    /// Declination by J. W. Spencer's series ("Fourier series representation of the position of the sun", Search 2(5),
+    /// 1971), accurate to 0.04 degrees. Because the time is true solar time, longitude and the equation of time do not
+    /// matter. Atmospheric refraction (half a degree at the horizon) is ignored.
     pub fn sun(&self) -> [f64; 2] {
         let turn = (f64::from(self.day) - 1.0 + (self.hour - 12.0) / 24.0) * std::f64::consts::TAU / 365.0;
         let wave = |times: f64| libm::sincos(turn * times);
@@ -33,7 +34,7 @@ impl Moment {
         [if azimuth < 0.0 { azimuth + 360.0 } else { azimuth }, libm::asin(up.clamp(-1.0, 1.0)).to_degrees()]
     }
 
-    /// The hours between which the sun is up on that day: none if it never rises, 0 to 24 if it never sets.
+    /// The hours of sunrise and sunset on that day: `None` if the sun never rises, 0 to 24 if it never sets.
     pub fn daylight(&self) -> Option<[f64; 2]> {
         let noon = Moment { hour: 12.0, ..*self };
         let midnight = Moment { hour: 0.0, ..*self };
@@ -41,7 +42,7 @@ impl Moment {
             (true, _) => Some([0.0, 24.0]),
             (_, false) => None,
             _ => {
-                // Where it crosses the horizon, by halving.
+                // Find the crossing of the horizon by bisection.
                 let cross = |mut down: f64, mut up: f64| {
                     for _ in 0..40 {
                         let middle = 0.5 * (down + up);

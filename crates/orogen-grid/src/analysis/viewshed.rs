@@ -1,45 +1,48 @@
-//! What is seen from a point.
+//! Viewsheds: the ground that is visible from a point.
 
 use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::grid::{Grid, transposed};
 
-/// Asks whether the work is still wanted; fails if it is not.
+/// Checks for cancellation; returns an error if the work was cancelled.
 pub type Check<'a> = &'a (dyn Fn() -> Result<()> + Sync);
 
-/// Who looks, and how far.
+/// The observer and the range of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observer {
-    /// Columns east and rows south of the grid's first sample.
+    /// Position: columns east and rows south of the grid's first sample.
     pub at: [f64; 2],
-    /// Metres of the eye above the ground.
+    /// Height of the eye above the ground, in metres.
     pub height: f64,
-    /// How far it looks, in metres.
+    /// Range of sight, in metres.
     pub radius: f64,
-    /// By how much the ground sinks below a level line: metres at one metre, growing with the square of the distance. 0 on a plane.
+    /// Drop of the ground below the tangent plane at a distance of one metre, in metres; it grows with the square of
+    /// the distance. 0 for a plane.
     pub sinking: f64,
 }
 
 /// The earth's mean radius in metres.
 const EARTH: f64 = 6_371_008.8;
 
-/// How much ground sinks by the earth's curvature when the air bends rays by so large a share of it (usually 0.13 of light).
+/// [`Observer::sinking`] for the earth's curvature and a refraction coefficient (usually 0.13 for light).
 pub fn sinking(refraction: f64) -> f64 {
     (1.0 - refraction) / (2.0 * EARTH)
 }
 
-/// What [`hidden`] says of ground beyond the observer's radius.
+/// The value of [`hidden`] beyond the observer's radius.
 pub const BEYOND: f32 = -1.0;
 
-/// How many metres above the ground of each sample something must rise to be seen; 0 where the ground itself is seen, [`BEYOND`] past the radius.
+/// The height, in metres above the ground of each sample, from which the observer is visible; 0 where the ground itself
+/// is visible, [`BEYOND`] beyond the radius.
 ///
-/// Exact lines of sight (R3; Franklin and Ray, "Higher isn't necessarily better: visibility algorithms and experiments", 1994): from the eye to every sample,
-/// the ground taken as linear between the samples wherever the line crosses a column (or a row, whichever there are more of). Ground that cannot rise above
-/// what was passed is skipped in squares of which the highest sample is known, which changes no result. Holds 15 bytes a sample. Rows side by side.
+/// Exact lines of sight (R3; Franklin and Ray, "Higher isn't necessarily better: visibility algorithms and
+/// experiments", 1994) from the eye to every sample. The ground is interpolated linearly between samples where a line
+/// crosses a column (or a row, whichever there are more of). Squares whose maximum cannot rise above the horizon so far
+/// are skipped, which does not change the result. Holds 15 bytes per sample. Rows are computed in parallel.
 ///
 /// # Errors
-/// As `check` does, which is asked again and again whether the work is still wanted.
+/// The error of `check`, which is called repeatedly.
 pub fn hidden(heights: &Grid, observer: &Observer, check: Check) -> Result<Grid> {
     let (window, [x, y]) = (*heights.window(), observer.at);
     let mut out = Grid::filled(window, BEYOND);
@@ -70,7 +73,7 @@ pub fn hidden(heights: &Grid, observer: &Observer, check: Check) -> Result<Grid>
     Ok(out)
 }
 
-/// Heights, and the highest of squares of 2, 4, 8 ... samples a side.
+/// Heights, and the maxima of squares with a side of 2, 4, 8 ... samples.
 struct MaxPyramid {
     levels: Vec<Level>,
 }
@@ -99,7 +102,7 @@ impl MaxPyramid {
         MaxPyramid { levels }
     }
 
-    /// The height at a place, linear between the rows and columns around; beyond the ground that of its edge.
+    /// The height at a point, linear between rows and columns; outside the grid, that of its edge.
     fn at(&self, x: f64, y: f64) -> f64 {
         let ground = &self.levels[0];
         let x = x.clamp(0.0, (ground.columns - 1) as f64);
@@ -108,7 +111,7 @@ impl MaxPyramid {
         if share == 0.0 { west } else { west + (self.across(i + 1, y) - west) * share }
     }
 
-    /// The height where column `i` is crossed at `y`.
+    /// The height at `y` in column `i`.
     fn across(&self, i: usize, y: f64) -> f64 {
         let ground = &self.levels[0];
         let y = y.clamp(0.0, (ground.rows - 1) as f64);
@@ -118,7 +121,8 @@ impl MaxPyramid {
         north + (south - north) * (y - j as f64)
     }
 
-    /// The highest sample of a column of squares of 2^k samples, in all that the rows from `top` to `bottom` touch.
+    /// The maximum of a column of squares with a side of 2^k samples, over all that the rows from `top` to `bottom`
+    /// touch.
     fn highest(&self, k: usize, column: usize, top: f64, bottom: f64) -> f64 {
         let level = &self.levels[k];
         let row = |y: f64| ((y.max(0.0) as usize) >> k).min(level.rows - 1);
@@ -137,7 +141,7 @@ struct Sight {
 }
 
 impl Sight {
-    /// The steepest rise per metre from the eye to the ground between; negative infinity where there is none.
+    /// The steepest slope from the eye to the ground between; negative infinity if there is none.
     fn steepest(&self, ground: &MaxPyramid) -> f64 {
         let [x, y] = self.from;
         let (across, down) = (self.to[0] as f64 - x, self.to[1] as f64 - y);
@@ -148,7 +152,7 @@ impl Sight {
         let slant = down / across;
         let metres = (1.0 + slant * slant).sqrt() * self.cell;
         let forwards = across > 0.0;
-        // The first column that is crossed, and the last one before the target.
+        // The first crossed column, and the last one before the target.
         let (first, last) = match forwards {
             true => (x.floor() as i64 + 1, self.to[0] - 1),
             false => (x.ceil() as i64 - 1, self.to[0] + 1),
@@ -156,7 +160,7 @@ impl Sight {
         let left = |column: i64| if forwards { last - column + 1 } else { column - last + 1 };
         let (mut column, mut try_level) = (first, 0usize);
         while left(column) > 0 {
-            // The largest square that begins here and ends before the target.
+            // The largest square that starts here and ends before the target.
             let aligned = if forwards { column } else { column + 1 };
             let most = (aligned.trailing_zeros() as usize).min(left(column).ilog2() as usize);
             let k = try_level.min(most).min(ground.levels.len() - 1);
@@ -182,7 +186,7 @@ impl Sight {
         steepest
     }
 
-    /// The rise per metre to ground of this height so many metres away.
+    /// The slope from the eye to ground of this height at the distance `away`.
     fn rise(&self, height: f64, away: f64) -> f64 {
         (height - self.sinking * away * away - self.eye) / away
     }

@@ -1,49 +1,50 @@
-//! Marching squares over a band of rows: where levels cross the edges between samples, and how crossings follow each other.
+//! Marching squares over a band of rows: crossings of levels with the edges between samples, and their order along
+//! lines.
 //!
-//! A sample counts as above every level that it reaches: one that stands exactly on a level is high. So every edge is crossed
-//! by a whole range of levels, none or each once, and a crossing has a number of its own without any searching.
+//! A sample counts as high for every level that it reaches, including a level equal to it. Each edge is therefore
+//! crossed by a contiguous range of levels, each once, and the number of a crossing follows without a search.
 //!
-//! A cell whose four corners are high, low, high, low could be cut in two ways. It is cut as the bilinear surface through its
-//! corners is: by the height of that surface's saddle (Nielson and Hamann, "The asymptotic decider", Visualization 1991). As
-//! the saddle is one for all levels, lines of different levels never cross.
+//! A cell whose four corners are high, low, high, low is ambiguous. It is resolved as the bilinear surface through its
+//! corners: by the height of that surface's saddle (Nielson and Hamann, "The asymptotic decider", Visualization 1991).
+//! The saddle is the same for all levels, so lines of different levels never cross.
 
 use std::ops::Range;
 
 use crate::grid::Grid;
 
-/// The class of a sample that has no height.
+/// The class of a sample without a height.
 const MISSING: u16 = u16::MAX;
 
-/// No crossing follows.
+/// The end of a line: no next crossing.
 pub const NONE: u32 = u32::MAX;
 
-/// The crossings of a band: those on the edges along its rows and on the edges down from them.
+/// The crossings of a band: on the edges along its rows, and on the edges down from them.
 ///
-/// Crossings are numbered by rows: along a row, then down from it. After the band's own come those along the row that begins
-/// the next band: they are numbered as the next band's first, so that bands are joined by adding up their numbers.
+/// Crossings are numbered by rows: along a row, then down from it. After the band's own crossings follow those along
+/// the first row of the next band, numbered as that band's first, so that bands are joined by adding offsets.
 #[derive(Debug, Default)]
 pub struct Band {
     /// Column and row.
     pub points: Vec<[f64; 2]>,
-    /// The crossing that comes next along the line, or [`NONE`].
+    /// The next crossing along the line, or [`NONE`].
     pub next: Vec<u32>,
-    /// Whether a line comes here from another crossing.
+    /// Whether a line leads to this crossing from another.
     pub entered: Vec<bool>,
-    /// Which level it is.
+    /// The index of the level.
     pub level: Vec<u16>,
-    /// How many are its own.
+    /// The number of the band's own crossings.
     pub own: usize,
 }
 
-/// Levels, ready to be compared with.
+/// Levels, prepared for comparison.
 pub struct Levels {
     exact: Vec<f64>,
-    /// The smallest f32 that reaches each, between infinities: class k holds from `steps[k]` up to `steps[k + 1]`.
+    /// The smallest f32 that reaches each level, between infinities: class k is from `steps[k]` up to `steps[k + 1]`.
     steps: Vec<f32>,
 }
 
 impl Levels {
-    /// Of ascending heights.
+    /// Prepares levels in ascending order.
     pub fn new(levels: &[f64]) -> Levels {
         let reached = |level: &f64| {
             let near = *level as f32;
@@ -54,7 +55,8 @@ impl Levels {
         Levels { exact: levels.to_vec(), steps: steps.collect() }
     }
 
-    /// How many levels each sample reaches. Neighbours are alike, so each begins where the last one was.
+    /// The number of levels that each sample reaches. Neighbours are similar, so each search starts at the previous
+    /// result.
     fn classify(&self, row: &[f32], classes: &mut [u16]) {
         let mut class = 0;
         for (height, out) in row.iter().zip(classes) {
@@ -87,7 +89,8 @@ impl<'a> Row<'a> {
 }
 
 impl Band {
-    /// The band of these rows, which are not the grid's last alone; its cells reach one row further, where there is one.
+    /// The band of these rows, which must not be the grid's last row alone. Its cells extend to the next row, if there
+    /// is one.
     pub fn of(grid: &Grid, rows: Range<usize>, levels: &Levels) -> Band {
         let width = grid.width();
         let mut band = Band::default();
@@ -118,7 +121,7 @@ impl Band {
         self.cross(row, j, levels);
     }
 
-    /// The crossings on the edges along a row.
+    /// Adds the crossings on the edges along a row.
     fn cross(&mut self, row: &mut Row, j: usize, levels: &Levels) {
         let south = j as f64;
         for (i, pair) in row.classes.windows(2).enumerate() {
@@ -133,7 +136,7 @@ impl Band {
         }
     }
 
-    /// The crossings on the edges down from a row.
+    /// Adds the crossings on the edges down from a row.
     fn down(&mut self, above: &Row, below: &Row, j: usize, levels: &Levels, first: &mut [u32]) {
         for (i, (&up, &low)) in above.classes.iter().zip(&below.classes).enumerate() {
             if up != low && up != MISSING && low != MISSING {
@@ -154,7 +157,7 @@ impl Band {
         self.level.push(level);
     }
 
-    /// Leads the lines through the cells between two rows.
+    /// Connects the crossings within the cells between two rows.
     fn cells(&mut self, above: &Row, below: &Row, down: &[u32], levels: &Levels) {
         let corners = above.classes.windows(2).zip(below.classes.windows(2));
         for (i, (north, south)) in corners.enumerate() {
@@ -162,12 +165,12 @@ impl Band {
             if nw == ne && nw == sw && nw == se {
                 continue;
             }
-            // The missing class is above all others.
+            // The missing class is greater than all others.
             let high = nw.max(ne).max(sw.max(se));
             if high == MISSING {
                 continue;
             }
-            // The crossing of level 0 on an edge, as if it had one; wraps where that would lie before the first.
+            // The number that the crossing of level 0 on an edge would have; wraps if that is before the first.
             let base = |first: u32, a: u16, b: u16| first.wrapping_sub(u32::from(a.min(b)));
             let top = base(above.first[i], nw, ne);
             let bottom = base(below.first[i], sw, se);
@@ -176,7 +179,8 @@ impl Band {
                 let is_high = |class: u16| u8::from(class > level);
                 let [top, bottom, left, right] =
                     [top, bottom, left, right].map(|base| base.wrapping_add(u32::from(level)));
-                // Higher ground to the left: where the west is high, a line runs north; where the north is high, it runs east.
+                // Higher ground to the left: if the west is high, a line runs north; if the north is high, it runs
+                // east.
                 match is_high(nw) << 3 | is_high(ne) << 2 | is_high(sw) << 1 | is_high(se) {
                     0b1000 => self.link(left, top),
                     0b0100 => self.link(top, right),
@@ -213,7 +217,8 @@ impl Band {
     }
 }
 
-/// The height of the saddle of the bilinear surface through the corners of a cell of which two that face each other are higher than the other two.
+/// The height of the saddle of the bilinear surface through the corners of a cell with two opposite corners higher than
+/// the other two.
 fn saddle_of(corners: [f32; 4]) -> f64 {
     let [nw, ne, sw, se] = corners.map(f64::from);
     (nw * se - ne * sw) / ((nw + se) - (ne + sw))

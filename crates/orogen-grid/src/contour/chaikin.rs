@@ -1,13 +1,13 @@
-//! Rounder lines.
+//! Smoothing of lines by corner cutting.
 
 use super::line::Line;
 
-/// Cuts the corners of a line, `rounds` times: every corner is replaced by the points at a quarter and three quarters of the
-/// stretches that meet there (G. Chaikin, "An algorithm for high-speed curve generation", Computer Graphics and Image
-/// Processing 3, 1974). Each round doubles the points.
+/// Cuts the corners of a line, `rounds` times: every corner is replaced by the points at a quarter and three quarters
+/// of the adjacent segments (G. Chaikin, "An algorithm for high-speed curve generation", Computer Graphics and Image
+/// Processing 3, 1974). Each round doubles the number of points.
 ///
-/// The ends of an open line stay where they are, on the border. No point moves by more than a quarter of the longer of the two
-/// stretches beside it, so neighbouring lines hardly ever touch; they may, where they were very close.
+/// The ends of an open line stay, on the border. A point moves by at most a quarter of the longer adjacent segment, so
+/// neighbouring lines rarely touch, but they may if they were very close.
 pub fn smooth(line: &Line, rounds: usize) -> Line {
     let mut points = line.points.clone();
     for _ in 0..rounds {
@@ -30,7 +30,7 @@ fn open(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut out = vec![*first];
     let stretches = points.len() - 1;
     for (k, pair) in points.windows(2).enumerate() {
-        // The stretches at the ends keep their outer quarter.
+        // The segments at the ends keep their outer quarter.
         if k > 0 {
             out.push(between(pair[0], pair[1], 0.25));
         }

@@ -1,14 +1,14 @@
-//! Which heights get a contour.
+//! Levels of contours.
 
 use crate::error::{Error, ErrorKind, Result};
 
-/// Most levels at once.
+/// Maximum number of levels.
 pub const MOST: usize = 65_000;
 
-/// The multiples of `interval` metres above `low` up to `high`: those that ground between the two can have a contour of.
+/// The multiples of `interval` metres above `low` and up to `high`.
 ///
 /// # Errors
-/// If the interval is not above 0, or there would be more than [`MOST`].
+/// If the interval is not above 0, or there would be more than [`MOST`] levels.
 pub fn every(interval: f64, low: f64, high: f64) -> Result<Vec<f64>> {
     let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
     if !(interval > 0.0 && interval.is_finite()) {
@@ -24,14 +24,14 @@ pub fn every(interval: f64, low: f64, high: f64) -> Result<Vec<f64>> {
             last - first + 1.0
         ));
     }
-    // Multiples, not a running sum: the same heights whatever the lowest ground is.
+    // Multiples instead of a running sum: the levels do not depend on the lowest height.
     Ok((first as i64..=last as i64).map(|k| k as f64 * interval).collect())
 }
 
-/// Levels as they were given, in order, each once.
+/// The given levels in ascending order, without duplicates.
 ///
 /// # Errors
-/// If one is no number, or there are more than [`MOST`].
+/// If a level is not finite, or there are more than [`MOST`].
 pub fn given(levels: &[f64]) -> Result<Vec<f64>> {
     let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
     if let Some(level) = levels.iter().find(|level| !level.is_finite()) {
@@ -46,7 +46,8 @@ pub fn given(levels: &[f64]) -> Result<Vec<f64>> {
     }
 }
 
-/// A round interval (1, 2 or 5 times a power of ten) with at most `most` levels within `relief` metres; 1 if there is no relief.
+/// A round interval (1, 2 or 5 times a power of ten) that gives at most `most` levels within `relief` metres; 1 if
+/// there is no relief.
 pub fn round_interval(relief: f64, most: usize) -> f64 {
     let least = relief / most.max(1) as f64;
     if !(least > 1e-9 && least < 1e12) {

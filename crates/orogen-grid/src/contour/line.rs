@@ -1,35 +1,35 @@
 //! A contour line.
 
-/// A line of one height.
+/// A contour line.
 ///
-/// Higher ground lies to its left, as one goes along it on a map with north up: rings run counter-clockwise around summits and
-/// clockwise around hollows.
+/// With north up, higher ground is to the left in the direction of the line: rings are counter-clockwise around summits
+/// and clockwise around hollows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// Its height, in metres.
+    /// The height, in metres.
     pub elevation: f64,
-    /// Which of the levels asked for it is, from 0.
+    /// The index of its level among the requested levels, from 0.
     pub level: usize,
-    /// Whether its end is its beginning. If so, the first point is not repeated as the last.
+    /// Whether the line is a ring. The first point of a ring is not repeated as the last.
     pub closed: bool,
     /// Metres east and south of the world's origin.
     pub points: Vec<[f64; 2]>,
 }
 
 impl Line {
-    /// Its points, of a ring with the first one once more at the end.
+    /// The points; a ring repeats the first one at the end.
     pub fn path(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         let first = self.points.first().filter(|_| self.closed);
         self.points.iter().chain(first).copied()
     }
 
-    /// Its length in metres.
+    /// The length, in metres.
     pub fn length(&self) -> f64 {
         let ends = self.path().zip(self.path().skip(1));
         ends.map(|([ax, ay], [bx, by])| ((bx - ax) * (bx - ax) + (by - ay) * (by - ay)).sqrt()).sum()
     }
 
-    /// The area within a ring in square metres, above 0 if it holds higher ground; 0 for an open line.
+    /// The area within a ring in square metres, positive if it encloses higher ground; 0 for an open line.
     pub fn area(&self) -> f64 {
         match self.closed {
             true => twice_area(&self.points) / 2.0,
@@ -38,10 +38,10 @@ impl Line {
     }
 }
 
-/// Twice the area within a ring of eastings and southings, above 0 if it runs counter-clockwise on a map with north up.
+/// Twice the area within a ring of eastings and southings, positive if it is counter-clockwise with north up.
 pub fn twice_area(points: &[[f64; 2]]) -> f64 {
     let Some(&[x0, y0]) = points.first() else { return 0.0 };
-    // About the first point: far from the origin, products of coordinates would swallow the area.
+    // Relative to the first point: far from the origin, products of coordinates would lose the area to rounding.
     let turns = points.windows(2).map(|pair| {
         let ([ax, ay], [bx, by]) = (pair[0], pair[1]);
         (ay - y0) * (bx - x0) - (ax - x0) * (by - y0)

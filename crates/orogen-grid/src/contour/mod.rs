@@ -1,4 +1,4 @@
-//! Contours: lines of one height through a grid, as geometry.
+//! Contours of a grid, as lines.
 
 pub mod band;
 pub mod chaikin;

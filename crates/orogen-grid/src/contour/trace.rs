@@ -10,22 +10,23 @@ use super::line::{Line, twice_area};
 use crate::error::{Error, ErrorKind, Result};
 use crate::grid::Grid;
 
-/// Rows of a band: enough that bands cost nothing, few enough that cores share them.
+/// Rows of a band: enough to make the overhead of a band small, and few enough to share the work between cores.
 const ROWS: usize = 128;
 
 /// The contours of a grid at these levels (in any order), by marching squares on its samples.
 ///
-/// Samples stand at lattice points, so lines reach the very border of the window: an open line ends on it, or at a hole. All
-/// other lines are rings. Higher ground lies to the left ([`Line`]). Points stand where the straight line between two
-/// neighbouring samples reaches the level.
+/// Samples are lattice points, so lines reach the border of the window: an open line ends there, or at a hole. All
+/// other lines are rings. Higher ground is to the left ([`Line`]). A point is where the linear interpolation between
+/// two neighbouring samples reaches the level.
 ///
-/// *Ties.* A sample exactly on a level counts as higher ground. A line goes through it once; level ground on a level is
-/// walked around; and of what then encloses nothing (a single summit just reaching the level) no line is left.
+/// *Ties.* A sample exactly at a level counts as higher ground. A line passes it once; a flat at the level is outlined.
+/// Rings that then enclose nothing (a single summit that just reaches the level) are dropped.
 ///
-/// *Holes.* A cell with a corner that is not finite has no line.
+/// *Holes.* A cell with a corner that is not finite has no lines.
 ///
-/// The order is by level, then open lines before rings, then by where they begin, rows from the north; rings begin at their
-/// northernmost row. It is the same on any number of threads. Costs O(samples + crossings), about 24 bytes a crossing while it works.
+/// Lines are ordered by level, then open lines before rings, then by their starting points, rows from the north; rings
+/// start at their northernmost row. The order does not depend on the number of threads. Costs O(samples + crossings),
+/// and about 24 bytes per crossing.
 ///
 /// ```
 /// use orogen_grid::contour::trace::contours;
@@ -39,7 +40,7 @@ const ROWS: usize = 128;
 /// ```
 ///
 /// # Errors
-/// If a level is no number, or there are more lines than can be numbered (2^32 crossings).
+/// If a level is not finite, or there are more than 2^32 crossings.
 pub fn contours(grid: &Grid, levels: &[f64]) -> Result<Vec<Line>> {
     let levels = given(levels)?;
     if grid.width() < 2 || grid.height() < 2 || levels.is_empty() {
@@ -52,12 +53,12 @@ pub fn contours(grid: &Grid, levels: &[f64]) -> Result<Vec<Line>> {
     Ok(follow(crossings, grid, &levels))
 }
 
-/// The rows 0 .. `height` cut into bands.
+/// The rows 0 .. `height` split into bands.
 fn pieces(height: usize, rows: usize) -> Vec<Range<usize>> {
     (0..height).step_by(rows).map(|start| start..(start + rows).min(height)).collect()
 }
 
-/// All bands as one.
+/// Joins all bands into one.
 fn joined(bands: Vec<Band>) -> Result<Band> {
     let total: usize = bands.iter().map(|band| band.own).sum();
     if total >= NONE as usize {
@@ -71,7 +72,7 @@ fn joined(bands: Vec<Band>) -> Result<Band> {
     whole.next.reserve_exact(total);
     whole.entered.reserve_exact(total);
     whole.level.reserve_exact(total);
-    // What the band before said of the first crossings of this one.
+    // The links that the previous band has for the first crossings of this one.
     let mut said: Vec<(u32, bool)> = Vec::new();
     for band in bands {
         let base = whole.points.len();
@@ -106,7 +107,7 @@ fn follow(mut crossings: Band, grid: &Grid, levels: &[f64]) -> Vec<Line> {
             let mut at = start;
             loop {
                 push(&mut walked, crossings.points[at]);
-                // Taken out as it is walked, so that no line is walked twice.
+                // The link is removed, so that no line is followed twice.
                 let next = std::mem::replace(&mut crossings.next[at], NONE);
                 if next == NONE || next as usize == start {
                     break;
@@ -124,8 +125,8 @@ fn follow(mut crossings: Band, grid: &Grid, levels: &[f64]) -> Vec<Line> {
     found.into_iter().flatten().collect()
 }
 
-/// Adds a point, unless the line is already there; where it turns back upon itself, takes the dead end away. Both only happen
-/// between samples that stand on the level.
+/// Adds a point unless it equals the last one. If the line turns back on itself, removes the dead end. Both occur only
+/// between samples at the level.
 fn push(walked: &mut Vec<[f64; 2]>, point: [f64; 2]) {
     match walked.as_slice() {
         [.., last] if *last == point => {}
@@ -136,7 +137,7 @@ fn push(walked: &mut Vec<[f64; 2]>, point: [f64; 2]) {
     }
 }
 
-/// What is left of a ring without a dead end about its beginning; nothing, if it encloses nothing.
+/// A ring without a dead end at its start; empty if it encloses nothing.
 fn ring(walked: &[[f64; 2]]) -> &[[f64; 2]] {
     let mut points = walked;
     loop {
@@ -150,7 +151,7 @@ fn ring(walked: &[[f64; 2]]) -> &[[f64; 2]] {
     if points.len() < 3 || twice_area(points) == 0.0 { &[] } else { points }
 }
 
-/// From columns and rows to metres.
+/// Converts columns and rows to metres.
 fn placed(points: &[[f64; 2]], grid: &Grid) -> Vec<[f64; 2]> {
     let window = grid.window();
     let (x, y) = (window.x as f64, window.y as f64);

@@ -1,10 +1,10 @@
-//! A round brush: what happens at a point is shared with the ground around it.
+//! A round brush that spreads a change over the ground around a point.
 
 use super::droplet_paths::UNIT;
 use orogen_simd::{Body, Simd, dispatch};
 use rayon::prelude::*;
 
-/// A bell of a given radius, in cells: a Gaussian whose deviation is half of it, cut there. Its weights sum to 1 along
+/// A Gaussian truncated at `radius`, in cells, with a standard deviation of half the radius. Its weights sum to 1 along
 /// each axis.
 pub struct Brush {
     radius: f64,
@@ -12,7 +12,7 @@ pub struct Brush {
 }
 
 impl Brush {
-    /// A radius of 0 shares with nobody.
+    /// A brush of this radius in cells; 0 spreads nothing.
     pub fn new(radius: f64) -> Brush {
         let reach = radius.ceil() as i64;
         let bell = |d: i64| if d == 0 { 1.0 } else { libm::exp(-2.0 * (d * d) as f64 / (radius * radius)) };
@@ -25,12 +25,13 @@ impl Brush {
         self.radius
     }
 
-    /// Cells it reaches to each side.
+    /// The number of cells that it reaches to each side.
     pub fn reach(&self) -> usize {
         self.weights.len() / 2
     }
 
-    /// Sums in units over rows of `width` as metres, brushed, without `border` cells on each side.
+    /// Converts sums in units, over rows of `width`, into metres and spreads them. The result has `border` cells less
+    /// on each side.
     pub fn over(&self, sums: &[i64], width: usize, border: usize) -> Vec<f32> {
         let (inner, tall) = (width - 2 * border, sums.len() / width - 2 * border);
         let reach = self.reach();
@@ -54,7 +55,7 @@ impl Brush {
     }
 }
 
-/// The weighted sum of stretches that begin `apart` from each other.
+/// The weighted sum of slices that start `apart` from each other.
 struct Weighted<'a> {
     weights: &'a [f32],
     from: &'a [f32],

@@ -1,4 +1,4 @@
-//! The ways of a batch of droplets over ground that does not change meanwhile.
+//! The paths of a batch of droplets over fixed ground.
 
 use crate::error::Result;
 use crate::grid::Grid;
@@ -6,54 +6,53 @@ use crate::progress::Progress;
 use orogen_simd::{Body, Simd, dispatch};
 use std::ops::Range;
 
-/// What does not differ between droplets.
+/// Parameters that are the same for all droplets.
 #[derive(Debug, Clone, Copy)]
 pub struct Step {
-    /// Which droplets.
+    /// Seed of the droplets.
     pub seed: u64,
-    /// How many start in a cell, on average.
+    /// Expected number of droplets that start in a cell.
     pub expected: f64,
-    /// How many cells each goes at most.
+    /// Maximum length of a path, in cells.
     pub steps: usize,
-    /// The share of its direction that it keeps.
+    /// Inertia: the share of the direction that is kept.
     pub inertia: f32,
-    /// What is carried on a sheer slope for each m/s, in metres over one cell.
+    /// Capacity per m/s on a vertical slope, in metres over one cell.
     pub capacity: f32,
     /// One over the cell.
     pub per_cell: f32,
-    /// The slope that capacity counts at least.
+    /// Minimum slope for the capacity.
     pub least_slope: f32,
-    /// The share of what could still be carried that is cut.
+    /// Share of the unused capacity that is eroded.
     pub erosion: f32,
-    /// The share of what is too much that is laid down.
+    /// Share of the excess sediment that is deposited.
     pub deposition: f32,
-    /// The share of the water that is left after a cell.
+    /// Share of the water that remains after a cell.
     pub left: f32,
-    /// m/s^2.
+    /// Gravity, in m/s^2.
     pub gravity: f32,
 }
 
-/// Where a band's droplets write: rows from `first` on, in units.
+/// The output of a band's droplets: rows from `first`, in units.
 pub struct Sums<'a> {
     /// The first row.
     pub first: usize,
-    /// What is cut.
+    /// Eroded amounts.
     pub cut: &'a mut [i64],
-    /// What is laid down.
+    /// Deposited amounts.
     pub laid: &'a mut [i64],
 }
 
-/// Metres in a unit of the sums: so fine that a drop's last share still counts, and 2^62 of them are higher than any
-/// ground.
+/// Metres per unit of the sums: fine enough for the last share of a droplet, and 2^62 units are higher than any ground.
 pub const UNIT: f64 = 1.0 / (1u64 << 36) as f64;
 
-/// Droplets go side by side over so many columns at a time: the ground they run over stays in cache.
+/// Columns over which droplets run at a time, so that the ground stays in cache.
 const COLUMNS: usize = 128;
 
-/// Speed at which all start, m/s.
+/// Initial speed of all droplets, in m/s.
 const START: f32 = 1.0;
 
-/// Droplets between two looks at whether the work is still wanted.
+/// Droplets between two checks for cancellation.
 const UNCHECKED: u64 = 64;
 
 /// Runs all droplets that start in `rows`. The unit of `progress` is rows.
@@ -111,7 +110,7 @@ fn mix(mut z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// The corners around a place in a cell.
+/// The four corners around a position in a cell.
 struct Corners {
     nw: f32,
     ne: f32,
@@ -127,7 +126,7 @@ impl Corners {
         north + (south - north) * y
     }
 
-    /// Rise a cell, east and south.
+    /// The gradient per cell, east and south.
     #[inline(always)]
     fn gradient(&self, [x, y]: [f32; 2]) -> [f32; 2] {
         let (north, south) = (self.ne - self.nw, self.se - self.sw);
@@ -136,7 +135,7 @@ impl Corners {
     }
 }
 
-/// One droplet, from a place in cell (i, j) on.
+/// Runs one droplet from a position in cell (i, j).
 #[inline(always)]
 fn go(heights: &Grid, step: &Step, [mut i, mut j]: [usize; 2], mut at: [f32; 2], sums: &mut Sums) {
     let (width, data) = (heights.width(), heights.data());
@@ -161,10 +160,10 @@ fn go(heights: &Grid, step: &Step, [mut i, mut j]: [usize; 2], mut at: [f32; 2],
         let scale = 1.0 / length;
         way = turned.map(|part| part * scale);
         let moved = [at[0] + way[0], at[1] + way[1]];
-        // A step is a cell long: the place ahead is in -1 up to 2, and truncating after adding 1 is the floor.
+        // A step is one cell long, so the next position is in -1 .. 2, and truncation after adding 1 equals the floor.
         let whole = moved.map(|place| (place + 1.0) as i32 - 1);
         let (east, south) = (i.wrapping_add_signed(whole[0] as isize), j.wrapping_add_signed(whole[1] as isize));
-        // Before the first column or row is far beyond the last.
+        // A position before the first column or row wraps around to a value beyond the last.
         if east >= width - 1 || south >= heights.height() - 1 {
             break;
         }
@@ -194,7 +193,7 @@ fn go(heights: &Grid, step: &Step, [mut i, mut j]: [usize; 2], mut at: [f32; 2],
     spread(&mut *sums.laid, sums.first, width, [i, j], at, carried);
 }
 
-/// Adds an amount, in metres over one cell, to the four corners around a place.
+/// Adds an amount, in metres over one cell, to the four corners around a position.
 #[inline(always)]
 fn spread(sums: &mut [i64], first: usize, width: usize, [i, j]: [usize; 2], [x, y]: [f32; 2], amount: f32) {
     let amount = f64::from(amount) * (1.0 / UNIT);
@@ -211,7 +210,7 @@ fn spread(sums: &mut [i64], first: usize, width: usize, [i, j]: [usize; 2], [x, 
     below[1] += units(se);
 }
 
-/// The nearest whole number, for what is below 2^51: added to 1.5 * 2^52 it stands in the low bits of the sum.
+/// Rounds a value below 2^51 to the nearest integer: after adding 1.5 * 2^52 it is in the low bits of the sum.
 #[inline(always)]
 fn units(amount: f64) -> i64 {
     const WHOLE: f64 = 6_755_399_441_055_744.0;

@@ -1,4 +1,4 @@
-//! Drops of rain run downhill one by one, cutting and laying down.
+//! Hydraulic erosion by droplets.
 
 use super::brush::Brush;
 use super::droplet_paths::{self, Step};
@@ -11,50 +11,51 @@ use rayon::prelude::*;
 
 /// Erosion by droplets after H. T. Beyer, "Implementation of a method for hydraulic erosion" (2015), in metres.
 ///
-/// A droplet goes one cell at a time along its direction, inertia d - (1 - inertia) slope. With s the slope ahead of
-/// it, v its speed, w its water and a the ground it stands for (one over the density), it can carry the volume
+/// A droplet moves one cell at a time along its direction, inertia d - (1 - inertia) slope. With s the slope ahead of
+/// it, v its speed, w its water and a the ground area that it represents (one over the density), its capacity is the
+/// volume
 ///
 /// ```text
 /// C = capacity max(s, least) v w a        v^2 = v^2 + g (h - h_ahead)        w = w exp(-evaporation l)
 /// ```
 ///
-/// cuts `erosion` of what it could still carry, no deeper than the drop ahead of it, lays down `deposition` of what is
-/// too much, and before a rise fills the hollow it is in. (In widely copied code the sign before g is wrong.) In the
-/// end it lays down all it carries: mass is kept.
+/// It erodes `erosion` of the unused capacity, at most the drop ahead of it, and deposits `deposition` of the excess.
+/// Before a rise it fills the hollow that it is in. (In widely copied code the sign before g is wrong.) At its end it
+/// deposits all it carries: mass is conserved.
 ///
-/// Droplets one after another depend on their order. Here they come in batches: all droplets of a batch see the same
-/// ground, and what they do to it is summed in fixed point, in which order does not matter. So there is an exact answer
-/// for any window.
+/// Droplets simulated one after another depend on their order. Here they are simulated in batches: all droplets of a
+/// batch see the same ground, and their changes are summed in fixed point, where order does not matter. The result is
+/// therefore exact for any window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Droplets {
-    /// Droplets a km^2, in all batches together.
+    /// Droplets per km^2, in all batches together.
     pub density: f64,
-    /// How many batches.
+    /// Number of batches.
     pub batches: usize,
-    /// How far a droplet goes at most, in metres.
+    /// Maximum length of a path, in metres.
     pub lifetime: f64,
-    /// How wide it cuts, in metres.
+    /// Radius of the brush, in metres.
     pub radius: f64,
-    /// The share of its direction that it keeps, 0 to 1.
+    /// Inertia: the share of the direction that is kept, 0 to 1.
     pub inertia: f64,
-    /// Metres of ground carried, on a sheer slope, for each m/s.
+    /// Capacity per m/s on a vertical slope, in metres of ground.
     pub capacity: f64,
-    /// The slope that capacity counts at least.
+    /// Minimum slope for the capacity.
     pub least_slope: f64,
-    /// The share of what could still be carried that is cut at each cell.
+    /// Share of the unused capacity that is eroded at each cell.
     pub erosion: f64,
-    /// The share of what is too much that is laid down at each cell.
+    /// Share of the excess sediment that is deposited at each cell.
     pub deposition: f64,
-    /// The share of the water lost a metre.
+    /// Share of the water that evaporates per metre.
     pub evaporation: f64,
-    /// m/s^2.
+    /// Gravity, in m/s^2.
     pub gravity: f64,
-    /// Which droplets.
+    /// Seed of the droplets.
     pub seed: u64,
 }
 
 impl Droplets {
-    /// How many cells a droplet goes.
+    /// Length of a path, in cells.
     fn steps(&self, cell: f64) -> usize {
         (self.lifetime / cell).ceil().min(FARTHEST) as usize
     }
@@ -63,12 +64,12 @@ impl Droplets {
         Brush::new((self.radius / cell).min(FARTHEST))
     }
 
-    /// How many samples around a window its batches look at.
+    /// The halo of all batches, in samples.
     pub fn halo(&self, cell: f64) -> usize {
         self.batches * self.reach(cell)
     }
 
-    /// What one batch looks at: the way of a droplet, the cells between which it is, and the brush.
+    /// The halo of one batch: a path, the cells between which it lies, and the brush.
     fn reach(&self, cell: f64) -> usize {
         self.steps(cell) + 2 + self.brush(cell).reach() + SETTLED
     }
@@ -90,14 +91,14 @@ impl Droplets {
         Ok(heights)
     }
 
-    /// One batch; `sums` is memory that is kept from call to call.
+    /// One batch; `sums` is memory that is reused between calls.
     fn batch(&self, heights: &Grid, batch: u64, sums: &mut [Vec<i64>; 2], progress: &Progress) -> Result<Grid> {
         let window = *heights.window();
         let reach = self.reach(window.cell);
         if window.shrunk(reach).is_empty() {
             return Ok(Grid::filled(window.shrunk(reach), 0.0f32));
         }
-        // Nanoseconds a cell, about.
+        // Approximate nanoseconds per cell.
         let rain = self.density * window.cell * window.cell / 1e6 / self.batches as f64;
         let [raining, settling] =
             progress.parts([5.0 + rain * (100.0 + 30.0 * self.steps(window.cell) as f64), 2.0 * SETTLED as f64]);
@@ -131,13 +132,14 @@ impl Droplets {
         Ok(out)
     }
 
-    /// What one batch cuts and lays down at each cell, as multiples of [`droplet_paths::UNIT`]. Bands of rows go side
-    /// by side, first those of even number and then the others: no two of a kind reach the same rows.
+    /// The eroded and deposited amounts of one batch at each cell, in multiples of [`droplet_paths::UNIT`]. Bands of
+    /// rows run in parallel, first the even ones and then the odd ones, because only neighbouring bands write to the
+    /// same rows.
     fn sum(&self, heights: &Grid, batch: u64, sums: &mut [Vec<i64>; 2], progress: &Progress) -> Result<()> {
         let window = *heights.window();
         let reach = self.steps(window.cell) + 2;
         let step = self.step(window.cell, batch);
-        // As many of a kind as all threads together take in equal shares.
+        // As many bands of each kind as give all threads equal shares.
         let all = 2 * rayon::current_num_threads();
         let most = (window.height / (2 * reach)).clamp(1, 8 * all);
         let bands = if most > all { most - most % all } else { most };
@@ -176,7 +178,7 @@ impl Droplets {
             expected: self.density * cell * cell / 1e6 / self.batches as f64,
             steps: self.steps(cell),
             inertia: self.inertia as f32,
-            // Volumes are told as metres over one cell.
+            // Volumes are expressed as metres over one cell.
             capacity: (self.capacity * ground / (cell * cell)) as f32,
             per_cell: (1.0 / cell) as f32,
             least_slope: self.least_slope as f32,
@@ -188,7 +190,7 @@ impl Droplets {
     }
 }
 
-/// `size` sums after `skip`, and all that follow are left.
+/// Splits off `size` sums after `skip`; `all` keeps the sums after them.
 fn part<'a>(all: &mut &'a mut [i64], skip: usize, size: usize) -> &'a mut [i64] {
     let (_, rest) = std::mem::take(all).split_at_mut(skip);
     let (part, rest) = rest.split_at_mut(size);
@@ -196,14 +198,14 @@ fn part<'a>(all: &mut &'a mut [i64], skip: usize, size: usize) -> &'a mut [i64] 
     part
 }
 
-/// Passes in which what a batch has laid down slides apart: all its droplets see the same hollow, and would fill it to
-/// a spike.
+/// Passes in which freshly deposited ground slides: all droplets of a batch see the same hollow and would fill it to a
+/// spike.
 const SETTLED: usize = 16;
 
-/// Rise over run at which it lies still.
+/// Slope, rise over run, at which it is stable.
 const LIES: f64 = 0.02;
 
-/// Most cells that a length may be: what is longer no memory holds.
+/// Maximum length in cells; longer ones would not fit in memory.
 const FARTHEST: f64 = 16_384.0;
 
 #[cfg(test)]

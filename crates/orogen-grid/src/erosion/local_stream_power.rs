@@ -1,4 +1,4 @@
-//! Rivers cut and lay down by rules that look no farther than the neighbours.
+//! Stream-power erosion and deposition with local rules.
 
 use super::planes::{self, Pass, Planes};
 use super::power::power;
@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::progress::Progress;
 use orogen_simd::{Body, Simd, dispatch};
 
-/// The stream power law with uplift and deposition, all cells at once: after H. Schott, A. Paris, L. Fournier, E.
+/// The stream power law with uplift and deposition, for all cells at once: after H. Schott, A. Paris, L. Fournier, E.
 /// Guerin and E. Galin, "Large-scale terrain authoring through interactive erosion simulation" (2023), with the
 /// deposition of X. P. Yuan, J. Braun, L. Guerit, D. Rouby and G. Cordonnier, "A new efficient method to solve the
 /// stream power law model taking into account sediment deposition" (2019).
@@ -19,47 +19,46 @@ use orogen_simd::{Body, Simd, dispatch};
 /// h' = h - E + D + dt (U + creep (d2h/dx2 + d2h/dy2))
 /// ```
 ///
-/// S is the upwind gradient, the same in all directions. The fraction is what makes it stable for any dt (the implicit
-/// step of Braun and Willett 2013 with the neighbour's old height). Water and sediment come one cell farther an
-/// iteration: begin with the areas of a coarser solution where it should know of rivers from far away. An iteration
-/// looks two cells far.
+/// S is the upwind gradient, which is isotropic. The denominator makes the step stable for any dt (the implicit step of
+/// Braun and Willett 2013 with the neighbour's old height). Water and sediment move one cell per iteration; start with
+/// the drainage areas of a coarser solution to include distant catchments. An iteration reads two cells on each side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocalStreamPower {
-    /// Metres from one sample to the next.
+    /// Distance between samples, in metres.
     pub cell: f64,
-    /// Years an iteration.
+    /// Years per iteration.
     pub years: f64,
-    /// K, in m^(1 - 2 m) a year.
+    /// K, in m^(1 - 2 m) per year.
     pub erodibility: f64,
-    /// m.
+    /// m: exponent of the drainage area.
     pub area_exponent: f64,
-    /// n.
+    /// n: exponent of the slope.
     pub slope_exponent: f64,
-    /// U, in metres a year.
+    /// U: uplift, in metres per year.
     pub uplift: f64,
-    /// G.
+    /// G: deposition coefficient.
     pub deposition: f64,
-    /// How fast soil creeps, in m^2 a year.
+    /// Soil creep: the diffusivity, in m^2 per year.
     pub creep: f64,
-    /// What is no higher stays as it is.
+    /// Cells at or below this height do not change.
     pub sea_level: Option<f32>,
 }
 
-/// The share of a square cell that creep covers in an iteration at most: stable, and without ringing.
+/// Limit of creep per iteration, as a share of a squared cell: stable, and without oscillation.
 const FASTEST: f64 = 0.2;
 
-/// What an iteration looks at, in cells.
+/// The radius that an iteration reads, in cells.
 pub const RADIUS: usize = 2;
 
-/// The planes by their places: heights in metres,
+/// Indices of the planes: heights, in metres,
 pub const HEIGHT: usize = 0;
-/// drainage areas in m^2,
+/// drainage areas, in m^2,
 pub const AREA: usize = 1;
-/// and the sediment that leaves a cell, in m^3 a year.
+/// and the sediment that leaves a cell, in m^3 per year.
 pub const SEDIMENT: usize = 2;
 
 impl LocalStreamPower {
-    /// The planes after some iterations, smaller by [`RADIUS`] cells an iteration on each side.
+    /// The planes after `iterations`, smaller by [`RADIUS`] cells per iteration on each side.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -84,7 +83,7 @@ impl LocalStreamPower {
     }
 }
 
-/// The law in samples, for one iteration.
+/// The parameters in units of samples, for one iteration.
 #[derive(Clone, Copy)]
 struct Constants {
     per_side: f32,
@@ -104,7 +103,7 @@ impl Pass<3> for Constants {
     const RADIUS: usize = RADIUS;
 
     fn make(&self, from: &Planes<3>, to: &mut Planes<3>, scratch: &mut Vec<f32>) {
-        // Three rows of two values, for all columns but the first and the last.
+        // Three rows of two values, for all columns except the first and the last.
         scratch.resize(6 * (from.width() - 2), 0.0);
         dispatch(Rows { constants: self, from, to, scratch });
     }
@@ -127,7 +126,7 @@ impl Body for Rows<'_> {
         let ring: [&mut [f32]; 3] = std::array::from_fn(|_| rows.next().unwrap_or_default());
         for j in 0..self.from.height() - 2 {
             let three = [j, j + 1, j + 2].map(|row| self.from.row(row));
-            // What a cell of row j + 1 gives for each unit of slope^4.
+            // The amount that a cell of row j + 1 gives per unit of slope^4.
             let (areas, loads) = ring[j % 3].split_at_mut(wide);
             self.constants.give(three.map(|row| row[HEIGHT]), [three[1][AREA], three[1][SEDIMENT]], [areas, loads]);
             if j >= 2 {
@@ -140,7 +139,7 @@ impl Body for Rows<'_> {
 }
 
 impl Constants {
-    /// A slope's weight: its fourth power, 0 uphill.
+    /// The weight of a slope: its fourth power, 0 uphill.
     #[inline(always)]
     fn weight(&self, drop: f32, per: f32) -> f32 {
         let slope = positive(drop) * per;
@@ -148,7 +147,7 @@ impl Constants {
         square * square
     }
 
-    /// What a row's inner cells give away for each unit of weight: area and sediment.
+    /// The amounts that a row's inner cells give per unit of weight: area and sediment.
     #[inline(always)]
     fn give(&self, heights: [&[f32]; 3], [area, load]: [&[f32]; 2], [areas, loads]: [&mut [f32]; 2]) {
         let n = areas.len();
@@ -163,14 +162,14 @@ impl Constants {
             let corners = (self.weight(h - nw[i], corner) + self.weight(h - ne[i], corner))
                 + (self.weight(h - sw[i], corner) + self.weight(h - se[i], corner));
             let all = sides + corners;
-            // From a pit nothing flows on.
+            // A pit gives nothing.
             let share = if all > 1e-24 { 1.0 / all } else { 0.0 };
             areas[i] = area[i] * share;
             loads[i] = load[i] * share;
         }
     }
 
-    /// What comes to a row's cells, and what it does to them.
+    /// Adds the inflow to a row's cells, and erodes and deposits.
     #[inline(always)]
     fn take(&self, heights: [&[f32]; 3], given: [&[f32]; 3], [height, area, load]: [&mut [f32]; 3]) {
         let n = height.len();
@@ -201,12 +200,12 @@ impl Constants {
                 rate *= power(most(steep, 1e-12), self.slope_exponent);
             }
             let cut = least(rate * steep / (1.0 + rate * side), positive(h - lowest));
-            // No more than comes, and none on what stands above its surroundings.
+            // At most the inflow, and nothing on cells above their surroundings.
             let all = came * self.years / self.cell_area;
             let mean = 0.25 * ((nc[i] + sc[i]) + (w[i] + e[i]));
             let hollow = positive(mean - (h - cut));
             let laid = least(least(self.laid * came / drained, all), hollow + cut);
-            // Nine points, whose error is the same in all directions.
+            // The nine-point Laplacian, whose error is isotropic.
             let sides = (nc[i] - h) + (sc[i] - h) + (w[i] - h) + (e[i] - h);
             let corners = (nw[i] - h) + (ne[i] - h) + (sw[i] - h) + (se[i] - h);
             let crept = self.spread * (4.0 * sides + corners);
@@ -219,7 +218,7 @@ impl Constants {
     }
 }
 
-/// The western, the middle and the eastern neighbours of the `n` columns from the second on.
+/// The western, central and eastern neighbours of `n` columns, starting with the second.
 #[inline(always)]
 fn neighbours(row: &[f32], n: usize) -> [&[f32]; 3] {
     [&row[..n], &row[1..=n], &row[2..n + 2]]

@@ -1,4 +1,4 @@
-//! Loose ground, freshly laid down, slides apart until it lies gently.
+//! Sliding of loose sediment.
 
 use super::planes::{self, Pass, Planes};
 use super::rows::{least, positive, settle};
@@ -6,20 +6,21 @@ use crate::error::Result;
 use crate::progress::Progress;
 use orogen_simd::{Body, Simd, dispatch};
 
-/// Loose ground on firm: of what a cell stands higher than a neighbour, beyond what stands, a fifth crosses their side
-/// in a pass, and never more than a quarter of the loose ground that the higher has. Mass is kept, firm ground stays.
+/// Loose ground on top of firm ground. Of the height difference to a neighbour beyond `stands`, a fifth crosses the
+/// common side in a pass, and at most a quarter of the loose ground of the higher cell. Mass is conserved; firm ground
+/// does not move.
 pub struct Loose {
-    /// Metres from one cell to the next at which loose ground lies still.
+    /// Height difference between neighbours, in metres, at which loose ground is stable.
     pub stands: f32,
 }
 
-/// The planes by their places.
+/// Index of the plane of firm ground.
 pub const FIRM: usize = 0;
-/// Loose ground upon it, in metres.
+/// Index of the plane of loose ground, in metres above the firm ground.
 pub const LOOSE: usize = 1;
 
 impl Loose {
-    /// The planes after `passes`, smaller by a cell a pass on each side.
+    /// The planes after `passes`, smaller by one cell per pass on each side.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -71,7 +72,7 @@ impl Body for Rows<'_> {
 }
 
 impl Loose {
-    /// What crosses the sides from the cells of one list to those of another.
+    /// The amounts that cross the sides from the cells of one row to those of another.
     #[inline(always)]
     fn across(&self, from: [&[f32]; 2], to: [&[f32]; 2], out: &mut [f32]) {
         let n = out.len();

@@ -1,7 +1,7 @@
-//! Ground wears away by rules that look at a finite neighbourhood: slopes slide, water runs and carries sediment.
+//! Erosion by local rules: slopes slide, water flows and carries sediment.
 //!
-//! Pure functions on grids. What a rule makes at a sample depends on the samples within its reach alone, so any window
-//! grown by that reach gives the same bits; the filters of the same names ask for just so much.
+//! Pure functions on grids. The result at a sample depends only on the samples within a fixed reach, so any window
+//! grown by that reach gives the same bits; the filters of the same names request exactly that halo.
 
 pub mod brush;
 pub mod droplet_paths;

@@ -1,66 +1,66 @@
-//! One iteration of the virtual pipes, going down the rows in place.
+//! One iteration of the virtual pipes, row by row and in place.
 
 use super::planes::Planes;
 use super::rows::{least, most, positive};
 
-/// The planes by their places.
+/// Index of the plane of the bed, in metres.
 pub const BED: usize = 0;
-/// Depth of the water.
+/// Index of the plane of the water depth, in metres.
 pub const DEPTH: usize = 1;
 /// Sediment in the water, as metres of ground.
 pub const SEDIMENT: usize = 2;
-/// What flows over the cell's eastern side.
+/// Flow over the cell's eastern side.
 pub const EAST: usize = 3;
-/// What flows over the cell's southern side.
+/// Flow over the cell's southern side.
 pub const SOUTH: usize = 4;
 
-/// What does not differ between cells, for one iteration. Flows are in metres of a cell's water an iteration.
+/// Parameters of one iteration that are the same for all cells. Flows are in metres of a cell's water per iteration.
 #[derive(Debug, Clone, Copy)]
 pub struct Constants {
-    /// Flow gained for each metre between two surfaces.
+    /// Flow gained per metre of difference between two surfaces.
     pub pull: f32,
-    /// The share of the flow that friction leaves.
+    /// Share of the flow that remains after friction.
     pub kept: f32,
-    /// Water that falls, in metres.
+    /// Rain, in metres.
     pub rain: f32,
-    /// Sediment, in metres, for each metre of two sides' flows together.
+    /// Capacity: sediment in metres per metre of the sum of two sides' flows.
     pub capacity: f32,
-    /// (2 cell)^2: what the square of two beds' difference is to be divided by.
+    /// (2 cell)^2: divisor of the squared difference of two beds.
     pub level: f32,
-    /// The share of what could still be carried that is cut.
+    /// Share of the unused capacity that is eroded.
     pub erosion: f32,
-    /// The share of what is too much that is laid down.
+    /// Share of the excess sediment that is deposited.
     pub deposition: f32,
-    /// The share of the water that evaporation leaves.
+    /// Share of the water that remains after evaporation.
     pub left: f32,
 }
 
-/// An iteration on its way down the rows. At row j the flows out of that row are made and limited; the row above, all
-/// of whose sides are then known, passes on water and sediment; the bed of the row above that, round which all changes
-/// are then known, takes its part of them and is what it is after the iteration.
+/// The state of an iteration that moves down the rows. At row j it computes and limits the flows out of that row. The
+/// row above, whose sides are then all known, passes on water and sediment. The bed of the next row above, whose
+/// surrounding changes are then all known, receives its part of them and has its final value of the iteration.
 pub struct Sweep {
-    /// Of three rows, by the remainder of their number: the share of the outflow that there is water for,
+    /// For three rows, indexed by row number modulo 3: the share of the outflow that the water suffices for,
     limits: [Vec<f32>; 3],
-    /// the sediment in a metre of water,
+    /// the sediment per metre of water,
     loads: [Vec<f32>; 3],
-    /// and how much ground the water lays down.
+    /// and the deposited ground.
     changes: [Vec<f32>; 3],
 }
 
-/// Rows that a sweep has to be ahead of the next.
+/// Number of rows that a sweep must be ahead of the next one.
 pub const AHEAD: usize = 3;
 
-/// Depths and flows below this are none: nothing is divided by 0.
+/// Depths and flows below this count as 0, to avoid division by 0.
 const TINY: f32 = 1e-30;
 
 impl Sweep {
-    /// At the top of planes of this width.
+    /// The state above the first row of planes of this width.
     pub fn new(width: usize) -> Sweep {
         let rows = || std::array::from_fn(|_| vec![0.0; width]);
         Sweep { limits: rows(), loads: rows(), changes: rows() }
     }
 
-    /// Goes on to row `j`; after the last there is one more to go. The first and the last row and column are walls.
+    /// Processes row `j`; one more call is needed after the last row. The first and the last row and column are walls.
     #[inline(always)]
     pub fn row(&mut self, planes: &mut Planes<5>, j: usize, constants: &Constants) {
         let rows = planes.height();
@@ -92,11 +92,11 @@ impl Sweep {
         limit([&*depth, &*sediment], [&*east, &*south, &*above[SOUTH]], [limits, loads]);
     }
 
-    /// Water and sediment of row `j` as they are after the iteration, and what that does to the ground.
+    /// Water and sediment of row `j` after the iteration, and the changes of the ground.
     #[inline(always)]
     fn pass_on(&mut self, planes: &mut Planes<5>, j: usize, constants: &Constants) {
         if j == 0 || j + 1 >= planes.height() {
-            // What would be laid beyond a wall stays before it.
+            // Sediment that would be deposited beyond a wall stays in front of it.
             let before = std::mem::take(&mut self.changes[(j + 2) % 3]);
             self.changes[j % 3].copy_from_slice(&before);
             self.changes[(j + 2) % 3] = before;
@@ -118,8 +118,8 @@ impl Sweep {
         }
     }
 
-    /// The bed of row `j`: what the water does to a cell is shared with those around it, which fills and cuts in
-    /// strokes wider than a cell.
+    /// The bed of row `j`: the changes of a cell are shared with the cells around it, so that erosion and deposition
+    /// are wider than a cell.
     #[inline(always)]
     fn lay(&mut self, planes: &mut Planes<5>, j: usize) {
         if j == 0 || j + 1 >= planes.height() {
@@ -140,13 +140,13 @@ impl Sweep {
     }
 }
 
-/// Flows over the eastern and southern sides of a row, as far as the surfaces pull.
+/// Accelerates the flows over the eastern and southern sides of a row by the difference of the surfaces.
 #[inline(always)]
 fn pull([bed, depth]: [&[f32]; 2], below: [&[f32]; 2], [east, south]: [&mut [f32]; 2], constants: &Constants) {
     let n = bed.len() - 2;
     let (kept, pull) = (constants.kept, constants.pull);
     {
-        // The first and the last cell's outer sides are walls, and stay 0.
+        // The outer sides of the first and the last cell are walls, and stay 0.
         let n = n - 1;
         let ([b0, b1], [d0, d1]) = ([&bed[1..=n], &bed[2..n + 2]], [&depth[1..=n], &depth[2..n + 2]]);
         let east = &mut east[1..=n];
@@ -161,7 +161,7 @@ fn pull([bed, depth]: [&[f32]; 2], below: [&[f32]; 2], [east, south]: [&mut [f32
     }
 }
 
-/// The share of a row's outflow that there is water for, and its sediment in a metre of water.
+/// The share of a row's outflow that the water suffices for, and its sediment per metre of water.
 #[inline(always)]
 fn limit([depth, sediment]: [&[f32]; 2], [east, south, north]: [&[f32]; 3], [limits, loads]: [&mut [f32]; 2]) {
     let n = depth.len() - 2;
@@ -175,7 +175,7 @@ fn limit([depth, sediment]: [&[f32]; 2], [east, south, north]: [&[f32]; 3], [lim
     }
 }
 
-/// No cell gives more water than it has.
+/// Limits the outflow of a cell to the water that it has.
 #[inline(always)]
 fn hold([here, below]: [&[f32]; 2], [east, south]: [&mut [f32]; 2]) {
     let n = here.len() - 2;
@@ -187,8 +187,7 @@ fn hold([here, below]: [&[f32]; 2], [east, south]: [&mut [f32]; 2]) {
     }
 }
 
-/// Water and sediment move over the sides; what the water cuts or lays down is told, and taken from or added to its
-/// sediment.
+/// Moves water and sediment over the sides. Records erosion and deposition, and changes the sediment accordingly.
 #[inline(always)]
 fn settle(
     loads: [&[f32]; 3],
@@ -211,7 +210,7 @@ fn settle(
         let out = (out_e + out_w) + (out_s + out_n);
         let came = (positive(-e) * load_e[i] + positive(w) * load_w[i])
             + (positive(-s) * load_s[i] + positive(nn) * load_n[i]);
-        // What goes is at most what is there; rounding must not leave less than nothing.
+        // The outflow is at most the content; rounding must not make it negative.
         let carried = positive(sediment[i] - out * load_c[i]) + came;
         let left = positive(depth[i] + ((w - e) + (nn - s)));
         let (across, down) = (w + e, nn + s);
@@ -230,7 +229,7 @@ fn settle(
     }
 }
 
-/// A cell's change is shared over 3 x 3 cells, (1, 2, 1) each way over 16.
+/// Shares a cell's change over 3 x 3 cells, with weights (1, 2, 1) / 4 along each axis.
 #[inline(always)]
 fn share([north, here, south]: [&[f32]; 3], [bed, sediment]: [&mut [f32]; 2]) {
     let n = bed.len() - 2;
@@ -244,7 +243,7 @@ fn share([north, here, south]: [&[f32]; 3], [bed, sediment]: [&mut [f32]; 2]) {
         let under = (sw[i] + se[i]) + 2.0 * sc[i];
         let change = 0.0625 * ((above + under) + 2.0 * middle);
         let new = bed[i] + change;
-        // What the bed's rounding takes or gives stays with the water.
+        // The rounding error of the bed goes to the sediment in the water.
         sediment[i] += change - (new - bed[i]);
         bed[i] = new;
     }

@@ -1,4 +1,4 @@
-//! Water runs through virtual pipes between cells, cuts the ground and lays it down again.
+//! Hydraulic erosion with virtual pipes.
 
 use super::pipe_rows::{AHEAD, BED, Constants, DEPTH, EAST, SOUTH, Sweep};
 use super::planes::Planes;
@@ -21,48 +21,48 @@ use rayon::prelude::*;
 /// C  = capacity sin(slope) |q|                    |q| the discharge a metre of width, m^2/s
 /// ```
 ///
-/// Where the sediment s is less than C the ground is cut by erosion dt (C - s), where it is more, deposition dt (s - C)
-/// is laid down. No cut goes deeper than half way to the lowest neighbour, nothing laid down higher than the
-/// neighbours' mean and a quarter of the water's depth: water digs no pits and builds no spikes. Sediment moves as a
-/// share of the water that flows over each side, not by tracing back along the velocity as in Mei: mass is kept. One
-/// signed flow a side stands for their two (J. F. O'Brien and J. K. Hodgins, 1995).
+/// Where the sediment s is less than C, erosion dt (C - s) is eroded; where it is more, deposition dt (s - C) is
+/// deposited. Erosion is limited to half the drop to the lowest neighbour, and deposition to the neighbours' mean plus
+/// a quarter of the water depth, which prevents pits and spikes. Sediment moves as a share of the water that flows over
+/// each side, instead of the backtracing along the velocity in Mei and others: mass is conserved. One signed flow per
+/// side replaces their two (J. F. O'Brien and J. K. Hodgins, 1995).
 ///
-/// What is cut or laid down is shared over 3 x 3 cells, (1, 2, 1) each way: strokes wider than a cell, or grooves along
-/// the grid's axes would dig themselves in. All of an iteration looks three cells far: a side's flow at its cells'
-/// surfaces, the limit on it at that cell's other sides, and the sharing.
+/// Erosion and deposition are shared over 3 x 3 cells, with weights (1, 2, 1) along each axis; otherwise grooves would
+/// form along the grid's axes. An iteration reads three cells on each side: a side's flow reads its cells' surfaces,
+/// the limit reads the other sides of that cell, and then changes are shared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pipes {
-    /// Rain, in metres of water a second.
+    /// Rain, in metres of water per second.
     pub rain: f64,
-    /// The share of the water that goes into the air each second.
+    /// Share of the water that evaporates per second.
     pub evaporation: f64,
-    /// Sediment, in metres, that 1 m^2/s of water carries down a sheer slope.
+    /// Sediment, in metres, that a discharge of 1 m^2/s carries on a vertical slope.
     pub capacity: f64,
-    /// The share of what could still be carried that is cut each second.
+    /// Share of the unused capacity that is eroded per second.
     pub erosion: f64,
-    /// The share of what is too much that is laid down each second.
+    /// Share of the excess sediment that is deposited per second.
     pub deposition: f64,
-    /// A pipe's area in m^2 for each metre of a cell's side.
+    /// Area of a pipe, in m^2 per metre of a cell's side.
     pub pipe: f64,
-    /// The share of the flow that is lost each second.
+    /// Share of the flow that friction removes per second.
     pub friction: f64,
-    /// m/s^2.
+    /// Gravity, in m/s^2.
     pub gravity: f64,
-    /// Seconds an iteration; what would not be stable is cut.
+    /// Time step in seconds; reduced to the longest stable step.
     pub time_step: f64,
 }
 
-/// What one iteration looks at, in cells.
+/// The radius that an iteration reads, in cells.
 pub const RADIUS: usize = 3;
 
-/// dt^2 g A / l^3 at most: waves are stable below 1/2.
+/// Maximum of dt^2 g A / l^3: waves are stable below 1/2.
 const COURANT: f64 = 0.25;
 
-/// Ground and water: planes bed, depth, sediment (all in metres), flow east and flow south (metres of a cell's water an
-/// iteration).
+/// Ground and water: the planes bed, depth, sediment (all in metres), flow east and flow south (in metres of a cell's
+/// water per iteration).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wet {
-    /// The planes, with a row and a column around that stand for the walls.
+    /// The planes, with one row and column around them that represent the walls.
     planes: Planes<5>,
     window: Window,
 }
@@ -78,12 +78,12 @@ impl Wet {
         wet
     }
 
-    /// Where it is.
+    /// The window of the cells.
     pub fn window(&self) -> &Window {
         &self.window
     }
 
-    /// One plane.
+    /// The values of one plane.
     pub fn plane(&self, plane: usize) -> Grid {
         let mut out = Grid::filled(self.window, 0.0f32);
         let rows = out.data_mut().par_chunks_mut(self.window.width.max(1)).enumerate();
@@ -91,7 +91,7 @@ impl Wet {
         out
     }
 
-    /// The walls stand as high as the ground before them, so that they give no slope, and hold nothing.
+    /// Sets the walls to the height of the adjacent ground, so that they have no slope, and without water.
     fn wall(&mut self) {
         let (width, height) = (self.window.width, self.window.height);
         for j in 0..height + 2 {
@@ -110,8 +110,8 @@ impl Wet {
         }
     }
 
-    /// The water's speed, m/s, made by `pipes`: discharge over depth, 0 where it is shallower than a tenth of a
-    /// millimetre.
+    /// The speed of the water, in m/s, computed by `pipes`: discharge over depth; 0 where the depth is less than 0.1
+    /// mm.
     pub fn speed(&self, pipes: &Pipes) -> Grid {
         let mut out = Grid::filled(self.window, 0.0f32);
         let scale = (0.5 * self.window.cell / pipes.step(self.window.cell)) as f32;
@@ -131,12 +131,12 @@ impl Wet {
 }
 
 impl Pipes {
-    /// Seconds an iteration at this cell: the time step, or the longest stable one.
+    /// Seconds per iteration at this cell: the time step, or the longest stable one.
     pub fn step(&self, cell: f64) -> f64 {
         self.time_step.min(cell * (COURANT / (self.gravity * self.pipe)).sqrt())
     }
 
-    /// Goes on by `iterations` within the walls.
+    /// Advances by `iterations` within the walls.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -144,8 +144,8 @@ impl Pipes {
         self.go(wet, iterations, 0, progress)
     }
 
-    /// Goes on by `iterations` in the midst of more ground: the result is smaller by [`RADIUS`] cells an iteration on
-    /// each side, which the walls may have reached.
+    /// Advances by `iterations` on a part of larger ground: the result is smaller by [`RADIUS`] cells per iteration on
+    /// each side, which the walls may have influenced.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -177,8 +177,7 @@ impl Pipes {
             pull: (dt * dt * self.gravity * self.pipe / (cell * cell)) as f32,
             kept: (1.0 - share(self.friction)) as f32,
             rain: (dt * self.rain) as f32,
-            // Discharge a metre of width from the sum of two sides' flows, and rise over run from the difference of two
-            // beds.
+            // Discharge per metre of width from the sum of two sides' flows, and slope from the difference of two beds.
             capacity: (self.capacity * 0.5 * cell / dt) as f32,
             level: (4.0 * cell * cell) as f32,
             erosion: share(self.erosion) as f32,
@@ -188,19 +187,19 @@ impl Pipes {
     }
 }
 
-/// Iterations that follow each other down the rows at once: what they touch stays in a core's own cache, and memory is walked through
-/// once for all of them. More would gain little, and bands make more of their neighbours' rows twice.
+/// Number of iterations that follow each other down the rows. Their data stays in a core's own cache, and memory is
+/// read once for all of them. More iterations would gain little, and bands would compute more rows twice.
 const AT_ONCE: usize = 8;
 
-/// How far one call goes.
+/// The extent of one call.
 struct Stride {
     iterations: usize,
-    /// Cells that are lost on each side.
+    /// Cells lost on each side.
     lost: usize,
 }
 
-/// `to` from `from`. Bands of rows, one a thread, go side by side, each with enough rows of its neighbours' to know
-/// what they do: the same bits however many there are. `spare` is memory that is kept from call to call.
+/// Computes `to` from `from`. Bands of rows, one per thread, run in parallel, each with enough rows of its neighbours;
+/// the bits do not depend on the number of bands. `spare` is memory that is reused between calls.
 fn advance(
     from: &Wet,
     to: &mut Wet,
@@ -221,7 +220,7 @@ fn advance(
     bands.enumerate().try_for_each(|(band, (mut out, planes))| {
         let (top, bottom) = (lost + band * rows, lost + height.min((band + 1) * rows));
         let (first, last) = (top.saturating_sub(reach), window.height.min(bottom + reach));
-        // Cells first up to last, and a row on each side as walls.
+        // The cells from first to last, and a row of walls on each side.
         planes.copy_rows(&from.planes, first, last + 2);
         dispatch(Down { planes, iterations: stride.iterations, constants, progress })?;
         for (j, out) in out.iter_mut().enumerate() {
@@ -251,8 +250,8 @@ impl Body for Down<'_> {
     fn run<S: Simd>(self, simd: S) -> Result<()> {
         let (width, rows) = (self.planes.width(), self.planes.height());
         let mut sweeps: Vec<Sweep> = (0..self.iterations).map(|_| Sweep::new(width)).collect();
-        // An iteration at a row has made the second one above it final; the next reads that row as the one below its
-        // own.
+        // An iteration at a row makes the second row above it final; the next iteration reads that row as the one below
+        // its own.
         for step in 0..=rows + AHEAD * self.iterations {
             self.progress.check()?;
             for (k, sweep) in sweeps.iter_mut().enumerate() {

@@ -1,12 +1,12 @@
-//! Several values a cell, row beside row, and passes of a stencil over them that stay in cache.
+//! Several values per cell, stored row by row, and stencil passes over them that stay in cache.
 
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 use crate::progress::Progress;
 use rayon::prelude::*;
 
-/// N planes of one size. Rows of all planes lie next to each other: a pass that goes down the rows reads one stretch of
-/// memory.
+/// N planes of one size. The rows of all planes are adjacent in memory, so that a pass down the rows reads one
+/// contiguous range.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Planes<const N: usize> {
     width: usize,
@@ -15,17 +15,17 @@ pub struct Planes<const N: usize> {
 }
 
 impl<const N: usize> Planes<N> {
-    /// All zeros.
+    /// Planes of zeros.
     pub fn new(width: usize, height: usize) -> Planes<N> {
         Planes { width, height, data: vec![0.0; width * height * N] }
     }
 
-    /// Samples a row.
+    /// Samples per row.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn height(&self) -> usize {
         self.height
     }
@@ -37,13 +37,13 @@ impl<const N: usize> Planes<N> {
         std::array::from_fn(|plane| &row[plane * self.width..(plane + 1) * self.width])
     }
 
-    /// Row `j` of every plane, to change.
+    /// Row `j` of every plane, mutable.
     #[inline(always)]
     pub fn row_mut(&mut self, j: usize) -> [&mut [f32]; N] {
         planes_of(&mut self.data[j * N * self.width..(j + 1) * N * self.width], self.width)
     }
 
-    /// Plane `plane` as a grid over `window`, which has as many samples.
+    /// Plane `plane` as a grid over `window`, which must have as many samples.
     pub fn grid(&self, plane: usize, window: Window) -> Grid {
         let mut grid = Grid::filled(window, 0.0f32);
         let rows = grid.data_mut().par_chunks_mut(window.width.max(1)).enumerate();
@@ -51,7 +51,7 @@ impl<const N: usize> Planes<N> {
         grid
     }
 
-    /// Fills plane `plane` from a grid of as many samples.
+    /// Fills plane `plane` from a grid with as many samples.
     pub fn fill(&mut self, plane: usize, grid: &Grid) {
         let height = self.height;
         self.rows_mut(0, height).into_par_iter().enumerate().for_each(|(j, row)| {
@@ -59,12 +59,12 @@ impl<const N: usize> Planes<N> {
         });
     }
 
-    /// Fills plane `plane` of row `j`.
+    /// Sets row `j` of plane `plane`.
     pub fn set(&mut self, plane: usize, j: usize, values: &[f32]) {
         self.row_mut(j)[plane].copy_from_slice(values);
     }
 
-    /// Rows `j - 1`, `j` and `j + 1` of every plane, to change.
+    /// Rows `j - 1`, `j` and `j + 1` of every plane, mutable.
     #[inline(always)]
     pub fn three(&mut self, j: usize) -> [[&mut [f32]; N]; 3] {
         let (width, all) = (self.width.max(1), N * self.width);
@@ -72,7 +72,7 @@ impl<const N: usize> Planes<N> {
         std::array::from_fn(|_| std::array::from_fn(|_| rows.next().unwrap_or_default()))
     }
 
-    /// Becomes a copy of rows `first` up to but not `last` of `from`.
+    /// Replaces the planes by a copy of the rows `first..last` of `from`.
     pub fn copy_rows(&mut self, from: &Planes<N>, first: usize, last: usize) {
         let all = N * from.width;
         (self.width, self.height) = (from.width, last - first);
@@ -80,25 +80,25 @@ impl<const N: usize> Planes<N> {
         self.data.extend_from_slice(&from.data[first * all..last * all]);
     }
 
-    /// `height` rows from `first` on, each to change.
+    /// `height` rows from `first`, each mutable.
     pub fn rows_mut(&mut self, first: usize, height: usize) -> Vec<[&mut [f32]; N]> {
         let (width, all) = (self.width, N * self.width);
         let rows = self.data[first * all..(first + height) * all].chunks_exact_mut(all.max(1));
         rows.map(|row| planes_of(row, width)).collect()
     }
 
-    /// The same in bands of `rows`.
+    /// [`Planes::rows_mut`] in bands of `rows`.
     pub fn bands_mut(&mut self, first: usize, height: usize, rows: usize) -> Vec<Vec<[&mut [f32]; N]>> {
         let mut left = self.rows_mut(first, height).into_iter();
         (0..height.div_ceil(rows)).map(|_| left.by_ref().take(rows).collect()).collect()
     }
 
-    /// Another size, the old values forgotten: memory is used again.
+    /// Changes the size and discards the values; memory is reused.
     pub fn resize(&mut self, width: usize, height: usize) {
         (self.width, self.height) = (width, height);
         let size = width * height * N;
         if size > self.data.capacity() {
-            // Fresh memory is zero already, and first touched by the thread that works in it.
+            // Newly allocated memory is zero, and the thread that uses it touches it first.
             self.data = vec![0.0; size];
         } else {
             self.data.resize(size, 0.0);
@@ -115,23 +115,23 @@ fn planes_of<const N: usize>(row: &mut [f32], width: usize) -> [&mut [f32]; N] {
 
 /// One pass of a stencil.
 pub trait Pass<const N: usize>: Sync {
-    /// How far it looks.
+    /// The radius that the stencil reads, in cells.
     const RADIUS: usize;
 
-    /// Makes `to`, which is smaller than `from` by the radius on each side, from `from`. `scratch` is memory that is
-    /// kept from call to call.
+    /// Computes `to`, which is smaller than `from` by the radius on each side, from `from`. `scratch` is memory that is
+    /// reused between calls.
     fn make(&self, from: &Planes<N>, to: &mut Planes<N>, scratch: &mut Vec<f32>);
 }
 
-/// Passes that a band of rows goes through before it is put back.
+/// Passes over a band of rows before it is written back.
 const AT_ONCE: usize = 8;
 
-/// Rows of a band: with two bands' buffers in a core's own cache.
+/// Rows of a band: the buffers of two bands fit in a core's own cache.
 const BAND: usize = 64;
 
-/// The planes after `passes` passes, smaller by that many radii on each side. Bands of rows go side by side, each
-/// several passes on while it is in cache, what neighbours need of each other made twice: the same bits on any number
-/// of threads.
+/// The planes after `passes` passes, smaller by that many radii on each side. Bands of rows run in parallel, each
+/// several passes at a time while in cache. Rows that neighbouring bands need of each other are computed twice; the
+/// bits do not depend on the number of threads.
 ///
 /// # Errors
 /// If the work is cancelled.

@@ -1,30 +1,30 @@
-//! Powers of numbers above zero, many at a time.
+//! Powers of positive numbers, vectorised.
 
-/// x to the power y within a few parts in a million, for x from 1e-37 to 1e37: nothing but sums, products and bits, so
-/// the same on every machine and quick over rows.
+/// x to the power y, accurate to a few parts in a million, for x from 1e-37 to 1e37. Uses only sums, products and bit
+/// operations, so it gives the same bits on every machine and vectorises.
 #[inline(always)]
 pub fn power(x: f32, y: f32) -> f32 {
     exp2(y * log2(x))
 }
 
-/// The logarithm to the base 2.
+/// The base-2 logarithm.
 #[inline(always)]
 fn log2(x: f32) -> f32 {
     // x = m 2^e with m from sqrt(1/2) to sqrt(2); 0x3F35_04F3 are the bits of the former.
     let bits = x.to_bits().wrapping_sub(0x3F35_04F3);
     let exponent = (bits as i32) >> 23;
     let m = f32::from_bits((bits & 0x007F_FFFF).wrapping_add(0x3F35_04F3));
-    // ln m = 2 artanh((m - 1) / (m + 1)), whose series is short.
+    // ln m = 2 artanh((m - 1) / (m + 1)), with a short series.
     let t = (m - 1.0) / (m + 1.0);
     let s = t * t;
     let series = ((((0.222_222_2 * s + 0.285_714_3) * s + 0.4) * s + 0.666_666_7) * s + 2.0) * t;
     exponent as f32 + series * std::f32::consts::LOG2_E
 }
 
-/// 2 to the power y, for y from -126 to 127; beyond, the end's.
+/// 2 to the power y; y is clamped to -126 ..= 127.
 #[inline(always)]
 fn exp2(y: f32) -> f32 {
-    // Added to 1.5 2^23 a number's whole part stands in the low bits.
+    // After adding 1.5 2^23, the integer part of a number is in the low bits.
     const WHOLE: f32 = 12_582_912.0;
     let y = if y > -126.0 { y } else { -126.0 };
     let y = if y < 127.0 { y } else { 127.0 };

@@ -1,4 +1,4 @@
-//! Slopes slide until they lie at the talus angle.
+//! Thermal weathering: slopes slide until they are at the talus angle.
 
 use super::planes::{self, Pass, Planes};
 use super::rows::settle;
@@ -8,30 +8,31 @@ use crate::progress::Progress;
 use orogen_simd::{Body, Simd, dispatch};
 
 /// Thermal weathering after F. K. Musgrave, C. E. Kolb and R. S. Mace, "The synthesis and rendering of eroded fractal
-/// terrains" (1989): what is steeper than the talus angle moves down.
+/// terrains" (1989): material on slopes above the talus angle moves down.
 ///
-/// Theirs compares each cell with its neighbours in eight directions, and leaves octagonal cones. Here the material
-/// that crosses the side between two cells is, with g the slope there (both components) and T the slope that stands,
+/// The original compares each cell with its neighbours in eight directions, which gives octagonal cones. Here the
+/// material that crosses the side between two cells is, with g the gradient there (both components) and T the stable
+/// slope,
 ///
 /// ```text
 /// q = fraction (1 - T / |g|) g_across    where |g| > T, else 0
 /// ```
 ///
-/// so a slope is as steep in all directions. What leaves one cell enters the next: mass is kept.
+/// so the talus slope is the same in all directions. What leaves one cell enters the next: mass is conserved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Thermal {
-    /// Rise over run that stands.
+    /// Stable slope, rise over run.
     pub talus: f64,
-    /// The share of what is too steep that moves in a pass, 0 to 1. Stable for all of these.
+    /// Share of the excess that moves in a pass, 0 to 1. All values are stable.
     pub rate: f64,
 }
 
-/// The share of a difference in height that crosses a side at a rate of 1. From 1/4 on a chequerboard of heights would
-/// not fade.
+/// The share of a height difference that crosses a side at a rate of 1. From 1/4 on, a chequerboard of heights would
+/// not decay.
 const FASTEST: f64 = 0.2;
 
 impl Thermal {
-    /// The heights after `passes` passes, over a window that is smaller by one sample a pass on each side.
+    /// The heights after `passes` passes, over a window that is smaller by one sample per pass on each side.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -44,7 +45,7 @@ impl Thermal {
     }
 }
 
-/// The rule in samples: heights differ by `stands` from one to the next where the slope just stands.
+/// The rule in units of samples: `stands` is the height difference between neighbours at the stable slope.
 struct Slide {
     stands: f32,
     share: f32,
@@ -88,7 +89,7 @@ impl Body for Rows<'_> {
 }
 
 impl Slide {
-    /// What moves east over the sides between the columns of row `here`.
+    /// Material that moves east over the sides between the columns of row `here`.
     #[inline(always)]
     fn across_columns(&self, north: &[f32], here: &[f32], south: &[f32], out: &mut [f32]) {
         let n = out.len();
@@ -100,7 +101,7 @@ impl Slide {
         }
     }
 
-    /// What moves south from the inner samples of `north` to those of `south`.
+    /// Material that moves south from the inner samples of `north` to those of `south`.
     #[inline(always)]
     fn across_rows(&self, north: &[f32], south: &[f32], out: &mut [f32]) {
         let n = out.len();
@@ -115,7 +116,7 @@ impl Slide {
     fn moved(&self, across: f32, along: f32) -> f32 {
         let steep = (across * across + along * along).sqrt();
         let excess = 1.0 - self.stands / steep;
-        // Level ground divides by 0; what is not above 0 moves nothing.
+        // Level ground gives a division by 0; NaN moves nothing.
         let excess = if excess > 0.0 { excess } else { 0.0 };
         self.share * excess * across
     }

@@ -1,22 +1,23 @@
-//! Where lines meet shores: each crossing becomes a point of both.
+//! Crossings of lines with shores: each crossing becomes a point of both.
 
 use std::collections::HashMap;
 
 /// A shore: an open line or a ring, whose last point repeats its first.
 pub type Path = Vec<[f64; 2]>;
 
-/// Lines by the squares of one sample that their segments touch, and the points to put into them.
+/// An index of lines by the squares of one sample that their segments touch, and the points to insert into them.
 pub struct Joints<'a> {
     lines: &'a [Path],
-    /// What each line is the shore of.
+    /// The water of each line.
     waters: &'a [u32],
     squares: HashMap<[i64; 2], Vec<(u32, u32)>>,
-    /// Line, segment, how far along it, and the point.
+    /// Line, segment, position along it (0 to 1), and the point.
     found: Vec<(u32, u32, f64, [f64; 2])>,
 }
 
 impl<'a> Joints<'a> {
-    /// Over these lines, whose points are columns and rows; `waters` numbers what each is the shore of.
+    /// An index over these lines, whose points are columns and rows; `waters` has the number of the water that each
+    /// line is the shore of.
     pub fn new(lines: &'a [Path], waters: &'a [u32]) -> Joints<'a> {
         let mut squares: HashMap<[i64; 2], Vec<(u32, u32)>> = HashMap::new();
         for (k, line) in lines.iter().enumerate() {
@@ -27,8 +28,8 @@ impl<'a> Joints<'a> {
         Joints { lines, waters, squares, found: Vec::new() }
     }
 
-    /// Where a path first meets the shore of a water: the number of the path's segment, how far along it, and the point. The point is put into the
-    /// line.
+    /// The first crossing of a path with the shore of a water: the index of the path's segment, the position along it
+    /// (0 to 1), and the point. The point is also inserted into the shore.
     pub fn first(&mut self, path: &[[f64; 3]], water: u32) -> Option<(usize, f64, [f64; 2])> {
         for (k, pair) in path.windows(2).enumerate() {
             let [a, b] = [pair[0], pair[1]].map(|[x, y, _]| [x, y]);
@@ -50,7 +51,7 @@ impl<'a> Joints<'a> {
             if let Some((along, line, segment, other)) = best {
                 let ends = &self.lines[line as usize][segment as usize..segment as usize + 2];
                 let at = match other {
-                    // An end of the segment is in the line already.
+                    // A crossing at an end of the segment: the point exists already.
                     0.0 => ends[0],
                     1.0 => ends[1],
                     other => {
@@ -67,7 +68,7 @@ impl<'a> Joints<'a> {
         None
     }
 
-    /// The point of a water's shore that is nearest to another, within a few samples.
+    /// The nearest point of a water's shore within a few samples.
     pub fn nearest(&self, [x, y]: [f64; 2], water: u32) -> Option<[f64; 2]> {
         let (column, row) = (x.floor() as i64, y.floor() as i64);
         let mut best: Option<(f64, [f64; 2])> = None;
@@ -83,19 +84,19 @@ impl<'a> Joints<'a> {
         best.map(|(_, at)| at)
     }
 
-    /// The points to put into the lines.
+    /// The points to insert into the lines.
     pub fn into_points(self) -> Points {
         Points(self.found)
     }
 }
 
-/// Points to put into lines.
+/// Points to insert into lines.
 pub struct Points(Vec<(u32, u32, f64, [f64; 2])>);
 
 impl Points {
-    /// Puts them in.
+    /// Inserts the points.
     pub fn insert(mut self, lines: &mut [Path]) {
-        // From the end of each line on, so that the numbers of earlier segments stay.
+        // From the end of each line, so that the indices of earlier segments stay valid.
         self.0.sort_by(|a, b| (b.0, b.1).cmp(&(a.0, a.1)).then(b.2.total_cmp(&a.2)));
         for (line, segment, _, at) in self.0 {
             let path = &mut lines[line as usize];
@@ -107,7 +108,7 @@ impl Points {
     }
 }
 
-/// The squares between samples that a segment's box touches.
+/// The squares between samples that the bounding box of a segment touches.
 fn touched(a: [f64; 2], b: [f64; 2], mut visit: impl FnMut([i64; 2])) {
     let span = |c: usize| (a[c].min(b[c]).floor() as i64, a[c].max(b[c]).floor() as i64);
     let ((west, east), (north, south)) = (span(0), span(1));
@@ -118,7 +119,7 @@ fn touched(a: [f64; 2], b: [f64; 2], mut visit: impl FnMut([i64; 2])) {
     }
 }
 
-/// How far along each of two segments they cross.
+/// The positions along each of two segments, 0 to 1, at which they cross.
 fn crossing(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> Option<[f64; 2]> {
     let [ux, uy] = [b[0] - a[0], b[1] - a[1]];
     let [vx, vy] = [d[0] - c[0], d[1] - c[1]];

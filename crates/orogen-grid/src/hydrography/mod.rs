@@ -1,6 +1,8 @@
-//! The water of heights as points, lines and areas: rivers that end at the shores of lakes and of the sea, lakes, watersheds, coasts, summits.
+//! Vector features of water and relief: rivers that end at the shores of lakes and of the sea, lakes, watersheds,
+//! coasts, summits.
 //!
-//! [`water::Water`] finds the drainage once; everything else is drawn from it. Positions are columns and rows of its grid.
+//! [`water::Water`] computes the drainage once; all features are derived from it. Positions are columns and rows of its
+//! grid.
 
 pub mod joints;
 pub mod outlines;

@@ -1,7 +1,8 @@
-//! Outlines of labelled samples: areas that tile the ground, their common borders the same to the last bit.
+//! Outlines of labelled samples: polygons that tile the plane, with bit-equal common borders.
 //!
-//! Each sample stands in the middle of a square; an area is the squares of one label. Corners of borders are cut (Chaikin) between the points where three
-//! areas meet, which stay: no border then crosses another, as each corner's cut lies in a triangle of its own.
+//! Each sample is the centre of a square; a polygon is the union of the squares of one label. Corners of borders are
+//! cut (Chaikin) between the nodes where three polygons meet, which stay fixed. Borders cannot cross, because each cut
+//! corner lies in a triangle of its own.
 
 use super::joints::Path;
 use super::shores::nested;
@@ -9,18 +10,18 @@ use crate::contour::chaikin::smooth;
 use crate::contour::line::Line;
 use crate::grid::Grid;
 
-/// What lies around the grid.
+/// The label outside the grid.
 const AROUND: u32 = u32::MAX;
 
 /// Steps along the sides of squares: east, south, west, north.
 const STEPS: [(i64, i64); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
-/// The area of each label from 1 to `count`: its parts, each an outer ring and holes, in columns and rows of the labels' lattice. Corners are cut `rounds`
-/// times.
+/// The polygons of each label from 1 to `count`: its parts, each an outer ring and holes, in columns and rows of the
+/// labels' lattice. Corners are cut `rounds` times.
 pub fn outlines(labels: &Grid<u32>, count: usize, rounds: usize) -> Vec<Vec<Vec<Path>>> {
     let squares = Squares { labels, width: labels.width() as i64, height: labels.height() as i64 };
     let mut rings: Vec<Vec<Path>> = vec![Vec::new(); count];
-    // Whether the upper side of a square has been walked along with the square on the left, which is to the west.
+    // Whether the upper side of a square was already walked westward, with the square on the left.
     let mut walked = vec![false; labels.data().len()];
     for j in 0..squares.height {
         for i in 0..squares.width {
@@ -68,7 +69,8 @@ impl Squares<'_> {
         }
     }
 
-    /// The ring around squares that hang together by their sides, beginning at the north-east corner of square (i, j), whose upper side is part of it.
+    /// The ring around squares connected by their sides. It starts at the north-east corner of square (i, j), whose
+    /// upper side belongs to the ring.
     fn walk(&self, i: i64, j: i64, label: u32, walked: &mut [bool]) -> Vec<(i64, i64)> {
         let start = (i + 1, j);
         let (mut at, mut step) = (start, 2);
@@ -80,7 +82,8 @@ impl Squares<'_> {
             }
             ring.push(at);
             at = (at.0 + STEPS[step].0, at.1 + STEPS[step].1);
-            // To the left where that stays beside the same squares, else ahead, else to the right: squares that touch at a corner are apart.
+            // Turns left if that keeps the same squares at the side, else goes ahead, else right: squares that touch
+            // only at a corner are not connected.
             step = [step + 3, step, step + 1]
                 .map(|step| step % 4)
                 .into_iter()
@@ -95,7 +98,7 @@ impl Squares<'_> {
         }
     }
 
-    /// Whether more than two borders meet at a corner, or it is a corner of the grid.
+    /// Whether a corner is a node: more than two borders meet there, or it is a corner of the grid.
     fn is_node(&self, at: (i64, i64)) -> bool {
         let corner = (at.0 == 0 || at.0 == self.width) && (at.1 == 0 || at.1 == self.height);
         let borders = (0..4).filter(|step| {
@@ -105,7 +108,7 @@ impl Squares<'_> {
         corner || borders.count() > 2
     }
 
-    /// A ring with its corners cut between nodes, in columns and rows; straight parts have no points but their ends.
+    /// A ring with its corners cut between nodes, in columns and rows. Straight parts keep only their end points.
     fn smoothed(&self, ring: &[(i64, i64)], rounds: usize) -> Path {
         let point = |at: &(i64, i64)| [at.0 as f64, at.1 as f64];
         let line = |points: Vec<[f64; 2]>, closed| Line { elevation: 0.0, level: 0, closed, points };
@@ -127,14 +130,14 @@ impl Squares<'_> {
     }
 }
 
-/// A closed ring without the points that lie on a straight line between their neighbours, but for those that are to stay.
+/// A closed ring without the points on a straight line between their neighbours, except for fixed points.
 fn straightened(points: &[[f64; 2]], fixed: &[[f64; 2]]) -> Path {
     let count = points.len();
     let mut next_fixed = fixed.iter().peekable();
     let mut kept: Path = Vec::with_capacity(count + 1);
     for k in 0..count {
         let ([ax, ay], [x, y], [bx, by]) = (points[(k + count - 1) % count], points[k], points[(k + 1) % count]);
-        // Nodes come in the order of the ring.
+        // Nodes are in the order of the ring.
         let stays = next_fixed.next_if(|node| **node == [x, y]).is_some();
         if stays || (x - ax) * (by - y) != (y - ay) * (bx - x) {
             kept.push([x, y]);
@@ -144,7 +147,7 @@ fn straightened(points: &[[f64; 2]], fixed: &[[f64; 2]]) -> Path {
     kept
 }
 
-/// A ring as rings that do not touch themselves.
+/// Splits a ring into rings that do not touch themselves.
 fn parted(ring: Vec<(i64, i64)>) -> Vec<Vec<(i64, i64)>> {
     let mut places = std::collections::HashMap::with_capacity(ring.len());
     let mut open: Vec<(i64, i64)> = Vec::new();

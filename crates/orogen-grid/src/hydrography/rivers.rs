@@ -1,7 +1,8 @@
-//! Rivers as lines: reaches over land, from springs, confluences and lakes to confluences, lakes, the sea and the border.
+//! Rivers as lines: reaches over land, from sources, confluences and lakes to confluences, lakes, the sea and the
+//! border.
 //!
-//! Where a reach meets a shore, line and shore share a point. Reaches that meet share one too. Heights along a reach never rise, nor where one goes on in
-//! the next.
+//! A reach that meets a shore shares a point with it. Reaches that meet share a point too. Heights never rise along a
+//! reach, nor from a reach to the next.
 
 use std::collections::HashMap;
 
@@ -9,27 +10,27 @@ use super::joints::Joints;
 use super::shores::Shores;
 use super::water::{Cover, Frame, Water};
 
-/// Where a reach begins.
+/// The start of a reach.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
-    /// Where enough ground drains together, or where reaches meet.
+    /// A source or a confluence.
     Land,
-    /// In a lake, by its number from 1.
+    /// A lake, by its number from 1.
     Lake(u32),
-    /// Where it comes in from outside, or out of samples without heights.
+    /// The border of the frame, or samples without heights.
     Border,
 }
 
-/// Where a reach ends.
+/// The end of a reach.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mouth {
-    /// In another reach, by its index.
+    /// Another reach, by its index.
     Reach(u32),
-    /// In a lake, by its number from 1.
+    /// A lake, by its number from 1.
     Lake(u32),
-    /// In the sea.
+    /// The sea.
     Sea,
-    /// Where the land ends that is looked at.
+    /// The border of the frame.
     Border,
 }
 
@@ -38,23 +39,23 @@ pub enum Mouth {
 pub struct River {
     /// Column, row and height of each point, downstream.
     pub points: Vec<[f64; 3]>,
-    /// Strahler's order.
+    /// Strahler order.
     pub order: u8,
-    /// Samples that drain to its end.
+    /// Number of samples that drain to its end.
     pub drained: u32,
-    /// The first sample of land that it runs through.
+    /// The first land sample of the reach.
     pub start: u32,
-    /// The last sample that is its alone: behind it is another reach, or water.
+    /// The last sample that belongs to this reach only; the next one belongs to another reach or to water.
     pub end: u32,
-    /// Where it begins.
+    /// The start of the reach.
     pub source: Source,
-    /// Where it ends.
+    /// The end of the reach.
     pub mouth: Mouth,
-    /// The reach that its water flows on in, behind a lake if it ends in one.
+    /// The reach that its water continues in, beyond the lake if it ends in one.
     pub downstream: Option<u32>,
 }
 
-/// A stretch over land while it is put together.
+/// A stretch over land during construction.
 struct Stretch {
     cells: Vec<usize>,
     order: u8,
@@ -62,7 +63,7 @@ struct Stretch {
     mouth: End,
 }
 
-/// Where a stretch ends, before reaches are numbered.
+/// The end of a stretch, before reaches are numbered.
 #[derive(Clone, Copy)]
 enum End {
     /// At the first cell of another reach of the network.
@@ -72,13 +73,13 @@ enum End {
     Border,
 }
 
-/// The number of the sea among waters whose others are lakes, from 1.
+/// The number of the sea; lakes are numbered from 1.
 const SEA: u32 = 0;
 
-/// The reaches within a frame, the stairs of their cells evened out `rounds` times. Their crossings with the shores are put into these.
+/// The reaches within a frame, smoothed `rounds` times. Their crossings with the shores are inserted into `shores`.
 pub fn rivers(water: &Water, frame: &Frame, rounds: usize, shores: &mut Shores) -> Vec<River> {
     let mut stretches: Vec<Stretch> = Vec::new();
-    // The stretch that a reach of the network begins with, and the one that leaves a lake.
+    // The first stretch of each reach of the network, and the stretch that leaves each lake.
     let mut of_network: HashMap<u32, u32> = HashMap::new();
     let mut of_lake: HashMap<u32, u32> = HashMap::new();
     for (k, reach) in water.reaches.iter().enumerate() {
@@ -124,7 +125,7 @@ pub fn rivers(water: &Water, frame: &Frame, rounds: usize, shores: &mut Shores) 
     made
 }
 
-/// The last cell that is the stretch's alone: the one behind it is the next reach's, or water.
+/// The last cell that belongs to the stretch only; the next one belongs to the next reach or to water.
 fn last_own(stretch: &Stretch) -> usize {
     let count = stretch.cells.len();
     match stretch.mouth {
@@ -133,7 +134,8 @@ fn last_own(stretch: &Stretch) -> usize {
     }
 }
 
-/// Cuts a reach of the network where it runs into water and out of it, and at the frame. Each stretch also has the first cell of the water at its ends.
+/// Splits a reach of the network where it enters or leaves water, and at the frame. Each stretch also holds the first
+/// water cell at its ends.
 fn cut(water: &Water, frame: &Frame, cells: &[usize], order: u8, next: Option<u32>) -> Vec<Stretch> {
     let mut stretches = Vec::new();
     let mut part: Vec<usize> = Vec::new();
@@ -208,15 +210,15 @@ fn line(water: &Water, stretch: &Stretch, mouth: Mouth, rounds: usize, joints: &
     points
 }
 
-/// Ends a line that leads into a water at its shore. The height there is that of the water.
+/// Ends a line at the shore of the water that it leads into. The height there is that of the water.
 fn end_at(points: &mut Vec<[f64; 3]>, raw: &[[f64; 3]], joints: &mut Joints, water: u32) {
     let [.., land, wet] = raw else { return };
     let level = wet[2];
-    // The part near its end: evened out, a line runs no further beside the cells it came from.
+    // Only the part near the end is searched: a smoothed line stays close to its cells.
     const NEAR: usize = 12;
     let start = points.len().saturating_sub(NEAR);
     if let Some((k, along, at)) = joints.first(&points[start..], water) {
-        // At least one point of the line itself is left.
+        // At least one point of the line itself remains.
         let keep = (start + k + usize::from(along > 0.0)).max(1);
         points.truncate(keep);
         points.push([at[0], at[1], level]);
@@ -230,8 +232,7 @@ fn end_at(points: &mut Vec<[f64; 3]>, raw: &[[f64; 3]], joints: &mut Joints, wat
     }
 }
 
-/// A line with the stairs of its cells evened out, by means of three points with weights of 1, 2 and 1; its ends stay. What falls all the way still
-/// does.
+/// Smooths a line by weighted means of three points (1, 2, 1); its ends stay. A descending line stays descending.
 pub fn even(points: &[[f64; 3]], rounds: usize) -> Vec<[f64; 3]> {
     let mut points = points.to_vec();
     for _ in 0..rounds {

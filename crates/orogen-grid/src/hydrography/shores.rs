@@ -1,4 +1,4 @@
-//! Shores: lakes as areas with islands, and the coast of the sea, between the samples where the level of the water lies.
+//! Shores: lakes as polygons with islands, and the coast of the sea, interpolated between samples at the water level.
 
 use std::collections::BTreeMap;
 
@@ -10,21 +10,22 @@ use crate::contour::trace::contours;
 use crate::error::Result;
 use crate::grid::{Grid, Window};
 
-/// What stands for just above or below the level where a sample is exactly on it, in metres.
+/// Offset in metres that replaces an exact 0, for a sample exactly at the water level.
 const HARDLY: f32 = 1e-3;
 
-/// The shores of lakes and of the sea, lines in columns and rows. With north up, land lies to the right of the shore of a lake, as one goes along it, and to
-/// the left of the coast of the sea.
+/// The shores of lakes and of the sea, as lines in columns and rows. With north up, land is to the right of the shore
+/// of a lake, in the direction of the line, and to the left of the coast of the sea.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Shores {
-    /// Rings, whose last point repeats their first; coasts of the sea may be open.
+    /// Rings whose last point repeats the first; coasts of the sea may be open.
     pub lines: Vec<Path>,
-    /// What each is the shore of: the number of a lake, or 0 for the sea.
+    /// The water of each line: the number of a lake, or 0 for the sea.
     pub waters: Vec<u32>,
 }
 
 impl Shores {
-    /// All shores within a frame, their corners cut `rounds` times. Lakes that reach beyond the frame are closed along it.
+    /// All shores within a frame, with corners cut `rounds` times. Lakes that extend beyond the frame are closed along
+    /// it.
     ///
     /// # Errors
     /// If there are more than can be numbered.
@@ -49,7 +50,7 @@ impl Shores {
         self.lines.iter().zip(&self.waters).filter(|(_, water)| **water == 0).map(|(line, _)| line)
     }
 
-    /// Lakes as areas, in the order of their numbers.
+    /// The lakes as polygons, in the order of their numbers.
     pub fn areas(&self) -> Vec<LakeArea> {
         let mut of_lake: BTreeMap<u32, Vec<&Path>> = BTreeMap::new();
         for (line, lake) in self.lines.iter().zip(&self.waters).filter(|(_, water)| **water > 0) {
@@ -62,17 +63,17 @@ impl Shores {
     }
 }
 
-/// A lake as an area: parts, each an outer ring and the islands in it.
+/// A lake as a multipolygon: parts, each an outer ring and its islands.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LakeArea {
-    /// The lake, from 1.
+    /// The number of the lake, from 1.
     pub lake: u32,
-    /// Its parts, the largest first.
+    /// The parts, the largest first.
     pub parts: Vec<Vec<Path>>,
 }
 
-/// Depth of water in the lakes of a frame and one sample around it, and below 0 how far the land beside them rises over it. Around the frame there is a wall
-/// so high that shores run along the outermost samples.
+/// Depth of the water in the lakes of a frame and one sample around it; negative values are the height of the adjacent
+/// land above the water. A high wall around the frame makes shores follow its outermost samples.
 fn depths(water: &Water, frame: &Frame) -> Grid {
     const WALL: f32 = -1e30;
     let (columns, rows) = (&frame.columns, &frame.rows);
@@ -98,7 +99,7 @@ fn depths(water: &Water, frame: &Frame) -> Grid {
     depth
 }
 
-/// How far the samples of a frame rise over the sea. Samples at its level are sea.
+/// The height of a frame's samples above the sea. Samples at sea level are sea.
 fn over_the_sea(water: &Water, frame: &Frame, sea: f32) -> Option<Grid> {
     let (columns, rows) = (&frame.columns, &frame.rows);
     let window = Window::new(columns.len(), rows.len(), 1.0).at(columns.start as i64, rows.start as i64);
@@ -107,7 +108,7 @@ fn over_the_sea(water: &Water, frame: &Frame, sea: f32) -> Option<Grid> {
     Grid::from_data(window, rows.clone().flat_map(of_row).collect())
 }
 
-/// The lake at one of the two samples that a crossing lies between.
+/// The lake at one of the two samples next to a crossing.
 fn wet_beside([x, y]: [f64; 2], labels: &Grid<u32>) -> Option<u32> {
     let ends = |v: f64| [v.floor() as usize, v.ceil() as usize];
     let ([west, east], [north, south]) = (ends(x), ends(y));
@@ -115,13 +116,14 @@ fn wet_beside([x, y]: [f64; 2], labels: &Grid<u32>) -> Option<u32> {
     [there(west, north), there(east, south)].into_iter().flatten().find(|label| *label > 0)
 }
 
-/// Rings as parts: each outer ring with the holes that lie in it, the largest first.
+/// Groups rings into parts: each outer ring with its holes, the largest first.
 pub fn nested(rings: Vec<&Path>) -> Vec<Vec<Path>> {
     let (outer, holes): (Vec<&Path>, Vec<&Path>) = rings.into_iter().partition(|ring| twice_area(ring) > 0.0);
     let mut parts: Vec<Vec<Path>> = outer.into_iter().map(|ring| vec![ring.clone()]).collect();
     parts.sort_by(|a, b| twice_area(&b[0]).total_cmp(&twice_area(&a[0])));
     for hole in holes {
-        // A hole may touch the ring around it, but not along an edge. The smallest part that holds it: they are sorted.
+        // A hole may touch the ring around it, but not along an edge. It belongs to the smallest part that contains it;
+        // parts are sorted.
         let at = match hole.as_slice() {
             [[ax, ay], [bx, by], ..] => [(ax + bx) / 2.0, (ay + by) / 2.0],
             _ => continue,
@@ -137,7 +139,7 @@ pub fn nested(rings: Vec<&Path>) -> Vec<Vec<Path>> {
     parts
 }
 
-/// Whether a ring holds a point: a line from there to the west crosses it an odd number of times.
+/// Whether a ring contains a point (even-odd rule).
 fn holds(ring: &Path, [x, y]: [f64; 2]) -> bool {
     let mut inside = false;
     for pair in ring.windows(2) {

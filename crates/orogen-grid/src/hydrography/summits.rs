@@ -1,4 +1,4 @@
-//! Summits with their prominence: how far one has to go down from each to reach higher ground.
+//! Summits with their prominence.
 
 use rayon::prelude::*;
 
@@ -12,22 +12,23 @@ pub struct Summit {
     pub place: [usize; 2],
     /// Its height.
     pub height: f32,
-    /// Metres down to the key col; of the highest one, to the lowest ground, or to the sea.
+    /// Metres down to the key col; for the highest summit, to the lowest ground or to the sea.
     pub prominence: f32,
-    /// Column and row of the key col, the highest pass to higher ground; none of the highest.
+    /// Column and row of the key col, the highest pass to higher ground; none for the highest summit.
     pub col: Option<[usize; 2]>,
 }
 
-/// Bytes for each sample that the search takes.
+/// Memory per sample of the search, in bytes.
 pub const MEMORY: u64 = 16;
 
 const NOT_YET: u32 = u32::MAX;
 
-/// The summits of at least this prominence within a frame, the most prominent first. None is in the sea or at the border of the frame, where ground may go
-/// on rising.
+/// The summits within a frame with at least this prominence, in metres, the most prominent first. Samples in the sea
+/// and at the border of the frame, where the ground may continue to rise, are excluded.
 ///
-/// Samples are taken from the highest down and joined to those beside them; where two hills meet, the lower one's summit has found its key col
-/// (union-find over the samples, O(n log n)). Of equal heights the first in row order is the higher.
+/// Samples are processed from the highest down and joined to their processed neighbours. Where two hills meet, the
+/// sample is the key col of the lower summit (union-find, O(n log n)). Of equal heights the first in row order counts
+/// as higher.
 pub fn summits(heights: &Grid, frame: &Frame, sea_level: Option<f32>, least: f32) -> Vec<Summit> {
     let (columns, rows) = (&frame.columns, &frame.rows);
     let (width, height) = (columns.len(), rows.len());
@@ -37,7 +38,7 @@ pub fn summits(heights: &Grid, frame: &Frame, sea_level: Option<f32>, least: f32
     order.retain(|cell| at(*cell as usize).is_finite());
     order.par_sort_unstable_by(|a, b| at(*b as usize).total_cmp(&at(*a as usize)).then(a.cmp(b)));
     let Some(lowest) = order.last().map(|cell| at(*cell as usize)) else { return Vec::new() };
-    // The hill that each sample is part of, by its parent; that of a summit is itself.
+    // The hill of each sample, by its parent; a summit is its own parent.
     let mut parents = vec![NOT_YET; width * height];
     let higher = |a: u32, b: u32| (at(a as usize), b) > (at(b as usize), a);
     let mut found: Vec<(u32, f32, Option<u32>)> = Vec::new();
@@ -56,7 +57,7 @@ pub fn summits(heights: &Grid, frame: &Frame, sea_level: Option<f32>, least: f32
                 }
                 let (upper, lower) = if higher(a, b) { (a, b) } else { (b, a) };
                 parents[lower as usize] = upper;
-                // A sample that joins the hill beside it has been no summit.
+                // A sample that only joins an existing hill is not a summit.
                 if lower != *cell {
                     found.push((lower, at(lower as usize) - at(*cell as usize), Some(*cell)));
                 }
@@ -86,7 +87,7 @@ pub fn summits(heights: &Grid, frame: &Frame, sea_level: Option<f32>, least: f32
     summits
 }
 
-/// The summit of the hill that a sample is part of; the way to it is made shorter.
+/// The summit of the hill of a sample, with path compression.
 fn root(parents: &mut [u32], from: u32) -> u32 {
     let mut at = from;
     while parents[at as usize] != at {

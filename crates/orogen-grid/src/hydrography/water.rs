@@ -1,4 +1,4 @@
-//! The water of a grid of heights: where it runs, how much of it, and where it stands.
+//! The water of a grid of heights: drainage, rivers, lakes and the sea.
 
 use std::ops::Range;
 
@@ -14,29 +14,30 @@ use crate::hydrology::steepest::Descent;
 use crate::hydrology::strahler;
 use crate::progress::Progress;
 
-/// What counts as water.
+/// Thresholds of rivers and lakes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Least {
-    /// Samples that drain to where a river begins.
+    /// Samples that must drain to the source of a river.
     pub spring: u32,
-    /// Samples that a lake covers.
+    /// Minimum area of a lake, in samples.
     pub lake: u32,
-    /// Metres that it is deep.
+    /// Minimum depth of a lake, in metres.
     pub depth: f32,
-    /// Whether water goes down by scattered steps: on heights that are smooth between few samples steepest ones run in parallel.
+    /// Whether receivers are random: on heights that are smooth at the scale of a few samples, steepest descent gives
+    /// parallel lines.
     pub scattered: bool,
 }
 
-/// What a sample is.
+/// The cover of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cover {
-    /// Dry land.
+    /// Land without water.
     Land,
     /// A lake, by its number from 1.
     Lake(u32),
-    /// Sea.
+    /// The sea.
     Sea,
-    /// Not known: the sample has no height.
+    /// Unknown: the sample has no height.
     Missing,
 }
 
@@ -45,24 +46,24 @@ pub enum Cover {
 pub struct Water {
     /// The heights.
     pub heights: Grid,
-    /// The heights of dry land, raised where it lies in a depression that is no lake until water runs off it; the level of lakes. Along the receivers
-    /// it falls, or is level.
+    /// Land: the heights, with depressions that are not lakes raised until they drain. Lakes: their level. The surface
+    /// never rises along the receivers.
     pub surface: Grid,
-    /// Where each sample drains to.
+    /// The receiver of each sample.
     pub receivers: Receivers,
-    /// Samples that drain through each, itself included.
+    /// Number of samples that drain through each sample, including itself.
     pub area: Grid<u32>,
-    /// The lake that covers each sample, from 1; 0 on land.
+    /// The lake at each sample, from 1; 0 on land.
     pub labels: Grid<u32>,
-    /// The lakes, by their number less 1.
+    /// The lakes; lake k is at index k - 1.
     pub lakes: Vec<Lake>,
-    /// The reaches of rivers, from spring or confluence to confluence or outlet, under lakes too.
+    /// The reaches of rivers, from source or confluence to confluence or outlet, also below lakes.
     pub reaches: Vec<Reach>,
-    /// The height of the sea's surface.
+    /// The height of the sea.
     pub sea_level: Option<f32>,
 }
 
-/// Columns and rows of the grid that is looked at.
+/// A range of columns and rows of the grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     /// Columns.
@@ -72,23 +73,23 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The frame of all of a grid.
+    /// The frame of the whole grid.
     pub fn whole(water: &Water) -> Frame {
         Frame { columns: 0..water.heights.width(), rows: 0..water.heights.height() }
     }
 
-    /// Whether a sample is in it.
+    /// Whether the frame contains a sample.
     pub fn holds(&self, water: &Water, cell: usize) -> bool {
         let width = water.heights.width().max(1);
         self.columns.contains(&(cell % width)) && self.rows.contains(&(cell / width))
     }
 }
 
-/// Bytes for each sample that finding the water takes, the heights included.
+/// Memory per sample for computing the water, in bytes, including the heights.
 pub const MEMORY: u64 = 44;
 
 impl Water {
-    /// Finds the water. On a grid of fewer than three columns or rows there is none.
+    /// Computes the water of a grid. A grid of fewer than three columns or rows has none.
     ///
     /// # Errors
     /// If the work was cancelled.
@@ -101,7 +102,7 @@ impl Water {
         let receivers = drainage.receivers;
         drop(drainage.basins);
         progress.check()?;
-        // Lakes that are not deep enough are none; the others are numbered anew.
+        // Shallow lakes are dropped, and the others renumbered.
         let mut kept = vec![0u32];
         let mut deep = Vec::new();
         for lake in &found.lakes {
@@ -126,7 +127,7 @@ impl Water {
         })
     }
 
-    /// What a sample is.
+    /// The cover of a sample.
     pub fn cover(&self, cell: usize) -> Cover {
         let height = self.heights.data()[cell];
         match self.labels.data()[cell] {

@@ -3,19 +3,19 @@
 use super::rivers::{Mouth, River};
 use super::water::{Cover, Frame, Water};
 
-/// Which watershed each sample of a frame belongs to.
+/// The watershed of each sample of a frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Watersheds {
-    /// Row after row of the frame: numbers from 1; 0 for the sea.
+    /// Labels from 1, row-major over the frame; 0 for the sea.
     pub labels: Vec<u32>,
-    /// For each number less 1, the index of the reach that ends at the mouth; none of land that no river drains.
+    /// For label k, at index k - 1: the index of the reach that ends at the mouth; none for land that no river drains.
     pub rivers: Vec<Option<u32>>,
 }
 
 const UNKNOWN: u32 = u32::MAX;
 
-/// The watersheds of all reaches that end in the sea or at the border of a frame, in the order of the reaches; then what land is left, a number for each
-/// stretch of it that hangs together by the sides of samples. Costs O(samples).
+/// The watersheds of all reaches that end in the sea or at the border of a frame, in the order of the reaches; then the
+/// remaining land, one label per part connected by the sides of samples. Costs O(samples).
 pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds {
     let width = water.heights.width();
     let mut labels = vec![UNKNOWN; water.heights.data().len()];
@@ -23,7 +23,7 @@ pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds
     for (k, reach) in reaches.iter().enumerate().filter(|(_, reach)| matches!(reach.mouth, Mouth::Sea | Mouth::Border))
     {
         rivers.push(Some(k as u32));
-        // Another reach that joins it there shares its watershed.
+        // Another reach that joins at that sample shares its watershed.
         let label = &mut labels[reach.end as usize];
         if *label == UNKNOWN {
             *label = rivers.len() as u32;
@@ -31,7 +31,7 @@ pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds
             rivers.pop();
         }
     }
-    // Down from each sample to what is known, and back.
+    // Follow the receivers to a known label, and assign it to the path.
     let mut way: Vec<u32> = Vec::new();
     for start in 0..labels.len() {
         let mut at = start;

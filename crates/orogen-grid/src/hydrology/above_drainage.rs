@@ -1,28 +1,29 @@
-//! How high and how far ground lies above the stream that it drains to.
+//! Height and distance above the stream that a cell drains to.
 
 use super::accumulation::Accumulation;
 use super::direction::DISTANCES;
 use super::receivers::Receivers;
 use crate::grid::Grid;
 
-/// Where each cell lies beside the stream that it drains to.
+/// Position of each cell relative to the stream that it drains to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AboveDrainage {
     /// Height above nearest drainage, in the unit of the surface.
     pub height: Grid,
-    /// Length of the way down to the stream, in the unit of the cell.
+    /// Length of the flow path to the stream, in the unit of the cell.
     pub distance: Grid,
 }
 
-/// Height above nearest drainage (Rennó and others, "HAND, a new terrain descriptor using SRTM-DEM", 2008; Nobre and others 2011) over a surface that falls along
-/// its receivers, and the length of the way there: from each cell down the receivers to the first that drains `threshold` cells or more, or, where there is
-/// none on the way, to where water leaves the map. Both are 0 in streams and at outlets.
+/// Height above nearest drainage (Rennó and others, "HAND, a new terrain descriptor using SRTM-DEM", 2008; Nobre and
+/// others 2011), and the length of the flow path. `surface` must fall along `receivers`. The path follows the receivers
+/// to the first cell that drains at least `threshold` cells, or, if there is none, to the outlet. Both layers are 0 in
+/// streams and at outlets.
 ///
-/// Holds 12 bytes a cell. Costs O(cells).
+/// Holds 12 bytes per cell. Costs O(cells).
 pub fn above_drainage(surface: Grid, receivers: &Receivers, drained: &Accumulation, threshold: u32) -> AboveDrainage {
     let window = *surface.window();
     let mut distance = vec![0.0f64; window.len()];
-    // Heights of the streams first, then what is above them.
+    // Heights of the streams first, then the difference.
     let mut base = surface.data().to_vec();
     for cell in drained.downstream_first() {
         let receiver = receivers.of(cell);

@@ -1,38 +1,39 @@
-//! How much ground drains through each cell.
+//! Flow accumulation: the area that drains through each cell.
 
 use super::direction::{neighbour, strides};
 use super::receivers::Receivers;
 use crate::grid::Grid;
 use rayon::prelude::*;
 
-/// What drains where: each cell's area, and orders to walk the cells in.
+/// The drainage area of each cell, and orders for walking the cells.
 #[derive(Debug, Clone)]
 pub struct Accumulation {
-    /// Cells that drain through each cell, itself included. Whole numbers: the same whatever order they were added in.
+    /// Number of cells that drain through each cell, including itself. Integers, so the result does not depend on the
+    /// order of addition.
     pub area: Grid<u32>,
-    /// Cells that water from other bands runs through, each after its receiver. All that these drain to is here too.
+    /// Cells that receive water from other bands, each after its receiver. Their receivers are included too.
     trunk: Vec<u32>,
     bands: Vec<Band>,
 }
 
-/// Rows whose cells, but for the trunk's, can be walked without looking at other bands.
+/// Rows whose cells, except those of the trunk, can be walked without reading other bands.
 #[derive(Debug, Clone)]
 pub(super) struct Band {
-    /// Its first cell, and the one after its last.
+    /// The first cell, and the one after the last.
     pub cells: std::ops::Range<usize>,
-    /// Its cells that are not the trunk's, each after its receiver.
+    /// Cells outside the trunk, each after its receiver.
     pub order: Vec<u32>,
 }
 
 impl Band {
-    /// Orders and counts a band's cells, `donors` being its own and `area` all ones.
+    /// Orders and counts the cells of a band. `donors` are the band's own; `area` is all ones.
     ///
-    /// Each walk begins where nothing flows in and goes on downstream until it meets a cell that still waits for another inflow,
-    /// so every cell is visited once, and cells that lie near each other are near each other in the order.
+    /// Each walk starts at a cell without inflow and continues downstream until it reaches a cell that waits for
+    /// another inflow. Every cell is visited once, and the order keeps nearby cells together.
     fn new(receivers: &Receivers, trunk: &[u32], start: usize, donors: &[u8], area: &mut [u32]) -> Band {
         let cells = start..start + area.len();
         let mut waiting: Vec<u8> = donors.iter().map(|set| set.count_ones() as u8).collect();
-        // What is done waits for ever, and so does the trunk: no walk begins or goes on there.
+        // A cell that is done never becomes ready again, and neither does the trunk: no walk starts or continues there.
         const DONE: u8 = 255;
         for cell in trunk.iter().map(|cell| *cell as usize).filter(|cell| cells.contains(cell)) {
             waiting[cell - start] = DONE;
@@ -43,7 +44,7 @@ impl Band {
             while waiting[cell] == 0 {
                 waiting[cell] = DONE;
                 order.push((start + cell) as u32);
-                // Above the band it wraps around, to beyond the band's end.
+                // A receiver above the band wraps around to beyond the band's end.
                 let receiver = receivers.of(start + cell).wrapping_sub(start);
                 if receiver == cell || waiting.get(receiver).is_none_or(|waits| *waits == DONE) {
                     break;
@@ -59,39 +60,39 @@ impl Band {
 }
 
 impl Accumulation {
-    /// Every cell once, each after its receiver.
+    /// Iterates over every cell once, each after its receiver.
     pub fn downstream_first(&self) -> impl DoubleEndedIterator<Item = usize> {
         let bands = self.bands.iter().flat_map(|band| &band.order);
         self.trunk.iter().chain(bands).map(|cell| *cell as usize)
     }
 
-    /// Every cell once, each before its receiver.
+    /// Iterates over every cell once, each before its receiver.
     pub fn upstream_first(&self) -> impl DoubleEndedIterator<Item = usize> {
         self.downstream_first().rev()
     }
 
-    /// The cells that several bands share, each after its receiver, and the bands.
+    /// The trunk, each cell after its receiver, and the bands.
     pub(super) fn parts(&self) -> (&[u32], &[Band]) {
         (&self.trunk, &self.bands)
     }
 }
 
-/// Counts the cells that drain through each cell: O(cells), on as many threads as there are.
+/// Counts the cells that drain through each cell: O(cells), on all threads of the pool.
 ///
-/// Each thread takes bands of rows. What water from another band runs through is the trunk, a few cells in a hundred; all else
-/// is ordered and counted band by band. A cell on a circle of receivers would never be visited; what makes receivers in this
-/// room makes no circles.
+/// Each thread takes bands of rows. The trunk holds the cells that receive water from another band, a few per cent; all
+/// other cells are ordered and counted band by band. `receivers` must have no cycles, because cells on a cycle are
+/// never visited; the functions of this module make none.
 pub fn accumulate(receivers: &Receivers) -> Accumulation {
     let threads = rayon::current_num_threads();
-    // A band for a thread is enough where there is one; more even out what they have to do.
+    // With one thread, one band; with more, three per thread to balance the load.
     let bands = if threads == 1 { 1 } else { 3 * threads };
     accumulate_in(receivers, receivers.window().height.div_ceil(bands).max(FEWEST_ROWS))
 }
 
-/// Rows of a band at least: the trunk grows with the number of bands.
+/// Minimum number of rows of a band: the trunk grows with the number of bands.
 const FEWEST_ROWS: usize = 128;
 
-/// The same by bands of `rows` rows.
+/// [`accumulate`] with bands of `rows` rows.
 fn accumulate_in(receivers: &Receivers, rows: usize) -> Accumulation {
     let window = *receivers.window();
     let mut area = vec![1u32; window.len()];
@@ -116,11 +117,11 @@ fn accumulate_in(receivers: &Receivers, rows: usize) -> Accumulation {
     Accumulation { area, trunk: trunk.order, bands }
 }
 
-/// What water from other bands runs through.
+/// Cells that receive water from other bands.
 struct Trunk {
-    /// Each after its receiver.
+    /// The cells, each after its receiver.
     order: Vec<u32>,
-    /// Whether a cell is among them; empty if there is one band.
+    /// Whether each cell belongs to the trunk; empty if there is one band.
     marks: Vec<bool>,
 }
 
@@ -141,7 +142,7 @@ impl Trunk {
         trunk
     }
 
-    /// Takes in all that lies downstream, down to what has been taken in before.
+    /// Adds the cells downstream of `from`, up to the first one that is already included.
     fn follow(&mut self, receivers: &Receivers, from: usize) {
         let (start, mut cell) = (self.order.len(), from);
         while !self.marks[cell] {

@@ -1,11 +1,12 @@
-//! Basins: the ground that drains to one pit, and the passes between them.
+//! Basins: the cells that drain to one pit, and the passes between them.
 //!
-//! Filling, carving and lakes all need the same thing: for each pit, how high water must rise before it finds its way out, and
-//! over which pass. Instead of flooding cell by cell (Priority-Flood, Barnes, Lehman and Mulla 2014) the flood runs over the
-//! graph of basins, as in Barnes, "Parallel Priority-Flood depression filling for trillion cell digital elevation models"
-//! (2016), and Cordonnier, Bovy and Braun, "A versatile, linear complexity algorithm for flow routing in topographies with
-//! depressions" (2019): a few per cent as many nodes as cells. The water levels are the same to the bit, since both are the
-//! least over all ways out of the highest cell on the way.
+//! Filling, carving and lakes all need, for each pit, the level at which water spills and the pass over which it
+//! leaves. Instead of flooding cell by cell (Priority-Flood, Barnes, Lehman and Mulla 2014) this module floods the
+//! graph of basins, as in Barnes, "Parallel Priority-Flood depression filling for trillion cell digital elevation
+//! models" (2016), and Cordonnier, Bovy and Braun, "A versatile, linear complexity algorithm for flow routing in
+//! topographies with depressions" (2019). The graph has a few per cent as many nodes as the map has cells. The water
+//! levels have the same bits, because both algorithms take, over all paths to an outlet, the minimum of the highest
+//! cell on the path.
 
 use super::direction::{NONE, neighbour, opposite, strides};
 use super::outlets::Outlets;
@@ -15,41 +16,41 @@ use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 use std::hash::{BuildHasherDefault, Hasher};
 
-/// The basin that all outlets share: the outside.
+/// The label of all cells that drain to an outlet.
 pub const OUTSIDE: u32 = 0;
 
-/// A map's basins, and how water leaves each.
+/// The basins of a map, and their spills.
 #[derive(Debug, Clone)]
 pub struct Basins {
-    /// The basin of each cell, row-major; [`OUTSIDE`] for all that drains to an outlet.
+    /// The basin of each cell, row-major; [`OUTSIDE`] for cells that drain to an outlet.
     pub labels: Vec<u32>,
-    /// One a basin, by its label. That of the outside is empty.
+    /// The spill of each basin, indexed by label. The entry of the outside is empty.
     pub spills: Vec<Spill>,
-    /// The labels of all basins but the outside, each after the one that its way out leads to.
+    /// The labels of all basins except the outside, each after the basin that it spills into.
     pub order: Vec<u32>,
 }
 
-/// How water leaves a basin.
+/// The spill of a basin: where and at which level water leaves it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spill {
-    /// The height that water reaches: the highest cell on the best way from the pit to an outlet.
+    /// The water level: the highest cell on the lowest path from the pit to an outlet.
     pub level: f32,
-    /// The cell at the bottom of the basin.
+    /// The lowest cell of the basin.
     pub pit: u32,
-    /// The basin's last cell on the way out.
+    /// The last cell of the basin on that path.
     pub last: u32,
-    /// The direction of the step out of the basin.
+    /// The direction of the step from `last` into the next basin.
     pub code: u8,
-    /// The basin that the step leads to.
+    /// The basin that it spills into.
     pub next: u32,
 }
 
-/// Finds the basins of `receivers`, in which every cell must lead to an outlet or to a single pit (see
-/// [`flats::resolve`](super::flats::resolve)), and floods them.
+/// Finds the basins of `receivers` and floods them. Every cell must lead to an outlet or to a single pit (see
+/// [`flats::resolve`](super::flats::resolve)).
 ///
-/// Among equally low passes the first in row order is taken. Costs O(cells + basins log basins).
+/// Of equally low passes the first in row order is used. Costs O(cells + basins log basins).
 ///
-/// `phase` is called after each of the three phases, and ends the work with its error.
+/// `phase` is called after each of the three phases; its error ends the work.
 pub(super) fn find_basins<E>(
     heights: &Grid,
     outlets: &Outlets,
@@ -71,7 +72,8 @@ pub(super) fn find_basins<E>(
     Ok(basins)
 }
 
-/// The basin of each cell and the pit of each basin; the outside's is no cell. Only what drains to a pit is walked over.
+/// The basin of each cell and the pit of each basin (no cell for the outside). Only cells that drain to a pit are
+/// visited.
 fn label(outlets: &Outlets, receivers: &Receivers) -> (Vec<u32>, Vec<u32>) {
     let codes = receivers.codes();
     let mut labels = vec![OUTSIDE; codes.len()];
@@ -89,7 +91,7 @@ fn label(outlets: &Outlets, receivers: &Receivers) -> (Vec<u32>, Vec<u32>) {
     (labels, pits)
 }
 
-/// For each set of directions, how many it holds and how far they lead.
+/// For each set of directions: the number of directions and their strides.
 type Children = [(u32, [i32; 8]); 256];
 
 /// [`Children`] on a grid of this width.
@@ -107,9 +109,9 @@ fn children(width: usize) -> Box<Children> {
     table
 }
 
-/// Takes cells off the end of a list and puts what drains to them there, until none are left; visits all of them.
+/// Removes cells from the end of a list and appends their donors until the list is empty; visits all of them.
 ///
-/// Sixteen at a time, and eight donors are written for each cell whether it has them or not: there is no branch to guess.
+/// Takes sixteen cells at a time and always writes eight donors per cell, which avoids unpredictable branches.
 fn climb(waiting: &mut Vec<u32>, donors: &[u8], children: &Children, mut visit: impl FnMut(u32)) {
     const BATCH: usize = 16;
     let mut count = waiting.len();
@@ -133,24 +135,25 @@ fn climb(waiting: &mut Vec<u32>, donors: &[u8], children: &Children, mut visit: 
     waiting.clear();
 }
 
-/// The lowest step between two basins.
+/// The lowest pass between two basins.
 #[derive(Debug, Clone, Copy)]
 #[doc(hidden)]
 pub struct Pass {
     /// The higher of the two cells.
     pub height: f32,
-    /// The cell of the pair from which `code` leads to the other.
+    /// The cell from which `code` leads to the other one.
     pub from: u32,
-    /// East, south-east, south or south-west.
+    /// The direction: east, south-east, south or south-west.
     pub code: u8,
-    /// The basins, `from`'s first.
+    /// The two basins, that of `from` first.
     pub basins: [u32; 2],
 }
 
-/// Cells of a row looked at together.
+/// Cells of a row that are tested together.
 const RUN: usize = 16;
 
-/// A hash of one multiplication: the keys are pairs of labels, spread well enough, and nobody chooses them to collide.
+/// A hash with one multiplication. The keys are pairs of labels, which are spread well enough and not chosen by an
+/// adversary.
 #[derive(Default)]
 struct PairHasher(u64);
 
@@ -167,19 +170,19 @@ impl Hasher for PairHasher {
     }
 }
 
-/// The lowest pass between each two basins that touch. The list's order is that in which they were first met, row by row.
+/// The lowest pass between each pair of adjacent basins, in the order in which the pairs are first met, row by row.
 #[doc(hidden)]
 pub fn passes(heights: &Grid, labels: &[u32]) -> Vec<Pass> {
     let width = heights.width();
     let mut found = Found { passes: Vec::new(), known: HashMap::default(), last_key: u64::MAX, last: 0 };
     for (j, here) in labels.chunks(width.max(1)).enumerate() {
-        // The last row stands below itself, where it finds its own passes once more.
+        // The last row is compared with itself, which finds its own passes a second time.
         let beneath = (j + 1).min(heights.height() - 1);
         let below = &labels[beneath * width..(beneath + 1) * width];
         let (h, h_below) = (heights.row(j), heights.row(beneath));
         let mut i = 0;
         while i < width {
-            // Most ground lies amid its own basin.
+            // Most cells have only neighbours of their own basin.
             if let (Some(run), Some(beneath)) = (here.get(i..=i + RUN), below.get(i.max(1) - 1..=i + RUN))
                 && run.iter().chain(beneath).fold(0, |differ, label| differ | (label ^ here[i])) == 0
             {
@@ -199,16 +202,17 @@ pub fn passes(heights: &Grid, labels: &[u32]) -> Vec<Pass> {
 struct Found {
     passes: Vec<Pass>,
     known: HashMap<u64, u32, BuildHasherDefault<PairHasher>>,
-    /// The pair met last: neighbours in a row mostly part the same two basins.
+    /// The last pair: adjacent passes in a row mostly separate the same two basins.
     last_key: u64,
     last: u32,
 }
 
 impl Found {
-    /// Looks from column `i` of the upper of two rows to the east and down; `start` is the row's first cell.
+    /// Compares column `i` of the upper of two rows with its neighbours to the east and below; `start` is the row's
+    /// first cell.
     fn look(&mut self, [here, below]: [&[u32]; 2], [h, h_below]: [&[f32]; 2], i: usize, start: u32) {
         let mine = here[i];
-        // A neighbour that is not there passes for one of the same basin.
+        // A missing neighbour counts as one of the same basin.
         let (west, east) = (i.max(1) - 1, (i + 1).min(here.len() - 1));
         let or_mine = |there: bool, label: u32| if there { label } else { mine };
         let around = [here[east], or_mine(east > i, below[east]), below[i], or_mine(west < i, below[west])];
@@ -218,7 +222,7 @@ impl Found {
         let heights = [h[east], h_below[east], h_below[i], h_below[west]];
         for (code, (theirs, other)) in around.into_iter().zip(heights).enumerate() {
             if theirs != mine {
-                // There is one zero, whichever of the two it is.
+                // Adding 0.0 turns -0.0 into 0.0.
                 let height = (if other > h[i] { other } else { h[i] }) + 0.0;
                 self.add(Pass { height, from: start + i as u32, code: code as u8, basins: [mine, theirs] });
             }
@@ -242,9 +246,9 @@ impl Found {
     }
 }
 
-/// Floods the graph from the outside in: always over the lowest pass known, as Prim's algorithm does.
+/// Floods the graph from the outside, always over the lowest known pass (Prim's algorithm).
 fn flood(passes: &[Pass], basins: &mut Basins, strides: &[isize; 8]) {
-    // The passes of each basin, side by side: those of basin b are at starts[b] .. starts[b + 1].
+    // The passes grouped by basin: those of basin b are at starts[b] .. starts[b + 1].
     let count = basins.spills.len();
     let mut starts = vec![0u32; count + 1];
     for b in passes.iter().flat_map(|pass| pass.basins) {
@@ -293,7 +297,7 @@ fn flood(passes: &[Pass], basins: &mut Basins, strides: &[isize; 8]) {
     }
 }
 
-/// Bits that are ordered as the heights are.
+/// An integer key that sorts like the heights.
 #[doc(hidden)]
 pub fn ordered(height: f32) -> u32 {
     let bits = height.to_bits();

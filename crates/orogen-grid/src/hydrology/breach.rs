@@ -1,4 +1,4 @@
-//! Depressions opened rather than filled.
+//! Breaching: depressions drained by channels.
 
 use super::accumulation::accumulate;
 use super::drainage::Drainage;
@@ -6,15 +6,16 @@ use super::fill::filled;
 use super::outlets::Outlets;
 use crate::grid::Grid;
 
-/// The heights without depressions: each is drained by a channel cut along the way that `drainage` takes out of it, no deeper
-/// than `deepest` metres; what lies deeper is filled up to there first (after Lindsay 2016, "Efficient hybrid breaching-filling
-/// sink removal methods for flow path enforcement in digital elevation models"). 0 fills, infinity only cuts.
+/// The heights without depressions. A channel along the path of `drainage` drains each depression; it is at most
+/// `deepest` metres deep, and the part of the depression that lies deeper is filled first (after Lindsay 2016,
+/// "Efficient hybrid breaching-filling sink removal methods for flow path enforcement in digital elevation models").
+/// `deepest` = 0 only fills, infinity only cuts.
 ///
-/// Water then nowhere runs uphill along the receivers of `drainage`. Outlets stay as they are. Costs O(cells).
+/// In the result no receiver of `drainage` is higher than its donor. Outlets keep their heights. Costs O(cells).
 pub fn breach(heights: &Grid, outlets: &Outlets, drainage: &Drainage, deepest: f32) -> Grid {
     let mut out = filled(heights, &drainage.basins);
     for ((level, h), label) in out.data_mut().iter_mut().zip(heights.data()).zip(&drainage.basins.labels) {
-        // As far as a cut of that depth through the pass drains it.
+        // The level down to which a cut of that depth through the pass drains the basin.
         let drained = drainage.basins.spills[*label as usize].level - deepest;
         *level = if drained > *h { drained.min(*level) } else { *h };
     }

@@ -1,4 +1,4 @@
-//! Soil creeps downhill and rounds what rivers have cut.
+//! Soil creep: linear diffusion, which rounds the terrain that rivers have cut.
 
 use super::outlets::Outlets;
 use crate::error::Result;
@@ -6,13 +6,13 @@ use crate::grid::{Grid, Window};
 use crate::progress::Progress;
 use rayon::prelude::*;
 
-/// Linear diffusion of the heights, dh/dt = D (d2h/dx2 + d2h/dy2) (Culling 1960): `amount` is D times the time, in m^2. Outlets
-/// stay as they are.
+/// Linear diffusion of the heights, dh/dt = D (d2h/dx2 + d2h/dy2) (Culling 1960). `amount` is D times the time, in m^2.
+/// Outlets keep their heights.
 ///
-/// The nine-point Laplacian (4 for a side, 1 for a corner, over 6), whose error is the same in all directions, and the stages of
-/// Runge-Kutta-Legendre (Meyer, Balsara and Aslam 2014, first order): s of them are stable for s (s + 1) / 2 times the longest
-/// plain step. So it costs O(cells) times 1 + 5.3 sqrt(amount) / cell; rows side by side. What would spread further than the map is
-/// wide counts as that wide.
+/// Uses the nine-point Laplacian (4 for a side, 1 for a corner, over 6), whose error is isotropic, and the stages of
+/// Runge-Kutta-Legendre (Meyer, Balsara and Aslam 2014, first order): s stages are stable for s (s + 1) / 2 times the
+/// longest explicit step. The cost is O(cells) times 1 + 5.3 sqrt(amount) / cell; rows are computed in parallel. The
+/// diffusion length is limited to the width of the map.
 ///
 /// # Errors
 /// If the work is cancelled.
@@ -20,14 +20,15 @@ pub fn creep(heights: &mut Grid, outlets: &Outlets, amount: f64, progress: &Prog
     creep_again(heights, outlets, amount, &mut Vec::new(), progress)
 }
 
-/// How a map creeps by an amount: the amount in squares of the cell, in how many strides, of how many stages each. `None` if nothing moves.
+/// How a map creeps by an amount: the amount in squared cells, the number of strides, and the stages of each. `None` if
+/// nothing moves.
 fn strides(window: &Window, amount: f64) -> Option<[f64; 3]> {
     let widest = (window.width * window.width + window.height * window.height) as f64;
     let whole = (amount / (window.cell * window.cell)).min(widest);
     if window.width < 3 || window.height < 3 || !(whole > 0.0 && whole.is_finite()) {
         return None;
     }
-    // A single stride of many stages rings; what is left of that after four does not show.
+    // A single stride of many stages oscillates; after four the remaining oscillation is invisible.
     let strides = if whole > LONGEST { 4.0 } else { 1.0 };
     let mut stages = 1.0;
     while LONGEST * stages * (stages + 1.0) / 2.0 < whole / strides {
@@ -36,12 +37,12 @@ fn strides(window: &Window, amount: f64) -> Option<[f64; 3]> {
     Some([whole, strides, stages])
 }
 
-/// How many passes over the map it takes.
+/// The number of passes over the map.
 pub(super) fn creep_stages(window: &Window, amount: f64) -> f64 {
     strides(window, amount).map_or(0.0, |[_, strides, stages]| strides * stages)
 }
 
-/// The same many times over on one map: `buffers`, empty at first, spares asking for memory anew.
+/// [`creep`] for repeated use on one map: `buffers`, empty at first, avoids new allocations.
 pub(super) fn creep_again(
     heights: &mut Grid,
     outlets: &Outlets,
@@ -68,10 +69,10 @@ pub(super) fn creep_again(
     Ok(())
 }
 
-/// The longest plain step, in squares of the cell: beyond 0.3 a cell would give more than it has.
+/// The longest explicit step, in squared cells: beyond 0.3 a cell would give away more than it has.
 const LONGEST: f64 = 0.29;
 
-/// One stage: as far again from `last` to `here` by the first factor, and what flows in by the second.
+/// One stage: extrapolates from `last` to `here` by the first factor, and adds the inflow times the second.
 fn advance(here: &Grid, last: &Grid, outlets: &Outlets, [again, share]: [f32; 2], next: &mut Grid) {
     let (width, height) = (here.width(), here.height());
     let rows = next.data_mut().par_chunks_mut(width).enumerate();

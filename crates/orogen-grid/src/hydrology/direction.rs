@@ -2,35 +2,35 @@
 //!
 //! Codes run clockwise from the east: 0 east, 1 south-east, 2 south, 3 south-west, 4 west, 5 north-west, 6 north, 7 north-east.
 
-/// The code of a cell that drains to no neighbour.
+/// The code of a cell without a receiver.
 pub const NONE: u8 = 8;
 
-/// Columns east and rows south that each direction leads.
+/// The offset of each direction: columns east and rows south.
 pub const STEPS: [(isize, isize); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
-/// How far each direction leads through the samples of a row-major grid of this width.
+/// The offset of each direction in a row-major grid of this width.
 pub fn strides(width: usize) -> [isize; 8] {
     STEPS.map(|(east, south)| south * width as isize + east)
 }
 
-/// The sample that `stride` leads to from sample `index`. Only for samples that are not on the grid's border, whose neighbours
-/// all exist.
+/// The sample at `stride` from sample `index`. Only for samples that are not on the grid's border and have all
+/// neighbours.
 #[inline(always)]
 pub fn neighbour(index: usize, stride: isize) -> usize {
     index.wrapping_add_signed(stride)
 }
 
-/// The way back.
+/// The opposite direction.
 pub fn opposite(code: u8) -> u8 {
     (code + 4) & 7
 }
 
-/// Whether a direction leads to a corner, square root of 2 cells away.
+/// Whether a direction is diagonal, with a distance of sqrt(2) cells.
 pub fn is_diagonal(code: u8) -> bool {
     code & 1 == 1
 }
 
-/// Cells from a sample to its neighbour in each direction.
+/// Distance to the neighbour in each direction, in cells.
 pub const DISTANCES: [f64; 8] = [
     1.0,
     std::f64::consts::SQRT_2,
@@ -42,7 +42,7 @@ pub const DISTANCES: [f64; 8] = [
     std::f64::consts::SQRT_2,
 ];
 
-/// How a program numbers the eight directions, and a cell that drains to none: its numbers in the order of our codes.
+/// The numbers that a program uses for the eight directions and for "no direction", in the order of our codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Convention([u8; 9]);
 
@@ -58,14 +58,15 @@ impl Convention {
     /// The keys of a numeric keypad.
     pub const PCRASTER: Convention = Convention([6, 3, 2, 1, 4, 7, 8, 9, 5]);
 
-    /// The number of one of our codes; that of [`NONE`] for any other.
+    /// The number of one of our codes; for any other value, that of [`NONE`].
     pub fn of(self, code: u8) -> u8 {
         self.0[usize::from(code.min(NONE))]
     }
 }
 
-/// A number that depends on a sample's place on the lattice alone, for choices between equals: they then neither lean to one
-/// side nor depend on the window. (Multiplication and xor-shifts as in splitmix64's finaliser, Steele, Lea and Flood 2014.)
+/// A hash of a sample's position on the lattice, for choices between equals. Such choices have no directional bias and
+/// do not depend on the window. (Multiplication and xor-shifts as in splitmix64's finaliser, Steele, Lea and Flood
+/// 2014.)
 #[inline]
 pub fn hashed(x: i64, y: i64) -> u32 {
     let mut z = (x as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ (y as u64).wrapping_mul(0xD1B5_4A32_D192_ED03);
@@ -74,11 +75,11 @@ pub fn hashed(x: i64, y: i64) -> u32 {
     (z >> 32) as u32
 }
 
-/// One of the directions in a set, by a hashed number: bit k of `set` stands for direction k. [`NONE`] of an empty set.
+/// Chooses one direction of a set by a hash; bit k of `set` is direction k. [`NONE`] for an empty set.
 #[inline]
 pub fn one_of(set: u8, hash: u32) -> u8 {
     if set & set.wrapping_sub(1) == 0 {
-        // One or none: no choice.
+        // No choice: at most one direction.
         return set.trailing_zeros() as u8;
     }
     let mut rest = set;

@@ -1,4 +1,4 @@
-//! Where every cell drains to, depressions included.
+//! Drainage of every cell, including cells in depressions.
 
 use super::basins::{Basins, Spill, find_basins};
 use super::direction::opposite;
@@ -14,23 +14,24 @@ use std::convert::Infallible;
 /// Receivers that lead from every cell to an outlet.
 #[derive(Debug, Clone)]
 pub struct Drainage {
-    /// No circle, and [`NONE`](super::direction::NONE) at outlets only.
+    /// Free of cycles; [`NONE`](super::direction::NONE) at outlets only.
     pub receivers: Receivers,
-    /// The basins as they were before water was led out of them.
+    /// The basins before their water was routed out.
     pub basins: Basins,
 }
 
-/// Drainage along the ground as it lies, under the water of the lakes: each cell drains to its steepest lower neighbour; in a
-/// depression this leads to the pit, and from there on along the way by which the ground's own drainage leads from the pass
-/// to the pit, taken backwards, over the pass and out (Cordonnier, Bovy and Braun 2019, who call it carving).
+/// Drainage along the terrain, below the water of lakes. Each cell drains to its steepest lower neighbour. In a
+/// depression this leads to the pit. From the pit the path from the pass down to the pit is reversed, so that water
+/// flows to the pass and out (Cordonnier, Bovy and Braun 2019: carving).
 ///
-/// So a lake's bed keeps its own valleys, where drainage of the *filled* surface has to be made up over level water.
+/// The drainage of a lake's bed therefore follows its valleys; on the *filled* surface it would have to be invented on
+/// level water.
 pub fn route_carving(heights: &Grid, outlets: &Outlets, descent: Descent) -> Drainage {
     let Ok(drainage) = route_bed(heights, outlets, descent, || Ok::<(), Infallible>(()));
     drainage
 }
 
-/// [`route_carving`] that reports how far it has come, and can be stopped.
+/// [`route_carving`] with progress and cancellation.
 ///
 /// # Errors
 /// If the work is cancelled.
@@ -47,10 +48,10 @@ pub fn route_carving_with(
     })
 }
 
-/// How often [`route_bed`] says that a phase is done.
+/// Number of phases that [`route_bed`] reports.
 const PHASES: f64 = 6.0;
 
-/// [`route_carving`]; `phase` is called after each of its phases, and ends it with its error.
+/// [`route_carving`]; `phase` is called after each phase, and its error ends the work.
 fn route_bed<E>(
     heights: &Grid,
     outlets: &Outlets,
@@ -69,7 +70,7 @@ fn route_bed<E>(
     Ok(Drainage { receivers, basins })
 }
 
-/// Turns the way from the pass to the pit around.
+/// Reverses the path from the pass to the pit.
 fn lead_out(way: &Spill, receivers: &mut Receivers) {
     let (mut cell, mut code) = (way.last as usize, way.code);
     loop {
@@ -82,15 +83,15 @@ fn lead_out(way: &Spill, receivers: &mut Receivers) {
     }
 }
 
-/// Drainage of a surface without depressions, such as [`filled`](super::fill::filled) ground: steepest descent, and over level
-/// ground [`flats::resolve`].
+/// Drainage of a surface without depressions, such as [`filled`](super::fill::filled) heights: steepest descent, and
+/// [`flats::resolve`] on level ground.
 pub fn over_surface(filled: &Grid, outlets: &Outlets, descent: Descent) -> Receivers {
     let mut receivers = steepest::receivers(filled, outlets, descent);
     flats::resolve(filled, outlets, &mut receivers);
     receivers
 }
 
-/// [`over_surface`] that reports how far it has come, and can be stopped.
+/// [`over_surface`] with progress and cancellation.
 ///
 /// # Errors
 /// If the work is cancelled.

@@ -1,4 +1,4 @@
-//! Land that rises and is cut, step by step.
+//! Landscape evolution: uplift and stream-power erosion in time steps.
 
 use super::accumulation::{Accumulation, accumulate};
 use super::creep::{creep_again, creep_stages};
@@ -11,28 +11,29 @@ use crate::error::Result;
 use crate::grid::Grid;
 use crate::progress::Progress;
 
-/// A run of the stream power law.
+/// Parameters of a run of the stream power law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Erosion {
-    /// How rivers cut.
+    /// The erosion law.
     pub law: StreamPower,
-    /// How fast soil creeps: the diffusivity, in m^2 a year.
+    /// Soil creep: the diffusivity, in m^2 per year.
     pub creep: f64,
-    /// How long it goes on, in years.
+    /// Duration, in years.
     pub years: f64,
-    /// In how many steps. In each the water finds its way anew.
+    /// Number of steps. Each step routes the water again.
     pub steps: u32,
-    /// Hashed into the scattered ways of the water in each step; none for the steepest way always.
+    /// Salt of the random receivers in each step; none for steepest descent.
     pub scattered: Option<u32>,
-    /// By how much of half a cell points stand off the lattice, 0 to 1. Between points off the lattice no way is scattered.
+    /// Jitter: displacement of the points from the lattice, as a share of half a cell, 0 to 1. Receivers are never
+    /// random between jittered points.
     pub jitter: f64,
 }
 
 impl Erosion {
-    /// Erodes `heights`, whose sea, if it has one, and whose border stay as they are.
+    /// Erodes `heights`. The border and, if there is a sea level, the sea keep their heights.
     ///
-    /// In the end every cell stands higher than the one it drains to: no depressions and no flats are left. Returns how the
-    /// water runs then, by the steepest descent. Costs O(cells) a step.
+    /// In the result every cell is higher than its receiver, so there are no depressions and no flats. Returns the flow
+    /// accumulation of the result by steepest descent. Costs O(cells) per step.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -53,7 +54,7 @@ impl Erosion {
         run.finish(heights, &progress.part(ErosionRun::FINISHING))
     }
 
-    /// The work of a whole run, in steps.
+    /// The work of a whole run, in units of a step.
     pub fn work(&self) -> f64 {
         f64::from(self.steps) + ErosionRun::FINISHING
     }
@@ -83,32 +84,32 @@ pub struct ErosionRun<'a> {
     erosion: Erosion,
     ground: &'a Substrate<'a>,
     outlets: Outlets,
-    /// Where the heights stand until the end, if not on the lattice.
+    /// The positions of the heights during the run, if they are not on the lattice.
     points: Option<Points>,
     buffers: Vec<Grid>,
-    /// Steps done.
+    /// Number of completed steps.
     done: u32,
 }
 
 impl<'a> ErosionRun<'a> {
-    /// The work that comes after the last step, in steps.
+    /// The work after the last step, in units of a step.
     pub const FINISHING: f64 = 2.0;
 
-    /// Before the first step.
+    /// The state before the first step.
     pub fn new(erosion: Erosion, heights: &Grid, ground: &'a Substrate<'a>, sea_level: Option<f32>) -> ErosionRun<'a> {
         let salt = erosion.scattered.unwrap_or_default();
         let points = (erosion.jitter > 0.0).then(|| Points::new(*heights.window(), erosion.jitter, salt));
         ErosionRun { erosion, ground, outlets: Outlets::new(heights, sea_level), points, buffers: Vec::new(), done: 0 }
     }
 
-    /// Does the next step. Between steps the heights are those of the run's points.
+    /// Computes the next step. Between steps the heights are those of the run's points.
     ///
     /// # Errors
     /// If the work is cancelled.
     pub fn step(&mut self, heights: &mut Grid, progress: &Progress) -> Result<()> {
         let Erosion { years, steps, creep, scattered, .. } = self.erosion;
         let years = years / f64::from(steps.max(1));
-        // Other ways in each step: over the steps a slope's water spreads as wide as it would in nature.
+        // Different random receivers in each step: on average, water spreads over a slope as it does in nature.
         let descent = match (&self.points, scattered) {
             (Some(points), _) => Descent::Interpolation(points),
             (None, Some(seed)) => Descent::Scattered(seed.wrapping_add(self.done)),
@@ -125,7 +126,7 @@ impl<'a> ErosionRun<'a> {
         Ok(())
     }
 
-    /// Makes the heights that a run ends with if these are its last: on the lattice, drained.
+    /// Computes the final heights of a run that ends here: on the lattice and drained.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -134,13 +135,14 @@ impl<'a> ErosionRun<'a> {
         let mut last = self.erosion;
         if let Some(points) = &self.points {
             points.onto_lattice(heights, &self.outlets);
-            // What was too steep has slid between the points; along the lattice it would fall into facets after all.
+            // Slopes above the limit have already slid between the points; applying the limit on the lattice would
+            // create facets.
             last.law.max_slope = f64::INFINITY;
         }
         last.cut(heights, &self.outlets, self.ground, Descent::Steepest, 0.0, progress)
     }
 
-    /// Does what [`ErosionRun::settle`] does, and returns how water runs over the heights.
+    /// Does the same as [`ErosionRun::settle`], and returns the flow accumulation of the heights.
     ///
     /// # Errors
     /// If the work is cancelled.

@@ -1,4 +1,4 @@
-//! Depressions filled to the brim.
+//! Depression filling.
 
 use super::basins::Basins;
 use super::drainage;
@@ -7,16 +7,16 @@ use super::steepest::Descent;
 use crate::grid::Grid;
 use rayon::prelude::*;
 
-/// The heights with every depression filled to the level at which it spills: the lowest surface from which no cell needs a way
-/// up to reach an outlet. Equal to Priority-Flood without an epsilon (Barnes, Lehman and Mulla 2014), bit for bit; filled
-/// ground is level.
+/// The heights with every depression filled to its spill level: the lowest surface on which every cell has a path to an
+/// outlet that never rises. Equal to Priority-Flood without an epsilon (Barnes, Lehman and Mulla 2014), bit for bit;
+/// filled areas are level.
 ///
-/// Heights that are not finite stay as they are, and water leaves at their rim. Costs O(cells).
+/// Heights that are not finite stay, and their neighbours are outlets. Costs O(cells).
 pub fn fill(heights: &Grid, outlets: &Outlets) -> Grid {
     filled(heights, &drainage::route_carving(heights, outlets, Descent::Steepest).basins)
 }
 
-/// The same where the basins are known.
+/// [`fill`] with known basins.
 pub fn filled(heights: &Grid, basins: &Basins) -> Grid {
     let mut out = heights.clone();
     let width = heights.width().max(1);

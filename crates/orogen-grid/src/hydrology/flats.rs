@@ -1,14 +1,14 @@
 //! Drainage over flats, where no neighbour is lower.
 //!
-//! After Barnes, Lehman and Mulla, "An efficient assignment of drainage direction over flat surfaces in raster digital elevation
-//! models" (2014): two integer gradients, one towards the flat's lower rim (cells to walk to it, counted twice) and one away
-//! from the higher ground around it, are added, and each cell drains down their sum. A step towards the rim lowers the sum by
-//! two while the other part changes by at most one, so the sum has no pit of its own. Their algorithm takes the first of equally
-//! low neighbours, which draws straight parallel lines over the flat; here a hash of the cell's place chooses, and the lines
-//! wander and join.
+//! After Barnes, Lehman and Mulla, "An efficient assignment of drainage direction over flat surfaces in raster digital
+//! elevation models" (2014). Two integer gradients are added: twice the number of steps to the flat's lower rim, and
+//! the steps away from the higher ground around it. Each cell drains down their sum. A step towards the rim lowers the
+//! sum by two while the other part changes by at most one, so the sum has no pits. Barnes and others take the first of
+//! equally low neighbours, which gives straight parallel lines on the flat; here a hash of the cell's position chooses,
+//! and lines wander and join.
 //!
-//! A flat without a lower rim is *closed*: all of it is made to drain to one of its cells, the first in row order, which stays
-//! a pit.
+//! A flat without a lower rim is *closed*. All its cells drain to one of them, the first in row order, which remains a
+//! pit.
 
 use super::direction::{NONE, hashed, neighbour, one_of, strides};
 use super::outlets::Outlets;
@@ -17,10 +17,10 @@ use crate::grid::Grid;
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
-/// Gives a receiver to every cell that has none, but for outlets and one cell of each closed flat.
+/// Gives a receiver to every cell that has none, except outlets and one cell of each closed flat.
 ///
-/// `receivers` is what [`steepest`](super::steepest) found on the same heights. Costs O(cells in flats) beside one look at each
-/// cell.
+/// `receivers` must come from [`steepest`](super::steepest) on the same heights. Costs O(cells in flats) and one test
+/// per cell.
 pub fn resolve(heights: &Grid, outlets: &Outlets, receivers: &mut Receivers) {
     let codes = receivers.codes();
     let flat: Vec<u32> = (0..codes.len()).filter(|c| codes[*c] == NONE && !outlets.at(*c)).map(|c| c as u32).collect();
@@ -46,7 +46,8 @@ pub fn resolve(heights: &Grid, outlets: &Outlets, receivers: &mut Receivers) {
     }
 }
 
-/// Where in the list of a map's flat cells each is. Most land has few, and then a list as long as the map would mostly be zeros.
+/// The index of each flat cell in the list of flat cells. Most terrain has few, so a table of the whole map would be
+/// mostly empty.
 enum Places {
     Few(HashMap<u32, u32, BuildHasherDefault<CellHasher>>),
     Many(Vec<u32>),
@@ -75,7 +76,7 @@ impl Places {
 
 const NO_PLACE: u32 = u32::MAX;
 
-/// Cells spread by one multiplication.
+/// Hashes cells with one multiplication.
 #[derive(Default)]
 struct CellHasher(u64);
 
@@ -92,7 +93,7 @@ impl Hasher for CellHasher {
     }
 }
 
-/// A flat cell that is not measured yet.
+/// A flat cell without a distance yet.
 const UNMEASURED: u32 = u32::MAX;
 
 struct Flats<'a> {
@@ -101,14 +102,14 @@ struct Flats<'a> {
     /// All cells of flats, in row order.
     cells: Vec<u32>,
     places: Places,
-    /// Steps from the higher ground, from 1, by place.
+    /// Steps from the higher ground, from 1, by index.
     away: Vec<u32>,
-    /// Steps from the rim, from 1; 0 where not measured.
+    /// Steps from the rim, from 1, by index; 0 if not computed.
     toward: Vec<u32>,
 }
 
 impl Flats<'_> {
-    /// The neighbours of a cell that are as high and in a flat, and in which direction and place.
+    /// The neighbours of a cell with the same height that belong to a flat: their direction and index.
     fn beside(&self, cell: usize) -> impl Iterator<Item = (usize, usize)> {
         let h = self.heights[cell];
         let level = move |(k, stride): (usize, &isize)| {
@@ -141,7 +142,7 @@ impl Flats<'_> {
                 }
             }
         }
-        // A flat that nothing stands above.
+        // A flat without higher ground around it.
         self.away.iter_mut().filter(|away| **away == UNMEASURED).for_each(|away| *away = 1);
     }
 
@@ -163,7 +164,7 @@ impl Flats<'_> {
         }
     }
 
-    /// Measures steps from the cells in the queue over the flats they lie in.
+    /// Computes distances from the cells in the queue, within their flats.
     fn spread(&mut self, queue: &mut Vec<u32>) {
         let mut next = 0;
         while let Some(place) = queue.get(next).map(|place| *place as usize) {
@@ -180,13 +181,13 @@ impl Flats<'_> {
         }
     }
 
-    /// The set of directions in which a neighbour as high as `cell` drains by itself.
+    /// The set of directions with a neighbour as high as `cell` that has a receiver of its own.
     fn drained_beside(&self, cell: usize) -> u8 {
         let h = self.heights[cell];
         let mut set = 0;
         for (k, stride) in self.strides.into_iter().enumerate() {
             let n = neighbour(cell, stride);
-            // What is as high and in no flat drains or is an outlet.
+            // A cell of the same height outside all flats drains or is an outlet.
             if self.heights[n] == h && self.places.of(n).is_none() {
                 set |= 1 << k;
             }
@@ -201,7 +202,7 @@ impl Flats<'_> {
     fn receiver(&self, place: usize, hash: u32) -> u8 {
         let cell = self.cells[place] as usize;
         if self.toward[place] == 1 {
-            // At the rim, or the pit of a closed flat, for which the set is empty.
+            // At the rim; or the pit of a closed flat, where the set is empty.
             return one_of(self.drained_beside(cell), hash);
         }
         let (mut least, mut set) = (self.sum(place), 0);

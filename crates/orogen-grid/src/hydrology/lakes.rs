@@ -1,4 +1,4 @@
-//! Lakes: what stands in depressions.
+//! Lakes: water in depressions.
 
 use super::direction::{DISTANCES, neighbour, strides};
 use super::drainage::Drainage;
@@ -11,43 +11,44 @@ use crate::progress::Progress;
 /// One lake.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lake {
-    /// The height of its surface.
+    /// Height of the water surface.
     pub level: f32,
-    /// Where it is deepest; the first in row order if there are several.
+    /// The deepest cell; the first in row order if there are several.
     pub deepest: u32,
-    /// The dry cell over which it spills.
+    /// The dry cell over which the lake spills.
     pub outlet: u32,
-    /// How many cells it covers.
+    /// Number of cells.
     pub cells: u32,
 }
 
-/// A map's lakes.
+/// The lakes of a map.
 #[derive(Debug, Clone)]
 pub struct Lakes {
     /// The lake of each cell, numbered from 1 in row order; 0 on land.
     pub labels: Grid<u32>,
-    /// The lakes, by their label less 1.
+    /// The lakes; the lake with label k is at index k - 1.
     pub lakes: Vec<Lake>,
-    /// The ground, depressions too small for a lake raised until their water runs out.
+    /// The ground, with depressions too small for a lake raised until they drain.
     pub bed: Grid,
-    /// The lakes' surface, and the bed where there is none.
+    /// The water surface in lakes, and the bed elsewhere.
     pub surface: Grid,
 }
 
-/// Rise over run of raised ground: as gentle as sediment lies.
+/// Slope of raised ground, rise over run: a typical slope of sediment.
 const GENTLEST: f64 = 1e-4;
 
-/// Fills every depression of at least `fewest` cells with water to where it spills, and smaller ones with ground.
+/// Fills every depression of at least `fewest` cells with water up to its spill level, and smaller ones with sediment.
 ///
-/// `drainage` is that of [`route_carving`](super::drainage::route_carving) on the same heights. Then every cell of the land is higher than
-/// the one it drains to, up to a lake's shore, the sea or the border, and every lake's outlet drains. Costs O(cells).
+/// `drainage` must come from [`route_carving`](super::drainage::route_carving) on the same heights. In the result every
+/// land cell is higher than its receiver up to a lake's shore, the sea or the border, and every lake's outlet drains.
+/// Costs O(cells).
 pub fn lakes(heights: &Grid, outlets: &Outlets, drainage: &Drainage, fewest: u32) -> Lakes {
     let mut found = find(heights, drainage, fewest);
     raise(&mut found, outlets, drainage, &accumulate(&drainage.receivers));
     found
 }
 
-/// [`lakes`] that reports how far it has come, and can be stopped.
+/// [`lakes`] with progress and cancellation.
 ///
 /// # Errors
 /// If the work is cancelled.
@@ -70,7 +71,8 @@ pub fn lakes_with(
     Ok(found)
 }
 
-/// The connected cells under water. Neighbours under water have one level, or the higher water would run off.
+/// The connected cells under water. Adjacent cells under water have the same level, otherwise the higher water would
+/// drain.
 fn find(heights: &Grid, drainage: &Drainage, fewest: u32) -> Lakes {
     let (h, basins) = (heights.data(), &drainage.basins);
     let under = |c: usize| h[c] < basins.spills[basins.labels[c] as usize].level;
@@ -89,7 +91,7 @@ fn find(heights: &Grid, drainage: &Drainage, fewest: u32) -> Lakes {
         let mut next = 0;
         while let Some(c) = cells.get(next).copied() {
             next += 1;
-            // What is under water is no outlet, so all its neighbours are there.
+            // Cells under water are not outlets, so all their neighbours exist.
             for n in strides.map(|stride| neighbour(c, stride)) {
                 if !seen[n] && under(n) {
                     seen[n] = true;
@@ -117,7 +119,7 @@ fn find(heights: &Grid, drainage: &Drainage, fewest: u32) -> Lakes {
     Lakes { labels, lakes, bed: heights.clone(), surface: heights.clone() }
 }
 
-/// Raises land, from the outlets up, to stand above what it drains to, and lakes to where their outlet then lies.
+/// From the outlets upstream, raises land above its receiver, and lakes to the level of their outlet.
 fn raise(found: &mut Lakes, outlets: &Outlets, drainage: &Drainage, drained: &Accumulation) {
     let cell = found.bed.window().cell;
     let (bed, surface) = (found.bed.data_mut(), found.surface.data_mut());
@@ -130,7 +132,8 @@ fn raise(found: &mut Lakes, outlets: &Outlets, drainage: &Drainage, drained: &Ac
             let below = surface[drainage.receivers.of(c)];
             let rise = DISTANCES[usize::from(drainage.receivers.code(c) & 7)] * cell * GENTLEST;
             let least = (f64::from(below) + rise) as f32;
-            // In f32 the gentlest rise may come to nothing; water still has to run. Dry ground higher than its receiver stays.
+            // In f32 the minimum rise may round to nothing, but the cell must drain. Dry ground that is higher than its
+            // receiver stays.
             if bed[c] <= below {
                 bed[c] = if least > below { least } else { below.next_up() };
             }

@@ -1,4 +1,4 @@
-//! Depressions drained by the channels that take the least digging.
+//! Least-cost breaching: depressions drained by the channels with the least excavation.
 
 use super::direction::{DISTANCES, NONE, neighbour, opposite, strides};
 use super::drainage;
@@ -12,23 +12,25 @@ use crate::progress::Progress;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// What channels are not dug beyond.
+/// Limits of a channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// The deepest cut, in metres.
+    /// The maximum depth of a cut, in metres.
     pub deepest: f32,
-    /// The longest channel, in cells.
+    /// The maximum length of a channel, in cells.
     pub longest: u32,
 }
 
-/// The heights without depressions: from the bottom of each a channel is cut to lower ground or an outlet, that with the least sum of
-/// depths times lengths among those within the limits; what has none is filled (Lindsay 2016, "Efficient hybrid breaching-filling sink
-/// removal methods for flow path enforcement in digital elevation models"; Lindsay and Dhun 2015).
+/// The heights without depressions. From the bottom of each depression a channel is cut to lower ground or an outlet:
+/// the one with the least sum of depth times length within the limits. A depression without such a channel is filled
+/// (Lindsay 2016, "Efficient hybrid breaching-filling sink removal methods for flow path enforcement in digital
+/// elevation models"; Lindsay and Dhun 2015).
 ///
-/// Depressions are taken from the lowest bottom up, equal ones in row order, each on the ground as the ones before have left it; of equally
-/// dear ways the first in row order is taken. Beds are level. Unlike [`breach`](super::breach::breach) a channel may cross a rim anywhere: it
-/// goes through a thin dam rather than around it. Costs O(n log n) for the n cells that searches look at: a depression's own and those
-/// around it, up to the square of the longest channel.
+/// Depressions are processed from the lowest bottom up, equal ones in row order, each on the ground that the previous
+/// ones left. Of paths with equal cost the first in row order is taken. Beds are level. Unlike
+/// [`breach`](super::breach::breach) a channel may cross a rim anywhere: it goes through a thin dam rather than around
+/// it. Costs O(n log n) for the n cells that the searches visit: those of the depression and around it, up to the
+/// square of the longest channel.
 ///
 /// # Errors
 /// If the work is cancelled.
@@ -55,10 +57,10 @@ pub fn breach(heights: &Grid, outlets: &Outlets, limits: &Limits, progress: &Pro
 /// Searches between two reports of progress.
 const REPORTED: usize = 64;
 
-/// Cells that a search looks at between two questions whether the work is still wanted.
+/// Cells that a search visits between two checks for cancellation.
 const UNCHECKED: usize = 1 << 14;
 
-/// A cell at the bottom of each depression, the lowest first.
+/// The lowest cell of each depression, the lowest depression first.
 fn bottoms(heights: &Grid, outlets: &Outlets, receivers: &Receivers) -> Vec<usize> {
     let is_bottom = |c: &usize| receivers.code(*c) == NONE && !outlets.at(*c);
     let mut bottoms: Vec<usize> = (0..heights.data().len()).filter(is_bottom).collect();
@@ -66,14 +68,14 @@ fn bottoms(heights: &Grid, outlets: &Outlets, receivers: &Receivers) -> Vec<usiz
     bottoms
 }
 
-/// Of each cell what the search that looked at it last has found.
+/// For each cell, the result of the last search that visited it.
 #[derive(Debug, Clone, Copy)]
 struct Found {
     search: u32,
-    /// Cells from the bottom.
+    /// Cells from the bottom of the depression.
     length: u32,
     cost: f64,
-    /// The way back.
+    /// The direction back to the bottom.
     back: u8,
     settled: bool,
 }
@@ -94,7 +96,7 @@ impl Search {
         }
     }
 
-    /// Cuts the least dear channel from `pit`, if one is within the limits (Dijkstra's algorithm).
+    /// Cuts the cheapest channel from `pit` within the limits, if there is one (Dijkstra's algorithm).
     fn drain(
         &mut self,
         h: &mut [f32],
@@ -106,7 +108,7 @@ impl Search {
         self.searches += 1;
         let (search, bed) = (self.searches, h[pit]);
         self.found[pit] = Found { search, length: 0, cost: 0.0, back: NONE, settled: false };
-        // Costs are not below zero, so their bits are ordered as they are.
+        // Costs are not negative, so their bits sort like their values.
         let mut waiting = BinaryHeap::from([Reverse((0u64, pit))]);
         let mut looked = 0usize;
         while let Some(Reverse((_, cell))) = waiting.pop() {
@@ -122,7 +124,7 @@ impl Search {
                 self.cut(h, cell, bed);
                 return Ok(());
             }
-            // An outlet is not cut, so nothing leads on over a higher one.
+            // An outlet is not cut, so no path crosses a higher one.
             if outlets.at(cell) || here.length >= limits.longest {
                 continue;
             }
@@ -143,7 +145,7 @@ impl Search {
         Ok(())
     }
 
-    /// Lowers the way back from `end` to the bed.
+    /// Lowers the path back from `end` to the bed.
     fn cut(&self, h: &mut [f32], end: usize, bed: f32) {
         let mut cell = end;
         while self.found[cell].back != NONE {

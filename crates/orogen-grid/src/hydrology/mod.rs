@@ -1,5 +1,5 @@
-//! Water finds its way: depressions, drainage, areas, lakes, rivers and what they cut. Pure functions on grids, one algorithm
-//! a file.
+//! Hydrology: depressions, drainage, drainage areas, lakes, rivers and their erosion. Pure functions on grids, one
+//! algorithm per file.
 
 pub mod above_drainage;
 pub mod accumulation;

@@ -1,12 +1,12 @@
-//! Where water leaves a map.
+//! Outlets: the cells where water leaves a map.
 
 use super::direction::{neighbour, strides};
 use crate::grid::Grid;
 
-/// The cells at which water leaves: every cell of the grid's border; cells that are not finite, and their neighbours; cells of
-/// the sea. All the rest drains to one of these.
+/// The outlets of a map: all cells of the grid's border; cells that are not finite, and their neighbours; cells of the
+/// sea. All other cells drain to one of these.
 ///
-/// A grid of fewer than 3 columns or rows is all border.
+/// In a grid of fewer than 3 columns or rows every cell is on the border.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outlets {
     mask: Grid<bool>,
@@ -36,7 +36,7 @@ impl Outlets {
         }
         let strides = strides(width);
         for (i, j) in holes {
-            // Whatever lies beside a hole at the border is border itself but for its inner neighbours: walk them all.
+            // Cells beside a hole at the border are border cells, except for inner neighbours: test them all.
             if i > 0 && j > 0 && i + 1 < width && j + 1 < height {
                 for stride in strides {
                     mask.data_mut()[neighbour(j * width + i, stride)] = true;
@@ -50,13 +50,13 @@ impl Outlets {
         Outlets { mask }
     }
 
-    /// Whether water leaves at sample `index` of the row-major grid.
+    /// Whether sample `index` of the row-major grid is an outlet.
     #[inline(always)]
     pub fn at(&self, index: usize) -> bool {
         self.mask.data()[index]
     }
 
-    /// All of them.
+    /// The outlets as a mask.
     pub fn mask(&self) -> &Grid<bool> {
         &self.mask
     }

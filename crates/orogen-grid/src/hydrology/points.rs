@@ -1,33 +1,33 @@
-//! Points off the lattice: a mesh without directions of its own.
+//! Irregular points: a mesh without preferred directions.
 //!
-//! On a square lattice water knows eight directions, and what slopes as steeply as it can stands in facets that face them: ridges
-//! and valleys line up with the grid. A mesh of irregular points has no such directions (as in the triangulated models of Tucker et
-//! al., "An object-oriented framework for distributed hydrologic and geomorphic modeling using triangulated irregular networks",
-//! 2001). Here each cell keeps its eight neighbours, and its point is moved within it: distances differ from pair to pair, and a
-//! slope's water and its facets go now this way, now that.
+//! On a square lattice water has eight directions, and slopes at the limit form facets that face them: ridges and
+//! valleys align with the grid. A mesh of irregular points has no preferred directions (as in the triangulated models
+//! of Tucker et al., "An object-oriented framework for distributed hydrologic and geomorphic modeling using
+//! triangulated irregular networks", 2001). Here each cell keeps its eight neighbours, but its point is displaced
+//! within the cell. Distances then differ from pair to pair, and the directions of flow and of facets vary.
 
 use super::direction::{STEPS, hashed, neighbour, opposite};
 use super::outlets::Outlets;
 use crate::grid::{Grid, Window};
 use rayon::prelude::*;
 
-/// A point for each cell of a map, and how far apart neighbours are.
+/// A point for each cell of a map, and the distances between neighbours.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
     window: Window,
-    /// How far each is moved at most, in cells.
+    /// Maximum displacement along each axis, in cells.
     reach: f32,
     salt: u32,
-    /// One over the distance, in cells, to the neighbours in the east, south-east, south and south-west.
+    /// The inverse of the distance, in cells, to the neighbours in the east, south-east, south and south-west.
     inverse_distance: [Vec<f32>; 4],
 }
 
-/// Half a cell: points that are moved further could pass each other.
+/// Half a cell: with a larger displacement points could pass each other.
 const FURTHEST: f64 = 0.5;
 
 impl Points {
-    /// Points moved by up to half of `share` (0 to 1) of a cell to each side, by a hash of their place and `salt`. Holds 16 bytes a
-    /// cell.
+    /// Points displaced by up to half of `share` (0 to 1) of a cell along each axis, by a hash of their position and
+    /// `salt`. Holds 16 bytes per cell.
     pub fn new(window: Window, share: f64, salt: u32) -> Points {
         let reach = (share.clamp(0.0, 1.0) * FURTHEST) as f32;
         let (width, cells) = (window.width, window.len());
@@ -37,7 +37,7 @@ impl Points {
         let rows = |plane| <[f32]>::par_chunks_mut(plane, width.max(1));
         let planes_of_rows = rows(east).zip(rows(south_east)).zip(rows(south).zip(rows(south_west)));
         planes_of_rows.enumerate().for_each(|(j, ((east, south_east), (south, south_west)))| {
-            // From the column before the first to the one after the last.
+            // From one column before the first to one after the last.
             let offsets = |j: usize| -> Vec<[f32; 2]> { (-1..=width as i64).map(|i| points.at(i, j as i64)).collect() };
             let (here, below) = (offsets(j), offsets(j + 1));
             for (code, plane) in [east, south_east, south, south_west].into_iter().enumerate() {
@@ -54,25 +54,25 @@ impl Points {
         points
     }
 
-    /// How far east and south of its lattice point the point of column `i` and row `j` is, in cells.
+    /// The displacement, in cells east and south, of the point of column `i` and row `j`.
     #[inline]
     fn at(&self, i: i64, j: i64) -> [f32; 2] {
         let hash = hashed(self.window.x + i, (self.window.y + j) ^ (i64::from(self.salt) << 32));
         [hash & 0xFFFF, hash >> 16].map(|bits| (bits as f32 * (2.0 / 65535.0) - 1.0) * self.reach)
     }
 
-    /// One over the distances, in cells, from the inner cells of row `j` to their neighbours, in the order of [`STEPS`].
+    /// The inverse distances, in cells, from the inner cells of row `j` to their neighbours, in the order of [`STEPS`].
     pub(super) fn around(&self, j: usize) -> [&[f32]; 8] {
         let width = self.window.width;
         std::array::from_fn(|code| {
-            // The way back is as far.
+            // The distance in the opposite direction is the same.
             let (plane, (east, south)) = if code < 4 { (code, (0, 0)) } else { (code - 4, STEPS[code]) };
             let start = (j.wrapping_add_signed(south) * width + 1).wrapping_add_signed(east);
             &self.inverse_distance[plane][start..start + width - 2]
         })
     }
 
-    /// One over the distance, in cells, from cell `c` to the neighbour in the direction `code`.
+    /// The inverse distance, in cells, from cell `c` to the neighbour in direction `code`.
     #[inline(always)]
     pub(super) fn inverse_distance(&self, c: usize, code: u8, strides: &[isize; 8]) -> f32 {
         match code {
@@ -81,7 +81,7 @@ impl Points {
         }
     }
 
-    /// What stands at the points, carried over to the lattice along the slope of the ground around each. Outlets stay.
+    /// Interpolates the heights at the points to the lattice along the local slope. Outlets keep their heights.
     pub fn onto_lattice(&self, heights: &mut Grid, outlets: &Outlets) {
         let (width, height) = (self.window.width, self.window.height);
         if self.reach == 0.0 || width < 3 || height < 3 {
@@ -89,7 +89,7 @@ impl Points {
         }
         let before = heights.clone();
         let h = before.data();
-        // Each thread takes some rows together, so that an offset is hashed once for the three rows that read it.
+        // Each thread takes several rows, so that an offset is hashed once for the three rows that read it.
         heights.data_mut().par_chunks_mut(width * ROWS).enumerate().for_each(|(band, rows)| {
             let first = band * ROWS;
             let mut offsets = [Offsets::default(), Offsets::default(), Offsets::default()];
@@ -123,22 +123,22 @@ impl Points {
     }
 }
 
-/// Rows that are carried over to the lattice together.
+/// Rows that are interpolated together.
 const ROWS: usize = 16;
 
-/// How far the points of a row stand off the lattice, in cells.
+/// The displacements of a row's points, in cells.
 #[derive(Default)]
 struct Offsets {
     east: Vec<f32>,
     south: Vec<f32>,
 }
 
-/// The heights at the lattice points of the middle one of three rows, its ends left alone.
+/// The heights at the lattice points of the middle of three rows, except its ends.
 fn carry_over(h: [&[f32]; 3], offsets: [&Offsets; 3], row: &mut [f32]) {
     let width = row.len();
     let (here_x, here_y) = (&offsets[1].east[1..width - 1], &offsets[1].south[1..width - 1]);
     let here = &h[1][1..width - 1];
-    // The eight neighbours, in the order of STEPS: heights and offsets of the cells that far along the row.
+    // The eight neighbours in the order of STEPS: heights and displacements, shifted along the row.
     let around = STEPS.map(|(east, south)| {
         let from = 1usize.wrapping_add_signed(east);
         let at = 1usize.wrapping_add_signed(south);
@@ -146,7 +146,7 @@ fn carry_over(h: [&[f32]; 3], offsets: [&Offsets; 3], row: &mut [f32]) {
         (east as f32, south as f32, &h[at][range.clone()], &offsets[at].east[range.clone()], &offsets[at].south[range])
     });
     for (i, height) in row[1..width - 1].iter_mut().enumerate() {
-        // The plane through the point that fits its neighbours best: two equations.
+        // The least-squares plane through the point: two equations.
         let [mut xx, mut xy, mut yy, mut xh, mut yh] = [0.0f32; 5];
         for (east, south, heights, there_x, there_y) in &around {
             let (x, y) = (east + there_x[i] - here_x[i], south + there_y[i] - here_y[i]);

@@ -1,4 +1,4 @@
-//! Which neighbour each cell drains to.
+//! Receivers: the neighbour that each cell drains to.
 
 use super::direction::{NONE, neighbour, opposite, strides};
 use crate::grid::{Grid, Window};
@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 /// The receiver of every cell, as the code of a direction ([`NONE`] for outlets and pits).
 ///
-/// No code leads out of the grid: cells of its border have none.
+/// No code leads out of the grid: border cells have none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Receivers {
     codes: Grid<u8>,
@@ -14,7 +14,7 @@ pub struct Receivers {
 }
 
 impl Receivers {
-    /// No cell drains anywhere yet.
+    /// Receivers of which every cell is [`NONE`].
     pub fn none(window: Window) -> Receivers {
         let mut all = [0; 9];
         all[..8].copy_from_slice(&strides(window.width));
@@ -26,7 +26,7 @@ impl Receivers {
         self.codes.data()
     }
 
-    /// The codes, to change. A code must not lead out of the grid.
+    /// The codes, mutable. A code must not lead out of the grid.
     pub fn codes_mut(&mut self) -> &mut [u8] {
         self.codes.data_mut()
     }
@@ -36,20 +36,20 @@ impl Receivers {
         &self.codes
     }
 
-    /// Where the cells lie.
+    /// The window of the cells.
     pub fn window(&self) -> &Window {
         self.codes.window()
     }
 
-    /// The cell that `index` drains to; itself if it drains to none.
+    /// The receiver of cell `index`; the cell itself if it has none.
     #[inline(always)]
     pub fn of(&self, index: usize) -> usize {
-        // The mask changes no code; it spares the check that it is below the length.
+        // The mask does not change a code; it removes the bounds check.
         let code = self.codes.data()[index];
         neighbour(index, self.strides[usize::from(code.min(NONE))])
     }
 
-    /// Which neighbours drain into each cell: bit k of a cell's set stands for the one in direction k. Rows side by side.
+    /// The donors of each cell as a set: bit k stands for the neighbour in direction k. Rows are computed in parallel.
     pub fn donors(&self) -> Vec<u8> {
         let (width, height) = (self.window().width, self.window().height);
         let mut donors = vec![0u8; width * height];
@@ -57,7 +57,7 @@ impl Receivers {
             for (south, east) in [(-1, 7), (0, 0), (1, 1)] {
                 let Some(from) = j.checked_add_signed(south).filter(|from| *from < height) else { continue };
                 let from = self.codes.row(from);
-                // The directions in which the row's cells lie one column to the east, in this one and one to the west.
+                // The directions whose cells lie one column east or west.
                 let straight = if south < 0 { 6 } else { 2 };
                 let west = if south < 0 { 5 } else { 4 - south as u8 };
                 mark(row, &from[1..], east);
@@ -77,7 +77,7 @@ impl Receivers {
     }
 }
 
-/// Marks the cells into which the neighbour in this direction drains.
+/// Marks the cells whose neighbour in this direction drains into them.
 fn mark(sets: &mut [u8], neighbours: &[u8], direction: u8) {
     let here = opposite(direction);
     sets.iter_mut().zip(neighbours).for_each(|(set, code)| *set |= u8::from(*code == here) << direction);

@@ -1,29 +1,29 @@
-//! Rivers: the network as lines, with how much water they carry and how wide they are.
+//! Rivers as lines, with discharge and width.
 
 use super::accumulation::Accumulation;
 use super::receivers::Receivers;
 use crate::grid::Grid;
 
-/// A stretch of river without a confluence.
+/// A stretch of river between confluences.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reach {
-    /// Its cells downstream. The last is the first of the reach it flows into, or the outlet.
+    /// Its cells, downstream. The last one is the first of the next reach, or the outlet.
     pub cells: Vec<u32>,
-    /// Strahler's order.
+    /// Strahler order.
     pub order: u8,
-    /// The reach it flows into; none at an outlet.
+    /// The reach that it flows into; none at an outlet.
     pub next: Option<u32>,
 }
 
-/// How much water a drainage area gives, and how wide a bed and how deep it needs (Leopold and Maddock 1953: w = a Q^0.5,
-/// d = c Q^0.4, with Q in m^3/s).
+/// Discharge from a drainage area, and the width and depth of the channel (Leopold and Maddock 1953: w = a Q^0.5, d = c
+/// Q^0.4, with Q in m^3/s).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Channel {
-    /// Water that runs off, in metres a year.
+    /// Runoff, in metres per year.
     pub runoff: f64,
-    /// a: the width of a river of 1 m^3/s, in metres.
+    /// a: the width of a river with 1 m^3/s, in metres.
     pub width: f64,
-    /// c: its depth, in metres.
+    /// c: the depth of a river with 1 m^3/s, in metres.
     pub depth: f64,
 }
 
@@ -31,23 +31,23 @@ pub struct Channel {
 const YEAR: f64 = 31_557_600.0;
 
 impl Channel {
-    /// Q, in m^3/s, of a drainage area in m^2.
+    /// The discharge, in m^3/s, of a drainage area in m^2.
     pub fn discharge(&self, area: f64) -> f64 {
         area * self.runoff / YEAR
     }
 
-    /// Metres from bank to bank.
+    /// Width between the banks, in metres.
     pub fn width_of(&self, discharge: f64) -> f64 {
         self.width * discharge.max(0.0).sqrt()
     }
 
-    /// Metres from bank to bed.
+    /// Depth from bank to bed, in metres.
     pub fn depth_of(&self, discharge: f64) -> f64 {
         self.depth * libm::pow(discharge.max(0.0), 0.4)
     }
 }
 
-/// The network of all cells whose order, as [`orders`](super::strahler::orders) gives it, is above 0: reaches from spring or
+/// The network of all cells with an order above 0 (see [`orders`](super::strahler::orders)): reaches from source or
 /// confluence to confluence or outlet, in row order of their first cells. Costs O(cells).
 pub fn network(receivers: &Receivers, orders: &Grid<u8>) -> Vec<Reach> {
     let mut streams = Streams::default();
@@ -57,7 +57,7 @@ pub fn network(receivers: &Receivers, orders: &Grid<u8>) -> Vec<Reach> {
     streams.network()
 }
 
-/// The cells of rivers alone, in row order.
+/// The cells of rivers only, in row order.
 #[derive(Debug, Clone, Default)]
 pub struct Streams {
     cells: Vec<u32>,
@@ -65,11 +65,11 @@ pub struct Streams {
     orders: Vec<u8>,
 }
 
-/// Bytes that a cell of a river takes while [`Streams`] are made and made reaches of.
+/// Memory per river cell, in bytes, during construction of [`Streams`] and its reaches.
 pub const STREAM_CELL: u64 = 40;
 
 impl Streams {
-    /// Takes the next cell, what it drains to (itself if to none) and its order.
+    /// Adds the next cell, its receiver (itself if there is none) and its order.
     pub fn push(&mut self, cell: u32, receiver: u32, order: u8) {
         self.cells.push(cell);
         self.receivers.push(receiver);
@@ -78,7 +78,7 @@ impl Streams {
 
     /// The reaches, in row order of their first cells.
     pub fn network(mut self) -> Vec<Reach> {
-        // Receivers by their place in the list; what drains to no stream ends where it is.
+        // Receivers as indices into the list; a cell whose receiver is not in the list ends there.
         for k in 0..self.cells.len() {
             self.receivers[k] = self.cells.binary_search(&self.receivers[k]).unwrap_or(k) as u32;
         }
@@ -86,7 +86,7 @@ impl Streams {
         for (_, receiver) in self.receivers.iter().enumerate().filter(|(k, receiver)| **receiver as usize != *k) {
             inflows[*receiver as usize] += 1;
         }
-        // A reach begins at a spring and at a confluence.
+        // A reach starts at a source or a confluence.
         let starts: Vec<usize> = (0..self.cells.len()).filter(|k| inflows[*k] != 1).collect();
         let mut reaches = Vec::with_capacity(starts.len());
         for start in &starts {
@@ -111,8 +111,9 @@ impl Streams {
     }
 }
 
-/// Cuts the beds of rivers into ground on which no receiver is higher than its donor: by the depth their water needs. The area
-/// only grows downstream, so the beds fall as the ground does. Cells of order 0, and outlets, stay.
+/// Cuts river beds by the depth that their discharge needs, into ground on which no receiver is higher than its donor.
+/// The drainage area never decreases downstream, so beds never rise downstream. Cells of order 0 and outlets keep their
+/// heights.
 pub fn carve(heights: &mut Grid, receivers: &Receivers, drained: &Accumulation, orders: &Grid<u8>, channel: &Channel) {
     let cell_area = heights.window().cell * heights.window().cell;
     for (c, h) in heights.data_mut().iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! Grids that the tests of this crate and of those above it share: rough, smooth, stepped, holed.
+//! Test grids of this module: rough, smooth, with steps, with holes.
 
 use super::direction::hashed;
 use crate::grid::{Grid, Window};
@@ -23,7 +23,7 @@ pub fn hills(width: usize, height: usize, seed: i64) -> Grid {
     })
 }
 
-/// Hills in steps of whole numbers: full of flats.
+/// Hills rounded to whole numbers, with many flats.
 pub fn steps(width: usize, height: usize, seed: i64) -> Grid {
     let mut grid = hills(width, height, seed);
     grid.data_mut().iter_mut().for_each(|h| *h = (*h / 60.0).floor());
@@ -41,7 +41,7 @@ pub fn holed(width: usize, height: usize, seed: i64) -> Grid {
     grid
 }
 
-/// One of each, and the degenerate ones.
+/// One of each, and degenerate ones.
 pub fn grids() -> Vec<Grid> {
     let mut grids = Vec::new();
     for seed in 0..4 {

@@ -1,25 +1,25 @@
-//! Numbers that tell drained land from noise.
+//! Statistics of drainage networks.
 //!
-//! Each is the slope of a straight line through the logarithms of classes, fitted by least squares; none where fewer than four
-//! classes have members.
+//! Each is the slope of a least-squares line through the logarithms of classes; `None` if fewer than four classes have
+//! members.
 
 use super::accumulation::Accumulation;
 use super::direction::DISTANCES;
 use super::receivers::Receivers;
 use crate::grid::Grid;
 
-/// How many classes of drainage area there are.
+/// Number of classes of drainage area.
 const CLASSES: usize = 12;
 
-/// The exponent t of P(area > a) ~ a^-t (Rodriguez-Iturbe and Rinaldo 1997), from 8 cells to a hundredth of the map. Real land
-/// has 0.43 to 0.58.
+/// The exponent t of P(area > a) ~ a^-t (Rodriguez-Iturbe and Rinaldo 1997), fitted from 8 cells to a hundredth of the
+/// map. Real terrain has 0.43 to 0.58.
 pub fn area_exponent(drained: &Accumulation) -> Option<f64> {
     let mut counts = AreaCounts::new(drained.area.data().len());
     counts.add(drained.area.data());
     counts.exponent()
 }
 
-/// Cells counted by their drainage areas, for [`area_exponent`].
+/// Counts of cells by drainage area, for [`area_exponent`].
 #[derive(Debug, Clone)]
 pub struct AreaCounts {
     cells: usize,
@@ -28,20 +28,20 @@ pub struct AreaCounts {
 }
 
 impl AreaCounts {
-    /// Of a map of so many cells, none counted yet.
+    /// Empty counts of a map with this many cells.
     pub fn new(cells: usize) -> AreaCounts {
         let bounds = spaced(8.0, cells as f64 / 100.0, 14).unwrap_or_default();
         AreaCounts { cells, above: vec![0; bounds.len()], bounds }
     }
 
-    /// Counts cells by their areas in cells.
+    /// Counts cells by their drainage areas, in cells.
     pub fn add(&mut self, areas: &[u32]) {
         for (bound, above) in self.bounds.iter().zip(&mut self.above) {
             *above += areas.iter().filter(|area| f64::from(**area) > *bound).count();
         }
     }
 
-    /// The exponent, when all cells are counted.
+    /// The exponent, after all cells were counted.
     pub fn exponent(&self) -> Option<f64> {
         let counted = self.bounds.iter().zip(&self.above).filter(|(_, above)| **above > 0);
         let points = counted.map(|(bound, above)| (libm::log(*bound), libm::log(*above as f64 / self.cells as f64)));
@@ -49,8 +49,8 @@ impl AreaCounts {
     }
 }
 
-/// The exponent h of Hack's law, L ~ A^h (Hack 1957): L is the longest way water comes to a cell, A its area, over cells that
-/// drain `threshold` cells or more. Real rivers have 0.5 to 0.6.
+/// The exponent h of Hack's law, L ~ A^h (Hack 1957), where L is the longest flow path to a cell and A its area, over
+/// cells that drain at least `threshold` cells. Real rivers have 0.5 to 0.6.
 pub fn hack_exponent(receivers: &Receivers, drained: &Accumulation, threshold: u32) -> Option<f64> {
     let ways = longest_ways(receivers, drained);
     let areas = drained.area.data();
@@ -59,8 +59,8 @@ pub fn hack_exponent(receivers: &Receivers, drained: &Accumulation, threshold: u
     classes.slope()
 }
 
-/// The concavity of rivers: theta of S ~ A^-theta (Flint 1974), with S the drop per metre along the way water takes over `filled`
-/// ground. Rivers in balance with uplift have m / n, 0.4 to 0.6.
+/// The concavity of rivers: theta of S ~ A^-theta (Flint 1974), where S is the slope along the flow path on `filled`.
+/// Rivers in equilibrium with uplift have m / n, 0.4 to 0.6.
 pub fn concavity(filled: &Grid, receivers: &Receivers, drained: &Accumulation, threshold: u32) -> Option<f64> {
     let cell = filled.window().cell;
     let areas = drained.area.data();
@@ -74,13 +74,13 @@ pub fn concavity(filled: &Grid, receivers: &Receivers, drained: &Accumulation, t
     Some(-classes.slope()?)
 }
 
-/// How much the water's surface drops per metre from a cell to its receiver, in the direction of this code.
+/// The slope of the water surface from a cell to its receiver in direction `code`, in metres per metre.
 pub fn drop_per_metre(height: f32, receiver: f32, code: u8, cell: f64) -> f64 {
     f64::from(height - receiver) / (DISTANCES[usize::from(code & 7)] * cell)
 }
 
-/// A way along receivers: how many steps to a side's neighbour, and how many to a corner's. Whole numbers, so that the sum does not depend on where it
-/// began.
+/// The length of a flow path as the numbers of axial and diagonal steps. Integers, so that the sum does not depend on
+/// the starting point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Way {
     straight: u32,
@@ -88,29 +88,30 @@ pub struct Way {
 }
 
 impl Way {
-    /// With a step in the direction of this code.
+    /// Extended by a step in direction `code`.
     pub fn step(self, code: u8) -> Way {
         let diagonal = u32::from(code & 1);
         Way { straight: self.straight + 1 - diagonal, diagonal: self.diagonal + diagonal }
     }
 
-    /// Both in a row.
+    /// The sum of both.
     pub fn then(self, next: Way) -> Way {
         Way { straight: self.straight + next.straight, diagonal: self.diagonal + next.diagonal }
     }
 
-    /// In cells.
+    /// The length, in cells.
     pub fn length(self) -> f64 {
         f64::from(self.straight) + f64::from(self.diagonal) * std::f64::consts::SQRT_2
     }
 
-    /// The longer of two. No two ways of fewer than 2^20 steps are so alike in length that rounding could tell otherwise.
+    /// The longer of the two. The lengths of two different paths of fewer than 2^20 steps differ by more than the
+    /// rounding.
     pub fn longer(self, other: Way) -> Way {
         if other.length() > self.length() { other } else { self }
     }
 }
 
-/// How far water has come at most to each cell.
+/// The longest flow path to each cell.
 #[doc(hidden)]
 pub fn longest_ways(receivers: &Receivers, drained: &Accumulation) -> Vec<Way> {
     let mut ways = vec![Way::default(); drained.area.data().len()];
@@ -123,16 +124,17 @@ pub fn longest_ways(receivers: &Receivers, drained: &Accumulation) -> Vec<Way> {
     ways
 }
 
-/// What stands for the values of a class.
+/// The average of a class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Average {
-    /// The middle one; of an even number, the upper of the middle two.
+    /// The median; for an even count, the upper of the middle two.
     Median,
     /// Their mean.
     Mean,
 }
 
-/// Values of cells by classes of drainage area, from a threshold to half the largest area, and the line through the logarithms of their averages.
+/// Averages of cell values in classes of drainage area, from a threshold to half the largest area, and the line through
+/// their logarithms.
 #[derive(Debug, Clone)]
 pub struct AreaClasses {
     average: Average,
@@ -144,20 +146,20 @@ pub struct AreaClasses {
 struct Class {
     count: usize,
     logarithms: f64,
-    /// Of the values, if their mean is wanted.
+    /// Sum of the values, for the mean.
     sum: f64,
-    /// The values themselves, if their median is.
+    /// The values, for the median.
     values: Vec<f64>,
 }
 
 impl AreaClasses {
-    /// None if there is no room between.
+    /// `None` if the range is empty.
     pub fn new(threshold: u32, largest: u32, average: Average) -> Option<AreaClasses> {
         let bounds = spaced(f64::from(threshold.max(1)), f64::from(largest) / 2.0, CLASSES)?;
         Some(AreaClasses { average, bounds, classes: vec![Class::default(); CLASSES - 1] })
     }
 
-    /// Takes a cell's value; one that is not finite has no class. Sums depend on the order of cells: row by row.
+    /// Adds a cell's value; values that are not finite are ignored. Sums depend on the order of the cells: row by row.
     pub fn add(&mut self, area: u32, value: f64) {
         let class = self.bounds.partition_point(|bound| *bound <= f64::from(area));
         let Some(class) = class.checked_sub(1).and_then(|k| self.classes.get_mut(k)).filter(|_| value.is_finite())
@@ -172,7 +174,7 @@ impl AreaClasses {
         }
     }
 
-    /// The slope of the line through classes of five cells or more.
+    /// The slope of the line through classes with at least five cells.
     pub fn slope(self) -> Option<f64> {
         let points = self.classes.into_iter().filter(|class| class.count >= 5).filter_map(|mut class| {
             let value = match self.average {
@@ -185,13 +187,13 @@ impl AreaClasses {
     }
 }
 
-/// `count` numbers from `low` to `high` in equal ratios; none if there is no room between.
+/// `count` numbers from `low` to `high` in equal ratios; `None` if the range is empty.
 fn spaced(low: f64, high: f64, count: usize) -> Option<Vec<f64>> {
     let ratio = libm::log(high / low) / (count as f64 - 1.0);
     (high > low).then(|| (0..count).map(|k| low * libm::exp(ratio * k as f64)).collect())
 }
 
-/// The slope of the line of least squares.
+/// The slope of the least-squares line.
 fn line(points: &[(f64, f64)]) -> Option<f64> {
     if points.len() < 4 {
         return None;

@@ -7,23 +7,23 @@ use super::receivers::Receivers;
 use crate::grid::Grid;
 use rayon::prelude::*;
 
-/// Which lower neighbour a cell drains to.
+/// The rule that chooses the receiver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Descent<'a> {
-    /// The one to which it falls most steeply (O'Callaghan and Mark 1984): the drop, over square root of 2 on a diagonal.
+    /// Steepest descent (O'Callaghan and Mark 1984); the drop is divided by sqrt(2) on a diagonal.
     Steepest,
-    /// The same with the diagonal's drop over a random length from 1 to 2, hashed from the cell's place and this number (Rho8,
-    /// Fairfield and Leymarie 1991): water on a slope that lies between two directions takes now the one, now the other, and
-    /// on the average goes where the slope does. D8 takes the same one all the way and draws straight parallel lines.
+    /// The same, but a diagonal drop is divided by a random length from 1 to 2, hashed from the cell's position and
+    /// this number (Rho8, Fairfield and Leymarie 1991). On a slope between two directions the receivers alternate, and
+    /// on average the flow follows the slope. D8 always takes the same direction and gives straight parallel lines.
     Scattered(u32),
-    /// The one to which it falls most steeply between points off the lattice.
+    /// Steepest descent between irregular points.
     Interpolation(&'a Points),
 }
 
-/// The neighbour to which each cell drains. Outlets, and cells without a lower neighbour, have none. Between equals a hash of
-/// the cell's place on the lattice decides.
+/// The receiver of each cell. Outlets, and cells without a lower neighbour, have none. Ties are broken by a hash of the
+/// cell's position on the lattice.
 ///
-/// Costs O(cells); rows side by side.
+/// Costs O(cells). Rows are computed in parallel.
 pub fn receivers(heights: &Grid, outlets: &Outlets, descent: Descent) -> Receivers {
     let mut receivers = Receivers::none(*heights.window());
     let window = *heights.window();
@@ -53,7 +53,7 @@ pub fn receivers(heights: &Grid, outlets: &Outlets, descent: Descent) -> Receive
     receivers
 }
 
-/// One over a length from 1 to 2.
+/// The inverse of a random length from 1 to 2.
 #[inline]
 fn scattered(x: i64, y: i64, salt: u32) -> f32 {
     let share = (hashed(x, y ^ (i64::from(salt) << 32)) >> 8) as f32 * (1.0 / (1 << 24) as f32);
@@ -65,8 +65,8 @@ fn chosen(set: u8, x: i64, y: i64) -> u8 {
     if set & set.wrapping_sub(1) == 0 { set.trailing_zeros() as u8 } else { one_of(set, hashed(x, y)) }
 }
 
-/// The set of directions of steepest descent of every inner cell of the middle row, when a drop along a diagonal counts as much
-/// as `diagonals` says. The first and last are left as they are.
+/// The set of directions of steepest descent for every inner cell of the middle row; drops along diagonals are
+/// multiplied by `diagonals`. The first and last entries are unchanged.
 fn steepest_sets(rows: [&[f32]; 3], diagonals: &[f32], sets: &mut [u8]) {
     let count = sets.len() - 2;
     let middle = &rows[1][1..=count];
@@ -88,7 +88,7 @@ fn steepest_sets(rows: [&[f32]; 3], diagonals: &[f32], sets: &mut [u8]) {
     }
 }
 
-/// The same where each neighbour's drop counts as much as the row of its direction in `inverse_distance` says.
+/// The same with each neighbour's drop multiplied by the row of its direction in `inverse_distance`.
 fn steepest_between(rows: [&[f32]; 3], inverse_distance: [&[f32]; 8], sets: &mut [u8]) {
     let count = sets.len() - 2;
     let middle = &rows[1][1..=count];
@@ -99,7 +99,7 @@ fn steepest_between(rows: [&[f32]; 3], inverse_distance: [&[f32]; 8], sets: &mut
     }
 }
 
-/// The eight rows of neighbours of the inner cells, each as long as the row of these: loops over equal slices become SIMD.
+/// The eight rows of neighbours of the inner cells, all of the same length: loops over equal slices are vectorised.
 #[inline(always)]
 fn around(rows: [&[f32]; 3], count: usize) -> [&[f32]; 8] {
     STEPS.map(|(east, south)| {
@@ -108,7 +108,7 @@ fn around(rows: [&[f32]; 3], count: usize) -> [&[f32]; 8] {
     })
 }
 
-/// The set of the largest drops, if they are any.
+/// The set of the largest drops; empty if there is no drop.
 #[inline(always)]
 fn largest(drops: &[f32; 8]) -> u8 {
     let most = drops.iter().fold(f32::MIN_POSITIVE, |most, drop| if *drop > most { *drop } else { most });

@@ -1,17 +1,17 @@
-//! Strahler's order of streams.
+//! Strahler order of streams.
 
 use super::accumulation::Accumulation;
 use super::receivers::Receivers;
 use crate::grid::Grid;
 
-/// The order of the stream through each cell (Strahler 1957): a stream that begins is of order 1, and where two or more of the
-/// highest order that flows in meet it rises by 1. A cell that drains fewer than `threshold` cells is no stream: 0.
+/// The order of the stream through each cell (Strahler 1957). A source has order 1; the order increases by 1 where at
+/// least two inflows have the highest order. A cell that drains fewer than `threshold` cells is not a stream and has 0.
 ///
 /// Costs O(cells).
 pub fn orders(receivers: &Receivers, accumulation: &Accumulation, threshold: u32) -> Grid<u8> {
     let area = accumulation.area.data();
     let mut orders = Grid::filled(*receivers.window(), 0u8);
-    // Whether the highest order that has flowed in so far has done so more than once.
+    // Whether the highest order so far has flowed in more than once.
     let mut met = vec![false; area.len()];
     for cell in accumulation.upstream_first() {
         if area[cell] < threshold {

@@ -1,21 +1,21 @@
-//! Rivers cut down as land rises: the stream power law with uplift, solved implicitly.
+//! The stream power law with uplift, solved implicitly.
 //!
 //! ```text
 //! dh/dt = U - K A^m S^n        S = (h - h_receiver) / d
 //! ```
 //!
-//! with U the uplift (m/yr), K the erodibility, A the drainage area (m^2) and S the slope along the way water takes. One step of
-//! dt years, after Braun and Willett, "A very efficient O(n), implicit and parallel method to solve the stream power equation
-//! governing fluvial incision and landscape evolution" (2013): receivers first, so that the new height of each is known when its
-//! donors are solved; for n = 1
+//! where U is the uplift (m/yr), K the erodibility, A the drainage area (m^2) and S the slope along the flow path. A
+//! step of dt years follows Braun and Willett, "A very efficient O(n), implicit and parallel method to solve the stream
+//! power equation governing fluvial incision and landscape evolution" (2013). Receivers are solved first, so that their
+//! new heights are known to their donors. For n = 1
 //!
 //! ```text
 //! h' = (h + dt U + F h'_receiver) / (1 + F)        F = K dt A^m / d
 //! ```
 //!
-//! which is stable for any dt, and for other n Newton's method. In the same sweep no cell is left standing steeper above its
-//! receiver than the landslide limit, nor less than the gentlest slope above it: where the way out of a depression leads uphill,
-//! the ground is raised with sediment until water runs.
+//! which is stable for any dt; other n use Newton's method. The same sweep limits slopes: no cell is steeper above its
+//! receiver than the landslide limit, nor less steep than the minimum slope. Where the path out of a depression leads
+//! uphill, the ground is raised with sediment until water drains.
 
 use super::accumulation::Accumulation;
 use super::direction::{DISTANCES, strides};
@@ -25,20 +25,20 @@ use crate::grid::Grid;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// How rivers cut.
+/// Parameters of the stream power law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StreamPower {
     /// K, in m^(1 - 2 m) per year: 1e-6 for hard rock to 5e-5 for soft.
     pub erodibility: f64,
-    /// m: how much more a large river cuts. 0.3 to 0.6.
+    /// m: exponent of the drainage area, 0.3 to 0.6.
     pub area_exponent: f64,
-    /// n: how much more a steep one does. 0.5 to 3.
+    /// n: exponent of the slope, 0.5 to 3.
     pub slope_exponent: f64,
-    /// U, in metres a year.
+    /// U: uplift, in metres per year.
     pub uplift: f64,
-    /// Rise over run that no slope exceeds: what is steeper slides.
+    /// Maximum slope, rise over run; steeper ground slides.
     pub max_slope: f64,
-    /// Rise over run of ground that sediment has filled.
+    /// Minimum slope, rise over run: that of ground filled with sediment.
     pub min_slope: f64,
 }
 
@@ -55,22 +55,22 @@ impl Default for StreamPower {
     }
 }
 
-/// What differs from place to place: factors of the law's numbers, on the grid of the heights.
+/// Spatial variation: factors of the law's parameters, on the grid of the heights.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Substrate<'a> {
-    /// Of the erodibility; 1 everywhere if there is none. Less than 0 counts as 0.
+    /// Factor of the erodibility; `None` means 1 everywhere. Negative values count as 0.
     pub erodibility_factor: Option<&'a Grid>,
-    /// Of the uplift; 1 everywhere if there is none.
+    /// Factor of the uplift; `None` means 1 everywhere.
     pub uplift_factor: Option<&'a Grid>,
-    /// Where each cell's height stands, which says how far it is from its receiver; on the lattice if there are none.
+    /// Positions of the cells, which determine the distances to receivers; `None` means the lattice.
     pub points: Option<&'a Points>,
 }
 
 impl StreamPower {
-    /// Goes on by `years`. Cells without a receiver, which are outlets, stay as they are.
+    /// Advances by `years`. Cells without a receiver (outlets) keep their heights.
     ///
-    /// Every other cell then stands higher than its receiver, so the result has no depressions and no flats. Costs O(cells), on
-    /// as many threads as `drained` was counted by.
+    /// Every other cell is then higher than its receiver, so the result has no depressions and no flats. Costs
+    /// O(cells), on as many threads as `drained` was computed with.
     pub fn step(
         &self,
         heights: &mut Grid,
@@ -95,7 +95,7 @@ impl StreamPower {
         for band in bands {
             let cells = band.cells.len().min(rest.len());
             let (own, after) = std::mem::take(&mut rest).split_at_mut(cells);
-            // What lies beyond the band's ends is read only where it is the trunk's, which is settled.
+            // Cells beyond the band's ends are read only if they belong to the trunk, which is already solved.
             let below = after[..window.width.min(after.len())].to_vec();
             let last = own[own.len().saturating_sub(window.width)..].to_vec();
             shares.push((band, own, std::mem::replace(&mut above, last), below));
@@ -118,7 +118,7 @@ impl StreamPower {
     }
 }
 
-/// All that a step does not have to find out cell by cell.
+/// The parts of a step that are the same for all cells.
 struct Step<'a> {
     codes: &'a [u8],
     area: &'a [u32],
@@ -126,12 +126,12 @@ struct Step<'a> {
     uplift_factor: Option<&'a [f32]>,
     powers: Powers,
     slope_exponent: f64,
-    /// By direction, years, erodibility and the way to the power -n, and the least and the most that a cell stands above its
-    /// receiver.
+    /// By direction: the product of years, erodibility and distance to the power -n, and the minimum and maximum height
+    /// above the receiver.
     factors: [[f64; 3]; 8],
-    /// What the ways differ by from those of the lattice, and how far apart samples of a column are.
+    /// The irregular points, and the strides of the directions.
     points: Option<(&'a Points, [isize; 8])>,
-    /// Metres of uplift.
+    /// Uplift of the step, in metres.
     risen: f64,
 }
 
@@ -148,7 +148,7 @@ impl<'a> Step<'a> {
             let factor = years * law.erodibility * libm::pow(d, -law.slope_exponent);
             [factor, d * law.min_slope, d * law.max_slope]
         };
-        // Between points, the factors of one cell: the way is found when it is known to which neighbour.
+        // With irregular points, the factors of one cell, once its receiver is known.
         let factors = match ground.points {
             None => DISTANCES.map(|distance| factors(distance * cell)),
             Some(_) => [factors(cell); 8],
@@ -166,7 +166,7 @@ impl<'a> Step<'a> {
         }
     }
 
-    /// The height of cell `c` after the step, from that before and the receiver's after it.
+    /// The height of cell `c` after the step, from its height before and the receiver's height after it.
     #[inline(always)]
     fn height(&self, c: usize, before: f32, receiver: f32) -> f32 {
         let code = self.codes[c] & 7;
@@ -191,17 +191,17 @@ impl<'a> Step<'a> {
         } else {
             solve_newton(above, cut, self.slope_exponent)
         };
-        // A landslide limit below the gentlest slope gives way to it. (What is no number counts as the limit, as with `min`.)
+        // A landslide limit below the minimum slope is raised to it. (NaN counts as the limit, as with `min`.)
         let left = if left < most { left } else { most };
         let new = (below + if left > least { left } else { least }) as f32;
-        // In f32 the gentlest slope may come to nothing; water still has to run.
+        // In f32 the minimum slope may round to nothing, but the cell must drain.
         if new > receiver { new } else { receiver.next_up() }
     }
 }
 
-/// The x at which x + cut x^n = above, for n other than 1: what is left of a drop after the step.
+/// The x that solves x + cut x^n = above, for n other than 1: the drop that remains after the step.
 ///
-/// Newton's method on a form that is convex, from above: it comes down to the root and never passes it.
+/// Newton's method on a convex form, starting above the root: it converges monotonically.
 #[inline(never)]
 fn solve_newton(above: f64, cut: f64, n: f64) -> f64 {
     if above <= 0.0 || !(above + cut).is_finite() {
@@ -222,7 +222,7 @@ fn solve_newton(above: f64, cut: f64, n: f64) -> f64 {
     if n > 1.0 { x } else { libm::pow(x, 1.0 / n) }
 }
 
-/// Areas to the power m. Few cells drain much, so nearly all are looked up.
+/// Drainage areas to the power m. Few cells drain large areas, so nearly all values come from a table.
 struct Powers {
     exponent: f64,
     cell_area: f64,

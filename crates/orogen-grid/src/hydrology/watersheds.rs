@@ -1,12 +1,12 @@
-//! Watersheds: the ground that drains to one outlet.
+//! Watersheds: the cells that drain to one outlet.
 
 use super::accumulation::Accumulation;
 use super::outlets::Outlets;
 use super::receivers::Receivers;
 use crate::grid::Grid;
 
-/// The watershed of every cell, numbered from 1 in row order of their outlets; 0 for outlets that nothing but themselves
-/// drains to, so that the sea stays 0. Costs O(cells).
+/// The watershed of every cell, numbered from 1 in row order of the outlets; 0 for outlets that only drain themselves,
+/// such as the sea. Costs O(cells).
 pub fn watersheds(receivers: &Receivers, outlets: &Outlets, accumulation: &Accumulation) -> Grid<u32> {
     let mut labels = Grid::filled(*receivers.window(), 0u32);
     let mut count = 0;

@@ -1,13 +1,13 @@
-//! Indices of how much water comes to the ground and how steep it is.
+//! Indices of drainage area and slope.
 
 use super::accumulation::Accumulation;
 use crate::analysis::slope::{extended, steepness};
 use crate::grid::Grid;
 
-/// How ground counts that is level: as sloping by so much, or it would be infinitely wet.
+/// The slope of level ground, which would otherwise have an infinite wetness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevelGround {
-    /// The least slope, rise over run.
+    /// The minimum slope, rise over run.
     pub least_slope: f64,
 }
 
@@ -18,14 +18,15 @@ impl Default for LevelGround {
 }
 
 impl LevelGround {
-    /// The slope that counts; NaN stays NaN.
+    /// The slope, at least the minimum; NaN stays NaN.
     pub fn slope(&self, slope: f32) -> f64 {
         let slope = f64::from(slope);
         if slope < self.least_slope { self.least_slope } else { slope }
     }
 }
 
-/// The topographic wetness index ln(a / tan b) (Beven and Kirkby 1979) of a specific catchment area in metres and a slope, rise over run.
+/// The topographic wetness index ln(a / tan b) (Beven and Kirkby 1979) of a specific catchment area in metres and a
+/// slope in rise over run.
 pub fn wetness_index(area: f64, slope: f64) -> f64 {
     libm::log(area / slope)
 }
@@ -35,20 +36,21 @@ pub fn stream_power(area: f64, slope: f64) -> f64 {
     area * slope
 }
 
-/// The LS factor 1.4 (a / 22.13)^0.4 (sin b / 0.0896)^1.3 (Moore and Burch, "Physical basis of the length-slope factor in the universal soil loss equation",
-/// 1986): how much soil a slope loses beside one of 22.13 m and 9 %.
+/// The LS factor 1.4 (a / 22.13)^0.4 (sin b / 0.0896)^1.3 (Moore and Burch, "Physical basis of the length-slope factor
+/// in the universal soil loss equation", 1986): soil loss relative to a slope of 22.13 m and 9 %.
 pub fn ls_factor(area: f64, slope: f64) -> f64 {
     let sine = slope / (1.0 + slope * slope).sqrt();
     1.4 * libm::pow(area / 22.13, 0.4) * libm::pow(sine / 0.0896, 1.3)
 }
 
-/// The topographic wetness index of a whole map, with slopes by Horn's method, at the grid's border one-sided. High where much water comes to level ground.
-/// Slopes below 1 in 1000 count as that. NaN where a sample is missing.
+/// The topographic wetness index of a whole map, with slopes by Horn's method (one-sided at the border). High values
+/// mean a large catchment and level ground. Slopes below 0.001 count as 0.001. NaN where a sample is missing.
 pub fn wetness(heights: &Grid, drained: &Accumulation) -> Grid {
     wetness_of_rows(heights, &drained.area)
 }
 
-/// The same of some rows of a map whose areas in cells are known; `around` has one row more on each side where the map has it.
+/// [`wetness`] for some rows of a map with known areas, in cells. `around` has one row more on each side where the map
+/// has it.
 pub fn wetness_of_rows(around: &Grid, areas: &Grid<u32>) -> Grid {
     let steep = steepness(&extended(around));
     let mut out = steep.crop(areas.window()).unwrap_or(steep);

@@ -1,4 +1,4 @@
-//! A file that a recipe names, and what was read of it.
+//! A file that a recipe names, and its content.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -6,18 +6,18 @@ use std::sync::Arc;
 use super::prepared::PreparedDem;
 use orogen_grid::error::Location;
 
-/// A file of heights named by a recipe. What is in it is read once, when the world is opened.
+/// A file of heights named by a recipe. Its content is read once, when the world is opened.
 #[derive(Debug, Clone, Default)]
 pub struct FileRef {
     path: String,
     folder: Option<PathBuf>,
     ground: Option<Arc<PreparedDem>>,
     picture: bool,
-    /// Where a recipe's text names it.
+    /// The location in the recipe's text that names it.
     location: Option<Box<Location>>,
 }
 
-/// A grey picture named by a recipe: what is read of it are numbers from 0 for black to 1 for white, a metre apart.
+/// A greyscale picture named by a recipe: its content is numbers from 0 for black to 1 for white, one metre apart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture(pub FileRef);
 
@@ -33,7 +33,7 @@ impl From<&str> for Picture {
     }
 }
 
-/// Two are the same if they name the same file: what was read of it makes no difference.
+/// Equality compares the names of the files, not their content.
 impl PartialEq for FileRef {
     fn eq(&self, other: &FileRef) -> bool {
         self.path() == other.path()
@@ -52,12 +52,13 @@ impl FileRef {
         self.path.is_empty()
     }
 
-    /// Whether it is read as a picture, not as heights.
+    /// Whether the file is read as a picture instead of heights.
     pub fn is_picture(&self) -> bool {
         self.picture
     }
 
-    /// Where the file is: a relative path counts from the folder of the recipe, or, of a recipe that is no file, from the working folder.
+    /// The path: a relative one is relative to the folder of the recipe or, if the recipe is not a file, to the working
+    /// folder.
     pub fn path(&self) -> PathBuf {
         match &self.folder {
             Some(folder) => folder.join(&self.path),
@@ -65,7 +66,7 @@ impl FileRef {
         }
     }
 
-    /// What a recipe that may lie anywhere calls it.
+    /// The name in a recipe that may be stored in any folder.
     pub fn text(&self) -> String {
         match &self.folder {
             Some(_) => std::path::absolute(self.path()).unwrap_or_else(|_| self.path()).display().to_string(),
@@ -73,27 +74,27 @@ impl FileRef {
         }
     }
 
-    /// Says which folder the recipe lies in.
+    /// Sets the folder of the recipe.
     pub fn set_base_dir(&mut self, folder: &Path) {
         self.folder = Some(folder.to_path_buf());
     }
 
-    /// Where a recipe's text names it, if one does.
+    /// The location in the recipe's text that names it, if there is one.
     pub fn location(&self) -> Option<&Location> {
         self.location.as_deref()
     }
 
-    /// Says where a recipe's text names it.
+    /// Sets the location in the recipe's text.
     pub fn set_location(&mut self, location: Location) {
         self.location = Some(Box::new(location));
     }
 
-    /// What was read of it.
+    /// The content, if it was read.
     pub fn ground(&self) -> Option<&Arc<PreparedDem>> {
         self.ground.as_ref()
     }
 
-    /// Takes what was read of it.
+    /// Sets the content.
     pub fn hold(&mut self, ground: Arc<PreparedDem>) {
         self.ground = Some(ground);
     }

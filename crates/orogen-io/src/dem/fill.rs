@@ -1,10 +1,10 @@
-//! Samples that are missing, made up from those around.
+//! Interpolation of missing samples.
 
-/// Gives every NaN a height: a pyramid is built of means over two by two samples, of those that there are, and from its top down each
-/// missing sample is what the next coarser level shows there, read bilinearly between its samples' middles. So a hole goes smoothly
-/// from rim to rim, a small one from near its rim. Heights that are there stay as they are. Costs O(samples).
+/// Fills every NaN. A pyramid of means over two by two samples is built from the existing ones. From the top down, each
+/// missing sample is interpolated bilinearly from the next coarser level. The filled surface is smooth from rim to rim.
+/// Existing heights do not change. Costs O(samples).
 ///
-/// Returns how many were missing. If all are, they stay.
+/// Returns the number of missing samples. If all are missing, they stay missing.
 pub fn fill(heights: &mut Vec<f32>, width: usize, height: usize) -> usize {
     let missing = heights.iter().filter(|height| height.is_nan()).count();
     if missing == 0 || missing == heights.len() {
@@ -31,7 +31,7 @@ struct Level {
 }
 
 impl Level {
-    /// Half the samples a side, each the mean of those of its four that there are.
+    /// A level with half the samples along each side, each the mean of those of its four that exist.
     fn halved(&self) -> Level {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let mut heights = Vec::with_capacity(width * height);
@@ -53,7 +53,7 @@ impl Level {
         Level { width, height, heights }
     }
 
-    /// Takes what is missing from a level of half the samples that misses none.
+    /// Fills missing samples from a complete level of half the samples.
     fn complete(&mut self, coarse: &Level) {
         for j in 0..self.height {
             for i in 0..self.width {
@@ -65,7 +65,8 @@ impl Level {
         }
     }
 
-    /// The value at sample (i, j) of the next finer level: its middle lies a quarter of a cell from that of the nearest sample here.
+    /// The value at sample (i, j) of the next finer level: its centre is a quarter of a cell from that of the nearest
+    /// sample here.
     fn between(&self, i: usize, j: usize) -> f32 {
         let pair = |k: usize, side: usize| {
             let near = (k / 2).min(side - 1);

@@ -1,13 +1,13 @@
-//! How far north a place on a map lies.
+//! The latitude of a position on a map.
 
 use crate::format::dem::Georeference;
 
-/// Half the equator's diameter in metres, and the square of the eccentricity (WGS 84).
+/// The semi-major axis in metres, and the square of the eccentricity (WGS 84).
 const EQUATOR: f64 = 6_378_137.0;
 const SQUARED: f64 = 0.006_694_379_990_14;
 
-/// Degrees north of the equator at a position in metres of the lattice, if its map is in degrees or in a zone of UTM (WGS 84, NAD 83 or NAD 27; a datum moves
-/// the latitude by less than a thousandth of a degree).
+/// Latitude in degrees north at a position in metres of the lattice, if its map is in degrees or in a UTM zone (WGS 84,
+/// NAD 83 or NAD 27; the datum changes the latitude by less than 0.001 degrees).
 pub fn latitude(map: &Georeference, x: f64, y: f64) -> Option<f64> {
     let [east, north] = map.at(x, y);
     if map.is_degrees() {
@@ -21,7 +21,7 @@ pub fn latitude(map: &Georeference, x: f64, y: f64) -> Option<f64> {
     Some(from_utm(east, northing))
 }
 
-/// By the series of the transverse Mercator projection (Snyder, "Map projections: a working manual", 1987, p. 63).
+/// The series of the inverse transverse Mercator projection (Snyder, "Map projections: a working manual", 1987, p. 63).
 fn from_utm(east: f64, north: f64) -> f64 {
     let e2 = SQUARED;
     let mu = north / 0.9996 / (EQUATOR * (1.0 - e2 * (0.25 + e2 * (3.0 / 64.0 + e2 * 5.0 / 256.0))));

@@ -1,4 +1,4 @@
-//! Real terrain as the engine takes it: read from any format, in square metres, without holes.
+//! Real terrain prepared for the engine: read from any format, resampled to square cells in metres, with holes filled.
 
 pub mod file_ref;
 pub mod fill;

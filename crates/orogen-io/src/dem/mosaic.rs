@@ -1,4 +1,4 @@
-//! Many files of heights as one: a folder of tiles, laid by their places, or the parts of a virtual raster.
+//! Mosaics of several files of heights: a folder of georeferenced tiles, or the parts of a virtual raster.
 
 use std::path::{Path, PathBuf};
 
@@ -10,24 +10,24 @@ use crate::format::import;
 use crate::format::vrt::{self, Virtual};
 use orogen_grid::error::{Error, Result};
 
-/// The most files that are put together.
+/// Maximum number of files.
 const MAX_FILES: usize = 20_000;
 
-/// How far a tile's samples may lie beside those of the others, in cells.
+/// Maximum misalignment of a tile's samples with the common lattice, in cells.
 const BESIDE: f64 = 0.05;
 
-/// A part of a file, and its position in the whole.
+/// A part of a file, and its position in the mosaic.
 struct Part {
     path: PathBuf,
     band: Option<u32>,
     from: [usize; 2],
     to: [usize; 2],
-    /// Columns and rows; none is all that there are.
+    /// Columns and rows; `None` means all.
     size: Option<[usize; 2]>,
     nodata: Option<f64>,
 }
 
-/// The files of a folder that can be tiles, in the order of their names.
+/// The files of a folder that can be tiles, sorted by name.
 ///
 /// # Errors
 /// If the folder cannot be read.
@@ -44,11 +44,11 @@ pub fn tiles(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(tiles)
 }
 
-/// Reads a folder of tiles that share their cells and their coordinate system. Where two lie over each other the first by name is taken, and where it has
-/// no height the next; where none lies there is no height.
+/// Reads a folder of tiles with the same cells and coordinate system. Where tiles overlap, the first by name with a
+/// height there is used. Areas without a tile have no height.
 ///
 /// # Errors
-/// If the tiles do not fit together or one cannot be read, or their heights take more than is allowed.
+/// If the tiles do not fit together, one cannot be read, or their heights exceed the memory limit.
 pub fn folder(folder: &Path, request: Request) -> Result<Dem> {
     let name = folder.display().to_string();
     let tiles = tiles(folder)?;
@@ -73,12 +73,12 @@ pub fn folder(folder: &Path, request: Request) -> Result<Dem> {
         size: None,
         nodata: None,
     });
-    // Later ones are laid over earlier ones.
+    // Later parts cover earlier ones.
     let parts: Vec<Part> = parts.rev().collect();
     lay(&name, size, Some(place), &parts, request)
 }
 
-/// Size, place and the first column and row of each of many tiles.
+/// Size and position of the mosaic, and the first column and row of each tile.
 type Layout = ([u64; 2], Placement, Vec<[usize; 2]>);
 
 fn layout(tiles: &[(PathBuf, [usize; 2], Placement)]) -> std::result::Result<Layout, String> {
@@ -124,7 +124,7 @@ fn layout(tiles: &[(PathBuf, [usize; 2], Placement)]) -> std::result::Result<Lay
 /// Reads a virtual raster.
 ///
 /// # Errors
-/// If it is none, or changes samples, or a file of it cannot be read, or its heights take more than is allowed.
+/// If it is not a virtual raster, changes samples, a file of it cannot be read, or its heights exceed the memory limit.
 pub fn virtual_raster(path: &Path, request: Request) -> Result<Dem> {
     let name = path.display().to_string();
     let refuse = |why: String| refused(&name, why);
@@ -150,7 +150,7 @@ pub fn virtual_raster(path: &Path, request: Request) -> Result<Dem> {
     lay(&name, size, place, &parts, request)
 }
 
-/// The text of a virtual raster, taken apart.
+/// The parsed text of a virtual raster.
 fn parsed(path: &Path) -> Result<Virtual> {
     let name = path.display().to_string();
     let bytes = crate::open::bytes(path, "read", vrt::MAX_LENGTH)?;
@@ -166,13 +166,13 @@ fn lies_at(path: &Path, source: &vrt::Source) -> PathBuf {
     }
 }
 
-/// The files that a virtual raster is composed of; none if it cannot be read.
+/// The source files of a virtual raster; empty if it cannot be read.
 pub fn sources(path: &Path) -> Vec<PathBuf> {
     let bands = parsed(path).map_or(Vec::new(), |read| read.bands);
     bands.iter().flatten().map(|source| lies_at(path, source)).collect()
 }
 
-/// Where a virtual raster lies.
+/// The position of a virtual raster.
 fn place(read: &Virtual) -> std::result::Result<Option<Placement>, String> {
     let Some(affine) = read.affine else { return Ok(None) };
     let lattice = Affine::lattice(&affine, read.size[1] as usize)?;
@@ -187,7 +187,7 @@ fn place(read: &Virtual) -> std::result::Result<Option<Placement>, String> {
     Ok(Some(Placement { origin: lattice.origin, step: lattice.step, unit, cell: None, keys }))
 }
 
-/// Lays parts over each other, each file read by itself: beside the whole, the memory of one file is taken.
+/// Composes parts in order, reading one file at a time: the memory of one file is needed beside the mosaic.
 fn lay(name: &str, size: [u64; 2], place: Option<Placement>, parts: &[Part], request: Request) -> Result<Dem> {
     let count = afford(size[0], size[1], request.allowed).map_err(|why| refused(name, why))?;
     let [width, height] = size.map(|side| side as usize);

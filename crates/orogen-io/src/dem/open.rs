@@ -1,4 +1,4 @@
-//! Heights of a real place by their path: a file, a band of a file, a folder of tiles, a virtual raster or a Zarr array.
+//! Reading heights by path: a file, a band of a file, a folder of tiles, a virtual raster or a Zarr array.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use crate::format::import;
 use crate::format::zarr::reader as zarr;
 use orogen_grid::error::Result;
 
-/// Whether a path names heights: by its extension, a band behind a colon left away, or as a folder of tiles.
+/// Whether a path names heights: by its extension, without a band after a colon, or as a folder of tiles.
 pub fn is_dem(path: &Path) -> bool {
     let (path, _) = split(path);
     import::is_dem(&path)
@@ -16,7 +16,7 @@ pub fn is_dem(path: &Path) -> bool {
         || path.is_dir() && (zarr::is_zarr(&path) || mosaic::tiles(&path).is_ok_and(|tiles| !tiles.is_empty()))
 }
 
-/// A path and the band behind it: `alps.tif:2`. A file that is called so is a file.
+/// Splits a path from the band after it: `alps.tif:2`. If a file with the whole name exists, there is no band.
 pub fn split(path: &Path) -> (PathBuf, Option<u32>) {
     let whole = || (path.to_path_buf(), None);
     let Some(text) = path.to_str() else { return whole() };
@@ -26,7 +26,8 @@ pub fn split(path: &Path) -> (PathBuf, Option<u32>) {
     }
 }
 
-/// All files that a path of heights is read from: itself, the tiles of a folder, the sources of a virtual raster. What cannot be read has none.
+/// All files that a path of heights is read from: itself, the tiles of a folder, the sources of a virtual raster. Empty
+/// if it cannot be read.
 pub fn files(path: &Path) -> Vec<PathBuf> {
     let (path, _) = split(path);
     let mut files = match path.is_dir() {
@@ -45,7 +46,7 @@ fn is_virtual(path: &Path) -> bool {
 /// Reads heights.
 ///
 /// # Errors
-/// If there are none, or they cannot be read, or take more than is allowed.
+/// If there are no heights, they cannot be read, or exceed the memory limit.
 pub fn read(path: &Path, request: Request) -> Result<Dem> {
     let (path, band) = split(path);
     let request = Request { band: band.or(request.band), ..request };

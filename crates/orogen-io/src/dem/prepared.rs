@@ -1,4 +1,4 @@
-//! A real place, ready to be worked with.
+//! A real place prepared for use.
 
 use std::path::Path;
 
@@ -17,43 +17,43 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::Grid;
 use orogen_grid::words::{count, percent};
 
-/// Most bytes of heights where nobody says.
+/// Default memory limit of heights, in bytes.
 pub const DEFAULT_MEMORY: u64 = 4 << 30;
 
-/// Heights of a real place on a lattice of square metres, without holes.
+/// Heights of a real place on a lattice of square cells in metres, without holes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PreparedDem {
     /// The heights; the first sample is the north-west corner, at the origin.
     pub grid: Grid,
-    /// How many samples of the file had no height and were made up.
+    /// Number of samples without a height in the file, which were interpolated.
     pub missing: usize,
-    /// How many samples the file has.
+    /// Number of samples in the file.
     pub samples: usize,
-    /// Where it lies on a map, if the file says so.
+    /// The position on a map, if the file states it.
     pub georeference: Option<Georeference>,
-    /// What was done to it, in messages.
+    /// Messages about the preparation.
     pub notes: Vec<String>,
     /// SHA-256 of size, cell and heights.
     pub hash: [u8; 32],
 }
 
 impl PreparedDem {
-    /// Reads what a path names ([`open::read`]): holes are filled ([`fill`]), degrees and oblong cells become square metres
-    /// ([`Layout`]). `cell` is the distance between samples in metres, where the file's own is not to be used or it has none; heights take no more
-    /// than is allowed.
+    /// Reads heights by path ([`open::read`]), fills holes ([`fill`]) and resamples degrees and oblong cells to square
+    /// cells in metres ([`Layout`]). `cell` is the distance between samples in metres; it replaces the file's own, or
+    /// is needed if the file has none. `request` limits the memory of the heights.
     ///
     /// # Errors
-    /// If the file cannot be read, is too large, or nobody tells how far its samples stand apart.
+    /// If the file cannot be read, is too large, or the distance between its samples is unknown.
     pub fn read(path: &Path, cell: Option<f64>, request: impl Into<Request>) -> Result<PreparedDem> {
         let (name, request) = (path.display().to_string(), request.into());
         let dem = open::read(path, request)?;
         PreparedDem::of(dem, cell, request.allowed).map_err(|why| refused(&name, why))
     }
 
-    /// Reads a grey picture: 0 for black, 1 for white, pixels a metre apart, in no more than `allowed` bytes.
+    /// Reads a greyscale picture: 0 for black, 1 for white, pixels one metre apart, in at most `allowed` bytes.
     ///
     /// # Errors
-    /// If the file cannot be read, is no grey .png, or is too large.
+    /// If the file cannot be read, is not a greyscale .png, or is too large.
     pub fn picture(path: &Path, allowed: u64) -> Result<PreparedDem> {
         let name = path.display().to_string();
         if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
@@ -68,10 +68,10 @@ impl PreparedDem {
         PreparedDem::of(dem, None, allowed).map_err(|why| refused(&name, why))
     }
 
-    /// Of a DEM at hand, as [`PreparedDem::read`] does.
+    /// Prepares a DEM in memory, like [`PreparedDem::read`].
     ///
     /// # Errors
-    /// As [`PreparedDem::read`], as a message.
+    /// The errors of [`PreparedDem::read`], as a message.
     pub fn of(mut dem: Dem, cell: Option<f64>, allowed: u64) -> std::result::Result<PreparedDem, String> {
         let steps = match (cell, &dem.place) {
             (Some(cell), _) => [cell; 2],
@@ -86,7 +86,7 @@ impl PreparedDem {
         let layout = Layout::new([dem.width, dem.height], steps);
         afford(layout.size[0] as u64, layout.size[1] as u64, allowed)?;
         let samples = dem.heights.len();
-        // The pyramid of a hole, and while samples are laid on squares those before and after.
+        // Memory of the pyramid for filling holes; during resampling, the samples before and after.
         let holes = if dem.missing() > 0 { samples as u64 / 3 * 4 } else { 0 };
         let laid = if layout.is_square() { 0 } else { 4 * (layout.size[0] * layout.size[1]) as u64 };
         afford_beside(samples, holes.max(laid), allowed)?;
@@ -107,7 +107,7 @@ impl PreparedDem {
         let georeference = dem.place.as_ref().map(|place| Georeference {
             origin: place.origin,
             per_metre: [place.step[0] / steps[0], place.step[1] / steps[1]],
-            // Degrees stay degrees where nothing tells their datum.
+            // Degrees remain degrees even if their datum is unknown.
             keys: place.keys.clone().or((place.unit == Unit::Degrees).then(|| keys::of_epsg(USER_DEFINED, true))),
         });
         let grid = layout.apply(dem).ok_or("its number of samples differs from its header")?;
@@ -115,7 +115,7 @@ impl PreparedDem {
         Ok(PreparedDem { grid, missing, samples, georeference, notes, hash })
     }
 
-    /// Bytes of memory that it takes.
+    /// Memory that it takes, in bytes.
     pub fn memory(&self) -> u64 {
         self.grid.data().len() as u64 * 4
     }

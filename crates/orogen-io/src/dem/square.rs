@@ -1,4 +1,4 @@
-//! From degrees and oblong cells to square metres.
+//! Resampling of degrees and oblong cells to square cells in metres.
 
 use crate::format::crs::unit::Unit;
 use crate::format::dem::{Dem, Placement};
@@ -10,8 +10,8 @@ use orogen_noise::Points;
 /// Steps that differ by less than this share count as equal.
 const SQUARE: f64 = 1e-3;
 
-/// Metres of a degree of longitude and of latitude, at a latitude in degrees, on the WGS 84 ellipsoid (the usual series of cosines; right
-/// to a centimetre).
+/// Metres per degree of longitude and of latitude at a latitude in degrees, on the WGS 84 ellipsoid (the common cosine
+/// series, accurate to a centimetre).
 pub fn metres_of_degrees(latitude: f64) -> [f64; 2] {
     let phi = latitude.clamp(-89.0, 89.0).to_radians();
     let cos = |n: f64| libm::cos(n * phi);
@@ -20,7 +20,7 @@ pub fn metres_of_degrees(latitude: f64) -> [f64; 2] {
     [longitude, latitude]
 }
 
-/// Metres from a column to the next and from a row to the next, at the middle row of `rows`.
+/// Distance between columns and between rows, in metres, at the middle row of `rows`.
 pub fn steps(place: &Placement, rows: usize) -> [f64; 2] {
     match place.unit {
         Unit::Metres(unit) => place.step.map(|step| step * unit),
@@ -33,20 +33,20 @@ pub fn steps(place: &Placement, rows: usize) -> [f64; 2] {
     }
 }
 
-/// How a DEM's samples are laid on a lattice of square cells.
+/// The resampling of a DEM to a lattice of square cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Layout {
     /// Columns and rows of the lattice.
     pub size: [usize; 2],
-    /// Metres from one sample to the next.
+    /// Distance between samples, in metres.
     pub cell: f64,
-    /// The DEM's own columns and rows from one sample to the next.
+    /// Columns and rows of the DEM per sample of the lattice.
     pub ratio: [f64; 2],
 }
 
 impl Layout {
-    /// The lattice for `size` samples so many metres apart: the finer of the two steps is its cell, so that nothing is lost, and the other
-    /// way is read between samples. Steps that differ by less than a thousandth are taken as equal.
+    /// The lattice for `size` samples with these steps in metres. Its cell is the smaller step, so that no detail is
+    /// lost; the other axis is interpolated. Steps that differ by less than a thousandth count as equal.
     pub fn new(size: [usize; 2], steps: [f64; 2]) -> Layout {
         let [east, south] = steps;
         if (east - south).abs() <= SQUARE * south {
@@ -58,12 +58,12 @@ impl Layout {
         Layout { size: [count(size[0], ratio[0]), count(size[1], ratio[1])], cell, ratio }
     }
 
-    /// Whether samples stay as they are.
+    /// Whether samples need no resampling.
     pub fn is_square(&self) -> bool {
         self.ratio == [1.0; 2]
     }
 
-    /// The heights of a DEM without holes over this lattice, from its north-west corner.
+    /// The heights of a DEM without holes on this lattice, from its north-west corner.
     pub fn apply(&self, dem: Dem) -> Option<Grid> {
         let [width, height] = self.size;
         let window = Window::new(width, height, self.cell);

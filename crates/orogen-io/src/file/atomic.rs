@@ -8,13 +8,13 @@ use super::policy::Output;
 use super::temporary::Temporary;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-/// Large enough that a system call is rare, small enough not to matter to a memory budget.
+/// Large enough to make system calls rare, small enough for any memory budget.
 const BUFFER: usize = 256 * 1024;
 
-/// Writes the file at `output` with what `body` writes: all of it, or nothing.
+/// Writes the file at `output` atomically, with the content that `body` writes.
 ///
-/// `body` may fail with an I/O error, which comes back as a message naming the file, or with an [`Error`] of its own (through
-/// `?` or `into`), which comes back as it is.
+/// If `body` fails with an I/O error, the result is a message with the file's name. If it fails with an [`Error`]
+/// (through `?` or `into`), the result is that error.
 ///
 /// ```
 /// # fn main() -> orogen_grid::Result<()> {
@@ -30,33 +30,34 @@ pub fn write_whole(output: &Output, body: impl FnOnce(&mut dyn Write) -> io::Res
     stage(output, body)?.commit()
 }
 
-/// Writes what `body` writes beside `output` under a temporary name and syncs it, all but [`Staged::commit`]ting it.
+/// Writes a temporary file beside `output` with the content that `body` writes, and syncs it. [`Staged::commit`] puts
+/// it in place.
 ///
-/// A pipe or device is written at once.
+/// A pipe or device is written directly.
 pub fn stage(output: &Output, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<Staged> {
     output.check(None)?;
     stage_through(output.path(), Some(output), |file| Box::new(file), body)
 }
 
-/// As [`write_whole`], over whatever file is there: for files that are named by nobody but this library.
+/// [`write_whole`] over any existing file, for files whose names only this library uses.
 pub fn replace_whole(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     stage_through(path, None, |file| Box::new(file), body)?.commit()
 }
 
-/// Puts files that belong together in their places: none of them if one may not be replaced.
+/// Puts files that belong together in place; none of them if one may not be replaced.
 pub fn commit(files: Vec<Staged>) -> Result<()> {
     files.iter().try_for_each(Staged::check)?;
     files.into_iter().try_for_each(Staged::commit)
 }
 
-/// Whether files can be made in `folder`, found out by making one, which is removed at once.
+/// Checks that files can be created in `folder`, by creating and removing one.
 pub fn check_folder(folder: &Path) -> Result<()> {
     let refuse = |why: &str| Error::new(ErrorKind::File, format!("cannot write into {}: {why}", folder.display()));
     match fs::metadata(folder) {
         Ok(there) if !there.is_dir() => Err(refuse("it is not a folder")),
         Ok(_) => match Temporary::create(folder) {
             Ok(_) => Ok(()),
-            // What /proc and its like answer: the folder is there, but nothing can be made in it.
+            // /proc and similar: the folder exists, but files cannot be created in it.
             Err(cause) if cause.kind() == io::ErrorKind::NotFound => Err(refuse("it does not allow new files")),
             Err(cause) => Err(Error::file("write into", folder, &cause)),
         },
@@ -65,21 +66,21 @@ pub fn check_folder(folder: &Path) -> Result<()> {
     }
 }
 
-/// A file that is written but not yet in its place. Dropped without [`Staged::commit`], it is removed.
+/// A file that is written but not yet in place. It is removed if dropped without [`Staged::commit`].
 #[derive(Debug)]
 pub struct Staged {
     path: PathBuf,
-    /// What may be replaced; none if anything may.
+    /// The policy for replacing; `None` if any file may be replaced.
     output: Option<Output>,
-    /// The temporary file and the target's real name; none for a pipe or device, which has already got it all.
+    /// The temporary file and the target's real path; `None` for a pipe or device, which was written directly.
     file: Option<(Temporary, PathBuf)>,
 }
 
 impl Staged {
-    /// Puts the file in its place, over what may be there.
+    /// Puts the file in place, replacing an existing one.
     ///
     /// # Errors
-    /// If something has appeared there that may not be replaced, or the system refuses.
+    /// If a file that may not be replaced has appeared there, or the system call fails.
     pub fn commit(self) -> Result<()> {
         self.check()?;
         if let Some((temporary, real)) = self.file {
@@ -101,8 +102,8 @@ impl Staged {
     }
 }
 
-/// The error that `cause`, met while `doing` something ("read", "write") to what is called `path`, means to a person: the
-/// [`Error`] inside it if it carries one.
+/// The error for `cause`, which occurred while `doing` something ("read", "write") to `path`: the [`Error`] inside it
+/// if it contains one, otherwise a message.
 pub fn explain(doing: &str, path: &Path, cause: &io::Error) -> Error {
     match cause.get_ref().and_then(|inner| inner.downcast_ref::<Error>()) {
         Some(error) => error.clone(),
@@ -110,15 +111,15 @@ pub fn explain(doing: &str, path: &Path, cause: &io::Error) -> Error {
     }
 }
 
-/// What is to be written to.
+/// The target of a write.
 enum Destination {
-    /// A file to put in place, under the name that links lead to, with the permissions of the one that is there.
+    /// A file to replace: its path with links resolved, and the permissions of the existing one.
     File { real: PathBuf, permissions: Option<Permissions> },
     /// A pipe or device.
     Stream,
 }
 
-/// [`stage`], with `wrap` around the file: where the tests inject their faults.
+/// [`stage`], with `wrap` around the file, through which tests inject faults.
 fn stage_through(
     path: &Path,
     output: Option<&Output>,
@@ -135,14 +136,14 @@ fn stage_through(
         Destination::File { real, permissions } => {
             let (temporary, file) = match Temporary::create(folder(&real)) {
                 Ok(created) => created,
-                // The folder is what is missing, or what takes no files: say so.
+                // The folder is missing or does not take files.
                 Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
                     return check_folder(folder(&real)).and(Err(failed(cause)));
                 }
                 Err(cause) => return Err(failed(cause)),
             };
             if let Some(permissions) = permissions {
-                // Some file systems have no permissions to keep; the file matters more.
+                // Some file systems do not support permissions; that is no reason to fail.
                 let _ = file.set_permissions(permissions);
             }
             fill(path, wrap(&file), body)?;
@@ -153,7 +154,7 @@ fn stage_through(
     Ok(Staged { path: path.to_path_buf(), output: output.cloned(), file })
 }
 
-/// Finds out what `path` is, and refuses what cannot be written.
+/// Determines what `path` is, and rejects what cannot be written.
 fn target(path: &Path) -> Result<Destination> {
     let refuse = |why: &str| Error::new(ErrorKind::File, format!("cannot write {}: {why}", path.display()));
     let ends_in_separator = path.to_string_lossy().ends_with(std::path::is_separator);
@@ -180,14 +181,14 @@ fn target(path: &Path) -> Result<Destination> {
     }
 }
 
-/// Runs `body` on a buffer over `file`. The file's own failure is the one reported, whatever `body` (or the format library in
-/// it) made of it, even if it swallowed it.
+/// Runs `body` on a buffer over `file`. A failure of the file itself takes precedence over the error of `body`, and is
+/// reported even if `body` ignored it.
 fn fill(path: &Path, file: Box<dyn Write + '_>, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     let mut failure = None;
     let done = {
         let mut out = BufWriter::with_capacity(BUFFER, Noting { path, inner: file, failure: &mut failure });
         let done = body(&mut out).and_then(|()| out.flush());
-        // What is left in the buffer after a failure must not be tried again on the way out.
+        // Buffered data must not be written again after a failure.
         drop(out.into_parts());
         done
     };
@@ -198,7 +199,7 @@ fn fill(path: &Path, file: Box<dyn Write + '_>, body: impl FnOnce(&mut dyn Write
     }
 }
 
-/// A writer that remembers the first failure of the one inside.
+/// A writer that records the first failure of the inner one.
 struct Noting<'a> {
     path: &'a Path,
     inner: Box<dyn Write + 'a>,
@@ -229,7 +230,7 @@ impl Write for Noting<'_> {
     }
 }
 
-/// The folder that `path` names something in.
+/// The folder that contains `path`.
 pub fn folder(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -237,8 +238,8 @@ pub fn folder(path: &Path) -> &Path {
     }
 }
 
-/// Makes what was renamed in a folder survive a power cut. Not every system can open or sync a folder, and the files are in
-/// place either way, so a failure here is none.
+/// Makes a rename in a folder durable. Some systems cannot open or sync folders, and the files are in place in any
+/// case, so failures are ignored.
 pub fn sync_folder(folder: &Path) {
     if let Ok(folder) = File::open(folder) {
         let _ = folder.sync_all();

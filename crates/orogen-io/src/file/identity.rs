@@ -1,20 +1,20 @@
-//! Whether two names lead to the same file.
+//! Identity of files: whether two paths refer to the same file.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A file, whatever name or link led to it.
+/// The identity of a file, independent of names and links.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileId {
-    /// Where links end: the only means on systems without file numbers, and a name for messages elsewhere.
+    /// The path with links resolved: the identity on systems without file numbers, and the name in messages elsewhere.
     real: PathBuf,
-    /// Device and file number. Hard links share them.
+    /// Device and file number, which hard links share.
     #[cfg(unix)]
     number: (u64, u64),
 }
 
 impl FileId {
-    /// The file at `path`; none if there is none, or if it is a folder, a pipe or a device.
+    /// The file at `path`; `None` if there is none, or if it is a folder, a pipe or a device.
     pub fn of(path: &Path) -> Option<FileId> {
         let there = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
         let real = fs::canonicalize(path).ok()?;
@@ -30,7 +30,7 @@ impl FileId {
         }
     }
 
-    /// Whether it is the same file as another.
+    /// Whether both are the same file.
     pub fn is(&self, other: &FileId) -> bool {
         #[cfg(unix)]
         if self.number == other.number {

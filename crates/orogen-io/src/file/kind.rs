@@ -1,4 +1,4 @@
-//! What kind of file lies at a place, by its first bytes.
+//! Detection of the kind of a file by its first bytes.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -6,24 +6,24 @@ use std::path::Path;
 
 use super::mark;
 
-/// Bytes that are looked at: longer than any recipe's head, and than the longest title in front of a document's first element.
+/// Bytes that are read: enough for the head of a recipe, and for the longest title before a document's first element.
 const HEAD: u64 = 64 << 10;
 
-/// Longest recipe whose mark is checked; a longer one counts as a person's.
+/// Maximum length of a recipe whose mark is checked; longer ones count as written by hand.
 const LONGEST_RECIPE: u64 = 16 << 20;
 
-/// A kind of file that is told by its content.
+/// A kind of file with a signature.
 struct Kind {
-    /// In a message: "it holds a PDF document".
+    /// The name in messages: "it holds a PDF document".
     name: &'static str,
-    /// Extensions of files of this kind.
+    /// The file extensions of this kind.
     extensions: &'static [&'static str],
-    /// Whether bytes are the beginning of one.
+    /// Whether these bytes are the start of such a file.
     begins: fn(&[u8]) -> bool,
 }
 
-/// All kinds that have a signature. A format that is added here is protected in both directions: nothing else is written over its files,
-/// and it is written over nothing else.
+/// All kinds with a signature. A format listed here is protected in both directions: files of other kinds are not
+/// written over it, and it is not written over files of other kinds.
 const KINDS: &[Kind] = &[
     Kind { name: "a PNG picture", extensions: &["png"], begins: |head| head.starts_with(b"\x89PNG\r\n\x1a\n") },
     Kind { name: "a GIF picture", extensions: &["gif"], begins: |head| head.starts_with(b"GIF8") },
@@ -77,36 +77,36 @@ const KINDS: &[Kind] = &[
     },
 ];
 
-/// Kinds of text that people write by hand, and what a file of Orogen's says of itself.
+/// Kinds of text that people also write by hand, with the name of Orogen's own files.
 const SIGNED: &[(&str, &str)] = &[("json", "JSON of Orogen"), ("obj", "an Orogen mesh")];
 
-/// Kinds without a signature: numbers and nothing else.
+/// Kinds without a signature, which contain only numbers.
 const HEADERLESS: &[&str] = &["r16", "r32", "raw", "hgt"];
 
-/// What is found at a place.
+/// The content found at a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Found {
-    /// Nothing at all: an empty file loses nothing.
+    /// An empty file.
     Empty,
-    /// A recipe that Orogen wrote, unchanged since.
+    /// A recipe written by Orogen and unchanged since.
     OwnRecipe,
-    /// A recipe that a person wrote or changed.
+    /// A recipe written or changed by hand.
     Recipe,
-    /// A kind that has a signature.
+    /// A kind with a signature.
     Known(&'static str),
-    /// JSON that says that Orogen wrote it.
+    /// JSON written by Orogen.
     OwnText,
-    /// Some other text.
+    /// Other text.
     Text,
-    /// Bytes that begin like nothing known.
+    /// Unknown bytes.
     Bytes,
 }
 
 impl Found {
-    /// What lies in the file at `path`.
+    /// Detects the content of the file at `path`.
     ///
     /// # Errors
-    /// If it cannot be read.
+    /// If the file cannot be read.
     pub fn at(path: &Path) -> io::Result<Found> {
         let file = File::open(path)?;
         let length = file.metadata()?.len();
@@ -117,13 +117,13 @@ impl Found {
                 Ok(text) if mark::is_intact(&text) => Found::OwnRecipe,
                 _ => Found::Recipe,
             },
-            // An STL has no signature, but a length that follows from its count of triangles.
+            // An STL has no signature, but its length follows from its number of triangles.
             Found::Bytes | Found::Text if is_binary_stl(&head, length) => Found::Known(STL),
             found => found,
         })
     }
 
-    /// What begins so. A recipe's mark is not checked.
+    /// Detects the content by its first bytes. The mark of a recipe is not checked.
     fn of(head: &[u8]) -> Found {
         if head.is_empty() {
             return Found::Empty;
@@ -142,7 +142,7 @@ impl Found {
         }
     }
 
-    /// In a message.
+    /// The name in messages.
     pub fn name(self) -> &'static str {
         match self {
             Found::Empty => "nothing",
@@ -153,8 +153,8 @@ impl Found {
         }
     }
 
-    /// Why a file that is named `path` may not take the place of what was found: the kind that is written; none if it may. `new` is what
-    /// is written, where that is known already: it decides where the name tells nothing.
+    /// The reason why a file named `path` may not replace this content: the kind that is to be written; `None` if it
+    /// may. `new` is the new content, if it is known already; it decides if the file extension does not.
     pub fn differs(self, path: &Path, new: Option<Found>) -> Option<&'static str> {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
         let extension = extension.as_str();
@@ -198,7 +198,7 @@ fn starts_with_word(head: &[u8], word: &str) -> bool {
     trimmed(head).get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word.as_bytes()))
 }
 
-/// Whether there is nothing in it that no text has. A letter may be cut at the end of the head.
+/// Whether the bytes can be text. The last character may be truncated.
 fn is_text(head: &[u8]) -> bool {
     let control = |byte: &u8| *byte < 0x20 && !matches!(*byte, b'\t' | b'\n' | b'\r' | 0x0c | 0x1b);
     let whole = match std::str::from_utf8(head) {
@@ -208,7 +208,7 @@ fn is_text(head: &[u8]) -> bool {
     whole && !head.iter().any(control)
 }
 
-/// Whether a line of TOML or a key of JSON says which version of recipes it is.
+/// Whether a line of TOML or a key of JSON states the version of the recipe format.
 fn is_recipe(head: &[u8]) -> bool {
     let text = String::from_utf8_lossy(head);
     let toml = |line: &str| {

@@ -1,14 +1,14 @@
-//! The line that tells a text written by Orogen from one that a person wrote or changed.
+//! A mark that distinguishes a text written by Orogen from one written or changed by hand.
 //!
-//! A recipe is a text that people edit. One that Orogen wrote holds a comment with the SHA-256 of all its other lines; once a single
-//! character is changed, they no longer agree, and the file is the person's.
+//! Recipes are texts that people edit. A recipe written by Orogen contains a comment with the SHA-256 of all its other
+//! lines. After any change the hash no longer matches, and the file counts as written by hand.
 
 use sha2::{Digest, Sha256};
 
-/// What stands before the digits, and after them.
+/// The text before the digits, and after them.
 const BEFORE: &str = "# Orogen replaces this file only while it is unchanged: SHA-256 ";
 
-/// The text with its mark, behind the first line if that is a comment, else at the top.
+/// Adds the mark to a text: after the first line if that is a comment, otherwise at the top.
 ///
 /// ```
 /// use orogen_io::file::mark::{is_intact, marked};
@@ -25,7 +25,7 @@ pub fn marked(text: &str) -> String {
     format!("{head}{BEFORE}{}\n{tail}", digest([head, tail]))
 }
 
-/// Whether a text holds a mark and is what it was when it was marked.
+/// Whether a text has a mark that matches its content.
 pub fn is_intact(text: &str) -> bool {
     let Some(start) = text.find(BEFORE).filter(|start| *start == 0 || text[..*start].ends_with('\n')) else {
         return false;

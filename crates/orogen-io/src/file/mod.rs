@@ -1,21 +1,22 @@
-//! Writing files: atomically, and only over what may be replaced.
+//! Writing files: atomically, and only over files that may be replaced.
 //!
-//! [`write_whole`] writes under a temporary name beside the target, syncs it, renames it over the target and syncs the folder.
-//! Whoever looks at the target sees the old file or the new one, never a half; after any failure the old file is still there
-//! and the temporary one is gone. [`stage`] does all but the rename, for files that belong together: stage them all, then
-//! [`commit`] them, and a disk that fills up half way leaves the old set complete. [`check_folder`] finds out early
-//! whether there is any point in starting.
+//! [`write_whole`] writes a temporary file beside the target, syncs it, renames it over the target and syncs the
+//! folder. Readers of the target see either the old file or the new one. After any failure the old file still exists
+//! and the temporary one is removed. [`stage`] does everything except the rename, for files that belong together: stage
+//! them all, then [`commit`] them. If the disk fills up, the old set stays complete. [`check_folder`] checks early
+//! whether files can be written.
 //!
-//! All of them write to an [`Output`], and only an [`OutputPolicy`] makes one: it refuses a file that the work reads, a recipe that a
-//! person wrote, and a file of another kind than the one that is written. It does so when the output is made, before the work begins, and
-//! again when the file is put in its place.
+//! All of them write to an [`Output`], which only an [`OutputPolicy`] makes. The policy rejects a file that the work
+//! reads, a recipe written by hand, and a file of another kind than the one that is written. It checks when the output
+//! is made, before the work begins, and again when the file is put in place.
 //!
-//! What the target may already be:
+//! Existing targets:
 //!
-//! - *a file*: replaced if the policy allows it, keeping its permissions; one marked read-only is left alone and refused.
-//! - *a link*: what it names is replaced and the link stays, as an ordinary write would do. A link to nothing is refused.
-//! - *a folder*: refused.
-//! - *a pipe or a device* (`/dev/null`): cannot be replaced without destroying it, so it is written straight through.
+//! - *a file*: replaced if the policy allows it; its permissions are kept. A read-only file is an error.
+//! - *a link*: the file that it refers to is replaced and the link stays, as with an ordinary write. A dangling link is
+//!   an error.
+//! - *a folder*: an error.
+//! - *a pipe or a device* (`/dev/null`): written directly, because it cannot be replaced.
 
 mod atomic;
 mod identity;

@@ -1,4 +1,4 @@
-//! What may be replaced.
+//! Policies for replacing files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,22 +8,22 @@ use super::identity::FileId;
 use super::kind::Found;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-/// What becomes of a file that is there already.
+/// Treatment of existing files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Existing {
-    /// Nothing is replaced.
+    /// Existing files are never replaced.
     Keep,
-    /// A file of the kind that is written is replaced; one of another kind is not.
+    /// An existing file is replaced if it has the kind of the new one.
     #[default]
     SameKind,
-    /// A file of any kind is replaced.
+    /// Existing files of any kind are replaced.
     Replace,
 }
 
-/// Which files may be replaced by what is written.
+/// The files that an output may replace.
 ///
-/// Whatever it says of existing files, it never replaces one that the work reads (also under another name: through symbolic links and hard
-/// links), nor a recipe that a person wrote or changed.
+/// In no case does it replace a file that the work reads (also under another name, through symbolic or hard links), or
+/// a recipe written or changed by hand.
 ///
 /// ```
 /// use orogen_io::file::{Existing, OutputPolicy, write_whole};
@@ -48,35 +48,35 @@ impl OutputPolicy {
         OutputPolicy { existing, inputs: Arc::default() }
     }
 
-    /// The same for work that also reads these files. Those that are not there, and what is no file, do not count.
+    /// The same policy for work that also reads these files. Paths that do not exist or are not files are ignored.
     pub fn protecting<P: AsRef<Path>>(mut self, inputs: impl IntoIterator<Item = P>) -> OutputPolicy {
         let more = inputs.into_iter().filter_map(|path| FileId::of(path.as_ref()));
         Arc::make_mut(&mut self.inputs).extend(more);
         self
     }
 
-    /// What becomes of files that are there.
+    /// The treatment of existing files.
     pub fn existing(&self) -> Existing {
         self.existing
     }
 
-    /// A place to write to.
+    /// An output at `path`.
     ///
     /// # Errors
-    /// If something is there that may not be replaced. Make all outputs before the work begins.
+    /// If the existing file may not be replaced. Make all outputs before the work begins.
     pub fn output(&self, path: impl Into<PathBuf>) -> Result<Output> {
         let output = Output { path: path.into(), policy: self.clone() };
         output.check(None)?;
         Ok(output)
     }
 
-    /// Whether a file is one that the work reads.
+    /// Whether the work reads this file.
     pub fn is_input(&self, path: &Path) -> bool {
         FileId::of(path).is_some_and(|there| self.inputs.iter().any(|input| input.is(&there)))
     }
 }
 
-/// A place to write to, and what may be replaced there. Only [`OutputPolicy::output`] makes one.
+/// A path to write to, with its policy. Only [`OutputPolicy::output`] makes one.
 #[derive(Debug, Clone)]
 pub struct Output {
     path: PathBuf,
@@ -84,22 +84,23 @@ pub struct Output {
 }
 
 impl Output {
-    /// Where.
+    /// The path.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What may be replaced.
+    /// The policy.
     pub fn policy(&self) -> &OutputPolicy {
         &self.policy
     }
 
-    /// Whether what is there may be replaced; `new` is the file that is to take its place, once it is written.
+    /// Checks that the existing file may be replaced; `new` is the written file that is to replace it, if there is one
+    /// yet.
     #[doc(hidden)]
     pub fn check(&self, new: Option<&Path>) -> Result<()> {
         let path = &self.path;
         let refuse = |why: String| Err(Error::new(ErrorKind::File, format!("cannot write {}: {why}", path.display())));
-        // What is no file is refused or written through by whoever opens it.
+        // Other objects are rejected or written directly when they are opened.
         let Some(there) = FileId::of(path) else { return Ok(()) };
         if self.policy.inputs.iter().any(|input| input.is(&there)) {
             return refuse("this command reads that file; choose another name".into());
@@ -127,13 +128,13 @@ impl Output {
         }
     }
 
-    /// Whether nothing at all may be replaced.
+    /// Whether existing files are never replaced.
     pub(super) fn keeps(&self) -> bool {
         self.policy.existing == Existing::Keep
     }
 }
 
-/// Whether anything has this name, a link to nothing included.
+/// Whether the name is in use, also by a dangling link.
 pub(super) fn is_taken(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok()
 }

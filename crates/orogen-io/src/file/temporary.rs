@@ -1,9 +1,9 @@
-//! Files that wait for their place, and what becomes of them when their process is killed.
+//! Temporary files, and their removal after their process was killed.
 //!
-//! A process that writes into a folder holds a lock there: a file `.orogen-PID-N.lock` that it locks for as long as it has temporary
-//! files `.orogen-PID-N-K.tmp` beside it. The system lets go of the lock when the process ends, however it ends. So a temporary file
-//! whose lock can be taken, or is gone, has no owner any more. Process numbers alone would not tell: they are used again, and another
-//! container that shares the folder counts its own.
+//! A process that writes into a folder holds a lock there: it locks a file `.orogen-PID-N.lock` for as long as it has
+//! temporary files `.orogen-PID-N-K.tmp` beside it. The system releases the lock when the process ends, for whatever
+//! reason. A temporary file whose lock can be taken, or does not exist, therefore has no owner any more. Process
+//! numbers are not sufficient: they are reused, and containers that share a folder have separate numbers.
 
 use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -12,24 +12,24 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
-/// How many names are tried before giving up: all of them taken means that something is wrong with the folder.
+/// Number of names to try: if all of them are taken, something is wrong with the folder.
 const NAMES: usize = 100;
 
 const PREFIX: &str = ".orogen-";
 const LOCK: &str = ".lock";
 const TEMPORARY: &str = ".tmp";
 
-/// A temporary file beside its target, removed when dropped unless it was renamed.
+/// A temporary file beside its target, removed on drop unless it was renamed.
 #[derive(Debug)]
 pub(crate) struct Temporary {
     path: PathBuf,
-    /// Says that this process is alive. Dropped after the file is removed.
+    /// Indicates that this process is alive. Dropped after the file is removed.
     _lock: Option<Arc<FolderLock>>,
 }
 
 impl Temporary {
-    /// Creates one in `folder`. Its name has nothing of the target's, so that the longest names still work; it must be new, so
-    /// that nothing planted under it is followed or overwritten.
+    /// Creates one in `folder`. Its name does not contain the target's name, so that the longest names work. The file
+    /// must not exist, so that a file or link planted under its name is neither followed nor overwritten.
     pub(crate) fn create(folder: &Path) -> io::Result<(Temporary, File)> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         let lock = FolderLock::hold(folder)?;
@@ -45,12 +45,13 @@ impl Temporary {
         Err(io::Error::other("too many temporary files are left in its folder"))
     }
 
-    /// Its name on the way.
+    /// The temporary path.
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Takes the name away from the file, which goes on while it is open; returns it where that is not possible.
+    /// Removes the name of the file, which continues to exist while it is open; returns the temporary file where the
+    /// system does not support that.
     pub(crate) fn unlink(mut self) -> Option<Temporary> {
         match fs::remove_file(&self.path) {
             Ok(()) => {
@@ -61,20 +62,20 @@ impl Temporary {
         }
     }
 
-    /// Puts the file in its place, over what may be there.
+    /// Moves the file to its target, replacing an existing one.
     pub(super) fn rename(mut self, real: &Path) -> io::Result<()> {
         fs::rename(&self.path, real)?;
         self.path = PathBuf::new();
         Ok(())
     }
 
-    /// Puts the file in its place if nothing is there: the system decides, so that nothing that appears at this very moment is lost.
+    /// Moves the file to its target if that does not exist, atomically.
     pub(super) fn rename_new(self, real: &Path) -> io::Result<()> {
         match fs::hard_link(&self.path, real) {
-            // Dropping it removes its first name.
+            // Drop removes the temporary name.
             Ok(()) => Ok(()),
             Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => Err(cause),
-            // A file system without hard links: what was seen a moment ago has to do.
+            // A file system without hard links: the earlier check has to suffice.
             Err(_) if !super::policy::is_taken(real) => self.rename(real),
             Err(_) => Err(io::ErrorKind::AlreadyExists.into()),
         }
@@ -92,14 +93,15 @@ impl Drop for Temporary {
 /// This process's lock in a folder, held while it has temporary files there.
 #[derive(Debug)]
 struct FolderLock {
-    /// What its temporary files' names begin with.
+    /// The prefix of its temporary files' names.
     stem: String,
     path: PathBuf,
     _file: File,
 }
 
 impl FolderLock {
-    /// The lock that this process has in `folder`, or a new one. The first in each folder removes what killed processes have left there.
+    /// The lock that this process has in `folder`, or a new one. Taking the first lock in a folder removes files that
+    /// killed processes left there.
     fn hold(folder: &Path) -> io::Result<Arc<FolderLock>> {
         static HELD: OnceLock<Mutex<HashMap<PathBuf, Weak<FolderLock>>>> = OnceLock::new();
         let real = fs::canonicalize(folder)?;
@@ -127,10 +129,10 @@ impl FolderLock {
                 Err(cause) => return Err(cause),
             };
             match file.try_lock() {
-                // Somebody who swept the folder had it between its making and its locking, and removes it.
+                // Another process swept the folder between creation and locking, and removes the file.
                 Err(TryLockError::WouldBlock) => continue,
                 Ok(()) if !path.exists() => continue,
-                // A file system without locks: its temporary files are never swept.
+                // A file system without locks: its temporary files are never removed.
                 Ok(()) | Err(TryLockError::Error(_)) => return Ok(FolderLock { stem, path, _file: file }),
             }
         }
@@ -144,13 +146,13 @@ impl Drop for FolderLock {
     }
 }
 
-/// Removes the temporary files in `folder` whose process is gone, and nothing else. What cannot be removed stays.
+/// Removes temporary files in `folder` whose process has ended. Files that cannot be removed stay.
 pub fn sweep(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     let mut left: HashMap<String, Vec<PathBuf>> = HashMap::new();
     for entry in entries.flatten() {
         let name = entry.file_name().to_string_lossy().into_owned();
-        // No link is followed, and no pipe is opened.
+        // Links are not followed, and pipes are not opened.
         if let Some(stem) = stem(&name)
             && entry.file_type().is_ok_and(|kind| kind.is_file())
         {
@@ -161,19 +163,19 @@ pub fn sweep(folder: &Path) {
         let path = folder.join(format!("{stem}{LOCK}"));
         let lock = match OpenOptions::new().write(true).open(&path) {
             Ok(lock) => lock.try_lock().is_ok().then_some(Some(lock)),
-            // A lock is made before the files, and removed after them.
+            // The lock is created before the files, and removed after them.
             Err(cause) if cause.kind() == io::ErrorKind::NotFound => Some(None),
             Err(_) => None,
         };
         if let Some(_held) = lock {
-            // The lock goes last: without it, what is left of the others is nobody's all the same.
+            // The lock is removed last: without it, remaining files still count as ownerless.
             files.iter().filter(|file| **file != path).for_each(|file| drop(fs::remove_file(file)));
             let _ = fs::remove_file(&path);
         }
     }
 }
 
-/// The process and its count that a file of this name belongs to, if it is one that this module makes.
+/// The prefix (process and count) of a file name made by this module.
 fn stem(name: &str) -> Option<String> {
     let numbers = |text: &str, count: usize| {
         let parts: Vec<&str> = text.split('-').collect();

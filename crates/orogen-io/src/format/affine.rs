@@ -1,43 +1,45 @@
-//! How columns and rows of a raster become east and north.
+//! Affine transforms from columns and rows of a raster to coordinates.
 
-/// East = a column + b row + c, north = d column + e row + f, of the samples themselves: of pixels' middles.
+/// East = a column + b row + c, north = d column + e row + f, for sample positions (pixel centres).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Affine(pub [f64; 6]);
 
-/// The samples of a raster that lies straight on its map.
+/// The samples of a north-up raster.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lattice {
-    /// East and north of the sample in the north-west.
+    /// East and north of the north-west sample.
     pub origin: [f64; 2],
-    /// From a column to the next one east, and from a row to the next one south: both above 0.
+    /// Distance between columns eastward and between rows southward, in map units; both positive.
     pub step: [f64; 2],
     /// Whether the file's first row is the southernmost.
     pub from_south: bool,
 }
 
 impl Affine {
-    /// From six numbers in GDAL's order, which speak of pixels' corners: west, step east, 0, north, 0, step (negative where rows go south).
+    /// From six numbers in GDAL's order, which refer to pixel corners: west, column step, 0, north, 0, row step
+    /// (negative if rows run southward).
     pub fn of_geotransform([c, a, b, f, d, e]: [f64; 6]) -> Affine {
         Affine([a, b, c + 0.5 * (a + b), d, e, f + 0.5 * (d + e)])
     }
 
-    /// In GDAL's order, of pixels' corners.
+    /// The six numbers in GDAL's order, which refer to pixel corners.
     pub fn geotransform(&self) -> [f64; 6] {
         let [a, b, c, d, e, f] = self.0;
         [c - 0.5 * (a + b), a, b, f - 0.5 * (d + e), d, e]
     }
 
-    /// Of another raster, whose column is read at `scale[0] * column + offset[0]` of this one, and its row likewise.
+    /// The transform of another raster, whose column is at `scale[0] * column + offset[0]` of this one; likewise for
+    /// rows.
     pub fn resampled(&self, scale: [f64; 2], offset: [f64; 2]) -> Affine {
         let [a, b, c, d, e, f] = self.0;
         let ([x, y], [dx, dy]) = (scale, offset);
         Affine([a * x, b * y, a * dx + b * dy + c, d * x, e * y, d * dx + e * dy + f])
     }
 
-    /// How a raster of so many rows lies.
+    /// The position of a raster with `rows` rows.
     ///
     /// # Errors
-    /// A message if it is turned or mirrored, or the numbers are no place.
+    /// A message if the raster is rotated or mirrored, or the numbers are not valid coordinates.
     pub fn lattice(&self, rows: usize) -> Result<Lattice, String> {
         let [a, b, c, d, e, f] = self.0;
         if !self.0.iter().all(|number| number.is_finite()) || a <= 0.0 || e == 0.0 {

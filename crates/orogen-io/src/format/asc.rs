@@ -1,7 +1,8 @@
-//! ESRI's ASCII grid, `.asc`: a head of keys and numbers, then the heights as text, row after row from the north.
+//! ESRI ASCII grid, `.asc`: a header of keys and numbers, then the heights as text, row by row from the north.
 //!
-//! Read: `ncols`, `nrows`, `xllcorner` or `xllcenter`, `yllcorner` or `yllcenter`, `cellsize` (or GDAL's `dx` and `dy`),
-//! `nodata_value`, in any case and order. The format does not tell its unit: without a `.prj` beside it, it is [guessed](Unit::guess).
+//! Keys read: `ncols`, `nrows`, `xllcorner` or `xllcenter`, `yllcorner` or `yllcenter`, `cellsize` (or GDAL's `dx` and
+//! `dy`), `nodata_value`, in any case and order. The format does not store its unit: without a `.prj` beside it, the
+//! unit is [guessed](Unit::guess).
 
 use std::io::{self, BufRead, Write};
 
@@ -10,26 +11,27 @@ use super::dem::{Dem, Georeference, Input, Placement, afford, refused};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
-/// What stands for no height in a file written.
+/// The nodata value in written files.
 const NODATA: f32 = -9999.0;
 
-/// The longest line of a head, and the longest number.
+/// Maximum length of a line of the header, and of a number.
 const LONGEST_WORD: usize = 64;
 
-/// Writes a grid. Its samples are pixels' middles, as the format has it.
+/// Writes a grid. Its samples are pixel centres, as the format requires.
 pub fn write(out: &mut dyn Write, grid: &Grid) -> io::Result<()> {
     write_head(out, grid.window(), None)?;
     write_rows(out, grid.width(), grid.data())
 }
 
-/// Writes what comes before the samples of a window: local metres, or where `map` says. All of them must follow by [`write_rows`].
+/// Writes the header for the samples of a window: in local metres, or in the coordinates of `map`. All samples must
+/// follow with [`write_rows`].
 pub fn write_head(out: &mut dyn Write, window: &Window, map: Option<&Georeference>) -> io::Result<()> {
     let local = Georeference { origin: [0.0; 2], per_metre: [1.0; 2], keys: None };
     let map = map.unwrap_or(&local);
     let [west, south] = map.at(window.east(0), window.south(window.height.max(1) - 1));
     let (_, [across, down]) = map.of(window);
     writeln!(out, "ncols {}\nnrows {}\nxllcenter {west}\nyllcenter {south}", window.width, window.height)?;
-    // Oblong cells are GDAL's way of writing this format.
+    // GDAL writes oblong cells this way.
     match across == down {
         true => writeln!(out, "cellsize {across}")?,
         false => writeln!(out, "dx {across}\ndy {down}")?,
@@ -37,7 +39,7 @@ pub fn write_head(out: &mut dyn Write, window: &Window, map: Option<&Georeferenc
     writeln!(out, "NODATA_value {NODATA}")
 }
 
-/// Writes the next rows, `width` samples each; what is not finite is no height.
+/// Writes the next rows, `width` samples each; samples that are not finite become nodata.
 pub fn write_rows(out: &mut dyn Write, width: usize, samples: &[f32]) -> io::Result<()> {
     let mut text = String::new();
     for row in samples.chunks(width.max(1)) {
@@ -54,10 +56,10 @@ pub fn write_rows(out: &mut dyn Write, width: usize, samples: &[f32]) -> io::Res
     Ok(())
 }
 
-/// Reads a grid whose heights take no more than `allowed` bytes. `name` is what errors call it.
+/// Reads a grid whose heights take at most `allowed` bytes. `name` is the file's name in errors.
 ///
 /// # Errors
-/// If it is no ASCII grid, or is cut short, or is too large.
+/// If it is not an ASCII grid, is truncated, or is too large.
 pub fn read(input: &mut dyn Input, name: &str, allowed: u64) -> Result<Dem> {
     open(input, allowed).map_err(|why| refused(name, why))
 }
@@ -66,27 +68,27 @@ pub fn read(input: &mut dyn Input, name: &str, allowed: u64) -> Result<Dem> {
 struct Head {
     columns: Option<u64>,
     rows: Option<u64>,
-    /// The lower left corner, and whether it is a pixel's middle.
+    /// The coordinate of the lower left pixel, and whether it is that of the pixel's centre.
     west: Option<(f64, bool)>,
     south: Option<(f64, bool)>,
     step: [Option<f64>; 2],
     nodata: Option<f64>,
 }
 
-/// Columns, rows and place of a grid; its samples are not looked at.
+/// The size and position of a grid, without reading its samples.
 ///
 /// # Errors
-/// If it is no ASCII grid.
+/// If it is not an ASCII grid.
 pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Placement>)> {
     let mut words = Words { input: &mut io::BufReader::new(input), word: Vec::new() };
     let (head, [columns, rows], _) = read_head(&mut words).map_err(|why| refused(name, why))?;
     Ok(([columns as usize, rows as usize], head.place(rows)))
 }
 
-/// The head, the size that it tells, and the first word behind it.
+/// The header, the size it states, and the first word after it.
 fn read_head(words: &mut Words) -> std::result::Result<(Head, [u64; 2], Option<String>), String> {
     let mut head = Head::default();
-    // The head ends with the first word that is a number where a key is due.
+    // The header ends with the first word that is a number in place of a key.
     let mut first = words.next()?;
     while let Some(word) = first.as_deref()
         && word.starts_with(|c: char| c.is_ascii_alphabetic())
@@ -128,7 +130,7 @@ fn open(input: &mut dyn Input, allowed: u64) -> std::result::Result<Dem, String>
 }
 
 fn number(word: &str) -> Option<f64> {
-    // Commas are what some languages write for points.
+    // Some locales write decimal commas.
     word.replace(',', ".").parse().ok()
 }
 
@@ -178,7 +180,7 @@ impl Head {
     }
 }
 
-/// The words of a text, none longer than any number.
+/// The words of a text; each is at most as long as a number.
 struct Words<'a> {
     input: &'a mut dyn BufRead,
     word: Vec<u8>,

@@ -1,4 +1,5 @@
-//! GDAL's notes beside a raster, `NAME.EXT.aux.xml` (PAM): of them, the coordinate system and the place. It is where GDAL looks for the system of a picture.
+//! GDAL's sidecar files `NAME.EXT.aux.xml` (PAM): coordinate system and geotransform. GDAL reads the coordinate system
+//! of a picture from them.
 
 use std::io::{self, Write};
 
@@ -6,31 +7,31 @@ use roxmltree::Document;
 
 use super::affine::Affine;
 
-/// The longest file read.
+/// Maximum length of a file, in bytes.
 pub const MAX_LENGTH: u64 = 1 << 20;
 
-/// What it tells.
+/// The supported content of a sidecar.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Notes {
-    /// How columns and rows become coordinates.
+    /// The transform from columns and rows to coordinates.
     pub affine: Option<Affine>,
     /// The coordinate system as well-known text, or as a code such as EPSG:32632.
     pub system: Option<String>,
 }
 
-/// Writes it: a place and its system as well-known text.
+/// Writes a transform and its coordinate system as well-known text.
 ///
-/// Fails as `out` does.
+/// Fails if `out` fails.
 pub fn write(out: &mut dyn Write, affine: &Affine, wkt: &str) -> io::Result<()> {
     let numbers = affine.geotransform().map(|number| format!("{number:?}")).join(", ");
     let wkt = wkt.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
     writeln!(out, "<PAMDataset>\n  <SRS>{wkt}</SRS>\n  <GeoTransform>{numbers}</GeoTransform>\n</PAMDataset>")
 }
 
-/// Reads it.
+/// Parses a sidecar.
 ///
 /// # Errors
-/// A message if it is no XML.
+/// A message if it is not XML.
 pub fn parse(text: &str) -> Result<Notes, String> {
     let document = Document::parse(text).map_err(|fault| format!("it is not valid XML ({fault})"))?;
     let root = document.root_element();
@@ -40,7 +41,7 @@ pub fn parse(text: &str) -> Result<Notes, String> {
     Ok(Notes { affine, system })
 }
 
-/// Six numbers with commas between them.
+/// Six numbers separated by commas.
 pub fn numbers(text: &str) -> Option<[f64; 6]> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
     numbers?.try_into().ok()

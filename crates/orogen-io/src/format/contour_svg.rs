@@ -1,4 +1,4 @@
-//! Contours as a drawing.
+//! Contours as SVG.
 
 use std::io::{self, Write};
 
@@ -8,11 +8,11 @@ use orogen_grid::contour::levels::is_index;
 use orogen_grid::contour::line::Line;
 use orogen_grid::grid::Window;
 
-/// Writes lines as an SVG of the window's extent, its unit the metre, north up: a group for each height, named by it, with its
-/// lines in paths of bounded length. Index contours, every fifth of `interval`, are thicker.
+/// Writes lines as an SVG of the window's extent, in metres, north up. Each height has a group with its name; the lines
+/// are in paths of bounded length. Index contours, every fifth of `interval`, are thicker.
 ///
 /// # Errors
-/// What writing brings.
+/// Errors of `out`.
 pub fn write(out: &mut dyn Write, lines: &[Line], window: &Window, interval: Option<f64>) -> io::Result<()> {
     let size = [window.width, window.height].map(|samples| samples.saturating_sub(1).max(1) as f64 * window.cell);
     let pixels = 1000.0 / size[0].max(size[1]);

@@ -1,41 +1,43 @@
-//! Deflate for the bytes of heights (RFC 1950, RFC 1951): GeoTIFF and OpenEXR.
+//! Deflate (RFC 1950, RFC 1951) for heights in GeoTIFF and OpenEXR.
 //!
-//! In a GeoTIFF a row of a tile comes as planes: all highest bytes, then all second highest, and so on. Of heights, the two lower planes are noise to the last
-//! bit, and a general packer spends most of its time on looking for what repeats in them, only to mix their codes with those of the upper planes. Here each plane
-//! of each row is looked at by itself: noise is *stored*, byte by byte; the planes between are coded by Huffman's method in blocks of their own, of bytes, of runs
-//! of one byte, and of planes that are those of the row above. That is several times as fast, and mostly smaller. Other formats mix the bytes of a sample in
-//! other ways; there a plane is just a piece of the bytes.
+//! In a GeoTIFF a row of a tile is stored as planes: all highest bytes, then all second highest, and so on. For heights
+//! the two lower planes are mostly noise. A general compressor spends most of its time searching for repeats in them,
+//! and mixes their codes with those of the upper planes. Here each plane of each row is classified separately: noise is
+//! *stored* without coding; other planes are Huffman coded in blocks of their own, with literals, runs of one byte, and
+//! copies of the plane in the row above. This is several times as fast, and the result is usually smaller. Other
+//! formats mix the bytes of a sample in other ways; for those a plane is simply a piece of the bytes.
 //!
-//! Bytes of which little is noise (whole metres, masks, labels, level ground) hold what repeats at other distances, too: those are left to a packer that looks for it.
+//! Bytes with little noise (whole metres, masks, labels, level ground) repeat at other distances too. A general
+//! compressor handles those.
 
 mod matches;
 
 use matches::Matches;
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
-/// How hard the general packer tries. Its higher levels take up to eight times as long to save a hundredth.
+/// Level of the general compressor. Higher levels take up to eight times as long to save 1 %.
 const LEVEL: u8 = 3;
 
-/// The longest run of deflate.
+/// Maximum length of a match in deflate.
 const LONGEST: usize = 258;
 
-/// The shortest.
+/// Minimum length of a match in deflate.
 const SHORTEST: usize = 3;
 
-/// Literals and lengths, distances, and the codes of code lengths.
+/// Numbers of symbols: literals and lengths, distances, and code lengths.
 const LITERALS: usize = 286;
 const DISTANCES: usize = 30;
 const LENGTHS: usize = 19;
 
-/// Most tokens of a block.
+/// Maximum number of tokens in a block.
 const BLOCK: usize = 1 << 15;
 
-/// Packs rows of planes of `side` bytes, four planes a row, as a zlib stream. The last plane may be shorter.
+/// Compresses rows of planes of `side` bytes, four planes per row, to a zlib stream. The last plane may be shorter.
 pub fn pack(rows: &[u8], side: usize) -> Vec<u8> {
     let logarithms = Logarithms::new(side);
     let planes: Vec<&[u8]> = rows.chunks(side).collect();
     let noise: Vec<bool> = planes.iter().map(|plane| logarithms.is_noise(plane)).collect();
-    // Fewer than one in four.
+    // Fewer than a quarter of the planes are noise.
     if 4 * noise.iter().filter(|noise| **noise).count() < planes.len() || 4 * side > 32768 {
         return compress_to_vec_zlib(rows, LEVEL);
     }
@@ -63,11 +65,12 @@ pub fn pack(rows: &[u8], side: usize) -> Vec<u8> {
     packer.finish(rows)
 }
 
-/// Packs bytes in which planes are mixed as a zlib stream, in pieces of `side` (OpenEXR). Most of it looks like noise, but where one of the planes is none,
-/// sequences come again: pieces are coded by these where that saves enough, else stored.
+/// Compresses bytes with mixed planes to a zlib stream, in pieces of `side` (OpenEXR). Most of them look like noise,
+/// but if one of the planes is not noise, sequences repeat. Pieces are coded by such matches where that saves enough,
+/// and stored otherwise.
 pub fn pack_mixed(bytes: &[u8], side: usize) -> Vec<u8> {
     let logarithms = Logarithms::new(side);
-    // A sample of the pieces tells.
+    // A sample of the pieces decides.
     let noise: Vec<bool> = bytes.chunks(side).step_by(4).map(|piece| logarithms.is_noise(piece)).collect();
     if 4 * noise.iter().filter(|noise| **noise).count() < noise.len() {
         return compress_to_vec_zlib(bytes, LEVEL);
@@ -75,7 +78,7 @@ pub fn pack_mixed(bytes: &[u8], side: usize) -> Vec<u8> {
     let (mut packer, mut matches, mut misses) = (Packer::new(), Matches::new(), 0);
     for k in 0..bytes.len().div_ceil(side) {
         let piece = k * side..((k + 1) * side).min(bytes.len());
-        // Where nothing comes again, only some pieces are tried.
+        // If nothing repeats, only some pieces are tried.
         let is_tried = misses < 2 || k % 4 == 0;
         if is_tried && matches.code(bytes, piece.clone(), &mut packer) {
             misses = 0;
@@ -90,7 +93,7 @@ pub fn pack_mixed(bytes: &[u8], side: usize) -> Vec<u8> {
     packer.finish(bytes)
 }
 
-/// n log2 n of all counts that a plane can have.
+/// n log2 n for all possible counts.
 struct Logarithms(Vec<f64>);
 
 impl Logarithms {
@@ -98,7 +101,8 @@ impl Logarithms {
         Logarithms((0..=side).map(|n| if n > 0 { n as f64 * libm::log2(n as f64) } else { 0.0 }).collect())
     }
 
-    /// Whether bytes by themselves would save less than a sixteenth: their entropy, of which a few bytes always seem to have less than they have.
+    /// Whether entropy coding would save less than a sixteenth. The entropy of few bytes is underestimated, which is
+    /// corrected.
     fn is_noise(&self, plane: &[u8]) -> bool {
         let mut counts = [0u16; 256];
         for byte in plane {
@@ -106,14 +110,14 @@ impl Logarithms {
         }
         let n = plane.len() as f64;
         let spread: f64 = counts.iter().map(|count| self.0[usize::from(*count)]).sum();
-        // Miller and Madow's correction of the entropy of few samples.
+        // The correction of Miller and Madow for the entropy of few samples.
         let kinds = counts.iter().filter(|count| **count > 0).count() as f64;
         let bits = libm::log2(n) - spread / n + (kinds - 1.0) * 0.72 / n;
         bits > 7.5
     }
 }
 
-/// A byte, or a run of bytes that stood so far back.
+/// A literal byte, or a match: a length and a distance.
 #[derive(Clone, Copy)]
 enum Token {
     Byte(u8),
@@ -122,20 +126,20 @@ enum Token {
 
 struct Packer {
     out: Vec<u8>,
-    /// Bits that do not fill a byte yet, the first the lowest, and how many.
+    /// Bits of an incomplete byte, the first one lowest, and their number.
     bits: u64,
     count: u32,
-    /// What the next block holds.
+    /// Tokens of the next block.
     tokens: Vec<Token>,
 }
 
 impl Packer {
-    /// A stream of nothing but its head.
+    /// A stream with only its header.
     fn new() -> Packer {
         Packer { out: vec![0x78, 0x01], bits: 0, count: 0, tokens: Vec::with_capacity(BLOCK) }
     }
 
-    /// The bytes of a plane, those that repeat as runs.
+    /// Adds the bytes of a plane, with runs of equal bytes as matches.
     fn runs(&mut self, plane: &[u8]) {
         let mut at = 0;
         while at < plane.len() {
@@ -143,7 +147,7 @@ impl Packer {
             self.tokens.push(Token::Byte(byte));
             at += 1;
             let mut same = plane[at..].iter().take_while(|next| **next == byte).count();
-            // Shorter runs of frequent bytes take fewer bits as they are.
+            // Shorter runs of frequent bytes take fewer bits as literals.
             if same < 2 * SHORTEST {
                 same = 0;
             }
@@ -152,10 +156,10 @@ impl Packer {
         }
     }
 
-    /// So many bytes that stood so far back.
+    /// Adds a match of `length` bytes at distance `back`.
     fn repeat(&mut self, mut length: usize, back: usize) {
         while length >= SHORTEST {
-            // What is left must not be too short for a run.
+            // The rest must not be shorter than the minimum length.
             let take = match length {
                 n if n <= LONGEST => n,
                 n if n < LONGEST + SHORTEST => n - SHORTEST,
@@ -166,7 +170,7 @@ impl Packer {
         }
     }
 
-    /// Bytes as they are.
+    /// Writes bytes without coding.
     fn store(&mut self, bytes: &[u8]) {
         self.block();
         for piece in bytes.chunks(65535) {
@@ -180,7 +184,7 @@ impl Packer {
         }
     }
 
-    /// Writes a block of the tokens that wait, if any.
+    /// Writes a block of the pending tokens, if there are any.
     fn block(&mut self) {
         if self.tokens.is_empty() {
             return;
@@ -199,7 +203,7 @@ impl Packer {
         literals[256] = 1;
         let literals: [Code; LITERALS] = codes(&literals, 15);
         let distances: [Code; DISTANCES] = codes(&distances, 15);
-        // Not the last block; codes of its own.
+        // Not the last block; dynamic codes.
         self.put(0b100, 3);
         self.head(&literals, &distances);
         for token in &tokens {
@@ -220,16 +224,16 @@ impl Packer {
         self.tokens.clear();
     }
 
-    /// The lengths of the codes, themselves coded.
+    /// Writes the code lengths, which are coded themselves.
     fn head(&mut self, literals: &[Code; LITERALS], distances: &[Code; DISTANCES]) {
-        /// The order in which RFC 1951 sends the lengths of the lengths' codes.
+        /// The order of the code length codes in RFC 1951.
         const ORDER: [usize; LENGTHS] = [16, 17, 18, 0, 8, 7, 9, 6, 10, 5, 11, 4, 12, 3, 13, 2, 14, 1, 15];
         let used = |codes: &[Code], least: usize| {
             codes.iter().rposition(|code| code.length > 0).map_or(least, |last| (last + 1).max(least))
         };
         let (many, far) = (used(literals, 257), used(distances, 1));
         let lengths: Vec<u8> = (literals[..many].iter().chain(&distances[..far])).map(|code| code.length).collect();
-        // Symbols with what follows them: 16 repeats the last, 17 and 18 are zeros.
+        // Symbols with their extra bits: 16 repeats the last, 17 and 18 are zeros.
         let mut symbols: Vec<(usize, u32, u32)> = Vec::new();
         let mut at = 0;
         while at < lengths.len() {
@@ -283,7 +287,7 @@ impl Packer {
         }
     }
 
-    /// Writes the whole bytes that wait.
+    /// Moves the complete bytes to the output.
     fn drain(&mut self) {
         while self.count >= 8 {
             self.out.push(self.bits as u8);
@@ -294,7 +298,7 @@ impl Packer {
 
     fn finish(mut self, rows: &[u8]) -> Vec<u8> {
         self.block();
-        // The last block: fixed codes, and nothing but its end.
+        // The last block: fixed codes, and only the end symbol.
         self.put(0b011, 3);
         self.put(0, 7);
         self.put(0, (8 - self.count % 8) % 8);
@@ -304,22 +308,23 @@ impl Packer {
     }
 }
 
-/// A symbol's bits, in the order that they are written, and how many; none of a symbol that does not occur.
+/// The bits of a symbol in writing order, and their number; 0 for a symbol that does not occur.
 #[derive(Clone, Copy, Default)]
 struct Code {
     bits: u16,
     length: u8,
 }
 
-/// The codes of symbols that occur so often, none longer than `most`.
+/// The codes of symbols with these counts, none longer than `most`.
 ///
-/// Huffman's lengths by Moffat and Katajainen's method, in place over the sorted counts; those too long are cut, and others grow until they fit again.
+/// Huffman code lengths by the in-place method of Moffat and Katajainen on the sorted counts. Lengths that are too long
+/// are cut, and others grow until the code is valid again.
 fn codes<const N: usize>(counts: &[u32; N], most: u8) -> [Code; N] {
     let mut symbols: Vec<(u32, usize)> =
         counts.iter().enumerate().filter(|(_, count)| **count > 0).map(|(symbol, count)| (*count, symbol)).collect();
     symbols.sort_unstable();
     let mut codes = [Code::default(); N];
-    // A tree of fewer than two leaves has no codes: a second makes one.
+    // A tree needs at least two leaves: add a second symbol.
     for spare in [0, 1] {
         if symbols.len() < 2 && !symbols.iter().any(|(_, symbol)| *symbol == spare) {
             symbols.insert(0, (0, spare));
@@ -327,7 +332,7 @@ fn codes<const N: usize>(counts: &[u32; N], most: u8) -> [Code; N] {
     }
     let mut depths = depths(&symbols.iter().map(|(count, _)| *count).collect::<Vec<u32>>());
     limit(&mut depths, most);
-    // The canonical codes: by length, and among equals by symbol.
+    // Canonical codes: by length, then by symbol.
     let mut by_length = [0u16; 16];
     depths.iter().for_each(|depth| by_length[usize::from(*depth)] += 1);
     let mut next = [0u16; 16];
@@ -345,10 +350,10 @@ fn codes<const N: usize>(counts: &[u32; N], most: u8) -> [Code; N] {
     codes
 }
 
-/// How deep each of these counts, the least first, lies in Huffman's tree: two at least.
+/// The depth of each count in the Huffman tree, the smallest count first; at least two counts.
 fn depths(counts: &[u32]) -> Vec<u8> {
     let n = counts.len();
-    // Nodes are made in the order of their weights: two queues, leaves and pairs.
+    // Nodes are made in order of weight: two queues, of leaves and of pairs.
     let mut weights: Vec<u64> = counts.iter().map(|count| u64::from(*count)).collect();
     let mut parents = vec![0usize; 2 * n - 1];
     let (mut leaf, mut pair) = (0, n);
@@ -370,18 +375,18 @@ fn depths(counts: &[u32]) -> Vec<u8> {
     depths
 }
 
-/// Makes no depth larger than `most`, so that they are still those of a tree. They come the deepest first.
+/// Limits depths to `most` and keeps the code valid. The deepest come first.
 fn limit(depths: &mut [u8], most: u8) {
     let whole = 1u32 << most;
     depths.iter_mut().for_each(|depth| *depth = (*depth).min(most));
     let mut taken: u32 = depths.iter().map(|depth| whole >> depth).sum();
-    // The rarest that may still grow go first, and cost the least.
+    // The rarest symbols that may still grow go first, and cost the least.
     while taken > whole {
         let Some(depth) = depths.iter_mut().filter(|depth| **depth < most).max_by_key(|depth| **depth) else { return };
         taken -= whole >> (*depth + 1);
         *depth += 1;
     }
-    // What is left goes to the most frequent that can take it: readers want the tree to be whole.
+    // The rest goes to the most frequent symbols that can take it: decoders require a complete code.
     while taken < whole {
         let left = whole - taken;
         let Some(depth) = depths.iter_mut().rev().find(|depth| **depth > 1 && whole >> **depth <= left) else { return };
@@ -390,7 +395,7 @@ fn limit(depths: &mut [u8], most: u8) {
     }
 }
 
-/// A length's symbol, and the bits that follow it.
+/// The symbol of a length, with its extra bits.
 fn length_code(length: u16) -> (usize, u32, u32) {
     match length {
         258 => (285, 0, 0),
@@ -404,7 +409,7 @@ fn length_code(length: u16) -> (usize, u32, u32) {
     }
 }
 
-/// A distance's symbol, and the bits that follow it.
+/// The symbol of a distance, with its extra bits.
 fn distance_code(back: u16) -> (usize, u32, u32) {
     let rest = u32::from(back) - 1;
     match rest {
@@ -416,12 +421,12 @@ fn distance_code(back: u16) -> (usize, u32, u32) {
     }
 }
 
-/// Adler's checksum (RFC 1950).
+/// Adler-32 checksum (RFC 1950).
 fn adler(bytes: &[u8]) -> u32 {
     let (mut a, mut b) = (1u32, 0u32);
-    // So many sums fit 32 bits.
+    // The largest piece whose sums fit in 32 bits.
     for piece in bytes.chunks(5552) {
-        // b grows by what a was at each byte: by the bytes, weighed by how many follow.
+        // b grows by the value of a at each byte: the bytes, weighted by the number of bytes from them to the end.
         let n = piece.len() as u32;
         let sum: u32 = piece.iter().map(|byte| u32::from(*byte)).sum();
         let weighed: u32 =

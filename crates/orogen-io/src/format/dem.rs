@@ -1,4 +1,4 @@
-//! A digital elevation model as a file holds it: heights, and where they stand.
+//! A digital elevation model read from a file: heights and their position.
 
 use std::io::{Read, Seek};
 
@@ -11,17 +11,17 @@ use orogen_grid::grid::Window;
 use orogen_grid::words::bytes;
 use serde::{Deserialize, Serialize};
 
-/// What readers read from: a file, or bytes in memory.
+/// The source of a reader: a file, or bytes in memory.
 pub trait Input: Read + Seek {}
 
 impl<T: Read + Seek> Input for T {}
 
-/// What is asked of a reader.
+/// Options of a reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Request {
-    /// The band to read, from 1; `None` is the only one.
+    /// The band to read, from 1; `None` requires that there is only one.
     pub band: Option<u32>,
-    /// Most bytes of the heights.
+    /// Maximum size of the heights, in bytes.
     pub allowed: u64,
 }
 
@@ -32,10 +32,10 @@ impl From<u64> for Request {
 }
 
 impl Request {
-    /// Which of so many bands is read, from 0.
+    /// The index, from 0, of the band to read among `bands`.
     ///
     /// # Errors
-    /// A message if it has no such band, or several and none was chosen.
+    /// A message if the file does not have the band, or has several and none was chosen.
     pub fn choose(&self, bands: usize) -> Result<usize, String> {
         match self.band {
             Some(band) if band >= 1 && band as usize <= bands => Ok(band as usize - 1),
@@ -52,71 +52,71 @@ impl Request {
 /// Heights of a real place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dem {
-    /// Samples a row.
+    /// Samples per row.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
-    /// Metres, row after row from the north, each from west to east; NaN where the file has no height.
+    /// Heights in metres, row-major from the north, each row from west to east; NaN where the file has no height.
     pub heights: Vec<f32>,
-    /// Where they stand, if the file says so.
+    /// The position, if the file states it.
     pub place: Option<Placement>,
-    /// What was done to it and what could not be read, in messages.
+    /// Messages about conversions, and about content that could not be read.
     pub notes: Vec<String>,
 }
 
-/// Where samples stand on a map.
+/// The position of samples on a map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Placement {
-    /// East and north of the first sample itself: of the middle of its pixel, where the file speaks of pixels as areas.
+    /// East and north of the first sample, which is the centre of its pixel if the file treats pixels as areas.
     pub origin: [f64; 2],
-    /// From a column to the next one east, and from a row to the next one south: both above 0.
+    /// Distance between columns eastward and between rows southward; both positive.
     pub step: [f64; 2],
-    /// What origin and steps are measured in.
+    /// The unit of origin and steps.
     pub unit: Unit,
-    /// Metres between samples either way, where something beside a file in degrees says so.
+    /// Distance between samples in metres, along both axes, if a sidecar of a file in degrees states it.
     pub cell: Option<f64>,
-    /// The coordinate system as a GeoTIFF tells it; kept on the way out.
+    /// The coordinate system as GeoTIFF keys, which exports keep.
     pub keys: Option<GeoKeys>,
 }
 
-/// How a lattice lies on a map.
+/// The position of a lattice on a map.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Georeference {
-    /// East and north of the lattice's origin, in the map's own unit.
+    /// East and north of the lattice's origin, in map units.
     pub origin: [f64; 2],
-    /// The map's units in a metre of the lattice, east and north.
+    /// Map units per metre of the lattice, east and north.
     pub per_metre: [f64; 2],
-    /// What a GeoTIFF says of its coordinates.
+    /// GeoTIFF keys of the coordinate system.
     pub keys: Option<GeoKeys>,
 }
 
 impl Georeference {
-    /// East and north of a position in metres of the lattice, in the map's unit.
+    /// East and north, in map units, of a position in metres of the lattice.
     pub fn at(&self, x: f64, y: f64) -> [f64; 2] {
         [self.origin[0] + x * self.per_metre[0], self.origin[1] - y * self.per_metre[1]]
     }
 
-    /// The same map, the lattice's origin moved to a position of a world.
+    /// The same map, with the lattice's origin moved to this position of the world.
     pub fn moved(&self, x: f64, y: f64) -> Georeference {
         Georeference { origin: self.at(-x, -y), ..self.clone() }
     }
 
-    /// The EPSG code of its coordinate system, if its keys tell one.
+    /// The EPSG code of the coordinate system, if its keys have one.
     pub fn epsg(&self) -> Option<u16> {
         keys::epsg(self.keys.as_ref()?)
     }
 
-    /// Whether its keys tell a coordinate system of the Earth: not none, and not local ones.
+    /// Whether the keys describe a coordinate system on Earth.
     pub fn is_on_map(&self) -> bool {
         self.keys.as_ref().is_some_and(keys::is_named)
     }
 
-    /// Whether its units are so long that they can only be degrees, whatever its keys tell.
+    /// Whether the units are so long that they can only be degrees, whatever the keys say.
     pub fn counts_degrees(&self) -> bool {
         self.per_metre[0] < 1e-3
     }
 
-    /// Whether its units can be those of a coordinate system.
+    /// Whether the units are consistent with a coordinate system.
     pub fn fits(&self, crs: &Crs) -> bool {
         match crs.unit() {
             Unit::Degrees => self.counts_degrees(),
@@ -129,7 +129,7 @@ impl Georeference {
         self.keys.as_ref().is_some_and(keys::is_degrees)
     }
 
-    /// How the columns and rows of a window become coordinates; its rows from the south if the file's are.
+    /// The transform from columns and rows of a window to coordinates; rows start in the south if `from_south`.
     pub fn affine(&self, window: &Window, from_south: bool) -> Affine {
         let ([east, north], [across, down]) = self.of(window);
         let south = north - down * (window.height.max(1) - 1) as f64;
@@ -142,7 +142,7 @@ impl Georeference {
     /// The coordinate system as well-known text, as `.prj` files hold it.
     ///
     /// # Errors
-    /// A message that says what could not be expressed.
+    /// A message that names the part that cannot be expressed.
     pub fn wkt(&self) -> Result<String, String> {
         match &self.keys {
             Some(keys) => keys::to_wkt(keys),
@@ -150,20 +150,20 @@ impl Georeference {
         }
     }
 
-    /// How the first sample of a window lies, and the steps between its samples, in the map's unit.
+    /// The coordinates of the first sample of a window, and the distances between its samples, in map units.
     pub fn of(&self, window: &Window) -> ([f64; 2], [f64; 2]) {
         (self.at(window.east(0), window.south(0)), self.per_metre.map(|unit| unit * window.cell))
     }
 }
 
-/// Heights beyond this are no heights: some programs write the largest float where they have none.
+/// Values above this are not heights: some programs write the largest float as nodata.
 const HIGHEST: f32 = 1e30;
 
 impl Dem {
-    /// A DEM of samples read, its missing ones made NaN.
+    /// A DEM of the samples read; missing ones become NaN.
     ///
     /// # Errors
-    /// If there is no height among them.
+    /// If no sample has a height.
     pub fn new(size: [usize; 2], mut heights: Vec<f32>, place: Option<Placement>) -> Result<Dem, String> {
         let [width, height] = size;
         let mut found = false;
@@ -180,18 +180,18 @@ impl Dem {
         }
     }
 
-    /// How many samples have no height.
+    /// Number of samples without a height.
     pub fn missing(&self) -> usize {
         self.heights.iter().filter(|height| height.is_nan()).count()
     }
 }
 
-/// What is refused, in one message that names the file.
+/// An error about a rejected file, with its name.
 pub fn refused(name: &str, why: impl AsRef<str>) -> Error {
     Error::new(ErrorKind::File, format!("cannot read {name}: {}", why.as_ref()))
 }
 
-/// Checks that heights of this size can be held in `allowed` bytes, before any is.
+/// Checks, before allocation, that heights of this size fit in `allowed` bytes. Returns their number.
 ///
 /// # Errors
 /// A message with both figures.
@@ -210,10 +210,11 @@ pub fn afford(width: u64, height: u64, allowed: u64) -> Result<usize, String> {
     }
 }
 
-/// Bytes that a reader's buffers may take uncounted.
+/// Size of a reader's buffers that is not counted, in bytes.
 const BUFFER: u64 = 4 << 20;
 
-/// Checks that `beside` bytes more, which a reader holds while it unpacks them, can be held with `count` heights in `allowed` bytes.
+/// Checks that `beside` more bytes, which a reader holds during decompression, fit with `count` heights in `allowed`
+/// bytes.
 ///
 /// # Errors
 /// A message with both figures.
@@ -229,7 +230,7 @@ pub fn afford_beside(count: usize, beside: u64, allowed: u64) -> Result<(), Stri
     }
 }
 
-/// Samples row after row from the other end, in place.
+/// Reverses the order of the rows, in place.
 pub fn turn_rows(samples: &mut [f32], width: usize) {
     let rows = samples.len().checked_div(width).unwrap_or(0);
     for j in 0..rows / 2 {
@@ -238,7 +239,7 @@ pub fn turn_rows(samples: &mut [f32], width: usize) {
     }
 }
 
-/// How long an input is; it stands at its beginning afterwards.
+/// The length of an input in bytes; its position is then at the start.
 pub fn length(input: &mut dyn Input) -> Result<u64, String> {
     let length = input.seek(std::io::SeekFrom::End(0)).map_err(|cause| cause.to_string())?;
     input.rewind().map_err(|cause| cause.to_string())?;

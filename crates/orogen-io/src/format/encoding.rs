@@ -1,6 +1,6 @@
-//! Heights in the red, green and blue of a picture, as web maps read them.
+//! Heights encoded in the red, green and blue of a picture, for web maps.
 
-/// How a height becomes three bytes.
+/// The encoding of a height in three bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Encoding {
     /// height = 256 R + G + B / 256 - 32768: steps of 1/256 m (Mapzen).
@@ -10,10 +10,10 @@ pub enum Encoding {
 }
 
 impl Encoding {
-    /// All there are.
+    /// All encodings.
     pub const ALL: [Encoding; 2] = [Encoding::Terrarium, Encoding::TerrainRgb];
 
-    /// What users call it.
+    /// The name for users.
     pub fn name(self) -> &'static str {
         match self {
             Encoding::Terrarium => "terrarium",
@@ -21,7 +21,7 @@ impl Encoding {
         }
     }
 
-    /// What TileJSON and MapLibre call it.
+    /// The name in TileJSON and MapLibre.
     pub fn tilejson(self) -> &'static str {
         match self {
             Encoding::Terrarium => "terrarium",
@@ -29,7 +29,7 @@ impl Encoding {
         }
     }
 
-    /// The height of 0, 0, 0, and the steps in a metre.
+    /// The height of 0, 0, 0, and the number of steps per metre.
     fn scale(self) -> (f64, f64) {
         match self {
             Encoding::Terrarium => (-32768.0, 256.0),
@@ -37,8 +37,8 @@ impl Encoding {
         }
     }
 
-    /// A height as red, green and blue, to the nearest step. Heights beyond the ends of the encoding are clamped; what is no number becomes
-    /// 0, 0, 0.
+    /// The red, green and blue of a height, to the nearest step. Heights outside the range of the encoding are clamped;
+    /// NaN becomes 0, 0, 0.
     pub fn bytes(self, height: f32) -> [u8; 3] {
         const MOST: f64 = ((1 << 24) - 1) as f64;
         if height.is_nan() {
@@ -49,7 +49,7 @@ impl Encoding {
         [(steps >> 16) as u8, (steps >> 8) as u8, steps as u8]
     }
 
-    /// The height that three bytes stand for.
+    /// The height of three bytes.
     pub fn height(self, bytes: [u8; 3]) -> f64 {
         let (base, steps) = self.scale();
         f64::from(u32::from_be_bytes([0, bytes[0], bytes[1], bytes[2]])) / steps + base

@@ -1,10 +1,10 @@
-//! OpenEXR: channels of floats as they are, in real units.
+//! Writing OpenEXR: float channels without conversion.
 //!
-//! "OpenEXR File Layout" (openexr.com), version 2 without tiles or parts: scan lines from the top, in blocks of 16 rows compressed with ZIP (bytes parted in
-//! two halves, differences, zlib), in increasing order. Readers in engines know exactly this kind. Channels lie in the order of their names, as the
-//! format wants it; one alone is called `Y`, which is grey.
+//! "OpenEXR File Layout" (openexr.com), version 2 without tiles or parts: scan lines from the top, in blocks of 16 rows
+//! compressed with ZIP (bytes split in two halves, differences, zlib), in increasing order. Readers in engines support
+//! this kind. Channels are sorted by name, as the format requires; a single channel is called `Y`, which is grey.
 //!
-//! The packed blocks wait in a spool until the table of their places can be written before them.
+//! Compressed blocks are kept in a spool until the table of their offsets can be written before them.
 
 use std::io::{self, Write};
 
@@ -16,15 +16,15 @@ use crate::spool::Spool;
 /// Rows of a block.
 const ROWS: usize = 16;
 
-/// Bytes that are packed in one way.
+/// Size of a piece that is compressed in one way, in bytes.
 const PLANE: usize = 4096;
 
-/// What a sample is.
+/// The type of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sample {
-    /// Four bytes: the very f32.
+    /// Four bytes: the f32 itself.
     Float,
-    /// Two bytes, the nearest: see [`half`].
+    /// Two bytes, the nearest value: see [`half`].
     Half,
 }
 
@@ -37,39 +37,41 @@ impl Sample {
     }
 }
 
-/// A picture about to be written.
+/// Description of a picture.
 #[derive(Debug, Clone)]
 pub struct Picture {
-    /// Samples a row.
+    /// Samples per row.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
-    /// The channels' names, which must differ.
+    /// Names of the channels; they must differ.
     pub channels: Vec<String>,
-    /// What each sample is.
+    /// The type of the samples.
     pub sample: Sample,
-    /// What it tells whoever looks into it.
+    /// The `comments` attribute.
     pub comments: String,
 }
 
-/// A picture on its way into a file: [`Writer::rows`] takes all rows, some at a time from the top, and [`Writer::finish`] writes.
+/// Writes a picture: [`Writer::rows`] takes all rows from the top, in any pieces, then [`Writer::finish`] writes the
+/// file.
 pub struct Writer {
     picture: Picture,
-    /// The channels in the order of their names.
+    /// The channels sorted by name.
     order: Vec<usize>,
     spool: Spool,
-    /// Bytes of rows that do not fill a block yet.
+    /// Rows that do not fill a block yet.
     waiting: Vec<u8>,
-    /// Where each packed block is, and its length.
+    /// Position and length of each compressed block.
     blocks: Vec<(u64, usize)>,
-    /// Rows that came.
+    /// Number of rows received.
     rows: usize,
 }
 
 impl Writer {
-    /// Begins a file.
+    /// Starts a file.
     ///
-    /// Fails on a picture without samples or of more than 2^31 - 1 a side, and on names that are equal, empty or longer than 31 bytes.
+    /// Fails if the picture has no samples or more than 2^31 - 1 per side, or if names are equal, empty or longer than
+    /// 31 bytes.
     pub fn new(picture: Picture, spool: Spool) -> io::Result<Writer> {
         let refuse = |why: String| Err(io::Error::new(io::ErrorKind::InvalidInput, why));
         for side in [picture.width, picture.height] {
@@ -92,9 +94,10 @@ impl Writer {
         self.picture.width * self.order.len() * self.picture.sample.bytes()
     }
 
-    /// Takes the next rows: a slice a channel, in the order of [`Picture::channels`], all of the same whole rows.
+    /// Takes the next rows: a slice per channel, in the order of [`Picture::channels`], all of the same number of whole
+    /// rows.
     ///
-    /// Fails as the spool does, and on samples that are not whole rows or are more than the picture has.
+    /// Fails if the spool fails, or if the samples are not whole rows or exceed the picture.
     pub fn rows(&mut self, channels: &[&[f32]]) -> io::Result<()> {
         let (width, samples) = (self.picture.width, channels.first().map_or(0, |channel| channel.len()));
         let rows = samples / width;
@@ -128,7 +131,7 @@ impl Writer {
         Ok(())
     }
 
-    /// Packs the blocks that are full, or all once every row came.
+    /// Compresses the complete blocks, or all of them after the last row.
     fn pack(&mut self) -> io::Result<()> {
         let block = ROWS * self.row_bytes();
         let ready = match self.rows == self.picture.height {
@@ -145,7 +148,7 @@ impl Writer {
 
     /// Writes the file.
     ///
-    /// Fails as `out` and the spool do, and if rows are still missing.
+    /// Fails if `out` or the spool fails, or if rows are missing.
     pub fn finish(mut self, out: &mut dyn Write) -> io::Result<()> {
         if self.rows < self.picture.height {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "rows of the picture are missing"));
@@ -173,7 +176,7 @@ impl Writer {
         let mut channels = Vec::new();
         for channel in &self.order {
             channels.extend_from_slice(self.picture.channels[*channel].as_bytes());
-            // The name's end; the kind of sample; not to be read as a logarithm, and padding; every sample of both axes.
+            // End of the name; type of the sample; not logarithmic, and padding; no subsampling.
             let kind: i32 = if self.picture.sample == Sample::Half { 1 } else { 2 };
             channels.push(0);
             [kind, 0, 1, 1].into_iter().for_each(|number| channels.extend(number.to_le_bytes()));
@@ -183,7 +186,7 @@ impl Writer {
         if !self.picture.comments.is_empty() {
             head.attribute("comments", "string", self.picture.comments.as_bytes());
         }
-        // ZIP, 16 rows a block.
+        // ZIP, 16 rows per block.
         head.attribute("compression", "compression", &[3]);
         let last = [self.picture.width, self.picture.height].map(|side| side as i32 - 1);
         let window: Vec<u8> = [0, 0, last[0], last[1]].iter().flat_map(|number: &i32| number.to_le_bytes()).collect();
@@ -198,7 +201,7 @@ impl Writer {
     }
 }
 
-/// Rows that are taken over at a time: whole blocks, enough of them for all threads.
+/// Rows taken at a time: whole blocks, enough for all threads.
 const PIECE: usize = 16 * ROWS;
 
 struct Head(Vec<u8>);
@@ -214,7 +217,7 @@ impl Head {
     }
 }
 
-/// A block as the format packs it; as it is, if that is not longer.
+/// A compressed block; uncompressed if that is not longer.
 fn pack(bytes: &[u8]) -> Vec<u8> {
     let mut parted = vec![0u8; bytes.len()];
     let (even, odd) = parted.split_at_mut(bytes.len().div_ceil(2));

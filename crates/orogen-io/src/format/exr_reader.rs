@@ -1,7 +1,7 @@
-//! Reading heights from OpenEXR pictures: scan lines of one part, not compressed, or with RLE, ZIPS or ZIP.
+//! Reading heights from OpenEXR pictures: scan lines of one part, uncompressed or with RLE, ZIPS or ZIP.
 //!
-//! "OpenEXR File Layout" (openexr.com). Heights are one channel: the only one; else `Y`, `height` or `Z`; else, where R, G and B are one, R; or the one that is
-//! chosen, counted in the order of their names. Samples are metres as they are.
+//! "OpenEXR File Layout" (openexr.com). Heights are in one channel: the only one; otherwise `Y`, `height` or `Z`;
+//! otherwise R, if R, G and B are equal; or the channel chosen by its number in the order of names. Samples are metres.
 
 use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
 
@@ -10,21 +10,21 @@ use super::half;
 use super::sidecar::Sidecar;
 use orogen_grid::error::Result;
 
-/// The longest head read.
+/// Maximum length of the header, in bytes.
 const MAX_HEAD: u64 = 1 << 20;
 
-/// The most channels.
+/// Maximum number of channels.
 const MAX_CHANNELS: usize = 1024;
 
-/// Reads a picture. `name` is what errors call the file.
+/// Reads a picture. `name` is the file's name in errors.
 ///
 /// # Errors
-/// If it is no OpenEXR, of another kind, damaged or too large.
+/// If it is not OpenEXR, is of an unsupported kind, damaged or too large.
 pub fn read(input: &mut dyn Input, name: &str, sidecar: &Sidecar, request: Request) -> Result<Dem> {
     open(input, sidecar, request).map_err(|why| refused(name, why))
 }
 
-/// What a channel's samples are: their bytes, and whether they are floats.
+/// The type of a channel's samples: size, and whether they are floats.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Sample {
     Whole,
@@ -119,7 +119,7 @@ fn open(input: &mut dyn Input, sidecar: &Sidecar, request: Request) -> std::resu
         let size = u64::try_from(size).ok().filter(|size| *size <= there).ok_or_else(damaged)?;
         let lines = rows.min(height - first);
         let due = (lines * line) as usize;
-        // As it is packed, with its bytes parted, and as samples.
+        // The compressed bytes, the split bytes, and the samples.
         afford_beside(count, size.saturating_add(2 * due as u64), request.allowed)?;
         let mut packed = Vec::new();
         read_some(input, size, &mut packed)?;
@@ -156,7 +156,7 @@ fn seek(input: &mut dyn Input, at: u64) -> std::result::Result<(), String> {
     input.seek(std::io::SeekFrom::Start(at)).map(|_| ()).map_err(|cause| cause.to_string())
 }
 
-/// Reads exactly so many bytes, taking memory only for those that there are.
+/// Reads exactly `count` bytes; allocates only for bytes that exist.
 fn read_some(input: &mut dyn Input, count: u64, out: &mut Vec<u8>) -> std::result::Result<(), String> {
     use std::io::Read;
     input.take(count).read_to_end(out).map_err(|cause| cause.to_string())?;
@@ -174,7 +174,7 @@ fn int(rest: &mut &[u8]) -> std::result::Result<i32, String> {
     Ok(i32::from_le_bytes([four[0], four[1], four[2], four[3]]))
 }
 
-/// A text that a 0 ends.
+/// A null-terminated text.
 fn text(rest: &mut &[u8]) -> std::result::Result<String, String> {
     let end = rest.iter().take(256).position(|byte| *byte == 0).ok_or_else(damaged)?;
     let text = String::from_utf8_lossy(take(rest, end)?).into_owned();
@@ -219,7 +219,7 @@ fn head(rest: &mut &[u8]) -> std::result::Result<Head, String> {
     }
 }
 
-/// Which channel holds heights.
+/// The index of the channel with the heights.
 fn choose(channels: &[(String, Option<Sample>, bool)], request: Request) -> std::result::Result<usize, String> {
     if request.band.is_none() && channels.len() > 1 {
         let named = |wanted: &str| {
@@ -240,7 +240,7 @@ fn choose(channels: &[(String, Option<Sample>, bool)], request: Request) -> std:
     })
 }
 
-/// Unpacks a block.
+/// Decompresses a block.
 fn unpack(packing: u8, packed: &[u8], due: usize) -> std::result::Result<Vec<u8>, String> {
     let mut parted = match packing {
         1 => runs(packed, due)?,
@@ -257,7 +257,8 @@ fn unpack(packing: u8, packed: &[u8], due: usize) -> std::result::Result<Vec<u8>
     Ok((0..due).map(|k| if k % 2 == 0 { even[k / 2] } else { odd[k / 2] }).collect())
 }
 
-/// Runs of bytes: a count below 0 goes before as many bytes as they are, another before one that is repeated once more than it says.
+/// Run-length coding: a negative count precedes that many literal bytes; another count precedes a byte that is repeated
+/// count + 1 times.
 fn runs(packed: &[u8], due: usize) -> std::result::Result<Vec<u8>, String> {
     let mut out = Vec::new();
     let mut rest = packed;

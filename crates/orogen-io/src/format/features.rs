@@ -1,4 +1,4 @@
-//! Vector features: what GIS formats of points, lines and polygons hold.
+//! Vector features as GIS formats store them: points, lines and polygons with attributes.
 
 use super::dem::Georeference;
 
@@ -11,7 +11,7 @@ pub enum GeometryType {
     LineZ,
     /// Lines in the plane.
     Line,
-    /// Areas of one or several parts, each with holes.
+    /// Polygons of one or several parts, each with holes.
     MultiPolygon,
 }
 
@@ -20,10 +20,10 @@ pub enum GeometryType {
 pub enum Geometry {
     /// A point.
     Point([f64; 3]),
-    /// A line; of a layer of plane lines the heights are 0.
+    /// A line; in a layer of 2D lines the heights are 0.
     Line(Vec<[f64; 3]>),
-    /// Parts, each an outer ring and its holes. The last point of a ring repeats the first. With north up, outer rings are counter-clockwise and
-    /// holes clockwise.
+    /// Parts, each an outer ring and its holes. The last point of a ring repeats the first. With north up, outer rings
+    /// are counter-clockwise and holes clockwise.
     MultiPolygon(Vec<Vec<Ring>>),
 }
 
@@ -33,59 +33,59 @@ pub type Ring = Vec<[f64; 2]>;
 /// The type of an attribute.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FieldType {
-    /// A 64-bit whole number.
+    /// A 64-bit integer.
     Integer,
     /// A 64-bit floating-point number.
     Real,
-    /// A truth value.
+    /// A boolean.
     Boolean,
     /// A text.
     Text,
 }
 
-/// An attribute that the features of a layer have.
+/// An attribute of the features of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Field {
-    /// Its name: lower case, with underscores.
+    /// The name: lower case, with underscores.
     pub name: &'static str,
-    /// Its type.
+    /// The type.
     pub kind: FieldType,
-    /// What it is, with its unit.
+    /// Description, with the unit.
     pub about: &'static str,
 }
 
 /// The value of an attribute.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// None.
+    /// No value.
     Null,
-    /// A whole number.
+    /// An integer.
     Integer(i64),
     /// A number; one that is not finite is written as [`Value::Null`].
     Real(f64),
-    /// A truth value.
+    /// A boolean.
     Boolean(bool),
     /// A text.
     Text(&'static str),
 }
 
-/// A feature: where it is, and one value a field. Features are numbered from 1 in their layer's order.
+/// A feature: a geometry, and one value per field. Features are numbered from 1 in the order of their layer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Feature {
-    /// Where it is.
+    /// The geometry.
     pub geometry: Geometry,
     /// One value for each of the layer's fields.
     pub values: Vec<Value>,
 }
 
-/// Features of one kind.
+/// A layer of features.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FeatureLayer {
-    /// Its name.
+    /// The name.
     pub name: &'static str,
-    /// One sentence about it.
+    /// One sentence of description.
     pub about: &'static str,
-    /// The type of its geometries.
+    /// The type of the geometries.
     pub geometry: GeometryType,
     /// The attributes.
     pub fields: &'static [Field],
@@ -98,26 +98,26 @@ pub struct FeatureLayer {
 pub enum Crs<'a> {
     /// Metres east and north of the origin of an invented world.
     Local,
-    /// That of a map. Its EPSG code is known or not.
+    /// The coordinate system of a map, with or without an EPSG code.
     Map(&'a Georeference),
 }
 
-/// What a file says of a coordinate system.
+/// The definition of a coordinate system in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Definition {
-    /// Its EPSG code, and its well-known text where that can be written.
+    /// The EPSG code, and the well-known text if it can be written.
     Epsg(u16, Option<String>),
     /// Well-known text of a system without a code.
     Wkt(String),
-    /// Coordinates of an unknown system, in degrees or not.
+    /// Coordinates in an unknown system.
     Unknown {
-        /// Whether they are longitude and latitude.
+        /// Whether they are longitude and latitude in degrees.
         degrees: bool,
     },
 }
 
 impl Crs<'_> {
-    /// What files say of it.
+    /// The definition for files.
     pub fn definition(&self) -> Definition {
         let map = match self {
             Crs::Local => return Definition::Wkt(LOCAL_WKT.to_string()),
@@ -132,7 +132,7 @@ impl Crs<'_> {
 }
 
 impl Value {
-    /// A whole number where there is one.
+    /// An optional integer.
     pub fn id(number: Option<u32>) -> Value {
         number.map_or(Value::Null, |number| Value::Integer(i64::from(number)))
     }
@@ -146,7 +146,7 @@ impl GeometryType {
 }
 
 impl Geometry {
-    /// Calls `visit` with east and north of every vertex.
+    /// Calls `visit` with the east and north of every vertex.
     fn each(&mut self, mut visit: impl FnMut(&mut f64, &mut f64)) {
         match self {
             Geometry::Point([x, y, _]) => visit(x, y),
@@ -157,7 +157,7 @@ impl Geometry {
         }
     }
 
-    /// The least and the greatest east and north: west, south, east, north. Empty geometries have none.
+    /// The bounds: west, south, east, north. `None` for empty geometries.
     pub fn bounds(&self) -> Option<[f64; 4]> {
         let mut bounds: Option<[f64; 4]> = None;
         let mut add = |x: f64, y: f64| {
@@ -167,7 +167,7 @@ impl Geometry {
         match self {
             Geometry::Point([x, y, _]) => add(*x, *y),
             Geometry::Line(points) => points.iter().for_each(|[x, y, _]| add(*x, *y)),
-            // Holes lie within the outer ring.
+            // Holes are within the outer ring.
             Geometry::MultiPolygon(parts) => {
                 parts.iter().filter_map(|part| part.first()).flatten().for_each(|[x, y]| add(*x, *y));
             }
@@ -175,7 +175,7 @@ impl Geometry {
         bounds
     }
 
-    /// How many vertices it has.
+    /// Number of vertices.
     pub fn vertices(&self) -> usize {
         match self {
             Geometry::Point(_) => 1,
@@ -186,33 +186,34 @@ impl Geometry {
 }
 
 impl FeatureLayer {
-    /// Turns metres east and south of the world's origin into map coordinates: those of `map`, else metres east and north.
+    /// Converts metres east and south of the world's origin to map coordinates: those of `map`, otherwise metres east
+    /// and north.
     pub fn place(&mut self, map: Option<&Georeference>) {
         for feature in &mut self.features {
             feature.geometry.each(|x, y| [*x, *y] = map.map_or([*x, -*y], |map| map.at(*x, *y)));
         }
     }
 
-    /// What holds all features: west, south, east, north.
+    /// The bounds of all features: west, south, east, north.
     pub fn bounds(&self) -> Option<[f64; 4]> {
         self.features.iter().filter_map(|feature| feature.geometry.bounds()).reduce(join)
     }
 }
 
-/// The length of a line in the plane.
+/// The length of a line in the plane, without heights.
 pub fn length(points: &[[f64; 3]]) -> f64 {
     points.windows(2).map(|pair| libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1])).sum()
 }
 
-/// What holds two bounds.
+/// The bounds of both.
 pub fn join(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
     [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])]
 }
 
-/// The name of a world's own coordinate system.
+/// The name of a world's local coordinate system.
 pub const LOCAL_NAME: &str = "local metres";
 
-/// A coordinate system of metres that is nowhere on Earth, as WKT 2 (ISO 19162).
+/// A local coordinate system in metres, as WKT 2 (ISO 19162).
 pub const LOCAL_WKT: &str = concat!(
     r#"ENGCRS["local metres",EDATUM["origin of the world"],CS[Cartesian,2],"#,
     r#"AXIS["easting",east],AXIS["northing",north],LENGTHUNIT["metre",1]]"#

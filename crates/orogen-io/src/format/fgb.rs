@@ -1,4 +1,4 @@
-//! FlatGeobuf 3.0 (flatgeobuf.org): one layer of features, streamed behind a packed Hilbert R-tree.
+//! FlatGeobuf 3.0 (flatgeobuf.org): one layer of features after a packed Hilbert R-tree.
 
 use std::io::{self, Write};
 
@@ -8,20 +8,20 @@ use super::packed_tree::{Bounds, hilbert_order, levels};
 
 const MAGIC: [u8; 8] = [0x66, 0x67, 0x62, 0x03, 0x66, 0x67, 0x62, 0x01];
 
-/// Boxes of a node of the R-tree.
+/// Entries of a node of the R-tree.
 const FANOUT: usize = 16;
 
-/// Numbers of the types of geometries.
+/// Numbers of the geometry types.
 const POINT: u8 = 1;
 const LINE: u8 = 2;
 const POLYGON: u8 = 3;
 const MULTI_POLYGON: u8 = 6;
 
-/// Writes a layer, whose coordinates are those of `crs`. Features come in the order of a Hilbert curve.
+/// Writes a layer with coordinates of `crs`. Features are in the order of a Hilbert curve.
 ///
-/// Fails as `out` does.
+/// Fails if `out` fails.
 pub fn write(out: &mut dyn Write, layer: &FeatureLayer, crs: Crs) -> io::Result<()> {
-    // What is nowhere has no place in the index.
+    // Features without vertices cannot be in the index.
     let there: Vec<&Feature> = layer.features.iter().filter(|feature| feature.geometry.vertices() > 0).collect();
     let boxes: Vec<Bounds> = there.iter().filter_map(|feature| feature.geometry.bounds()).collect();
     let order = hilbert_order(&boxes);
@@ -34,7 +34,8 @@ pub fn write(out: &mut dyn Write, layer: &FeatureLayer, crs: Crs) -> io::Result<
         bounds.iter().try_for_each(|number| out.write_all(&number.to_le_bytes()))?;
         out.write_all(&leads_to.to_le_bytes())
     };
-    // The root first, each node with the number of its first child; the boxes of features last, each with its place among them.
+    // The root first, each node with the number of its first child; last the boxes of features, each with its byte
+    // offset.
     let mut first_child = 0u64;
     for (depth, level) in levels.iter().enumerate().rev() {
         first_child += level.len() as u64;
@@ -52,7 +53,7 @@ pub fn write(out: &mut dyn Write, layer: &FeatureLayer, crs: Crs) -> io::Result<
     packed.iter().try_for_each(|bytes| out.write_all(bytes))
 }
 
-/// What the file holds.
+/// The header of the file.
 fn head(layer: &FeatureLayer, count: usize, crs: Crs) -> Vec<u8> {
     let mut builder = Builder::new();
     let name = builder.text(layer.name);

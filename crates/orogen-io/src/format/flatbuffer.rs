@@ -1,24 +1,24 @@
-//! FlatBuffers: tables of fields found by their offsets, built from their end to their beginning
-//! (flatbuffers.dev, "FlatBuffer Internals").
+//! FlatBuffers (flatbuffers.dev, "FlatBuffer Internals"): tables whose fields are found by offsets. Buffers are built
+//! from their end to their start.
 
-/// A buffer that grows towards its beginning. Offsets count from its end.
+/// A buffer that grows towards its start. Offsets are counted from its end.
 #[derive(Default)]
 pub struct Builder {
-    /// The bytes, the last one first.
+    /// The bytes in reverse order.
     reversed: Vec<u8>,
-    /// The largest alignment of what is in it.
+    /// The largest alignment of its content.
     align: usize,
 }
 
-/// Where something begins, in bytes from the end of the buffer.
+/// The position of an object, in bytes from the end of the buffer.
 pub type Offset = u32;
 
 /// The value of a field of a table.
 #[derive(Debug, Clone, Copy)]
 pub enum Slot {
-    /// Left at its default.
+    /// The default value; not stored.
     Absent,
-    /// One byte: a truth value or the number of an enumeration.
+    /// One byte: a boolean or an enumeration value.
     Byte(u8),
     /// Two bytes.
     Short(u16),
@@ -26,12 +26,12 @@ pub enum Slot {
     Int(i32),
     /// Eight bytes.
     Long(u64),
-    /// Something written before.
+    /// An object written before.
     Reference(Offset),
 }
 
 impl Builder {
-    /// A builder that holds nothing.
+    /// An empty builder.
     pub fn new() -> Builder {
         Builder { reversed: Vec::new(), align: 4 }
     }
@@ -40,7 +40,7 @@ impl Builder {
         self.reversed.extend(bytes.iter().rev());
     }
 
-    /// Zeros, so that what begins after `more` further bytes is aligned.
+    /// Adds padding so that an object that starts after `more` further bytes is aligned.
     fn prepare(&mut self, align: usize, more: usize) {
         self.align = self.align.max(align);
         let end = (self.reversed.len() + more).next_multiple_of(align);
@@ -69,24 +69,24 @@ impl Builder {
         self.here()
     }
 
-    /// Bytes.
+    /// Adds bytes.
     pub fn bytes(&mut self, bytes: &[u8]) -> Offset {
         self.vector(bytes, 1)
     }
 
-    /// Whole numbers.
+    /// Adds a vector of integers.
     pub fn wholes(&mut self, numbers: &[u32]) -> Offset {
         let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
         self.vector(&bytes, 4)
     }
 
-    /// Numbers.
+    /// Adds a vector of floats.
     pub fn numbers(&mut self, numbers: impl Iterator<Item = f64>) -> Offset {
         let bytes: Vec<u8> = numbers.flat_map(f64::to_le_bytes).collect();
         self.vector(&bytes, 8)
     }
 
-    /// A list of tables.
+    /// Adds a vector of tables.
     pub fn references(&mut self, tables: &[Offset]) -> Offset {
         self.prepare(4, tables.len() * 4);
         tables.iter().rev().for_each(|table| self.reference(*table));
@@ -100,7 +100,7 @@ impl Builder {
         self.push(&(from - to).to_le_bytes());
     }
 
-    /// A table with these fields, in the order of its schema.
+    /// Adds a table with these fields, in the order of its schema.
     pub fn table(&mut self, slots: &[Slot]) -> Offset {
         let start = self.here();
         let mut places = vec![0; slots.len()];
@@ -124,7 +124,7 @@ impl Builder {
             }
             *place = self.here();
         }
-        // The way from the table to its list of fields, known once that is written.
+        // The offset from the table to its vtable is known after that is written.
         self.prepare(4, 0);
         self.push(&[0; 4]);
         let table = self.here();
@@ -141,7 +141,7 @@ impl Builder {
         table
     }
 
-    /// The bytes of a buffer whose root is this table, its length in front.
+    /// The bytes of a buffer whose root is this table, prefixed by its length.
     pub fn finish(mut self, root: Offset) -> Vec<u8> {
         self.prepare(self.align, 8);
         self.reference(root);

@@ -5,17 +5,17 @@ use std::io::{self, Write};
 
 use super::features::{Crs, Definition, FeatureLayer, Geometry, Value};
 
-/// Writes a layer as a collection of features, one a line. `step` is the distance between samples in the unit of the coordinates, which are rounded to
-/// a thousandth of it or finer; heights are rounded to millimetres.
+/// Writes a layer as a feature collection, one feature per line. `step` is the distance between samples in the unit of
+/// the coordinates, which are rounded to at most a thousandth of it; heights are rounded to millimetres.
 ///
-/// RFC 7946 wants longitude and latitude (WGS 84). Coordinates in those are written so. Those of another system get the `crs` member of the
-/// older GeoJSON 2008, which GDAL and QGIS read; so do metres that are nowhere on Earth, as WKT.
+/// RFC 7946 requires longitude and latitude (WGS 84); such coordinates are written as they are. For other systems the
+/// file has the `crs` member of GeoJSON 2008, which GDAL and QGIS read, also for local metres (as WKT).
 ///
-/// Fails as `out` does.
+/// Fails if `out` fails.
 pub fn write(out: &mut dyn Write, layer: &FeatureLayer, crs: Crs, step: f64) -> io::Result<()> {
     write!(out, "{{\"type\":\"FeatureCollection\",\"name\":\"{}\",", layer.name)?;
     let system = match crs.definition() {
-        // WGS 84 is the system of RFC 7946 itself.
+        // RFC 7946 implies WGS 84.
         Definition::Epsg(4326, _) | Definition::Unknown { .. } => None,
         Definition::Epsg(code, _) => Some(format!("urn:ogc:def:crs:EPSG::{code}")),
         Definition::Wkt(wkt) => Some(wkt.replace('\\', "\\\\").replace('"', "\\\"")),
@@ -92,16 +92,16 @@ fn position(text: &mut String, at: &[f64], decimals: usize) {
     text.push(']');
 }
 
-/// Decimals that tell a thousandth of a step.
+/// Number of decimals that resolve a thousandth of a step.
 pub fn decimals(step: f64) -> usize {
     (3.0 - libm::log10(step).floor()).clamp(0.0, 15.0) as usize
 }
 
-/// Adds a number of at most so many decimals, none of them a 0 at the end.
+/// Appends a number with at most `decimals` decimals and without trailing zeros.
 pub fn number(text: &mut String, value: f64, decimals: usize) {
     let power = POWERS[decimals.min(POWERS.len() - 1)];
     let scaled = (value * power).round();
-    // Whole numbers are much faster to write than fractions.
+    // Integers are formatted much faster than fractions.
     if scaled.abs() < 9e15 && decimals < POWERS.len() {
         let (whole, part) = ((scaled.abs() as u64) / power as u64, (scaled.abs() as u64) % power as u64);
         if scaled < 0.0 {

@@ -1,19 +1,20 @@
 //! GIF animations.
 //!
-//! "Graphics Interchange Format, Version 89a" (CompuServe, 1990), with the block by which browsers repeat it for ever. A GIF has 256
-//! colours: one palette serves all frames, so that nothing flickers, found by halving boxes of colours (P. Heckbert, "Color image
-//! quantization for frame buffer display", 1982) where they vary most. What lies between two colours is a pattern of both, the same
-//! in every frame (B. Bayer's ordered dither, 1973). Pixels that stay what they were are transparent, which packs better.
+//! "Graphics Interchange Format, Version 89a" (CompuServe, 1990), with the extension that repeats it endlessly in
+//! browsers. A GIF has at most 256 colours. One palette serves all frames, which avoids flicker; it is found by median
+//! cut (P. Heckbert, "Color image quantization for frame buffer display", 1982). Intermediate colours are dithered with
+//! the same pattern in every frame (B. Bayer's ordered dither, 1973). Unchanged pixels are transparent, which
+//! compresses better.
 
 use std::io::{self, Write};
 
 use super::png::Animation;
 
-/// Colours of a palette; one more index means "as before".
+/// Number of colours; one more index means "unchanged".
 const COLORS: usize = 255;
 const SAME: u8 = 255;
 
-/// Bits of each channel by which colours are counted and looked up.
+/// Bits per channel for counting and looking up colours.
 const BITS: usize = 5;
 const SIDE: usize = 1 << BITS;
 
@@ -23,22 +24,22 @@ pub struct Palette {
     colors: Vec<[u8; 3]>,
     /// The index of the nearest colour, for each of `SIDE`^3 colours.
     nearest: Vec<u8>,
-    /// How far the dither reaches, in steps of a byte.
+    /// Amplitude of the dither, in steps of a byte.
     spread: i32,
 }
 
-/// A box of colours that are to be one.
+/// A box of colours that become one.
 #[derive(Debug, Clone)]
 struct Cluster {
     /// Cells of the histogram.
     cells: Vec<usize>,
-    /// How far they vary along the channel where they vary most, times how many pixels there are; and that channel.
+    /// The variation along the channel of largest variation, times the number of pixels; and that channel.
     spread: f64,
     channel: usize,
 }
 
 impl Palette {
-    /// The palette that suits pixels of three bytes each.
+    /// A palette for pixels of three bytes each.
     pub fn of(pixels: &[u8]) -> Palette {
         let mut counts = vec![0u32; SIDE * SIDE * SIDE];
         let mut sums = vec![[0u64; 3]; SIDE * SIDE * SIDE];
@@ -55,11 +56,11 @@ impl Palette {
                     let value = |cell: &usize| f64::from(counts[*cell]) * libm::pow(mean(*cell, channel), power);
                     cells.iter().map(value).sum::<f64>() / pixels
                 };
-                // Eyes tell greens apart best, and blues worst.
+                // The eye distinguishes greens best, and blues worst.
                 (weigh(2.0) - weigh(1.0) * weigh(1.0)).max(0.0) * [0.9, 1.4, 0.6][channel]
             });
             let channel = (0..3).fold(0, |best, channel| if vary[channel] > vary[best] { channel } else { best });
-            // The root lets rare colours have a say.
+            // The square root gives more weight to rare colours.
             Cluster { cells, spread: vary[channel] * pixels.sqrt(), channel }
         };
         let mut clusters = vec![cluster((0..counts.len()).filter(|cell| counts[*cell] > 0).collect())];
@@ -93,7 +94,7 @@ impl Palette {
                 })
             })
             .collect();
-        // An order that does not depend on how the boxes were cut.
+        // An order that does not depend on how the boxes were split.
         colors.sort_unstable();
         colors.dedup();
         Palette::new(colors)
@@ -115,7 +116,7 @@ impl Palette {
                 near([channel(2 * BITS), channel(BITS), channel(0)], None).unwrap_or(0) as u8
             })
             .collect();
-        // As far as colours are from one another, in the middle of them.
+        // The median distance between colours.
         let mut gaps: Vec<i32> = (0..colors.len())
             .filter_map(|at| {
                 let color = colors[at].map(i32::from);
@@ -127,7 +128,7 @@ impl Palette {
         Palette { colors, nearest, spread: (f64::from(gap / 10).sqrt() as i32).clamp(0, 24) }
     }
 
-    /// The index for a pixel at a place.
+    /// The index for a pixel at a position.
     fn index(&self, pixel: &[u8], x: usize, y: usize) -> u8 {
         let push = (i32::from(BAYER[y & 7][x & 7]) * 2 - 63) * self.spread / 64;
         let color = [0, 1, 2].map(|c| (i32::from(pixel[c]) + push).clamp(0, 255));
@@ -135,7 +136,7 @@ impl Palette {
     }
 }
 
-/// The cell of the histogram that a colour is in.
+/// The cell of the histogram that contains a colour.
 fn cell(color: [i32; 3]) -> usize {
     color.iter().fold(0, |cell, byte| cell << BITS | *byte as usize >> (8 - BITS))
 }
@@ -151,10 +152,11 @@ const BAYER: [[u8; 8]; 8] = [
     [63, 31, 55, 23, 61, 29, 53, 21],
 ];
 
-/// Writes an animation whose frames `fill` makes, one at a time: it is given the frame's number, from 0, and its bytes, three a
-/// pixel. It is shown again and again; how long a frame is shown counts in hundredths of a second, two at least, as browsers have it.
+/// Writes an animation. `fill` makes the frames one at a time: it gets the frame's number, from 0, and its bytes, three
+/// per pixel. The animation repeats endlessly. The delay of a frame is rounded to hundredths of a second, at least two,
+/// which is the minimum of browsers.
 ///
-/// Fails as `out` or `fill` do, and on pictures without pixels or of more than 65 535 a side, which GIF cannot hold.
+/// Fails if `out` or `fill` fails, or if the picture has no pixels or more than 65 535 per side.
 pub fn write_animation(
     out: &mut dyn Write,
     size: [usize; 2],
@@ -189,7 +191,7 @@ pub fn write_animation(
         for (at, (index, pixel)) in indices.iter_mut().zip(bytes.chunks_exact(3)).enumerate() {
             *index = palette.index(pixel, at % width, at / width);
         }
-        // Nothing is cleared away before the next frame, and one index shows what was there.
+        // Frames are drawn over each other, and one index is transparent.
         out.write_all(&[0x21, 0xf9, 4, 0b101, low, high_delay, SAME, 0])?;
         out.write_all(&[0x2c, 0, 0, 0, 0, wide[0], wide[1], high[0], high[1], 0])?;
         match before.is_empty() {
@@ -204,17 +206,17 @@ pub fn write_animation(
     out.write_all(b"\x3b")
 }
 
-/// Codes of so many bits are the longest.
+/// Maximum number of bits of a code.
 const LONGEST: u32 = 12;
 const CLEAR: u16 = 256;
 const END: u16 = 257;
 
-/// Writes indices by the method of J. Ziv, A. Lempel and T. Welch as GIF has it: codes of 9 to 12 bits, the lowest bit first, in blocks
-/// of up to 255 bytes.
+/// Writes indices with GIF's variant of LZW (J. Ziv, A. Lempel and T. Welch): codes of 9 to 12 bits, the lowest bit
+/// first, in blocks of up to 255 bytes.
 fn pack(out: &mut dyn Write, indices: impl Iterator<Item = u8>) -> io::Result<()> {
     let mut blocks = Blocks { out, block: Vec::with_capacity(255), bits: 0, held: 0 };
     blocks.out.write_all(&[8])?;
-    // What follows each code: the code of both together, 0 for none.
+    // The successors of each code: the code of both together, 0 for none.
     let mut after = vec![0u16; 256 << LONGEST];
     let (mut next, mut width) = (END + 1, 9);
     blocks.push(CLEAR, width)?;
@@ -232,7 +234,7 @@ fn pack(out: &mut dyn Write, indices: impl Iterator<Item = u8>) -> io::Result<()
         blocks.push(known, width)?;
         if next < 1 << LONGEST {
             after[slot] = next;
-            // The reader knows each code one step later than the writer.
+            // The decoder learns each code one step later than the encoder.
             width += u32::from(next == 1 << width);
             next += 1;
         } else {
@@ -244,14 +246,14 @@ fn pack(out: &mut dyn Write, indices: impl Iterator<Item = u8>) -> io::Result<()
     }
     if let Some(code) = code {
         blocks.push(code, width)?;
-        // The reader adds one more code after this one.
+        // The decoder adds one more code after this one.
         width += u32::from(next == 1 << width && width < LONGEST);
     }
     blocks.push(END, width)?;
     blocks.finish()
 }
 
-/// Codes on their way into blocks.
+/// Packs codes into blocks.
 struct Blocks<'a> {
     out: &'a mut dyn Write,
     block: Vec<u8>,

@@ -1,4 +1,4 @@
-//! OGC GeoPackage 1.3 (OGC 12-128r17): features in an SQLite database, each layer with its R-tree index.
+//! OGC GeoPackage 1.3 (OGC 12-128r17): features in an SQLite database, one table and one R-tree index per layer.
 
 use std::io::{self, Write};
 
@@ -10,18 +10,18 @@ use super::sqlite::{Column, Database};
 const APPLICATION: u32 = 0x4750_4B47;
 const VERSION: u32 = 10_300;
 
-/// When the content was last changed. A file that depended on the time of day would never be the same twice.
+/// The time of the last change. It is constant, so that equal content gives equal files.
 const LAST_CHANGE: &str = "1970-01-01T00:00:00.000Z";
 
-/// Cells of a node of an R-tree, and bytes of each.
+/// Cells per node of an R-tree, and bytes of a node.
 const NODE_CELLS: usize = 51;
 const NODE_CELL: usize = 24;
 
-/// The coordinate systems that every GeoPackage lists: of metres nowhere on Earth, of degrees nowhere in particular.
+/// The coordinate systems that every GeoPackage lists: undefined Cartesian and undefined geographic.
 const LOCAL: i64 = -1;
 const GEOGRAPHIC: i64 = 0;
 
-/// The number of a system without an EPSG code; the codes end below.
+/// The number of a system without an EPSG code; EPSG codes are smaller.
 const CUSTOM: i64 = 100_000;
 
 const WGS_84: &str = concat!(
@@ -29,9 +29,9 @@ const WGS_84: &str = concat!(
     r#"PRIMEM["Greenwich",0,AUTHORITY["EPSG","8901"]],UNIT["degree",0.0174532925199433,AUTHORITY["EPSG","9122"]],AUTHORITY["EPSG","4326"]]"#
 );
 
-/// Writes layers, whose coordinates are those of `crs`.
+/// Writes layers with coordinates of `crs`.
 ///
-/// Fails as `out` does.
+/// Fails if `out` fails.
 pub fn write<'a>(out: &mut dyn Write, layers: impl Iterator<Item = &'a FeatureLayer>, crs: Crs) -> io::Result<()> {
     let layers: Vec<&FeatureLayer> = layers.collect();
     let layers = layers.as_slice();
@@ -94,7 +94,7 @@ fn spatial_ref_sys(database: &mut Database, srs: i64, definition: &Definition) -
             Definition::Wkt(wkt) => {
                 row("Coordinate system of the input", srs, "NONE", wkt, "coordinate system without EPSG code")
             }
-            // Readers look a code up rather than read its definition.
+            // Readers look up the code and ignore the definition.
             Definition::Epsg(_, Some(wkt)) => row(&name, srs, "EPSG", wkt, "as the EPSG registry defines it"),
             _ => row(&name, srs, "EPSG", "undefined", "as the EPSG registry defines it"),
         });
@@ -126,7 +126,7 @@ fn contents(database: &mut Database, layers: &[&FeatureLayer], srs: i64) -> io::
                min_x DOUBLE, min_y DOUBLE, max_x DOUBLE, max_y DOUBLE, srs_id INTEGER, \
                CONSTRAINT fk_gc_r_srs_id FOREIGN KEY (srs_id) REFERENCES gpkg_spatial_ref_sys(srs_id))";
     database.table("gpkg_contents", sql, rows)?;
-    // One index for the names of tables, one for the identifiers.
+    // One index for the table names, one for the identifiers.
     database.unique_index("gpkg_contents", 1, keys(layers, &[]))?;
     database.unique_index("gpkg_contents", 2, keys(layers, &[]))
 }
@@ -172,7 +172,7 @@ fn extensions(database: &mut Database, layers: &[&FeatureLayer]) -> io::Result<(
     database.unique_index("gpkg_extensions", 1, keys(layers, &["geom", RTREE]))
 }
 
-/// The layers' names, with more columns behind them, and the rows they are on.
+/// The layers' names with `more` columns, and their row numbers.
 fn keys<'a>(layers: &[&FeatureLayer], more: &[&'a str]) -> Vec<(Vec<&'a str>, i64)> {
     let key = |(k, layer): (usize, &&FeatureLayer)| {
         let columns: Vec<&str> = [layer.name].into_iter().chain(more.iter().copied()).collect();
@@ -222,12 +222,12 @@ fn features(database: &mut Database, layer: &FeatureLayer, srs: i64) -> io::Resu
     database.table(layer.name, &sql, rows)
 }
 
-/// A geometry as GeoPackage holds it: its own head with the bounds, then ISO WKB, little-endian.
+/// A geometry in GeoPackage binary: its header with the bounds, then ISO WKB, little-endian.
 fn blob(geometry: &Geometry, kind: GeometryType, srs: i64) -> Vec<u8> {
     let mut out = Vec::with_capacity(64 + geometry.vertices() * 24);
     let bounds = geometry.bounds().filter(|_| kind != GeometryType::Point);
     let empty = geometry.vertices() == 0;
-    // Little-endian; bounds in the plane, or none; empty or not.
+    // Flags: little-endian; with or without 2D bounds; empty or not.
     out.extend_from_slice(&[b'G', b'P', 0, 1 | u8::from(bounds.is_some()) << 1 | u8::from(empty) << 4]);
     out.extend_from_slice(&(srs as i32).to_le_bytes());
     if let Some([west, south, east, north]) = bounds {
@@ -273,7 +273,8 @@ fn numbers(numbers: &[f64], out: &mut Vec<u8>) {
     numbers.iter().for_each(|number| out.extend_from_slice(&number.to_le_bytes()));
 }
 
-/// The R-tree of a layer: SQLite's module `rtree`, whose tables hold the nodes, and triggers that keep it up to date (OGC 12-128r17, annex F.3).
+/// The R-tree of a layer: the tables of SQLite's module `rtree`, and triggers that keep it up to date (OGC 12-128r17,
+/// annex F.3).
 fn index(database: &mut Database, layer: &FeatureLayer) -> io::Result<()> {
     let (table, name) = (layer.name, format!("rtree_{}_geom", layer.name));
     let sql = format!("CREATE VIRTUAL TABLE \"{name}\" USING rtree(id, minx, maxx, miny, maxy)");
@@ -320,13 +321,13 @@ fn index(database: &mut Database, layer: &FeatureLayer) -> io::Result<()> {
     Ok(())
 }
 
-/// The nodes of an R-tree as SQLite keeps them.
+/// The nodes of an R-tree in SQLite's format.
 struct Nodes {
     /// The leaf of each row.
     rows: Vec<(i64, i64)>,
-    /// Nodes from number 1, the root, on.
+    /// The nodes, from number 1, the root.
     blobs: Vec<Vec<u8>>,
-    /// The parent of each node but the root.
+    /// The parent of each node except the root.
     parents: Vec<(i64, i64)>,
 }
 
@@ -340,7 +341,7 @@ impl Nodes {
             nodes.blobs.push(node(0, &[]));
             return nodes;
         }
-        // The number of the first node of each level: the root's is 1, and those further down come later.
+        // The number of the first node of each level: 1 for the root; lower levels follow.
         let mut first = vec![1i64; levels.len()];
         for k in (0..levels.len() - 1).rev() {
             first[k] = first[k + 1] + levels[k + 1].len() as i64;
@@ -356,7 +357,7 @@ impl Nodes {
                     children.iter().enumerate().map(|(i, bounds)| (id(i), *bounds)).collect();
                 let kept = if depth == 0 { &mut nodes.rows } else { &mut nodes.parents };
                 kept.extend(cells.iter().map(|(id, _)| (*id, number)));
-                // Only the root says how deep the tree is.
+                // Only the root stores the depth of the tree.
                 nodes.blobs.push(node(if number == 1 { depth as u16 } else { 0 }, &cells));
             }
         }
@@ -366,7 +367,7 @@ impl Nodes {
     }
 }
 
-/// A node: depth, cells, each a number and its bounds as f32 that hold the exact ones.
+/// A node: depth and cells; a cell is a number and its bounds as f32, rounded outward.
 fn node(depth: u16, cells: &[(i64, Bounds)]) -> Vec<u8> {
     let mut out = Vec::with_capacity(4 + NODE_CELLS * NODE_CELL);
     out.extend_from_slice(&depth.to_be_bytes());

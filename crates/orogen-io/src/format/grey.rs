@@ -1,4 +1,4 @@
-//! Reading heights from a grey PNG of 8 or 16 bits, with a [`Sidecar`] that tells the heights of black and white.
+//! Reading heights from a greyscale PNG of 8 or 16 bits, with a [`Sidecar`] that states the heights of black and white.
 
 use std::io::BufReader;
 
@@ -8,10 +8,11 @@ use super::dem::{Dem, Input, afford, refused};
 use super::sidecar::Sidecar;
 use orogen_grid::error::Result;
 
-/// Reads a grey picture. `name` is what errors call the file.
+/// Reads a greyscale picture. `name` is the file's name in errors.
 ///
 /// # Errors
-/// If it is no PNG, not grey, damaged or too large, or the sidecar does not tell what black and white are.
+/// If it is not a PNG, not greyscale, damaged or too large, or the sidecar does not state the heights of black and
+/// white.
 pub fn read(input: &mut dyn Input, name: &str, sidecar: &Sidecar, allowed: u64) -> Result<Dem> {
     open(input, sidecar, allowed).map_err(|why| refused(name, why))
 }

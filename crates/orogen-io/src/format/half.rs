@@ -1,6 +1,7 @@
-//! Floats of 16 bits (IEEE 754 binary16), which some engines keep heights in: eleven bits of a number, so steps of 2 m from 2048 m up.
+//! 16-bit floats (IEEE 754 binary16), which some engines use for heights: 11 bits of precision, so steps of 2 m above
+//! 2048 m.
 
-/// The nearest half, ties to even. What is beyond 65504 becomes infinite; NaN stays NaN.
+/// The nearest half, ties to even. Values of 65520 and more become infinite; NaN stays NaN.
 pub fn from_f32(value: f32) -> u16 {
     let bits = value.to_bits();
     let sign = (bits >> 16) as u16 & 0x8000;
@@ -8,12 +9,12 @@ pub fn from_f32(value: f32) -> u16 {
     if magnitude > 0x7f80_0000 {
         return sign | 0x7e00;
     }
-    // 65520 is the first that rounds to infinity.
+    // 65520 is the smallest value that rounds to infinity.
     if magnitude >= 0x477f_f000 {
         return sign | 0x7c00;
     }
     if magnitude < 0x3880_0000 {
-        // Below the least normal half: steps of 2^-24.
+        // Below the smallest normal half: steps of 2^-24.
         let steps = f64::from(f32::from_bits(magnitude)) * 16_777_216.0;
         return sign | steps.round_ties_even() as u16;
     }
@@ -21,7 +22,7 @@ pub fn from_f32(value: f32) -> u16 {
     sign | ((rounded - 0x3800_0000) >> 13) as u16
 }
 
-/// The number that a half is.
+/// The value of a half.
 pub fn to_f32(half: u16) -> f32 {
     let sign = if half & 0x8000 != 0 { -1.0f32 } else { 1.0 };
     let (exponent, fraction) = (u32::from(half >> 10) & 31, u32::from(half & 0x3ff));

@@ -1,8 +1,8 @@
-//! SRTM's `.hgt`: one degree by one degree, whole metres, two bytes each, the highest first; the file's name tells its south-west
+//! SRTM `.hgt`: one degree by one degree, whole metres, 16-bit big-endian; the file's name contains its south-west
 //! corner.
 //!
-//! 1201 x 1201 samples (3 arc seconds), 3601 x 3601 (1) or 1801 x 3601 (2 and 1, the far north) stand *on* the degree's edges, and
-//! neighbouring files share theirs, in degrees of WGS 84. -32768 is no height.
+//! The 1201 x 1201 samples (3 arc seconds), 3601 x 3601 (1) or 1801 x 3601 (2 and 1, far north) lie *on* the degree's
+//! edges, which neighbouring files share. Coordinates are degrees of WGS 84. -32768 is nodata.
 
 use std::io::{Read, Write};
 
@@ -13,11 +13,11 @@ use orogen_grid::error::Result;
 
 const VOID: i16 = -32768;
 
-/// Sizes there are: columns and rows.
+/// The supported sizes: columns and rows.
 pub const SIZES: [[usize; 2]; 4] = [[1201, 1201], [3601, 3601], [1801, 3601], [601, 1201]];
 
-/// Writes heights, all those of one of the sizes, some rows at a time: rounded to the nearest whole metre, halves away from zero; NaN is no
-/// height.
+/// Writes heights of a grid with one of the sizes, in pieces of any length: rounded to whole metres, halves away from
+/// zero; NaN becomes nodata.
 pub fn write(out: &mut dyn Write, heights: &[f32]) -> std::io::Result<()> {
     let mut bytes = Vec::with_capacity(1 << 16);
     for piece in heights.chunks(1 << 15) {
@@ -31,18 +31,18 @@ pub fn write(out: &mut dyn Write, heights: &[f32]) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Reads a tile. `name` is what errors call the file, and its last part must be such as N46E007.hgt for the tile to have a place.
+/// Reads a tile. `name` is the file's name in errors; the tile has a position if it has the form N46E007.hgt.
 ///
 /// # Errors
-/// If it has none of the sizes, or its heights take more than `allowed` bytes.
+/// If it does not have one of the sizes, or its heights take more than `allowed` bytes.
 pub fn read(input: &mut dyn Input, name: &str, allowed: u64) -> Result<Dem> {
     open(input, name, allowed).map_err(|why| refused(name, why))
 }
 
-/// Columns, rows and place of a tile; its samples are not looked at.
+/// The size and position of a tile, without reading its samples.
 ///
 /// # Errors
-/// If it has none of the sizes.
+/// If it does not have one of the sizes.
 pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Placement>)> {
     let size = size(input).map_err(|why| refused(name, why))?;
     Ok((size, place(name, size)))
@@ -57,7 +57,7 @@ fn size(input: &mut dyn Input) -> std::result::Result<[usize; 2], String> {
     })
 }
 
-/// Where a tile of that name lies.
+/// The position of a tile with this name.
 fn place(name: &str, [columns, rows]: [usize; 2]) -> Option<Placement> {
     corner(name).map(|[south, west]| Placement {
         origin: [west, south + 1.0],

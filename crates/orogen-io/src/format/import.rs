@@ -1,4 +1,4 @@
-//! Which format a file of heights is in: the one list of those that are read.
+//! The list of all readers of heights.
 
 use std::path::Path;
 
@@ -9,13 +9,13 @@ use super::{asc, exr_reader, geotiff, grey, hgt, npy, raw};
 use crate::open;
 use orogen_grid::error::Result;
 
-/// The extensions of files that heights are read from.
+/// Extensions of readable files.
 pub const EXTENSIONS: [&str; 9] = ["tif", "tiff", "asc", "hgt", "png", "r16", "r32", "npy", "exr"];
 
-/// The extensions of files that may hold several bands.
+/// Extensions of files that may have several bands.
 const SEVERAL_BANDS: [&str; 3] = ["tif", "tiff", "exr"];
 
-/// Whether a file's name says that it holds heights.
+/// Whether a file's name has one of these extensions.
 pub fn is_dem(path: &Path) -> bool {
     extension(path).is_some_and(|extension| EXTENSIONS.contains(&extension.as_str()))
 }
@@ -24,12 +24,12 @@ fn extension(path: &Path) -> Option<String> {
     Some(path.extension()?.to_str()?.to_ascii_lowercase())
 }
 
-/// Whether a file's size and place can be read without its heights, as a tile's must.
+/// Whether a file's size and position can be read without its heights, as tiles require.
 pub fn has_head(path: &Path) -> bool {
     extension(path).is_some_and(|extension| matches!(extension.as_str(), "tif" | "tiff" | "asc" | "hgt"))
 }
 
-/// Columns, rows and place of a file that [has a head](has_head).
+/// The size and position of a file that [has a head](has_head).
 ///
 /// # Errors
 /// If it cannot be read.
@@ -47,10 +47,10 @@ pub fn head(path: &Path) -> Result<([usize; 2], Option<Placement>)> {
     Ok((size, place))
 }
 
-/// Reads the heights of a file whose extension tells its format: a band of it, in no more than so many bytes for the heights themselves.
+/// Reads one band of a file; its extension determines the format. `request` limits the memory of the heights.
 ///
 /// # Errors
-/// If there is no such format, or the file cannot be read, or is too large.
+/// If the format is unknown, or the file cannot be read, or is too large.
 pub fn read(path: &Path, request: impl Into<Request>) -> Result<Dem> {
     let name = path.display().to_string();
     if !is_dem(path) {
@@ -62,10 +62,10 @@ pub fn read(path: &Path, request: impl Into<Request>) -> Result<Dem> {
     parse(&mut file, &name, &extension(path).unwrap_or_default(), sidecar, request)
 }
 
-/// The same of bytes at hand: `extension` tells the format.
+/// [`read`] for bytes in memory: `extension` determines the format.
 ///
 /// # Errors
-/// As [`read`].
+/// The errors of [`read`].
 pub fn parse(
     input: &mut dyn Input,
     name: &str,
@@ -95,7 +95,7 @@ pub fn parse(
         }
         other => return Err(refused(name, format!("the format .{other} is not supported"))),
     };
-    // A GeoTIFF without tags of place, with a world file.
+    // A GeoTIFF without position tags, but with a world file.
     if dem.place.is_none() && told.geotransform.is_some() {
         let heights = std::mem::take(&mut dem.heights);
         dem.heights = told.north_first(heights, dem.width).map_err(|why| refused(name, why))?;

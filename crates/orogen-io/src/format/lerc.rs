@@ -1,29 +1,30 @@
-//! LERC, Esri's packing of rasters (Limited Error Raster Compression, "Lerc2", versions 3 to 6), read as GeoTIFFs hold it.
+//! LERC (Limited Error Raster Compression, "Lerc2", versions 3 to 6) by Esri, as contained in GeoTIFFs.
 //!
-//! A blob is a head, a mask of valid pixels, and the values: in one sweep, as Huffman's codes of bytes, or in square blocks of whole numbers that
-//! are packed in as many bits as their largest needs: value = offset + 2 error number. A Fletcher checksum covers all of it. After Esri's description of the
-//! format and its decoder's behaviour (github.com/Esri/lerc, Apache 2.0).
+//! A blob is a header, a mask of valid pixels, and the values: as one sequence, as Huffman codes of bytes, or in square
+//! blocks of integers with as many bits as the largest needs: value = offset + 2 error number. A Fletcher checksum
+//! covers the whole blob. Follows Esri's description of the format and the behaviour of its decoder
+//! (github.com/Esri/lerc, Apache 2.0).
 
-/// The types of samples, by the format's numbers.
+/// Sizes of the sample types, by the format's numbers.
 const SIZES: [usize; 8] = [1, 1, 2, 2, 4, 4, 4, 8];
 const CHAR: usize = 0;
 const BYTE: usize = 1;
 const FLOAT: usize = 6;
 const DOUBLE: usize = 7;
 
-/// The most codes that a table of Huffman's may have.
+/// Maximum number of codes in a Huffman table.
 const MAX_CODES: usize = 1 << 15;
 
-/// Unpacks a blob of `width` x `height` pixels of `bands` samples of `size` bytes: little-endian, the bands of a pixel together. Pixels that are
-/// masked are NaN, or 0 where samples are whole numbers.
+/// Decodes a blob of `width` x `height` pixels with `bands` samples of `size` bytes, to little-endian samples, the
+/// bands of a pixel interleaved. Masked pixels are NaN, or 0 for integers.
 ///
 /// # Errors
-/// A message if it is damaged, of another size, or packed in a way that is not supported.
+/// A message if it is damaged, of another size, or uses an unsupported encoding.
 pub fn unpack(packed: &[u8], [width, height]: [usize; 2], bands: usize, size: usize) -> Result<Vec<u8>, String> {
     let mut input = Input { bytes: packed };
     let head = Head::read(&mut input, packed)?;
     let (columns, rows) = (head.columns, head.rows);
-    // The last strip of a file may be packed as long as it is.
+    // The last strip of a file may be encoded at its actual height.
     if columns != width || rows > height || head.bands != bands || SIZES[head.kind] != size {
         return Err(format!(
             "a block compressed with LERC holds {columns} x {rows} pixels with {} bands of {} bytes instead of {width} x {height} with {bands} of {size}",
@@ -66,12 +67,12 @@ impl<'a> Input<'a> {
         Ok(self.whole(4)? as i32)
     }
 
-    /// A size, which is not below 0.
+    /// A size, which must not be negative.
     fn count(&mut self) -> Result<usize, String> {
         usize::try_from(self.int()?).map_err(|_| damaged())
     }
 
-    /// A value of a type.
+    /// A value of type `kind`.
     fn value(&mut self, kind: usize) -> Result<f64, String> {
         let bytes = self.take(SIZES[kind])?;
         let bits = bytes.iter().rev().fold(0u64, |bits, byte| bits << 8 | u64::from(*byte));
@@ -92,7 +93,7 @@ struct Head {
     columns: usize,
     bands: usize,
     valid: usize,
-    /// Pixels of a block's side.
+    /// Side of a block, in pixels.
     side: usize,
     kind: usize,
     error: f64,
@@ -134,7 +135,7 @@ impl Head {
     }
 }
 
-/// Fletcher's checksum of 32 bits over pairs of bytes, the higher first.
+/// The 32-bit Fletcher checksum over pairs of bytes, the higher first.
 fn fletcher(bytes: &[u8]) -> u32 {
     let (mut low, mut high) = (0xffffu32, 0xffffu32);
     let fold = |sum: u32| (sum & 0xffff) + (sum >> 16);
@@ -148,7 +149,7 @@ fn fletcher(bytes: &[u8]) -> u32 {
     fold(high) << 16 | fold(low)
 }
 
-/// Which pixels are valid; none if all are.
+/// The mask of valid pixels; `None` if all are valid.
 fn mask(input: &mut Input, head: &Head) -> Result<Option<Vec<u8>>, String> {
     let length = input.count()?;
     let pixels = head.rows * head.columns;
@@ -187,7 +188,7 @@ fn is_set(bits: &[u8], k: usize) -> bool {
     bits[k / 8] & 0x80 >> (k % 8) != 0
 }
 
-/// Whole numbers of so many bits each, the lowest bit first.
+/// Integers of `width` bits each, the lowest bit first.
 fn bits(input: &mut Input, count: usize, width: usize) -> Result<Vec<u32>, String> {
     let bytes = input.take((count * width).div_ceil(8))?;
     let mut numbers = Vec::with_capacity(count);
@@ -204,7 +205,7 @@ fn bits(input: &mut Input, count: usize, width: usize) -> Result<Vec<u32>, Strin
     Ok(numbers)
 }
 
-/// At most so many numbers, of bits or as places in a table.
+/// At most `most` numbers, bit-packed or as indices into a table.
 fn numbers(input: &mut Input, most: usize) -> Result<Vec<u32>, String> {
     let first = input.byte()?;
     let size = match first >> 6 {
@@ -222,14 +223,14 @@ fn numbers(input: &mut Input, most: usize) -> Result<Vec<u32>, String> {
         return if width == 0 { Ok(vec![0; count]) } else { bits(input, count, width) };
     }
     let entries = usize::from(input.byte()?).checked_sub(1).filter(|n| *n > 0 && width > 0).ok_or_else(damaged)?;
-    // The first entry is 0 and left out.
+    // The first entry is 0 and is not stored.
     let table = [vec![0], bits(input, entries, width)?].concat();
     let width = (usize::BITS - entries.leading_zeros()) as usize;
     let places = bits(input, count, width)?;
     places.iter().map(|place| table.get(*place as usize).copied().ok_or_else(damaged)).collect()
 }
 
-/// The samples as they come to be.
+/// The decoded samples.
 struct Values {
     out: Vec<u8>,
     head: Head,
@@ -241,7 +242,7 @@ impl Values {
         self.valid.as_ref().is_none_or(|bits| is_set(bits, pixel))
     }
 
-    /// Sets a sample to a value, cut off to its type.
+    /// Sets a sample, converted to its type.
     fn set(&mut self, pixel: usize, band: usize, value: f64) {
         let size = SIZES[self.head.kind];
         let at = (pixel * self.head.bands + band) * size;
@@ -295,7 +296,7 @@ impl Values {
             }
             return Ok(());
         }
-        // Since version 6, floats without loss have a byte of their own here, too.
+        // Since version 6, lossless floats have another byte here.
         let of_bytes = matches!(kind, CHAR | BYTE) && error == 0.5;
         if of_bytes || version >= 6 && matches!(kind, FLOAT | DOUBLE) && error == 0.0 {
             match input.byte()? {
@@ -319,7 +320,7 @@ impl Values {
         Ok(())
     }
 
-    /// A block of a band.
+    /// Decodes a block of a band.
     fn block(
         &mut self,
         input: &mut Input,
@@ -364,7 +365,7 @@ impl Values {
         Ok(())
     }
 
-    /// Bytes as Huffman's codes, of themselves or of differences from the left or from above.
+    /// Decodes Huffman codes of bytes, or of differences from the pixel to the left or above.
     fn huffman(&mut self, input: &mut Input, differences: bool) -> Result<(), String> {
         let Head { rows, columns, bands, kind, .. } = self.head;
         let codes = Codes::read(input)?;
@@ -398,7 +399,7 @@ impl Values {
         Ok(())
     }
 
-    /// Makes floats that are masked NaN.
+    /// Sets masked floats to NaN.
     fn leave_out(&mut self) {
         if self.valid.is_none() || !matches!(self.head.kind, FLOAT | DOUBLE) {
             return;
@@ -411,7 +412,7 @@ impl Values {
     }
 }
 
-/// The type that an offset is written in: the format's own table of smaller ones.
+/// The type of an offset: the format's own table of smaller types.
 fn smaller(kind: usize, code: usize) -> Result<usize, String> {
     let smaller = match kind {
         2 | 4 => kind.checked_sub(code),
@@ -423,10 +424,10 @@ fn smaller(kind: usize, code: usize) -> Result<usize, String> {
     smaller.ok_or_else(damaged)
 }
 
-/// Words of 32 bits, little-endian, whose highest bit comes first.
+/// Little-endian 32-bit words, read from the highest bit.
 struct Words<'a> {
     bytes: &'a [u8],
-    /// Bits that were read.
+    /// Number of bits read.
     at: usize,
 }
 
@@ -441,7 +442,7 @@ impl Words<'_> {
     }
 }
 
-/// Huffman's codes: of each length those that there are, sorted, with their symbols.
+/// Huffman codes: for each length, the sorted codes with their symbols.
 struct Codes {
     by_length: Vec<Vec<(u32, u32)>>,
 }

@@ -1,11 +1,11 @@
-//! Heights as whole numbers: the one place where metres become grey levels.
+//! Conversion of metres to integer levels.
 
 use orogen_grid::grid::Grid;
 
-/// The range of heights that is spread over all levels of an integer format: `low` becomes 0 and `high` the largest level.
+/// A range of heights mapped to all levels of an integer format: `low` becomes 0 and `high` the largest level.
 ///
-/// A flat range (`low == high`) has no spread: every height becomes 0, and [`Levels::is_flat`] says so. Heights outside the
-/// range, infinities among them, are clamped to it; NaN becomes 0.
+/// With an empty range (`low == high`) every height becomes 0, and [`Levels::is_flat`] returns true. Heights outside
+/// the range, including infinities, are clamped; NaN becomes 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Levels {
     low: f32,
@@ -13,7 +13,7 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// The range from `low` to `high`, in the grid's unit. Anything but two finite numbers in this order is taken as flat.
+    /// The range from `low` to `high`, in the grid's unit. It is flat unless both are finite and in this order.
     pub fn new(low: f32, high: f32) -> Levels {
         match low.is_finite() && high.is_finite() && low < high {
             true => Levels { low, high },
@@ -22,7 +22,7 @@ impl Levels {
         }
     }
 
-    /// From the lowest to the highest finite sample of a grid; flat if there is none.
+    /// The range of the finite samples of a grid; flat if there are none.
     pub fn of(grid: &Grid) -> Levels {
         let [low, high] = extremes(NO_SAMPLES, grid.data());
         Levels::new(low, high)
@@ -38,7 +38,7 @@ impl Levels {
         self.high
     }
 
-    /// Whether there is no range to spread, so that every level is 0.
+    /// Whether the range is empty, so that every level is 0.
     pub fn is_flat(&self) -> bool {
         self.low == self.high
     }
@@ -53,7 +53,7 @@ impl Levels {
         self.level(height, f64::from(u8::MAX)) as u8
     }
 
-    /// In f64, where neither the difference of two f32 nor its product with a level can overflow or round twice.
+    /// In f64, where the difference of two f32 and its product with a level neither overflow nor round twice.
     fn level(&self, height: f32, most: f64) -> f64 {
         if height.is_nan() || self.is_flat() {
             return 0.0;
@@ -64,10 +64,10 @@ impl Levels {
     }
 }
 
-/// The lowest and the highest of no samples: what [`extremes`] begins with.
+/// The initial value of [`extremes`]: the range of no samples.
 pub const NO_SAMPLES: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
-/// The lowest and the highest of more samples, the finite ones, and of those that came before.
+/// The minimum and maximum of the finite samples and of the range so far.
 pub fn extremes(before: [f32; 2], samples: &[f32]) -> [f32; 2] {
     let finite = samples.iter().copied().filter(|sample| sample.is_finite());
     finite.fold(before, |[low, high], sample| [low.min(sample), high.max(sample)])

@@ -1,5 +1,5 @@
-//! File formats, one a file. Writers stream into any [`Write`](std::io::Write) and hold a few rows at a time; readers of heights
-//! ([`import`]) never believe a file further than its bytes go.
+//! File formats, one per file. Writers stream to any [`Write`](std::io::Write) and hold a few rows at a time. Readers
+//! of heights ([`import`]) check sizes stated in a file against its length before they allocate memory.
 
 pub mod affine;
 pub mod asc;

@@ -62,15 +62,15 @@ pub fn write_rows(out: &mut dyn Write, samples: &[f32]) -> io::Result<()> {
     Ok(())
 }
 
-/// Reads an array as a grid that begins at the origin with `cell` metres between samples (the file does not say). An array of
-/// one dimension is one row. Wider numbers are rounded to f32.
+/// Reads an array as a grid that starts at the origin, with `cell` metres between samples (the file does not store it).
+/// A one-dimensional array becomes one row. Wider numbers are rounded to f32.
 ///
-/// `name` is what errors call the file.
+/// `name` is the file's name in errors.
 pub fn read(input: &mut dyn Read, name: &str, cell: f64) -> Result<Grid> {
     read_within(input, name, cell, u64::MAX)
 }
 
-/// As [`read`], the samples taking no more than `allowed` bytes as f32.
+/// [`read`], with at most `allowed` bytes for the samples as f32.
 pub fn read_within(input: &mut dyn Read, name: &str, cell: f64, allowed: u64) -> Result<Grid> {
     let refuse = |why: String| Error::new(ErrorKind::File, format!("cannot read {name}: {why}"));
     let header = read_header(input).map_err(refuse)?;
@@ -81,7 +81,7 @@ pub fn read_within(input: &mut dyn Read, name: &str, cell: f64, allowed: u64) ->
         .ok_or_else(|| refuse("the samples do not fill its shape".into()))
 }
 
-/// What a header says, checked.
+/// A parsed and validated header.
 #[derive(Debug, PartialEq)]
 struct Header {
     kind: Kind,
@@ -98,7 +98,7 @@ enum Kind {
     Unsigned,
 }
 
-/// Fills `bytes`, or says that the file ends before them.
+/// Fills `bytes`, or fails if the file ends before.
 fn read_exactly(input: &mut dyn Read, bytes: &mut [u8], what: &str) -> std::result::Result<(), String> {
     input.read_exact(bytes).map_err(|cause| match cause.kind() {
         io::ErrorKind::UnexpectedEof => format!("it ends within its {what}"),
@@ -175,7 +175,7 @@ fn parse_header(text: &str) -> std::result::Result<Header, String> {
     if rows == 0 || columns == 0 {
         return Err(format!("it is empty: its shape is ({rows}, {columns})"));
     }
-    // Also what keeps the sums of a window's coordinates far from overflow.
+    // This also keeps sums of a window's coordinates far from overflow.
     match rows.checked_mul(columns).and_then(|n| n.checked_mul(size)) {
         Some(bytes) if bytes <= isize::MAX as usize => Ok(Header { kind, size, big_endian, shape }),
         _ => Err(format!("its shape ({rows}, {columns}) is impossibly large")),
@@ -204,7 +204,7 @@ fn sample_type(descr: &str) -> std::result::Result<(Kind, usize, bool), String> 
     }
 }
 
-/// Reads the samples a piece at a time, so that memory grows only as bytes really come.
+/// Reads the samples in pieces, so that memory grows only with bytes that exist.
 fn read_samples(input: &mut dyn Read, header: &Header) -> std::result::Result<Vec<f32>, String> {
     let count = header.shape[0] * header.shape[1];
     let mut samples: Vec<f32> = Vec::new();
@@ -225,7 +225,7 @@ fn read_samples(input: &mut dyn Read, header: &Header) -> std::result::Result<Ve
     }
 }
 
-/// One sample of at most eight bytes, as a float.
+/// One sample of at most eight bytes, as f32.
 fn convert(bytes: &[u8], header: &Header) -> f32 {
     // The bits, right-aligned in 64.
     let bits = match header.big_endian {
@@ -242,7 +242,7 @@ fn convert(bytes: &[u8], header: &Header) -> f32 {
     }
 }
 
-/// The few words of Python that a header is written in.
+/// A parser for the Python literals of a header.
 struct Scanner<'a>(&'a str);
 
 impl<'a> Scanner<'a> {

@@ -1,12 +1,12 @@
-//! Packed R-trees: boxes sorted along a Hilbert curve and joined by so many a node, level by level (I. Kamel and C. Faloutsos, "On Packing R-trees",
-//! CIKM 1993).
+//! Packed R-trees: boxes sorted along a Hilbert curve and grouped into nodes, level by level (I. Kamel and C.
+//! Faloutsos, "On Packing R-trees", CIKM 1993).
 
 use super::features::join;
 
 /// West, south, east, north.
 pub type Bounds = [f64; 4];
 
-/// The order of boxes by where their middles lie on a Hilbert curve over all of them; of equals, the first in the list first.
+/// The order of boxes by their centres along a Hilbert curve over all of them; ties keep the order of the list.
 pub fn hilbert_order(boxes: &[Bounds]) -> Vec<usize> {
     let Some(all) = boxes.iter().copied().reduce(join) else { return Vec::new() };
     const LARGEST: f64 = 65_535.0;
@@ -21,7 +21,7 @@ pub fn hilbert_order(boxes: &[Bounds]) -> Vec<usize> {
     keyed.into_iter().map(|(_, k)| k).collect()
 }
 
-/// How far along a Hilbert curve of 2^16 x 2^16 cells a cell is: quadrant by quadrant, each turned as the curve enters it.
+/// The position of a cell along a Hilbert curve of 2^16 x 2^16 cells.
 fn hilbert(mut x: u32, mut y: u32) -> u32 {
     let mut along = 0u32;
     for bit in (0..16).rev() {
@@ -38,7 +38,8 @@ fn hilbert(mut x: u32, mut y: u32) -> u32 {
     along
 }
 
-/// The boxes of all nodes over boxes in order, so many a node: the lowest level first, the root's level (of one node) last. Of no boxes there is no level.
+/// The boxes of all nodes over sorted boxes, `fanout` per node: the lowest level first, the root's level (one node)
+/// last. Without boxes there are no levels.
 pub fn levels(boxes: &[Bounds], fanout: usize) -> Vec<Vec<Bounds>> {
     let mut levels: Vec<Vec<Bounds>> = Vec::new();
     let mut below = boxes;

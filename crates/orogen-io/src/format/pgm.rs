@@ -1,15 +1,15 @@
-//! PGM (Netpbm, `P5`): the simplest picture there is, grey of 8 or 16 bits.
+//! PGM (Netpbm, `P5`): an uncompressed greyscale picture of 8 or 16 bits.
 //!
-//! A head as text (size and the largest level), then the levels, row after row; those of two bytes begin with the higher.
+//! A text header (size and the largest level), then the levels, row by row; 16-bit levels are big-endian.
 
 use std::io::{self, Write};
 
-/// Writes the head of a picture whose largest level is 255 or 65535. `notes` become comments, a line each. All levels must follow, of one
-/// byte or of two, the higher first.
+/// Writes the header of a picture whose largest level is 255 or 65535. `notes` become comments, one line each. All
+/// levels must follow, as one byte, or as two bytes in big-endian order.
 pub fn write_head(out: &mut dyn Write, size: [usize; 2], most: u16, notes: &[String]) -> io::Result<()> {
     writeln!(out, "P5")?;
     for note in notes {
-        // A line's end would end the comment.
+        // A line break would end the comment.
         writeln!(out, "# {}", note.replace(['\n', '\r'], " "))?;
     }
     writeln!(out, "{} {}\n{most}", size[0], size[1])

@@ -1,7 +1,7 @@
-//! PNG pictures: grey of 8 and 16 bits, colour, normals, and animations of them (APNG).
+//! PNG pictures: greyscale of 8 and 16 bits, colour, normals, and animations (APNG).
 //!
-//! The PNG specification (third edition, W3C 2025). 16-bit samples are big-endian. Greys and normals are data, so they carry no
-//! gamma or colour chunk that a reader could "correct" them by; colours are marked as sRGB. Compression favours speed.
+//! The PNG specification (third edition, W3C 2025). 16-bit samples are big-endian. Greys and normals are data, so they
+//! have no gamma or colour chunk that a reader could apply; colours are marked as sRGB. Compression favours speed.
 
 use std::io::{self, Write};
 use std::ops::Range;
@@ -11,28 +11,28 @@ use ::png::{BitDepth, ColorType, Compression, Encoder, EncodingError, SrgbRender
 use super::levels::Levels;
 use orogen_grid::grid::Grid;
 
-/// How many bytes of rows are filled at a time: enough to share among threads, little beside any grid.
+/// Bytes of rows that are filled at a time: enough to share among threads, and small compared with a grid.
 const BAND: usize = 1 << 20;
 
-/// What a pixel is.
+/// The type of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pixel {
     /// One byte of grey.
     Grey8,
-    /// Two bytes of grey, the higher first.
+    /// Two bytes of grey, big-endian.
     Grey16,
     /// Three bytes: red, green, blue, as sRGB.
     Rgb8,
-    /// Three bytes of data that are no colour, such as the parts of a normal.
+    /// Three bytes of data that are not a colour, such as the components of a normal.
     Data8,
-    /// Three numbers of two bytes, the higher first, that are no colour.
+    /// Three 16-bit numbers, big-endian, that are not a colour.
     Data16,
     /// Four bytes of data that are neither colour nor opacity, such as weights.
     Weights8,
 }
 
 impl Pixel {
-    /// Its size.
+    /// Bytes per pixel.
     pub fn bytes(self) -> usize {
         match self {
             Pixel::Grey8 => 1,
@@ -44,31 +44,31 @@ impl Pixel {
     }
 }
 
-/// A picture about to be written.
+/// Description of a picture.
 #[derive(Debug, Clone)]
 pub struct Picture<'a> {
-    /// Pixels a row.
+    /// Pixels per row.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
-    /// What each pixel is.
+    /// The type of the pixels.
     pub pixel: Pixel,
-    /// Keyword and text pairs that the file carries along (Latin-1; keywords of 1 to 79 characters).
+    /// Keyword and text pairs of the file's text chunks (Latin-1; keywords of 1 to 79 characters).
     pub notes: &'a [(&'a str, &'a str)],
 }
 
-/// What makes an animation of a picture.
+/// Properties of an animation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Animation {
-    /// How many frames it has.
+    /// Number of frames.
     pub frames: u32,
-    /// How long each is shown, in milliseconds. It is shown again and again.
+    /// Duration of a frame, in milliseconds. The animation repeats endlessly.
     pub delay: u16,
 }
 
-/// Writes a picture whose rows `fill` makes, some at a time from the top: it is given the range of rows and their bytes.
+/// Writes a picture. `fill` makes its rows in bands from the top: it gets the range of rows and their bytes.
 ///
-/// Fails as `out` or `fill` do, and on a picture without pixels or of more than 2^31 - 1 a side, which PNG cannot hold.
+/// Fails if `out` or `fill` fails, or if the picture has no pixels or more than 2^31 - 1 per side.
 pub fn write(
     out: &mut dyn Write,
     picture: &Picture,
@@ -88,9 +88,9 @@ pub fn write(
     })
 }
 
-/// Writes a picture whose bytes `body` writes as they come, row after row from the top: exactly as many as the picture has.
+/// Writes a picture. `body` writes its bytes, row by row from the top: exactly as many as the picture has.
 ///
-/// Fails as [`write()`] does.
+/// Fails under the same conditions as [`write()`].
 pub fn write_through(
     out: &mut dyn Write,
     picture: &Picture,
@@ -100,13 +100,14 @@ pub fn write_through(
     let mut rows = writer.stream_writer_with_size(BAND).map_err(plain)?;
     body(&mut rows)?;
     rows.finish().map_err(plain)?;
-    // Finished here and not when dropped: the last chunk's failure must not be lost.
+    // Finished explicitly: an error in the last chunk would be lost on drop.
     writer.finish().map_err(plain)
 }
 
-/// Writes an animation whose frames `fill` makes, one at a time: it is given the frame's number, from 0, and its bytes.
+/// Writes an animation. `fill` makes the frames one at a time: it gets the frame's number, from 0, and its bytes.
 ///
-/// A reader that knows no animations shows the first frame. Fails as [`write()`] does, and without any frame.
+/// A reader without support for animations shows the first frame. Fails under the same conditions as [`write()`], and
+/// without frames.
 pub fn write_animation(
     out: &mut dyn Write,
     picture: &Picture,
@@ -117,7 +118,7 @@ pub fn write_animation(
     encoder.set_animated(animation.frames, 0).map_err(plain)?;
     encoder.set_frame_delay(animation.delay, 1000).map_err(plain)?;
     let mut writer = encoder.write_header().map_err(plain)?;
-    // The encoder's streams do not number the chunks of later frames rightly, so each frame is made as a whole.
+    // The encoder's streams do not number the chunks of later frames correctly, so each frame is made as a whole.
     let mut bytes = vec![0; picture.width * picture.height * picture.pixel.bytes()];
     for frame in 0..animation.frames {
         fill(frame, &mut bytes)?;
@@ -181,7 +182,7 @@ fn side(samples: usize) -> io::Result<u32> {
     }
 }
 
-/// The encoder's error as the I/O error it was, where it was one.
+/// The I/O error inside the encoder's error, if there is one.
 fn plain(error: EncodingError) -> io::Error {
     match error {
         EncodingError::IoError(cause) => cause,

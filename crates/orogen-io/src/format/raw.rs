@@ -1,4 +1,4 @@
-//! Headerless samples, `.r16` (u16, spread over a range of heights) and `.r32` (f32, metres), with a [`Sidecar`] beside them.
+//! Headerless samples, `.r16` (u16, scaled over a range of heights) and `.r32` (f32, metres), with a [`Sidecar`].
 
 use std::io::{self, Read, Write};
 
@@ -11,10 +11,10 @@ use orogen_grid::grid::Grid;
 /// Bytes that are read at a time.
 const PIECE: usize = 1 << 16;
 
-/// What samples are.
+/// The type of the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sample {
-    /// Two bytes, 0 the range's low end and 65535 its high end.
+    /// Two bytes: 0 is the low end of the range and 65535 the high end.
     U16,
     /// Four bytes, metres.
     F32,
@@ -46,10 +46,10 @@ pub fn write_f32(out: &mut dyn Write, samples: &[f32]) -> io::Result<()> {
     })
 }
 
-/// Reads samples as their sidecar tells. `name` is what errors call the file.
+/// Reads samples as described by their sidecar. `name` is the file's name in errors.
 ///
 /// # Errors
-/// If the sidecar does not tell enough, the file is not exactly as long as it says, or heights take more than `allowed` bytes.
+/// If the sidecar is incomplete, the file does not have the stated length, or heights take more than `allowed` bytes.
 pub fn read(input: &mut dyn Input, name: &str, sample: Sample, sidecar: &Sidecar, allowed: u64) -> Result<Dem> {
     open(input, sample, sidecar, allowed).map_err(|why| refused(name, why))
 }

@@ -1,11 +1,13 @@
-//! What stands beside a file of heights that does not tell everything itself: NAME.json or NAME.toml, for NAME.r16 also NAME.r16.json.
+//! Sidecars of files of heights that lack some properties: NAME.json or NAME.toml, for NAME.r16 also NAME.r16.json.
 //!
-//! Keys: `width`, `height` (samples); `cell` (metres from one to the next); `low`, `high` (metres of 0 and 65535, or of 0 and 255);
-//! `byte_order` ("little", unless "big"); `first_row` ("north", unless "south"); `nodata` (a sample that is no height); `geotransform` (six numbers in
-//! GDAL's order: west edge, step east, 0, north edge, 0, step south, which is negative); `crs` ("EPSG:32632"); `wkt` (the coordinate system as well-known
-//! text). Others are left alone, so that the `summary.json` which `orogen generate` writes beside `height.png` is one too.
+//! Keys: `width`, `height` (samples); `cell` (metres between samples); `low`, `high` (heights in metres of 0 and 65535,
+//! or of 0 and 255); `byte_order` ("little", the default, or "big"); `first_row` ("north", the default, or "south");
+//! `nodata` (the value of missing samples); `geotransform` (six numbers in GDAL's order: west edge, column step, 0,
+//! north edge, 0, row step, which is negative); `crs` ("EPSG:32632"); `wkt` (the coordinate system as well-known text).
+//! Other keys are ignored, so that the `summary.json` that `orogen generate` writes beside `height.png` is a sidecar
+//! too.
 //!
-//! What it does not tell of the place is taken from a world file, a `.prj` and an `.aux.xml` beside the file.
+//! Missing properties of the position are taken from a world file, a `.prj` and an `.aux.xml` beside the file.
 
 use std::path::{Path, PathBuf};
 
@@ -20,50 +22,50 @@ use super::{aux_xml, world_file};
 use crate::open;
 use orogen_grid::error::Result;
 
-/// The longest text read.
+/// Maximum length of a text, in bytes.
 const LONGEST: u64 = 1 << 20;
 
-/// What a sidecar tells.
+/// The content of a sidecar.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default)]
 pub struct Sidecar {
-    /// Samples a row.
+    /// Samples per row.
     pub width: Option<u64>,
-    /// Rows.
+    /// Number of rows.
     pub height: Option<u64>,
-    /// Metres from one sample to the next.
+    /// Distance between samples, in metres.
     pub cell: Option<f64>,
-    /// The height of a sample of 0.
+    /// The height of a sample of 0, in metres.
     #[serde(alias = "height_min")]
     pub low: Option<f64>,
-    /// The height of the largest sample there can be.
+    /// The height of the largest possible sample, in metres.
     #[serde(alias = "height_max")]
     pub high: Option<f64>,
     /// "little" or "big".
     pub byte_order: Option<String>,
     /// "north" or "south".
     pub first_row: Option<String>,
-    /// The sample that is no height.
+    /// The value of missing samples.
     pub nodata: Option<f64>,
-    /// How columns and rows become coordinates, in GDAL's order, of pixels' corners.
+    /// The transform from columns and rows to coordinates, in GDAL's order, for pixel corners.
     pub geotransform: Option<[f64; 6]>,
-    /// The EPSG code of the coordinate system, with `EPSG:` before it.
+    /// The EPSG code of the coordinate system, with the prefix `EPSG:`.
     pub crs: Option<String>,
     /// The coordinate system as well-known text.
     pub wkt: Option<String>,
-    /// What the files beside tell of the coordinate system of a format that tells its place itself.
+    /// The coordinate system in other sidecars, for a format that stores its position itself.
     #[serde(skip)]
     pub keys: Option<GeoKeys>,
-    /// What beside the file could not be understood, in messages.
+    /// Messages about sidecars that could not be interpreted.
     #[serde(skip)]
     pub notes: Vec<String>,
 }
 
 impl Sidecar {
-    /// All that stands beside `path`; none if nothing does.
+    /// The content of all sidecars of `path`; `None` if there are none.
     ///
     /// # Errors
-    /// If there is one that cannot be read.
+    /// If a sidecar cannot be read.
     pub fn beside(path: &Path) -> Result<Option<Sidecar>> {
         let mut places: Vec<PathBuf> = vec![own(path), path.with_extension("json"), path.with_extension("toml")];
         if path.file_name().is_some_and(|name| name == "height.png" || name == "height8.png") {
@@ -86,7 +88,7 @@ impl Sidecar {
         if notes.is_file() {
             let notes = text(&notes, aux_xml::MAX_LENGTH, aux_xml::parse)?;
             all.geotransform = all.geotransform.or(notes.affine.map(|affine| affine.geotransform()));
-            // Systems that GDAL names and nobody here knows are no reason to refuse heights.
+            // An unknown system in GDAL's sidecar is no reason to reject the heights.
             all.keys = all.keys.or(notes.system.and_then(|system| keys::of_wkt(&system).ok()));
         }
         Ok((told.is_some() || all != Sidecar::default()).then_some(all))
@@ -97,10 +99,10 @@ impl Sidecar {
         text(path, LONGEST, |text| Sidecar::parse(text, toml))
     }
 
-    /// From a text of TOML or JSON.
+    /// Parses TOML or JSON.
     ///
     /// # Errors
-    /// A message.
+    /// A message about what is wrong.
     pub fn parse(text: &str, toml: bool) -> std::result::Result<Sidecar, String> {
         let read: std::result::Result<Sidecar, String> = match toml {
             true => toml::from_str(text).map_err(|fault| fault.message().to_string()),
@@ -116,10 +118,10 @@ impl Sidecar {
         Ok(sidecar)
     }
 
-    /// Whether samples of several bytes begin with the highest.
+    /// Whether samples are big-endian.
     ///
     /// # Errors
-    /// If it says neither.
+    /// If the value is neither "big" nor "little".
     pub fn big_endian(&self) -> std::result::Result<bool, String> {
         match self.byte_order.as_deref() {
             None | Some("little") => Ok(false),
@@ -130,10 +132,10 @@ impl Sidecar {
         }
     }
 
-    /// Samples as they should be, row after row from the north.
+    /// The samples, row-major from the north.
     ///
     /// # Errors
-    /// If it does not tell which row is first.
+    /// If `first_row` is neither "north" nor "south".
     pub fn north_first(&self, mut samples: Vec<f32>, width: usize) -> std::result::Result<Vec<f32>, String> {
         let from_south = match self.first_row.as_deref() {
             None => self.geotransform.is_some_and(|numbers| numbers[5] > 0.0),
@@ -150,10 +152,10 @@ impl Sidecar {
         Ok(samples)
     }
 
-    /// The heights of the least and the greatest sample.
+    /// The heights, in metres, of the smallest and the largest sample.
     ///
     /// # Errors
-    /// If it does not tell them.
+    /// If they are missing.
     pub fn range(&self) -> std::result::Result<[f64; 2], String> {
         match (self.low, self.high) {
             (Some(low), Some(high)) => Ok([low, high]),
@@ -161,10 +163,10 @@ impl Sidecar {
         }
     }
 
-    /// Where the samples of so many rows stand: on their map; else, of which only the cell is known, from the origin.
+    /// The position of `rows` rows of samples: on their map; if only the cell is known, from the origin.
     ///
     /// # Errors
-    /// A message if what it says of a map cannot be.
+    /// A message if the position is not valid.
     pub fn place(&self, rows: usize) -> std::result::Result<Option<Placement>, String> {
         let Some(numbers) = self.geotransform else {
             let Some(cell) = self.cell else { return Ok(None) };
@@ -177,7 +179,7 @@ impl Sidecar {
         Ok(Some(Placement { origin: lattice.origin, step: lattice.step, unit, cell: self.cell, keys }))
     }
 
-    /// The coordinate system that it tells, or that a file beside does.
+    /// The coordinate system of the sidecar, or of another one beside the file.
     fn system(&self) -> std::result::Result<Option<GeoKeys>, String> {
         if let Some(wkt) = &self.wkt {
             return keys::of_wkt(wkt).map(Some).map_err(|why| format!("the `wkt` beside it is not understood: {why}"));
@@ -186,7 +188,7 @@ impl Sidecar {
         keys::of_text(crs).map(Some).map_err(|why| format!("the `crs` beside it is \"{}\": {why}", crs.escape_debug()))
     }
 
-    /// Adds the coordinate system of a `.prj` or `.aux.xml` to a place that tells none.
+    /// Adds the coordinate system of a `.prj` or `.aux.xml` to a position without one.
     pub fn complete(&self, place: &mut Placement) {
         if let (None, Some(keys)) = (&place.keys, &self.keys) {
             place.unit = keys::unit(keys);
@@ -195,7 +197,7 @@ impl Sidecar {
     }
 }
 
-/// What a text beside a file says.
+/// The parsed content of a sidecar.
 fn text<T>(path: &Path, most: u64, parse: impl Fn(&str) -> std::result::Result<T, String>) -> Result<T> {
     let name = path.display().to_string();
     let bytes = open::bytes(path, "read", most)?;
@@ -203,21 +205,21 @@ fn text<T>(path: &Path, most: u64, parse: impl Fn(&str) -> std::result::Result<T
     parse(&String::from_utf8_lossy(&bytes)).map_err(|why| refused(&name, why))
 }
 
-/// GDAL's notes on a raster: NAME.EXT.aux.xml.
+/// GDAL's sidecar of a raster: NAME.EXT.aux.xml.
 pub fn aux_xml(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(".aux.xml");
     path.with_file_name(name)
 }
 
-/// The sidecar of this file alone, whatever else is called NAME: NAME.r16.json.
+/// The sidecar that belongs to this file only, not to other files called NAME: NAME.r16.json.
 pub fn own(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(".json");
     path.with_file_name(name)
 }
 
-/// The message for a file that does not tell enough.
+/// The message for a file without the properties `what`.
 pub fn needs(what: &str) -> String {
     format!("it lacks {what}; write them to a file of the same name with the extension .json or .toml")
 }

@@ -1,23 +1,23 @@
-//! SQLite database files (version 3), written once from beginning to end: tables whose rows come in order become packed B-trees.
+//! SQLite database files (version 3), written once from start to end: tables with sorted rows become packed B-trees.
 //!
-//! After "Database File Format", sqlite.org/fileformat2.html. Pages of 4096 bytes, UTF-8, rollback journal. There is no reader and no change of what is
-//! written: whoever opens the file has SQLite for that.
+//! After "Database File Format", sqlite.org/fileformat2.html. Pages of 4096 bytes, UTF-8, rollback journal. This module
+//! neither reads nor changes databases.
 
 use std::io::{self, Write};
 
-/// Bytes of a page.
+/// Page size in bytes.
 pub const PAGE: usize = 4096;
 
-/// Bytes that the file's own header takes of the first page.
+/// Size of the file header in the first page, in bytes.
 const FILE_HEAD: usize = 100;
 
-/// The version of SQLite that the file says it was written by.
+/// The version of SQLite stated in the file.
 const SQLITE_VERSION: u32 = 3_045_000;
 
-/// The page that holds the byte which SQLite locks: it is never used.
+/// The page with the byte that SQLite locks; it is never used.
 const LOCKED: u32 = (1 << 30) / PAGE as u32 + 1;
 
-/// Kinds of pages.
+/// Types of pages.
 const TABLE_LEAF: u8 = 0x0D;
 const TABLE_INTERIOR: u8 = 0x05;
 const INDEX_LEAF: u8 = 0x0A;
@@ -25,11 +25,11 @@ const INDEX_LEAF: u8 = 0x0A;
 /// A value of a column.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Column<'a> {
-    /// NULL: also what stands for a column that is the row's own number.
+    /// NULL, also for a column that is an alias of the row's number.
     Null,
-    /// A whole number.
+    /// An integer.
     Integer(i64),
-    /// A number.
+    /// A floating-point number.
     Real(f64),
     /// A text.
     Text(&'a str),
@@ -37,9 +37,9 @@ pub enum Column<'a> {
     Blob(&'a [u8]),
 }
 
-/// A database being written.
+/// A database during writing.
 pub struct Database {
-    /// All pages from the first on, which is filled in at the end.
+    /// All pages; the first is filled at the end.
     pages: Vec<u8>,
     /// The rows of `sqlite_schema`: type, name, table, root page, SQL.
     schema: Vec<(&'static str, String, String, u32, Option<String>)>,
@@ -57,7 +57,7 @@ impl Database {
         Database { pages: vec![0; PAGE], schema: Vec::new() }
     }
 
-    /// Adds a table of rows with ascending numbers.
+    /// Adds a table of rows in ascending order of their numbers.
     ///
     /// Fails if the rows are not in order.
     pub fn table<'a>(
@@ -92,7 +92,8 @@ impl Database {
         Ok(())
     }
 
-    /// Adds the index that SQLite makes for a UNIQUE or PRIMARY KEY constraint of a table, the `number`-th of that table: keys and the row of each.
+    /// Adds the index that SQLite makes for the `number`-th UNIQUE or PRIMARY KEY constraint of a table: keys, each
+    /// with the number of its row.
     ///
     /// Fails if the keys take more than a page.
     pub fn unique_index(&mut self, table: &str, number: usize, mut keys: Vec<(Vec<&str>, i64)>) -> io::Result<()> {
@@ -116,14 +117,14 @@ impl Database {
         Ok(())
     }
 
-    /// Adds what has no rows of its own: a `"trigger"`, or a virtual `"table"`.
+    /// Adds an object without rows: a `"trigger"`, or a virtual `"table"`.
     pub fn declare(&mut self, kind: &'static str, name: &str, table: &str, sql: String) {
         self.schema.push((kind, name.to_string(), table.to_string(), 0, Some(sql)));
     }
 
     /// Writes the file.
     ///
-    /// Fails as `out` does.
+    /// Fails if `out` fails.
     pub fn write(mut self, out: &mut dyn Write, application: u32, user_version: u32) -> io::Result<()> {
         let schema = std::mem::take(&mut self.schema);
         let mut tree = Tree::default();
@@ -132,7 +133,7 @@ impl Database {
             let columns =
                 [Column::Text(kind), Column::Text(name), Column::Text(table), Column::Integer(i64::from(*root)), sql];
             let cell = self.table_cell(k as i64 + 1, &record(&columns));
-            // The first page has less room; whether all fit there is known only at the end.
+            // The first page has less room; whether all rows fit there is known only at the end.
             if !tree.fits(&cell, PAGE - FILE_HEAD) {
                 self.leaf(&mut tree);
             }
@@ -151,7 +152,7 @@ impl Database {
         let mut head = Vec::with_capacity(FILE_HEAD);
         head.extend_from_slice(b"SQLite format 3\0");
         head.extend_from_slice(&(PAGE as u16).to_be_bytes());
-        // Rollback journal for writers and readers; no reserved bytes; shares of pages, which are fixed.
+        // Rollback journal for writers and readers; no reserved bytes; the fixed payload fractions.
         head.extend_from_slice(&[1, 1, 0, 64, 32, 32]);
         // Change counter, pages, free list, schema cookie and format, cache, vacuum, UTF-8, versions.
         let numbers = [1, count, 0, 0, 1, 4, 0, 0, 1, user_version, 0, application];
@@ -163,7 +164,7 @@ impl Database {
         out.write_all(&self.pages[PAGE..])
     }
 
-    /// How many pages there are.
+    /// Number of pages.
     fn count(&self) -> u32 {
         (self.pages.len() / PAGE) as u32
     }
@@ -177,20 +178,20 @@ impl Database {
         self.count()
     }
 
-    /// Makes the cells gathered so far a leaf.
+    /// Writes the collected cells as a leaf.
     fn leaf(&mut self, tree: &mut Tree) {
         let number = self.push(&page(TABLE_LEAF, &tree.cells, None, 0));
         tree.children.push((number, tree.last));
         tree.cells.clear();
     }
 
-    /// Joins pages by interior ones until what is left fits on one, beside `taken` bytes.
+    /// Adds interior pages until the rest fits on one page, beside `taken` bytes.
     fn joined(&mut self, mut children: Vec<(u32, i64)>, taken: usize) -> Vec<(u32, i64)> {
         // A child takes its pointer, its page and at most nine bytes of its last row's number.
         const CHILD: usize = 2 + 4 + 9;
         let most = |taken: usize| (PAGE - taken - 12) / CHILD;
         while children.len() > most(taken) {
-            // Evenly, so that none has a single child.
+            // Evenly, so that no page has a single child.
             let groups = children.len().div_ceil(most(0));
             let count = children.len();
             let ends = (1..=groups).map(|k| k * count / groups);
@@ -205,7 +206,7 @@ impl Database {
         children
     }
 
-    /// The cell of a row on a leaf, and pages for what of it does not fit there.
+    /// The cell of a row on a leaf, with overflow pages if it does not fit.
     fn table_cell(&mut self, number: i64, payload: &[u8]) -> Vec<u8> {
         let mut cell = Vec::new();
         varint(payload.len() as u64, &mut cell);
@@ -215,7 +216,7 @@ impl Database {
         let rest = &payload[here..];
         if !rest.is_empty() {
             let pieces: Vec<&[u8]> = rest.chunks(PAGE - 4).collect();
-            // The last first, as each names the one after it.
+            // The last page first, because each refers to the next.
             let mut next = 0u32;
             for piece in pieces.iter().rev() {
                 let mut page = Vec::with_capacity(PAGE);
@@ -230,7 +231,7 @@ impl Database {
     }
 }
 
-/// Bytes of a row of so many that stay on its leaf.
+/// Bytes of a row of this length that are stored on its leaf.
 fn local(length: usize) -> usize {
     let most = PAGE - 35;
     if length <= most {
@@ -241,10 +242,10 @@ fn local(length: usize) -> usize {
     if fit <= most { fit } else { least }
 }
 
-/// A table while its rows come.
+/// A table under construction.
 #[derive(Default)]
 struct Tree {
-    /// The cells of the leaf at hand.
+    /// The cells of the current leaf.
     cells: Vec<Vec<u8>>,
     /// The number of the last row.
     last: i64,
@@ -253,14 +254,14 @@ struct Tree {
 }
 
 impl Tree {
-    /// Whether the leaf at hand has room for another cell.
+    /// Whether the current leaf has room for another cell.
     fn fits(&self, cell: &[u8], room: usize) -> bool {
         let taken: usize = self.cells.iter().map(|cell| cell.len() + 2).sum();
         8 + taken + cell.len() + 2 <= room
     }
 }
 
-/// A page of cells; they are laid from its end.
+/// A page of cells, which are placed from its end.
 fn page(kind: u8, cells: &[Vec<u8>], rightmost: Option<u32>, taken: usize) -> Vec<u8> {
     let mut page = vec![0u8; PAGE];
     let mut at = PAGE;
@@ -280,7 +281,7 @@ fn page(kind: u8, cells: &[Vec<u8>], rightmost: Option<u32>, taken: usize) -> Ve
     page
 }
 
-/// A page over others.
+/// An interior page.
 fn interior(children: &[(u32, i64)], taken: usize) -> Vec<u8> {
     let Some(((rightmost, _), others)) = children.split_last() else { return vec![0; PAGE] };
     let cells: Vec<Vec<u8>> = (others.iter())
@@ -324,7 +325,7 @@ fn record(columns: &[Column]) -> Vec<u8> {
         };
         varint(kind, &mut types);
     }
-    // The head's length counts itself; all lengths here take one or two bytes.
+    // The header's length includes itself; all lengths here take one or two bytes.
     let mut out = Vec::with_capacity(types.len() + body.len() + 2);
     let length = types.len() as u64 + 1;
     varint(if length < 128 { length } else { length + 1 }, &mut out);
@@ -333,7 +334,7 @@ fn record(columns: &[Column]) -> Vec<u8> {
     out
 }
 
-/// A number of 1 to 9 bytes, seven bits each from the highest, eight in the ninth.
+/// A variable-length integer of 1 to 9 bytes: seven bits per byte from the highest, eight in the ninth.
 fn varint(number: u64, out: &mut Vec<u8>) {
     if number >> 56 != 0 {
         (0..8).for_each(|k| out.push((number >> (57 - 7 * k)) as u8 & 0x7F | 0x80));

@@ -1,30 +1,30 @@
-//! What files of SVG have to heed so that every reader reads them, however large they are.
+//! Helpers for SVG files that every reader opens, whatever their size.
 //!
-//! XML readers have limits. libxml2, which librsvg reads with, refuses an attribute of more than 10 million characters, and also 10 million
-//! characters of elements among which it found no moment to free its buffer. So writers make elements of bounded length, and padding
-//! follows each long one.
+//! XML readers have limits. libxml2, which librsvg uses, rejects attributes of more than 10 million characters, and
+//! also 10 million characters of elements if its buffer could not be freed between them. Writers therefore make
+//! elements of bounded length, and padding follows each long one.
 
 use std::io::{self, Write};
 
-/// Characters of a path after which the next one is begun.
+/// Characters of a path after which a new one starts.
 pub const MAX_PATH: usize = 1 << 16;
 
-/// Points of a line, at most; a longer line is written as several.
+/// Maximum number of points of a line; a longer line is written as several.
 const MAX_POINTS: usize = 1 << 11;
 
-/// Spaces after a long element. libxml2 frees its buffer where little of it is left to read. Elements that are longer than what it reads at once
-/// rarely meet such a moment; this many spaces always do.
+/// Spaces after a long element. libxml2 frees its buffer when little of it is left to read. Elements longer than its
+/// read size rarely end at such a moment; this many spaces always include one.
 const PADDING: usize = 1 << 13;
 
-/// Writes padding: after an element longer than [`MAX_PATH`].
+/// Writes padding, for use after an element longer than [`MAX_PATH`].
 ///
 /// # Errors
-/// What writing brings.
+/// Errors of `out`.
 pub fn pad(out: &mut dyn Write) -> io::Result<()> {
     writeln!(out, "{:PADDING$}", "")
 }
 
-/// A line as pieces of bounded length, each beginning with the point that the last one ended with.
+/// Splits a line into pieces of bounded length; each starts with the last point of the previous one.
 pub fn pieces<T>(line: &[T]) -> impl Iterator<Item = &[T]> {
     let last = line.len().saturating_sub(1).max(1);
     (0..last).step_by(MAX_POINTS).map(move |from| &line[from..(from + MAX_POINTS + 1).min(line.len())])

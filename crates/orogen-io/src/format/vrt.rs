@@ -1,11 +1,12 @@
-//! GDAL's virtual rasters, `.vrt`: a raster composed of parts of others. Read are simple sources that keep their samples.
+//! GDAL's virtual rasters, `.vrt`: a raster composed of parts of others. Only simple sources without resampling are
+//! supported.
 
 use roxmltree::{Document, Node};
 
 use super::affine::Affine;
 use super::aux_xml::numbers;
 
-/// The longest file read.
+/// Maximum length of a file, in bytes.
 pub const MAX_LENGTH: u64 = 64 << 20;
 
 /// A virtual raster.
@@ -13,37 +14,37 @@ pub const MAX_LENGTH: u64 = 64 << 20;
 pub struct Virtual {
     /// Columns and rows.
     pub size: [u64; 2],
-    /// How columns and rows become coordinates.
+    /// The transform from columns and rows to coordinates.
     pub affine: Option<Affine>,
     /// The coordinate system as well-known text.
     pub system: Option<String>,
-    /// The sources of each band, the later ones over the earlier.
+    /// The sources of each band; later ones cover earlier ones.
     pub bands: Vec<Vec<Source>>,
 }
 
-/// A part of a file, laid without resampling.
+/// A part of a file, placed without resampling.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Source {
     /// The file.
     pub path: String,
-    /// Whether its path counts from the folder of the `.vrt`.
+    /// Whether its path is relative to the folder of the `.vrt`.
     pub relative: bool,
-    /// Its band, from 1.
+    /// The band, from 1.
     pub band: u32,
-    /// The first column and row that are taken; none is the whole file.
+    /// The first column and row of the part.
     pub from: [u64; 2],
-    /// Where these lie.
+    /// The column and row of the part in the virtual raster.
     pub to: [u64; 2],
-    /// How many columns and rows; none is all there are.
+    /// The number of columns and rows; `None` means all.
     pub size: Option<[u64; 2]>,
-    /// The sample that is left out.
+    /// The value of missing samples.
     pub nodata: Option<f64>,
 }
 
-/// Reads it.
+/// Parses a virtual raster.
 ///
 /// # Errors
-/// A message if it is no virtual raster, or changes the samples of its sources.
+/// A message if it is not a virtual raster, or changes the samples of its sources.
 pub fn parse(text: &str) -> Result<Virtual, String> {
     let document = Document::parse(text).map_err(|fault| format!("it is not valid XML ({fault})"))?;
     let root = document.root_element();
@@ -65,7 +66,7 @@ pub fn parse(text: &str) -> Result<Virtual, String> {
     })
 }
 
-/// What a band is composed of.
+/// The sources of a band.
 fn sources(band: Node) -> Result<Vec<Source>, String> {
     if let Some(kind) = band.attribute("subClass") {
         return Err(format!("it has a {kind}, which is not supported; convert it to GeoTIFF with gdal_translate"));
@@ -112,7 +113,7 @@ fn source(node: Node) -> Result<Source, String> {
     Ok(Source { path, relative, band, from, to, size, nodata })
 }
 
-/// The first column and row of a rectangle, and how many.
+/// The first column and row of a rectangle, and its size.
 type Rectangle = ([u64; 2], [u64; 2]);
 
 /// A rectangle of whole columns and rows.

@@ -1,26 +1,26 @@
-//! World files: six lines beside a picture that tell where its pixels lie.
+//! World files: six lines beside a picture that state the position of its pixels.
 //!
-//! Esri's format: step east, turns (two lines, 0), step from row to row (negative where rows go south), east and north of the middle of the first
-//! pixel. `NAME.pgw` stands beside `NAME.png`; `NAME.wld` beside any raster, and `NAME.EXTw` too.
+//! Esri's format: column step eastward, rotations (two lines, 0), row step (negative if rows go south), east and north
+//! of the centre of the first pixel. `NAME.pgw` belongs to `NAME.png`; `NAME.wld` and `NAME.EXTw` to any raster.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::affine::Affine;
 
-/// The longest file read.
+/// Maximum length of a file, in bytes.
 pub const MAX_LENGTH: u64 = 1 << 12;
 
-/// Writes it.
+/// Writes a world file.
 pub fn write(out: &mut dyn Write, affine: &Affine) -> io::Result<()> {
     let [a, b, c, d, e, f] = affine.0;
     [a, d, b, e, c, f].iter().try_for_each(|number| writeln!(out, "{number}"))
 }
 
-/// Reads it.
+/// Parses a world file.
 ///
 /// # Errors
-/// A message if it does not hold six numbers.
+/// A message if it does not contain six numbers.
 pub fn parse(text: &str) -> Result<Affine, String> {
     let numbers: Option<Vec<f64>> = text.split_whitespace().map(|word| word.replace(',', ".").parse().ok()).collect();
     match numbers.as_deref() {
@@ -29,13 +29,13 @@ pub fn parse(text: &str) -> Result<Affine, String> {
     }
 }
 
-/// The world file that Orogen writes beside a raster: the one that programs look for first.
+/// The name of the world file that Orogen writes for a raster: the one that programs look for first.
 pub fn beside(path: &Path) -> PathBuf {
     let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
     path.with_extension(if is_png { "pgw" } else { "wld" })
 }
 
-/// The names that a raster's world file may have.
+/// The possible names of a raster's world file.
 pub fn names(path: &Path) -> Vec<PathBuf> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().into_owned();
     let mut names = Vec::new();

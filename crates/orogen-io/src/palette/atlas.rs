@@ -1,4 +1,4 @@
-//! The colours of a printed atlas, fitted to the relief.
+//! The hypsometric tint of printed atlases, fitted to the relief.
 
 use super::color::{Light, Rgb, decode};
 use super::palette::NO_DATA;
@@ -6,25 +6,26 @@ use super::ramp::Ramp;
 use crate::format::levels::Levels;
 use orogen_grid::grid::Grid;
 
-/// The atlas tint: green lowlands through straw and ochre to brown, grey and white heights; a sea that darkens with depth. Land
+/// The atlas tint: green lowlands, then straw, ochre, brown, grey and white heights; the sea darkens with depth. Land
 /// and sea meet exactly at sea level.
 ///
-/// A printed atlas gives every height one colour, which paints 300 m hills all green; stretching all colours over whatever
-/// relief there is paints them with snow. This does a bit of both: the more relief the land has, the further up the atlas its
-/// summits reach (300 m to ochre, 4000 m to white), and likewise the deeper the sea. And as real land is mostly low, land of
-/// which much stands high is bent towards the greens, so that its summits still stand out.
+/// In a printed atlas every height has a fixed colour, so hills of 300 m are all green; with all colours stretched over
+/// the relief they would have snow. This tint is a compromise: the more relief the land has, the higher in the ramp its
+/// summits are (300 m is ochre, 4000 m is white), and likewise for the depth of the sea. Most real land is low. Where
+/// much land is high, colours are shifted towards green, so that summits still stand out.
 #[derive(Debug, Clone)]
 pub struct Atlas {
     land: Ramp,
     sea: Ramp,
     sea_level: f32,
-    /// Where the land's colours begin, and the shares of the ramps that a metre is worth.
+    /// The height where the land's colours start, and the shares of the ramps per metre.
     base: f32,
     land_scale: f32,
     sea_scale: f32,
 }
 
-/// Land from the lowest up. Lightness falls to the browns and rises again to the snow, as on printed relief maps.
+/// Land from the lowest height up. Lightness decreases to the browns and increases again to the snow, as on printed
+/// maps.
 pub const LAND: [(f32, Rgb); 10] = [
     (0.00, [101, 149, 103]),
     (0.10, [130, 170, 111]),
@@ -38,7 +39,7 @@ pub const LAND: [(f32, Rgb); 10] = [
     (1.00, [250, 251, 252]),
 ];
 
-/// The sea from the shore down.
+/// The sea from the shore downward.
 pub const SEA: [(f32, Rgb); 6] = [
     (0.00, [190, 222, 229]),
     (0.12, [160, 206, 223]),
@@ -48,20 +49,20 @@ pub const SEA: [(f32, Rgb); 6] = [
     (1.00, [31, 72, 122]),
 ];
 
-/// Where on its relief half of the land should lie below, and how far colours are bent at most to get there.
+/// The position in the ramp below which half of the land should lie, and the limit of the shift.
 const MIDDLE: f32 = 0.40;
 const MAX_BENT: f32 = 1.4;
 
-/// How many samples are looked at to find the middle of the land.
+/// Number of samples for estimating the median of the land.
 const PROBES: usize = 1 << 16;
 
 impl Atlas {
-    /// The colours for a world between `low` and `high` with the sea at `sea_level`, all in metres.
+    /// The tint for a world between `low` and `high` with the sea at `sea_level`, in metres.
     pub fn new(low: f32, high: f32, sea_level: f32) -> Atlas {
         Atlas::bent(low, high, sea_level, 1.0)
     }
 
-    /// The colours that suit the heights of a grid.
+    /// The tint fitted to the heights of a grid.
     pub fn fit(grid: &Grid, sea_level: f32) -> Atlas {
         let levels = Levels::of(grid);
         let (low, high) = (levels.low(), levels.high());
@@ -80,9 +81,9 @@ impl Atlas {
         Atlas::bent(low, high, sea_level, (libm::logf(MIDDLE) / libm::logf(share)).clamp(1.0, MAX_BENT))
     }
 
-    /// The land's colours by `share of the relief ^ power`.
+    /// The tint with the land's colours at `share of the relief ^ power`.
     fn bent(low: f32, high: f32, sea_level: f32, power: f32) -> Atlas {
-        // Land that does not touch the sea begins with green at its own foot: plateaus have lowlands too.
+        // Land above the sea starts with green at its lowest height: plateaus have lowlands too.
         let base = if low.is_finite() { low.max(sea_level) } else { sea_level };
         let relief = if high > base { high - base } else { 0.0 };
         let depth = if low < sea_level { sea_level - low } else { 0.0 };
@@ -98,17 +99,17 @@ impl Atlas {
         }
     }
 
-    /// Whether a height is under water.
+    /// Whether a height is below sea level.
     pub fn is_sea(&self, height: f32) -> bool {
         height <= self.sea_level
     }
 
-    /// The color of a height; [`NO_DATA`] if it is not finite.
+    /// The color of a height in metres; [`NO_DATA`] if it is not finite.
     pub fn at(&self, height: f32) -> Light {
         if !height.is_finite() {
             NO_DATA.map(decode)
         } else if self.is_sea(height) {
-            // Shelves are wide and shallow: the square root shows them.
+            // The square root resolves wide, shallow shelves.
             let depth = ((self.sea_level - height) * self.sea_scale).max(0.0).sqrt();
             self.sea.at(depth)
         } else {
@@ -122,7 +123,7 @@ fn inverse(range: f32) -> f32 {
     if inverse.is_finite() { inverse } else { 0.0 }
 }
 
-/// From `a` at x0 to `b` at x1, even steps for even ratios of x, level beyond.
+/// From `a` at x0 to `b` at x1, linear in the logarithm of x, constant outside.
 fn grows(x: f32, x0: f32, a: f32, x1: f32, b: f32) -> f32 {
     let share = libm::logf(x.max(x0) / x0) / libm::logf(x1 / x0);
     a + (b - a) * share.min(1.0)

@@ -1,18 +1,18 @@
-//! Colours: as linear light, as sRGB bytes, and in Oklab, where they are mixed.
+//! Colours in linear light, in sRGB bytes, and in Oklab for mixing.
 
-/// A colour as linear light: red, green, blue, 0 to 1.
+/// A colour in linear light: red, green, blue, 0 to 1.
 pub type Light = [f32; 3];
 
-/// A colour as sRGB bytes: red, green, blue.
+/// A colour in sRGB bytes: red, green, blue.
 pub type Rgb = [u8; 3];
 
-/// Turns linear light into sRGB bytes by table.
+/// A table for conversion of linear light to sRGB bytes.
 #[derive(Debug, Clone)]
 pub struct Encoder {
     table: Vec<u8>,
 }
 
-/// Fine enough that even the darkest bytes are all reached.
+/// Fine enough to reach all dark byte values.
 const LEVELS: usize = 1 << 13;
 
 impl Default for Encoder {
@@ -22,30 +22,30 @@ impl Default for Encoder {
 }
 
 impl Encoder {
-    /// Prepares the table.
+    /// Computes the table.
     pub fn new() -> Encoder {
         Encoder { table: (0..=LEVELS).map(|level| encode(level as f32 / LEVELS as f32)).collect() }
     }
 
-    /// The sRGB bytes of a colour, clamped to what they can hold.
+    /// The sRGB bytes of a colour, clamped to the range of a byte.
     pub fn bytes(&self, color: Light) -> [u8; 3] {
         color.map(|c| self.table[(c.clamp(0.0, 1.0) * LEVELS as f32 + 0.5) as usize])
     }
 }
 
-/// An sRGB byte as linear light (IEC 61966-2-1).
+/// The linear light of an sRGB byte (IEC 61966-2-1).
 pub fn decode(byte: u8) -> f32 {
     let c = f32::from(byte) / 255.0;
     if c <= 0.04045 { c / 12.92 } else { libm::powf((c + 0.055) / 1.055, 2.4) }
 }
 
-/// Linear light as the nearest sRGB byte.
+/// The nearest sRGB byte of linear light.
 pub fn encode(light: f32) -> u8 {
     let c = if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * libm::powf(light, 1.0 / 2.4) - 0.055 };
     (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
 }
 
-/// Linear light in Oklab: lightness, green to red, blue to yellow.
+/// Linear light to Oklab: lightness, green to red, blue to yellow.
 pub fn oklab([r, g, b]: Light) -> [f32; 3] {
     let l = libm::cbrtf(0.412_221_46 * r + 0.536_332_55 * g + 0.051_445_995 * b);
     let m = libm::cbrtf(0.211_903_5 * r + 0.680_699_5 * g + 0.107_396_96 * b);
@@ -57,7 +57,7 @@ pub fn oklab([r, g, b]: Light) -> [f32; 3] {
     ]
 }
 
-/// Oklab as linear light.
+/// Oklab to linear light.
 pub fn linear([lightness, a, b]: [f32; 3]) -> Light {
     let l = lightness + 0.396_337_78 * a + 0.215_803_76 * b;
     let m = lightness - 0.105_561_346 * a - 0.063_854_17 * b;
@@ -70,12 +70,12 @@ pub fn linear([lightness, a, b]: [f32; 3]) -> Light {
     ]
 }
 
-/// The colour of a hexadecimal number: 0xrrggbb.
+/// The colour of a hexadecimal number 0xrrggbb.
 pub const fn rgb(hex: u32) -> Rgb {
     [(hex >> 16) as u8, (hex >> 8) as u8, hex as u8]
 }
 
-/// A colour of which each part is mixed.
+/// Linear interpolation of each component.
 pub fn mix(from: [f32; 3], to: [f32; 3], share: f32) -> [f32; 3] {
     std::array::from_fn(|i| from[i] + (to[i] - from[i]) * share)
 }

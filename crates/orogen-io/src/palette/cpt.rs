@@ -1,8 +1,9 @@
-//! Colour palette tables of GMT, the Generic Mapping Tools (`.cpt`).
+//! Colour palette tables (`.cpt`) of GMT, the Generic Mapping Tools.
 //!
-//! A line is a height, its colour, a higher height, its colour: `0 20/40/60 500 120/160/90`; parts of colours may stand apart by
-//! blanks. Colours are red/green/blue, hue-saturation-value, cyan/magenta/yellow/black, #rrggbb, a grey level or a name. `B`, `F` and
-//! `N` colour what lies below, above, and has no height. `# COLOR_MODEL`, `# RANGE` and `# HINGE` are heeded.
+//! A line has a height, its colour, a higher height, its colour: `0 20/40/60 500 120/160/90`; components may be
+//! separated by blanks. Colours are red/green/blue, hue-saturation-value, cyan/magenta/yellow/black, #rrggbb, a grey
+//! level or a name. `B`, `F` and `N` are the colours below, above, and for missing samples. `# COLOR_MODEL`, `# RANGE`
+//! and `# HINGE` are supported.
 
 use super::color::Rgb;
 use super::fitted::of_hsv;
@@ -16,13 +17,13 @@ enum Model {
     Cmyk,
 }
 
-/// Reads such a file.
+/// Parses a table.
 ///
-/// Heights are metres, unless the table is a normalised one (from 0 to 1, or from -1 to 1): then it is stretched over its
-/// `RANGE`, or, if it tells none, from the lowest height to the highest; one with a `HINGE` keeps that at sea level.
+/// Heights are metres, unless the table is normalised (from 0 to 1, or from -1 to 1): then it is stretched over its
+/// `RANGE` or, if it has none, from the lowest height to the highest; a `HINGE` is kept at sea level.
 ///
 /// # Errors
-/// With the line that cannot be read, as a message.
+/// A message with the line that cannot be parsed.
 pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     let mut palette = Palette { name: name.to_string(), mix: Mix::Rgb, ..Palette::default() };
     let (mut model, mut range, mut hinge) = (Model::Rgb, None, false);
@@ -79,7 +80,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
 }
 
 fn color_model(text: &str) -> Result<(Model, Mix), String> {
-    // A plus sign means that colours are also mixed so.
+    // A plus sign means that colours are also mixed in this model.
     match text.to_ascii_uppercase().as_str() {
         "RGB" | "+RGB" => Ok((Model::Rgb, Mix::Rgb)),
         "HSV" => Ok((Model::Hsv, Mix::Rgb)),
@@ -97,7 +98,7 @@ fn span(text: &str) -> Option<[f64; 2]> {
 
 /// The two stops of a line.
 fn slice(words: &[&str], model: Model) -> Result<[(f64, Rgb); 2], String> {
-    // L, U and B at the end ask for marks on GMT's own colour bar.
+    // L, U and B at the end request annotations on GMT's colour bar.
     let words = match words {
         [init @ .., "L" | "U" | "B"] if init.len() > 2 => init,
         words => words,
@@ -126,7 +127,7 @@ fn colors(words: &[&str], model: Model) -> Result<Rgb, String> {
     let (separator, model) = match words {
         [word] if word.contains('/') && word.split('/').count() == 4 => ('/', Model::Cmyk),
         [word] if word.contains('/') => ('/', model),
-        // A number's sign is no separator.
+        // The sign of a number is not a separator.
         [word] if word.trim_start_matches('-').contains('-') => ('-', Model::Hsv),
         _ => (' ', model),
     };

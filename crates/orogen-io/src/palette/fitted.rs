@@ -1,23 +1,23 @@
-//! A palette laid over heights.
+//! A palette applied to heights.
 
 use super::color::{Light, Rgb, decode, linear, mix, oklab};
 use super::palette::{Mix, NO_DATA, Palette, Position};
 
-/// Entries of a table for the narrowest stretch between two stops, and the fewest and most of a table.
+/// Table entries for the narrowest interval between two stops, and the minimum and maximum size of a table.
 const PER_STRETCH: f64 = 48.0;
 const ENTRIES: [f64; 2] = [256.0, 16_384.0];
 
-/// A palette over known heights, ready to be asked.
+/// A palette over known heights, prepared for lookup.
 #[derive(Debug, Clone)]
 pub struct Fitted {
-    /// Pieces without a hard step within, from below; each begins at the height named.
+    /// Pieces without a hard step inside, in ascending order; each starts at its height.
     pieces: Vec<Segment>,
     missing: Light,
 }
 
 #[derive(Debug, Clone)]
 struct Segment {
-    /// The lowest height that is its own.
+    /// The lowest height of the piece.
     from: f32,
     start: f64,
     per_metre: f64,
@@ -34,12 +34,12 @@ impl Segment {
 }
 
 impl Fitted {
-    /// A palette laid over heights from `low` to `high` with the sea at `sea_level`.
+    /// A palette applied to heights from `low` to `high` with the sea at `sea_level`.
     pub fn new(palette: &Palette, low: f32, high: f32, sea_level: f32) -> Fitted {
         let [low, high, sea] = [low, high, sea_level].map(f64::from);
         let low = if low.is_finite() { low } else { 0.0 };
         let high = if high > low { high } else { low + 1.0 };
-        // Land that does not touch the sea begins at its own foot; a sea that nothing rises from ends at its surface.
+        // Land above the sea starts at its lowest height; a world without land ends at the sea's surface.
         let shore = if sea.is_finite() { sea.max(low) } else { low };
         let [depth, relief] = [if sea > low { sea - low } else { 1.0 }, if high > shore { high - shore } else { 1.0 }];
         let resolved = |at: Position| match at {
@@ -50,7 +50,7 @@ impl Fitted {
         };
         let mut stops: Vec<(f64, Rgb)> = palette.stops.iter().map(|stop| (resolved(stop.at), stop.color)).collect();
         stops.retain(|(at, _)| at.is_finite());
-        // Kinds of positions may be mixed in one file; the sort keeps the order of those at one place.
+        // A file may mix kinds of positions; the sort is stable at equal positions.
         stops.sort_by(|a, b| a.0.total_cmp(&b.0));
         let missing = palette.missing.unwrap_or(NO_DATA).map(decode);
         let mut pieces: Vec<Segment> = Vec::new();
@@ -60,7 +60,7 @@ impl Fitted {
         let of_sea = |at: f64| palette.has_sea() && at == shore && sea >= low;
         let mut start = 0;
         while start < stops.len() {
-            // A piece runs on while no two stops share a place, and its table can tell its stops apart.
+            // A piece continues while its stops have different positions and its table can resolve them.
             let (mut end, mut narrowest) = (start, f64::MAX);
             let mut crowded = false;
             while end + 1 < stops.len() && stops[end + 1].0 > stops[end].0 && !crowded {
@@ -71,7 +71,7 @@ impl Fitted {
             let at = stops[start].0;
             let from = match (pieces.is_empty(), of_sea(at)) {
                 (true, _) => f32::NEG_INFINITY,
-                // What stands just at sea level is sea.
+                // Heights exactly at sea level are sea.
                 (false, true) => reached(at).max((at as f32).next_up()),
                 (false, false) => reached(at),
             };
@@ -97,7 +97,7 @@ impl Fitted {
     }
 }
 
-/// The lowest f32 that is at or above a height.
+/// The smallest f32 at or above a height.
 fn reached(height: f64) -> f32 {
     let near = height as f32;
     if f64::from(near) >= height { near } else { near.next_up() }
@@ -107,7 +107,7 @@ fn flat(from: f32, color: Rgb) -> Segment {
     Segment { from, start: 0.0, per_metre: 0.0, table: vec![color.map(decode)] }
 }
 
-/// Entries that a table over so many metres needs.
+/// Number of entries of a table over this many metres.
 fn entries(length: f64, narrowest: f64) -> f64 {
     (length / narrowest * PER_STRETCH).ceil()
 }
@@ -131,7 +131,7 @@ fn piece(from: f32, stops: &[(f64, Rgb)], mix: Mix) -> Segment {
     Segment { from, start: first.0, per_metre: (entries / length).min(1e30), table: table.collect() }
 }
 
-/// The colour between two.
+/// The mixed colour of two.
 fn mixed(from: Rgb, to: Rgb, share: f32, how: Mix) -> Light {
     match how {
         Mix::Oklab => linear(mix(oklab(from.map(decode)), oklab(to.map(decode)), share)),
@@ -149,7 +149,7 @@ fn mixed(from: Rgb, to: Rgb, share: f32, how: Mix) -> Light {
     }
 }
 
-/// Linear light of an sRGB number from 0 to 255, whole or not.
+/// Linear light of an sRGB value from 0 to 255.
 fn light(byte: f32) -> f32 {
     let c = byte.clamp(0.0, 255.0) / 255.0;
     if c <= 0.04045 { c / 12.92 } else { libm::powf((c + 0.055) / 1.055, 2.4) }

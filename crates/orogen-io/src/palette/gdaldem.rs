@@ -1,16 +1,16 @@
 //! Colour files of `gdaldem color-relief`.
 //!
-//! A line is a height and three numbers from 0 to 255, or a colour's name, apart by blanks, tabs, commas or colons; a fourth
-//! number, the opacity, is passed over. The height may be a percentage of the range, or `nv` for places without height.
+//! A line has a height and three numbers from 0 to 255, or a colour name, separated by blanks, tabs, commas or colons.
+//! A fourth number, the opacity, is ignored. The height may be a percentage of the range, or `nv` for missing samples.
 
 use super::color::Rgb;
 use super::names::named;
 use super::palette::{Mix, Palette, Position, Stop};
 
-/// Reads such a file.
+/// Parses a colour file.
 ///
 /// # Errors
-/// With the line that cannot be read, as a message.
+/// A message with the line that cannot be parsed.
 pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     let mut palette = Palette { name: name.to_string(), mix: Mix::Rgb, ..Palette::default() };
     for (number, line) in text.lines().enumerate().map(|(k, line)| (k + 1, line)) {
@@ -22,7 +22,7 @@ pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
             palette.missing = Some(color);
             continue;
         }
-        // What `gdaldem` has for values that no line names; nearest stops do better here.
+        // `gdaldem`'s colour for values without a line; the nearest stops are better here.
         if at.eq_ignore_ascii_case("default") {
             continue;
         }
@@ -57,7 +57,7 @@ fn color(words: &[&str]) -> Result<Rgb, String> {
     }
 }
 
-/// The stops in ascending order, those of one height as they were.
+/// The stops in ascending order; the sort is stable.
 fn ordered(mut palette: Palette) -> Palette {
     let place = |stop: &Stop| match stop.at {
         Position::Value(at) | Position::Share(at) | Position::Sea(at) => at,

@@ -1,12 +1,13 @@
-//! Palettes of GIMP, Inkscape and Krita (`.gpl`): colours one after another, here at even distances from the lowest to the highest.
+//! Palettes of GIMP, Inkscape and Krita (`.gpl`): a list of colours, here evenly spaced from the lowest to the highest
+//! value.
 
 use super::color::Rgb;
 use super::palette::{Palette, Position, Stop};
 
-/// Reads such a file.
+/// Parses a palette.
 ///
 /// # Errors
-/// With the line that cannot be read, as a message.
+/// A message with the line that cannot be parsed.
 pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     let mut lines = text.lines().enumerate().map(|(k, line)| (k + 1, line.trim()));
     if lines.next().is_none_or(|(_, first)| first.trim_start_matches('\u{feff}') != "GIMP Palette") {

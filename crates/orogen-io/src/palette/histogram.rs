@@ -1,4 +1,4 @@
-//! Colors of a picture by its histogram: as many of each kind as the picture has.
+//! Representative colors of a picture, from its histogram.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Seek};
@@ -7,14 +7,15 @@ use std::path::Path;
 use super::color::{Light, decode, oklab};
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-/// Levels of lightness that pixels are counted in.
+/// Levels of lightness in the histogram.
 const LEVELS: usize = 4096;
 
-/// Reads a `.png` and returns `count` colors as linear light, from dark to light: each is the mean color of an equal share of the pixels, ordered by their
-/// lightness in Oklab. Transparent pixels do not count. The picture is read row by row and never held.
+/// Reads a `.png` and returns `count` colors in linear light, from dark to light: each is the mean color of an equal
+/// share of the pixels, ordered by their lightness in Oklab. Transparent pixels are ignored. The picture is read row by
+/// row and never held as a whole.
 ///
 /// # Errors
-/// If the file cannot be read, is no PNG, or has no opaque pixel.
+/// If the file cannot be read, is not a PNG, or has no opaque pixel.
 pub fn read(path: &Path, count: usize) -> Result<Vec<Light>> {
     let name = path.display().to_string();
     let refused = |why: String| Error::new(ErrorKind::File, format!("cannot read the picture {name}: {why}"));
@@ -26,10 +27,10 @@ pub fn read(path: &Path, count: usize) -> Result<Vec<Light>> {
     parse(BufReader::new(file), count).map_err(refused)
 }
 
-/// The same of a picture at hand.
+/// [`read`] for a picture in memory or from any reader.
 ///
 /// # Errors
-/// What is wrong with it, as a message.
+/// A message about what is wrong.
 pub fn parse(input: impl BufRead + Seek, count: usize) -> std::result::Result<Vec<Light>, String> {
     let mut decoder = ::png::Decoder::new(input);
     decoder.set_transformations(::png::Transformations::EXPAND | ::png::Transformations::STRIP_16);
@@ -37,7 +38,7 @@ pub fn parse(input: impl BufRead + Seek, count: usize) -> std::result::Result<Ve
     let (color, _) = reader.output_color_type();
     let channels = color.samples();
     let light: Vec<f32> = (0..=255).map(decode).collect();
-    // Counts and sums are of f64: whole numbers and sums in the order of the file, the same on every machine.
+    // Counts and sums in f64, in the order of the file: the same on every machine.
     let mut levels = vec![[0.0f64; 4]; LEVELS];
     while let Some(row) = reader.next_row().map_err(|cause| format!("it is damaged: {cause}"))? {
         for pixel in row.data().chunks_exact(channels) {
@@ -75,7 +76,7 @@ fn shares(levels: &[[f64; 4]], total: f64, count: usize) -> Vec<Light> {
     let mut rest = levels.next().unwrap_or_default();
     for _ in 0..count {
         let (mut missing, mut sum) = (share, [0.0f64; 3]);
-        // The last share may miss what rounding lost.
+        // The last share may lack what rounding lost.
         while missing > total * 1e-12 {
             if rest[0] <= 0.0 {
                 match levels.next() {

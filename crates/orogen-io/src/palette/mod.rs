@@ -1,7 +1,8 @@
 //! Colours for heights: ramps between stops, the atlas tint for land and sea, palettes by name and from files.
 //!
-//! Colours between stops are mixed in Oklab (B. Ottosson, 2020), where equal steps look equal and a mix of green and brown does
-//! not turn grey. What comes out is linear light, so that shading may multiply it; [`color::Encoder`] makes the bytes.
+//! Colours between stops are mixed in Oklab (B. Ottosson, 2020), which is perceptually uniform: a mix of green and
+//! brown does not turn grey. Results are in linear light, so that shading can multiply them; [`color::Encoder`]
+//! converts them to bytes.
 
 pub(crate) mod atlas;
 pub mod color;

@@ -1,41 +1,42 @@
-//! The palettes that come with the library.
+//! Built-in palettes.
 //!
-//! Those of others are drawn through a few of their colours, mixed in Oklab; no channel is off by more than 3 of 255 from the
-//! 256 colours of the original. Their sources: viridis, magma and inferno by S. van der Walt and N. Smith (CC0); turbo by
-//! A. Mikhailov, Copyright 2019 Google LLC (Apache-2.0); batlow and oleron by F. Crameri, "Scientific colour maps", Copyright (c)
-//! 2023 Fabio Crameri (MIT); topo by K. Thyng and others, cmocean, Copyright (c) 2015 Kristen M. Thyng (MIT). All others are this
-//! project's own.
+//! Palettes from other sources are interpolated between a few of their colours in Oklab; no channel differs by more
+//! than 3 of 255 from the 256 colours of the original. Sources: viridis, magma and inferno by S. van der Walt and N.
+//! Smith (CC0); turbo by A. Mikhailov, Copyright 2019 Google LLC (Apache-2.0); batlow and oleron by F. Crameri,
+//! "Scientific colour maps", Copyright (c) 2023 Fabio Crameri (MIT); topo by K. Thyng and others, cmocean, Copyright
+//! (c) 2015 Kristen M. Thyng (MIT). All others are this project's own.
 
 use super::color::rgb;
 use super::palette::{Palette, Position, Stop};
 
-/// What a palette's positions count.
+/// The scale of a palette's positions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Span {
-    /// 0 the lowest, 1 the highest.
+    /// 0 is the lowest value, 1 the highest.
     Range,
-    /// -1 the deepest sea, 0 the shore, 1 the highest land.
+    /// -1 is the deepest sea, 0 the shore, 1 the highest land.
     Sea,
-    /// Degrees: for layers of slope or aspect.
+    /// Degrees, for layers of slope or aspect.
     Degrees,
 }
 
 /// A palette with a name.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Named {
-    /// Its name.
+    /// The name.
     pub name: &'static str,
-    /// What it looks like, and whose it is.
+    /// Description and author.
     pub about: &'static str,
-    /// What its positions count.
+    /// The scale of the positions.
     pub span: Span,
-    /// Whether people who are colour-blind can tell its heights apart: under full protanopia, deuteranopia and tritanopia (after
-    /// G. Machado, M. Oliveira and L. Fernandes, 2009), any two of a dozen heights differ by 0.04 in Oklab or more.
+    /// Whether colour-blind readers can distinguish its heights: with full protanopia, deuteranopia or tritanopia
+    /// (after G. Machado, M. Oliveira and L. Fernandes, 2009), any two of twelve heights differ by at least 0.04 in
+    /// Oklab.
     pub safe: bool,
     stops: &'static [(f64, u32)],
 }
 
-/// The palette of a map where nobody says.
+/// The default palette of maps.
 pub const DEFAULT: &str = "hypsometric";
 
 const ALL: &[Named] = &[
@@ -458,18 +459,18 @@ const ALL: &[Named] = &[
     },
 ];
 
-/// All there are.
+/// All built-in palettes.
 pub fn all() -> &'static [Named] {
     ALL
 }
 
-/// The palette of a name.
+/// The palette with this name.
 pub fn find(name: &str) -> Option<&'static Named> {
     ALL.iter().find(|named| named.name == name)
 }
 
 impl Named {
-    /// The palette itself.
+    /// The palette, for use.
     pub fn palette(&self) -> Palette {
         let place = match self.span {
             Span::Range => Position::Share,
@@ -480,7 +481,7 @@ impl Named {
         Palette { follows_relief: self.name == DEFAULT, ..Palette::new(self.name, stops) }
     }
 
-    /// The ends of its positions.
+    /// The ends of the scale of its positions.
     pub fn ends(&self) -> [f64; 2] {
         [self.stops.first(), self.stops.last()].map(|stop| stop.map_or(0.0, |stop| stop.0))
     }

@@ -1,8 +1,8 @@
-//! Colours by name, as palettes' files have them.
+//! Colours by name, as in palette files.
 
 use super::color::{Rgb, rgb};
 
-/// The names of CSS Color Module Level 4, in alphabetical order: those of X11 among them.
+/// The names of CSS Color Module Level 4, which include those of X11, in alphabetical order.
 const NAMES: [(&str, u32); 148] = [
     ("aliceblue", 0xf0f8ff),
     ("antiquewhite", 0xfaebd7),
@@ -154,10 +154,10 @@ const NAMES: [(&str, u32); 148] = [
     ("yellowgreen", 0x9acd32),
 ];
 
-/// What GDAL and GMT name beside them.
+/// Further names of GDAL and GMT.
 const OTHERS: [(&str, u32); 1] = [("violetred", 0xd02090)];
 
-/// The colour of a name, whatever its letters' case; `gray0` to `gray100` (or `grey`) are percents of white.
+/// The colour of a name, ignoring case; `gray0` to `gray100` (or `grey`) are percentages of white.
 pub fn named(name: &str) -> Option<Rgb> {
     let name = name.to_ascii_lowercase();
     let known = NAMES.iter().chain(&OTHERS).find(|(known, _)| *known == name).map(|(_, hex)| rgb(*hex));

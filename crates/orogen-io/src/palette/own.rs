@@ -1,4 +1,4 @@
-//! Palettes as TOML, written by hand.
+//! Palettes in TOML, for writing by hand.
 //!
 //! ```toml
 //! name = "Autumn"
@@ -26,10 +26,10 @@ struct File {
     missing: Option<String>,
 }
 
-/// Reads such a file.
+/// Parses a palette.
 ///
 /// # Errors
-/// With what is wrong, as a message.
+/// A message about what is wrong.
 pub fn parse(name: &str, text: &str) -> Result<Palette, String> {
     let file: File = toml::from_str(text).map_err(|cause| cause.to_string().trim_end().replace('\n', " "))?;
     let unit = file.unit.as_deref().unwrap_or("m");

@@ -1,4 +1,4 @@
-//! Palettes from files: the one list of the formats that are read.
+//! Palettes from files: the list of supported formats.
 
 use std::path::Path;
 
@@ -7,13 +7,14 @@ use super::{cpt, gdaldem, gpl, own};
 use crate::open;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-/// Larger than any palette.
+/// Maximum size of a palette file, in bytes.
 const MOST: u64 = 1 << 20;
 
-/// Reads a palette: GMT's `.cpt`, GIMP's `.gpl`, own stops as `.toml`, and whatever else as a colour file of `gdaldem`.
+/// Reads a palette: GMT's `.cpt`, GIMP's `.gpl`, our own `.toml`, and any other extension as a colour file of
+/// `gdaldem`.
 ///
 /// # Errors
-/// If the file cannot be read, or its text is none of these: with the line.
+/// If the file cannot be read, or cannot be parsed: the message contains the line.
 pub fn read(path: &Path) -> Result<Palette> {
     let refused =
         |why: String| Error::new(ErrorKind::File, format!("cannot read the palette {}: {why}", path.display()));
@@ -26,10 +27,10 @@ pub fn read(path: &Path) -> Result<Palette> {
     parse(&name, &extension, &text).map_err(refused)
 }
 
-/// The same of a text at hand: `extension` tells the format.
+/// [`read`] for a text in memory: `extension` determines the format.
 ///
 /// # Errors
-/// What is wrong with it, as a message.
+/// A message about what is wrong.
 pub fn parse(name: &str, extension: &str, text: &str) -> std::result::Result<Palette, String> {
     match extension {
         "cpt" => cpt::parse(name, text),

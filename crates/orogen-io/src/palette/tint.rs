@@ -1,4 +1,4 @@
-//! The tint of a map: the atlas's, or that of any palette.
+//! The tint of a map: the atlas tint, or any palette.
 
 use super::atlas::Atlas;
 use super::color::Light;
@@ -7,12 +7,12 @@ use super::palette::Palette;
 use crate::format::levels::Levels;
 use orogen_grid::grid::Grid;
 
-/// Which colour a height has.
+/// A mapping from heights to colours.
 #[derive(Debug, Clone)]
 pub struct Tint {
     colors: Colors,
     sea_level: f32,
-    /// Whether water is told from land by its colours.
+    /// Whether water is distinguished from land by colour.
     sea: bool,
 }
 
@@ -23,18 +23,18 @@ enum Colors {
 }
 
 impl Tint {
-    /// The atlas tint (`Atlas`) for a world between `low` and `high` with the sea at `sea_level`, all in metres.
+    /// The atlas tint (`Atlas`) for a world between `low` and `high` with the sea at `sea_level`, in metres.
     pub fn hypsometric(low: f32, high: f32, sea_level: f32) -> Tint {
         Tint { colors: Colors::Atlas(Atlas::new(low, high, sea_level)), sea_level, sea: true }
     }
 
-    /// The atlas tint that suits the heights of a grid.
+    /// The atlas tint fitted to the heights of a grid.
     pub fn fit(grid: &Grid, sea_level: f32) -> Tint {
         Tint { colors: Colors::Atlas(Atlas::fit(grid, sea_level)), sea_level, sea: true }
     }
 
-    /// The colours of a palette over the heights of a grid: those of its extremes are those of the palette, or, of one that names
-    /// heights, what it says. One that follows the relief is fitted to it.
+    /// A palette over the heights of a grid: its ends are the extremes of the grid, unless its positions are values.
+    /// The atlas tint is fitted to the relief.
     pub fn of(palette: &Palette, grid: &Grid, sea_level: f32) -> Tint {
         if palette.follows_relief {
             return Tint::fit(grid, sea_level);
@@ -43,7 +43,7 @@ impl Tint {
         Tint::between(palette, [levels.low(), levels.high()], sea_level)
     }
 
-    /// The colors of a palette between two heights, whatever lies between them: the same for every window of a world.
+    /// A palette between two heights, independent of a grid: the same for every window of a world.
     pub fn between(palette: &Palette, [low, high]: [f32; 2], sea_level: f32) -> Tint {
         if palette.follows_relief {
             return Tint::hypsometric(low, high, sea_level);
@@ -52,7 +52,7 @@ impl Tint {
         Tint { colors: Colors::Fitted(fitted), sea_level, sea: palette.has_sea() }
     }
 
-    /// Whether a height is under water.
+    /// Whether a height is below sea level.
     pub fn is_sea(&self, height: f32) -> bool {
         self.sea && height.is_finite() && height <= self.sea_level
     }

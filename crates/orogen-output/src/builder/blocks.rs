@@ -1,4 +1,4 @@
-//! Tiles that are made together: one window of the world, as large as memory and threads make worth while.
+//! Blocks of tiles that are made together, as large as memory allows and threads can use.
 
 use std::collections::BTreeSet;
 
@@ -8,25 +8,25 @@ use orogen_engine::world::World;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 
-/// How many tiles a thread should find in a block: fewer, and threads wait for each other at its end.
+/// Minimum number of tiles per thread in a block; with fewer, threads wait for each other at its end.
 const TILES_A_THREAD: usize = 4;
 
-/// How many tiles are made together, across and down.
+/// Number of tiles that are made together, across and down.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Block {
     /// Tiles across.
     pub columns: usize,
     /// Tiles down.
     pub rows: usize,
-    /// Bytes that making one takes at most.
+    /// Maximum memory for making a block, in bytes.
     pub memory: u64,
 }
 
 impl Block {
-    /// The largest block that memory allows, up to as many tiles as keep all threads busy.
+    /// The largest block within the memory limit, up to the number of tiles that keeps all threads busy.
     ///
     /// # Errors
-    /// If not even one tile can be made in the memory allowed, or the world does not have these samples.
+    /// If not even one tile fits in the memory limit, or the world does not have these samples.
     pub fn fitting(world: &World, target: &dyn BuildTarget, stage: Stage, layers: &[&str]) -> Result<Block> {
         let of = |columns: usize, rows: usize| -> Result<Block> {
             let memory = memory(world, target, layers, columns, rows)?;
@@ -41,7 +41,7 @@ impl Block {
         let enough = TILES_A_THREAD * world.threads();
         while block.columns * block.rows < enough {
             let (across, down) = ((2 * block.columns).min(stage.columns), (2 * block.rows).min(stage.rows));
-            // Wide rather than tall: rows are what programs run along.
+            // Wide rather than tall, because programs run along rows.
             let larger = if block.columns <= block.rows && across > block.columns || down == block.rows {
                 of(across, block.rows)?
             } else {
@@ -55,7 +55,7 @@ impl Block {
         Ok(block)
     }
 
-    /// The tiles that are wanted, in groups that are made together.
+    /// The requested tiles, grouped by block.
     pub fn groups(&self, wanted: &BTreeSet<(usize, usize)>, stage: Stage) -> Vec<Vec<(usize, usize)>> {
         let mut groups = Vec::new();
         for top in (0..stage.rows).step_by(self.rows) {
@@ -66,7 +66,7 @@ impl Block {
                 if some.len() == (bottom - top) * (right - left) {
                     groups.push(some);
                 } else {
-                    // What is left of a block is made one by one, so that nothing is made twice.
+                    // The rest of a partial block is made tile by tile, so that nothing is computed twice.
                     groups.extend(some.into_iter().map(|tile| vec![tile]));
                 }
             }
@@ -75,17 +75,17 @@ impl Block {
     }
 }
 
-/// Bytes that making so many tiles together takes.
+/// Memory for making this many tiles together, in bytes.
 fn memory(world: &World, target: &dyn BuildTarget, layers: &[&str], columns: usize, rows: usize) -> Result<u64> {
     let window = union(target, (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))));
     let Some(window) = window else { return Ok(0) };
     let plan = world.memory_of(&world.plan(layers, &window)?);
-    // Beside the block: for each thread a tile cut out of it, and what is made of that.
+    // Beside the block: for each thread a tile cut out of it, and its encoding.
     let tile = target.window(0, 0).len() as u64 * 4 + target.scratch_memory();
     Ok(plan.saturating_add(tile.saturating_mul((layers.len() * world.threads()) as u64)))
 }
 
-/// The window that holds all of these tiles' windows.
+/// The window that contains the windows of all these tiles.
 pub fn union(target: &dyn BuildTarget, tiles: impl Iterator<Item = (usize, usize)>) -> Option<Window> {
     tiles.map(|(row, column)| target.window(row, column)).reduce(|all, tile| all.union(&tile))
 }

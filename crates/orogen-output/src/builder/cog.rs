@@ -1,6 +1,6 @@
-//! One Cloud-Optimised GeoTIFF: packed tiles and coarser samples wait beside it until all are there.
+//! A Cloud-Optimised GeoTIFF: compressed tiles and coarser samples are kept beside it until all exist.
 //!
-//! Its bytes are those of [`orogen_io::format::geotiff::writer`] for the same samples.
+//! Its bytes equal those of [`orogen_io::format::geotiff::writer`] for the same samples.
 
 use std::io;
 use std::ops::Range;
@@ -19,13 +19,13 @@ use orogen_io::format::geotiff::overview::{Below, Span, half, reduce};
 use orogen_io::format::geotiff::pyramid::Pyramid;
 use orogen_io::format::geotiff::tile::pack;
 
-/// The file. Each level is a stage; a job packs its tile and makes its part of the next level.
+/// The file. Each level is a stage; a job compresses its tile and computes its part of the next level.
 pub struct Cog {
     window: Window,
     pyramid: Pyramid,
 }
 
-/// One side of a level's raster: so many samples, cut into tiles.
+/// One side of a level's raster: a number of samples, split into tiles.
 #[derive(Debug, Clone, Copy)]
 struct Side {
     samples: usize,
@@ -33,26 +33,26 @@ struct Side {
 }
 
 impl Side {
-    /// The samples of a tile.
+    /// The samples of tile `n`.
     fn tile(self, n: usize) -> Range<usize> {
         n * self.tile..((n + 1) * self.tile).min(self.samples)
     }
 
-    /// The samples of the next level that a tile makes: those under which the first sample is the tile's.
+    /// The samples of the next level that a tile computes: those whose first source sample belongs to the tile.
     fn makes(self, n: usize) -> Range<usize> {
         let Range { start, end } = self.tile(n);
         let first = |sample: usize| (sample * half(self.samples)).div_ceil(self.samples);
         first(start)..first(end)
     }
 
-    /// The samples that a tile needs: its own, and where sides are odd a few more for the next level.
+    /// The samples that a tile needs: its own and, for odd sides, a few more for the next level.
     fn needs(self, n: usize) -> Range<usize> {
         let (own, makes) = (self.tile(n), self.makes(n));
         let end = makes.clone().last().map_or(own.end, |last| Span::of(last, self.samples).end().max(own.end));
         own.start..end
     }
 
-    /// The tiles that make samples of the next level.
+    /// The tiles that compute these samples of the next level.
     fn makers(self, next: &Range<usize>) -> Range<usize> {
         let maker = |sample: usize| Span::of(sample, self.samples).first / self.tile;
         maker(next.start)..maker(next.end - 1) + 1
@@ -76,7 +76,7 @@ impl Part {
         out
     }
 
-    /// Copies what of `other` lies in it.
+    /// Copies the overlapping part of `other`.
     fn paste(&mut self, other: &Part) {
         let within =
             |ours: &Range<usize>, theirs: &Range<usize>| ours.start.max(theirs.start)..ours.end.min(theirs.end);
@@ -93,24 +93,24 @@ impl Part {
 }
 
 impl Cog {
-    /// Of a build.
+    /// The target of a build.
     ///
     /// # Errors
-    /// If no GeoTIFF can have such sides or tiles.
+    /// If a GeoTIFF cannot have these sides or tiles.
     pub fn new(identity: &Identity) -> Result<Cog> {
         let options = Options { tile: Some(identity.tile), map: identity.map.clone(), ..Options::default() };
         Ok(Cog { window: identity.window, pyramid: pyramid(&identity.window, &options)? })
     }
 
-    /// The side of a tile if nobody says.
+    /// The default side of a tile.
     ///
     /// # Errors
-    /// If no GeoTIFF can have such sides.
+    /// If a GeoTIFF cannot have these sides.
     pub fn usual_tile(window: &Window) -> Result<usize> {
         Ok(pyramid(window, &Options::default())?.tile())
     }
 
-    /// Across and down.
+    /// The sides of a level, across and down.
     fn sides(&self, level: usize) -> [Side; 2] {
         self.pyramid.sizes()[level].map(|samples| Side { samples, tile: self.pyramid.tile() })
     }
@@ -135,7 +135,7 @@ impl Cog {
         JobFile::Scratch(format!("coarser/{}/{}/{}", job.stage, job.row, job.column).into())
     }
 
-    /// The part of a level that a job needs, from what the jobs of the level before have made of it.
+    /// The part of a level that a job needs, collected from the jobs of the previous level.
     fn gather(&self, job: Job, store: &OutputStore) -> Result<Part> {
         let [columns, rows] = self.needs(job);
         let mut part = Part { samples: vec![0.0; columns.len() * rows.len()], columns, rows };
@@ -148,7 +148,7 @@ impl Cog {
         Ok(part)
     }
 
-    /// What a job makes of the next level.
+    /// The part of the next level that a job computes.
     fn reduce(&self, job: Job, part: &Part) -> Vec<f32> {
         let [across, down] = self.sides(job.stage);
         let (columns, rows) = (across.makes(job.column), down.makes(job.row));
@@ -256,7 +256,7 @@ impl BuildTarget for Cog {
     }
 
     fn scratch_memory(&self) -> u64 {
-        // The part with its margin, the tile cut out, filtered, packed, and the next level's.
+        // The part with its margin, the tile, the filtered and the compressed tile, and the part of the next level.
         24 * (self.pyramid.tile() * self.pyramid.tile()) as u64
     }
 
@@ -264,7 +264,7 @@ impl BuildTarget for Cog {
         let tile = 4 * (self.pyramid.tile() * self.pyramid.tile()) as u64;
         let tiles: u64 = self.stages().iter().map(|stage| stage.len() as u64).sum();
         let coarser: u64 = self.pyramid.sizes().iter().skip(1).map(|[w, h]| 4 * (w * h) as u64).sum();
-        // What deflate cannot pack it leaves as it is, in blocks with a few bytes around.
+        // Incompressible data is stored by deflate in blocks with a small overhead.
         let packed = tiles * (tile + tile / 1024 + 64);
         Disk { result: packed + 24 * tiles + (1 << 16), scratch: packed + coarser }
     }

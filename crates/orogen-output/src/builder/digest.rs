@@ -1,4 +1,4 @@
-//! A file and its checksum.
+//! Length and checksum of a file.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -6,10 +6,10 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-/// How many bytes of a file are read at a time.
+/// Bytes of a file that are read at a time.
 const BUFFER: usize = 1 << 20;
 
-/// What is known of a file that was written: enough to tell whether it still is what it was.
+/// Length and checksum of a written file, to detect changes.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileDigest {
     /// Its length in bytes.
@@ -19,12 +19,12 @@ pub struct FileDigest {
 }
 
 impl FileDigest {
-    /// Of these bytes.
+    /// The digest of these bytes.
     pub fn of(bytes: &[u8]) -> FileDigest {
         FileDigest { length: bytes.len() as u64, sha256: digits(&Sha256::digest(bytes)) }
     }
 
-    /// Of the file at `path`, as far as it can be read.
+    /// The digest of the file at `path`.
     pub fn of_file(path: &Path) -> io::Result<FileDigest> {
         let mut file = File::open(path)?;
         let (mut hash, mut length) = (Sha256::new(), 0);
@@ -41,14 +41,14 @@ impl FileDigest {
         }
     }
 
-    /// Whether the file at `path` is this one. One that cannot be read is not.
+    /// Whether the file at `path` has this digest; false if it cannot be read.
     pub fn is_at(&self, path: &Path) -> bool {
         std::fs::metadata(path).is_ok_and(|there| there.is_file() && there.len() == self.length)
             && FileDigest::of_file(path).is_ok_and(|digest| digest == *self)
     }
 }
 
-/// A writer that knows in the end what was written.
+/// A writer that computes the digest of the written bytes.
 pub struct Measured<W> {
     inner: W,
     hash: Sha256,
@@ -56,12 +56,12 @@ pub struct Measured<W> {
 }
 
 impl<W: Write> Measured<W> {
-    /// Around a writer that has got nothing yet.
+    /// Wraps a writer that has received nothing yet.
     pub fn new(inner: W) -> Measured<W> {
         Measured { inner, hash: Sha256::new(), length: 0 }
     }
 
-    /// The writer, and what it got.
+    /// The writer, and the digest.
     pub fn end(self) -> (W, FileDigest) {
         (self.inner, FileDigest { length: self.length, sha256: digits(&self.hash.finalize()) })
     }
@@ -80,7 +80,7 @@ impl<W: Write> Write for Measured<W> {
     }
 }
 
-/// Bytes in hexadecimal.
+/// Bytes as hexadecimal digits.
 pub fn digits(bytes: &[u8]) -> String {
     use std::fmt::Write as _;
     bytes.iter().fold(String::with_capacity(2 * bytes.len()), |mut text, byte| {

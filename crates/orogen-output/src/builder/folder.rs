@@ -1,4 +1,4 @@
-//! A folder of tiles that share their edges, with a manifest that says how to place and scale them.
+//! A folder of tiles that share their edges, with a manifest of their positions and scale.
 
 use std::io;
 use std::path::PathBuf;
@@ -18,14 +18,14 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_io::format::levels::Levels;
 use orogen_io::format::png::{self, Picture, Pixel};
 
-/// What says how to place and scale the tiles.
+/// The manifest.
 const MANIFEST: &str = "manifest.json";
 
-/// The largest side of a tile.
+/// Maximum side of a tile, in samples.
 const LARGEST: usize = 16_384;
 
-/// The tiles. Whole numbers need the range of the whole window first, so samples wait as they are in one stage and become numbers in
-/// a second.
+/// The target. Integer formats need the range of the whole window first: one stage stores the samples as floats, and a
+/// second one converts them.
 pub struct Folder {
     identity: Identity,
     samples: Samples,
@@ -35,10 +35,10 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// Of a build.
+    /// The target of a build.
     ///
     /// # Errors
-    /// If no tile can have such a side.
+    /// If tiles cannot have such a side.
     pub fn new(identity: &Identity, samples: Samples, about: &str, sea_level: f64) -> Result<Folder> {
         if !(2..=LARGEST).contains(&identity.tile) {
             let message = format!(
@@ -60,7 +60,7 @@ impl Folder {
         format!("{layer}_x{column}_y{row}.{}", Form::Tiles(self.samples).name())
     }
 
-    /// Whether samples become whole numbers over the range of the whole window.
+    /// Whether samples are converted to integers over the range of the whole window.
     fn scales(&self) -> bool {
         self.samples != Samples::R32
     }
@@ -70,7 +70,7 @@ impl Folder {
         layers.map(move |layer| JobFile::Scratch(format!("samples/{layer}/{}/{}", job.row, job.column).into()))
     }
 
-    /// What of a layer is spread over all numbers.
+    /// The range of a layer that is mapped to all levels.
     fn levels(store: &OutputStore, layer: usize) -> Levels {
         let [low, high] = store.range(layer).unwrap_or([0.0; 2]);
         Levels::new(low, high)
@@ -225,7 +225,7 @@ impl BuildTarget for Folder {
         let manifest = 512 * tiles + (1 << 16);
         match self.samples {
             Samples::R32 => Disk { result: 4 * samples + manifest, scratch: 0 },
-            // What PNG cannot pack takes a byte a row and a little around it more.
+            // Incompressible data takes one more byte per row in PNG, and a small overhead.
             _ => Disk {
                 result: 2 * samples + tiles * (2 * self.identity.tile as u64 + 1024) + manifest,
                 scratch: 4 * samples,

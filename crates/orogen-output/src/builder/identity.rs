@@ -1,4 +1,4 @@
-//! What tells one build from another: everything its bytes depend on.
+//! The identity of a build: everything that its bytes depend on.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,30 +11,30 @@ use orogen_grid::words;
 use orogen_io::format::dem::Georeference;
 use sha2::{Digest, Sha256};
 
-/// Everything that the bytes of a result depend on. How it is worked on (threads, memory) is no part of it.
+/// Everything that the bytes of a result depend on. Threads and memory are not part of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Identity {
-    /// The program's version: another one may make other terrain, or lay out files otherwise.
+    /// The program's version, because other versions may make other terrain or files.
     pub version: String,
-    /// What is made: "cog", "zarr", ...
+    /// The form of the result: "cog", "zarr", ...
     pub form: String,
-    /// SHA-256 over what the layers are made by, in hexadecimal digits. Names of nodes and comments do not enter it.
+    /// SHA-256 over the nodes of the layers, in hexadecimal digits. Names of nodes and comments are not included.
     pub recipe: String,
     /// The layers.
     pub layers: Vec<String>,
     /// The unit of each layer, or empty.
     pub units: Vec<String>,
-    /// The samples.
+    /// The window.
     pub window: Window,
-    /// Samples along a tile's side.
+    /// Side of a tile, in samples.
     pub tile: usize,
-    /// How metres lie on a map, if a real place is part of the world.
+    /// The position of metres on a map, if the world has one.
     #[serde(default)]
     pub map: Option<Georeference>,
 }
 
 impl Identity {
-    /// Of an order whose tile is settled.
+    /// The identity of a build with a known tile.
     ///
     /// # Errors
     /// If the world has no such layer.
@@ -57,7 +57,7 @@ impl Identity {
         })
     }
 
-    /// What `begun` has that this one has not, in words that follow "it was begun"; none if they are the same.
+    /// What `begun` has that this one has not, as text to follow "it was begun"; `None` if they are the same.
     pub fn difference(&self, begun: &Identity) -> Option<String> {
         let window = |window: &Window| {
             let Window { x, y, width, height, cell } = window;

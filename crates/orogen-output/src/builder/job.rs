@@ -1,4 +1,4 @@
-//! What a build is cut into.
+//! Jobs and stages of a build.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use super::digest::FileDigest;
 /// One tile of one stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Job {
-    /// The stage, from 0: it reads only what the stage before it made.
+    /// The stage, from 0: it reads only results of the previous stage.
     pub stage: usize,
     /// The tile's row, from the north.
     pub row: usize,
@@ -15,19 +15,19 @@ pub struct Job {
     pub column: usize,
 }
 
-/// Jobs that may be done in any order.
+/// Jobs that may run in any order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stage {
-    /// Rows of tiles.
+    /// Number of rows of tiles.
     pub rows: usize,
-    /// Tiles a row.
+    /// Number of tiles per row.
     pub columns: usize,
-    /// Samples that a tile has: what progress is counted in.
+    /// Samples per tile, the unit of progress.
     pub samples: usize,
 }
 
 impl Stage {
-    /// How many jobs it has.
+    /// Number of jobs.
     pub fn len(&self) -> usize {
         self.rows * self.columns
     }
@@ -38,23 +38,23 @@ impl Stage {
 pub enum JobFile {
     /// Part of the result: a path within it.
     Result(PathBuf),
-    /// Needed on the way, and gone in the end: a path within the scratch folder.
+    /// A temporary file: a path within the scratch folder.
     Scratch(PathBuf),
 }
 
-/// What a job made.
+/// The output of a job.
 #[derive(Debug, Default)]
 pub struct Made {
-    /// The bytes of each of its files, in the order of its places.
+    /// The content of each of its files, in the order of its places.
     pub files: Vec<Vec<u8>>,
-    /// The lowest and highest finite sample of each layer, where somebody needs them later.
+    /// Minimum and maximum finite sample of each layer, if they are needed later.
     pub ranges: Vec<[f32; 2]>,
 }
 
-/// What the journal knows of a job that was done.
+/// The journal's record of a completed job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
-    /// Its files.
+    /// The digests of its files.
     pub digests: Vec<FileDigest>,
     /// As in [`Made`].
     pub ranges: Vec<[f32; 2]>,

@@ -1,4 +1,4 @@
-//! What has been made so far, line by line.
+//! The journal of a build, one line per entry.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
@@ -13,46 +13,45 @@ use super::identity::Identity;
 use super::job::{Job, Record};
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-/// One line: JSON, a tab and the start of the JSON's SHA-256, so that a line cut short or damaged is told from a whole one.
+/// A line: JSON, a tab and the first digits of the JSON's SHA-256, so that truncated and damaged lines are detected.
 #[derive(Debug, Serialize, Deserialize)]
 enum Line {
     /// The first line.
     #[serde(rename = "build")]
     Begun(Identity),
-    /// A job that was done: stage, row, column; length and checksum of each file; ranges as the bits of two f32, which are not
-    /// always numbers.
+    /// A completed job: stage, row, column; length and checksum of each file; ranges as the bits of two f32, which may
+    /// be infinite.
     #[serde(rename = "tile")]
     Done([usize; 3], Vec<(u64, String)>, Vec<[u32; 2]>),
-    /// All is done; the files that belong to no tile, by their paths within the result.
+    /// The build is complete; the files that belong to no tile, by their paths within the result.
     #[serde(rename = "finished")]
     Finished(Vec<(PathBuf, u64, String)>),
 }
 
-/// How many of the digits of a line's SHA-256 stand behind it.
+/// Number of digits of the SHA-256 in a line.
 const CHECK: usize = 16;
 
-/// What a journal says.
+/// The content of a journal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JournalState {
-    /// What is built.
+    /// The identity of the build.
     pub identity: Identity,
-    /// What was done.
+    /// The completed jobs.
     pub records: BTreeMap<Job, Record>,
-    /// If all is done: the files that belong to no tile.
+    /// If the build is complete: the files that belong to no tile.
     pub finished: Option<Vec<(PathBuf, FileDigest)>>,
 }
 
 impl JournalState {
-    /// Of a build that has just begun.
+    /// The state of a new build.
     pub fn begun(identity: Identity) -> JournalState {
         JournalState { identity, records: BTreeMap::new(), finished: None }
     }
 
-    /// Reads the journal at `path`; `None` if there is none. Lines that are damaged or cut short are as if they were not there,
-    /// but for the first.
+    /// Reads the journal at `path`; `None` if there is none. Damaged or truncated lines after the first are ignored.
     ///
     /// # Errors
-    /// If it cannot be read, or does not begin as a journal does.
+    /// If it cannot be read, or its first line is not that of a journal.
     pub fn read(path: &Path) -> Result<Option<JournalState>> {
         let bytes = match fs::read(path) {
             Ok(bytes) => bytes,
@@ -114,7 +113,7 @@ fn parse(line: &[u8]) -> Option<Line> {
     (check.strip_prefix(b"\t")? == &expect.as_bytes()[..CHECK]).then(|| serde_json::from_slice(json).ok())?
 }
 
-/// A journal that is being written.
+/// A journal that is open for writing.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
@@ -122,8 +121,8 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Writes a journal of `state`, replaces the one that may be there, and appends from then on. `temporary` names a file beside it that no other process
-    /// uses.
+    /// Writes a journal of `state` that replaces an existing one, and opens it for appending. `temporary` is a file
+    /// beside it that no other process uses.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -143,7 +142,7 @@ impl Journal {
         Ok(Journal { path: path.to_path_buf(), file: Mutex::new(file) })
     }
 
-    /// Enters a job that was done, from any thread.
+    /// Records a completed job, from any thread.
     ///
     /// # Errors
     /// If it cannot be written.

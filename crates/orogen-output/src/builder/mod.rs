@@ -1,17 +1,18 @@
-//! Worlds larger than memory, built tile by tile into files, and never lost.
+//! Builds of worlds larger than memory, tile by tile, which can be resumed after any interruption.
 //!
-//! An [`spec::BuildSpec`] says what is wanted: which window, which layers, as what. A [`run::Build`] makes it: tile after tile, each
-//! written whole and entered with its checksum into a journal. Whatever interrupts it (a kill, a full disk, a power cut), the same
-//! order resumed keeps the tiles that are sound, makes the others and ends with the same bytes as if nothing had happened.
+//! A [`spec::BuildSpec`] states the window, the layers and the form of the result. A [`run::Build`] makes it tile by
+//! tile; each tile is written atomically and recorded with its checksum in a journal. After any interruption (a kill, a
+//! full disk, a power cut), a resumed build keeps the intact tiles, makes the others and ends with the same bytes as an
+//! uninterrupted one.
 //!
-//! **What lies where.** Tiles that are files of the result go to their place at once. What is needed only on the way (packed tiles of
-//! a file that is put together at the end, coarser samples) lies in a folder beside the result, `OUT.build`, together with the
-//! journal and a lock. When all is done, only the journal is left there: with it a later resume can tell whether the result is
-//! still sound, and make again what is not.
+//! **Files.** Tiles that are files of the result are written to their final place. Temporary files (compressed tiles of
+//! a file that is assembled at the end, coarser samples) are in a folder beside the result, `OUT.build`, with the
+//! journal and a lock. After completion only the journal remains there; a later resume uses it to check whether the
+//! result is still intact, and to make damaged parts again.
 //!
-//! **What makes it safe.** Nothing is believed that was not checked: a tile counts as made if the journal has an entry for it *and* the
-//! file has the length and SHA-256 of that entry. So files need not be synced one by one; what a power cut has taken is found and made
-//! again. All is synced once, before the result is declared finished.
+//! **Safety.** A tile counts as complete only if the journal has an entry for it *and* the file has the length and
+//! SHA-256 of that entry. Files therefore need not be synced one by one: those lost in a power cut are detected and
+//! made again. All files are synced once before the result is declared complete.
 
 mod blocks;
 mod cog;

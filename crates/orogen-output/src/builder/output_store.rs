@@ -1,4 +1,4 @@
-//! The files of a build: put in their places, found again, known by their checksums.
+//! The files of a build, written and verified by checksum.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -14,13 +14,13 @@ use super::work_dir::WorkDir;
 use orogen_grid::error::{Error, Result};
 use orogen_io::file;
 
-/// Bytes gathered before they are written to a file that is put together.
+/// Buffer size for an assembled file, in bytes.
 const BUFFER: usize = 1 << 20;
 
-/// Puts the bytes of a file into it. The tests put a disk that fills up in its place.
+/// Writes the content of a file. Tests replace it to simulate a full disk.
 pub type Put = dyn Fn(&Path, &[u8]) -> io::Result<()> + Send + Sync;
 
-/// The files that were made, and the journal that knows of them.
+/// The files of a build and its journal.
 pub struct OutputStore<'a> {
     work_dir: &'a WorkDir,
     journal: Journal,
@@ -30,7 +30,7 @@ pub struct OutputStore<'a> {
 }
 
 impl<'a> OutputStore<'a> {
-    /// What `records` tell of, and what will be made.
+    /// From the records of completed jobs.
     pub fn new(
         work_dir: &'a WorkDir,
         journal: Journal,
@@ -40,7 +40,7 @@ impl<'a> OutputStore<'a> {
         OutputStore { work_dir, journal, records: Mutex::new(records), count: AtomicU64::new(0), put }
     }
 
-    /// Puts the files of a job into their places and enters them into the journal.
+    /// Writes the files of a job and records them in the journal.
     ///
     /// # Errors
     /// If they cannot be written.
@@ -55,7 +55,7 @@ impl<'a> OutputStore<'a> {
         Ok(())
     }
 
-    /// Puts one file into its place, whole.
+    /// Writes one file atomically.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -70,10 +70,10 @@ impl<'a> OutputStore<'a> {
         Ok(FileDigest::of(bytes))
     }
 
-    /// Puts together the result that is one file: `body` writes it; it takes its place when it is whole and synced.
+    /// Assembles a result that is a single file: `body` writes it; it is synced and then put in place.
     ///
     /// # Errors
-    /// If it cannot be written, or as `body` does.
+    /// If it cannot be written, or `body` fails.
     pub fn assemble(&self, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<FileDigest> {
         let (path, temporary) = (self.work_dir.out(), self.temporary());
         let put = || -> io::Result<FileDigest> {
@@ -81,7 +81,7 @@ impl<'a> OutputStore<'a> {
             body(&mut out)?;
             let (file, digest) = out.into_inner().map_err(io::IntoInnerError::into_error)?.end();
             if let Ok(there) = fs::metadata(path) {
-                // Some file systems have no permissions to keep; the file matters more.
+                // Some file systems do not support permissions; that is no reason to fail.
                 let _ = file.set_permissions(there.permissions());
             }
             file.sync_all()?;
@@ -105,17 +105,17 @@ impl<'a> OutputStore<'a> {
         Ok(())
     }
 
-    /// Where a file of a job is.
+    /// The path of a file of a job.
     pub fn path(&self, place: &JobFile) -> PathBuf {
         self.work_dir.path(place)
     }
 
-    /// What is known of a job that was done.
+    /// The record of a completed job.
     pub fn record(&self, job: Job) -> Option<Record> {
         self.records.lock().unwrap_or_else(PoisonError::into_inner).get(&job).cloned()
     }
 
-    /// The lowest and highest finite sample of a layer, over all jobs that tell; none if no sample is finite.
+    /// Minimum and maximum finite sample of a layer, over all jobs with ranges; `None` if no sample is finite.
     pub fn range(&self, layer: usize) -> Option<[f32; 2]> {
         let records = self.records.lock().unwrap_or_else(PoisonError::into_inner);
         let ranges = records.values().filter_map(|record| record.ranges.get(layer));
@@ -124,7 +124,7 @@ impl<'a> OutputStore<'a> {
         (low <= high).then_some([low, high])
     }
 
-    /// All that is known.
+    /// All records.
     pub fn into_records(self) -> BTreeMap<Job, Record> {
         self.records.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
@@ -139,7 +139,7 @@ pub fn put(path: &Path, bytes: &[u8]) -> io::Result<()> {
     File::create(path)?.write_all(bytes)
 }
 
-/// Puts a file into its place, whose folder may have to be made first.
+/// Moves a file to its place; creates the folder if needed.
 fn settle(temporary: &Path, path: &Path) -> io::Result<()> {
     match fs::rename(temporary, path) {
         Err(cause) if cause.kind() == io::ErrorKind::NotFound => {

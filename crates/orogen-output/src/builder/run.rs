@@ -1,4 +1,4 @@
-//! Builds what is ordered.
+//! Running a build.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -26,38 +26,38 @@ use orogen_grid::grid::Grid;
 use orogen_grid::progress::Progress;
 use orogen_io::file::Output;
 
-/// What to do with what is there already.
+/// Treatment of existing results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Start {
-    /// Nothing may be there.
+    /// There must be no existing result.
     Fresh,
-    /// Go on with the same build, if it was begun: what is sound is kept.
+    /// Continue the same build, if it was started, and keep intact tiles.
     Resume,
-    /// Begin anew, over what a build has left there.
+    /// Start again, replacing the files of an earlier build.
     Force,
 }
 
-/// Nanoseconds that a sample takes to be packed and written, about.
+/// Approximate time for compressing and writing a sample, in nanoseconds.
 const PACKING: f64 = 15.0;
 
-/// What has been done.
+/// Statistics of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
-    /// Tiles that were made now, those of overviews and lower zooms among them.
+    /// Tiles made in this run, including those of overviews and lower zooms.
     pub made: usize,
-    /// Tiles that were there and sound.
+    /// Tiles that existed and were intact.
     pub kept: usize,
-    /// How many of those that were there had to be computed again, because others are made of them.
+    /// Existing tiles that were computed again because others are derived from them.
     pub again: usize,
-    /// The samples computed now, of all layers.
+    /// The count of samples computed in this run, over all layers.
     pub samples: FiniteCount,
-    /// Files in the result's folder that no build has made, by their paths within it: they were left as they are.
+    /// Files in the result's folder that no build has made, by their paths within it; they were kept.
     pub foreign: Vec<PathBuf>,
-    /// Bytes of the result's tiles, or of the one file that it is.
+    /// Size of the result's tiles, or of the single file, in bytes.
     pub bytes: u64,
 }
 
-/// A build: an order that can be met, about to be carried out.
+/// A checked build, ready to run.
 ///
 /// ```
 /// use orogen_output::builder::run::{Build, Start};
@@ -84,15 +84,16 @@ pub struct Build<'a> {
     stages: Vec<Stage>,
     block: Block,
     work_dir: WorkDir,
-    /// How files are written.
+    /// The function that writes files.
     pub(super) put: Box<Put>,
 }
 
 impl<'a> Build<'a> {
-    /// Makes sure that an order can be met. Nothing is written yet.
+    /// Checks that the build is possible. Nothing is written.
     ///
     /// # Errors
-    /// If the order or its place is impossible, the world does not have these samples, or one tile needs more memory than allowed.
+    /// If the specification or the path is invalid, the world does not have these samples, or one tile needs more
+    /// memory than allowed.
     pub fn new(world: &'a World, spec: &BuildSpec, output: &Output) -> Result<Build<'a>> {
         spec.check()?;
         let tile = match spec.tile.or(spec.form.usual_tile()) {
@@ -101,7 +102,7 @@ impl<'a> Build<'a> {
         };
         let identity = Identity::of(world, spec, tile)?;
         let layers: Vec<&str> = spec.layers.iter().map(String::as_str).collect();
-        // Refuses a window that is none, before it is cut.
+        // Rejects invalid windows first.
         world.plan(&layers, &spec.window)?;
         let target = target(world, &identity, spec.form)?;
         let stages = target.stages();
@@ -110,12 +111,12 @@ impl<'a> Build<'a> {
         Ok(Build { world, identity, target, stages, block, work_dir, put: Box::new(put) })
     }
 
-    /// Bytes of memory that it takes at most.
+    /// Maximum memory, in bytes.
     pub fn memory(&self) -> u64 {
         self.block.memory
     }
 
-    /// Bytes on disk that it takes at most, and how many of them are there already.
+    /// Maximum disk space, and the number of bytes that exist already.
     pub fn disk(&self) -> (Disk, u64) {
         let there = match JournalState::read(&self.work_dir.journal()) {
             Ok(Some(state)) => {
@@ -126,22 +127,22 @@ impl<'a> Build<'a> {
         (self.target.disk(), there)
     }
 
-    /// How many tiles it has, and how many samples in all, those of overviews and lower zooms among them.
+    /// Number of tiles and of samples, including those of overviews and lower zooms.
     pub fn tiles(&self) -> (usize, u64) {
         let samples = self.stages.iter().map(|stage| stage.len() as u64 * stage.samples as u64).sum();
         (self.stages.iter().map(Stage::len).sum(), samples)
     }
 
-    /// The folder that holds the journal, and, until the build is finished, what it needs on the way.
+    /// The folder with the journal and, until the build is complete, temporary files.
     pub fn beside(&self) -> &Path {
         self.work_dir.beside()
     }
 
-    /// Builds.
+    /// Runs the build.
     ///
     /// # Errors
-    /// If something is there that `start` does not allow for, another build is at work there, a file cannot be written, or the work
-    /// is cancelled. After any of these, and after a kill, [`Start::Resume`] goes on.
+    /// If `start` does not allow for an existing result, another build is running there, a file cannot be written, or
+    /// the work is cancelled. After any of these, and after a kill, [`Start::Resume`] continues.
     pub fn run(&self, start: Start, progress: &Progress) -> Result<Report> {
         let mut held = self.work_dir.hold()?;
         let (state, sound, foreign) = self.begin(start, progress)?;
@@ -163,7 +164,7 @@ impl<'a> Build<'a> {
         progress.check()?;
         for (n, layer) in self.identity.layers.iter().enumerate() {
             if store.range(n).is_none() {
-                // Also if all of it was there already: then nothing was counted now.
+                // Also if all tiles existed: then nothing was counted in this run.
                 FiniteCount { samples: samples.samples.max(1), finite: 0 }.check(&format!("the layer `{layer}`"))?;
             }
         }
@@ -172,7 +173,7 @@ impl<'a> Build<'a> {
         Ok(Report { made, kept, again, samples, foreign, bytes })
     }
 
-    /// What is known of the build, and which of its jobs' files are as they should be.
+    /// The state of the build, and the jobs whose files are intact.
     fn begin(&self, start: Start, progress: &Progress) -> Result<(JournalState, BTreeSet<Job>, Vec<PathBuf>)> {
         let mut foreign = Vec::new();
         let state = match (start, JournalState::read(&self.work_dir.journal())) {
@@ -212,16 +213,17 @@ impl<'a> Build<'a> {
         }
     }
 
-    /// Removes the files of the build before, whose journal says what it was. Returns those that are no build's, which stay.
+    /// Removes the files of the previous build, as described by its journal. Returns files that no build has made,
+    /// which stay.
     fn clear(&self, before: Option<&Identity>, known: bool) -> Result<Vec<PathBuf>> {
         let new = paths(self.target.as_ref());
-        // Without a journal that tells, only what would be written anew is a build's own.
+        // Without a readable journal, only files that would be written again count as a build's own.
         let old = before.and_then(|before| target(self.world, before, Form::named(&before.form)?).ok());
         let old = old.map_or_else(|| new.clone(), |target| paths(target.as_ref()));
         self.work_dir.clear(known, &old, &new)
     }
 
-    /// The jobs whose files are all there and what they were.
+    /// The jobs whose files all exist and are unchanged.
     fn sound(&self, state: &JournalState, progress: &Progress) -> Result<BTreeSet<Job>> {
         let records: Vec<(&Job, &Record)> = state.records.iter().collect();
         let checked = records.into_par_iter().map(|(job, record)| {
@@ -230,7 +232,7 @@ impl<'a> Build<'a> {
             let places = if stage.is_some() { self.target.places(*job) } else { Vec::new() };
             let as_many = !places.is_empty() && places.len() == record.digests.len();
             let same = |(place, digest): (&JobFile, &FileDigest)| match (place, &state.finished) {
-                // What was needed on the way is gone, and not missed.
+                // Temporary files may be gone.
                 (JobFile::Scratch(_), Some(_)) => true,
                 _ => digest.is_at(&self.work_dir.path(place)),
             };
@@ -239,7 +241,7 @@ impl<'a> Build<'a> {
         Ok(checked.collect::<Result<Vec<Option<Job>>>>()?.into_iter().flatten().collect())
     }
 
-    /// If all is there and sound: what there is.
+    /// The report, if everything exists and is intact.
     fn is_finished(&self, state: &JournalState, sound: &BTreeSet<Job>) -> Option<Report> {
         let finished = state.finished.as_ref()?;
         let whole = finished.iter().all(|(path, digest)| digest.is_at(&self.work_dir.result(path)));
@@ -254,7 +256,7 @@ impl<'a> Build<'a> {
         })
     }
 
-    /// The jobs that have to be done: those whose part of the result is not there, and those that others need and that are not there.
+    /// The jobs to run: those whose part of the result is missing, and missing ones that others need.
     fn wanted(&self, sound: &BTreeSet<Job>) -> BTreeSet<Job> {
         let mut wanted = BTreeSet::new();
         for (stage, Stage { rows, columns, .. }) in self.stages.iter().enumerate().rev() {
@@ -269,7 +271,7 @@ impl<'a> Build<'a> {
                 let needed = read.contains(&job)
                     || self.target.assembles()
                     || places.iter().any(|place| matches!(place, JobFile::Result(_)));
-                // After the end, scratch counts as sound while nobody reads it.
+                // After completion, temporary files count as intact unless a job reads them.
                 let there = sound.contains(&job)
                     && (!read.contains(&job)
                         || places
@@ -283,7 +285,7 @@ impl<'a> Build<'a> {
         wanted
     }
 
-    /// Does the jobs, stage after stage. Returns how many of the samples are finite.
+    /// Runs the jobs, stage by stage. Returns the count of finite samples.
     fn make(&self, wanted: &BTreeSet<Job>, store: &OutputStore, progress: &Progress) -> Result<FiniteCount> {
         let mut count = FiniteCount::default();
         let samples = |stage: usize| {
@@ -296,7 +298,7 @@ impl<'a> Build<'a> {
             let tiles = wanted.iter().filter(|job| job.stage == n).map(|job| (job.row, job.column));
             if n == 0 {
                 for group in self.block.groups(&tiles.collect(), *stage) {
-                    // What had to be solved is solved with the first group.
+                    // Solving happens with the first group.
                     let work = std::mem::take(&mut solving) + each * (group.len() * stage.samples) as f64;
                     count = count.and(self.make_group(&group, store, progress, work)?);
                 }
@@ -310,7 +312,7 @@ impl<'a> Build<'a> {
         Ok(count)
     }
 
-    /// About how many nanoseconds solving takes before the first samples are made, and making a sample.
+    /// Approximate time, in nanoseconds, of solving and of making one sample.
     fn work(&self, wanted: &BTreeSet<Job>) -> Result<[f64; 2]> {
         let first = wanted.iter().find(|job| job.stage == 0).map(|job| (job.row, job.column));
         let Some(window) = union(self.target.as_ref(), first.into_iter()) else { return Ok([0.0; 2]) };
@@ -319,7 +321,7 @@ impl<'a> Build<'a> {
         Ok([solving, making / window.len().max(1) as f64])
     }
 
-    /// Makes the samples of tiles that lie together, which is `work`, then each tile of them.
+    /// Computes the samples of adjacent tiles, which is `work`, then makes each tile.
     fn make_group(
         &self,
         group: &[(usize, usize)],
@@ -345,7 +347,7 @@ impl<'a> Build<'a> {
         progress.check()?;
         let mut made = self.target.make(job, grids, store)?;
         if made.ranges.is_empty() {
-            // Whether there is any finite sample is asked of every result.
+            // Ranges also tell whether any sample is finite.
             made.ranges = grids.iter().map(range).collect();
         }
         store.keep(job, &self.target.places(job), &made)?;
@@ -353,11 +355,12 @@ impl<'a> Build<'a> {
         Ok(())
     }
 
-    /// Makes all of it last, says so in the journal, and removes what is needed no more. Returns the bytes of the result.
+    /// Finishes the result, records completion in the journal, and removes temporary files. Returns the size of the
+    /// result.
     fn close(&self, store: OutputStore, extra: Vec<(PathBuf, FileDigest)>) -> Result<u64> {
         let mut records = store.into_records();
         if self.target.assembles() {
-            // The file is what there is to check from now on.
+            // From now on the assembled file is checked.
             records.clear();
         }
         let mut paths: Vec<PathBuf> = extra.iter().map(|(path, _)| path.clone()).collect();
@@ -375,7 +378,7 @@ impl<'a> Build<'a> {
         Ok(bytes)
     }
 
-    /// The bytes of the result.
+    /// The size of the result in bytes.
     fn bytes(&self, records: &BTreeMap<Job, Record>, extra: u64) -> u64 {
         let of = |(job, record): (&Job, &Record)| -> u64 {
             let places = self.target.places(*job);
@@ -386,7 +389,7 @@ impl<'a> Build<'a> {
     }
 }
 
-/// What an identity's result consists of.
+/// The target for an identity.
 fn target(world: &World, identity: &Identity, form: Form) -> Result<Box<dyn BuildTarget>> {
     let (about, sea_level) = (&world.recipe().about, world.recipe().world.sea_level);
     Ok(match form {

@@ -1,4 +1,4 @@
-//! Samples of a tile on their way to a file: made square, measured, as bytes to be read back here.
+//! Conversion of a tile's samples: padding, range, and bytes for temporary files.
 
 use std::io;
 
@@ -8,12 +8,12 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Grid;
 use orogen_io::file;
 
-/// Little-endian f32.
+/// Samples as little-endian f32.
 pub fn to_bytes(samples: &[f32]) -> Vec<u8> {
     samples.iter().flat_map(|sample| sample.to_le_bytes()).collect()
 }
 
-/// The samples of a file of the store, which must be so many.
+/// The samples of a file of the store, exactly `count`.
 pub fn read(store: &OutputStore, place: &JobFile, count: usize) -> Result<Vec<f32>> {
     let mut bytes = Vec::with_capacity(4 * count);
     let path = store.path(place);
@@ -24,14 +24,14 @@ pub fn read(store: &OutputStore, place: &JobFile, count: usize) -> Result<Vec<f3
     Ok(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
 }
 
-/// What there is to say of a file that is not as it was written.
+/// The error for a file that has changed since it was written.
 pub fn changed(store: &OutputStore, place: &JobFile) -> Error {
     let path = store.path(place);
     let message = format!("{} has been changed or damaged; resume the build to make it again", path.display());
     Error::new(ErrorKind::File, message)
 }
 
-/// A grid's samples row by row in a square of `side`, what lies beyond the grid filled by `beyond`.
+/// A grid's samples in a square of `side`; positions outside the grid are filled with `beyond`.
 pub fn square(grid: &Grid, side: usize, beyond: f32) -> Vec<f32> {
     let mut out = vec![beyond; side * side];
     for j in 0..grid.height() {
@@ -40,7 +40,7 @@ pub fn square(grid: &Grid, side: usize, beyond: f32) -> Vec<f32> {
     out
 }
 
-/// As [`square`], the grid's edge repeated beyond it.
+/// [`square`] with the grid's edge repeated.
 pub fn square_repeated(grid: &Grid, side: usize) -> Vec<f32> {
     let mut out = Vec::with_capacity(side * side);
     for j in 0..side {
@@ -51,7 +51,7 @@ pub fn square_repeated(grid: &Grid, side: usize) -> Vec<f32> {
     out
 }
 
-/// The lowest and highest finite sample; the other way round if there is none.
+/// The minimum and maximum finite sample; reversed infinities if there is none.
 pub fn range(grid: &Grid) -> [f32; 2] {
     let finite = grid.data().iter().filter(|sample| sample.is_finite());
     finite.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], sample| [low.min(*sample), high.max(*sample)])

@@ -1,4 +1,4 @@
-//! What is wanted.
+//! The specification of a build.
 
 use std::path::Path;
 
@@ -6,20 +6,20 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_io::format::encoding::Encoding;
 
-/// What a build makes of its samples.
+/// The form of a result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// One Cloud-Optimised GeoTIFF.
     Cog,
-    /// A Zarr v3 group, an array a layer.
+    /// A Zarr v3 group, one array per layer.
     Zarr,
     /// A folder of tiles that share their edges.
     Tiles(Samples),
-    /// An XYZ tree of PNG tiles whose colours are heights, with TileJSON.
+    /// An XYZ tree of PNG tiles with encoded heights, with TileJSON.
     Xyz(Encoding),
 }
 
-/// How the tiles of a folder hold their samples.
+/// The sample format of a folder's tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Samples {
     /// 16-bit grey PNG, over the range of the whole window.
@@ -31,7 +31,7 @@ pub enum Samples {
 }
 
 impl Form {
-    /// Its name, in journals and messages.
+    /// The name in journals and messages.
     pub fn name(self) -> &'static str {
         match self {
             Form::Cog => "cog",
@@ -43,7 +43,7 @@ impl Form {
         }
     }
 
-    /// All there are.
+    /// All forms.
     pub const ALL: [Form; 7] = [
         Form::Cog,
         Form::Zarr,
@@ -54,12 +54,12 @@ impl Form {
         Form::Xyz(Encoding::TerrainRgb),
     ];
 
-    /// The form of that name.
+    /// The form with this name.
     pub fn named(name: &str) -> Option<Form> {
         Form::ALL.into_iter().find(|form| form.name() == name)
     }
 
-    /// The form that a name tells by its extension: `.tif`, `.tiff` or `.zarr`.
+    /// The form for a file name's extension: `.tif`, `.tiff` or `.zarr`.
     pub fn of(out: &Path) -> Option<Form> {
         let extension = out.extension()?.to_string_lossy().to_lowercase();
         match extension.as_str() {
@@ -69,8 +69,8 @@ impl Form {
         }
     }
 
-    /// Samples along a tile's side if nobody says; none where it depends on the window. Tiles that share their edges have one
-    /// more than a power of two, as engines ask for.
+    /// The default side of a tile in samples; `None` if it depends on the window. For tiles that share their edges it
+    /// is a power of two plus one, as engines require.
     pub fn usual_tile(self) -> Option<usize> {
         match self {
             Form::Cog => None,
@@ -80,7 +80,7 @@ impl Form {
         }
     }
 
-    /// Whether it is one file rather than a folder.
+    /// Whether it is a single file instead of a folder.
     pub fn is_file(self) -> bool {
         self == Form::Cog
     }
@@ -91,27 +91,28 @@ impl Form {
     }
 }
 
-/// What is wanted: samples of layers, in a form.
+/// The specification of a build: samples of layers, in a form.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BuildSpec {
-    /// What is made.
+    /// The form of the result.
     pub form: Form,
-    /// The samples.
+    /// The window.
     pub window: Window,
-    /// Samples along a tile's side; `None` for [`Form::usual_tile`].
+    /// Side of a tile in samples; `None` for [`Form::usual_tile`].
     pub tile: Option<usize>,
-    /// The layers, each once.
+    /// The layers, without duplicates.
     pub layers: Vec<String>,
 }
 
-/// Longest name of a layer that becomes part of a file's name.
+/// Maximum length of a layer's name that becomes part of a file name.
 const LONGEST_NAME: usize = 100;
 
 impl BuildSpec {
-    /// Refuses what no form can be made of.
+    /// Rejects specifications that no form can satisfy.
     ///
     /// # Errors
-    /// If there is no layer, one twice, one whose name no file can have, or more than the form can hold.
+    /// If there is no layer, a duplicate, a name that is not valid in file names, or more layers than the form can
+    /// hold.
     pub fn check(&self) -> Result<()> {
         let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
         if self.layers.is_empty() {

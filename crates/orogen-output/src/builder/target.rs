@@ -1,4 +1,4 @@
-//! What each kind of result has to know.
+//! The trait of result forms.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -9,21 +9,21 @@ use super::output_store::OutputStore;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
-/// A kind of result: how it is cut into jobs, and what each makes.
+/// A form of result: how it is split into jobs, and how each job is done.
 pub trait BuildTarget: Sync {
-    /// The stages, in order. The first one's jobs read the world.
+    /// The stages, in order. The jobs of the first one read the world.
     fn stages(&self) -> Vec<Stage>;
 
-    /// The samples that a job of the first stage gets, at the cell of the order.
+    /// The window of a job of the first stage, at the cell of the specification.
     fn window(&self, row: usize, column: usize) -> Window;
 
     /// The files that a job makes.
     fn places(&self, job: Job) -> Vec<JobFile>;
 
-    /// The jobs, all of the stage before, whose files a job reads.
+    /// The jobs of the previous stage whose files a job reads.
     fn reads(&self, job: Job) -> Vec<Job>;
 
-    /// Does a job: `grids` are its window's samples, one grid a layer, in the first stage, and none later.
+    /// Runs a job. In the first stage `grids` has the samples of its window, one grid per layer; later it is empty.
     fn make(&self, job: Job, grids: &[Grid], store: &OutputStore) -> Result<Made>;
 
     /// Whether the result is one file, assembled by [`BuildTarget::finish`] from all files of the store.
@@ -31,18 +31,19 @@ pub trait BuildTarget: Sync {
         false
     }
 
-    /// Writes what belongs to no tile, once all tiles are there; returns the files, by their paths within the result.
+    /// Writes the files that belong to no tile, after all tiles; returns them by their paths within the result.
     fn finish(&self, store: &OutputStore) -> Result<Vec<(PathBuf, FileDigest)>>;
 
-    /// The files that [`BuildTarget::finish`] writes, by their paths within the result; none if the result is one file.
+    /// The files that [`BuildTarget::finish`] writes, by their paths within the result; empty if the result is a single
+    /// file.
     fn extras(&self) -> Vec<PathBuf> {
         Vec::new()
     }
 
-    /// Bytes that a job needs beside its samples.
+    /// Memory of a job beside its samples, in bytes.
     fn scratch_memory(&self) -> u64;
 
-    /// The most bytes on disk: those of the result, and those needed on the way.
+    /// Maximum disk space: of the result, and of temporary files.
     fn disk(&self) -> Disk;
 }
 
@@ -61,11 +62,11 @@ pub fn paths(target: &dyn BuildTarget) -> BTreeSet<PathBuf> {
     paths
 }
 
-/// Bytes on disk, at most.
+/// Maximum disk space, in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Disk {
     /// Of the result.
     pub result: u64,
-    /// Beside it, until it is finished.
+    /// Of temporary files, until completion.
     pub scratch: u64,
 }

@@ -1,4 +1,4 @@
-//! Where a build lies on disk, and who may work there.
+//! The files of a build on disk, and its lock.
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
@@ -11,42 +11,42 @@ use super::job::JobFile;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_io::file::{self, Output};
 
-/// Names within the folder beside the result.
+/// File names within the folder beside the result.
 const LOCK: &str = "lock";
 const JOURNAL: &str = "journal";
 const SCRATCH: &str = "scratch";
 const TEMPORARY: &str = "temporary";
 
-/// What a folder has at its top if a build has finished it.
+/// Files at the top of a folder that a completed build has made.
 const MARKS: [&str; 3] = ["zarr.json", "manifest.json", "tiles.json"];
 
-/// How many files are synced at once.
+/// Number of files that are synced concurrently.
 const SYNCS: usize = 16;
 
 /// The result and the folder beside it.
 #[derive(Debug, Clone)]
 pub struct WorkDir {
-    /// What may be replaced there.
+    /// The output, with its policy for replacing.
     output: Output,
     out: PathBuf,
     beside: PathBuf,
-    /// Whether the result is one file.
+    /// Whether the result is a single file.
     file: bool,
 }
 
-/// The lock of a build at work. The system releases it when the process ends, in any way.
+/// The lock of a running build. The system releases it when the process ends, for whatever reason.
 #[derive(Debug)]
 pub struct BuildLock {
     _lock: File,
     beside: PathBuf,
-    /// Whether the folder was made for this build.
+    /// Whether the folder was created for this build.
     new: bool,
-    /// Whether something worth keeping lies in it.
+    /// Whether the folder contains something worth keeping.
     kept: bool,
 }
 
 impl BuildLock {
-    /// The folder has got what it was made for.
+    /// Marks the folder as worth keeping.
     pub fn keep(&mut self) {
         self.kept = true;
     }
@@ -55,7 +55,7 @@ impl BuildLock {
 impl Drop for BuildLock {
     fn drop(&mut self) {
         if self.new && !self.kept {
-            // What fails before anything was made leaves no trace. Removes only what is as good as empty.
+            // A build that fails before it makes anything leaves no trace. Removes only empty files and folders.
             let _ = fs::remove_file(self.beside.join(LOCK));
             let _ = fs::remove_dir(&self.beside);
         }
@@ -63,14 +63,14 @@ impl Drop for BuildLock {
 }
 
 impl WorkDir {
-    /// The site of a result at `out`.
+    /// The work directory of a result at `out`.
     ///
     /// # Errors
-    /// If `out` does not name something that can be a result.
+    /// If `out` cannot be a result.
     pub fn new(output: &Output, is_file: bool) -> Result<WorkDir> {
         let out = output.path();
         let refuse = |why: &str| Err(Error::new(ErrorKind::File, format!("cannot build {}: {why}", out.display())));
-        // Through links, so that what they name is replaced and they stay.
+        // Links are resolved, so that their targets are replaced and the links stay.
         let real = match fs::canonicalize(out) {
             Ok(real) => real,
             Err(_) if fs::symlink_metadata(out).is_ok() => {
@@ -98,7 +98,7 @@ impl WorkDir {
         &self.out
     }
 
-    /// What may be replaced at its place.
+    /// The output, with its policy for replacing.
     pub fn output(&self) -> &Output {
         &self.output
     }
@@ -121,20 +121,20 @@ impl WorkDir {
         }
     }
 
-    /// A file of the result; an empty path is the result itself.
+    /// The path of a file of the result; an empty path is the result itself.
     pub fn result(&self, path: &Path) -> PathBuf {
         if path.as_os_str().is_empty() { self.out.clone() } else { self.out.join(path) }
     }
 
-    /// A name for a file that waits to be put in place, one for each `n`.
+    /// The path of a temporary file, one for each `n`.
     pub fn temporary(&self, n: u64) -> PathBuf {
         self.beside.join(TEMPORARY).join(n.to_string())
     }
 
-    /// Makes the folder beside the result and locks it.
+    /// Creates the folder beside the result and locks it.
     ///
     /// # Errors
-    /// If another build is at work there, or nothing can be written there.
+    /// If another build is running there, or the folder cannot be written.
     pub fn hold(&self) -> Result<BuildLock> {
         file::check_folder(file::folder(&self.out))?;
         let new = match fs::create_dir(&self.beside) {
@@ -167,7 +167,7 @@ impl WorkDir {
         }
     }
 
-    /// Whether something is at the place of the result; an empty folder is nothing.
+    /// Whether the result's path is in use; an empty folder does not count.
     pub fn is_taken(&self) -> bool {
         match fs::read_dir(&self.out) {
             Ok(mut entries) => entries.next().is_some(),
@@ -175,20 +175,21 @@ impl WorkDir {
         }
     }
 
-    /// What lies in the folder beside the result that no build puts there.
+    /// A file in the folder beside the result that is not a build's.
     fn foreign_beside(&self) -> Option<OsString> {
         let names = fs::read_dir(&self.beside).ok()?.flatten().map(|entry| entry.file_name());
         names.filter(|name| ![LOCK, JOURNAL, SCRATCH, TEMPORARY].iter().any(|own| name == own)).min()
     }
 
-    /// Makes room for a build that begins: removes the files of the one before, `old` within the result, and no others. Returns those, which
-    /// stay. `known` is whether there is a journal, and so the result is a build's own; `new` are the files that will be written.
+    /// Prepares a new build: removes the files of the previous one, `old` within the result. Returns other files, which
+    /// stay. `known` tells whether there is a journal, so that the result is a build's own; `new` are the files that
+    /// will be written.
     ///
-    /// A result that is one file is left to be replaced when the new one is there.
+    /// A single file is not removed; it is replaced by the new one at the end.
     ///
     /// # Errors
-    /// If no build has made what is there, if a file that stays is in the way of a new one, or if something cannot be removed. Nothing is removed
-    /// then.
+    /// If the existing files were not made by a build, a file that stays conflicts with a new one, or something cannot
+    /// be removed. In the first two cases nothing is removed.
     pub fn clear(&self, known: bool, old: &BTreeSet<PathBuf>, new: &BTreeSet<PathBuf>) -> Result<Vec<PathBuf>> {
         let mut foreign = Vec::new();
         if !self.file && self.is_taken() {
@@ -209,10 +210,10 @@ impl WorkDir {
                     self.out.join(path).display()
                 ));
             }
-            // The journal first: a half removed result must not look like one to go on with.
+            // The journal first: a partially removed result must not look resumable.
             remove(&self.journal(), |path| fs::remove_file(path))?;
             own.iter().try_for_each(|path| remove(&self.out.join(path), |path| fs::remove_file(path)))?;
-            // The innermost first. Those that hold something stay, and so do those of others that were empty.
+            // The innermost first. Non-empty folders stay, and so do empty folders of others.
             let held: BTreeSet<&Path> = own.iter().flat_map(|path| path.ancestors().skip(1)).collect();
             let emptied = folders.iter().rev().filter(|folder| held.contains(folder.as_path()));
             emptied.for_each(|folder| drop(fs::remove_dir(self.out.join(folder))));
@@ -223,7 +224,7 @@ impl WorkDir {
         Ok(foreign)
     }
 
-    /// The files and the folders of a result that is a folder, by their paths within it. Links are files, wherever they lead.
+    /// The files and folders of a result that is a folder, by their paths within it. Links count as files.
     fn contents(&self) -> Result<(Vec<PathBuf>, BTreeSet<PathBuf>)> {
         let (mut files, mut folders, mut left) = (Vec::new(), BTreeSet::new(), vec![PathBuf::new()]);
         while let Some(within) = left.pop() {
@@ -245,7 +246,7 @@ impl WorkDir {
         Ok((files, folders))
     }
 
-    /// Removes what was needed only on the way.
+    /// Removes temporary files of a completed build.
     ///
     /// # Errors
     /// If it cannot be removed.
@@ -254,7 +255,7 @@ impl WorkDir {
         self.tidy()
     }
 
-    /// Removes files that were left on their way to their place.
+    /// Removes incomplete files.
     ///
     /// # Errors
     /// If they cannot be removed.
@@ -262,7 +263,7 @@ impl WorkDir {
         remove(&self.beside.join(TEMPORARY), |path| fs::remove_dir_all(path))
     }
 
-    /// Makes the folders that files go to.
+    /// Creates the folders for files.
     ///
     /// # Errors
     /// If they cannot be made.
@@ -272,7 +273,7 @@ impl WorkDir {
         if self.file { Ok(()) } else { make(&self.out) }
     }
 
-    /// Makes all of the result survive a power cut: the files at `paths` within it, the folders they are in, and their names.
+    /// Makes the result durable: syncs the files at `paths` within it and their folders.
     ///
     /// # Errors
     /// If a file cannot be synced.
@@ -282,7 +283,7 @@ impl WorkDir {
             let synced = File::open(&real).and_then(|file| file.sync_all());
             synced.map_err(|cause| Error::file("write", &real, &cause))
         };
-        // To wait for one disk takes no processor, and a file system that is asked many things at once answers them together.
+        // Waiting for a disk takes no processor time, and file systems answer concurrent requests together.
         let next = AtomicUsize::new(0);
         let work = || {
             while let Some(path) = paths.get(next.fetch_add(1, Ordering::Relaxed)) {
@@ -310,7 +311,7 @@ impl WorkDir {
     }
 }
 
-/// Removes something that may not be there.
+/// Removes something that may not exist.
 fn remove(path: &Path, how: impl FnOnce(&Path) -> io::Result<()>) -> Result<()> {
     match how(path) {
         Err(cause) if cause.kind() != io::ErrorKind::NotFound => Err(Error::file("remove", path, &cause)),

@@ -1,11 +1,12 @@
-//! An XYZ tree of PNG tiles in an encoding of heights ([`Encoding`]), with TileJSON.
+//! An XYZ tree of PNG tiles with encoded heights ([`Encoding`]), with TileJSON.
 //!
-//! **Position.** Web Mercator, the world's origin at 0 degrees east and north. A pixel is an area there, and a sample stands in the middle
-//! of its own. Near the equator Mercator is true to scale: one metre of the world is one metre of the map if a sample's cell is a pixel of some
-//! zoom, which [`cell_near`] finds; otherwise the map is stretched by what TileJSON says. Tiles are those of the whole map, so
-//! that windows of one world fit together; what of a tile lies beyond the window repeats its edge.
+//! **Position.** Web Mercator, with the world's origin at 0 degrees east and north. Pixels are areas, and samples are
+//! at their centres. Near the equator Mercator is true to scale: one metre of the world is one metre of the map if the
+//! cell equals a pixel of some zoom (see [`cell_near`]); otherwise the map is scaled by a factor that TileJSON states.
+//! Tiles are those of the whole map, so that windows of one world fit together; the part of a tile outside the window
+//! repeats its edge.
 //!
-//! **Lower zooms.** Each pixel is the mean of the four below it, in full precision: rounded once, when it is written.
+//! **Lower zooms.** Each pixel is the mean of the four below it in full precision, rounded once when it is written.
 
 use std::path::PathBuf;
 
@@ -22,16 +23,16 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_io::format::encoding::Encoding;
 use orogen_io::format::png::{self, Picture, Pixel};
 
-/// What tells web maps of the tiles.
+/// The TileJSON file.
 const TILEJSON: &str = "tiles.json";
 
-/// Metres around the equator, on the sphere of Web Mercator.
+/// Length of the equator in metres, on the sphere of Web Mercator.
 const EQUATOR: f64 = 2.0 * std::f64::consts::PI * 6_378_137.0;
 
-/// The deepest zoom: tiles of a few metres.
+/// The highest zoom, with tiles of a few metres.
 const DEEPEST: f64 = 24.0;
 
-/// The zoom whose pixels are nearest to `cell` metres, of tiles of `tile` pixels.
+/// The zoom whose pixels are closest to `cell` metres, for tiles of `tile` pixels.
 fn zoom_near(cell: f64, tile: usize) -> u32 {
     libm::log2(EQUATOR / (tile as f64 * cell)).round().clamp(0.0, DEEPEST) as u32
 }
@@ -40,17 +41,17 @@ fn pixel(zoom: u32, tile: usize) -> f64 {
     EQUATOR / (tile as f64 * f64::from(1 << zoom))
 }
 
-/// The cell nearest to `cell` with which the map is true to scale.
+/// The cell closest to `cell` with which the map is true to scale.
 pub fn cell_near(cell: f64, tile: usize) -> f64 {
     pixel(zoom_near(cell, tile), tile)
 }
 
-/// The tree. Each zoom is a stage, from the deepest up.
+/// The tree. Each zoom is a stage, from the highest zoom down.
 pub struct Tree {
     encoding: Encoding,
     identity: Identity,
     about: String,
-    /// The deepest zoom.
+    /// The highest zoom.
     zoom: u32,
     /// The window's first and last pixel on the whole map, across and down.
     pixels: [[u64; 2]; 2],
@@ -58,10 +59,10 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// Of a build.
+    /// The target of a build.
     ///
     /// # Errors
-    /// If tiles are not of 256 or 512 pixels, or the window does not lie on the map.
+    /// If tiles do not have 256 or 512 pixels, or the window is outside the map.
     pub fn new(identity: &Identity, about: &str, encoding: Encoding) -> Result<Tree> {
         let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
         let (window, tile) = (identity.window, identity.tile);
@@ -108,7 +109,7 @@ impl Tree {
         self.pixels.map(|side| side.map(|pixel| (pixel / self.identity.tile as u64) >> stage))
     }
 
-    /// Where a job's tile is on the whole map: zoom, column, row.
+    /// The address of a job's tile on the whole map: zoom, column, row.
     fn address(&self, job: Job) -> (u32, u64, u64) {
         let [[left, _], [top, _]] = self.span(job.stage);
         (self.zoom - job.stage as u32, left + job.column as u64, top + job.row as u64)
@@ -124,7 +125,7 @@ impl Tree {
         JobFile::Scratch(format!("half/{zoom}/{column}/{row}").into())
     }
 
-    /// The samples of a window that a tile holds, and where the tile begins on the lattice.
+    /// The part of the window in a tile, and the position of the tile on the lattice.
     fn inside(&self, row: usize, column: usize) -> (Window, i64, i64) {
         let (_, column, row) = self.address(Job { stage: 0, row, column });
         let (tile, middle) = (self.tile() as i64, ((self.tile() as u64) << self.zoom) as i64 / 2);
@@ -141,7 +142,7 @@ impl Tree {
         (inside, left, top)
     }
 
-    /// The samples of a tile of the deepest zoom.
+    /// The samples of a tile of the highest zoom.
     fn full(&self, job: Job, grid: &Grid) -> Vec<f32> {
         let (_, left, top) = self.inside(job.row, job.column);
         let (tile, window) = (self.tile() as i64, grid.window());
@@ -150,7 +151,7 @@ impl Tree {
         (0..tile).flat_map(|j| (0..tile).map(move |i| (i, j))).map(|(i, j)| grid[(column(i), row(j))]).collect()
     }
 
-    /// The samples of a tile made of those below it; where there is none, the edge of its neighbour is repeated.
+    /// The samples of a tile derived from those below it; where there is none, the edge of its neighbour is repeated.
     fn gathered(&self, job: Job, store: &OutputStore) -> Result<Vec<f32>> {
         let (tile, half) = (self.tile(), self.tile() / 2);
         let mut quarters: [[Option<Vec<f32>>; 2]; 2] = Default::default();
@@ -159,7 +160,7 @@ impl Tree {
             quarters[(row % 2) as usize][(column % 2) as usize] =
                 Some(samples::read(store, &self.half(below), half * half)?);
         }
-        // Tiles of a zoom fill a rectangle: a whole row or column of quarters is there, or none of it.
+        // Tiles of a zoom fill a rectangle, so whole rows or columns of quarters exist or not.
         let [there_down, there_across] = [
             [0, 1].map(|j: usize| quarters[j].iter().any(Option::is_some)),
             [0, 1].map(|i: usize| quarters.iter().any(|row| row[i].is_some())),
@@ -207,7 +208,7 @@ impl Tree {
     }
 }
 
-/// Half the samples a side, each the mean of four.
+/// Half the samples per side, each the mean of four.
 fn halved(samples: &[f32], side: usize) -> Vec<f32> {
     let half = side / 2;
     let mean = |(i, j): (usize, usize)| {
@@ -289,7 +290,7 @@ impl BuildTarget for Tree {
     }
 
     fn scratch_memory(&self) -> u64 {
-        // Its samples, three bytes each, packed, and a half.
+        // Its samples, three bytes each, compressed, and half the samples.
         16 * (self.tile() * self.tile()) as u64
     }
 

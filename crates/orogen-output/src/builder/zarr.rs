@@ -1,4 +1,4 @@
-//! A Zarr group: an array a layer, a chunk a tile.
+//! A Zarr group: one array per layer, one chunk per tile.
 
 use std::path::{Path, PathBuf};
 
@@ -17,10 +17,10 @@ use orogen_io::format::dem::Georeference;
 use orogen_io::format::zarr::blosc;
 use orogen_io::format::zarr::metadata::{self, Array, Number};
 
-/// The most coordinates a chunk holds.
+/// Maximum number of coordinates per chunk.
 const COORDINATES: usize = 1 << 16;
 
-/// Chunks beyond which readers run out of memory when they hold a few.
+/// Maximum side of a chunk: with larger ones readers run out of memory.
 const LARGEST: usize = 8192;
 
 /// The group.
@@ -31,10 +31,10 @@ pub struct Zarr {
 }
 
 impl Zarr {
-    /// Of a build.
+    /// The target of a build.
     ///
     /// # Errors
-    /// If no chunk can have such a side.
+    /// If a chunk cannot have such a side.
     pub fn new(identity: &Identity, about: &str) -> Result<Zarr> {
         if !(1..=LARGEST).contains(&identity.tile) {
             let message =
@@ -56,7 +56,7 @@ impl Zarr {
         if !unit.is_empty() {
             attributes["units"] = json!(unit);
         }
-        // Where GDAL looks for the system, and where xarray's friends do.
+        // The attributes that GDAL reads, and those of xarray's extensions.
         if let Some(map) = &self.identity.map {
             if let Some(code) = map.epsg() {
                 attributes["_CRS"] = json!({ "url": format!("http://www.opengis.net/def/crs/EPSG/0/{code}") });
@@ -75,7 +75,7 @@ impl Zarr {
     }
 }
 
-/// A coordinate: its name, its values, and what it says of itself.
+/// A coordinate array: name, values and attributes.
 struct Coordinate {
     name: &'static str,
     values: Vec<f64>,
@@ -84,7 +84,7 @@ struct Coordinate {
 
 fn coordinates(window: &Window, map: Option<&Georeference>) -> [Coordinate; 2] {
     let side = |unit: &str, long: &str, standard: &str, axis: &str| json!({ "units": unit, "long_name": long, "standard_name": standard, "axis": axis });
-    // Added to 0, a south of 0 is no -0.
+    // Subtraction from 0.0 avoids a -0.
     let (eastings, northings) = (window.eastings(), window.southings().into_iter().map(|south| 0.0 - south));
     let Some(map) = map else {
         let east = side("m", "metres east of the origin", "projection_x_coordinate", "X");
@@ -145,7 +145,7 @@ impl BuildTarget for Zarr {
             let folder = Path::new(coordinate.name);
             let chunk = coordinate.values.len().min(COORDINATES);
             for (n, values) in coordinate.values.chunks(chunk).enumerate() {
-                // Chunks are whole; what lies beyond the side is never looked at.
+                // Chunks are complete; values beyond the side are never read.
                 let beyond = std::iter::repeat_n(0.0, chunk - values.len());
                 let bytes = pack(values.iter().copied().chain(beyond).map(f64::to_le_bytes))?;
                 put(folder.join(format!("c/{n}")), &bytes)?;
@@ -170,7 +170,7 @@ impl BuildTarget for Zarr {
             "recipe_sha256": self.identity.recipe,
             "cell": self.identity.window.cell,
         });
-        // Last: without it there is no group, and so none that is half.
+        // Last: without this file there is no group, so a partial group does not exist.
         put("zarr.json".into(), format!("{:#}\n", metadata::group(&arrays, attributes)).as_bytes())?;
         Ok(written)
     }
@@ -187,20 +187,20 @@ impl BuildTarget for Zarr {
     }
 
     fn scratch_memory(&self) -> u64 {
-        // Padded, as bytes, shuffled, packed.
+        // Padded, as bytes, shuffled, compressed.
         16 * (self.identity.tile * self.identity.tile) as u64
     }
 
     fn disk(&self) -> Disk {
         let stage = self.stage();
-        // Packed, a chunk is at most as long as it is unpacked, and a frame around it.
+        // A chunk takes at most its uncompressed size plus a frame.
         let (samples, chunks) = (stage.samples as u64, self.identity.layers.len() as u64);
         let sides = 8 * (self.identity.window.width + self.identity.window.height + 2 * COORDINATES) as u64;
         Disk { result: stage.len() as u64 * (4 * samples + 64 * chunks) + sides + (1 << 16), scratch: 0 }
     }
 }
 
-/// A chunk of numbers.
+/// A chunk of encoded numbers.
 fn pack<const SIZE: usize>(numbers: impl Iterator<Item = [u8; SIZE]>) -> Result<Vec<u8>> {
     let bytes: Vec<u8> = numbers.flatten().collect();
     blosc::pack(&bytes, SIZE as u8)

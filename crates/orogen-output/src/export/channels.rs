@@ -1,4 +1,4 @@
-//! Pictures of several channels: normal maps, color maps, and splat maps of as many pictures as they take.
+//! Pictures of several channels: normal maps, color maps, and splat maps.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::palette::color::Encoder;
 use orogen_io::spool::Spool;
 
-/// The option that turns green.
+/// The option for the direction of green in normal maps.
 pub const NORMAL: OptionSpec = OptionSpec {
     name: "normal",
     value: "WAY",
@@ -24,7 +24,7 @@ pub const NORMAL: OptionSpec = OptionSpec {
     value_kind: ValueKind::Word(&["opengl", "directx"]),
 };
 
-/// The option that says how weights are kept.
+/// The option for the layout of weights.
 pub const WEIGHTS: OptionSpec = OptionSpec {
     name: "weights",
     value: "HOW",
@@ -33,9 +33,9 @@ pub const WEIGHTS: OptionSpec = OptionSpec {
     value_kind: ValueKind::Word(&["rgba", "layers"]),
 };
 
-/// Writes normals as red (east), green (north, or south for DirectX) and blue (up), -1 to 1 as 0 to 255 or 65535.
+/// Writes normals as red (east), green (north, or south for DirectX) and blue (up); -1 to 1 becomes 0 to 255 or 65535.
 ///
-/// Fails as the subject and the files do.
+/// Fails if the source or the files fail.
 pub fn write_normals(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     let (window, most) = (*source.window(), if options.word("bits") == Some("16") { 65535 } else { 255 });
     let directx = options.word(NORMAL.name) == Some("directx");
@@ -65,9 +65,9 @@ pub fn write_normals(source: &mut LayerSource, options: &Options, files: &mut Fi
     Ok(format!("red east, green {green}, blue up{told}"))
 }
 
-/// Writes colors as sRGB of 8 bits.
+/// Writes colors as 8-bit sRGB.
 ///
-/// Fails as the subject and the files do.
+/// Fails if the source or the files fail.
 pub fn write_color(source: &mut LayerSource, files: &mut Files) -> io::Result<String> {
     let window = *source.window();
     let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
@@ -89,9 +89,9 @@ pub fn write_color(source: &mut LayerSource, files: &mut Files) -> io::Result<St
     Ok("unlit color, sRGB".to_string())
 }
 
-/// Writes weights that add up to 255 wherever there is ground.
+/// Writes weights, which add up to 255 wherever there is ground.
 ///
-/// Fails as the subject and the files do, and on a stream, which takes one file alone.
+/// Fails if the source or the files fail, or if weights need several files and the output is a stream.
 pub fn write_weights(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     let Some(path) = files.path().map(Path::to_path_buf) else {
         return refuse("weights are written to several files, not to standard output; name a file with -o".into());
@@ -165,8 +165,8 @@ fn put_aside(spool: &mut Spool, band: &[Grid]) -> io::Result<()> {
     Ok(())
 }
 
-/// Weights as bytes that add up to exactly 255: each rounded down, what is left given to those that lost most, the first of equals first. All 0 if
-/// no weight is above 0.
+/// Weights as bytes that add up to exactly 255: rounded down, and the remainder given to those with the largest
+/// rounding loss, the first of equals first. All 0 if no weight is positive.
 fn to_bytes(weights: &[f32], bytes: &mut [u8]) {
     let total: f64 = weights.iter().map(|weight| f64::from(weight.max(0.0))).sum();
     bytes.fill(0);
@@ -187,7 +187,7 @@ fn to_bytes(weights: &[f32], bytes: &mut [u8]) {
     }
 }
 
-/// The path with something more before its extension.
+/// The path with a suffix before its extension.
 pub(super) fn suffixed(path: &Path, suffix: &str) -> PathBuf {
     let mut name = path.file_stem().unwrap_or_default().to_os_string();
     name.push(suffix);

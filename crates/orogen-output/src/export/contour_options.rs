@@ -1,4 +1,4 @@
-//! Which contours are wanted: the options of all formats of lines.
+//! Options of contours, common to all formats of lines.
 
 use super::options::{OptionSpec, Options, ValueKind};
 use orogen_grid::contour::levels::given;
@@ -29,10 +29,10 @@ pub const SMOOTH: OptionSpec = OptionSpec {
     value_kind: ValueKind::Whole(0, 6),
 };
 
-/// Whether the options that say which contours are wanted go together, and can be read.
+/// Checks that the options of contours are consistent and valid.
 ///
 /// # Errors
-/// If not.
+/// If they are not.
 pub fn check(options: &Options) -> Result<()> {
     if options.has(INTERVAL.name) && options.has(LEVELS.name) {
         let message = "--interval and --levels exclude each other; leave out one of them";
@@ -41,10 +41,10 @@ pub fn check(options: &Options) -> Result<()> {
     options.text(LEVELS.name).map_or(Ok(()), |text| parse(text).map(drop))
 }
 
-/// The levels of a text.
+/// Parses a list of levels.
 ///
 /// # Errors
-/// If a part is no number, or they are too many.
+/// If a part is not a number, or there are too many.
 pub fn parse(text: &str) -> Result<Vec<f64>> {
     let numbers = text.split(',').map(|part| {
         part.trim().parse::<f64>().map_err(|_| {

@@ -1,4 +1,4 @@
-//! Contours of what is exported, as every format of lines takes them.
+//! Contours of an exported layer, for all formats of lines.
 
 use super::contour_options::{INTERVAL, LEVELS, SMOOTH, parse};
 use super::memory::whole;
@@ -12,18 +12,18 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::words::{count, number};
 use orogen_io::format::levels::Levels;
 
-/// Most contours, where nobody says.
+/// Default maximum number of levels.
 const MOST: usize = 25;
 
-/// Lines, and how far apart they are if that is known.
+/// Contour lines, and their interval if there is one.
 pub struct Contours {
     /// In the order of [`trace::contours`].
     pub lines: Vec<Line>,
-    /// Metres from one level to the next.
+    /// Distance between levels, in metres.
     pub interval: Option<f64>,
 }
 
-/// Bytes beside the rows: the grid, and crossings, of which rough ground has about as many as samples.
+/// Memory beside the rows, in bytes: the grid, and crossings, of which rough ground has about as many as samples.
 pub fn memory(window: &Window, _: &Options) -> u64 {
     whole(window).saturating_mul(8)
 }
@@ -31,7 +31,7 @@ pub fn memory(window: &Window, _: &Options) -> u64 {
 /// The contours of a grid.
 ///
 /// # Errors
-/// If the levels cannot be read, or there are more lines than can be numbered.
+/// If the levels cannot be parsed, or there are too many lines.
 pub fn on(grid: &Grid, options: &Options) -> Result<Contours> {
     let named = options.text(LEVELS.name).map(parse).transpose()?;
     let range = Levels::of(grid);
@@ -52,7 +52,7 @@ pub fn on(grid: &Grid, options: &Options) -> Result<Contours> {
 }
 
 impl Contours {
-    /// How much there is, in words.
+    /// A summary of the number of lines.
     pub fn words(&self, unit: &str) -> String {
         let levels = self.lines.chunk_by(|a, b| a.level == b.level).count();
         let lines = self.lines.len();

@@ -1,4 +1,4 @@
-//! Where an export goes: a file and what stands beside it, all of them or none, or a stream.
+//! The output of an export: a file and its sidecars, written together or not at all, or a stream.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use orogen_io::spool::Spool;
 pub struct Files<'a> {
     sink: Sink<'a>,
     progress: Progress,
-    /// Those that are written but not yet in their places.
+    /// Files that are written but not yet in place.
     staged: Vec<Staged>,
 }
 
@@ -21,17 +21,17 @@ enum Sink<'a> {
 }
 
 impl<'a> Files<'a> {
-    /// A file at `output` and what stands beside it. `progress` may stop the writing.
+    /// A file at `output` and its sidecars. Cancellation of `progress` stops the writing.
     pub fn at(output: &'a Output, progress: &Progress) -> Files<'a> {
         Files { sink: Sink::File(output), progress: progress.clone(), staged: Vec::new() }
     }
 
-    /// A stream, such as standard output, beside which nothing stands.
+    /// A stream, such as standard output, without sidecars.
     pub fn stream(out: &'a mut dyn Write, progress: &Progress) -> Files<'a> {
         Files { sink: Sink::Stream(out), progress: progress.clone(), staged: Vec::new() }
     }
 
-    /// The path that was asked for; none of a stream.
+    /// The path of the file; `None` for a stream.
     pub fn path(&self) -> Option<&Path> {
         match &self.sink {
             Sink::File(output) => Some(output.path()),
@@ -44,16 +44,16 @@ impl<'a> Files<'a> {
         matches!(&self.sink, Sink::File(output) if output.policy().existing() == Existing::Replace)
     }
 
-    /// A place for bytes that have to wait, on the disk that the file will be on.
+    /// A spool for temporary data, on the disk of the file.
     pub fn spool(&self) -> Spool {
         match &self.sink {
             Sink::File(output) => Spool::beside(output.path()),
-            // A stream has no disk of its own to put bytes aside on.
+            // A stream has no disk of its own.
             Sink::Stream(_) => Spool::beside(&std::env::temp_dir().join("orogen")),
         }
     }
 
-    /// Writes the file that was asked for.
+    /// Writes the main file.
     pub fn write(&mut self, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
         match &mut self.sink {
             Sink::Stream(out) => body(&mut Stopping { out: &mut **out, progress: &self.progress }),
@@ -65,8 +65,8 @@ impl<'a> Files<'a> {
         }
     }
 
-    /// Writes a file that belongs to it and whose name `name` makes of its path. Beside a stream, a pipe or a device nothing is
-    /// written.
+    /// Writes a sidecar; `name` makes its path from the main file's path. Nothing is written for a stream, a pipe or a
+    /// device.
     pub fn write_beside(
         &mut self,
         name: impl FnOnce(&Path) -> PathBuf,
@@ -83,18 +83,19 @@ impl<'a> Files<'a> {
         Ok(())
     }
 
-    /// Puts all files in their places: first those beside, then the one that was asked for, whose appearance says that all is there.
+    /// Puts all files in place: first the sidecars, then the main file, whose presence means that the export is
+    /// complete.
     pub(super) fn commit(self) -> io::Result<()> {
         self.progress.check()?;
         Ok(file::commit(self.staged.into_iter().rev().collect())?)
     }
 }
 
-/// A writer that fails once the work is not wanted any more.
+/// A writer that fails after cancellation.
 pub(super) struct Stopping<'a> {
-    /// Where it goes.
+    /// The inner writer.
     pub out: &'a mut dyn Write,
-    /// Asked before each write.
+    /// Checked before each write.
     pub progress: &'a Progress,
 }
 

@@ -1,4 +1,4 @@
-//! What is exported: a layer over a window, row after row or whole.
+//! The source of an export: a layer over a window, in bands of rows or as a whole.
 
 use std::io;
 
@@ -18,35 +18,36 @@ use orogen_grid::words::nearest;
 use orogen_io::format::dem::Georeference;
 use orogen_io::format::levels::{Levels, NO_SAMPLES, extremes};
 
-/// Bands of rows from the north, each a grid a channel, with how many of its samples are finite: of a derived layer, of the heights beneath.
+/// Bands of rows from the north, each with a grid per channel and a count of finite samples (for a derived layer, of
+/// the heights under it).
 type Source<'w> = Box<dyn Iterator<Item = Result<(Vec<Grid>, FiniteCount)>> + 'w>;
 
 /// A layer of a world over a window.
 pub struct LayerSource<'w> {
     world: &'w World,
     layer: String,
-    /// What the layer is if the recipe has none of that name.
+    /// The derived layer, if the recipe has no layer with this name.
     derived: Option<&'static RowLayer>,
     /// Layers of vector features in place of samples.
     vectors: Vec<&'static VectorLayer>,
     window: Window,
     progress: Progress,
-    /// Bytes held beside the rows at hand.
+    /// Memory held beside the current rows, in bytes.
     reserved: u64,
-    /// Rows that are about to be made.
+    /// The iterator over the rows, once it is prepared.
     ready: Option<Source<'w>>,
-    /// The lowest and highest sample so far.
+    /// Minimum and maximum so far.
     range: [f32; 2],
-    /// How many there are.
+    /// Count of samples so far.
     count: FiniteCount,
 }
 
 impl<'w> LayerSource<'w> {
-    /// A layer over a window: one of the recipe's, or one that is [derived](super::derived) from its heights (of which some want the recipe
-    /// [prepared](super::derived::list::prepare)). `progress` hears of the samples, and may stop the work.
+    /// A layer over a window: one of the recipe's, or one [derived](super::derived) from its heights (some need a
+    /// [prepared](super::derived::list::prepare) recipe). `progress` counts samples, and can cancel the work.
     ///
     /// # Errors
-    /// If there is no such layer, or the window is not one of this world.
+    /// If there is no such layer, or the window is not valid for this world.
     pub fn new(world: &'w World, layer: &str, window: Window, progress: &Progress) -> Result<LayerSource<'w>> {
         world.check(&window)?;
         let derived = match world.unit(layer) {
@@ -54,7 +55,7 @@ impl<'w> LayerSource<'w> {
             Err(error) => match list::named(layer) {
                 Some(derived) => match &derived.made {
                     Made::Rows(rows) => Some(rows),
-                    // Its nodes are appended before a world is opened.
+                    // Its nodes must be appended before a world is opened.
                     Made::Nodes(_) => return Err(error),
                 },
                 None => {
@@ -90,7 +91,7 @@ impl<'w> LayerSource<'w> {
     /// Layers of vector features over a window, in place of samples.
     ///
     /// # Errors
-    /// As [`LayerSource::new`], of the heights.
+    /// The errors of [`LayerSource::new`] for the heights.
     pub fn of_features(
         world: &'w World,
         vectors: Vec<&'static VectorLayer>,
@@ -103,23 +104,23 @@ impl<'w> LayerSource<'w> {
         Ok(source)
     }
 
-    /// Says how many samples features were made of, where these do not come as rows.
+    /// Sets the count of samples that features were made of, if they do not come as rows.
     pub(super) fn made_of(&mut self, count: FiniteCount) {
         self.count = count;
     }
 
-    /// The layers of vector features that are wanted in place of samples.
+    /// The requested layers of vector features.
     pub fn vectors(&self) -> &[&'static VectorLayer] {
         &self.vectors
     }
 
-    /// Plans the rows: what does not fit in memory beside `beside` bytes is refused before a file is begun.
+    /// Plans the rows. Requests that do not fit in memory with `reserved` bytes fail before a file is started.
     ///
     /// # Errors
-    /// As [`World::bands`].
+    /// The errors of [`World::bands`].
     pub(super) fn prepare(&mut self, reserved: u64) -> Result<()> {
         self.reserved = reserved;
-        // Features are made of more than the window's rows, and count their memory themselves.
+        // Features need more than the window's rows, and count their memory themselves.
         if self.vectors.is_empty() {
             self.ready = Some(self.source(&self.window)?);
         }
@@ -149,7 +150,7 @@ impl<'w> LayerSource<'w> {
         &self.layer
     }
 
-    /// What a sample is measured in: "m" of heights, else what the layer says of itself, which may be nothing.
+    /// The unit of a sample: "m" for heights, otherwise the unit of the layer, which may be empty.
     pub fn unit(&self) -> &'static str {
         match self.derived {
             Some(derived) => derived.unit,
@@ -157,38 +158,38 @@ impl<'w> LayerSource<'w> {
         }
     }
 
-    /// How the samples may be read: as heights, as names in numbers, or as amounts.
+    /// The kind of the layer: heights, labels or amounts.
     pub fn kind(&self) -> LayerKind {
         self.world.kind(&self.layer).unwrap_or(LayerKind::Height)
     }
 
-    /// A hash of all that the layer depends on; of a derived one, that its heights depend on.
+    /// A hash of everything that the layer depends on; for a derived layer, of its heights.
     pub fn key(&self) -> [u8; 32] {
         let layer = if self.derived.is_some() { HEIGHT } else { &self.layer };
         self.world.key(layer).unwrap_or_default()
     }
 
-    /// What its channels are.
+    /// The meaning of the channels.
     pub fn nature(&self) -> Nature {
         self.derived.map_or(Nature::Numbers, |derived| derived.nature)
     }
 
-    /// The samples: all of the window's.
+    /// The window.
     pub fn window(&self) -> &Window {
         &self.window
     }
 
-    /// The progress that hears of the samples.
+    /// The progress of the export.
     pub fn progress(&self) -> &Progress {
         &self.progress
     }
 
-    /// How many grids a band has: 1 for plain numbers.
+    /// Number of grids per band: 1 for plain numbers.
     pub fn channels(&self) -> usize {
         self.derived.map_or(1, |derived| (derived.channels)(self.world.recipe()).len())
     }
 
-    /// The channels' names, for formats that have some.
+    /// The names of the channels, for formats that store them.
     pub fn channel_names(&self) -> Vec<String> {
         match self.derived {
             Some(derived) => (derived.channels)(self.world.recipe()),
@@ -196,14 +197,14 @@ impl<'w> LayerSource<'w> {
         }
     }
 
-    /// How metres lie on a map, where the recipe holds a real place.
+    /// The position of metres on a map, if the recipe contains a real place or a `crs`.
     pub fn map(&self) -> Option<Georeference> {
         self.world.recipe().georeference()
     }
 
-    /// Gives `visit` all rows, some at a time from the north: a grid a channel. Every call makes them anew.
+    /// Calls `visit` with all rows, in bands from the north: one grid per channel. Every call computes them again.
     ///
-    /// Fails as `visit` does and as the world does.
+    /// Fails if `visit` or the world fails.
     pub fn rows(&mut self, mut visit: impl FnMut(&[Grid]) -> io::Result<()>) -> io::Result<()> {
         let source = match self.ready.take() {
             Some(source) => source,
@@ -219,9 +220,10 @@ impl<'w> LayerSource<'w> {
         Ok(())
     }
 
-    /// All rows at once: a grid a channel. A format that calls this counts them in [`Format::memory`](super::format::Format::memory).
+    /// All rows at once: one grid per channel. A format that uses this includes it in
+    /// [`Format::memory`](super::format::Format::memory).
     ///
-    /// Fails as the world does.
+    /// Fails if the world fails.
     pub fn whole(&mut self) -> io::Result<Vec<Grid>> {
         let mut all = vec![Grid::filled(self.window, 0.0); self.channels()];
         self.rows(|band| {
@@ -231,15 +233,17 @@ impl<'w> LayerSource<'w> {
         Ok(all)
     }
 
-    /// How many samples were last made, and how many of them, or of the heights that they follow from, are finite.
+    /// Number of the samples that were last computed, and of the finite ones among them (or among the heights that they
+    /// are derived from).
     pub fn count(&self) -> FiniteCount {
         self.count
     }
 
-    /// The first channel, all rows at once, and into `halo` the samples around it, as far as the world goes: what follows from a sample and its
-    /// neighbours is then the same in windows that share it. A format that calls this counts it as [`whole`](LayerSource::whole).
+    /// The first channel, all rows at once, and in `halo` the samples around it, as far as the world extends. Values
+    /// that depend on neighbours are then the same in adjacent windows. A format that uses this counts it like
+    /// [`whole`](LayerSource::whole).
     ///
-    /// Fails as the world does.
+    /// Fails if the world fails.
     pub fn surrounded(&mut self, halo: &mut Halo) -> io::Result<Grid> {
         self.ready = None;
         let window = self.window;
@@ -254,13 +258,13 @@ impl<'w> LayerSource<'w> {
             grid.paste(&band);
             halo.take(&window, &band);
         }
-        // What is told of a derived layer are the heights beneath it, here with those around the window.
+        // For a derived layer, the count is that of the heights, here including those around the window.
         self.count = if self.derived.is_some() { count } else { FiniteCount::of(grid.data()) };
         self.range = extremes(NO_SAMPLES, grid.data());
         Ok(grid)
     }
 
-    /// The range of the samples that were last made; flat if there were none.
+    /// The range of the samples that were last computed; flat if there were none.
     pub fn levels(&self) -> Levels {
         Levels::new(self.range[0], self.range[1])
     }

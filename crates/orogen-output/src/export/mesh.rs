@@ -1,4 +1,4 @@
-//! What the formats of meshes share: their options, and the surface that these ask for.
+//! Common parts of the mesh formats: options, and the surface that they define.
 
 use std::io;
 
@@ -55,14 +55,15 @@ pub const COLOR: OptionSpec = OptionSpec {
     value_kind: ValueKind::Word(&["texture", "vertex", "none"]),
 };
 
-/// Nanoseconds of one core that a sample takes, about: to choose the corners of few triangles, or of all, to paint it, and to write its triangles.
+/// Approximate time per sample on one core, in nanoseconds: for choosing the vertices of an adaptive mesh or of a full
+/// grid, for painting, and for writing triangles.
 const FEW_TRIANGLES: f64 = 250.0;
 const LATTICE: f64 = 3.0;
 const PAINTING: f64 = 60.0;
 const WRITING: f64 = 60.0;
 
-/// Bytes that a mesh of a window takes beside what its file is written from: the heights, and for few triangles these and the triangulations of the tiles at
-/// work, if one sample in five becomes a corner.
+/// Memory of a mesh of a window, in bytes, beside that of writing the file: the heights and, for an adaptive mesh, its
+/// triangles and the triangulations in progress, if one sample in five becomes a vertex.
 pub fn memory(window: &Window, options: &Options) -> u64 {
     let samples = whole(window);
     match options.has(MAX_ERROR.name) {
@@ -74,30 +75,31 @@ pub fn memory(window: &Window, options: &Options) -> u64 {
     }
 }
 
-/// A grid and what is made of it.
+/// A grid and the meshes made of it.
 pub struct Prepared {
-    /// The heights, bent where that is asked for.
+    /// The heights, remapped by the height curve if there is one.
     pub grid: Grid,
     /// Levels of detail, the finest first.
     pub shapes: Vec<Shape>,
-    /// What its corners or its picture are coloured with.
+    /// The painter of its vertices or its texture.
     pub painter: Painter,
     halo: Halo,
     exaggeration: f32,
     max_error: Option<f64>,
-    /// The work that is left: a picture, and of each level the writing.
+    /// Progress of the remaining work: the texture, and writing each level.
     painting: Progress,
     writing: Vec<Progress>,
-    /// The curve that the heights were bent by, and their range before.
+    /// The height curve, and the range of heights before it.
     curve: Option<(HeightCurve, [f32; 2])>,
-    /// How metres lie on a map, where the recipe holds a real place.
+    /// The position of metres on a map, if the recipe contains a real place or a `crs`.
     map: Option<Georeference>,
 }
 
 impl Prepared {
-    /// The subject's samples, and so many shapes over them: of every second, fourth ... sample, or of twice, four times ... the error.
+    /// The source's samples, and `levels` shapes over them: every second, fourth ... sample, or twice, four times ...
+    /// the error.
     ///
-    /// Fails as the subject does, and on windows that are no mesh.
+    /// Fails if the source fails, or the window is too small for a mesh.
     pub fn new(source: &mut LayerSource, options: &Options, levels: usize) -> io::Result<Prepared> {
         let curve = options.text(HEIGHT_CURVE.name).map(HeightCurve::parse).transpose()?;
         let max_error = options.number(MAX_ERROR.name);
@@ -107,7 +109,7 @@ impl Prepared {
         progress.expect(samples * (PAINTING + levels as f64 * (shaping + writing)));
         let mut halo = Halo::default();
         let mut grid = source.surrounded(&mut halo)?;
-        // A mesh is lit by whoever shows it, so the map's own light stays out.
+        // The viewer lights the mesh, so the map's shading is omitted.
         let painter = Painter::new(mesh_tint::of(source, options)?, Shade::new(0.0));
         let range = extremes(NO_SAMPLES, grid.data());
         if let Some(curve) = &curve {
@@ -132,7 +134,7 @@ impl Prepared {
         Ok(Prepared { grid, halo, shapes, painter, exaggeration, max_error, painting, writing, curve, map })
     }
 
-    /// A level of detail, its corners with colours if they are wanted.
+    /// A level of detail, with vertex colours on request.
     pub fn surface(&self, level: usize, colors: bool) -> Surface<'_> {
         Surface {
             grid: &self.grid,
@@ -144,33 +146,33 @@ impl Prepared {
         }
     }
 
-    /// What heights are multiplied by.
+    /// The factor of heights.
     pub fn exaggeration(&self) -> f32 {
         self.exaggeration
     }
 
-    /// How far samples are from the surface at most, where it has few triangles.
+    /// The error of an adaptive mesh; `None` for a full grid.
     pub fn max_error(&self) -> Option<f64> {
         self.max_error
     }
 
-    /// Bends heights as those of the mesh were.
+    /// Remaps heights like those of the mesh.
     pub fn bend(&self, heights: &mut [f32]) {
         if let Some((curve, range)) = &self.curve {
             curve.bend_within(*range, heights);
         }
     }
 
-    /// The picture that it wears, as PNG: a pixel for each sample.
+    /// The texture as PNG: one pixel per sample.
     ///
-    /// Fails as `out` does, or if the work is cancelled.
+    /// Fails if `out` fails, or if the work is cancelled.
     pub fn picture(&self, out: &mut dyn io::Write) -> io::Result<()> {
         self.painter.write_png(&mut Stopping { out, progress: &self.painting }, &self.grid, &[])?;
         self.painting.finish();
         Ok(())
     }
 
-    /// Where it lies and how its axes are, for the comments of a file.
+    /// Position and axes, for the comments of a file.
     pub fn comments(&self, axes: &str) -> Vec<String> {
         let window = self.grid.window();
         let place = format!(
@@ -196,7 +198,7 @@ impl Prepared {
         comments
     }
 
-    /// Where the origin lies on the map of a real place: what a file of keys and values tells of it.
+    /// The position of the origin on the map of a real place, as keys and values.
     pub fn extras(&self) -> Vec<(String, Value)> {
         let Some(map) = &self.map else { return Vec::new() };
         let window = self.grid.window();
@@ -209,7 +211,7 @@ impl Prepared {
         extras
     }
 
-    /// How much there is, in words.
+    /// A summary of the number of triangles.
     pub fn words(&self) -> String {
         let counts: Vec<String> = self.shapes.iter().map(|shape| shape.triangles().to_string()).collect();
         let counts = match counts.as_slice() {
@@ -223,7 +225,7 @@ impl Prepared {
     }
 }
 
-/// How a mesh is coloured: what is asked for, else `otherwise`. A stream has no picture beside it.
+/// The colouring of a mesh: the requested one, otherwise `otherwise`. A stream has no texture file beside it.
 pub fn color(options: &Options, otherwise: &'static str, files: &Files, beside: bool) -> &'static str {
     match options.word(COLOR.name).unwrap_or(otherwise) {
         "texture" if beside && files.path().is_none() => "none",

@@ -1,4 +1,4 @@
-//! The surfaces of a recipe as the pictures of a mesh's material.
+//! The surfaces of a recipe as textures of a mesh's material.
 
 use std::io::{self, Write};
 
@@ -25,32 +25,34 @@ pub const SURFACES: OptionSpec = OptionSpec {
     value_kind: ValueKind::Nothing,
 };
 
-/// Adds to a recipe the nodes that compute its surfaces, where the options ask for them: call it before the world is opened.
+/// Adds the nodes to a recipe that compute its surfaces, if the options request them; call it before the world is
+/// opened.
 pub fn prepare(recipe: &mut Recipe, options: &Options) {
     if options.has(SURFACES.name) {
         expand(recipe);
     }
 }
 
-/// Bytes that the pictures take beside the mesh.
+/// Memory of the textures beside the mesh, in bytes.
 pub fn memory(window: &Window, options: &Options) -> u64 {
     let samples = (window.width as u64).saturating_mul(window.height as u64);
-    // Albedo, roughness and occlusion as f32, and two pictures of three bytes a sample as they are packed; then normals as f32, and the packed normal maps.
+    // Albedo, roughness and occlusion as f32, and two compressed pictures of three bytes per sample; then normals as
+    // f32, and the compressed normal maps.
     let levels = options.whole("lods").unwrap_or(1);
     if options.has(SURFACES.name) { samples.saturating_mul(26 + 3 * levels) } else { 0 }
 }
 
-/// PNG pictures with a pixel for each sample.
+/// PNG pictures with one pixel per sample.
 pub struct Pictures {
     /// The base color, sRGB.
     pub base: Vec<u8>,
-    /// Occlusion in red, roughness in green, metalness (none) in blue, linear: as glTF packs them.
+    /// Occlusion in red, roughness in green, metalness (0) in blue, linear, as in glTF.
     pub material: Vec<u8>,
 }
 
-/// The pictures, where the options ask for them; those of glTF's material only if `packed`.
+/// The pictures, if the options request them; those of glTF's material only if `packed`.
 ///
-/// Fails as the subject does, if the recipe was not [prepared](prepare), and if `--color` asks for something else.
+/// Fails if the source fails, if the recipe was not [prepared](prepare), or if `--color` contradicts.
 pub fn of(source: &LayerSource, options: &Options, packed: bool) -> io::Result<Option<Pictures>> {
     if !options.has(SURFACES.name) {
         return Ok(None);
@@ -89,7 +91,7 @@ pub fn of(source: &LayerSource, options: &Options, packed: bool) -> io::Result<O
 
 /// The normal map of a level as PNG.
 ///
-/// Fails if the picture cannot be packed.
+/// Fails if the picture cannot be compressed.
 pub fn normal_map(level: &Surface) -> io::Result<Vec<u8>> {
     let (width, height) = (level.grid.width(), level.grid.height());
     let texels = normal_map::bake(level)?;
@@ -99,14 +101,14 @@ pub fn normal_map(level: &Surface) -> io::Result<Vec<u8>> {
     })
 }
 
-/// A derived layer over the subject's window.
+/// A derived layer over the source's window.
 fn made(source: &LayerSource, layer: &'static Derived) -> io::Result<Vec<Grid>> {
     let Some(rows) = layer.rows() else { return refuse(format!("`{}` is not made of rows", layer.name)) };
     let progress = source.progress().part(0.0);
     Ok(Rows::new(rows, source.world(), source.window(), 0, &progress)?.whole()?)
 }
 
-/// A picture whose rows `fill` makes.
+/// A picture whose rows `fill` computes.
 fn packed_rows(picture: &Picture, fill: impl Fn(usize, &mut [u8]) + Sync) -> io::Result<Vec<u8>> {
     let mut out = Vec::new();
     png::write_through(&mut out, picture, |out: &mut dyn Write| {

@@ -1,4 +1,4 @@
-//! The map's tint for the colors of a mesh: the same for every window of a world.
+//! The tint of meshes: the same for every window of a world.
 
 use std::io;
 
@@ -17,15 +17,15 @@ pub const COLOR_RANGE: OptionSpec = OptionSpec {
     value_kind: ValueKind::Range,
 };
 
-/// How many samples the longer side of a world is looked at with.
+/// Samples along the longer side of the overview of a world.
 const OVERVIEW: usize = 256;
 
-/// A world without bounds is looked at over so many cells, around its origin.
+/// Side of the overview of an unbounded world, in cells around its origin.
 const CELLS: f64 = 4096.0;
 
-/// The tint that the options ask for: of a range of heights, else fitted to an overview of the whole world.
+/// The requested tint: over a range of heights, otherwise fitted to an overview of the whole world.
 ///
-/// Fails as the subject does.
+/// Fails if the source fails.
 pub fn of(source: &LayerSource, options: &Options) -> io::Result<Tint> {
     let world = source.world();
     let sea_level = world.recipe().world.sea_level as f32;
@@ -35,7 +35,7 @@ pub fn of(source: &LayerSource, options: &Options) -> io::Result<Tint> {
     }
 }
 
-/// The layer over all of the world, or over the middle of one without bounds.
+/// The layer over the whole world, or around the origin of an unbounded one.
 fn overview(source: &LayerSource) -> io::Result<Grid> {
     let window = window(source.world())?;
     let progress = source.progress().part(0.0);
@@ -50,7 +50,7 @@ fn overview(source: &LayerSource) -> io::Result<Grid> {
 fn window(world: &World) -> Result<Window> {
     let spec = &world.recipe().world;
     match spec.size {
-        // No finer than the world itself.
+        // Not finer than the world itself.
         Some([width, height]) => {
             world.window_fitting(OVERVIEW.min((width.max(height) / spec.cell).round().max(1.0) as usize))
         }

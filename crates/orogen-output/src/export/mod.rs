@@ -1,9 +1,9 @@
-//! Layers out of the engine into files: one registry of formats for every front end.
+//! Export of layers to files, with one registry of formats for every front end.
 //!
-//! A [`format::Format`] says what it is called, which extensions it has, which options it knows, what memory it takes and how it is written from a
-//! [`layer_source::LayerSource`]: a layer over a window, as bands of rows from the north, or whole. What it writes goes through
-//! `Files`, which puts all files of an export in place at the end, or none. [`registry`] lists the formats, and
-//! [`run`] exports.
+//! A [`format::Format`] declares its name, extensions, options and memory, and a function that writes it from a
+//! [`layer_source::LayerSource`]: a layer over a window, in bands of rows from the north, or as a whole. Output goes
+//! through `Files`, which puts all files of an export in place at the end, or none. [`registry`] lists the
+//! formats, and [`run`] exports.
 //!
 //! ```
 //! use orogen_io::file::OutputPolicy;

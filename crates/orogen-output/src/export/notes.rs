@@ -1,8 +1,8 @@
-//! What a picture tells whoever opens it without its summary.
+//! Metadata of pictures.
 
 use orogen_io::format::levels::Levels;
 
-/// The text chunks of a grey picture of heights: what made it, and which heights black and white are.
+/// The text chunks of a greyscale picture of heights: the software, and the heights of black and white.
 pub fn of_heights(cell: f64, levels: &Levels) -> Vec<(&'static str, String)> {
     let heights = match levels.is_flat() {
         true => format!("flat at {}; {cell} metres a sample", levels.low()),

@@ -1,34 +1,34 @@
-//! What a format may be asked beyond its name: declared once beside it, checked here, read by it.
+//! Options of formats: declared once beside the format, checked here.
 
 use std::collections::BTreeMap;
 
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-/// One option of a format. The declaration is all there is: front ends make their flags, checks and help of it.
+/// The declaration of an option, from which front ends derive flags, checks and help.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OptionSpec {
-    /// Its name, in lower case with hyphens: `bits` for `--bits`.
+    /// The name, in lower case with hyphens: `bits` for `--bits`.
     pub name: &'static str,
-    /// What a help calls its value: `N`; empty where takes none.
+    /// The placeholder of the value in a help: `N`; empty for an option without a value.
     pub value: &'static str,
     /// One line for the help, with unit and default.
     pub about: &'static str,
-    /// What values there are.
+    /// The valid values.
     pub value_kind: ValueKind,
 }
 
-/// What values an option has.
+/// The kind of an option's values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ValueKind {
-    /// None: it is there or not.
+    /// No value: the option is a switch.
     Nothing,
-    /// A whole number within these ends.
+    /// An integer in this inclusive range.
     Whole(u64, u64),
-    /// A number within these ends.
+    /// A number in this inclusive range.
     Number(f64, f64),
-    /// Two numbers with a comma between them, the lower first.
+    /// Two numbers separated by a comma, the lower first.
     Range,
-    /// Two numbers with a comma between them: a place.
+    /// Two numbers separated by a comma: a position.
     Point,
     /// One of these words.
     Word(&'static [&'static str]),
@@ -36,7 +36,7 @@ pub enum ValueKind {
     Text,
 }
 
-/// A value that was given.
+/// A given value.
 #[derive(Debug, Clone, PartialEq)]
 enum Value {
     Given,
@@ -87,17 +87,17 @@ fn one_of(words: &[&str]) -> String {
     }
 }
 
-/// The options that were given, by name.
+/// The given options, by name.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
     given: BTreeMap<&'static str, Value>,
 }
 
 impl Options {
-    /// Sets an option from text. The text of an option without a value is ignored.
+    /// Sets an option from text. For a switch the text is ignored.
     ///
     /// # Errors
-    /// If it is no value that the option has.
+    /// If the value is not valid.
     pub fn give(&mut self, spec: &OptionSpec, text: &str) -> Result<()> {
         let value = spec.parse(text).map_err(|why| {
             let message = format!("`{}` is not a value for --{}: {why}", text.escape_debug(), spec.name);
@@ -107,17 +107,17 @@ impl Options {
         Ok(())
     }
 
-    /// The names of those that were given.
+    /// The names of the given options.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
         self.given.keys().copied()
     }
 
-    /// Whether it was given.
+    /// Whether the option was given.
     pub fn has(&self, name: &str) -> bool {
         self.given.contains_key(name)
     }
 
-    /// A whole number.
+    /// The value of an integer option.
     pub fn whole(&self, name: &str) -> Option<u64> {
         match self.given.get(name)? {
             Value::Whole(n) => Some(*n),
@@ -125,7 +125,7 @@ impl Options {
         }
     }
 
-    /// A number.
+    /// The value of a number option.
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.given.get(name)? {
             Value::Number(n) => Some(*n),
@@ -133,7 +133,7 @@ impl Options {
         }
     }
 
-    /// The ends of a range.
+    /// The value of a range option.
     pub fn range(&self, name: &str) -> Option<[f64; 2]> {
         match self.given.get(name)? {
             Value::Range(ends) => Some(*ends),
@@ -141,7 +141,7 @@ impl Options {
         }
     }
 
-    /// A place.
+    /// The value of a position option.
     pub fn point(&self, name: &str) -> Option<[f64; 2]> {
         match self.given.get(name)? {
             Value::Point(place) => Some(*place),
@@ -149,7 +149,7 @@ impl Options {
         }
     }
 
-    /// One of an option's words, as it declares it.
+    /// The value of a word option, as declared.
     pub fn word(&self, name: &str) -> Option<&'static str> {
         match self.given.get(name)? {
             Value::Word(word) => Some(word),
@@ -157,7 +157,7 @@ impl Options {
         }
     }
 
-    /// A text.
+    /// The value of a text option.
     pub fn text(&self, name: &str) -> Option<&str> {
         match self.given.get(name)? {
             Value::Text(text) => Some(text),

@@ -1,4 +1,5 @@
-//! Georeferencing beside formats that have none of their own: a world file and a `.prj`, and for pictures that GDAL opens also its `.aux.xml`.
+//! Georeferencing beside formats without their own: a world file and a `.prj`, and an `.aux.xml` for pictures that GDAL
+//! opens.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -14,13 +15,14 @@ use orogen_io::format::dem::Georeference;
 use orogen_io::format::{aux_xml, world_file};
 use orogen_io::open;
 
-/// More bytes than any file that tells a place has.
+/// Larger than any georeferencing file, in bytes.
 const LONGEST: u64 = 1 << 20;
 
-/// Writes both beside the output, or the `.prj` alone where the format has coordinates of its own (`from_south` is `None`). Returns the end of the closing message.
-/// Nothing is written for a world without georeferencing, for a stream, and with `--no-sidecar`.
+/// Writes both sidecars, or only the `.prj` if the format stores coordinates itself (`from_south` is `None`). Returns
+/// the end of the final message. Writes nothing for a world without georeferencing, for a stream, or with
+/// `--no-sidecar`.
 ///
-/// Fails as the files do, and if a file of that name lies there that tells another place.
+/// Fails if the files fail, or if a file with that name exists and contains another position.
 pub fn write(
     files: &mut Files,
     source: &LayerSource,
@@ -31,9 +33,10 @@ pub fn write(
     write_for(files, &path, source, options, from_south)
 }
 
-/// Writes NAME.json and the location, of a format whose files tell everything but where they lie: only for a world that lies on a map.
+/// Writes NAME.json and the georeferencing for a format that stores everything except its position: only for a world on
+/// a map.
 ///
-/// Fails as [`write()`] and `write`.
+/// Fails under the same conditions as [`write()`] and `write`.
 pub fn write_on_map(
     files: &mut Files,
     source: &LayerSource,
@@ -46,7 +49,7 @@ pub fn write_on_map(
     write_with_sidecar(files, source, options, &SampleEncoding { sample, ..SampleEncoding::default() })
 }
 
-/// Writes NAME.json, and beside it the world file and the `.prj`. Returns the words for both.
+/// Writes NAME.json, the world file and the `.prj`. Returns the message parts for both.
 pub fn write_with_sidecar(
     files: &mut Files,
     source: &LayerSource,
@@ -57,9 +60,9 @@ pub fn write_with_sidecar(
     Ok(told + &write(files, source, options, Some(encoding.from_south))?)
 }
 
-/// As [`write()`], of one of several files.
+/// [`write()`] for one of several files.
 ///
-/// Fails as [`write()`].
+/// Fails under the same conditions as [`write()`].
 pub fn write_for(
     files: &mut Files,
     path: &Path,
@@ -92,9 +95,10 @@ pub fn write_for(
     })
 }
 
-/// A world file and a `.prj` speak of every file NAME, whatever its ending: of one that is there and is not written anew, too.
+/// A world file and a `.prj` apply to every file NAME, whatever its extension, including existing ones that are not
+/// written now.
 ///
-/// Fails if one is there that gives another location than what is written.
+/// Fails if one exists with another position than the new one.
 fn check(path: &Path, beside: &Path, bytes: &[u8]) -> Result<()> {
     let differs = || open::bytes(beside, "read", LONGEST).is_ok_and(|old| old.is_none_or(|old| old != bytes));
     if !beside.exists() || path.exists() || !differs() {
@@ -109,10 +113,10 @@ fn check(path: &Path, beside: &Path, bytes: &[u8]) -> Result<()> {
     Err(Error::new(ErrorKind::File, message))
 }
 
-/// Writes what stands beside a picture whose pixels lie on a map, all but putting it in its place.
+/// Stages the sidecars of a georeferenced picture.
 ///
 /// # Errors
-/// If a file cannot be written, or one is there that gives another location.
+/// If a file cannot be written, or one exists with another position.
 pub fn stage(output: &Output, map: &Georeference, affine: Affine) -> Result<Vec<Staged>> {
     let path = output.path();
     let (all, _) = companions(path, map, Some(affine)).map_err(|cause| file::explain("write", path, &cause))?;
@@ -125,20 +129,20 @@ pub fn stage(output: &Output, map: &Georeference, affine: Affine) -> Result<Vec<
     all.into_iter().map(stage).collect()
 }
 
-/// A file with the georeferencing of another.
+/// A sidecar with the georeferencing of a file.
 struct Companion {
-    /// Where it belongs.
+    /// Its path.
     path: PathBuf,
-    /// What is in it.
+    /// Its content.
     bytes: Vec<u8>,
-    /// Whether it speaks for every file of that name, whatever its ending.
+    /// Whether it applies to every file with that name, whatever the extension.
     shared: bool,
 }
 
-/// What stands beside a raster: a world file where its file does not hold an `affine` itself, a `.prj`, and beside the pictures that it opens GDAL's own
-/// notes. Also, why the coordinate system could not be told.
+/// The sidecars of a raster: a world file if its format does not store `affine`, a `.prj`, and GDAL's sidecar for
+/// pictures that GDAL opens. Also the reason if the coordinate system cannot be expressed.
 ///
-/// Fails never: what is written goes to memory.
+/// Never fails, because it writes to memory.
 fn companions(path: &Path, map: &Georeference, affine: Option<Affine>) -> io::Result<(Vec<Companion>, Option<String>)> {
     let wkt = map.wkt();
     let mut all = Vec::new();
@@ -150,7 +154,7 @@ fn companions(path: &Path, map: &Georeference, affine: Option<Affine>) -> io::Re
         if let (true, Ok(wkt)) = (PICTURES.iter().any(|own| extension.eq_ignore_ascii_case(own)), &wkt) {
             let mut bytes = Vec::new();
             aux_xml::write(&mut bytes, &affine, wkt)?;
-            // It is this file's alone, and GDAL writes it anew without asking.
+            // It belongs to this file only, and GDAL overwrites it without asking.
             all.push(Companion { path: orogen_io::format::sidecar::aux_xml(path), bytes, shared: false });
         }
     }
@@ -167,5 +171,5 @@ fn companions(path: &Path, map: &Georeference, affine: Option<Affine>) -> io::Re
     }
 }
 
-/// The pictures whose coordinate system GDAL reads from its own notes alone.
+/// Pictures whose coordinate system GDAL reads only from its own sidecar.
 const PICTURES: [&str; 3] = ["png", "pgm", "exr"];

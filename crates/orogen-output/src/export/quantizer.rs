@@ -1,4 +1,4 @@
-//! Samples that become whole numbers: their range is known before the first of them is written.
+//! Conversion of samples to integers, with a range that is known before the first one is written.
 
 use std::io::{self, Write};
 
@@ -11,7 +11,7 @@ use orogen_io::format::levels::Levels;
 use orogen_io::format::npy;
 use orogen_io::spool::Spool;
 
-/// The option that fixes the range.
+/// The option for the range.
 pub const RANGE: OptionSpec = OptionSpec {
     name: "range",
     value: "LOW,HIGH",
@@ -19,7 +19,7 @@ pub const RANGE: OptionSpec = OptionSpec {
     value_kind: ValueKind::Range,
 };
 
-/// The option that turns the rows.
+/// The option for the order of rows.
 pub const FIRST_ROW: OptionSpec = OptionSpec {
     name: "first-row",
     value: "SIDE",
@@ -27,7 +27,7 @@ pub const FIRST_ROW: OptionSpec = OptionSpec {
     value_kind: ValueKind::Word(&["north", "south"]),
 };
 
-/// The option of 8 bits.
+/// The option for 8 or 16 bits.
 pub const BITS: OptionSpec = OptionSpec {
     name: "bits",
     value: "N",
@@ -35,21 +35,21 @@ pub const BITS: OptionSpec = OptionSpec {
     value_kind: ValueKind::Word(&["8", "16"]),
 };
 
-/// The largest level that the options ask for.
+/// The largest level for the given options.
 pub fn most(options: &Options) -> u16 {
     if options.word("bits") == Some("8") { 255 } else { 65535 }
 }
 
-/// Whether the rows begin in the south.
+/// Whether the rows start in the south.
 pub fn from_south(options: &Options) -> bool {
     options.word("first-row") == Some("south")
 }
 
-/// The rows of a layer of plain numbers, and the range that its levels stand for.
+/// The rows of a layer of plain numbers, and the range of their levels.
 pub struct Quantizer<'s, 'w> {
     source: &'s mut LayerSource<'w>,
     levels: Levels,
-    /// The samples, where they had to be made to know their range or to turn their rows.
+    /// The samples, if they had to be computed before for their range or the order of rows.
     kept: Option<Spool>,
     from_south: bool,
 }
@@ -58,10 +58,10 @@ pub struct Quantizer<'s, 'w> {
 const PIECE: usize = 1 << 20;
 
 impl<'s, 'w> Quantizer<'s, 'w> {
-    /// Finds the range: the one asked for; else of labels, the labels themselves; of a layer without a unit whose samples all lie within 0 to 1, a mask,
-    /// 0 to 1; of all others the lowest to the highest of the window.
+    /// Determines the range: the requested one; for labels, the labels themselves; for a layer without a unit and with
+    /// all samples within 0 to 1 (a mask), 0 to 1; otherwise the minimum and maximum of the window.
     ///
-    /// Fails as the subject does, and if labels pass the largest level `most`.
+    /// Fails if the source fails, or if labels exceed the largest level `most`.
     pub fn new(source: &'s mut LayerSource<'w>, options: &Options, most: u16, files: &Files) -> io::Result<Self> {
         let asked = options.range("range").map(|[low, high]| Levels::new(low as f32, high as f32));
         let from_south = from_south(options);
@@ -76,23 +76,23 @@ impl<'s, 'w> Quantizer<'s, 'w> {
         Ok(Quantizer { source, levels, kept, from_south })
     }
 
-    /// The rows as they are, of a format that keeps the samples: put aside only to be turned.
+    /// The rows without conversion; they are spooled only to reverse their order.
     ///
-    /// Fails as the subject does.
+    /// Fails if the source fails.
     pub fn plain(source: &'s mut LayerSource<'w>, options: &Options, files: &Files) -> io::Result<Self> {
         let from_south = from_south(options);
         let kept = if from_south { Some(keep(source, files)?) } else { None };
         Ok(Quantizer { source, levels: Levels::new(0.0, 0.0), kept, from_south })
     }
 
-    /// What the least and the greatest level stand for.
+    /// The range of the levels.
     pub fn levels(&self) -> Levels {
         self.levels
     }
 
-    /// Gives `visit` all samples, some whole rows at a time, in the order asked for.
+    /// Calls `visit` with all samples, in whole rows, in the requested order.
     ///
-    /// Fails as `visit`, the subject and the spool do.
+    /// Fails if `visit`, the source or the spool fails.
     pub fn rows(&mut self, mut visit: impl FnMut(&[f32]) -> io::Result<()>) -> io::Result<()> {
         let Some(spool) = &mut self.kept else {
             return self.source.rows(|band| visit(band[0].data()));
@@ -119,16 +119,16 @@ impl<'s, 'w> Quantizer<'s, 'w> {
     }
 }
 
-/// Makes the samples and puts them aside.
+/// Computes the samples and spools them.
 fn keep(source: &mut LayerSource, files: &Files) -> io::Result<Spool> {
     let mut spool = files.spool();
     source.rows(|band| npy::write_rows(&mut spool, band[0].data()))?;
     Ok(spool)
 }
 
-/// The range that a layer's samples have by themselves, of a subject whose rows were made.
+/// The default range of a layer, for a source whose rows were computed.
 ///
-/// Fails if labels pass the largest level `most`.
+/// Fails if labels exceed the largest level `most`.
 pub fn natural(source: &LayerSource, most: u16) -> io::Result<Levels> {
     let levels = source.levels();
     match source.kind() {
@@ -148,7 +148,7 @@ fn is_mask(source: &LayerSource, levels: &Levels) -> bool {
     source.unit().is_empty() && levels.low() >= 0.0 && levels.high() <= 1.0 && levels.high() > 0.0
 }
 
-/// Writes samples as levels: a byte each, or two, the higher first.
+/// Writes samples as levels of one byte, or of two in big-endian order.
 pub fn write_levels(out: &mut dyn Write, samples: &[f32], levels: &Levels, most: u16) -> io::Result<()> {
     let bytes: Vec<u8> = match most {
         255 => samples.iter().map(|sample| levels.to_u8(*sample)).collect(),
@@ -157,7 +157,7 @@ pub fn write_levels(out: &mut dyn Write, samples: &[f32], levels: &Levels, most:
     out.write_all(&bytes)
 }
 
-/// What levels stand for, in words.
+/// A description of the range of levels.
 pub fn words(levels: &Levels, most: u16) -> String {
     match levels.is_flat() {
         true => format!("flat at {} and so all 0", levels.low()),

@@ -1,4 +1,4 @@
-//! The formats there are.
+//! The registry of formats.
 
 use std::path::Path;
 
@@ -15,15 +15,15 @@ pub fn all() -> &'static [&'static Format] {
     ALL
 }
 
-/// The format that has such a name or extension, in any case.
+/// The format with this name or extension, ignoring case.
 pub fn named(name: &str) -> Option<&'static Format> {
     ALL.iter().copied().find(|format| format.extensions().any(|extension| extension.eq_ignore_ascii_case(name)))
 }
 
-/// The format that a path's extension tells.
+/// The format for a path's extension.
 ///
 /// # Errors
-/// If it has none, or one that no format has: the message names the nearest, or all there are.
+/// If the extension is missing or unknown: the message suggests the closest, or lists all.
 pub fn of_path(path: &Path) -> Result<&'static Format> {
     let refuse = |message: String| Err(Error::new(ErrorKind::Request, message));
     let Some(extension) = path.extension() else {
@@ -46,7 +46,7 @@ pub fn of_path(path: &Path) -> Result<&'static Format> {
     }
 }
 
-/// All options of all formats, by name, each with the formats that know it.
+/// All options of all formats, by name, each with the formats that have it.
 pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static Format>)> {
     let mut all: Vec<(&OptionSpec, Vec<&Format>)> = Vec::new();
     for format in ALL {
@@ -61,10 +61,10 @@ pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static Format>)> {
     all
 }
 
-/// Whether a format knows all options that were given.
+/// Checks that a format has all given options.
 ///
 /// # Errors
-/// If not: the message names the formats that do.
+/// If it has not: the message names the formats that do.
 pub fn check(format: &Format, given: &Options) -> Result<()> {
     let Some(name) = given.names().find(|name| !format.knows(name)) else { return Ok(()) };
     let who: Vec<&Format> = ALL.iter().copied().filter(|format| format.knows(name)).collect();

@@ -1,4 +1,4 @@
-//! One export from beginning to end.
+//! Exports.
 
 use std::io::{self, Write};
 
@@ -15,20 +15,20 @@ use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_io::file::{self, Output};
 
-/// What was written.
+/// The result of an export.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Written {
-    /// What the samples stand for.
+    /// A description of the samples.
     pub words: String,
-    /// How many samples there are.
+    /// The count of samples.
     pub count: FiniteCount,
 }
 
-/// What a format is asked to hold: layers of vector features, if it holds such and all of `layers` (names with commas between them) are; else the layer
-/// of that name, as [`LayerSource::new`].
+/// The source for a format: layers of vector features, if the format holds them and all `layers` (comma-separated
+/// names) are such layers; otherwise the layer with that name, as in [`LayerSource::new`].
 ///
 /// # Errors
-/// As [`LayerSource::new`], and if the layers are vector features and the format holds none.
+/// The errors of [`LayerSource::new`]; or the layers are vector features and the format does not hold them.
 pub fn source<'w>(
     format: &Format,
     world: &'w World,
@@ -55,18 +55,18 @@ pub fn source<'w>(
     }
 }
 
-/// Exports to a file, and what stands beside it: all of it or nothing.
+/// Exports to a file and its sidecars, atomically.
 ///
 /// # Errors
-/// If the format does not know an option or cannot hold the layer, no sample of the layer is finite, memory does not suffice (then nothing was started), the work was cancelled, or
-/// a file cannot be written.
+/// If the format does not have an option or cannot hold the layer, no sample is finite, memory does not suffice (then
+/// nothing was started), the work was cancelled, or a file cannot be written.
 pub fn to_file(format: &Format, source: LayerSource, options: &Options, output: &Output) -> Result<Written> {
     let (files, written) = staged(format, source, options, output)?;
     files.commit().map_err(|cause| file::explain("write", output.path(), &cause))?;
     Ok(written)
 }
 
-/// As [`to_file`], all but putting the files in their places: for exports of several.
+/// [`to_file`] without putting the files in place, for several exports together.
 pub(super) fn staged<'w>(
     format: &Format,
     mut source: LayerSource<'w>,
@@ -82,10 +82,10 @@ pub(super) fn staged<'w>(
     Ok((files, written(&source, words)?))
 }
 
-/// Exports to a stream: the file alone, nothing beside it.
+/// Exports to a stream, without sidecars.
 ///
 /// # Errors
-/// As [`to_file`]; what the stream itself fails with comes back as it is.
+/// The errors of [`to_file`]; errors of the stream itself are returned unchanged.
 pub fn to_stream(format: &Format, source: LayerSource, options: &Options, out: &mut dyn Write) -> io::Result<Written> {
     let mut source = source;
     prepare(format, &mut source, options)?;
@@ -96,7 +96,7 @@ pub fn to_stream(format: &Format, source: LayerSource, options: &Options, out: &
     Ok(written)
 }
 
-/// Has a format write. A layer without a finite sample is told as such, whatever the format says of it.
+/// Calls the format's writer. If a layer has no finite sample, that error takes precedence over the format's.
 fn write(format: &Format, source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     (format.write)(source, options, files).map_err(|cause| {
         let own = cause.get_ref().and_then(|inner| inner.downcast_ref::<Error>());
@@ -107,7 +107,7 @@ fn write(format: &Format, source: &mut LayerSource, options: &Options, files: &m
     })
 }
 
-/// What was written of a subject, if any sample of it is finite.
+/// The result for a source, if any of its samples is finite.
 fn written(source: &LayerSource, words: String) -> Result<Written> {
     finite(source)?;
     Ok(Written { words, count: source.count() })
@@ -117,7 +117,7 @@ fn finite(source: &LayerSource) -> Result<()> {
     source.count().check(&format!("the layer `{}`", source.layer())).map(drop)
 }
 
-/// Refuses what cannot be, before anything is begun.
+/// Rejects invalid requests before the work begins.
 fn prepare(format: &Format, source: &mut LayerSource, options: &Options) -> Result<()> {
     registry::check(format, options)?;
     if source.channels() > format.channels {

@@ -15,23 +15,23 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_io::palette::color::{Encoder, Rgb};
 
-/// The most surfaces in a legend, and the least share of the window that one must cover to stand there.
+/// Maximum number of surfaces in a legend, and minimum share of the window of each.
 const MOST: usize = 8;
 const LEAST: f64 = 0.001;
 
-/// Bytes that the cover of a window takes, while it is made too.
+/// Memory of the cover of a window, including its computation, in bytes.
 pub fn memory(window: &Window) -> u64 {
     (window.width as u64).saturating_mul(window.height as u64).saturating_mul(24)
 }
 
-/// Adds to a recipe the nodes that compute its surfaces: call it before the world is opened.
+/// Adds the nodes to a recipe that compute its surfaces; call it before the world is opened.
 pub fn prepare(recipe: &mut Recipe) {
     expand(recipe);
 }
 
 /// The albedo over the window of these heights, and the surfaces that cover most of its land.
 ///
-/// Fails as the world does, and if the recipe was not [prepared](prepare).
+/// Fails if the world fails, or the recipe was not [prepared](prepare).
 pub fn of(world: &World, heights: &Grid, sea_level: Option<f64>, progress: &Progress) -> io::Result<SurfaceCover> {
     let window = heights.window();
     let sea_level = sea_level.map_or(f32::NEG_INFINITY, |sea_level| sea_level as f32);
@@ -57,7 +57,7 @@ pub fn of(world: &World, heights: &Grid, sea_level: Option<f64>, progress: &Prog
     Ok(SurfaceCover { albedo, entries: entries(recipe, &names, &sums) })
 }
 
-/// The surfaces in the order of the recipe, the least of them left out.
+/// The surfaces in the order of the recipe, without those with small shares.
 fn entries(recipe: &Recipe, names: &[String], sums: &[f64]) -> Vec<SurfaceEntry> {
     let total: f64 = sums.iter().sum();
     let mut order: Vec<usize> = (0..names.len()).filter(|k| sums[*k] > LEAST * total).collect();

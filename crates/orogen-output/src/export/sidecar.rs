@@ -1,4 +1,5 @@
-//! What stands beside a file that does not tell everything itself: NAME.json, read again by [`format::sidecar`](orogen_io::format::sidecar).
+//! Sidecars of formats that do not store all properties: NAME.json, which [`format::sidecar`](crate::format::sidecar)
+//! reads.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -13,7 +14,7 @@ use orogen_io::format::dem::Georeference;
 use orogen_io::format::levels::Levels;
 use orogen_io::format::sidecar::own;
 
-/// The option that leaves it out.
+/// The option that omits it.
 pub const NO_SIDECAR: OptionSpec = OptionSpec {
     name: "no-sidecar",
     value: "",
@@ -21,23 +22,23 @@ pub const NO_SIDECAR: OptionSpec = OptionSpec {
     value_kind: ValueKind::Nothing,
 };
 
-/// How a file holds its samples.
+/// The encoding of samples in a file.
 #[derive(Debug, Clone, Default)]
 pub struct SampleEncoding {
-    /// The word for a sample: "u8", "u16", "f32".
+    /// The type of a sample: "u8", "u16", "f32".
     pub sample: &'static str,
-    /// "little" or "big", where a sample has several bytes.
+    /// "little" or "big", for samples of several bytes.
     pub byte_order: Option<&'static str>,
-    /// What the least and the greatest level stand for, where samples are levels.
+    /// The range of the levels, if samples are levels.
     pub levels: Option<Levels>,
-    /// Whether the rows begin in the south.
+    /// Whether the rows start in the south.
     pub from_south: bool,
-    /// The files, each with the names of its channels, where those need telling.
+    /// The files, with the names of their channels where they need description.
     pub channels: Vec<(PathBuf, Vec<String>)>,
 }
 
 impl SampleEncoding {
-    /// Integers up to `most` that stand for levels; those of two bytes have `byte_order`.
+    /// Integers up to `most`; those of two bytes have `byte_order`.
     pub fn of_levels(levels: Levels, most: u16, byte_order: &'static str, from_south: bool) -> SampleEncoding {
         let (sample, byte_order) = if most == 255 { ("u8", None) } else { ("u16", Some(byte_order)) };
         SampleEncoding { sample, byte_order, levels: Some(levels), from_south, ..SampleEncoding::default() }
@@ -51,7 +52,7 @@ struct Channels<'a> {
     channels: &'a [String],
 }
 
-/// The text. The order of the keys is the file's; names that readers of ours know are theirs.
+/// The text. Keys are in this order; keys that our reader knows have its names.
 #[derive(Debug, Serialize)]
 struct Text<'a> {
     made_by: String,
@@ -91,11 +92,12 @@ struct Text<'a> {
     about: &'a str,
 }
 
-/// Writes it, unless it is not wanted; returns the words that tell of it.
+/// Writes the sidecar, unless it was switched off; returns its part of the final message.
 ///
-/// It is NAME.json, or NAME.EXT.json where that is the sidecar of another file, or no sidecar of ours at all: a recipe, for one.
+/// The name is NAME.json, or NAME.EXT.json if NAME.json belongs to another file or is not a sidecar of ours, such as a
+/// recipe.
 ///
-/// Fails as the files do, and if something else has both names.
+/// Fails if the files fail, or both names are taken.
 pub fn write(files: &mut Files, source: &LayerSource, options: &Options, held: &SampleEncoding) -> io::Result<String> {
     let Some(path) = files.path().map(Path::to_path_buf) else { return Ok(String::new()) };
     if options.has(NO_SIDECAR.name) || path.exists() && !path.is_file() {
@@ -139,7 +141,7 @@ pub fn write(files: &mut Files, source: &LayerSource, options: &Options, held: &
     Ok(format!("; {} describes it", name(&place)))
 }
 
-/// Where it goes: NAME.json if that is free or this file's.
+/// Its path: NAME.json if that is free or belongs to this file.
 fn place(path: &Path, name: &str) -> PathBuf {
     let short = path.with_extension("json");
     match belongs_to(&short).as_deref() {
@@ -149,7 +151,7 @@ fn place(path: &Path, name: &str) -> PathBuf {
     }
 }
 
-/// The file that a sidecar of ours tells of.
+/// The file that a sidecar of ours describes.
 fn belongs_to(sidecar: &Path) -> Option<String> {
     let mut text = String::new();
     File::open(sidecar).ok()?.take(1 << 16).read_to_string(&mut text).ok()?;

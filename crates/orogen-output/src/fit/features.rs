@@ -1,23 +1,24 @@
-//! How like each other two pieces of land are.
+//! Similarity of two terrains.
 
 use crate::survey::measures::Measures;
 use crate::survey::real::{FIGURES, Figure};
 use orogen_grid::grid::{Grid, Window};
 
-/// Figures of amounts over orders of magnitude: their logarithms are compared, of what is above so little.
+/// Statistics over orders of magnitude: their logarithms are compared, above these minimum values.
 const LOGARITHMIC: [(&str, f64); 5] =
     [("relief", 1.0), ("slope_mean", 0.1), ("ruggedness", 0.01), ("curvature", 0.01), ("depressions", 0.05)];
 
-/// Figures that are left out: they say how the map lies, vary by chance over a window, or follow from others.
+/// Statistics that are not compared: they depend on the map's orientation, vary randomly between windows, or follow
+/// from others.
 const LEFT_OUT: [&str; 4] = ["grid_bias", "bifurcation", "length_ratio", "depression_depth"];
 
-/// Standard deviations that lie between the tenth and the nine tenths of what is normally distributed.
+/// Distance between the 10 % and 90 % quantiles of a normal distribution, in standard deviations.
 const TENTHS: f64 = 2.563;
 
-/// How far apart figures count that only one of two pieces of land has.
+/// The difference of a statistic that only one of two terrains has.
 const MISSING: f64 = 3.0;
 
-/// The figures compared, each in units of the spread that real land has.
+/// The compared statistics, each in units of its spread in real terrain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FeatureVector {
     values: Vec<Option<f64>>,
@@ -28,7 +29,7 @@ fn compared() -> impl Iterator<Item = &'static Figure> {
 }
 
 impl FeatureVector {
-    /// Of measures.
+    /// The features of measurements.
     pub fn of(measures: &Measures) -> FeatureVector {
         let value = |figure: &Figure| {
             let value = figure.value(measures)?;
@@ -39,7 +40,7 @@ impl FeatureVector {
         FeatureVector { values: compared().map(value).collect() }
     }
 
-    /// The middle of several, figure by figure.
+    /// The median of several, per statistic.
     pub fn middle(of: &[FeatureVector]) -> FeatureVector {
         let count = of.first().map_or(0, |first| first.values.len());
         let middle = |k: usize| {
@@ -55,8 +56,8 @@ impl FeatureVector {
         FeatureVector { values: (0..count).map(middle).collect() }
     }
 
-    /// The root of the mean square of the differences, in standard deviations of real land: 0 is the same, 1.4 what two pieces of
-    /// real land picked by chance are apart.
+    /// The root mean square of the differences, in standard deviations of real terrain: 0 is equal, 1.4 is typical for
+    /// two random pieces of real terrain.
     pub fn distance(&self, other: &FeatureVector) -> f64 {
         let differences = self.values.iter().zip(&other.values).map(|pair| match pair {
             (Some(a), Some(b)) => (a - b).clamp(-6.0, 6.0),
@@ -67,7 +68,7 @@ impl FeatureVector {
     }
 }
 
-/// Windows of `side` x `side` samples that cover a grid without overlapping, at most `most` of them, spread over it.
+/// Windows of `side` x `side` samples spread over a grid without overlapping, at most `most`.
 pub fn windows(grid: &Window, side: usize, most: usize) -> Vec<Window> {
     let (columns, rows) = (grid.width / side, grid.height / side);
     let all: Vec<Window> = (0..columns * rows)
@@ -83,7 +84,7 @@ pub fn windows(grid: &Window, side: usize, most: usize) -> Vec<Window> {
     all.into_iter().step_by(every).collect()
 }
 
-/// The features of windows of a grid, those left out that cannot be measured.
+/// The features of windows of a grid, without those that cannot be measured.
 pub fn of_windows(grid: &Grid, side: usize, most: usize) -> Vec<FeatureVector> {
     let crops = windows(grid.window(), side, most).into_iter().filter_map(|window| grid.crop(&window));
     crops.filter_map(|crop| Measures::of(&crop, None)).map(|measures| FeatureVector::of(&measures)).collect()

@@ -1,4 +1,4 @@
-//! Recipes whose land is like a real place, without holding the place.
+//! Recipes with the statistics of a real place, without its data.
 
 pub mod features;
 pub mod search;

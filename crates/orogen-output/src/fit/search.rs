@@ -1,4 +1,4 @@
-//! Finding the values of the template whose land is most like a place.
+//! Search for the parameters of the template whose terrain is closest to a place.
 
 use super::features::{FeatureVector, of_windows};
 use super::template::{MARGIN, PARAMS, ParamValues, Stretch, recipe, trial};
@@ -13,26 +13,26 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_noise::Points;
 
-/// Side of the windows that are compared, in samples, where the place is large enough.
+/// Side of the compared windows in samples, if the place is large enough.
 pub const SIDE: usize = 256;
 
-/// Most windows of a place.
+/// Maximum number of windows of a place.
 pub const MAX_WINDOWS: usize = 12;
 
-/// A place to be like.
+/// The statistics of the place to approximate.
 #[derive(Debug, Clone)]
 pub struct FitTarget {
-    /// Metres from one sample to the next.
+    /// Distance between samples, in metres.
     pub cell: f64,
-    /// Side of the windows compared.
+    /// Side of the compared windows.
     pub side: usize,
     /// Columns and rows of the place.
     pub size: [usize; 2],
-    /// The middle of its windows.
+    /// The median of its windows.
     pub middle: FeatureVector,
-    /// How many windows that is.
+    /// Number of windows.
     pub windows: usize,
-    /// Distances of its own windows from that middle.
+    /// Distances of its own windows from that median.
     pub own: Vec<f64>,
     lowest: f64,
     slope: f64,
@@ -43,7 +43,7 @@ impl FitTarget {
     /// Measures a place.
     ///
     /// # Errors
-    /// If it has no window of 64 x 64 samples with some relief.
+    /// If it has no window of 64 x 64 samples with relief.
     pub fn of(place: &Grid) -> Result<FitTarget> {
         let window = place.window();
         let side = window.width.min(window.height).min(SIDE);
@@ -76,38 +76,38 @@ impl FitTarget {
         })
     }
 
-    /// Windows along a side of the worlds that are looked at in the end.
+    /// Windows along a side of the final worlds.
     fn across(&self) -> usize {
         (self.size[0].min(self.size[1]) / self.side).clamp(1, WIDEST)
     }
 }
 
-/// How long is searched, and from which chance.
+/// The effort of a search, and its seed.
 #[derive(Debug, Clone, Copy)]
 pub struct Effort {
-    /// Settings tried at random before the best is improved.
+    /// Number of random candidates before the best are improved.
     pub random: usize,
-    /// Settings tried while it is.
+    /// Number of candidates during improvement.
     pub improving: usize,
-    /// The seed of the chances, and of the worlds tried.
+    /// Seed of the random candidates, and of the worlds.
     pub seed: u64,
 }
 
-/// What was found.
+/// The result of a search.
 #[derive(Debug, Clone)]
 pub struct Found {
     /// The parameters.
     pub values: ParamValues,
-    /// How its land is stretched.
+    /// The stretching of its terrain.
     pub stretch: Stretch,
-    /// The mean distance of the worlds that it was chosen by.
+    /// The mean distance of the worlds by which it was chosen.
     pub distance: f64,
-    /// How many candidates were tried.
+    /// Number of candidates.
     pub tried: usize,
 }
 
 impl Found {
-    /// The recipe in a world as large as the place.
+    /// The recipe, for a world of the size of the place.
     pub fn recipe(&self, target: &FitTarget, seed: u64, about: &str) -> Recipe {
         let mut recipe = recipe(&self.values, &self.stretch, target.size, target.cell, seed);
         recipe.about = about.to_string();
@@ -115,35 +115,36 @@ impl Found {
     }
 }
 
-/// How many candidates are looked at again in the end, in worlds of how many other seeds.
+/// Number of final candidates, and of worlds with other seeds for each.
 const FINALISTS: usize = 6;
 const OTHER_WORLDS: u64 = 2;
 
-/// Windows along a side of these worlds, where the place has as many.
+/// Windows along a side of these worlds, if the place has as many.
 const WIDEST: usize = 2;
 
-/// The distance of what is no land at all.
+/// The distance of a candidate without terrain.
 const FARTHEST: f64 = 100.0;
 
-/// Searches: candidates at random, the best improved by Nelder and Mead's simplex (1965); then those that came nearest are tried in worlds
-/// of other seeds, since one world may be near by luck. The same effort finds the same.
+/// Searches: random candidates, the best ones improved by the simplex method of Nelder and Mead (1965); then the
+/// closest candidates are tested in worlds with other seeds, because one world may be close by chance. The same effort
+/// gives the same result.
 ///
 /// # Errors
-/// If the work is cancelled, or memory is short.
+/// If the work is cancelled, or memory does not suffice.
 pub fn search(target: &FitTarget, effort: &Effort, options: &Options, progress: &Progress) -> Result<Found> {
     progress.expect(effort.windows(target));
     let mut trial = Trial { target, effort, options, progress, tried: 0, nearest: Vec::new() };
     let mut chance = Chance(effort.seed);
     let mut tried: Vec<(f64, ParamValues)> = Vec::new();
     for k in 0..effort.random.max(1) {
-        // The first is the middle of all ranges.
+        // The first is the centre of all ranges.
         let values = std::array::from_fn(|_| if k == 0 { 0.5 } else { chance.share() });
         tried.push((trial.distance(&values)?, values));
     }
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
     let corners = (PARAMS.len() + 1).min(tried.len());
     let mut simplex: Vec<(f64, ParamValues)> = tried[..corners].to_vec();
-    // Around the best: the others of the first simplex are drawn towards it.
+    // Around the best: the other points of the first simplex are moved towards it.
     let best = simplex[0].1;
     for (distance, corner) in simplex.iter_mut().skip(1) {
         *corner = along(&best, corner, 0.5);
@@ -184,7 +185,7 @@ pub fn search(target: &FitTarget, effort: &Effort, options: &Options, progress: 
     trial.choose()
 }
 
-/// From one values towards another, within their ranges.
+/// Moves values towards others, within their ranges.
 fn along(from: &ParamValues, to: &ParamValues, share: f64) -> ParamValues {
     std::array::from_fn(|k| (from[k] + share * (to[k] - from[k])).clamp(0.0, 1.0))
 }
@@ -195,12 +196,12 @@ struct Trial<'a> {
     options: &'a Options,
     progress: &'a Progress,
     tried: usize,
-    /// The [`FINALISTS`] nearest candidates so far, the nearest first.
+    /// The [`FINALISTS`] closest candidates so far, the closest first.
     nearest: Vec<(f64, ParamValues)>,
 }
 
 impl Trial<'_> {
-    /// How far the land of these values is from the target.
+    /// The distance of the terrain of these values from the target.
     fn distance(&mut self, values: &ParamValues) -> Result<f64> {
         self.tried += 1;
         let (_, distance) = self.look(values, self.effort.seed, 1)?;
@@ -210,8 +211,8 @@ impl Trial<'_> {
         Ok(distance)
     }
 
-    /// How the land of one world, `across` windows wide, is stretched, and how far its windows are in the mean; what makes no land is
-    /// farthest.
+    /// The stretching of the terrain of one world, `across` windows wide, and the mean distance of its windows; the
+    /// largest distance if there is no terrain.
     fn look(&self, values: &ParamValues, seed: u64, across: usize) -> Result<(Stretch, f64)> {
         let part = self.progress.part((across * across) as f64);
         let (stretch, windows) = self.make(values, seed, across, &part)?;
@@ -222,9 +223,9 @@ impl Trial<'_> {
         Ok((stretch, windows.iter().map(far).sum::<f64>() / windows.len().max(1) as f64))
     }
 
-    /// Of the nearest candidates the one whose worlds are nearest in the mean, stretched as they are in the mean.
+    /// The final candidate with the smallest mean distance over its worlds, with the mean stretching.
     fn choose(mut self) -> Result<Found> {
-        // Land is another in the midst of a larger world: more of it lies far from where rivers end.
+        // Terrain differs in a larger world: more of it is far from river mouths.
         let across = self.target.across();
         let mut best: Option<Found> = None;
         for (_, values) in std::mem::take(&mut self.nearest) {
@@ -247,8 +248,8 @@ impl Trial<'_> {
         Ok(Found { tried: self.tried, ..best })
     }
 
-    /// The windows of a world of these values, stretched so that the middle ones of their hypsometric integrals and mean slopes are the
-    /// target's.
+    /// The windows of a world of these values, stretched so that the medians of their hypsometric integrals and mean
+    /// slopes equal the target's.
     fn make(
         &self,
         values: &ParamValues,
@@ -278,7 +279,7 @@ impl Trial<'_> {
             };
             (stretch, windows.iter().map(bent).collect::<Vec<Grid>>())
         };
-        // The more it is bent, the lower the mean lies.
+        // The stronger the bend, the lower the mean.
         let bend =
             bisect([-5.0, 5.0], |bend| middle(made([0.0, 1e3], bend).1.iter().map(integral)) > self.target.integral);
         let rises: Vec<Grid> = made([0.0, 1e3], bend).1.iter().map(steepness).collect();
@@ -294,7 +295,7 @@ impl Trial<'_> {
     }
 }
 
-/// A world of these values, `across` windows wide, and its samples that are looked at.
+/// A world of these values, `across` windows wide, and the window to measure.
 fn trial_world(
     target: &FitTarget,
     values: &ParamValues,
@@ -311,17 +312,18 @@ fn trial_world(
 }
 
 impl Effort {
-    /// Windows that a search makes, about.
+    /// Approximate number of windows in a search.
     fn windows(&self, target: &FitTarget) -> f64 {
         let first = self.random.max(1) + PARAMS.len() + self.improving;
         let last = FINALISTS * (OTHER_WORLDS as usize + 1) * target.across() * target.across();
         (first + last) as f64
     }
 
-    /// About how many nanoseconds of one core a search takes: the weight of a [part](Progress::part) of more work.
+    /// Approximate time of a search on one core, in nanoseconds, as the weight of a [part](Progress::part) of more
+    /// work.
     ///
     /// # Errors
-    /// As [`search`].
+    /// The errors of [`search`].
     pub fn work(&self, target: &FitTarget, options: &Options) -> Result<f64> {
         let (world, inside) = trial_world(target, &[0.5; PARAMS.len()], self.seed, 1, options)?;
         let plan = world.plan(&["soft"], &inside)?;
@@ -329,10 +331,10 @@ impl Effort {
     }
 }
 
-/// Nanoseconds that measuring and stretching a sample of a window takes, about.
+/// Approximate time for measuring and stretching a sample of a window, in nanoseconds.
 const MEASURING: f64 = 400.0;
 
-/// The middle one, or the mean of the two in the middle.
+/// The median.
 fn middle(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     values.sort_unstable_by(f64::total_cmp);
@@ -349,14 +351,14 @@ fn quantile(grid: &Grid, share: f64) -> f64 {
     if heights.is_empty() { 0.0 } else { f64::from(*heights.select_nth_unstable_by(at, f32::total_cmp).1) }
 }
 
-/// Where the mean lies in the relief, as [`Measures`] has it.
+/// The position of the mean in the relief, as in [`Measures`].
 fn integral(grid: &Grid) -> f64 {
     let (low, high) = (quantile(grid, 0.001), quantile(grid, 0.999));
     let sum: f64 = grid.data().iter().map(|height| f64::from(*height).clamp(low, high) - low).sum();
     sum / grid.data().len() as f64 / (high - low).max(1e-12)
 }
 
-/// Where, between two numbers, `above` ends to hold.
+/// The number between two at which `above` stops being true, by bisection.
 fn bisect([mut low, mut high]: [f64; 2], above: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..18 {
         let middle = 0.5 * (low + high);
@@ -365,7 +367,7 @@ fn bisect([mut low, mut high]: [f64; 2], above: impl Fn(f64) -> bool) -> f64 {
     0.5 * (low + high)
 }
 
-/// Chances that are the same everywhere (splitmix64).
+/// Random numbers that are the same on every machine (splitmix64).
 struct Chance(u64);
 
 impl Chance {

@@ -1,18 +1,18 @@
-//! The recipe that is fitted: noise that rivers cut, shaped and scaled.
+//! The fitted recipe: noise eroded by rivers, stretched and scaled.
 
 use orogen_engine::field::{curve::Curve, fbm::Fbm, remap::Remap, transform::Transform};
 use orogen_engine::filter::blur::Blur;
 use orogen_engine::recipe::document::{Recipe, WorldSpec};
 use orogen_engine::solver::stream_power::StreamPower;
 
-/// A number that is searched for.
+/// A parameter of the search.
 #[derive(Debug, Clone, Copy)]
 pub struct Param {
-    /// What it is.
+    /// The name.
     pub name: &'static str,
-    /// Its ends.
+    /// The range.
     pub range: [f64; 2],
-    /// Whether equal steps are equal ratios.
+    /// Whether its scale is logarithmic.
     pub logarithmic: bool,
 }
 
@@ -20,7 +20,7 @@ const fn param(name: &'static str, low: f64, high: f64, logarithmic: bool) -> Pa
     Param { name, range: [low, high], logarithmic }
 }
 
-/// All of them. Lengths are in cells, so that one search fits places of any cell.
+/// All parameters. Lengths are in cells, so that one search fits places of any cell.
 pub const PARAMS: [Param; 9] = [
     param("wavelength of the first land, cells", 24.0, 600.0, true),
     param("its gain", 0.3, 0.65, false),
@@ -46,19 +46,19 @@ pub fn value(values: &ParamValues, k: usize) -> f64 {
     }
 }
 
-/// How the land that comes out is stretched and bent.
+/// The vertical stretching of the terrain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
-    /// The lowest and the highest of what was cut.
+    /// The minimum and maximum of the eroded terrain.
     pub from: [f64; 2],
-    /// The heights in metres that they become.
+    /// The heights, in metres, that they are mapped to.
     pub to: [f64; 2],
-    /// Between them heights go as exp(bend t) with t from 0 to 1: below 0 for high plains, above for wide valleys.
+    /// Between them heights follow exp(bend t) with t from 0 to 1: negative for high plains, positive for wide valleys.
     pub bend: f64,
 }
 
 impl Stretch {
-    /// Where a height that is a share `t` of the way from the lowest to the highest comes to lie, as such a share.
+    /// The new relative height of a relative height `t`, both 0 to 1.
     fn bent(&self, t: f64) -> f64 {
         match self.bend.abs() < 1e-3 {
             true => t,
@@ -66,7 +66,7 @@ impl Stretch {
         }
     }
 
-    /// The node that does it. It goes on beyond both ends: a larger world may be lower and higher than the one that was fitted.
+    /// The node for it. It extrapolates beyond both ends: a larger world may be lower and higher than the fitted one.
     pub fn curve(&self) -> Curve {
         let ([low, high], [base, top]) = (self.from, self.to);
         let point = |k: i32| {
@@ -77,35 +77,35 @@ impl Stretch {
     }
 }
 
-/// A number with so many digits as a recipe wants.
+/// Rounds a number to the digits used in recipes.
 fn round(value: f64) -> f64 {
     let digits = libm::pow(10.0, 4.0 - libm::log10(value.abs().max(1e-12)).floor());
     (value * digits).round() / digits
 }
 
-/// Where the rivers of a world are solved: over all of it, or in a wider view of the land of which the world is the middle, at the same
-/// resolution. A solver ends at the world's edge, where the land stays as it was: a rim.
+/// The area on which rivers are solved: the world, or a larger area with the world at its centre, at the same
+/// resolution. A solver ends at the world's edge, where heights do not change: a rim.
 #[derive(Debug, Clone, Copy)]
 struct View {
-    /// What lengths are multiplied by, so that the wider view fits into the world.
+    /// Factor of lengths that fits the larger area into the world.
     scale: f64,
-    /// Metres that are seen beyond the world in the west and in the north.
+    /// Extent of the area beyond the world in the west and in the north, in metres.
     around: [f64; 2],
-    /// From one sample that rivers are solved on to the next, in the world.
+    /// Cell of the rivers' solver, in metres of the world.
     cell: f64,
 }
 
 impl View {
-    /// The view with at least `margin` cells on each side.
+    /// The area with at least `margin` cells on each side.
     fn new(size: [usize; 2], cell: f64, margin: usize) -> View {
         let fewest = size[0].min(size[1]).max(1) as f64;
         let scale = fewest / (fewest + 2.0 * margin as f64);
-        // Whole cells: the samples of the view are those of the world, and none is made of its neighbours.
+        // Whole cells: the samples of the area coincide with those of the world, without interpolation.
         let around = size.map(|samples| (samples as f64 * (1.0 / scale - 1.0) / 2.0).round() * cell);
         View { scale, around, cell: cell * scale }
     }
 
-    /// A source as the view sees it.
+    /// A source transformed to the area.
     fn wider(&self, source: &str) -> Transform {
         Transform {
             source: source.into(),
@@ -115,13 +115,13 @@ impl View {
         }
     }
 
-    /// The middle of what was solved in the view.
+    /// The centre of the area's solution.
     fn middle(&self, source: &str) -> Transform {
         let offset = self.around.map(|metres| metres * self.scale);
         Transform { source: source.into(), scale: 1.0 / self.scale, offset, ..Transform::default() }
     }
 
-    /// The law that does in the view what another does in the world: areas are smaller there, slopes steeper.
+    /// The law with the effect in the area that `law` has in the world: areas are smaller there, and slopes steeper.
     fn law(&self, law: StreamPower) -> StreamPower {
         let s = self.scale;
         let talus = libm::atan(libm::tan(law.talus_angle.to_radians()) / s).to_degrees();
@@ -135,17 +135,19 @@ impl View {
     }
 }
 
-/// The recipe of these values, in a world of so many cells, up to whose edges rivers have cut. Its node `soft` is the land before it is stretched.
+/// The recipe of these values in a world of this many cells, with rivers up to its edges. Its node `soft` is the
+/// terrain before stretching.
 pub fn recipe(values: &ParamValues, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64) -> Recipe {
     written(values, stretch, size, cell, seed, Some(View::new(size, cell, MARGIN)))
 }
 
-/// The same solved over the world alone, which is quicker: its land is like that of [`recipe`] from [`MARGIN`] samples inwards.
+/// The same solved over the world only, which is faster: its terrain is like that of [`recipe`] at least [`MARGIN`]
+/// samples from the border.
 pub(super) fn trial(values: &ParamValues, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64) -> Recipe {
     written(values, stretch, size, cell, seed, None)
 }
 
-/// Samples along the border of a solved world whose land shows that it ends.
+/// Width of the border of a solved world that is affected by its edge, in samples.
 pub(super) const MARGIN: usize = 48;
 
 fn written(

@@ -1,14 +1,14 @@
-//! A page in memory, to put pictures and words on.
+//! A page in memory for pictures and text.
 
 use std::io::{self, Write};
 use std::ops::Range;
 
 use orogen_io::format::png::{self, Picture, Pixel};
 
-/// A colour as sRGB bytes: red, green, blue.
+/// A colour in sRGB bytes: red, green, blue.
 pub type Ink = [u8; 3];
 
-/// A page of pixels. Columns and rows count from the upper left corner; what lies outside is left out.
+/// A page of pixels. Columns and rows count from the upper left corner; pixels outside of it are ignored.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Canvas {
     width: usize,
@@ -22,28 +22,28 @@ impl Canvas {
         Canvas { width, height, pixels: vec![paper; width * height] }
     }
 
-    /// A page of these pixels, row after row; what is missing at the end is white.
+    /// A page of these pixels, row-major; missing pixels at the end are white.
     pub fn of(width: usize, height: usize, mut pixels: Vec<Ink>) -> Canvas {
         pixels.resize(width * height, [255; 3]);
         Canvas { width, height, pixels }
     }
 
-    /// All pixels, row after row.
+    /// All pixels, row-major.
     pub fn pixels(&self) -> &[Ink] {
         &self.pixels
     }
 
-    /// Pixels a row.
+    /// Pixels per row.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// The pixel in column `x` and row `y`, if it is on the page.
+    /// The pixel in column `x` and row `y`; `None` outside the page.
     pub fn get(&self, x: i64, y: i64) -> Option<Ink> {
         self.index(x, y).map(|index| self.pixels[index])
     }
@@ -55,9 +55,9 @@ impl Canvas {
         }
     }
 
-    /// Lays ink over a pixel, covering the share of it from 0 to 1.
+    /// Blends ink over a pixel with a coverage of 0 to 1.
     ///
-    /// Bytes are mixed, not light: dark letters on light paper then look as heavy as they were drawn.
+    /// Blends bytes instead of linear light: dark letters on light paper then keep their weight.
     pub fn cover(&mut self, x: i64, y: i64, ink: Ink, share: f32) {
         if let Some(index) = self.index(x, y) {
             let share = share.clamp(0.0, 1.0);
@@ -79,7 +79,7 @@ impl Canvas {
         }
     }
 
-    /// Writes the page as a PNG: of greys, if there is no colour on it.
+    /// Writes the page as a PNG, in greyscale if it has no colours.
     pub fn write_png(&self, out: &mut dyn Write, notes: &[(&str, &str)]) -> io::Result<()> {
         let grey = self.pixels.iter().all(|[red, green, blue]| red == green && green == blue);
         let pixel = if grey { Pixel::Grey8 } else { Pixel::Rgb8 };

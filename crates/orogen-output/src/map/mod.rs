@@ -1,4 +1,4 @@
-//! Maps: pictures of grids for people.
+//! Maps: pictures of grids.
 
 pub mod canvas;
 pub mod paint;

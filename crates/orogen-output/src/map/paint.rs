@@ -1,4 +1,4 @@
-//! The relief map: atlas tint times relief shading.
+//! The relief map: a tint multiplied by relief shading.
 
 use std::io::{self, Write};
 use std::ops::Range;
@@ -12,10 +12,10 @@ use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::palette::color::Encoder;
 use orogen_io::palette::tint::Tint;
 
-/// How much of the land's shading the sea floor gets: water lies over it.
+/// Strength of the shading of the sea floor relative to land.
 const UNDER_WATER: f32 = 0.35;
 
-/// How a relief map is painted: fitted to a world once, then the same for every window of it.
+/// The style of a relief map: fitted to a world once, then the same for every window of it.
 #[derive(Debug, Clone)]
 pub struct Painter {
     tint: Tint,
@@ -29,14 +29,14 @@ impl Painter {
         Painter { tint, shade, encoder: Encoder::new() }
     }
 
-    /// The painter that suits the heights of `grid`, in metres.
+    /// The painter fitted to the heights of `grid`, in metres.
     pub fn fit(grid: &Grid, sea_level: f64) -> Painter {
         let sea_level = sea_level as f32;
         Painter::new(Tint::fit(grid, sea_level), Shade::fit(grid, sea_level))
     }
 
-    /// Paints a row as sRGB bytes, given the heights of the row above, the row itself and the one below, each with one sample
-    /// more on either side.
+    /// Paints a row in sRGB bytes. `rows` are the heights of the row above, the row itself and the row below, each
+    /// extended by one sample at both ends.
     pub fn row(&self, rows: [&[f32]; 3], cell: f64, out: &mut [u8]) {
         let here = rows[1];
         gradients_between(rows, cell, |i, gradient| {
@@ -48,7 +48,7 @@ impl Painter {
                 true => 1.0,
                 false => 0.0,
             };
-            // What is not finite is not shaded; its gradient may be NaN.
+            // Samples that are not finite are not shaded; their gradient may be NaN.
             let lit = match strength {
                 0.0 => color,
                 _ => std::array::from_fn(|c| color[c] * (1.0 + (shade[c] - 1.0) * strength)),
@@ -57,7 +57,8 @@ impl Painter {
         });
     }
 
-    /// Writes the map of a whole grid as an RGB PNG of its size. Beyond its edges the land is taken to go on in straight lines.
+    /// Writes the map of a whole grid as an RGB PNG, one pixel per sample. Beyond its edges heights are extrapolated
+    /// linearly.
     pub fn write_png(&self, out: &mut dyn Write, grid: &Grid, notes: &[(&str, &str)]) -> io::Result<()> {
         let (width, height) = (grid.width(), grid.height());
         let picture = Picture { width, height, pixel: Pixel::Rgb8, notes };
@@ -67,7 +68,8 @@ impl Painter {
         })
     }
 
-    /// Paints some rows of a whole grid as sRGB bytes, three a sample. Beyond its edges the land is taken to go on in straight lines.
+    /// Paints some rows of a whole grid in sRGB bytes, three per sample. Beyond its edges heights are extrapolated
+    /// linearly.
     pub fn paint(&self, grid: &Grid, rows: Range<usize>, bytes: &mut [u8]) {
         let (width, height) = (grid.width(), grid.height());
         bytes.par_chunks_exact_mut(3 * width).zip(rows).for_each_init(
@@ -84,7 +86,8 @@ impl Painter {
     }
 }
 
-/// Row `there` of the grid, widened; beyond the grid, row `j` (widened in `here`) carried on from its other neighbour.
+/// Row `there` of the grid, extended; if there is none, extrapolated from row `j` (extended in `here`) and its other
+/// neighbour.
 fn neighbour(grid: &Grid, j: usize, there: Option<usize>, here: &[f32], out: &mut [f32]) {
     match there {
         Some(there) => extend_row(grid.row(there), out),

@@ -1,38 +1,39 @@
-//! Relief shading that stays soft: several lights, fitted to the land's own steepness.
+//! Soft relief shading: several lights, with a z factor fitted to the steepness of the land.
 
 use orogen_grid::analysis::hillshade::Light;
 use orogen_grid::analysis::slope::{Gradient, gradients_between};
 use orogen_grid::grid::Grid;
 
-/// The lights: degrees clockwise from north, degrees above the horizon, weight. One light leaves ridges that run along it
-/// invisible; a pair beside the main one shows them (after R. K. Mark, "Multidirectional, oblique-weighted, shaded-relief
-/// image", USGS 1992).
+/// The lights: degrees clockwise from north, degrees above the horizon, weight. Ridges parallel to a single light are
+/// invisible; the two lights beside the main one show them (after R. K. Mark, "Multidirectional, oblique-weighted,
+/// shaded-relief image", USGS 1992).
 const LIGHTS: [(f64, f64, f32); 3] = [(315.0, 42.0, 0.6), (265.0, 38.0, 0.2), (5.0, 38.0, 0.2)];
 
-/// Which lights shade the relief.
+/// The lights of the shading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lights {
     /// One from the north-west.
     One,
-    /// Three, the main one from the north-west: the usual.
+    /// Three, the main one from the north-west: the default.
     Three,
 }
 
-/// The steepness, as rise per metre, that is shaded as it is. Land steep as real mountains seen at 30 m cells.
+/// The steepness, rise over run, that is shaded without exaggeration: that of real mountains at cells of 30 m.
 const NATURAL: f32 = 0.65;
 
-/// How much of the way from its own steepness to [`NATURAL`] land is brought, in powers: 1 would make hills look like alps, 0
-/// would leave coarse cells, whose slopes are always gentler, without relief.
+/// The exponent by which the steepness is adjusted towards [`NATURAL`]: with 1 hills would look like alps, with 0
+/// coarse cells, whose slopes are less steep, would have no visible relief.
 const FIT: f32 = 0.66;
 
-/// How bright the darkest shadow is, and how much light beyond level ground's counts.
+/// The brightness of the darkest shadow, and the weight of light above that of level ground.
 const DARKEST: f32 = 0.26;
 const HIGHLIGHT: f32 = 0.45;
 
-/// How many rows are looked at to fit the z factor.
+/// Number of rows for fitting the z factor.
 const PROBES: usize = 64;
 
-/// A shading: lights and a z factor. Level ground keeps its colour, slopes to the light get brighter, others darker and bluer.
+/// A shading: lights and a z factor. Level ground keeps its colour; slopes towards the light become brighter, others
+/// darker and bluer.
 #[derive(Debug, Clone)]
 pub struct Shade {
     lights: Vec<(Light, f32)>,
@@ -40,12 +41,12 @@ pub struct Shade {
 }
 
 impl Shade {
-    /// The shading with heights counting `z_factor` times.
+    /// The shading with heights multiplied by `z_factor`.
     pub fn new(z_factor: f32) -> Shade {
         Shade::lit(Lights::Three, z_factor)
     }
 
-    /// The same by these lights.
+    /// The same with these lights.
     pub fn lit(lights: Lights, z_factor: f32) -> Shade {
         let count = if lights == Lights::One { 1 } else { LIGHTS.len() };
         let lights: Vec<(Light, f32)> = LIGHTS[..count]
@@ -56,13 +57,13 @@ impl Shade {
         Shade { lights, level }
     }
 
-    /// The shading whose z factor suits the land (or, without land, the sea floor) of `grid`. Steepness depends on the cell, so
-    /// this is what lets 15 m and 60 m cells of one world look alike.
+    /// The shading with a z factor fitted to the land of `grid` (or to the sea floor, if there is no land). Steepness
+    /// depends on the cell; the fit makes different cells of one world look alike.
     pub fn fit(grid: &Grid, sea_level: f32) -> Shade {
         Shade::fit_lit(Lights::Three, grid, sea_level)
     }
 
-    /// The same by these lights.
+    /// The same with these lights.
     pub fn fit_lit(lights: Lights, grid: &Grid, sea_level: f32) -> Shade {
         let typical = typical_steepness(grid, |height| height > sea_level)
             .or_else(|| typical_steepness(grid, |height| height <= sea_level));
@@ -73,7 +74,7 @@ impl Shade {
         Shade::lit(lights, z_factor)
     }
 
-    /// What to multiply a colour's red, green and blue light with.
+    /// Factors for the red, green and blue light of a colour.
     pub fn on(&self, gradient: Gradient) -> [f32; 3] {
         let light: f32 = self.lights.iter().map(|(light, weight)| weight * light.on(gradient)).sum();
         let relative = light / self.level;
@@ -88,7 +89,7 @@ impl Shade {
     }
 }
 
-/// The steepness that a quarter of the samples of `kind` exceed, looked at in some rows; none if there are too few.
+/// The steepness exceeded by a quarter of the samples of `kind`, estimated from some rows; `None` if there are too few.
 fn typical_steepness(grid: &Grid, kind: impl Fn(f32) -> bool) -> Option<f32> {
     if grid.height() < 3 || grid.width() < 3 {
         return None;

@@ -1,4 +1,4 @@
-//! A page that shows palettes: each as a bar, and laid over a hill and a sea.
+//! A page of palettes: each as a bar, and applied to an island and the sea around it.
 
 use super::canvas::{Canvas, Ink};
 use super::shade::Shade;
@@ -12,14 +12,14 @@ use orogen_io::palette::fitted::Fitted;
 use orogen_io::palette::palette::{Palette, Position};
 use orogen_io::palette::tint::Tint;
 
-/// What is shown of a palette.
+/// A palette on the page.
 #[derive(Debug, Clone)]
 pub struct Swatch {
     /// The palette.
     pub palette: Palette,
-    /// What it looks like and whose it is.
+    /// Description and author.
     pub about: String,
-    /// Whether distinguishable by colour-blind readers.
+    /// Whether colour-blind readers can distinguish its heights.
     pub safe: bool,
 }
 
@@ -96,7 +96,7 @@ impl Page {
             places(of).fold((f64::MAX, f64::MIN), |(low, high), at| (low.min(at), high.max(at)))
         };
         let values = ends(|at| if let Position::Value(value) = at { Some(value) } else { None });
-        // One that names heights is shown over these, others over any.
+        // A palette with values is shown over them, others over any range.
         let [low, high] = if values.0 < values.1 { [values.0, values.1] } else { [-1000.0, 1000.0] };
         let (width, height) = (BAR[0] as i64, BAR[1] as i64);
         let sea = if palette.has_sea() { 0.0 } else { low };
@@ -109,7 +109,7 @@ impl Page {
         self.frame(left, top, width, height);
     }
 
-    /// The island, shaded.
+    /// The shaded island.
     fn picture(&mut self, palette: &Palette, left: i64, top: i64) {
         let (grid, degrees) = (&self.ground, palette.stops.iter().all(|stop| matches!(stop.at, Position::Value(_))));
         let tint = Tint::of(palette, grid, 0.0);
@@ -121,7 +121,7 @@ impl Page {
             let rows = [grid.row(j), grid.row(j + 1), grid.row(j + 2)];
             gradients_between(rows, grid.window().cell, |i, gradient| {
                 let height = rows[1][i + 1];
-                // Palettes of one unit are shown over as many of it.
+                // Palettes in a fixed unit are shown over its range.
                 let shown = if degrees { height / top_height * 90.0 } else { height };
                 let (color, light) = (tint.at(shown), shade.on(gradient));
                 let share = if tint.is_sea(height) { 0.35 } else { 1.0 };
@@ -150,12 +150,12 @@ impl Page {
     }
 }
 
-/// As much of a text as there is room for.
+/// The part of a text that fits.
 fn shortened(font: &BuiltinFont, text: &str, style: Style, width: f32) -> String {
     words::shortened(text, width, |text| font.width(text, style))
 }
 
-/// An island with two summits, a border of one sample around it.
+/// An island with two summits, with a border of one sample.
 fn ground() -> Grid {
     let window = Window::new(PICTURE[0] + 2, PICTURE[1] + 2, 40.0);
     let mut grid = Grid::filled(window, 0.0);

@@ -1,14 +1,14 @@
-//! Words on a page, in the font that comes with the library: Latin letters, some Greek ones and signs.
+//! Text on a page, in the built-in font: Latin letters, some Greek ones and signs.
 //!
-//! Letters are drawn from their outlines, smoothed, with the font's own distances (kerning). A letter stands at any part of a
-//! pixel along the line, as it was meant to; lines stand on whole pixels, so that their feet are sharp.
+//! Letters are drawn from their outlines with antialiasing and kerning. Horizontal positions are fractions of a pixel,
+//! as the font specifies; baselines are whole pixels, which keeps the feet of letters sharp.
 
 use ab_glyph::{Font, FontRef, Glyph, GlyphId, PxScale, point};
 
 use super::canvas::{Canvas, Ink};
 use orogen_grid::error::{Error, ErrorKind, Result};
 
-/// Which of the font's cuts.
+/// A face of the font.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Face {
     /// For running text.
@@ -19,25 +19,25 @@ pub enum Face {
     Italic,
 }
 
-/// What letters look like.
+/// The style of a text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Style {
-    /// The cut.
+    /// The face.
     pub face: Face,
-    /// The size in pixels an em; lines are usually 1.3 of it apart.
+    /// The size in pixels per em; line spacing is usually 1.3 times the size.
     pub size: f32,
     /// The colour.
     pub ink: Ink,
 }
 
-/// The font, ready to write with.
+/// The built-in font.
 #[derive(Debug)]
 pub struct BuiltinFont {
     faces: [FontRef<'static>; 3],
 }
 
 impl BuiltinFont {
-    /// Takes the font that comes with the library.
+    /// Loads the built-in font.
     pub fn new() -> Result<BuiltinFont> {
         let face = |bytes: &'static [u8]| {
             let broken = |cause| Error::new(ErrorKind::File, format!("the built-in font cannot be read: {cause}"));
@@ -52,17 +52,17 @@ impl BuiltinFont {
         })
     }
 
-    /// How many pixels a line of text is long.
+    /// The width of a line of text, in pixels.
     pub fn width(&self, text: &str, style: Style) -> f32 {
         self.set(text, style, |_, _| {})
     }
 
-    /// Writes a line of text from column `x` on, standing on row `baseline`, and returns the column where it ends: text of
-    /// another style may go on there.
+    /// Draws a line of text from column `x` with its baseline at row `baseline`, and returns the column where it ends,
+    /// from which text of another style may continue.
     pub fn write(&self, canvas: &mut Canvas, x: f32, baseline: i64, text: &str, style: Style) -> f32 {
         let font = self.face(style.face);
         let scale = scale(font, style.size);
-        // The whole pixels are added at the end: far from 0, an outline in f32 would lose its smoothness.
+        // Whole pixels are added at the end: far from 0, an outline in f32 would lose precision.
         let (whole, rest) = (x.floor(), x - x.floor());
         x + self.set(text, style, |id, at| {
             let start = rest + at;
@@ -80,7 +80,7 @@ impl BuiltinFont {
         })
     }
 
-    /// Cuts text at its spaces into lines of at most `width` pixels. A word longer than that has a line of its own.
+    /// Breaks text at spaces into lines of at most `width` pixels. A longer word gets its own line.
     pub fn wrap(&self, text: &str, style: Style, width: f32) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
         for word in text.split_whitespace() {
@@ -103,7 +103,8 @@ impl BuiltinFont {
         }]
     }
 
-    /// Goes along a line, telling each letter and where it stands from the line's start; returns where the line ends.
+    /// Lays out a line: calls `each` for each glyph with its distance from the line's start, and returns the line's
+    /// width.
     fn set(&self, text: &str, style: Style, mut each: impl FnMut(GlyphId, f32)) -> f32 {
         let font = self.face(style.face);
         let unit = style.size / font.units_per_em().unwrap_or(1000.0);
@@ -121,7 +122,7 @@ impl BuiltinFont {
     }
 }
 
-/// What the font calls its scale is the height of a line; a size is that of an em.
+/// The font's scale is the height of a line; our size is that of an em.
 fn scale(font: &FontRef, size: f32) -> PxScale {
     PxScale::from(size * font.height_unscaled() / font.units_per_em().unwrap_or(1000.0))
 }

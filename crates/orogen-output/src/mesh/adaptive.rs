@@ -1,4 +1,4 @@
-//! Few triangles, and none of the samples further from them than stated.
+//! Adaptive meshes with a bounded vertical error.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -12,27 +12,29 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Grid;
 use orogen_grid::progress::Progress;
 
-/// The most cells a tile has along each side: a larger grid is cut. The coordinates within a tile must stay small enough for
-/// exact arithmetic in 64 bits, and what a tile holds should stay in cache.
+/// Maximum number of cells of a tile along each side; larger grids are split. Coordinates within a tile must be small
+/// enough for exact arithmetic in 64 bits, and a tile's data should fit in cache.
 pub(crate) const TILE: usize = 1024;
 
-/// A surface through some of the samples from which none is further than `max_error` metres, measured vertically.
+/// A surface through some of the samples with a vertical error of at most `max_error` metres at every sample.
 ///
-/// Greedy insertion (Garland and Heckbert, 1995) with flips where they save a corner: with `max_error` at 1 % of the relief,
-/// about a thirtieth of the full grid's triangles. Grids of more than 1024 cells a side are cut into tiles that are worked on
-/// side by side; which samples along an edge are corners follows from those samples alone, so tiles of a grid fit without
-/// cracks, and so do meshes made of windows that share an edge row. The result is the same on any number of threads.
+/// Greedy insertion (Garland and Heckbert, 1995) with edge flips that save vertices. With `max_error` at 1 % of the
+/// relief, it has about a thirtieth of the full grid's triangles. Grids of more than 1024 cells a side are split into
+/// tiles that are meshed in parallel. The vertices along an edge depend only on the samples of that edge, so tiles of a
+/// grid fit without cracks, and so do meshes of windows that share an edge row. The result does not depend on the
+/// number of threads.
 ///
 /// # Errors
-/// The grid has fewer than two columns or rows, or samples that are not finite; `max_error` is negative or not finite.
+/// The grid has fewer than two columns or rows, or samples that are not finite; or `max_error` is negative or not
+/// finite.
 pub fn adaptive(grid: &Grid, max_error: f64) -> Result<Shape> {
     adaptive_with(grid, max_error, &Progress::none())
 }
 
-/// [`adaptive`] that reports how far it has come, and can be stopped.
+/// [`adaptive`] with progress and cancellation.
 ///
 /// # Errors
-/// As [`adaptive`], and if the work is cancelled.
+/// The errors of [`adaptive`], and cancellation.
 pub fn adaptive_with(grid: &Grid, max_error: f64, progress: &Progress) -> Result<Shape> {
     enough(grid)?;
     let refuse = |why: String| Err(Error::new(ErrorKind::Request, why));
@@ -52,9 +54,9 @@ pub fn adaptive_with(grid: &Grid, max_error: f64, progress: &Progress) -> Result
         .flat_map(|rows| across.windows(2).map(|columns| [[columns[0], rows[0]], [columns[1], rows[1]]]))
         .collect();
     progress.expect(tiles.len() as f64);
-    // As many as there are threads, each used for one tile after another.
+    // One per thread, reused for one tile after another.
     let free: Mutex<Vec<(Vec<f32>, Workspace)>> = Mutex::default();
-    // It stays usable if a thread panics while it holds the lock.
+    // A panic of a thread that holds the lock leaves the data usable.
     let lock = || free.lock().unwrap_or_else(PoisonError::into_inner);
     let parts: Result<Vec<Part>> = tiles
         .into_par_iter()
@@ -62,7 +64,7 @@ pub fn adaptive_with(grid: &Grid, max_error: f64, progress: &Progress) -> Result
             let (memory, mut workspace) = lock().pop().unwrap_or_default();
             let tile = Tile::of(grid, [left, top], [right - left + 1, bottom - top + 1], memory);
             let triangles = triangulate(&tile, max_error, &mut workspace, progress)?;
-            // From clockwise on the page, y downwards, to counter-clockwise from above.
+            // From clockwise in the picture, with y downward, to counter-clockwise from above.
             let triangles = PackedTriangles::new(triangles.map(|[a, b, c]| [a, c, b]));
             lock().push((tile.into_memory(), workspace));
             progress.advance(1.0);
@@ -73,7 +75,7 @@ pub fn adaptive_with(grid: &Grid, max_error: f64, progress: &Progress) -> Result
     Ok(Shape::joined([grid.width(), grid.height()], parts?))
 }
 
-/// The columns (or rows) at which so many samples are cut into tiles, evenly, with the first and the last.
+/// The columns (or rows) at which this many samples are split evenly into tiles, including the first and the last.
 fn cuts(samples: usize) -> Vec<usize> {
     let cells = samples - 1;
     let tiles = cells.div_ceil(TILE);

@@ -1,17 +1,17 @@
-//! The fewest samples of a border that a line through them needs to stay within a distance of all.
+//! Simplification of a border: the polyline with the fewest vertices within an error.
 
-/// The places along `heights` of a polyline with the fewest corners whose vertical distance from every sample is at most
-/// `max_error`. It begins with the first sample and ends with the last.
+/// The indices of the vertices of a polyline along `heights` with the fewest vertices whose vertical distance from
+/// every sample is at most `max_error`. It starts with the first sample and ends with the last.
 ///
-/// Only these heights decide, so two tiles that share an edge get the same corners along it. A breadth-first search over the
-/// number of stretches; which ends a stretch may have follows from the cone of slopes that pass near all samples before them
-/// (Imai and Iri, "Polygonal approximations of a curve", 1988).
+/// The result depends only on these heights, so two tiles that share an edge get the same vertices along it. It is a
+/// breadth-first search over the number of segments; the possible ends of a segment follow from the cone of slopes that
+/// pass close enough to all samples so far (Imai and Iri, "Polygonal approximations of a curve", 1988).
 pub(super) fn polyline(heights: &[f64], max_error: f64) -> Vec<usize> {
     let count = heights.len();
     if count < 3 {
         return (0..count).collect();
     }
-    // From which corner a sample was first reached; itself as long as it was not.
+    // The vertex from which a sample was first reached; itself if it was not.
     let mut from: Vec<usize> = (0..count).collect();
     let mut reached = vec![0];
     while from[count - 1] == count - 1 {

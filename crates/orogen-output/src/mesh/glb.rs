@@ -1,9 +1,10 @@
-//! glTF 2.0 in one binary file (.glb).
+//! glTF 2.0 as one binary file (.glb).
 //!
-//! The Khronos Group's specification, 2.0.1. Metres; X east, Y up, Z south, the first sample of the grid at the node's origin;
-//! the node stands where the grid begins in its world. Corners come interleaved: place, normal, texture coordinate and, where
-//! wanted, colour (linear, four u16) and tangent (eastward along the ground). Indices take two bytes as long as they fit. Levels of detail follow MSFT_lod: a reader that
-//! does not know it shows the first level.
+//! The Khronos Group's specification, 2.0.1. Metres; X east, Y up, Z south, with the first sample of the grid at the
+//! node's origin; the node's translation is the position of that sample in its world. Vertices are interleaved:
+//! position, normal, texture coordinate and, on request, colour (linear, four u16) and tangent (eastward along the
+//! ground). Indices have two bytes if they fit. Levels of detail use MSFT_lod: a reader without support for it shows
+//! the first level.
 
 use std::io::{self, Write};
 
@@ -18,19 +19,19 @@ use orogen_grid::error::{Error, ErrorKind};
 pub struct Model<'a> {
     /// The levels; at least one.
     pub levels: &'a [Surface<'a>],
-    /// A PNG picture of the grid with a pixel for each sample.
+    /// A PNG picture of the grid with one pixel per sample.
     pub texture: Option<&'a [u8]>,
-    /// A PNG picture of the grid that goes with the texture: occlusion in red, roughness in green, metalness in blue.
+    /// A PNG picture of the grid to go with the texture: occlusion in red, roughness in green, metalness in blue.
     pub material: Option<&'a [u8]>,
-    /// For each level a PNG normal map, where it has one; empty where none has.
+    /// A PNG normal map per level, where it has one; empty if no level has one.
     pub normal_maps: &'a [Option<Vec<u8>>],
-    /// Water on it: a node and a translucent material each.
+    /// Water: a node and a translucent material each.
     pub water: &'a [WaterMesh],
-    /// What is told of it beside its corners, for readers that look: keys and values.
+    /// Additional properties of the node (`extras`).
     pub extras: Map<String, Value>,
 }
 
-/// "glTF", "JSON" and "BIN\0" as little-endian numbers.
+/// "glTF", "JSON" and "BIN\0" as little-endian integers.
 const MAGIC: u32 = 0x4654_6C67;
 const JSON: u32 = 0x4E4F_534A;
 const BIN: u32 = 0x004E_4942;
@@ -41,12 +42,13 @@ const U16: u32 = 5123;
 const U32: u32 = 5125;
 const F32: u32 = 5126;
 
-/// The share of the screen down to which each level of detail is meant to be shown: half for the first, a quarter for the next.
+/// Base of the screen coverage down to which a level of detail is meant to be shown: 1/2 for the first, 1/4 for the
+/// next.
 const COVERAGE: f64 = 0.5;
 
 /// Writes a model.
 ///
-/// Fails as `out` does, and on a model that is more than the 4 GiB that such a file can hold.
+/// Fails if `out` fails, or if the model exceeds the format's limit of 4 GiB.
 pub fn write(out: &mut dyn Write, model: &Model) -> io::Result<()> {
     let colors = model.levels.iter().any(|level| level.painter.is_some());
     let document = Document::new(model, colors);
@@ -75,7 +77,7 @@ pub fn write(out: &mut dyn Write, model: &Model) -> io::Result<()> {
             }
             if tangents {
                 push(&tangent(corner.normal), bytes);
-                // The bitangent is the cross product as it is: north.
+                // The bitangent is the cross product itself: north.
                 push(&[1.0], bytes);
             }
         })?;
@@ -107,7 +109,7 @@ pub fn write(out: &mut dyn Write, model: &Model) -> io::Result<()> {
     Ok(())
 }
 
-/// The pictures of the ground's materials, in the order of the file.
+/// The pictures of the ground's materials, in file order.
 fn pictures<'a>(model: &Model<'a>) -> impl Iterator<Item = &'a [u8]> {
     let base = model.texture.into_iter().flat_map(|texture| [Some(texture), model.material]).flatten();
     base.chain(model.normal_maps.iter().flatten().map(Vec::as_slice))
@@ -118,7 +120,7 @@ fn normal_map<'a>(model: &Model<'a>, level: usize) -> Option<&'a [u8]> {
     model.normal_maps.get(level)?.as_deref()
 }
 
-/// Bytes of a corner, with a color or with a tangent.
+/// Bytes per vertex, with a color or with a tangent.
 fn stride(colors: bool, tangents: bool) -> u32 {
     32 + if colors { 8 } else { 0 } + if tangents { 16 } else { 0 }
 }
@@ -129,17 +131,17 @@ fn vertex(corner: &Corner, bytes: &mut Vec<u8>) {
     push(&corner.texture, bytes);
 }
 
-/// Whether the indices of a level take two bytes each; 65535 is no index.
+/// Whether the indices of a level have two bytes each; 65535 is not a valid index.
 fn narrow(level: &Surface) -> bool {
     level.shape.corners() <= usize::from(u16::MAX)
 }
 
-/// Bytes of the indices of a level.
+/// Size of the indices of a level in bytes.
 fn indices(level: &Surface) -> u64 {
     level.shape.triangles() as u64 * if narrow(level) { 6 } else { 12 }
 }
 
-/// Light of an sRGB byte, in 65535ths.
+/// Linear light of an sRGB byte, in units of 1/65535.
 fn linear(byte: u32) -> u16 {
     let share = f64::from(byte) / 255.0;
     let light = if share <= 0.04045 { share / 12.92 } else { libm::pow((share + 0.055) / 1.055, 2.4) };
@@ -155,7 +157,7 @@ fn pad(out: &mut dyn Write, written: u64) -> io::Result<()> {
     out.write_all(&[0; 3][..(written.next_multiple_of(4) - written) as usize])
 }
 
-/// The JSON part, and how long the binary part will be.
+/// The JSON part, and the length of the binary part.
 struct Document {
     json: Value,
     length: u64,
@@ -165,7 +167,7 @@ impl Document {
     fn new(model: &Model, colors: bool) -> Document {
         let (mut views, mut accessors, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
         let mut length: u64 = 0;
-        // Levels without a normal map share a material, the others have one each.
+        // Levels without a normal map share a material; the others have one each.
         let shared = usize::from((0..model.levels.len()).any(|level| normal_map(model, level).is_none()));
         let mut more = shared;
         let worn: Vec<usize> = (0..model.levels.len())
@@ -191,7 +193,7 @@ impl Document {
             let stride = u64::from(stride(colors, tangents));
             let corner_view = view(corners as u64 * stride, json!({"byteStride": stride, "target": ARRAY_BUFFER}));
             let index_view = view(indices(level), json!({"target": ELEMENT_ARRAY_BUFFER}));
-            // As f64: the shortest digits of an f32 are not its value.
+            // As f64: the shortest decimal digits of an f32 are not its exact value.
             let [least, greatest] = level.bounds().map(|corner| corner.map(f64::from));
             let first = accessors.len();
             let attribute = |offset: u32, kind: &str| json!({"bufferView": corner_view, "byteOffset": offset, "componentType": F32, "count": corners, "type": kind});
@@ -234,7 +236,7 @@ impl Document {
             }
             let textures: Vec<Value> = (0..images.len()).map(|k| json!({"source": k, "sampler": 0})).collect();
             json["images"] = json!(images);
-            // Linear within and between the sizes of the picture; not repeated beyond its edges.
+            // Linear and mipmapped filtering; clamped to the edge.
             json["samplers"] = json!([{"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}]);
             json["textures"] = json!(textures);
         }
@@ -298,7 +300,7 @@ impl Document {
     }
 }
 
-/// A node where the grid begins in its world.
+/// A node translated to the position of the grid in its world.
 fn placed(model: &Model, mut node: Value) -> Value {
     let Some(window) = model.levels.first().map(|level| level.grid.window()) else { return node };
     let [east, south] = [window.east(0), window.south(0)];
@@ -308,7 +310,7 @@ fn placed(model: &Model, mut node: Value) -> Value {
     node
 }
 
-/// A level's node. The first one names the others.
+/// A level's node. The first one refers to the others.
 fn node(model: &Model, level: usize) -> Value {
     let levels = model.levels.len();
     let name = if levels == 1 { "terrain".to_string() } else { format!("LOD{level}") };

@@ -1,8 +1,7 @@
-//! Surfaces of triangles over grids.
+//! Triangle meshes over grids.
 //!
-//! A [`shape::Shape`] says which samples of a grid are corners of triangles: all of them, every few, or the few that keep a
-//! surface within a stated distance of all others ([`adaptive`]). Formats write a [`surface::Surface`]: a grid, a shape, and how
-//! it is to look.
+//! A [`shape::Shape`] selects the samples of a grid that are vertices: all, every n-th, or the few that an [`adaptive`]
+//! mesh needs. Formats write a [`surface::Surface`]: a grid, a shape, and its appearance.
 //!
 //! ```
 //! use orogen_output::mesh::adaptive::adaptive;

@@ -1,22 +1,24 @@
-//! Tangent-space normal maps: the ground between the corners of a mesh with few triangles, as light shows it.
+//! Tangent-space normal maps, which add the detail of the ground to a mesh with few triangles.
 //!
-//! glTF 2.0.1, sections 3.7.2.1 and 3.9.3: a texel (x, y, z) stands for the normal x T + y B + z N, where N and T are the normal and the tangent of the corners,
-//! interpolated over the triangle and normalized, and B is the interpolated cross product of the two. T points east, B north.
+//! glTF 2.0.1, sections 3.7.2.1 and 3.9.3: a texel (x, y, z) stands for the normal x T + y B + z N, where N and T are
+//! the normal and the tangent of the vertices, interpolated over the triangle and normalised, and B is the interpolated
+//! cross product of the two. T points east, B north.
 
 use super::surface::Surface;
 use orogen_grid::error::Result;
 use orogen_grid::progress::Progress;
 
-/// A texel that leaves the normal as it is.
+/// A texel that does not change the normal.
 const FLAT: [u8; 3] = [128, 128, 255];
 
-/// The tangent of the ground at a corner with this normal (east, up, south): the unit vector eastward along the ground.
+/// The tangent of the ground at a vertex with this normal (east, up, south): the unit vector eastward along the ground.
 pub fn tangent([east, up, _]: [f32; 3]) -> [f32; 3] {
     let length = (east * east + up * up).sqrt();
     if length > 0.0 { [up / length, -east / length, 0.0] } else { [1.0, 0.0, 0.0] }
 }
 
-/// The normal map of a surface: the normals of all its samples as seen from the triangles over them, three bytes each, row after row.
+/// The normal map of a surface: the normals of all its samples relative to the triangles over them, three bytes each,
+/// row-major.
 ///
 /// # Errors
 /// If the work is cancelled.
@@ -43,13 +45,13 @@ pub fn bake(surface: &Surface) -> Result<Vec<u8>> {
     Ok(texels)
 }
 
-/// Tangent, bitangent and normal at a corner.
+/// Tangent, bitangent and normal at a vertex.
 fn frame(normal: [f32; 3]) -> [[f32; 3]; 3] {
     let tangent = tangent(normal);
     [tangent, cross(normal, tangent), normal]
 }
 
-/// Gives `visit` each sample that a triangle lies over, its edges included, with the shares of the three corners in it.
+/// Calls `visit` with each sample inside or on the edges of a triangle, and its barycentric coordinates.
 fn each_sample(corners: [[usize; 2]; 3], mut visit: impl FnMut([usize; 2], [f32; 3])) {
     let [a, b, c] = corners.map(|corner| corner.map(|at| at as i64));
     let side = |a: [i64; 2], b: [i64; 2], p: [i64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
@@ -61,7 +63,7 @@ fn each_sample(corners: [[usize; 2]; 3], mut visit: impl FnMut([usize; 2], [f32;
     let ((west, east), (north, south)) = (ends(0), ends(1));
     for j in north..=south {
         for i in west..=east {
-            // Whole numbers: a sample on a common edge lies on both triangles.
+            // Integers: a sample on a common edge belongs to both triangles.
             let parts = [side(b, c, [i, j]), side(c, a, [i, j]), side(a, b, [i, j])].map(|part| part * area.signum());
             if parts.iter().all(|part| *part >= 0) {
                 visit([i as usize, j as usize], parts.map(|part| part as f32 / area.abs() as f32));
@@ -70,7 +72,7 @@ fn each_sample(corners: [[usize; 2]; 3], mut visit: impl FnMut([usize; 2], [f32;
     }
 }
 
-/// A normal in the frame of tangent, bitangent and normal, which need not stand at right angles, as bytes.
+/// A normal in the frame of tangent, bitangent and normal, which need not be orthogonal, as bytes.
 fn texel([t, b, n]: [[f32; 3]; 3], normal: [f32; 3]) -> [u8; 3] {
     let determinant = dot(t, cross(b, n));
     let solved = [dot(normal, cross(b, n)), dot(normal, cross(n, t)), dot(normal, cross(t, b))];
@@ -78,7 +80,7 @@ fn texel([t, b, n]: [[f32; 3]; 3], normal: [f32; 3]) -> [u8; 3] {
     if !(x + y + z).is_finite() {
         return FLAT;
     }
-    // A little above the half, so that what rounding leaves of 0 is always 128.
+    // Slightly above one half, so that a rounded 0 is always 128.
     [x, y, z.max(0.0)].map(|part| (part * 127.5 + 127.501).round() as u8)
 }
 

@@ -1,19 +1,19 @@
 //! Wavefront OBJ (.obj), text, with its material (.mtl).
 //!
-//! The Advanced Visualizer's appendix B1. Metres; x east, y up, z south, the first sample of the grid at the origin. Each vertex
-//! has a texture coordinate (u to the right, v up) and a normal of the same number; colours follow the place, as many readers
-//! take them. Numbers have the digits that give the same f32 back.
+//! The Advanced Visualizer's appendix B1. Metres; x east, y up, z south, with the first sample of the grid at the
+//! origin. Each vertex has a texture coordinate (u to the right, v up) and a normal with the same index; colours follow
+//! the position, a common extension. Numbers have enough digits to restore the same f32.
 
 use std::io::{self, Write};
 
 use super::surface::{Surface, Wanted};
 
-/// The name of the one material.
+/// The name of the material.
 const MATERIAL: &str = "terrain";
 
-/// Writes a surface. `comments` are lines before it; `library` is the name of the material's file, where there is one.
+/// Writes a surface. `comments` are lines before it; `library` is the name of the material's file, if there is one.
 ///
-/// Fails as `out` does.
+/// Fails if `out` fails.
 pub fn write(out: &mut dyn Write, surface: &Surface, comments: &[String], library: Option<&str>) -> io::Result<()> {
     comments.iter().try_for_each(|comment| writeln!(out, "# {comment}"))?;
     if let Some(library) = library {
@@ -37,19 +37,19 @@ pub fn write(out: &mut dyn Write, surface: &Surface, comments: &[String], librar
     }
     writeln!(out, "s 1")?;
     surface.triangles(out, |[a, b, c], bytes| {
-        // Numbered from 1.
+        // Indices start at 1.
         let [a, b, c] = [a, b, c].map(|corner| u64::from(corner) + 1);
         // Writing to a vector does not fail.
         let _ = writeln!(bytes, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}");
     })
 }
 
-/// Writes the material of a surface that wears a picture of this name.
+/// Writes a material with a texture of this name.
 pub fn write_material(out: &mut dyn Write, picture: &str) -> io::Result<()> {
     write!(out, "newmtl {MATERIAL}\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nd 1\nillum 1\nmap_Kd -clamp on {picture}\n")
 }
 
-/// A word and numbers after it, on a line.
+/// A keyword and numbers, as a line.
 fn line(bytes: &mut Vec<u8>, word: &str, numbers: &[f32]) {
     bytes.extend_from_slice(word.as_bytes());
     for number in numbers {

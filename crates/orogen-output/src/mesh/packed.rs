@@ -1,31 +1,32 @@
-//! Triangles in few bytes.
+//! Compact storage of triangles.
 
 use super::tile::Sample;
 
-/// How many triangles make a piece.
+/// Number of triangles of a piece.
 pub(super) const PIECE: usize = 1 << 14;
 
-/// The first byte of a triangle whose corners are written in full.
+/// The first byte of a triangle whose vertices are stored in full.
 const FULL: i8 = i8::MIN;
 
-/// Bits of a step from the first corner to another, and the longest step.
+/// Bits of an offset from the first vertex to another, and the largest offset.
 const STEP: u32 = 6;
 const MOST: i32 = 31;
 
 /// Triangles of samples of a tile, in order, as bytes.
 ///
-/// A triangle is mostly near the one before and small. It takes five bytes: how many columns and rows its first corner lies from the first corner before, in a
-/// byte each, and the others from it, in six bits each. One that is further away or larger takes 13. Pieces can be read by themselves.
+/// A triangle is usually small and close to the previous one. It then takes five bytes: the offset in columns and rows
+/// of its first vertex from the previous first vertex, one byte each, and the offsets of the others from it, six bits
+/// each. Other triangles take 13 bytes. Pieces can be read separately.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PackedTriangles {
     bytes: Box<[u8]>,
-    /// Where each piece begins, and where the last one ends.
+    /// The start of each piece, and the end of the last one.
     starts: Box<[usize]>,
     count: usize,
 }
 
 impl PackedTriangles {
-    /// Goes through the triangles twice, so that no more memory is taken than they need.
+    /// Iterates over the triangles twice, so that it allocates exactly the needed memory.
     pub fn new(triangles: impl Iterator<Item = [Sample; 3]> + Clone) -> PackedTriangles {
         let (mut length, mut count, mut starts) = (0, 0, Vec::new());
         encode(triangles.clone(), |triangle| {
@@ -41,17 +42,17 @@ impl PackedTriangles {
         PackedTriangles { bytes: bytes.into(), starts: starts.into(), count }
     }
 
-    /// How many triangles there are.
+    /// Number of triangles.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// In how many pieces they come.
+    /// Number of pieces.
     pub fn pieces(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// Hands the columns and rows of the corners of each triangle of a piece to `each`, in order.
+    /// Calls `each` with the columns and rows of the vertices of each triangle of a piece, in order.
     pub fn piece(&self, piece: usize, mut each: impl FnMut([[i32; 2]; 3])) {
         let mut rest = &self.bytes[self.starts[piece]..self.starts[piece + 1]];
         let mut before = [0; 2];
@@ -68,7 +69,7 @@ impl PackedTriangles {
                     rest = after;
                     let first = [before[0] + i32::from(right as i8), before[1] + i32::from(down as i8)];
                     let small = u32::from_le_bytes([small[0], small[1], small[2], 0]);
-                    // Shifted up and down again, so that the sign is kept.
+                    // Shifted up and down again for sign extension.
                     let step = |k: u32| (small << (32 - STEP * (k + 1))) as i32 >> (32 - STEP);
                     [first, [first[0] + step(0), first[1] + step(1)], [first[0] + step(2), first[1] + step(3)]]
                 }
@@ -79,7 +80,7 @@ impl PackedTriangles {
     }
 }
 
-/// Hands the bytes of each triangle to `each`.
+/// Calls `each` with the bytes of each triangle.
 fn encode(triangles: impl Iterator<Item = [Sample; 3]>, mut each: impl FnMut(&[u8])) {
     let mut before = [0; 2];
     for (k, triangle) in triangles.enumerate() {

@@ -1,8 +1,9 @@
 //! The Stanford polygon format (.ply), binary, little-endian.
 //!
-//! G. Turk, "The PLY polygon file format", 1994. Metres; x east, y north, z up, the first sample of the grid at the origin: y is
-//! zero along the first row and negative south of it. Each vertex has its normal and either its sRGB colour or its texture
-//! coordinates (s to the right, t up): readers that know both take those for the look and lose the colours.
+//! G. Turk, "The PLY polygon file format", 1994. Metres; x east, y north, z up, with the first sample of the grid at
+//! the origin: y is zero along the first row and negative south of it. Each vertex has its normal and either its sRGB
+//! colour or its texture coordinates (s to the right, t up): readers that support both use the texture coordinates and
+//! ignore the colours.
 
 use std::io::{self, Write};
 
@@ -11,7 +12,7 @@ use orogen_grid::error::{Error, ErrorKind};
 
 /// Writes a surface. `comments` are lines of the header.
 ///
-/// Fails as `out` does, and on a surface of more corners than the signed indices that readers expect can number.
+/// Fails if `out` fails, or if there are more vertices than the signed indices that readers expect can address.
 pub fn write(out: &mut dyn Write, surface: &Surface, comments: &[String]) -> io::Result<()> {
     let [corners, triangles] = [surface.shape.corners(), surface.shape.triangles()];
     if corners > i32::MAX as usize || triangles > i32::MAX as usize {

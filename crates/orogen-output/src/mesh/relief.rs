@@ -1,4 +1,4 @@
-//! Heights bent by a curve before a mesh is made of them.
+//! Remapping of heights by a curve, before a mesh is made.
 
 use orogen_engine::declare::Input;
 use orogen_engine::field::curve::Curve;
@@ -10,18 +10,18 @@ use orogen_grid::grid::Grid;
 use orogen_io::format::levels::{NO_SAMPLES, extremes};
 use orogen_noise::Points;
 
-/// A curve over the relief of a grid, from 0 at its lowest to 1 at its highest sample: control points (from, to), the first of
-/// each greater than the one before. Between them the monotone cubic of the op `curve`.
+/// A curve over the relief of a grid, from 0 at its lowest to 1 at its highest sample: control points (from, to) with
+/// ascending first numbers, interpolated with the monotone cubic of the op `curve`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightCurve {
     points: Vec<[f64; 2]>,
 }
 
 impl HeightCurve {
-    /// Reads `0:0,0.5:0.2,1:1`.
+    /// Parses text such as `0:0,0.5:0.2,1:1`.
     ///
     /// # Errors
-    /// If it is not two or more pairs of numbers with ascending first ones.
+    /// If it is not at least two pairs of numbers with ascending first numbers.
     pub fn parse(text: &str) -> Result<HeightCurve> {
         let refuse = |why: String| {
             let message = format!(
@@ -49,7 +49,7 @@ impl HeightCurve {
         }
     }
 
-    /// Bends the heights of a grid, and those around it in the same way. Level ground and holes stay as they are.
+    /// Remaps the heights of a grid and of its halo. Level ground and holes do not change.
     pub fn bend(&self, grid: &mut Grid, halo: &mut Halo) {
         let range = extremes(NO_SAMPLES, grid.data());
         halo.each(|heights| self.bend_within(range, heights));
@@ -58,7 +58,7 @@ impl HeightCurve {
         }
     }
 
-    /// Bends heights as those of a grid whose lowest and highest are these.
+    /// Remaps heights relative to this lowest and highest height.
     pub fn bend_within(&self, range: [f32; 2], heights: &mut [f32]) {
         let [low, high] = range.map(f64::from);
         let relief = high - low;

@@ -1,33 +1,34 @@
-//! A set of samples of a grid that numbers them.
+//! A set of samples of a grid with consecutive numbers.
 
-/// Samples a word holds.
+/// Samples per word.
 const BITS: usize = u32::BITS as usize;
 
-/// Some of 32 samples in a row.
+/// A subset of 32 consecutive samples of a row.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Word {
     bits: u32,
-    /// How many there are in the words before.
+    /// Number of samples in all previous words.
     before: u32,
 }
 
-/// Some samples of a grid, numbered row by row. A bit and a share of a count for each sample of the grid: a quarter of a byte.
+/// A subset of the samples of a grid, numbered row by row. It takes one bit and a share of a count per sample of the
+/// grid: a quarter of a byte.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct SampleSet {
     words: Vec<Word>,
-    /// Words a row.
+    /// Words per row.
     stride: usize,
     count: usize,
 }
 
 impl SampleSet {
-    /// No sample of a grid of this width and height.
+    /// An empty set for a grid of this width and height.
     pub fn empty([width, height]: [usize; 2]) -> SampleSet {
         let stride = width.div_ceil(BITS).max(1);
         SampleSet { words: vec![Word::default(); stride * height], stride, count: 0 }
     }
 
-    /// Adds the sample in a column and row. Numbers are right once [`SampleSet::number_all`] was called.
+    /// Adds the sample in a column and row. Numbers are valid after [`SampleSet::number_all`].
     pub fn insert(&mut self, [column, row]: [usize; 2]) {
         self.words[row * self.stride + column / BITS].bits |= 1 << (column % BITS);
     }
@@ -42,12 +43,12 @@ impl SampleSet {
         self.count = before as usize;
     }
 
-    /// How many there are.
+    /// Number of samples in the set.
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// The number of a sample that is one of them.
+    /// The number of a sample of the set.
     pub fn number(&self, [column, row]: [usize; 2]) -> u32 {
         let word = self.words[row * self.stride + column / BITS];
         word.before + (word.bits & ((1 << (column % BITS)) - 1)).count_ones()
@@ -58,7 +59,7 @@ impl SampleSet {
         let at = self.words.partition_point(|word| word.before <= number) - 1;
         let Word { mut bits, before } = self.words[at];
         for _ in before..number {
-            // Without its lowest one.
+            // Clears the lowest set bit.
             bits &= bits - 1;
         }
         [at % self.stride * BITS + bits.trailing_zeros() as usize, at / self.stride]
@@ -70,12 +71,12 @@ impl SampleSet {
     }
 }
 
-/// How many samples there are in a row.
+/// Number of samples of the set in a row.
 pub(super) fn count(row: &[Word]) -> usize {
     row.iter().map(|word| word.bits.count_ones() as usize).sum()
 }
 
-/// Hands the column of each sample of a row to `each`, from the west.
+/// Calls `each` with the column of each sample of the set in a row, from the west.
 pub(super) fn columns(row: &[Word], mut each: impl FnMut(usize)) {
     for (k, word) in row.iter().enumerate() {
         let mut bits = word.bits;

@@ -1,24 +1,24 @@
-//! The sample that is furthest above or below a triangle.
+//! Search for the sample with the largest vertical distance from a triangle.
 
 use orogen_simd::{Body, F32Lanes, Simd, U32Lanes, dispatch};
 
 use super::tile::{Sample, Tile};
 
-/// The most lanes a register has.
+/// Maximum number of lanes of a register.
 const LANES: usize = 16;
 
-/// A triangle with at most this many samples in a row is looked at sample by sample.
+/// A triangle with at most this many samples in a row is processed sample by sample.
 const NARROW: i32 = 4;
 
-/// Looks at every sample of a triangle once, but for its corners and the tile's border: one on an edge belongs to the triangle
-/// west of it, on a level edge to the one south of it. So samples on the edges are seen by one of two neighbours.
+/// Tests every sample of a triangle, except its vertices and the tile's border. A sample on an edge belongs to the
+/// triangle west of it, on a horizontal edge to the one south of it, so it is tested exactly once.
 ///
-/// In f32, at any SIMD level the same bits: the first of the furthest samples, row by row.
+/// Computes in f32, with the same bits at any SIMD level. Of equal distances the first, row by row, is returned.
 #[inline]
 pub(super) fn furthest(tile: &Tile, corners: [Sample; 3]) -> Worst {
     let [a, b, c] = corners.map(Sample::place);
     let [east, south] = [0, 1].map(|axis| [b[axis] - a[axis], c[axis] - a[axis]]);
-    // By Pick's theorem a triangle of this area has no samples but its corners.
+    // By Pick's theorem a triangle with this area has no samples except its vertices.
     if (east[0] * south[1] - east[1] * south[0]).abs() == 1 {
         return Worst::NONE;
     }
@@ -29,45 +29,45 @@ pub(super) fn furthest(tile: &Tile, corners: [Sample; 3]) -> Worst {
     }
 }
 
-/// [`furthest`] by registers.
+/// The vectorised part of [`furthest`].
 struct Scan<'a> {
     tile: &'a Tile,
-    /// Columns and rows of the corners.
+    /// Columns and rows of the vertices.
     corners: [[i32; 2]; 3],
 }
 
-/// A sample and how far from the surface it is.
+/// A sample and its distance from the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Worst {
-    /// Metres above or below.
+    /// Vertical distance, in metres.
     pub error: f32,
     pub at: Sample,
 }
 
 impl Worst {
-    /// Of a triangle that holds no sample.
+    /// The result for a triangle without samples.
     pub const NONE: Worst = Worst { error: 0.0, at: Sample::FIRST };
-    /// Of a triangle that was not looked at.
+    /// The result for a triangle that was not scanned.
     pub const UNKNOWN: Worst = Worst { error: -1.0, at: Sample::FIRST };
 }
 
-/// The corners from north to south, and what follows from them.
+/// The vertices from north to south, and derived values.
 struct Triangle {
     corners: [[i32; 2]; 3],
-    /// The height of the first corner, and the rise for each column and row.
+    /// The height of the first vertex, and the rise per column and row.
     height: f64,
     rise: [f64; 2],
-    /// Whether the middle corner lies east of the long edge.
+    /// Whether the middle vertex is east of the long edge.
     middle_east: bool,
-    /// The first and the last row that are looked at.
+    /// The first and the last row to scan.
     rows: [i32; 2],
 }
 
 impl Triangle {
-    /// `None` if there is no row to look at.
+    /// `None` if there is no row to scan.
     #[inline(always)]
     fn new(tile: &Tile, corners: [[i32; 2]; 3]) -> Option<Triangle> {
-        // Those of the same row stay in order. Without a branch: which way it goes cannot be foreseen.
+        // Vertices of the same row keep their order. Branchless, because the branch would be unpredictable.
         let mut keys = [0, 1, 2].map(|k| {
             let corner = corners[k];
             (corner[1] as u64) << 34 | (k as u64) << 32 | u64::from(Sample::at(corner).number())
@@ -92,7 +92,7 @@ impl Triangle {
         Some(Triangle { corners, height, rise, middle_east: area > 0.0, rows })
     }
 
-    /// The surface at a sample.
+    /// The height of the surface at a sample.
     #[inline(always)]
     fn surface(&self, column: i32, row: i32) -> f64 {
         let [x, y] = self.corners[0];
@@ -103,7 +103,7 @@ impl Triangle {
 /// The rows of a triangle, from the north.
 struct Spans<'a> {
     triangle: &'a Triangle,
-    /// The next row, and the last before the short edge changes.
+    /// The next row, and the last one before the short edge changes.
     row: i32,
     until: i32,
     /// The tile's last column but one.
@@ -124,9 +124,9 @@ impl<'a> Spans<'a> {
         Spans { triangle, row, until, east: tile.width as i32 - 2, long: Edge::new(a, c, row), short }
     }
 
-    /// The next row, and its first and its last column: the last before the first where there is none.
+    /// The next row, and its first and its last column; the last is before the first if the row is empty.
     ///
-    /// No `Iterator`: a loop over one would not be compiled with the level's instructions.
+    /// Not an `Iterator`: a loop over one would not be compiled with the level's instructions.
     #[inline(always)]
     fn next(&mut self) -> Option<[i32; 3]> {
         let row = self.row;
@@ -149,14 +149,14 @@ impl<'a> Spans<'a> {
     }
 }
 
-/// The column at or west of an edge, row after row, exactly.
+/// The column at or west of an edge, row by row, exactly.
 struct Edge {
     column: i32,
-    /// How far east of the column the edge is, in parts of `down`.
+    /// The distance of the edge east of that column, in units of 1 / `down`.
     part: i32,
-    /// What both grow by with each row.
+    /// The increments of both per row.
     step: [i32; 2],
-    /// How many rows the edge has.
+    /// Number of rows of the edge.
     down: i32,
 }
 
@@ -180,7 +180,7 @@ impl Edge {
     fn step(&mut self) {
         self.column += self.step[0];
         self.part += self.step[1];
-        // Without a branch: which way it goes cannot be foreseen.
+        // Branchless, because the branch would be unpredictable.
         let carry = i32::from(self.part >= self.down);
         self.column += carry;
         self.part -= self.down * carry;
@@ -238,7 +238,7 @@ impl Body for Scan<'_> {
     }
 }
 
-/// [`furthest`] sample by sample.
+/// [`furthest`], sample by sample.
 fn one_by_one(tile: &Tile, corners: [[i32; 2]; 3]) -> Worst {
     let Some(triangle) = Triangle::new(tile, corners) else { return Worst::NONE };
     let rise = triangle.rise[0] as f32;
@@ -259,7 +259,7 @@ fn one_by_one(tile: &Tile, corners: [[i32; 2]; 3]) -> Worst {
     worst
 }
 
-/// As [`furthest`], in f64: for distances that are not far from what f32 rounds by, and for heights near its ends.
+/// [`furthest`] in f64: for distances close to the rounding of f32, and for very large heights.
 pub(super) fn exactly(tile: &Tile, corners: [Sample; 3]) -> Worst {
     let corners = corners.map(Sample::place);
     let Some(triangle) = Triangle::new(tile, corners) else { return Worst::NONE };
@@ -268,7 +268,7 @@ pub(super) fn exactly(tile: &Tile, corners: [Sample; 3]) -> Worst {
     while let Some([row, west, east]) = spans.next() {
         for column in west..=east {
             let error = (triangle.surface(column, row) - f64::from(tile.at([column, row]))).abs();
-            // A corner is on the surface, whatever rounding says.
+            // A vertex is on the surface; rounding must not say otherwise.
             if error > worst && !corners.contains(&[column, row]) {
                 (worst, at) = (error, Sample::at([column, row]));
             }

@@ -1,4 +1,4 @@
-//! Which samples of a grid are corners, and of which triangles.
+//! The vertices and triangles of a mesh over a grid.
 
 use std::ops::Range;
 
@@ -11,8 +11,8 @@ use orogen_grid::grid::Grid;
 
 /// Triangles over the samples of a grid.
 ///
-/// Corners are numbered from 0 in the order of rows, in each from west to east. Triangles are triples of them, counter-clockwise
-/// seen from above.
+/// Vertices are numbered from 0, row by row, each row from west to east. Triangles are triples of vertices,
+/// counter-clockwise seen from above.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shape {
     kind: Kind,
@@ -20,15 +20,15 @@ pub struct Shape {
 
 #[derive(Debug, Clone, PartialEq)]
 enum Kind {
-    /// Every corner of a lattice, and two triangles for each of its cells.
+    /// All vertices of a lattice, and two triangles for each of its cells.
     Lattice { columns: Vec<u32>, rows: Vec<u32> },
-    /// Some samples (column, row), in order, and any triangles.
+    /// Listed samples (column, row), in order, and any triangles.
     Listed { samples: Vec<[u32; 2]>, triangles: Vec<[u32; 3]> },
-    /// Some samples, and triangles part by part; a piece is some triangles of a part.
+    /// A set of samples, and triangles by parts; a piece is some triangles of a part.
     Joined { samples: SampleSet, parts: Vec<Part>, pieces: Vec<[u32; 2]>, triangles: usize },
 }
 
-/// Some triangles over samples of a part of a grid.
+/// Triangles over the samples of a part of a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Part {
     /// The part's first column and row.
@@ -38,7 +38,7 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// Hands each triangle of a piece to `each`, its corners as columns and rows of the grid.
+    /// Calls `each` with each triangle of a piece, its vertices as columns and rows of the grid.
     fn piece(&self, piece: usize, mut each: impl FnMut([[usize; 2]; 3])) {
         let [left, top] = self.corner;
         self.triangles.piece(piece, |triangle| {
@@ -48,13 +48,14 @@ impl Part {
 }
 
 impl Shape {
-    /// Every `step`-th column and row of a grid and always the last ones; two triangles for each cell between them, along the
-    /// diagonal whose ends are nearer in height. With a step of 1, every sample.
+    /// Every `step`-th column and row of a grid and always the last ones; two triangles for each cell between them,
+    /// along the diagonal with the smaller difference in height. With a step of 1, every sample.
     ///
-    /// Triangles with a corner at a sample that is not finite are left out, and so are corners that no triangle has.
+    /// Triangles that touch a sample that is not finite are omitted, and so are vertices without triangles.
     ///
     /// # Errors
-    /// The grid has fewer than two columns or rows, more corners than a mesh can number (2^32 - 1), or no triangle is left.
+    /// The grid has fewer than two columns or rows, more vertices than a mesh can number (2^32 - 1), or no triangle
+    /// remains.
     pub fn lattice(grid: &Grid, step: usize) -> Result<Shape> {
         let [columns, rows] = [grid.width(), grid.height()].map(|samples| steps(samples, step));
         enough(grid)?;
@@ -64,7 +65,7 @@ impl Shape {
         if whole { Ok(lattice) } else { lattice.without_holes(grid) }
     }
 
-    /// Parts of a grid of this width and height. They may share samples along their edges.
+    /// Joins parts of a grid of this width and height. They may share samples along their edges.
     pub(super) fn joined(size: [usize; 2], parts: Vec<Part>) -> Shape {
         let mut samples = SampleSet::empty(size);
         let mut pieces = Vec::new();
@@ -79,14 +80,14 @@ impl Shape {
         Shape { kind: Kind::Joined { samples, parts, pieces, triangles } }
     }
 
-    /// A lattice's triangles that have all their corners.
+    /// The triangles of a lattice without missing vertices.
     fn without_holes(&self, grid: &Grid) -> Result<Shape> {
         let Kind::Lattice { columns, rows } = &self.kind else { return Ok(self.clone()) };
         let mut number = vec![u32::MAX; columns.len()];
         let mut numbers: [Vec<u32>; 2] = [number.clone(), number.clone()];
         let (mut samples, mut triangles) = (Vec::new(), Vec::new());
-        // A row's corners are numbered when the cells above or below it need them, but always in the order of rows: first all
-        // that the cells around a row use are marked, then numbered.
+        // A row's vertices are numbered when the cells above or below need them, but always row by row: first all
+        // vertices that the cells around a row use are marked, then they are numbered.
         let used = |cell_rows: Range<usize>, out: &mut Vec<u32>, row: usize| {
             out.fill(u32::MAX);
             for r in cell_rows {
@@ -126,7 +127,7 @@ impl Shape {
         Ok(Shape { kind: Kind::Listed { samples, triangles } })
     }
 
-    /// How many corners there are.
+    /// Number of vertices.
     pub fn corners(&self) -> usize {
         match &self.kind {
             Kind::Lattice { columns, rows } => columns.len() * rows.len(),
@@ -135,7 +136,7 @@ impl Shape {
         }
     }
 
-    /// How many triangles there are.
+    /// Number of triangles.
     pub fn triangles(&self) -> usize {
         match &self.kind {
             Kind::Lattice { columns, rows } => 2 * (columns.len() - 1) * (rows.len() - 1),
@@ -144,7 +145,7 @@ impl Shape {
         }
     }
 
-    /// The column and row of a corner's sample.
+    /// The column and row of a vertex.
     pub fn sample(&self, corner: u32) -> [usize; 2] {
         match &self.kind {
             Kind::Lattice { columns, rows } => {
@@ -156,7 +157,7 @@ impl Shape {
         }
     }
 
-    /// The rows that have corners, in order.
+    /// The rows that have vertices, in order.
     pub(crate) fn rows(&self) -> Vec<CornerRow<'_>> {
         match &self.kind {
             Kind::Lattice { columns, rows } => {
@@ -175,7 +176,7 @@ impl Shape {
         }
     }
 
-    /// In how many pieces the triangles come.
+    /// Number of pieces of the triangles.
     pub(crate) fn pieces(&self) -> usize {
         match &self.kind {
             Kind::Lattice { rows, .. } => rows.len() - 1,
@@ -184,7 +185,7 @@ impl Shape {
         }
     }
 
-    /// Hands each triangle of a piece to `each`, in order. `grid` must be the one that the shape was made for.
+    /// Calls `each` with each triangle of a piece, in order. `grid` must be the one that the shape was made for.
     pub(crate) fn piece(&self, grid: &Grid, piece: usize, mut each: impl FnMut([u32; 3])) {
         match &self.kind {
             Kind::Lattice { columns, rows } => {
@@ -212,8 +213,8 @@ impl Shape {
         }
     }
 
-    /// The greatest vertical distance of a finite sample from the surface, in metres. (Samples that no triangle lies over count
-    /// for nothing.)
+    /// The maximum vertical distance of a finite sample from the surface, in metres. Samples that are not covered by a
+    /// triangle are ignored.
     pub fn deviation(&self, grid: &Grid) -> f64 {
         let pieces = (0..self.pieces()).into_par_iter().map(|piece| {
             let mut worst: f64 = 0.0;
@@ -224,7 +225,7 @@ impl Shape {
     }
 }
 
-/// A row of samples and those that are corners.
+/// A row of samples and those that are vertices.
 pub(crate) struct CornerRow<'a> {
     /// The row of the grid.
     pub row: usize,
@@ -238,7 +239,7 @@ enum Corners<'a> {
 }
 
 impl CornerRow<'_> {
-    /// How many corners the row has.
+    /// Number of vertices in the row.
     pub fn len(&self) -> usize {
         match self.corners {
             Corners::Columns(columns) => columns.len(),
@@ -247,7 +248,7 @@ impl CornerRow<'_> {
         }
     }
 
-    /// Hands the column of each corner to `each`.
+    /// Calls `each` with the column of each vertex.
     pub fn each(&self, mut each: impl FnMut(usize)) {
         match self.corners {
             Corners::Columns(columns) => columns.iter().for_each(|&column| each(column as usize)),
@@ -263,13 +264,13 @@ fn steps(samples: usize, step: usize) -> Vec<u32> {
     (0..last).step_by(step.max(1)).chain([last]).map(|place| place as u32).collect()
 }
 
-/// The triangles of a cell of a lattice that touch no hole, each corner as (index of column, index of row).
+/// The triangles of a cell of a lattice without missing vertices, each vertex as (index of column, index of row).
 fn cell(grid: &Grid, columns: &[u32], rows: &[u32], [c, r]: [usize; 2]) -> [Option<[[usize; 2]; 3]>; 2] {
     let height = |[c, r]: [usize; 2]| grid[(columns[c] as usize, rows[r] as usize)];
     let [nw, ne, sw, se] = [[c, r], [c + 1, r], [c, r + 1], [c + 1, r + 1]];
     let holes = [nw, ne, sw, se].map(|corner| !height(corner).is_finite());
     let falling = match holes {
-        // The diagonal that leaves the triangle of the other three.
+        // The diagonal that keeps the triangle of the other three.
         [false, false, true, false] | [false, true, false, false] => true,
         [true, false, false, false] | [false, false, false, true] => false,
         _ => (height(nw) - height(se)).abs() <= (height(ne) - height(sw)).abs(),
@@ -278,7 +279,7 @@ fn cell(grid: &Grid, columns: &[u32], rows: &[u32], [c, r]: [usize; 2]) -> [Opti
     pair.map(|triangle| triangle.iter().all(|&corner| height(corner).is_finite()).then_some(triangle))
 }
 
-/// Whether a grid has cells at all.
+/// Checks that a grid has cells.
 pub(super) fn enough(grid: &Grid) -> Result<()> {
     match grid.width() < 2 || grid.height() < 2 {
         true => Err(Error::new(
@@ -293,7 +294,7 @@ pub(super) fn enough(grid: &Grid) -> Result<()> {
     }
 }
 
-/// Whether so many corners can be numbered in 32 bits.
+/// Checks that this many vertices can be numbered in 32 bits.
 fn numbered(corners: u64) -> Result<()> {
     match corners >= u64::from(u32::MAX) {
         true => Err(Error::new(
@@ -307,13 +308,13 @@ fn numbered(corners: u64) -> Result<()> {
     }
 }
 
-/// The greatest vertical distance of a sample of a triangle from it.
+/// The maximum vertical distance of a sample of a triangle from it.
 fn distance(grid: &Grid, [a, b, c]: [[usize; 2]; 3]) -> f64 {
     let whole = |[column, row]: [usize; 2]| [column as i64, row as i64];
     let turn = |a: [i64; 2], b: [i64; 2], p: [i64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
     let height = |[column, row]: [usize; 2]| f64::from(grid[(column, row)]);
     let places = [whole(a), whole(b), whole(c)];
-    // Of counter-clockwise corners with y down the page: negative.
+    // For counter-clockwise vertices with y downward: negative.
     let area = turn(places[0], places[1], places[2]) as f64;
     let span = |axis: usize| {
         let ends = [a[axis], b[axis], c[axis]];

@@ -1,8 +1,8 @@
 //! Stereolithography (.stl), binary: a solid to print.
 //!
-//! 3D Systems' StereoLithography interface specification, 1989. Millimetres; x east, y north, z up, the south-western corner of
-//! the base at the origin. The surface is closed by four walls and a flat base, so that it has an inside: every edge has a triangle on
-//! either side and every normal points outwards.
+//! 3D Systems' StereoLithography interface specification, 1989. Millimetres; x east, y north, z up, with the
+//! south-western corner of the base at the origin. The surface is closed by four walls and a flat base, so that the
+//! solid is watertight: every edge has a triangle on both sides and every normal points outward.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -11,18 +11,18 @@ use super::shape::Shape;
 use super::surface::{Surface, push};
 use orogen_grid::error::{Error, ErrorKind};
 
-/// How a solid is made of a surface.
+/// Dimensions of a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Print {
-    /// Millimetres of the longer side, between the middles of its first and last sample.
+    /// Length of the longer side in millimetres, between the centres of its first and last sample.
     pub size: f64,
-    /// Millimetres of material below the lowest sample.
+    /// Thickness of the base below the lowest sample, in millimetres.
     pub base: f64,
 }
 
-/// Writes the solid of a surface, and tells how high it is in millimetres.
+/// Writes the solid of a surface, and returns its height in millimetres.
 ///
-/// Fails as `out` does, on holes, and on more triangles than 32 bits count.
+/// Fails if `out` fails, if there are holes, or if there are more triangles than 32 bits can count.
 pub fn write(out: &mut dyn Write, surface: &Surface, print: &Print) -> io::Result<f64> {
     let grid = surface.grid;
     let holes = grid.data().iter().filter(|height| !height.is_finite()).count();
@@ -48,7 +48,7 @@ pub fn write(out: &mut dyn Write, surface: &Surface, print: &Print) -> io::Resul
     out.write_all(&header)?;
     out.write_all(&count.to_le_bytes())?;
     surface.triangles(out, |triangle, bytes| facet(triangle.map(|corner| solid.top(surface.shape, corner)), bytes))?;
-    // From a point in its middle the base sees its whole border.
+    // All border edges are visible from a point in the middle of the base.
     let middle = [0.5 * solid.extent[0], 0.5 * solid.extent[1], 0.0];
     let mut bytes = Vec::new();
     for [from, to] in border {
@@ -67,14 +67,14 @@ pub fn write(out: &mut dyn Write, surface: &Surface, print: &Print) -> io::Resul
     Ok(solid.height)
 }
 
-/// From samples to millimetres.
+/// Conversion from samples to millimetres.
 struct Solid<'a> {
     surface: &'a Surface<'a>,
-    /// Millimetres for each metre.
+    /// Millimetres per metre.
     scale: f64,
     lowest: f64,
     base: f64,
-    /// Millimetres east and north.
+    /// Extent east and north, in millimetres.
     extent: [f32; 2],
     height: f64,
 }
@@ -90,7 +90,7 @@ impl<'a> Solid<'a> {
         Solid { surface, scale, lowest, base: print.base, extent, height: print.base + (highest - lowest) * scale }
     }
 
-    /// Where a corner of the surface is.
+    /// The position of a vertex of the surface.
     fn top(&self, shape: &Shape, corner: u32) -> [f32; 3] {
         let [column, row] = shape.sample(corner);
         let grid = self.surface.grid;
@@ -101,11 +101,11 @@ impl<'a> Solid<'a> {
     }
 }
 
-/// The edges around a surface, each from corner to corner, the land to its left.
+/// The edges around a surface, from vertex to vertex, with the land to their left.
 fn border(surface: &Surface) -> Vec<[u32; 2]> {
     let shape = surface.shape;
     let [east, south] = [surface.grid.width() - 1, surface.grid.height() - 1];
-    // Corners on the border by their side and their place along it; a corner of the grid is on two sides.
+    // Vertices on the border by side and position along it; a corner of the grid is on two sides.
     let mut sides: [BTreeMap<usize, u32>; 4] = Default::default();
     let mut corner = 0;
     for row in shape.rows() {

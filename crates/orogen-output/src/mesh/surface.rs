@@ -1,4 +1,4 @@
-//! A shape over its grid, as formats write it: corner after corner, triangle after triangle.
+//! A shape over its grid, as formats write it: all vertices, then all triangles.
 
 use std::io::{self, Write};
 
@@ -11,24 +11,24 @@ use orogen_grid::analysis::slope::{Gradient, gradients_between};
 use orogen_grid::grid::Grid;
 use orogen_grid::progress::Progress;
 
-/// What is written: a shape over a grid of heights in metres.
+/// The input of a format: a shape over a grid of heights in metres.
 #[derive(Clone, Copy)]
 pub struct Surface<'a> {
     /// The heights.
     pub grid: &'a Grid,
-    /// What lies around the grid, for the normals of its border.
+    /// The samples around the grid, for the normals at its border.
     pub halo: &'a Halo,
-    /// The triangles over it.
+    /// The triangles.
     pub shape: &'a Shape,
-    /// What heights are multiplied by.
+    /// Factor of the heights.
     pub exaggeration: f32,
-    /// Gives corners the colours of a map.
+    /// The colours of vertices, on request.
     pub painter: Option<&'a Painter>,
-    /// Hears of the triangles that are written, where somebody asks.
+    /// Receives the progress of the triangles, if present.
     pub progress: Option<&'a Progress>,
 }
 
-/// One corner, in metres from the first sample of the grid.
+/// A vertex, in metres from the first sample of the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
     /// Metres east of the first column.
@@ -37,15 +37,15 @@ pub struct Corner {
     pub height: f32,
     /// Metres south of the first row.
     pub south: f32,
-    /// The unit normal of the height field: east, up, south. Upwards where it was not asked for.
+    /// The unit normal of the height field: east, up, south. Upward if it was not requested.
     pub normal: [f32; 3],
-    /// Where the sample is in a picture of the grid with a pixel for each: to the right and down, 0 to 1, in the pixel's middle.
+    /// The centre of the sample's pixel in a picture with one pixel per sample: to the right and down, 0 to 1.
     pub texture: [f32; 2],
-    /// sRGB; white where it was not asked for or there is no painter.
+    /// sRGB; white if it was not requested or there is no painter.
     pub color: [u8; 3],
 }
 
-/// What a format needs of corners beside their place.
+/// The properties of vertices, beside their position, that a format needs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// Normals.
@@ -54,10 +54,10 @@ pub struct Wanted {
     pub colors: bool,
 }
 
-/// About how many samples are looked at between two writes.
+/// Approximate number of samples that are processed between two writes.
 const BAND: usize = 1 << 18;
 
-/// What a row needs to be made.
+/// Buffers for making a row.
 #[derive(Default)]
 struct Scratch {
     wide: Vec<f32>,
@@ -66,7 +66,7 @@ struct Scratch {
 }
 
 impl Surface<'_> {
-    /// Writes what `emit` makes of each corner, in order.
+    /// Writes the bytes that `emit` makes of each vertex, in order.
     pub fn corners(
         &self,
         out: &mut dyn Write,
@@ -89,7 +89,7 @@ impl Surface<'_> {
         Ok(())
     }
 
-    /// Writes what `emit` makes of each triangle, in order.
+    /// Writes the bytes that `emit` makes of each triangle, in order.
     pub fn triangles(&self, out: &mut dyn Write, emit: impl Fn([u32; 3], &mut Vec<u8>) + Sync) -> io::Result<()> {
         let pieces: Vec<usize> = (0..self.shape.pieces()).collect();
         let each = self.shape.triangles() / pieces.len().max(1);
@@ -110,7 +110,7 @@ impl Surface<'_> {
         Ok(())
     }
 
-    /// The least and the greatest of what corners have: east, height, south.
+    /// The bounds of the vertices: east, height, south.
     pub fn bounds(&self) -> [[f32; 3]; 2] {
         let rows = self.shape.rows();
         let none = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
@@ -128,7 +128,7 @@ impl Surface<'_> {
         rows.par_iter().map(of_row).reduce(|| none, join)
     }
 
-    /// East, height and south of a sample.
+    /// East, height and south of a sample, in metres.
     pub fn place(&self, column: usize, row: usize) -> [f32; 3] {
         let cell = self.grid.window().cell;
         [(column as f64 * cell) as f32, self.grid[(column, row)] * self.exaggeration, (row as f64 * cell) as f32]
@@ -147,7 +147,7 @@ impl Surface<'_> {
         }
     }
 
-    /// The unit normal of the surface as it is drawn: east, up, south.
+    /// The unit normal of the exaggerated surface: east, up, south.
     fn normal(&self, gradient: Gradient) -> [f32; 3] {
         let [east, south] = [-gradient.east * self.exaggeration, gradient.north * self.exaggeration];
         let length = (east * east + south * south + 1.0).sqrt();
@@ -157,7 +157,7 @@ impl Surface<'_> {
         }
     }
 
-    /// The unit normals of all samples, row after row.
+    /// The unit normals of all samples, row-major.
     pub(super) fn normals(&self) -> Vec<[f32; 3]> {
         let (width, cell) = (self.grid.width(), self.grid.window().cell);
         let mut normals = vec![[0.0; 3]; width * self.grid.height()];
@@ -168,7 +168,7 @@ impl Surface<'_> {
         normals
     }
 
-    /// Makes the normals and colours of a whole row.
+    /// Computes the normals and colours of a whole row.
     fn prepare(&self, row: usize, wanted: Wanted, scratch: &mut Scratch) {
         let painter = self.painter.filter(|_| wanted.colors);
         if !wanted.normals && painter.is_none() {

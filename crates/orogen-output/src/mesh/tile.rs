@@ -1,16 +1,16 @@
-//! The heights of one tile, laid out for reading across many rows.
+//! The heights of one tile, in a layout for access across many rows.
 
 use orogen_grid::grid::Grid;
 
-/// Samples a cache line holds.
+/// Samples per cache line.
 const LINE: usize = 16;
 
-/// One of a tile's samples, by its column and row. They are ordered row by row.
+/// A sample of a tile, as a number made of its column and row. Samples are ordered row by row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Sample(u32);
 
 impl Sample {
-    /// The one in the north-western corner.
+    /// The sample in the north-western corner.
     pub const FIRST: Sample = Sample(0);
 
     /// The sample in this column and row, both below 2^15.
@@ -25,7 +25,8 @@ impl Sample {
         Sample(number)
     }
 
-    /// How far apart the numbers of a sample and the one south of it are. To the east they follow each other.
+    /// The difference between the numbers of a sample and its southern neighbour. Eastern neighbours have consecutive
+    /// numbers.
     pub const ROW: u32 = 1 << 16;
 
     /// Its number.
@@ -41,20 +42,21 @@ impl Sample {
     }
 }
 
-/// The samples of a part of a grid, each row begun an odd number of cache lines after the one before, so that neighbouring rows
-/// do not compete for the same places in the cache. A register's worth of samples may be read from any of them.
+/// The samples of a part of a grid. Rows are an odd number of cache lines apart, so that neighbouring rows do not map
+/// to the same cache sets. A register can be read from any sample.
 pub(super) struct Tile {
     heights: Vec<f32>,
-    /// Samples from one row to the next.
+    /// Samples between the starts of rows.
     pub stride: usize,
-    /// Samples a row.
+    /// Samples per row.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
 }
 
 impl Tile {
-    /// The `width` x `height` samples of `grid` from column `left` and row `top` on, in `memory` that may have held another tile.
+    /// The `width` x `height` samples of `grid` from column `left` and row `top`, in `memory` that may have held
+    /// another tile.
     pub fn of(grid: &Grid, [left, top]: [usize; 2], [width, height]: [usize; 2], memory: Vec<f32>) -> Tile {
         let stride = (width.div_ceil(LINE) | 1) * LINE;
         let mut heights = memory;
@@ -66,12 +68,12 @@ impl Tile {
         Tile { heights, stride, width, height }
     }
 
-    /// Its memory, for another tile.
+    /// The memory, for use by another tile.
     pub fn into_memory(self) -> Vec<f32> {
         self.heights
     }
 
-    /// All samples; row `j` begins at `j * stride`.
+    /// All samples; row `j` starts at `j * stride`.
     pub fn heights(&self) -> &[f32] {
         &self.heights
     }
@@ -82,7 +84,7 @@ impl Tile {
         self.heights[row as usize * self.stride + column as usize]
     }
 
-    /// The greatest height without its sign.
+    /// The largest absolute height.
     pub fn greatest(&self) -> f32 {
         self.heights.iter().fold(0.0, |greatest, height| greatest.max(height.abs()))
     }

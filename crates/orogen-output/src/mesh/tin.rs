@@ -1,16 +1,17 @@
-//! A triangulation that grows where the surface is furthest off.
+//! An adaptive triangulation, refined where its error is largest.
 //!
-//! Greedy insertion (Garland and Heckbert, "Fast polygonal approximation of terrains and height fields", CMU-CS-95-181) into a
-//! Delaunay triangulation: the sample furthest from the surface becomes a corner, until none is further than allowed. Two things
-//! differ from the paper:
+//! Greedy insertion (Garland and Heckbert, "Fast polygonal approximation of terrains and height fields", CMU-CS-95-181)
+//! into a Delaunay triangulation: the sample with the largest error becomes a vertex, until all errors are within the
+//! limit. There are two differences from the paper:
 //!
-//! - A triangle that is only a little too far off is first tried with one of its edges flipped: where the land has a direction,
-//!   a triangulation that follows it needs a fifth fewer triangles. Flips of Lawson's stay valid whatever the edges around are.
-//! - After a start over the whole tile, work goes block by block, so that what is touched stays in cache; the order in which
-//!   blocks far from each other are refined changes little.
+//! - A triangle whose error is only slightly too large is first tried with one of its edges flipped: where the land has
+//!   a preferred direction, a triangulation that follows it needs a fifth fewer triangles. Lawson's flips are valid for
+//!   any surrounding edges.
+//! - After an initial phase over the whole tile, refinement proceeds block by block, so that its data stays in cache.
+//!   The order in which distant blocks are refined has little effect.
 //!
-//! The border is fixed beforehand from its own samples ([`super::border`]) and never refined, so tiles fit along their edges.
-//! All decisions are exact integers or compared f32s that are the same at every SIMD level, so the result is too.
+//! The border is fixed beforehand from its own samples ([`super::border`]) and never refined, so tiles fit along their
+//! edges. All decisions use exact integers, or f32 values that are the same at every SIMD level, and so is the result.
 
 use std::collections::BinaryHeap;
 
@@ -20,29 +21,29 @@ use super::tile::{Sample, Tile};
 use orogen_grid::error::Result;
 use orogen_grid::progress::Progress;
 
-/// In place of a twin: the edge is part of the border.
+/// Instead of a twin: the edge belongs to the border.
 const OUTSIDE: u32 = u32::MAX;
-/// In place of a twin: the triangle beyond is about to be added and will link the two.
+/// Instead of a twin: the triangle beyond is about to be added and will link the two.
 const LATER: u32 = u32::MAX - 1;
 
-/// The side of a block in samples, as a power of two.
+/// Side of a block in samples, as a power of two.
 const BLOCK: u32 = 6;
-/// How many samples there are for each corner when work begins to go block by block.
+/// Number of samples per vertex at which work starts to proceed block by block.
 const SPARSE: usize = 1024;
-/// Blocks are refined down to these multiples of the error, all of them before the next.
+/// All blocks are refined down to the first multiple of the error, then down to the next.
 const SWEEPS: [f32; 2] = [4.0, 2.0];
-/// The greatest multiple of the error at which a flip is tried.
+/// The largest multiple of the error at which a flip is tried.
 const FLIPPED: f32 = 3.0;
 
-/// The memory that a triangulation grows in. It is used for one tile after another.
+/// The memory of a triangulation, reused for one tile after another.
 #[derive(Default)]
 pub(super) struct Workspace {
     triangles: Vec<Triangle>,
     queue: Queue,
 }
 
-/// Triangulates a tile of at least 2 x 2 finite samples so that none is further than `max_error` from the surface. Returns triples of samples, each
-/// clockwise seen as a picture.
+/// Triangulates a tile of at least 2 x 2 finite samples with an error of at most `max_error`. Returns triples of
+/// samples, each clockwise in the picture.
 ///
 /// # Errors
 /// If the work is cancelled.
@@ -58,17 +59,17 @@ pub(super) fn triangulate<'a>(
     Ok(workspace.triangles.iter().map(|triangle| triangle.corners))
 }
 
-/// A triangle and what it borders on. Edge 4 t + k leads from corner k of triangle t to the next.
+/// A triangle and its neighbours. Edge 4 t + k leads from vertex k of triangle t to the next.
 #[derive(Clone, Copy)]
 struct Triangle {
     corners: [Sample; 3],
-    /// The same edges seen from the triangles beyond them.
+    /// The same edges in the neighbouring triangles.
     twins: [u32; 3],
-    /// Its furthest sample, or [`Worst::UNKNOWN`].
+    /// Its sample with the largest error, or [`Worst::UNKNOWN`].
     worst: Worst,
 }
 
-/// How distances are measured.
+/// The arithmetic for distances.
 enum Precision {
     Quick,
     Exact,
@@ -77,23 +78,24 @@ enum Precision {
 struct Tin<'a> {
     tile: &'a Tile,
     precision: Precision,
-    /// Samples further off than this become corners.
+    /// Samples with a larger error become vertices.
     limit: f32,
     triangles: &'a mut Vec<Triangle>,
     queue: &'a mut Queue,
-    /// How many corners there are.
+    /// Number of vertices.
     count: usize,
-    /// For each sample of the border, counted from the first one clockwise, the edge that leads on along the border from there.
+    /// For each sample of the border, counted clockwise from the first one, the edge that starts there along the
+    /// border.
     along: Vec<u32>,
-    /// Triangles to look at.
+    /// Triangles to scan.
     fresh: Vec<u32>,
-    /// Edges to check, kept to save allocations.
+    /// Edges to check, kept to avoid allocations.
     doubtful: Vec<u32>,
 }
 
 impl<'a> Tin<'a> {
     fn new(tile: &'a Tile, max_error: f64, workspace: &'a mut Workspace) -> Tin<'a> {
-        // A handful of f32 roundings of numbers up to the greatest height; twice that, to be sure.
+        // A few f32 roundings of numbers up to the largest height, doubled for safety.
         let greatest = f64::from(tile.greatest());
         let rounding = greatest * f64::from(f32::EPSILON) * 4.0;
         let quick = max_error > 64.0 * rounding && greatest < 1e30;
@@ -101,14 +103,14 @@ impl<'a> Tin<'a> {
             true => (Precision::Quick, max_error - rounding),
             false => (Precision::Exact, max_error - greatest * f64::EPSILON * 4.0),
         };
-        // Down: the limit as f32 must not be above it.
+        // Rounded down: the limit as f32 must not exceed it.
         let limit = match limit as f32 {
             rounded if f64::from(rounded) > limit => rounded.next_down(),
             rounded => rounded,
         };
         let Workspace { triangles, queue } = workspace;
         triangles.clear();
-        // Room for as many as there can be, so that it need not move. The system gives memory only to what is written.
+        // Reserves the maximum, so that it never moves. The system assigns memory only to written pages.
         triangles.reserve_exact(2 * (tile.width - 1) * (tile.height - 1));
         queue.reset();
         Tin {
@@ -128,7 +130,7 @@ impl<'a> Tin<'a> {
         self.triangles[triangle as usize].worst
     }
 
-    /// The corner that an edge begins at.
+    /// The vertex at which an edge starts.
     fn start(&self, edge: u32) -> Sample {
         self.triangles[(edge / 4) as usize].corners[(edge % 4) as usize]
     }
@@ -137,7 +139,7 @@ impl<'a> Tin<'a> {
         self.triangles[(edge / 4) as usize].twins[(edge % 4) as usize]
     }
 
-    /// Where a sample of the border comes, clockwise from the first one.
+    /// The position of a border sample, clockwise from the first one.
     fn around(&self, sample: Sample) -> usize {
         let [east, south] = [self.tile.width - 1, self.tile.height - 1];
         let [column, row] = sample.place().map(|at| at as usize);
@@ -149,14 +151,14 @@ impl<'a> Tin<'a> {
         }
     }
 
-    /// Two triangles over the tile, then the corners along its border.
+    /// Makes two triangles over the tile, then the vertices along its border.
     fn lay_out(&mut self, max_error: f64) {
         let (east, south) = (self.tile.width as i32 - 1, self.tile.height as i32 - 1);
         let side = |line: &dyn Fn(i32) -> [i32; 2], last: i32| -> Vec<[i32; 2]> {
             let heights: Vec<f64> = (0..=last).map(|i| f64::from(self.tile.at(line(i)))).collect();
             polyline(&heights, max_error).into_iter().map(|i| line(i as i32)).collect()
         };
-        // Once around, from each corner of the tile to the next; always measured eastwards and southwards.
+        // Once around, from each corner of the tile to the next, always in the direction east or south.
         let mut sides = [
             side(&|i| [i, 0], east),
             side(&|i| [east, i], south),
@@ -174,7 +176,7 @@ impl<'a> Tin<'a> {
         let [a, b, c, d] = [ends[0], ends[1], ends[2], ends[3]];
         let first = self.add(None, [border[a], border[b], border[c]], [OUTSIDE, OUTSIDE, LATER]);
         self.add(None, [border[a], border[c], border[d]], [4 * first + 2, OUTSIDE, OUTSIDE]);
-        // The middle one first: else one corner would have them all as neighbours.
+        // The middle vertex first: otherwise one vertex would be adjacent to all others.
         let mut stretches = vec![[a, b], [b, c], [c, d], [d, border.len()]];
         while let Some([from, to]) = stretches.pop() {
             if to - from >= 2 {
@@ -198,12 +200,12 @@ impl<'a> Tin<'a> {
         for factor in SWEEPS {
             self.sweep(factor * self.limit, progress)?;
         }
-        // A block may leave work to one that has been done.
+        // A block may leave work in a block that is already done.
         while self.sweep(self.limit, progress)? {}
         Ok(())
     }
 
-    /// Refines all blocks, one after the other, down to an error; tells whether anything was done.
+    /// Refines all blocks down to an error; returns whether anything changed.
     fn sweep(&mut self, error: f32, progress: &Progress) -> Result<bool> {
         let mut busy = false;
         for block in 0..self.queue.blocks.len() {
@@ -218,14 +220,14 @@ impl<'a> Tin<'a> {
         Ok(busy)
     }
 
-    /// Makes the furthest sample of a triangle a corner.
+    /// Makes the worst sample of a triangle a vertex.
     fn insert_worst(&mut self, triangle: u32) {
         self.count += 1;
         self.insert(triangle, self.worst(triangle).at);
         self.look();
     }
 
-    /// Puts a corner that lies in or on the edge of a triangle into the triangulation.
+    /// Inserts a vertex inside a triangle or on its edge.
     fn insert(&mut self, triangle: u32, new: Sample) {
         let Triangle { corners: [a, b, c], twins: [ab, bc, ca], .. } = self.triangles[triangle as usize];
         let edge = 4 * triangle;
@@ -240,7 +242,7 @@ impl<'a> Tin<'a> {
         self.settle([4 * first, 4 * second, 4 * third]);
     }
 
-    /// Cuts an edge, and the one or two triangles beside it, at a corner that lies on it.
+    /// Splits an edge, and the one or two adjacent triangles, at a vertex on it.
     fn split(&mut self, edge: u32, new: Sample) {
         let (left, right) = (next(edge), previous(edge));
         let (from, to, apex) = (self.start(edge), self.start(left), self.start(right));
@@ -261,8 +263,8 @@ impl<'a> Tin<'a> {
         self.settle([4 * first + 1, 4 * second + 2, 4 * third + 1, 4 * fourth + 2]);
     }
 
-    /// Flips edges as long as one has the corner beyond it within the circle around its triangle (Lawson's algorithm), beginning
-    /// with those around a new corner.
+    /// Flips edges until no edge has the opposite vertex within the circumcircle of its triangle (Lawson's algorithm),
+    /// starting around a new vertex.
     fn settle<const N: usize>(&mut self, edges: [u32; N]) {
         self.doubtful.extend(edges);
         while let Some(edge) = self.doubtful.pop() {
@@ -278,8 +280,9 @@ impl<'a> Tin<'a> {
         }
     }
 
-    /// Replaces the edge between two triangles by the other diagonal of their quadrilateral; returns them, the new edge being
-    /// the first of each. The one side of the quadrilateral that the apex of `edge` sees is the last edge of each.
+    /// Replaces the edge between two triangles by the other diagonal of their quadrilateral. Returns the two triangles;
+    /// the new edge is the first of each, and a side of the quadrilateral adjacent to the apex of `edge` is the last
+    /// edge of each.
     fn turn_edge(&mut self, edge: u32) -> [u32; 2] {
         let twin = self.twin(edge);
         let (left, right) = (next(edge), previous(edge));
@@ -292,7 +295,7 @@ impl<'a> Tin<'a> {
         [near, far]
     }
 
-    /// Turns the edge of a triangle by which it and its neighbour come to lie within the limit, best of the three; tells
+    /// Flips the edge of a triangle that brings it and its neighbour within the limit, the best of the three; returns
     /// whether there is one.
     fn flip(&mut self, triangle: u32) -> bool {
         let mut best: Option<(f32, u32)> = None;
@@ -323,7 +326,7 @@ impl<'a> Tin<'a> {
         true
     }
 
-    /// Writes a triangle over another or as a new one, with the twins of its edges, and links those back.
+    /// Writes a triangle, over another or as a new one, with the twins of its edges, and links the twins back.
     fn add(&mut self, over: Option<u32>, corners: [Sample; 3], twins: [u32; 3]) -> u32 {
         let written = Triangle { corners, twins, worst: Worst::UNKNOWN };
         let triangle = match over {
@@ -351,7 +354,7 @@ impl<'a> Tin<'a> {
         triangle
     }
 
-    /// Looks at all triangles that were written since it was last done.
+    /// Scans all triangles that were written since the last call.
     fn look(&mut self) {
         for index in 0..self.fresh.len() {
             let triangle = self.fresh[index];
@@ -375,18 +378,18 @@ impl<'a> Tin<'a> {
     }
 }
 
-/// Triangles by their error, the greatest first; block by block, once it was cut.
+/// Priority queues of triangles by error, the largest first; one queue per block after [`Queue::cut`].
 ///
-/// What is taken out may be out of date: a triangle that changed was put in again.
+/// Entries may be outdated: a changed triangle is inserted again.
 #[derive(Default)]
 struct Queue {
     blocks: Vec<BinaryHeap<u64>>,
-    /// Blocks a row, once it was cut; before, there is one queue.
+    /// Blocks per row after the queue was cut; before, there is one queue.
     across: Option<u32>,
 }
 
 impl Queue {
-    /// Empties it, for a tile that is not cut yet.
+    /// Clears it for a new tile.
     fn reset(&mut self) {
         self.blocks.iter_mut().for_each(BinaryHeap::clear);
         self.blocks.resize_with(self.blocks.len().max(1), BinaryHeap::new);
@@ -396,11 +399,11 @@ impl Queue {
     fn push(&mut self, triangle: u32, worst: Worst) {
         let [column, row] = worst.at.place().map(|at| (at as u32) >> BLOCK);
         let block = self.across.map_or(0, |across| row * across + column);
-        // The bits of positive floats are ordered as they are. Of two with the same error, the older first.
+        // The bits of positive floats sort like their values. Of equal errors, the older triangle comes first.
         self.blocks[block as usize].push(u64::from(worst.error.to_bits()) << 32 | u64::from(!triangle));
     }
 
-    /// The triangle with the greatest error, if it is more than `error`.
+    /// Removes the triangle with the largest error, if that is more than `error`.
     fn pop_above(&mut self, block: usize, error: f32, triangles: &[Triangle]) -> Option<u32> {
         let heap = &mut self.blocks[block];
         while let Some(key) = heap.peek() {
@@ -416,7 +419,7 @@ impl Queue {
         None
     }
 
-    /// Makes one queue for each block of the tile.
+    /// Makes one queue per block of the tile.
     fn cut(&mut self, tile: &Tile, triangles: &[Triangle]) {
         let blocks = |samples: usize| samples.div_ceil(1 << BLOCK);
         let whole = std::mem::take(&mut self.blocks[0]);
@@ -440,7 +443,7 @@ fn previous(edge: u32) -> u32 {
     if edge.is_multiple_of(4) { edge + 2 } else { edge - 1 }
 }
 
-/// Twice the area of a triangle: positive if it is clockwise seen as a picture.
+/// Twice the area of a triangle: positive if it is clockwise in the picture.
 fn turn(a: Sample, b: Sample, c: Sample) -> i32 {
     let a = a.place();
     let away = |p: Sample| {
@@ -451,7 +454,7 @@ fn turn(a: Sample, b: Sample, c: Sample) -> i32 {
     bx * cy - by * cx
 }
 
-/// Whether `p` lies within the circle around a triangle. Exact: a tile has far fewer than 2^15 samples a side.
+/// Whether `p` is within the circumcircle of a triangle. Exact: a tile has far fewer than 2^15 samples per side.
 fn within_circle([a, b, c]: [Sample; 3], p: Sample) -> bool {
     let p = p.place();
     let seen = |q: Sample| {

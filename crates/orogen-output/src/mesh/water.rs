@@ -2,29 +2,29 @@
 
 use orogen_grid::grid::Grid;
 
-/// A mesh of water, its corners in metres from the first sample of the ground: east, height, south.
+/// A mesh of water, with vertices in metres from the first sample of the ground: east, height, south.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WaterMesh {
-    /// Its name.
+    /// The name.
     pub name: &'static str,
-    /// Red, green and blue as linear light, and how much it covers: 0 to 1.
+    /// Red, green and blue in linear light, and opacity: 0 to 1.
     pub color: [f32; 4],
-    /// The corners.
+    /// The vertices.
     pub corners: Vec<[f32; 3]>,
     /// Triangles, counter-clockwise seen from above.
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// A river to be laid on the ground.
+/// A river as the input of a ribbon.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ribbon {
     /// Column, row and height of each point, downstream.
     pub points: Vec<[f64; 3]>,
-    /// Metres from bank to bank at the first and at the last point.
+    /// Width between the banks at the first and at the last point, in metres.
     pub widths: [f64; 2],
 }
 
-/// Samples along a ribbon from one cross-section to the next at most.
+/// Maximum distance between cross-sections of a ribbon, in samples.
 const STEP: f64 = 0.5;
 
 impl WaterMesh {
@@ -33,8 +33,8 @@ impl WaterMesh {
         WaterMesh { name, color, corners: Vec::new(), triangles: Vec::new() }
     }
 
-    /// Lays a ribbon on the ground: at each cross-section its two banks and its middle lie at the height of the river, or `lift` metres above the ground where
-    /// that is higher.
+    /// Adds a ribbon on the ground: at each cross-section, both banks and the middle are at the height of the river, or
+    /// `lift` metres above the ground where that is higher.
     pub fn lay(&mut self, ribbon: &Ribbon, ground: &Grid, lift: f64) {
         let points = resampled(&ribbon.points);
         if points.len() < 2 {
@@ -49,7 +49,7 @@ impl WaterMesh {
             let length = libm::hypot(east, south).max(1e-12);
             let share = k as f64 / (points.len() - 1) as f64;
             let half = (ribbon.widths[0] + (ribbon.widths[1] - ribbon.widths[0]) * share) / 2.0 / cell;
-            // From the left bank to the right one, as one looks downstream.
+            // From the left bank to the right one, looking downstream.
             for side in [-1.0, 0.0, 1.0] {
                 let at = [x - side * half * south / length, y + side * half * east / length];
                 let at = [at[0].clamp(0.0, ends[0]), at[1].clamp(0.0, ends[1])];
@@ -62,7 +62,7 @@ impl WaterMesh {
             for side in 0..2 {
                 let [a, b, c, d] = [here + side, here + side + 1, next + side, next + side + 1];
                 for triangle in [[a, b, c], [b, d, c]] {
-                    // Beyond the border of the ground none is left of it.
+                    // Triangles beyond the border of the ground have no area.
                     if self.area(triangle) > 0.0 {
                         self.triangles.push(triangle);
                     }
@@ -71,13 +71,13 @@ impl WaterMesh {
         }
     }
 
-    /// Covers all squares between samples that have a wet corner with level water. The ground beside it rises above it, so the shore is where the two meshes
-    /// meet. `level` tells the height of the water at a sample.
+    /// Covers all squares between samples that have a wet corner with level water. The ground beside it rises above the
+    /// water, so the shore is the intersection of both meshes. `level` returns the water level at a sample.
     pub fn cover(&mut self, ground: &Grid, level: impl Fn(usize, usize) -> Option<f32>) {
         let cell = ground.window().cell;
         let at = |i: usize| (i as f64 * cell) as f32;
         for j in 0..ground.height().saturating_sub(1) {
-            // Squares of one level side by side become one.
+            // Adjacent squares with the same level are merged.
             let mut open: Option<(usize, f32)> = None;
             for i in 0..ground.width() {
                 let square =
@@ -110,7 +110,7 @@ impl WaterMesh {
         (b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2])
     }
 
-    /// The upward unit normal of each corner: the mean of the triangles around it, weighted by their areas.
+    /// The upward unit normal of each vertex: the area-weighted mean of the adjacent triangles.
     pub fn normals(&self) -> Vec<[f32; 3]> {
         let mut sums = vec![[0.0f64; 3]; self.corners.len()];
         for triangle in &self.triangles {
@@ -123,19 +123,19 @@ impl WaterMesh {
         }
         let unit = |sum: [f64; 3]| {
             let length = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();
-            // A corner without a triangle, where a ribbon ends beyond the ground.
+            // A vertex without a triangle, where a ribbon ends beyond the ground.
             if length > 0.0 { sum.map(|part| (part / length) as f32) } else { [0.0, 1.0, 0.0] }
         };
         sums.into_iter().map(unit).collect()
     }
 
-    /// Multiplies heights.
+    /// Multiplies heights by `factor`.
     pub fn exaggerate(&mut self, factor: f32) {
         self.corners.iter_mut().for_each(|corner| corner[1] *= factor);
     }
 }
 
-/// Points no further apart than [`STEP`].
+/// Points at most [`STEP`] apart.
 fn resampled(points: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let mut out: Vec<[f64; 3]> = points.first().copied().into_iter().collect();
     for pair in points.windows(2) {
@@ -151,7 +151,7 @@ fn resampled(points: &[[f64; 3]]) -> Vec<[f64; 3]> {
     out
 }
 
-/// The ground between samples: the higher of the two ways in which the square around could be cut into triangles.
+/// The ground between samples: the higher of the two possible triangulations of the square.
 fn height(ground: &Grid, [x, y]: [f64; 2]) -> f64 {
     let along = |v: f64, samples: usize| {
         let start = (v.floor() as usize).min(samples.saturating_sub(2));

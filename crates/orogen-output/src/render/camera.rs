@@ -1,38 +1,38 @@
-//! Where the picture is taken from.
+//! The camera of a picture.
 
 use super::march::Ray;
 use super::relief::Relief;
 use super::vector::Vector;
 
-/// Where a camera stands and looks, in the world's metres.
+/// Position and direction of a camera, in the world's metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum View {
-    /// Around the middle of the land.
+    /// On a sphere around the centre of the land.
     Around {
-        /// Where the camera stands, seen from the middle: degrees clockwise from north.
+        /// Direction of the camera from the centre, in degrees clockwise from north.
         azimuth: f64,
-        /// And degrees above the horizon.
+        /// Elevation of the camera, in degrees above the horizon.
         elevation: f64,
-        /// Metres from the middle; `None` takes as many as it needs to see all of the land.
+        /// Distance from the centre, in metres; `None` chooses it so that all of the land is visible.
         distance: Option<f64>,
     },
-    /// At a place.
+    /// At a given position.
     At {
-        /// Metres east and south of the world's origin, and metres of height.
+        /// Position: metres east and south of the world's origin, and height in metres.
         eye: [f64; 3],
-        /// What is in the middle of the picture: metres east and south; the ground there.
+        /// The target at the centre of the picture: metres east and south, at ground level.
         look: [f64; 2],
     },
 }
 
-/// What has to be in the picture of a camera that looks for its place: a box, in cells.
+/// The box that must be in the picture when a camera's distance is chosen automatically, in cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
-    /// Its corner in the north-west, at the bottom.
+    /// The north-western lower corner.
     pub low: Vector,
-    /// Its corner in the south-east, at the top.
+    /// The south-eastern upper corner.
     pub high: Vector,
-    /// Whether the land goes on beyond its edges, mirrored.
+    /// Whether the land continues beyond its edges, mirrored.
     pub mirrored: bool,
 }
 
@@ -50,13 +50,13 @@ impl Frame {
     }
 }
 
-/// How much of the land's frame is left free on each side when a camera looks for its distance.
+/// Margin of the land's frame on each side, as a share of the picture, when the distance is chosen automatically.
 const MARGIN: f64 = 0.02;
 
-/// How high above the ground a camera is at least, in cells.
+/// Minimum height of a camera above the ground, in cells.
 const LEAST: f64 = 0.05;
 
-/// A camera in its place: a ray for every place in the picture.
+/// A placed camera: gives the ray of every point of the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     eye: Vector,
@@ -69,8 +69,9 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The camera of a view over the land, whose first sample stands at `origin` (metres east and south), for pictures of `size` pixels
-    /// that are `fov` degrees wide on their longer side. What it looks at by itself is `frame`.
+    /// The camera of a view of the land, whose first sample is at `origin` (metres east and south), for pictures of
+    /// `size` pixels with an angle of view of `fov` degrees along the longer side. `frame` is used if the distance is
+    /// chosen automatically.
     pub fn new(view: &View, relief: &Relief, origin: [f64; 2], size: [usize; 2], fov: f64, frame: &Frame) -> Camera {
         let half = libm::tan(fov.to_radians() / 2.0);
         let [width, height] = size.map(|side| side as f64);
@@ -86,7 +87,7 @@ impl Camera {
                     Some(distance) => distance / relief.cell(),
                     None => look.framing(frame, out),
                 };
-                // Seen from above, the near half takes more of the picture: the frame's middle is not the land's.
+                // Seen from above, the near half takes more of the picture, so the frame's centre is not the land's.
                 let mut camera = Camera { eye: middle + out * distance, ..look };
                 camera.centre(frame);
                 camera
@@ -104,8 +105,8 @@ impl Camera {
         camera
     }
 
-    /// How many metres away a camera has to stand to see all of `frame` from every one of these sides: for pictures that turn around
-    /// the land without coming nearer.
+    /// The distance, in metres, from which all of `frame` is visible from each of these directions: for pictures that
+    /// turn around the land at a constant distance.
     pub fn distance(
         sides: impl Iterator<Item = [f64; 2]>,
         relief: &Relief,
@@ -122,23 +123,24 @@ impl Camera {
         away.fold(0.0, f64::max) * relief.cell()
     }
 
-    /// A camera that stands at a place and looks along a direction; `azimuth` is where it comes from, for when that is straight down.
+    /// A camera at `eye` that looks in the direction `ahead`; `azimuth` is its own direction from the target, used if
+    /// `ahead` is vertical.
     fn towards(eye: Vector, ahead: Vector, azimuth: f64, wide: [f64; 2]) -> Camera {
         let (sin, cos) = libm::sincos(azimuth.to_radians());
-        // Level, and to the right of who looks against `azimuth`.
+        // Horizontal, to the right of a viewer who looks against `azimuth`.
         let right = Vector::new(-cos, -sin, 0.0);
         let down = right.cross(ahead).unit();
         Camera { eye, ahead, right, down, wide, lifted: None }
     }
 
-    /// Where a place is in the picture, -1 to 1 each way; `None` if it is behind.
+    /// The position of a point in the picture, -1 to 1 along each axis; `None` if it is behind the camera.
     pub fn project(&self, place: Vector) -> Option<[f64; 2]> {
         let way = place - self.eye;
         let depth = way.dot(self.ahead);
         (depth > 1e-9).then(|| [way.dot(self.right) / depth / self.wide[0], way.dot(self.down) / depth / self.wide[1]])
     }
 
-    /// How far out the whole box is in the picture.
+    /// The largest position of the box in the picture.
     fn framing(&self, frame: &Frame, out: Vector) -> f64 {
         let middle = self.eye;
         let fits = |distance: f64| {
@@ -160,8 +162,8 @@ impl Camera {
         far
     }
 
-    /// Moves the camera across its line of sight until the box is as far from the upper edge of the picture as from the lower one,
-    /// and the same from left and right.
+    /// Moves the camera perpendicular to its line of sight until the box has equal distances from the upper and lower
+    /// edges of the picture, and from the left and right edges.
     fn centre(&mut self, frame: &Frame) {
         let depth = (frame.middle() - self.eye).dot(self.ahead);
         for _ in 0..8 {
@@ -181,7 +183,7 @@ impl Camera {
         }
     }
 
-    /// Out of the ground, if it is in it; where there is none, above what the land stands on.
+    /// Raises a camera that is below the ground; outside of the land, above the bottom of the land.
     fn lift(&mut self, relief: &Relief, frame: &Frame) {
         let [east, south] = relief.reach();
         let inside = (0.0..=east).contains(&self.eye.x) && (0.0..=south).contains(&self.eye.y);
@@ -196,29 +198,29 @@ impl Camera {
         }
     }
 
-    /// Where it stands, in cells.
+    /// The position, in cells.
     pub fn eye(&self) -> Vector {
         self.eye
     }
 
-    /// By how many metres it had to be lifted to stand above ground and water.
+    /// The number of metres by which it was raised above ground and water; `None` if it was not.
     pub fn lifted(&self) -> Option<f64> {
         self.lifted
     }
 
-    /// The ray through a place in the picture: 0, 0 its upper left corner, 1, 1 its lower right one.
+    /// The ray through a point of the picture: (0, 0) is its upper left corner, (1, 1) its lower right corner.
     pub fn ray(&self, across: f64, down: f64) -> Ray {
         let (x, y) = ((2.0 * across - 1.0) * self.wide[0], (2.0 * down - 1.0) * self.wide[1]);
         Ray { from: self.eye, along: (self.ahead + self.right * x + self.down * y).unit() }
     }
 
-    /// How wide a pixel is at distance 1, in a picture so many pixels wide.
+    /// The width of a pixel at distance 1, in a picture of `width` pixels.
     pub fn pixel(&self, width: usize) -> f64 {
         2.0 * self.wide[0] / width as f64
     }
 }
 
-/// A coordinate brought into 0 to `reach` by mirrors at both ends, and whether it then runs forwards or backwards.
+/// A coordinate folded into 0 to `reach` by mirrors at both ends, and its direction there: 1 or -1.
 pub(super) fn folded(x: f64, reach: f64) -> (f64, f64) {
     let turn = x.rem_euclid(2.0 * reach);
     if turn <= reach { (turn, 1.0) } else { (2.0 * reach - turn, -1.0) }

@@ -1,21 +1,21 @@
-//! What is smaller than a cell: a tile of noise that the grain of rock, grass and water is read from.
+//! Detail smaller than a cell: a tile of noise for the grain of rock, grass and water.
 
 use orogen_noise::{Perlin, Points};
 
-/// Samples along a side of the tile; a power of two.
+/// Side of the tile in samples; a power of two.
 const SIDE: usize = 256;
 
-/// Samples from one hill of the tile's noise to the next.
+/// Wavelength of the tile's noise in samples.
 const WAVELENGTH: usize = 8;
 
-/// A tile of Perlin noise that repeats, with its slopes.
+/// A tile of periodic Perlin noise with its derivatives.
 #[derive(Debug, Clone)]
 pub(super) struct Grain {
-    /// Value, and slope east and south per wavelength.
+    /// Value, and derivatives east and south per wavelength.
     samples: Vec<[f32; 3]>,
 }
 
-/// A value between -1 and 1, and its slopes east and south per wavelength.
+/// A value between -1 and 1, and its derivatives east and south per wavelength.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bump {
     pub value: f32,
@@ -23,14 +23,14 @@ pub(super) struct Bump {
 }
 
 impl Grain {
-    /// Makes the tile.
+    /// Computes the tile.
     pub fn new() -> Grain {
         let noise = Perlin { seed: 5, wavelength: WAVELENGTH as f64 };
         let axis: Vec<f64> = (0..SIDE).map(|i| i as f64).collect();
         let mut parts = [vec![0.0; SIDE * SIDE], vec![0.0; SIDE * SIDE], vec![0.0; SIDE * SIDE]];
         if let Ok(tiled) = noise.tiled([(SIDE / WAVELENGTH) as u32; 2]) {
             let [value, dx, dy] = &mut parts;
-            // The lengths agree, so there is no error to hand on.
+            // The lengths agree, so this cannot fail.
             let _ = tiled.fill_with_gradient(&Points::Lattice { xs: &axis, ys: &axis }, value, dx, dy);
         }
         let [value, dx, dy] = parts;
@@ -39,8 +39,8 @@ impl Grain {
         Grain { samples }
     }
 
-    /// The noise at a place measured in its wavelengths. `kind` tells apart noises that must not look alike where they lie on
-    /// one another; each is turned by another angle, so that nobody sees the tile repeat.
+    /// The noise at a position in units of its wavelength. `kind` selects one of several independent noises; each is
+    /// rotated by a different angle, which hides the repetition of the tile.
     pub fn at(&self, x: f64, y: f64, kind: u32) -> Bump {
         /// Cosine and sine of 37 degrees times 0, 1, 2, ...
         const TURNS: [[f64; 2]; 8] = [
@@ -71,7 +71,7 @@ impl Grain {
     }
 }
 
-/// The whole number not above a number. (What `floor` does, which is a call where a machine has no instruction for it.)
+/// The floor of a number. (`floor` is a function call on machines without an instruction for it.)
 fn whole(x: f64) -> i64 {
     let cut = x as i64;
     cut - i64::from(x < cut as f64)

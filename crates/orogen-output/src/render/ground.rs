@@ -1,4 +1,4 @@
-//! What the ground looks like: rock, scree, grass, forest, snow and sand by slope, height and the way it faces.
+//! Appearance of the ground: rock, scree, grass, forest, snow and sand by slope, height and aspect.
 
 use rayon::prelude::*;
 
@@ -9,23 +9,23 @@ use orogen_io::palette::color::{Light, decode};
 use orogen_io::palette::palette::{NO_DATA, Palette};
 use orogen_io::palette::tint::Tint;
 
-/// How the ground is coloured.
+/// The colouring of the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Colors {
     /// Forest, grass, scree, rock and snow, by height, slope and aspect.
     #[default]
     Natural,
-    /// Beds of red and yellow rock, sand, and little that grows.
+    /// Beds of red and yellow rock, sand, and little vegetation.
     Desert,
-    /// The albedo and roughness of [`Style::cover`](super::scene::Style::cover), with grain between its samples.
+    /// The albedo and roughness of [`Style::cover`](super::scene::Style::cover), with grain between samples.
     Surfaces,
-    /// The tints of the relief map.
+    /// The tint of the relief map.
     Map,
-    /// One colour, like a model of clay.
+    /// A single colour, like a clay model.
     Clay,
 }
 
-/// How a ground is dressed.
+/// Settings of the ground's appearance.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Dress<'a> {
     pub colors: Colors,
@@ -34,35 +34,35 @@ pub(super) struct Dress<'a> {
     pub snow_line: Option<f64>,
 }
 
-/// What is known of the ground at a place.
+/// A point on the ground.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GroundPoint {
-    /// In cells.
+    /// Position in cells.
     pub x: f64,
     pub y: f64,
-    /// Metres.
+    /// Height in metres.
     pub height: f32,
-    /// How many metres the picture shows in a pixel here.
+    /// Width of a pixel here, in metres.
     pub footprint: f32,
 }
 
-/// What the ground is at a place.
+/// The appearance of the ground at a point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Look {
-    /// Share of red, green and blue that it throws back.
+    /// Albedo: red, green and blue.
     pub albedo: Light,
-    /// Its slope east and south, what is smaller than a cell included, in z per cell as drawn.
+    /// Slope east and south, including detail smaller than a cell, in z per cell as drawn.
     pub slope: [f32; 2],
 }
 
-/// The ground of a land, ready to be looked at.
+/// The ground of a land, prepared for shading.
 #[derive(Debug, Clone)]
 pub(super) struct GroundCover {
     colors: Colors,
     tint: Tint,
-    /// Of each sample: slope east and south (metres a metre), how hollow it is (-1 to 1), how much flows through (0 to 1).
+    /// Per sample: slope east and south (metres per metre), concavity (-1 to 1), flow (0 to 1).
     shape: Vec<[f32; 4]>,
-    /// Albedo and roughness of every sample; empty where surfaces are not shown.
+    /// Albedo and roughness of every sample; empty if surfaces are not shown.
     cover: Vec<[f32; 4]>,
     /// Whether each sample had no finite height; empty if all had one.
     missing: Vec<bool>,
@@ -76,20 +76,21 @@ pub(super) struct GroundCover {
     grain: Grain,
 }
 
-/// Land with less relief than this has no snow by itself.
+/// Land with less relief than this, in metres, has no snow by default.
 const SNOW_RELIEF: f64 = 1500.0;
-/// How far up its relief a land's snow begins, and its trees end.
+/// The shares of the relief at which snow starts and trees end.
 const SNOW_SHARE: f64 = 0.60;
 const TREE_SHARE: f64 = 0.40;
 
-/// A map's colors are scaled by this: paper is brighter than any ground, and in the sun it would be all white.
+/// Factor of a map's colors: paper is brighter than any ground, and would be white in the sun.
 const PAPER: f32 = 0.55;
 
-/// The same of ground without a height: a middle grey, darker than snow.
+/// Albedo of ground without a height: a middle grey, darker than snow.
 const MISSING: f32 = 0.3;
 
 impl GroundCover {
-    /// The ground of a land. The map's tint goes by `palette`; snow begins at `snow_line`, in metres, or where it suits the relief.
+    /// Prepares the ground of a land. The map's tint uses `palette`. Snow starts at `snow_line`, in metres, or at a
+    /// share of the relief.
     pub fn new(land: &Land, relief: &Relief, dress: &Dress) -> GroundCover {
         let Dress { colors, palette, cover, snow_line } = *dress;
         let [columns, rows] = relief.samples();
@@ -119,7 +120,7 @@ impl GroundCover {
         }
     }
 
-    /// The noises that everything is read from.
+    /// The noise that all detail is made of.
     pub fn grain(&self) -> &Grain {
         &self.grain
     }
@@ -128,7 +129,7 @@ impl GroundCover {
         self.between(&self.shape, x, y)
     }
 
-    /// Samples of four numbers, interpolated bilinearly.
+    /// Bilinear interpolation of samples of four numbers.
     fn between(&self, samples: &[[f32; 4]], x: f64, y: f64) -> [f32; 4] {
         let (x, y) = (x.clamp(0.0, (self.columns - 1) as f64), y.clamp(0.0, (self.rows - 1) as f64));
         let (i, j) = ((x as usize).min(self.columns - 2), (y as usize).min(self.rows - 2));
@@ -141,7 +142,7 @@ impl GroundCover {
         })
     }
 
-    /// A noise of a wavelength in metres, as far as a pixel lets it be seen.
+    /// Noise of a wavelength in metres, faded where a pixel is too wide to resolve it.
     fn noise(&self, site: &GroundPoint, wavelength: f32, kind: u32) -> f32 {
         let seen = seen(wavelength, site.footprint);
         if seen <= 0.0 {
@@ -151,14 +152,14 @@ impl GroundCover {
         self.grain.at(site.x * scale, site.y * scale, kind).value * seen
     }
 
-    /// Whether the sample nearest to a place has no finite height.
+    /// Whether the nearest sample has no finite height.
     fn is_missing(&self, site: &GroundPoint) -> bool {
         let nearest = |at: f64, count: usize| (at.max(0.0).round() as usize).min(count - 1);
         !self.missing.is_empty()
             && self.missing[nearest(site.y, self.rows) * self.columns + nearest(site.x, self.columns)]
     }
 
-    /// What the ground is at a place.
+    /// The appearance of the ground at a point.
     pub fn look(&self, site: &GroundPoint) -> Look {
         let shape = self.shape_at(site.x, site.y);
         if self.is_missing(site) {
@@ -179,7 +180,7 @@ impl GroundCover {
         Look { albedo, slope: slope.map(|part| part * self.exaggeration) }
     }
 
-    /// Adds what is smaller than a cell: octaves from two cells down to what a pixel shows, the smaller ones steeper.
+    /// Adds detail smaller than a cell: octaves from two cells down to the width of a pixel, the smaller ones steeper.
     fn roughen(&self, site: &GroundPoint, rough: f32, slope: &mut [f32; 2]) {
         let mut wavelength = 2.0 * self.cell;
         for octave in 0..8u8 {
@@ -189,7 +190,7 @@ impl GroundCover {
             }
             let scale = f64::from(self.cell / wavelength);
             let bump = self.grain.at(site.x * scale, site.y * scale, 8 + u32::from(octave));
-            // Folded at 0: creases and edges, where a plain noise is all round.
+            // The absolute value gives creases and edges, where plain noise is round.
             let fold = if bump.value < 0.0 { -seen } else { seen };
             for (slope, bump) in slope.iter_mut().zip(bump.slope) {
                 *slope += bump * rough * fold;
@@ -198,7 +199,7 @@ impl GroundCover {
         }
     }
 
-    /// The recipe's surfaces. Between samples their color varies as that of soil and rock does.
+    /// The recipe's surfaces. Between samples their color varies like that of soil and rock.
     fn covered(&self, site: &GroundPoint) -> (Light, f32) {
         let [red, green, blue, roughness] = self.between(&self.cover, site.x, site.y);
         let (small, fine) = (self.noise(site, 2.0 * self.cell, 2), self.noise(site, 0.5 * self.cell, 3));
@@ -206,22 +207,22 @@ impl GroundCover {
         ([red, green, blue].map(|part| (part * grain).clamp(0.0, 1.0)), 0.25 * roughness)
     }
 
-    /// Land in a temperate climate: its colour and how rough it is.
+    /// Land in a temperate climate: its colour and roughness.
     fn natural(&self, site: &GroundPoint, [east, south, hollow, flow]: [f32; 4]) -> (Light, f32) {
         let steep = (east * east + south * south).sqrt();
-        // 1 where it faces north.
+        // 1 on slopes that face north.
         let north = south / (steep + 0.2);
         let (wide, middle) = (self.noise(site, 1800.0, 0), self.noise(site, 420.0, 1));
         let (small, fine) = (self.noise(site, 95.0, 2), self.noise(site, 24.0, 3));
         let rough_edge = 0.6 * middle + 0.4 * small + 0.25 * fine;
 
-        // Rock, greyer and browner in places, with a hint of its beds.
+        // Rock: partly greyer and browner, with faint beds.
         let bed = self.strata(site.height + 25.0 * wide + 6.0 * middle, 70.0);
         let tone = 0.5 + 0.30 * wide + 0.25 * middle + 0.25 * small + 0.30 * fine + 0.22 * bed;
         let rock = mix([0.070, 0.065, 0.061], [0.215, 0.195, 0.170], tone.clamp(0.0, 1.0));
         let scree = mix([0.155, 0.142, 0.125], [0.245, 0.227, 0.200], 0.5 + 0.4 * small + 0.4 * fine);
 
-        // What grows: forest below its line, meadow above it, thinner towards the snow.
+        // Vegetation: forest below the tree line, meadow above it, sparser towards the snow.
         let over_trees = site.height - self.tree_line + 130.0 * wide + 90.0 * middle + 60.0 * north;
         let lush = mix([0.070, 0.088, 0.034], [0.120, 0.122, 0.050], 0.5 + 0.5 * wide + 0.4 * small);
         let tundra = mix([0.135, 0.125, 0.060], [0.185, 0.160, 0.095], 0.5 + 0.5 * middle + 0.4 * fine);
@@ -233,12 +234,12 @@ impl GroundCover {
         let mut color = mix(meadow, trees, wooded * 0.92);
         let mut rough = 0.10 + 0.16 * wooded;
 
-        // Valley floors are tilled and grazed: lighter, yellower.
+        // Valley floors are farmland: lighter and more yellow.
         let floor = step(0.10, 0.03, steep) * step(0.0, -400.0, over_trees) * (1.0 - 0.6 * wooded);
         color =
             mix(color, mix([0.15, 0.16, 0.055], [0.22, 0.19, 0.085], 0.5 + 0.5 * middle + 0.5 * small), 0.6 * floor);
 
-        // Where it is too steep for soil, or too high.
+        // Too steep for soil, or too high.
         let high =
             step(0.0, 700.0, site.height - 0.5 * (self.snow_line.min(1e6) + self.tree_line.min(1e6)) + 200.0 * middle);
         let bare = step(0.62, 0.92, steep + 0.20 * rough_edge - 0.10 * hollow + 0.34 * high);
@@ -247,7 +248,7 @@ impl GroundCover {
         color = mix(color, rock, bare);
         rough += 0.10 * loose + 0.22 * bare;
 
-        // Gravel where rivers run, sand where the sea does.
+        // Gravel along rivers, sand along the sea.
         let gravel = step(0.72, 0.92, flow) * step(0.20, 0.05, steep) * 0.5;
         color = mix(color, [0.26, 0.245, 0.22], gravel);
         if let Some(sea) = self.sea {
@@ -256,7 +257,7 @@ impl GroundCover {
             rough *= 1.0 - 0.8 * shore;
         }
 
-        // Snow: lower in the shade and in hollows, none where it slides off.
+        // Snow: lower in shade and in hollows, none on steep slopes.
         let above = site.height - self.snow_line
             + 190.0 * wide
             + 130.0 * middle
@@ -270,7 +271,7 @@ impl GroundCover {
         (color, rough)
     }
 
-    /// Land where hardly anything grows.
+    /// Land with little vegetation.
     fn desert(&self, site: &GroundPoint, [east, south, hollow, flow]: [f32; 4]) -> (Light, f32) {
         const BEDS: [Light; 6] = [
             [0.27, 0.105, 0.055],
@@ -283,7 +284,7 @@ impl GroundCover {
         let steep = (east * east + south * south).sqrt();
         let (wide, middle) = (self.noise(site, 1500.0, 0), self.noise(site, 300.0, 1));
         let (small, fine) = (self.noise(site, 70.0, 2), self.noise(site, 18.0, 3));
-        // Beds of some metres in beds of some tens.
+        // Beds of some metres within beds of some tens of metres.
         let height = site.height + 14.0 * wide + 3.0 * middle;
         let at = f64::from(height) / 42.0;
         let bed = self.grain.at(at, 0.37, 4).value * 1.6 + self.grain.at(at * 3.7, 5.1, 5).value * 0.8;
@@ -301,12 +302,12 @@ impl GroundCover {
         (color, 0.07 + 0.26 * bare)
     }
 
-    /// Beds of rock: a number from -1 to 1 by height.
+    /// Beds of rock: a value from -1 to 1 by height.
     fn strata(&self, height: f32, thickness: f32) -> f32 {
         self.grain.at(f64::from(height / thickness), 0.53, 6).value
     }
 
-    /// The colour of a block's side at a depth (metres) below the ground.
+    /// The colour of a block's side at a depth below the ground, in metres.
     pub fn section(&self, along: f64, height: f32, depth: f32, thickness: f32) -> Light {
         let scale = f64::from(self.cell) / f64::from(thickness);
         let wave = self.grain.at(along * scale * 0.25, 0.7, 7).value;
@@ -323,12 +324,12 @@ impl GroundCover {
     }
 }
 
-/// How far a wavelength is to be seen when a pixel is so wide: all of it from four pixels up, nothing below one and a half.
+/// The visibility of a wavelength for a pixel of this width: full from four pixels, zero below one and a half.
 fn seen(wavelength: f32, footprint: f32) -> f32 {
     step(1.5, 4.0, wavelength / footprint)
 }
 
-/// From 0 at `from` smoothly to 1 at `to`; `from` may be the larger. Towards infinity it does not move.
+/// Smoothstep from 0 at `from` to 1 at `to`; `from` may be the larger. Constant towards infinity.
 fn step(from: f32, to: f32, x: f32) -> f32 {
     let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
     if t.is_nan() { 0.0 } else { t * t * (3.0 - 2.0 * t) }
@@ -339,7 +340,7 @@ fn mix(from: Light, to: Light, share: f32) -> Light {
     std::array::from_fn(|c| from[c] + (to[c] - from[c]) * share)
 }
 
-/// Which samples have no finite height; empty if all have one.
+/// Whether each sample has no finite height; empty if all have one.
 fn missing(heights: &Grid) -> Vec<bool> {
     match heights.data().par_iter().all(|height| height.is_finite()) {
         true => Vec::new(),
@@ -347,7 +348,7 @@ fn missing(heights: &Grid) -> Vec<bool> {
     }
 }
 
-/// Albedo and roughness of every sample; clay where there are none.
+/// Albedo and roughness of every sample; clay where a value is missing.
 fn covered(cover: Option<[&Grid; 4]>, samples: usize) -> Vec<[f32; 4]> {
     match cover {
         Some(layers) => (0..samples).map(|at| layers.map(|layer| layer.data()[at])).collect(),
@@ -355,7 +356,7 @@ fn covered(cover: Option<[&Grid; 4]>, samples: usize) -> Vec<[f32; 4]> {
     }
 }
 
-/// Slope, hollowness and flow of every sample.
+/// Slope, concavity and flow of every sample.
 fn shape(land: &Land, relief: &Relief) -> Vec<[f32; 4]> {
     let [columns, rows] = relief.samples();
     let (bed, scale) = (relief.bed(), 1.0 / relief.exaggeration() as f32);
@@ -370,13 +371,13 @@ fn shape(land: &Land, relief: &Relief) -> Vec<[f32; 4]> {
             let z = |i: usize, j: usize| bed[j * columns + i] * scale;
             let dx = (z(east, j) - z(west, j)) / (east - west) as f32;
             let dy = (z(i, south) - z(i, north)) / (south - north) as f32;
-            // Over three cells each way: single samples would make spots.
+            // Over three cells along each axis: single samples would give spots.
             let (w, e) = (i.saturating_sub(3), (i + 3).min(columns - 1));
             let (n, s) = (j.saturating_sub(3), (j + 3).min(rows - 1));
             let around = (z(w, j) + z(e, j) + z(i, n) + z(i, s)) * 0.25 - z(i, j);
             let flow = flows.map_or(0.0, |flows| {
                 let cells = (flows[at] / area).max(1.0);
-                // 1 cell is 0, a hundred thousand are 1.
+                // 1 cell gives 0, a hundred thousand cells give 1.
                 if cells.is_finite() { (libm::log2f(cells) / 16.6).min(1.0) } else { 0.0 }
             });
             [dx, dy, (around * 0.8).clamp(-1.0, 1.0), flow]

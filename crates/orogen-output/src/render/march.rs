@@ -1,72 +1,72 @@
-//! Rays through the land.
+//! Intersection of rays with the land.
 //!
-//! A ray walks over the patches from above: as long as it stays over the highest point of a node of the pyramid it passes the whole
-//! node, and it looks into the four below only where it does not (A. Tevs, I. Ihrke, H.-P. Seidel, "Maximum mipmaps for fast,
-//! accurate, and scalable dynamic height field rendering", 2008). In a patch the ground is bilinear, so the ray meets it where a
-//! quadratic has its first root: exactly, whatever the distance. Which patch comes next is reckoned in whole numbers, so no ray
-//! slips between two of them.
+//! A ray traverses the patches from above. Where it stays above the highest point of a node of the pyramid it skips the
+//! whole node; otherwise it descends into the four nodes below (A. Tevs, I. Ihrke, H.-P. Seidel, "Maximum mipmaps for
+//! fast, accurate, and scalable dynamic height field rendering", 2008). Within a patch the ground is bilinear, so the
+//! intersection is the first root of a quadratic: exact at any distance. The next patch is computed in integers, so
+//! that no ray passes between two patches.
 
 use super::relief::{DRY, Relief};
 use super::vector::Vector;
 
-/// A place to start from, and a unit vector to go along.
+/// A ray: origin and unit direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray {
-    /// Where it starts, in cells.
+    /// Origin, in cells.
     pub from: Vector,
-    /// Where it goes, of length 1.
+    /// Direction, of length 1.
     pub along: Vector,
 }
 
 impl Ray {
-    /// The place at a distance.
+    /// The point at a distance, in cells.
     pub fn at(&self, distance: f64) -> Vector {
         self.from + self.along * distance
     }
 }
 
-/// What a ray meets.
+/// The surface that a ray meets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Surface {
     /// The ground.
     GroundCover,
-    /// Water of a sea or a lake.
+    /// Water of the sea or a lake.
     Water,
-    /// The side of the block that the land is cut out as, below the ground's edge; its outward normal points west or east, or
-    /// north or south.
+    /// A side of the block, below the edge of the ground; its outward normal points west, east, north or south.
     Side,
-    /// The same below the water's edge and above the ground's.
+    /// A side of the block, below the edge of the water and above the ground.
     WaterSide,
 }
 
-/// Where a ray meets something.
+/// An intersection of a ray with a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
-    /// How far from the ray's start, in cells.
+    /// Distance from the ray's origin, in cells.
     pub distance: f64,
-    /// What it is.
+    /// The surface.
     pub surface: Surface,
-    /// The unit normal of a side; straight up otherwise: who shades the ground knows its slope better.
+    /// The unit normal of a side; straight up otherwise, because shading computes the slope of the ground more
+    /// precisely.
     pub normal: Vector,
 }
 
-/// A walk over the nodes of the pyramid along a line.
+/// A traversal of the nodes of the pyramid along a line.
 struct Walk {
     level: usize,
-    /// The patch: of a node, any of its patches.
+    /// The patch; for a higher node, any of its patches.
     i: usize,
     j: usize,
-    /// Where the line enters the node.
+    /// The distance at which the line enters the node.
     enter: f64,
     from: [f64; 2],
     along: [f64; 2],
-    /// 1 / along; infinite where that is 0.
+    /// 1 / direction; infinite where that is 0.
     inverse: [f64; 2],
     last: [usize; 2],
 }
 
 impl Walk {
-    /// Begins at a distance along a line, in the highest node.
+    /// Starts at a distance along a line, in the highest node.
     fn new(relief: &Relief, ray: &Ray, enter: f64) -> Walk {
         let from = [ray.from.x, ray.from.y];
         let along = [ray.along.x, ray.along.y];
@@ -79,7 +79,7 @@ impl Walk {
         Walk { level, i: start[0], j: start[1], enter, from, along, inverse: along.map(|d| 1.0 / d), last }
     }
 
-    /// Where the line leaves the node, and along which axis.
+    /// The distance at which the line leaves the node, and the axis.
     fn exit(&self) -> (f64, usize) {
         let side = |axis: usize, index: usize| {
             let node = index >> self.level;
@@ -94,7 +94,7 @@ impl Walk {
         if x <= y { (x.max(self.enter), 0) } else { (y.max(self.enter), 1) }
     }
 
-    /// Goes on to the next node; false if that is beyond the land.
+    /// Moves to the next node; false if that is outside the land.
     fn step(&mut self, exit: f64, axis: usize) -> bool {
         let before = [self.i, self.j].map(|index| index >> self.level);
         let crossed = match self.along[axis] > 0.0 {
@@ -104,7 +104,7 @@ impl Walk {
         let Some(crossed) = crossed else {
             return false;
         };
-        // Along the other axis the line is still in the same node; where in it, rounding may not say beyond its ends.
+        // On the other axis the line is still in the same node; rounding must not put it beyond the node's ends.
         let other = 1 - axis;
         let (first, end) = (before[other] << self.level, ((before[other] + 1) << self.level) - 1);
         let at = (self.from[other] + self.along[other] * exit).max(0.0) as usize;
@@ -119,7 +119,7 @@ impl Walk {
 }
 
 impl Relief {
-    /// The first thing that a ray meets no nearer than `nearest` cells.
+    /// The first intersection of a ray, at least `nearest` cells from its origin.
     pub fn hit(&self, ray: &Ray, nearest: f64) -> Option<Hit> {
         let (enter, leave, face) = self.clip(ray, nearest)?;
         if let Some(normal) = face {
@@ -149,8 +149,8 @@ impl Relief {
         }
     }
 
-    /// From where to where a ray is over the land and not above all of it, and the outward normal of the side it enters through,
-    /// if it does.
+    /// The range of distances in which a ray is over the land and below its highest point, and the outward normal of
+    /// the side that it enters through, if any.
     fn clip(&self, ray: &Ray, nearest: f64) -> Option<(f64, f64, Option<Vector>)> {
         let (mut enter, mut leave, mut face) = (nearest, f64::INFINITY, None);
         let reach = self.reach();
@@ -190,7 +190,7 @@ impl Relief {
         (enter <= leave).then_some((enter, leave, face))
     }
 
-    /// What of a side is at a place on it, if it is not in the open.
+    /// The part of a side at a point on it; `None` above the ground and the water.
     fn side(&self, place: Vector) -> Option<Surface> {
         let ground = self.ground(place.x, place.y);
         if place.z < ground {
@@ -199,14 +199,14 @@ impl Relief {
         (place.z < self.top(place.x, place.y)).then_some(Surface::WaterSide)
     }
 
-    /// Where a ray meets the ground or the water of a patch between two distances.
+    /// The first intersection of a ray with the ground or the water of a patch, between two distances.
     fn meets(&self, ray: &Ray, [i, j]: [usize; 2], enter: f64, exit: f64) -> Option<(f64, Surface)> {
         let [nw, ne, sw, se] = self.corners(i, j).map(f64::from);
         let (east, south, twist) = (ne - nw, sw - nw, nw - ne - sw + se);
         let start = ray.at(enter);
         let (u, v) = (start.x - i as f64, start.y - j as f64);
         let Vector { x: du, y: dv, z: dz } = ray.along;
-        // How high above the ground, after s more: above + fall s + bend s^2.
+        // Height above the ground after a further distance s: above + fall s + bend s^2.
         let above = start.z - (nw + east * u + south * v + twist * u * v);
         let fall = dz - (east * du + south * dv + twist * (u * dv + v * du));
         let bend = -twist * du * dv;
@@ -221,8 +221,8 @@ impl Relief {
         ground.map(|s| (enter + s, Surface::GroundCover))
     }
 
-    /// The steepest rise (z per cell of way) to any ground along the level direction (dx, dy) of length 1, seen from a place and no
-    /// nearer than `nearest`, if it is more than `at_least`; what is more than `enough` is not asked for more exactly.
+    /// The steepest slope (z per cell of distance) from a point to any ground in the horizontal unit direction (dx,
+    /// dy), at least `nearest` cells away, if it is more than `at_least`. Values above `enough` are not refined.
     pub fn steepest(&self, place: Vector, [dx, dy]: [f64; 2], nearest: f64, at_least: f64, enough: f64) -> f64 {
         let ray = Ray { from: Vector { z: f64::NEG_INFINITY, ..place }, along: Vector::new(dx, dy, 0.0) };
         let mut most = at_least;
@@ -231,11 +231,11 @@ impl Relief {
         };
         let highest = self.highest();
         let mut walk = Walk::new(self, &ray, enter);
-        // Beginning in the highest node would only mean to go down.
+        // Starting in the highest node would only add descents.
         walk.level = walk.level.min(2);
         loop {
             let (exit, axis) = walk.exit();
-            // Over this way, the line that rises as steeply as the most so far is nowhere lower than this.
+            // Within this range, the line with the steepest slope so far is nowhere lower than this.
             let line = place.z + most * if most > 0.0 { walk.enter } else { exit };
             if most > 0.0 && line > highest {
                 return most;
@@ -257,13 +257,13 @@ impl Relief {
         }
     }
 
-    /// The steepest rise to the ground of a patch.
+    /// The steepest slope to the ground of a patch.
     fn rise_over(&self, place: Vector, walk: &Walk, exit: f64) -> f64 {
         let [nw, ne, sw, se] = self.corners(walk.i, walk.j).map(f64::from);
         let (east, south, twist) = (ne - nw, sw - nw, nw - ne - sw + se);
         let (u, v) = (place.x - walk.i as f64, place.y - walk.j as f64);
         let [du, dv] = walk.along;
-        // The ground at distance t: start + climb t + bend t^2, t from the place itself.
+        // The ground at distance t from the point: start + climb t + bend t^2.
         let start = nw + east * u + south * v + twist * u * v - place.z;
         let climb = east * du + south * dv + twist * (u * dv + v * du);
         let bend = twist * du * dv;
@@ -280,7 +280,7 @@ impl Relief {
     }
 }
 
-/// The first s from 0 to `end` where above + fall s + bend s^2 is not above 0.
+/// The first s from 0 to `end` where above + fall s + bend s^2 is not positive.
 fn first_root(above: f64, fall: f64, bend: f64, end: f64) -> Option<f64> {
     if above <= 0.0 {
         return Some(0.0);
@@ -290,7 +290,7 @@ fn first_root(above: f64, fall: f64, bend: f64, end: f64) -> Option<f64> {
     if square < 0.0 {
         return None;
     }
-    // Of the two forms of each root, the one that subtracts nothing from its like.
+    // Of the two forms of each root, the one without cancellation.
     let q = -0.5 * (fall + if fall < 0.0 { -square.sqrt() } else { square.sqrt() });
     let (one, other) = (above / q, q / bend);
     match (inside(one), inside(other)) {

@@ -1,8 +1,8 @@
-//! Pictures of the land as it would be seen: perspective, sun and shadow, sky, haze and water, on the CPU alone.
+//! Rendered pictures of the land: perspective, sun and shadow, sky, haze and water, on the CPU.
 //!
-//! A [`Scene`](scene::Scene) is the land with its light, prepared once; it is painted from any number of
-//! [`Camera`](camera::Camera)s. Nothing in it is left to chance: every pixel depends on its place in the picture alone, so a
-//! picture has the same bytes on any machine and any number of threads.
+//! A [`Scene`](scene::Scene) is the land with its light, prepared once. Any number of [`Camera`](camera::Camera)s can
+//! render it. Sampling is deterministic: a pixel depends only on its position in the picture, so a picture has the same
+//! bytes on any machine and any number of threads.
 
 pub mod camera;
 mod grain;

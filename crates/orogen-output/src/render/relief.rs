@@ -1,4 +1,4 @@
-//! The land as rays meet it: bilinear patches between the samples, water over some of them, and a pyramid of what is highest where.
+//! The land as rays intersect it: bilinear patches between samples, water over some of them, and a pyramid of maxima.
 
 use rayon::prelude::*;
 
@@ -6,29 +6,28 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Grid;
 use orogen_io::dem::fill::fill;
 
-/// What a picture is made of.
+/// The input of a picture.
 #[derive(Debug, Clone, Copy)]
 pub struct Land<'a> {
-    /// Heights in metres. Samples that are not finite are made up from those around.
+    /// Heights in metres. Samples that are not finite are interpolated.
     pub heights: &'a Grid,
-    /// Where the water of lakes stands, in metres, and the ground where there is none; over the same window.
+    /// Water level of lakes, in metres, and the ground elsewhere; over the same window.
     pub surface: Option<&'a Grid>,
-    /// How much drains through each sample, in square metres; over the same window.
+    /// Drainage area of each sample, in m^2; over the same window.
     pub flow: Option<&'a Grid>,
-    /// Height of the sea's surface in metres, if there is a sea: it covers what is not above it.
+    /// Sea level in metres, if there is a sea; it covers ground at or below it.
     pub sea_level: Option<f64>,
 }
 
-/// The land, measured in cells in all three directions, so that nothing is stretched: x east and y south from the first sample,
-/// z up from the lowest one.
+/// The land in units of cells along all three axes: x east and y south from the first sample, z up from the lowest one.
 #[derive(Debug, Clone)]
 pub struct Relief {
     columns: usize,
     rows: usize,
     bed: Vec<f32>,
-    /// The level of the water of each patch, minus infinity where there is none; empty if there is no water anywhere.
+    /// The water level of each patch, negative infinity where there is none; empty if there is no water.
     water: Vec<f32>,
-    /// The highest of each patch, of each 2 x 2 patches, and so on up to one for all.
+    /// The maxima of each patch, of each 2 x 2 patches, and so on up to a single one.
     tops: Vec<Tops>,
     datum: f64,
     cell: f64,
@@ -36,7 +35,7 @@ pub struct Relief {
     sea: Option<f64>,
 }
 
-/// One level of the pyramid.
+/// A level of the pyramid.
 #[derive(Debug, Clone)]
 pub(super) struct Tops {
     columns: usize,
@@ -49,17 +48,17 @@ impl Tops {
     }
 }
 
-/// Where no water stands.
+/// The water level of a patch without water.
 pub(super) const DRY: f32 = f32::NEG_INFINITY;
 
-/// Water less deep than this, in metres, is none: solvers leave such films by rounding.
+/// Water shallower than this, in metres, is ignored: solvers leave such films by rounding.
 const FILM: f32 = 1e-3;
 
 impl Relief {
-    /// Prepares the land, its heights counted `exaggeration` times.
+    /// Prepares the land with heights multiplied by `exaggeration`.
     ///
     /// # Errors
-    /// If there are fewer than 2 x 2 samples, none that is finite, or layers do not lie over the same window.
+    /// If there are fewer than 2 x 2 samples or no finite ones, or if layers do not have the same window.
     pub fn new(land: &Land, exaggeration: f64) -> Result<Relief> {
         let window = *land.heights.window();
         let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
@@ -94,7 +93,7 @@ impl Relief {
         Ok(relief)
     }
 
-    /// Finds the water of each patch: the highest of what stands at its corners.
+    /// Computes the water level of each patch: the highest of its corners.
     fn flood(&mut self, heights: &[f32], land: &Land) {
         let sea = land.sea_level.map(|level| level as f32);
         let surfaces = land.surface.map(Grid::data);
@@ -161,47 +160,47 @@ impl Relief {
         self.tops = tops;
     }
 
-    /// Samples a row, and rows.
+    /// Number of columns and rows.
     pub fn samples(&self) -> [usize; 2] {
         [self.columns, self.rows]
     }
 
-    /// How far the land reaches east and south of its first sample, in cells.
+    /// Extent of the land east and south of its first sample, in cells.
     pub fn reach(&self) -> [f64; 2] {
         [(self.columns - 1) as f64, (self.rows - 1) as f64]
     }
 
-    /// Metres in a cell.
+    /// Metres per cell.
     pub fn cell(&self) -> f64 {
         self.cell
     }
 
-    /// How many times heights count.
+    /// The factor of heights.
     pub fn exaggeration(&self) -> f64 {
         self.exaggeration
     }
 
-    /// z of a height in metres.
+    /// The z of a height in metres.
     pub fn level_of(&self, height: f64) -> f64 {
         (height - self.datum) * self.exaggeration / self.cell
     }
 
-    /// The height in metres at z.
+    /// The height in metres of z.
     pub fn height_of(&self, z: f64) -> f64 {
         z * self.cell / self.exaggeration + self.datum
     }
 
-    /// z of the sea's surface, if there is a sea.
+    /// The z of the sea level, if there is a sea.
     pub fn sea(&self) -> Option<f64> {
         self.sea
     }
 
-    /// z of the highest ground or water.
+    /// The z of the highest ground or water.
     pub fn highest(&self) -> f64 {
         self.tops.last().map_or(0.0, |tops| f64::from(tops.at(0, 0)))
     }
 
-    /// The ground's samples.
+    /// The z of all ground samples.
     pub(super) fn bed(&self) -> &[f32] {
         &self.bed
     }
@@ -211,19 +210,19 @@ impl Relief {
         &self.tops
     }
 
-    /// The ground at the corners of a patch: north-west, north-east, south-west, south-east.
+    /// The z of the ground at the corners of a patch: north-west, north-east, south-west, south-east.
     pub(super) fn corners(&self, i: usize, j: usize) -> [f32; 4] {
         let at = j * self.columns + i;
         let (north, south) = (&self.bed[at..at + 2], &self.bed[at + self.columns..at + self.columns + 2]);
         [north[0], north[1], south[0], south[1]]
     }
 
-    /// z of the water of a patch, [`DRY`] where there is none.
+    /// The z of the water of a patch, [`DRY`] where there is none.
     pub(super) fn water_of(&self, i: usize, j: usize) -> f32 {
         if self.water.is_empty() { DRY } else { self.water[j * (self.columns - 1) + i] }
     }
 
-    /// The patch that a place lies in or nearest to, and where in it, from 0 to 1 each way.
+    /// The patch that contains or is nearest to a point, and the position in it, from 0 to 1 along each axis.
     pub(super) fn patch(&self, x: f64, y: f64) -> ([usize; 2], [f64; 2]) {
         let [east, south] = self.reach();
         let (x, y) = (x.clamp(0.0, east), y.clamp(0.0, south));
@@ -231,7 +230,7 @@ impl Relief {
         ([i, j], [x - i as f64, y - j as f64])
     }
 
-    /// z of the ground at a place; beyond the edge, that of the nearest place on it.
+    /// The z of the ground at a point; outside, that of the nearest point of the edge.
     pub fn ground(&self, x: f64, y: f64) -> f64 {
         let ([i, j], [u, v]) = self.patch(x, y);
         let [nw, ne, sw, se] = self.corners(i, j).map(f64::from);
@@ -239,7 +238,7 @@ impl Relief {
         north + (south - north) * v
     }
 
-    /// z of the ground, or of the water if that is higher.
+    /// The z of the ground or the water, whichever is higher.
     pub fn top(&self, x: f64, y: f64) -> f64 {
         let ([i, j], _) = self.patch(x, y);
         self.ground(x, y).max(f64::from(self.water_of(i, j)))

@@ -1,4 +1,4 @@
-//! The land with its light, ready to be painted.
+//! The land with its light, prepared for rendering.
 
 use rayon::prelude::*;
 
@@ -18,35 +18,36 @@ use orogen_grid::progress::Progress;
 use orogen_io::palette::color::{Encoder, Light};
 use orogen_io::palette::palette::Palette;
 
-/// What is shown where the land ends.
+/// The surroundings of the land in the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Edge {
-    /// The land as a block, cut out and set on a table.
+    /// The land as a cut block on a table.
     Cut,
-    /// The open sea, if most of the edge lies in it; else the land mirrored at its edges on and on, until the haze hides it.
+    /// The open sea, if most of the edge is in the sea; otherwise the land repeats mirrored at its edges and fades into
+    /// haze.
     Haze,
 }
 
-/// How a scene looks.
+/// The style of a scene.
 #[derive(Debug, Clone, Copy)]
 pub struct Style<'a> {
-    /// How many times heights count.
+    /// The factor of heights.
     pub exaggeration: f64,
     /// The sun: degrees clockwise from north, and degrees above the horizon.
     pub sun: [f64; 2],
-    /// How thick the haze is: 0 is none, 1 as on a clear day, for a land of whatever size.
+    /// Density of the haze: 0 is none, 1 is a clear day, independent of the size of the land.
     pub haze: f64,
-    /// What is shown where the land ends; by itself the sea if most of the edge lies in it, else a cut.
+    /// The surroundings; by default the sea if most of the edge is in it, otherwise a cut block.
     pub edge: Option<Edge>,
-    /// How the ground is coloured.
+    /// The colouring of the ground.
     pub colors: Colors,
-    /// The palette of [`Colors::Map`]; by itself the relief map's.
+    /// The palette of [`Colors::Map`]; by default that of the relief map.
     pub palette: Option<&'a Palette>,
-    /// Albedo (red, green and blue as linear light) and roughness of [`Colors::Surfaces`], over the land's window.
+    /// Albedo (red, green and blue in linear light) and roughness for [`Colors::Surfaces`], over the land's window.
     pub cover: Option<[&'a Grid; 4]>,
-    /// Where snow begins, in metres; by itself it suits the relief.
+    /// Height at which snow starts, in metres; by default chosen by the relief.
     pub snow_line: Option<f64>,
-    /// Light is gathered in so many places of each pixel.
+    /// Number of samples per pixel.
     pub samples: u32,
 }
 
@@ -66,21 +67,21 @@ impl Default for Style<'_> {
     }
 }
 
-/// What lies around the land.
+/// The surroundings of the land, with positions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Around {
     /// A table at this z.
     Table(f64),
     /// The sea at this z.
     Sea(f64),
-    /// The land again, mirrored.
+    /// The mirrored land.
     Mirrors,
 }
 
-/// How many times the land is mirrored at most along a ray.
+/// Maximum number of mirrored copies along a ray.
 const MIRRORS: usize = 12;
 
-/// The haze of 1 takes so much of the optical depth of green light over the land's diagonal: of a block, and of land that goes on.
+/// Optical depth of green light over the land's diagonal at a haze of 1: for a block, and for land that continues.
 const CLEAR: f64 = 0.30;
 const CLEAR_AROUND: f64 = 1.0;
 
@@ -94,34 +95,34 @@ pub struct Scene {
     pub(super) skylight: Skylight,
     pub(super) haze: Haze,
     around: Around,
-    /// z of the lowest that is drawn.
+    /// The z of the lowest drawn point.
     pub(super) floor: f64,
     samples: u32,
-    /// The level direction to the sun, and the tangents of the elevations of its lower and upper rim.
+    /// The horizontal direction to the sun, and the tangents of the elevations of its lower and upper limb.
     pub(super) sunwards: [f64; 2],
     pub(super) rims: [f64; 2],
-    /// What the sun and what the whole sky give to level ground.
+    /// The light of the sun and of the whole sky on level ground.
     pub(super) level_sun: Light,
     pub(super) level_sky: Light,
-    /// From light to what film is shown.
+    /// Factor from light to exposure.
     exposure: Light,
     encoder: Encoder,
 }
 
-/// What a ray has met: in the land's own coordinates, mirrored or not.
+/// An intersection of a ray, in the land's own coordinates, mirrored or not.
 pub(super) struct Met {
-    /// All the way from the ray's start.
+    /// The distance from the ray's origin.
     pub distance: f64,
     pub place: Vector,
-    /// The direction it came along, mirrored as the land is.
+    /// The direction of the ray, mirrored like the land.
     pub along: Vector,
-    /// 1, or -1 where the land is mirrored: east and south.
+    /// East and south: 1, or -1 where the land is mirrored.
     pub flip: [f64; 2],
     pub surface: Seen,
     pub normal: Vector,
 }
 
-/// What can be seen.
+/// What a ray can meet.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Seen {
     Land(Surface),
@@ -132,7 +133,7 @@ impl Scene {
     /// Prepares a scene.
     ///
     /// # Errors
-    /// As [`Relief::new`], or if the work is cancelled.
+    /// The errors of [`Relief::new`], or cancellation.
     pub fn new(land: &Land, style: &Style, progress: &Progress) -> Result<Scene> {
         let [raising, lighting, painting] = progress.parts([1.0, 8.0, 2.0]);
         let relief = Relief::new(land, style.exaggeration)?;
@@ -167,7 +168,7 @@ impl Scene {
         let haze = Haze::new(style.haze * clear, across, thins);
         let sun = sky.sun();
         let (sin, cos) = libm::sincos(azimuth.to_radians());
-        // Straight above, its two rims would be one.
+        // At the zenith, the two limbs would coincide.
         let rims = [-SUN_RADIUS, SUN_RADIUS].map(|off| libm::tan((elevation.min(88.0) + off).to_radians()));
         let level_sun = sky.sunlight().map(|c| c * sun.z.max(0.0) as f32);
         let level_sky = sky.dome();
@@ -196,7 +197,7 @@ impl Scene {
         &self.relief
     }
 
-    /// What a picture of all of it has to show: the block, or the land that is not under the sea.
+    /// The box that a picture of the whole scene must show: the block, or the land above the sea.
     pub fn frame(&self) -> Frame {
         let ([east, south], highest) = (self.relief.reach(), self.relief.highest());
         let floor = if let Around::Sea(sea) = self.around { sea } else { self.floor };
@@ -215,7 +216,7 @@ impl Scene {
         if frame.low.x < frame.high.x && frame.low.y < frame.high.y { frame } else { whole }
     }
 
-    /// Paints some rows of a picture of `size` pixels as sRGB bytes, three a pixel, on as many threads as there are.
+    /// Renders some rows of a picture of `size` pixels as sRGB bytes, three per pixel, on all threads of the pool.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -248,7 +249,7 @@ impl Scene {
         })
     }
 
-    /// The light that comes against a ray.
+    /// The light along a ray.
     fn light(&self, ray: &Ray, pixel: f64) -> Light {
         match self.meet(ray, 0.0) {
             Some(met) => {
@@ -259,7 +260,7 @@ impl Scene {
         }
     }
 
-    /// What a ray meets.
+    /// The first intersection of a ray.
     fn meet(&self, ray: &Ray, nearest: f64) -> Option<Met> {
         let met = |hit: Hit| Met {
             distance: hit.distance,
@@ -290,7 +291,7 @@ impl Scene {
             Around::Sea(z) => {
                 let sea = level(z, Seen::Land(Surface::Water));
                 match (self.relief.hit(ray, nearest).map(met), sea) {
-                    // The bed beyond the land's edge is not there: what would be met below the sea is the sea.
+                    // The bed does not exist beyond the land's edge: below the sea surface the sea counts.
                     (Some(hit), Some(sea)) if sea.distance < hit.distance && !self.inside(sea.place) => Some(sea),
                     (hit, sea) => hit.or(sea),
                 }
@@ -303,7 +304,7 @@ impl Scene {
         (0.0..=east).contains(&place.x) && (0.0..=south).contains(&place.y)
     }
 
-    /// What a ray meets in the land and its mirrors: it goes on in the same land, itself mirrored.
+    /// The first intersection of a ray with the land and its mirrored copies: at an edge the ray is mirrored instead.
     fn meet_mirrored(&self, ray: &Ray, nearest: f64) -> Option<Met> {
         let reach = self.relief.reach();
         let ([x, y], mut flip) = ([0, 1].map(|axis| [ray.from.x, ray.from.y][axis]), [1.0; 2]);
@@ -359,22 +360,23 @@ fn wet_edge(relief: &Relief) -> f64 {
     (across + down) as f64 / (2 * (columns + rows)) as f64
 }
 
-/// What light is multiplied with before it falls on film: as a photographer would expose for sunlit ground that is not quite level, the colour of the light
-/// in part made up for, as eyes do.
+/// The exposure: factors that light is multiplied by before tone mapping. Sunlit, slightly inclined ground is exposed
+/// correctly, and the colour of the light is partly compensated (white balance).
 fn exposure(sky: &Sky, level_sky: Light) -> Light {
     let facing = (sky.sun().z.max(0.0) as f32).max(0.45);
     let light: Light = std::array::from_fn(|c| sky.sunlight()[c] * facing + level_sky[c]);
     let bright = 0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2];
-    // At night nobody waits until it looks like day.
+    // Nights stay dark.
     let scale = BRIGHT * std::f32::consts::PI / bright.max(0.004);
     light.map(|c| scale * libm::powf(bright.max(1e-6) / c.max(1e-6), BALANCE).clamp(0.5, 2.0))
 }
 
-/// How bright a white sheet in the sun is for the film, and how much of the light's colour is made up for.
+/// The exposed brightness of a white sheet in the sun, and the share of the white balance.
 const BRIGHT: f32 = 2.1;
 const BALANCE: f32 = 0.55;
 
-/// The k-th place in a pixel: as many as are wanted lie evenly (M. Roberts' sequence of the plastic number, 2018).
+/// The k-th sample position in a pixel: evenly distributed for any number of samples (M. Roberts' sequence of the
+/// plastic number, 2018).
 fn spot(k: u32) -> [f64; 2] {
     let k = f64::from(k);
     [(0.5 + k * 0.754_877_666_246_693) % 1.0, (0.5 + k * 0.569_840_290_998_053_3) % 1.0]

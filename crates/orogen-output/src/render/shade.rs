@@ -1,4 +1,4 @@
-//! What light comes back from what a ray has met.
+//! Light from the surfaces that rays meet.
 
 use super::ground::GroundPoint;
 use super::march::{Ray, Surface};
@@ -7,20 +7,20 @@ use super::vector::Vector;
 use super::water::{self, Kind};
 use orogen_io::palette::color::Light;
 
-/// What the ground throws back on the average: what lights those parts of it that see more ground than sky.
+/// Mean albedo of the ground, which lights ground that sees little sky.
 const MEAN_ALBEDO: f32 = 0.16;
 
-/// The light table that a block is set on.
+/// Albedo of the table below a block.
 const TABLE: Light = [0.62, 0.61, 0.59];
 
-/// Water no further from the sea's level than so many cells is the sea.
+/// Water within this distance of the sea level, in cells, belongs to the sea.
 const LEVEL: f64 = 1e-4;
 
-/// Slopes of water within a pixel vary by so much.
+/// Variation of the water's slopes within a pixel.
 const ROUGH_WATER: f32 = 0.09;
 
 impl Scene {
-    /// The light after its way through the haze.
+    /// The light after passing through the haze.
     pub(super) fn through_haze(&self, ray: &Ray, met: &Met, light: Light) -> Light {
         let left = self.haze.left(ray.from.z, met.place.z, met.distance);
         let level = Vector { z: ray.along.z.max(0.0) + 0.015, ..ray.along }.unit();
@@ -28,7 +28,7 @@ impl Scene {
         std::array::from_fn(|c| light[c] * left[c] + air[c] * (1.0 - left[c]))
     }
 
-    /// The light that what was met sends back; `mirrors` says whether water shows what stands behind it.
+    /// The light from an intersection; `mirrors` says whether water reflects.
     pub(super) fn shade(&self, met: &Met, pixel: f64, mirrors: bool) -> Light {
         match met.surface {
             Seen::Land(Surface::GroundCover) => self.shade_ground(met, pixel),
@@ -38,13 +38,13 @@ impl Scene {
         }
     }
 
-    /// Metres that a pixel shows there, on ground that is seen under an angle with this cosine.
+    /// Width of a pixel in metres at an intersection; `cosine` is that of the viewing angle.
     fn footprint(&self, met: &Met, pixel: f64, cosine: f64) -> f32 {
-        // Longer than wide: the mean of both.
+        // The geometric mean of length and width.
         (met.distance * pixel * self.relief.cell() / cosine.clamp(0.04, 1.0).sqrt() * 0.7) as f32
     }
 
-    /// The share of the sun that is to be seen from a place, beyond `nearest` cells.
+    /// The visible share of the sun from a point, ignoring obstacles within `nearest` cells.
     fn sun_seen(&self, place: Vector, flip: [f64; 2], nearest: f64) -> f32 {
         let [low, high] = self.rims;
         if high <= 0.0 {
@@ -141,7 +141,7 @@ impl Scene {
         };
         let facing = met.normal.dot(self.sky.sun()).max(0.0) as f32;
         let sunlight = self.sky.sunlight();
-        // Half of what it sees is sky, half is the table, which is darker at its foot.
+        // The side sees half sky, half table, which is darker at its foot.
         let foot = 0.55 + 0.45 * ((z - self.floor) / -self.floor).clamp(0.0, 1.0) as f32;
         std::array::from_fn(|c| {
             let table = TABLE[c] * (0.5 * self.level_sun[c] + self.level_sky[c]);
@@ -161,7 +161,7 @@ impl Scene {
         let near: Light = std::array::from_fn(|c| {
             TABLE[c] * std::f32::consts::FRAC_1_PI * (self.level_sun[c] * seen + self.level_sky[c] * open)
         });
-        // It fades into the sky's edge, far behind the land.
+        // The table fades into the horizon far behind the land.
         let across = (east * east + south * south).sqrt();
         let far = libm::expf(-((off / (1.3 * across)) as f32));
         let level = Vector { z: 0.02, ..met.along }.unit();

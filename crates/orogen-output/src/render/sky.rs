@@ -1,55 +1,56 @@
-//! The sky, the sun's light and the haze between here and there.
+//! The sky, sunlight and haze.
 //!
-//! The air scatters light once on its way from the sun to the eye: molecules (Rayleigh) blue, droplets and dust (Mie) forwards;
-//! ozone takes some of the yellow (T. Nishita, T. Sirai, K. Tadamura, E. Nakamae, "Display of the Earth taking into account
-//! atmospheric scattering", 1993; figures of E. Bruneton, "A qualitative and quantitative evaluation of 8 clear sky models",
-//! 2017). What the sky so found sheds is scattered once more, alike from all sides, which whitens the horizon. The sky is worked out
-//! once for a table of directions, and read from there.
+//! Single scattering of sunlight in the atmosphere: by molecules (Rayleigh) and by droplets and dust (Mie, forward),
+//! with absorption by ozone (T. Nishita, T. Sirai, K. Tadamura, E. Nakamae, "Display of the Earth taking into account
+//! atmospheric scattering", 1993; coefficients of E. Bruneton, "A qualitative and quantitative evaluation of 8 clear
+//! sky models", 2017). The light of this sky is scattered once more, isotropically, which whitens the horizon. The
+//! result is computed once for a table of directions.
 
 use super::vector::Vector;
 use orogen_io::palette::color::Light;
 
-/// Metres: the Earth, the top of the air, where the observer is.
+/// Radii in metres: the Earth, the top of the atmosphere, the observer.
 const EARTH: f32 = 6_360_000.0;
 const TOP: f32 = 6_440_000.0;
 const OBSERVER: f32 = EARTH + 800.0;
 
-/// Scattering by molecules, at sea level, per metre; it halves every 5.5 km.
+/// Rayleigh scattering at sea level, per metre; it halves every 5.5 km.
 const RAYLEIGH: Light = [5.802e-6, 13.558e-6, 33.1e-6];
 const RAYLEIGH_HEIGHT: f32 = 8000.0;
-/// Scattering and all that dims by droplets and dust in clear air.
+/// Mie scattering and extinction in clear air.
 const MIE: f32 = 9.0e-6;
 const MIE_DIMS: f32 = 10.0e-6;
 const MIE_HEIGHT: f32 = 1200.0;
-/// How much more droplets scatter forwards.
+/// Asymmetry of Mie scattering.
 const FORWARDS: f32 = 0.78;
-/// Absorption by ozone where there is most of it, 25 km up.
+/// Absorption by ozone at its maximum, at 25 km.
 const OZONE: Light = [0.650e-6, 1.881e-6, 0.085e-6];
 
-/// How much of the light that the whole sky and the ground shed is scattered again into sight, alike from all sides.
+/// The share of light from the whole sky and the ground that is scattered again, isotropically.
 const AGAIN: f32 = 1.6;
 
-/// How much less colour than the clear sky the light has that falls on the ground.
+/// The desaturation of the light on the ground relative to the clear sky.
 const PALE: f32 = 0.45;
 
-/// Half the sun's apparent width, degrees.
+/// Angular radius of the sun, in degrees.
 pub(super) const SUN_RADIUS: f64 = 0.267;
 
-/// Directions in the table: around from the sun to opposite of it, and up from the horizon.
+/// Directions in the table: from the sun's azimuth to the opposite one, and up from the horizon.
 const AROUND: usize = 48;
 const UP: usize = 40;
 
-/// Steps along a ray of sight, and along one to the sun.
+/// Steps along a view ray, and along a ray to the sun.
 const STEPS: usize = 24;
 const SUN_STEPS: usize = 8;
 
-/// A clear sky with the sun in one place. Light is in units of the sun's above the air, on a surface that faces it.
+/// A clear sky with the sun at one position. Light is relative to that of the sun above the atmosphere on a surface
+/// that faces it.
 #[derive(Debug, Clone)]
 pub struct Sky {
     sun: Vector,
-    /// The level direction to the sun.
+    /// The horizontal direction to the sun.
     ahead: [f64; 2],
-    /// What the sun gives to a surface that faces it.
+    /// Direct sunlight on a surface that faces the sun.
     sunlight: Light,
     table: Vec<Light>,
 }
@@ -66,10 +67,10 @@ impl Sky {
             let mut table = Vec::with_capacity(AROUND * UP);
             for k in 0..UP {
                 let up = k as f32 / (UP - 1) as f32;
-                // Finely near the horizon, where most happens.
+                // Fine near the horizon, where most variation is.
                 let up = (up * up).max(0.002);
                 for i in 0..AROUND {
-                    // The sine of half the angle from the sun, seen from above.
+                    // The sine of half the horizontal angle from the sun.
                     let half = i as f32 / (AROUND - 1) as f32;
                     let cosine = 1.0 - 2.0 * half * half;
                     let across = (1.0 - up * up).max(0.0).sqrt();
@@ -81,18 +82,18 @@ impl Sky {
         };
         let once = Sky { sun, ahead: [sin, -cos], sunlight, table: rows([0.0; 3]) };
         let dome = once.dome();
-        // The ground throws a fifth of it back up.
+        // The ground reflects a fifth of the light.
         let shed = std::array::from_fn(|c| dome[c] + 0.2 * (dome[c] + sunlight[c] * height.max(0.0)));
         Sky { table: rows(shed), ..once }
     }
 
-    /// What the whole sky gives to level ground.
+    /// The light of the whole sky on level ground.
     pub fn dome(&self) -> Light {
         let mut sum = [0.0f32; 3];
         const RINGS: usize = 24;
         const SECTORS: usize = 24;
         for k in 0..RINGS {
-            // Rings of equal parts of sin^2: each gives level ground as much.
+            // Rings of equal parts of sin^2: each contributes equally to level ground.
             let sin = ((k as f64 + 0.5) / RINGS as f64).sqrt();
             let elevation = libm::asin(sin).to_degrees();
             for a in 0..SECTORS {
@@ -103,17 +104,17 @@ impl Sky {
         sum.map(|sum| sum * std::f32::consts::PI / (RINGS * SECTORS) as f32)
     }
 
-    /// Where the sun is.
+    /// Unit vector to the sun.
     pub fn sun(&self) -> Vector {
         self.sun
     }
 
-    /// What the sun gives to a surface that faces it.
+    /// Direct sunlight on a surface that faces the sun.
     pub fn sunlight(&self) -> Light {
         self.sunlight
     }
 
-    /// The light from a direction, the sun itself left out; from below the horizon, that of the horizon above.
+    /// The light from a direction, without the sun; below the horizon, that of the horizon above it.
     pub fn light(&self, along: Vector) -> Light {
         let up = along.z.max(0.0).sqrt() as f32 * (UP - 1) as f32;
         let level = (along.x * along.x + along.y * along.y).sqrt();
@@ -129,23 +130,24 @@ impl Sky {
         })
     }
 
-    /// The light from a direction as it falls on the ground: paler, as the light of real skies is, which are never quite clear.
+    /// The light from a direction for lighting the ground: less saturated, like that of real skies, which are rarely
+    /// quite clear.
     pub(super) fn falling(&self, along: Vector) -> Light {
         let light = self.light(along);
         let grey = 0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2];
         light.map(|c| c + (grey - c) * PALE)
     }
 
-    /// The light from a direction, the sun's disc included.
+    /// The light from a direction, including the sun's disc.
     pub fn seen(&self, along: Vector) -> Light {
         let sky = self.light(along);
         let radius = SUN_RADIUS.to_radians();
-        // 1 - cos of the angle to the middle of the sun, in those of its rim.
+        // 1 - cos of the angle to the centre of the sun, relative to that of its limb.
         let away = (1.0 - along.dot(self.sun)) / (0.5 * radius * radius);
         if away >= 1.5 || along.z < 0.0 {
             return sky;
         }
-        // The disc's light, darker towards the rim, and no hard edge.
+        // The disc with limb darkening and a soft edge.
         let edge = ((1.5 - away) / 0.6).clamp(0.0, 1.0) as f32;
         let rim = 1.0 - 0.6 * (1.0 - (1.0 - away).max(0.0).sqrt() as f32);
         let disc = 1.0 / (std::f64::consts::PI * radius * radius) as f32;
@@ -153,8 +155,8 @@ impl Sky {
     }
 }
 
-/// How much air lies on the way from a height (metres from the Earth's middle) out to space in a direction: of molecules, of
-/// droplets, of ozone; none where the Earth is in the way.
+/// Air masses from a height (metres from the Earth's centre) to space in a direction: of molecules, of droplets, of
+/// ozone; none if the Earth is in the way.
 fn depths(from: f32, up: f32) -> Option<[f32; 3]> {
     let grazing = from * (1.0 - up * up).max(0.0).sqrt();
     if up < 0.0 && grazing < EARTH {
@@ -170,25 +172,25 @@ fn depths(from: f32, up: f32) -> Option<[f32; 3]> {
     Some(depth)
 }
 
-/// How far it is to the top of the air.
+/// The distance to the top of the atmosphere.
 fn out(from: f32, up: f32) -> f32 {
     let b = from * up;
     (b * b + (TOP - from) * (TOP + from)).max(0.0).sqrt() - b
 }
 
-/// The distance from the Earth's middle after so much way.
+/// The distance from the Earth's centre after moving by `way`.
 fn risen(from: f32, up: f32, way: f32) -> f32 {
     (from * from + way * (way + 2.0 * from * up)).max(0.0).sqrt()
 }
 
-/// How thick the air is at a distance from the Earth's middle, in what it is where it is thickest.
+/// Relative densities at a distance from the Earth's centre; 1 at the maximum.
 fn densities(at: f32) -> [f32; 3] {
     let height = (at - EARTH).max(0.0);
     let ozone = (1.0 - (height - 25_000.0).abs() / 15_000.0).max(0.0);
     [libm::expf(-height / RAYLEIGH_HEIGHT), libm::expf(-height / MIE_HEIGHT), ozone]
 }
 
-/// What is left of light after so much air.
+/// The transmittance of an air mass.
 fn dimmed(depth: Option<[f32; 3]>) -> Light {
     let Some([molecules, droplets, ozone]) = depth else {
         return [0.0; 3];
@@ -196,8 +198,9 @@ fn dimmed(depth: Option<[f32; 3]>) -> Light {
     std::array::from_fn(|c| libm::expf(-(RAYLEIGH[c] * molecules + MIE_DIMS * droplets + OZONE[c] * ozone)))
 }
 
-/// The light from a direction that rises by `up`, the sun at the sine of elevation `sun_up`; then the cosines of the angle to it and of
-/// that angle seen from above. `shed` is what the sky and the ground shed on the air.
+/// The light from a direction that rises by `up`, with the sun at the sine of elevation `sun_up`; then the cosines of
+/// the angle to the sun and of that angle in the horizontal plane. `shed` is the light of sky and ground that is
+/// scattered again.
 fn scattered(up: f32, sun_up: f32, [towards_sun, cosine]: [f32; 2], shed: Light) -> Light {
     use std::f32::consts::PI;
     let rayleigh = 3.0 / (16.0 * PI) * (1.0 + towards_sun * towards_sun);
@@ -209,7 +212,7 @@ fn scattered(up: f32, sun_up: f32, [towards_sun, cosine]: [f32; 2], shed: Light)
     let length = out(OBSERVER, up);
     let (mut before, mut depth, mut light) = (0.0, [0.0f32; 3], [0.0f32; 3]);
     for k in 0..STEPS {
-        // Short steps first: the air is thickest here.
+        // Short steps first: the air is densest here.
         let share = (k + 1) as f32 / STEPS as f32;
         let end = length * share * share;
         let (step, way) = (end - before, 0.5 * (before + end));
@@ -218,7 +221,7 @@ fn scattered(up: f32, sun_up: f32, [towards_sun, cosine]: [f32; 2], shed: Light)
         let density = densities(at);
         let half = density.map(|density| density * step * 0.5);
         depth.iter_mut().zip(half).for_each(|(depth, half)| *depth += half);
-        // How high the sun stands there: the Earth is round.
+        // The sun's elevation there differs because the Earth is round.
         let (height, along) = (OBSERVER + way * up, way * across);
         let sun_there = (height * sun_up + along * sun_across * cosine) / at;
         let (seen, lit) = (dimmed(Some(depth)), dimmed(depths(at, sun_there)));
@@ -232,31 +235,31 @@ fn scattered(up: f32, sun_up: f32, [towards_sun, cosine]: [f32; 2], shed: Light)
     light
 }
 
-/// The haze over the land: air that is thickest over the lowest ground.
+/// Haze over the land: air that is densest above the lowest ground.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Haze {
-    /// What a cell of way at z = 0 takes of red, green and blue.
+    /// Extinction of red, green and blue per cell at z = 0.
     dims: Light,
-    /// Cells in which it thins out to 37 %.
+    /// Scale height, in cells.
     thins: f32,
 }
 
 impl Haze {
-    /// The haze that takes `amount` of the optical depth 1 of green light over `way` cells along the lowest ground, and thins out
-    /// in `thins` cells of height.
+    /// Haze with the optical depth `amount` of green light over `way` cells along the lowest ground, and a scale height
+    /// of `thins` cells.
     pub fn new(amount: f64, way: f64, thins: f64) -> Haze {
-        // Between clean air, which takes blue, and mist, which takes all alike.
+        // Between clean air, which absorbs blue, and mist, which absorbs all colours equally.
         const COLOUR: Light = [0.62, 1.0, 1.75];
         let green = (amount / way) as f32;
         Haze { dims: COLOUR.map(|c| c * green), thins: thins as f32 }
     }
 
-    /// What is left of light that comes so many cells from a place at z to an eye at z.
+    /// The transmittance over `distance` cells between two values of z.
     pub fn left(&self, eye: f64, place: f64, distance: f64) -> Light {
         let (from, to) = ((eye as f32 / self.thins).max(0.0), (place as f32 / self.thins).max(0.0));
         let (low, high) = (from.min(to), from.max(to));
         let rise = high - low;
-        // The mean thickness on the way.
+        // The mean density on the way.
         let thick = match rise < 1e-3 {
             true => libm::expf(-low),
             false => (libm::expf(-low) - libm::expf(-high)) / rise,

@@ -1,9 +1,10 @@
-//! How much light of the sky reaches each sample: less in valleys, and of another colour on every side.
+//! Light of the sky on each sample, with the horizon and the colour of every direction.
 //!
-//! In each of [`AZIMUTHS`] directions the horizon of every sample is found exactly, along lines through the land that are walked
-//! against the direction with the convex hull of what was passed (V. Timonen, J. Westerholm, "Scalable height field self-shadowing",
-//! 2010): a few steps a sample, however far it sees. What the sky sheds on ground of a sample's slope from above that horizon is
-//! read from a table of sums, so there is neither noise nor a radius beyond which mountains cast no shade.
+//! In each of [`AZIMUTHS`] directions the horizon of every sample is found exactly: lines through the land are
+//! traversed against the direction, with the convex hull of the ground passed (V. Timonen, J. Westerholm, "Scalable
+//! height field self-shadowing", 2010), in a few steps per sample for any distance. The light of the sky above that
+//! horizon on the sample's slope is read from a table of sums, so there is neither noise nor a radius that limits the
+//! shade of mountains.
 
 use rayon::prelude::*;
 
@@ -15,20 +16,20 @@ use orogen_grid::grid::transposed;
 use orogen_grid::progress::Progress;
 use orogen_io::palette::color::Light;
 
-/// Directions in which horizons are looked for.
+/// Number of directions.
 const AZIMUTHS: usize = 16;
 
-/// Beyond so many samples a side, light is worked out for every second sample, every third, and so on.
+/// With more samples per side, light is computed for every second sample, every third, and so on.
 const MOST: usize = 2048;
 
 /// Entries of the tables, over the sine of the horizon's elevation.
 const ENTRIES: usize = 96;
 
-/// Light of the sky on the ground (red, green, blue, as the sky's own unit times steradians), and the share of it that would come if
-/// the sky were alike all over and nothing stood before it.
+/// Light of the sky on the ground (red, green, blue, in the sky's unit times steradians), and the share relative to a
+/// uniform sky without obstacles.
 pub(super) type Shed = [f32; 4];
 
-/// The sky's light on every sample, or every n-th.
+/// The light of the sky on every sample, or every n-th.
 #[derive(Debug, Clone)]
 pub(super) struct Skylight {
     columns: usize,
@@ -38,7 +39,7 @@ pub(super) struct Skylight {
 }
 
 impl Skylight {
-    /// Works it out.
+    /// Computes the light.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -56,7 +57,7 @@ impl Skylight {
         progress.expect(AZIMUTHS as f64);
         for k in 0..AZIMUTHS {
             progress.check()?;
-            // Between the axes, where ridges of grids seldom run.
+            // Between the axes, with which ridges on grids often align.
             let azimuth = (k as f64 + 0.5) * 360.0 / AZIMUTHS as f64;
             let towards = Vector::towards(azimuth, 0.0);
             let dome = Dome::new(sky, azimuth);
@@ -74,7 +75,7 @@ impl Skylight {
         Ok(Skylight { columns, rows, stride, shed })
     }
 
-    /// The light at a place, in cells.
+    /// The light at a position in cells.
     pub fn at(&self, x: f64, y: f64) -> Shed {
         let scale = 1.0 / self.stride as f64;
         let (x, y) =
@@ -91,9 +92,10 @@ impl Skylight {
     }
 }
 
-/// The sky in one direction, summed up from above: for level parts of a slope and for those that lean towards it.
+/// The sky in one direction, summed from the zenith down: for level ground and for slopes that face it.
 struct Dome {
-    /// By the sine of the horizon's elevation: light times cos^2, then light times sin cos, each with that of an even sky last.
+    /// By the sine of the horizon's elevation: light times cos^2, then light times sin cos, each followed by that of a
+    /// uniform sky.
     sums: Vec<[[f32; 4]; 2]>,
 }
 
@@ -101,7 +103,7 @@ impl Dome {
     fn new(sky: &Sky, azimuth: f64) -> Dome {
         let width = std::f32::consts::TAU / AZIMUTHS as f32;
         let mut sums = vec![[[0.0; 4]; 2]; ENTRIES + 1];
-        // From the zenith down; each entry adds the ring between its elevation and that of the one above.
+        // From the zenith down; each entry adds the ring up to the elevation of the previous one.
         for k in (0..ENTRIES).rev() {
             let mut ring = [[0.0f32; 4]; 2];
             const PARTS: usize = 4;
@@ -126,7 +128,8 @@ impl Dome {
         Dome { sums }
     }
 
-    /// The light from above a horizon that rises by `slope`, on ground that leans towards it by `lean` and looks up by `up`.
+    /// The light above a horizon with slope `slope`, on ground whose normal has the component `lean` towards it and
+    /// `up` upward.
     fn light(&self, slope: f32, lean: f32, up: f32) -> Shed {
         let slope = slope.max(0.0);
         let at = slope / (1.0 + slope * slope).sqrt() * ENTRIES as f32;
@@ -140,23 +143,23 @@ impl Dome {
     }
 }
 
-/// Lines through the land in one direction that crosses every column.
+/// Lines in one direction that cross every column of the land.
 struct Sweep<'a> {
     bed: &'a [f32],
-    /// Columns, and rows.
+    /// Number of columns, and of rows.
     length: usize,
     lines: usize,
-    /// Along the rows, and across them; the first is the longer.
+    /// The direction along the rows, and across them; the first component is the larger.
     towards: [f64; 2],
 }
 
 impl Sweep<'_> {
-    /// Rows that a line goes down from one column to the next.
+    /// Rows per column of a line.
     fn slant(&self) -> f64 {
         self.towards[1] / self.towards[0]
     }
 
-    /// The height where a line crosses column `i` at row `y`.
+    /// The height of a line's ground at column `i` and row `y`.
     fn height(&self, i: usize, y: f64) -> f32 {
         let y = y.clamp(0.0, (self.lines - 1) as f64);
         let j = (y as usize).min(self.lines.saturating_sub(2));
@@ -166,7 +169,8 @@ impl Sweep<'_> {
         north + (south - north) * share
     }
 
-    /// The horizon's slope along a line that crosses column 0 at row `start`, at every column where it is on the land or next to it.
+    /// The slope of the horizon along a line that crosses column 0 at row `start`, at every column where it is on the
+    /// land or next to it.
     fn horizon(&self, start: i64, hull: &mut Vec<[f32; 2]>, out: &mut [f32]) {
         hull.clear();
         let slant = self.slant();
@@ -174,7 +178,7 @@ impl Sweep<'_> {
         let last = (self.lines - 1) as f64;
         let forwards = self.towards[0] > 0.0;
         for k in 0..self.length {
-            // What lies ahead comes first.
+            // Ground ahead comes first.
             let i = if forwards { self.length - 1 - k } else { k };
             let y = start as f64 + slant * i as f64;
             if y < -1.0 || y > last + 1.0 {
@@ -197,7 +201,7 @@ impl Sweep<'_> {
     fn gather(&self, dome: &Dome, shed: &mut [Shed]) {
         let (length, lines, slant) = (self.length, self.lines, self.slant());
         let drift = slant * (length - 1) as f64;
-        // Where lines have to start so that each sample lies between two of them.
+        // The starting rows of lines such that each sample is between two of them.
         let first = (-drift.max(0.0)) as i64 - 1;
         let count = lines + drift.abs() as usize + 3;
         let mut horizons = vec![0.0f32; count * length];

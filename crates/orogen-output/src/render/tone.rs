@@ -1,11 +1,11 @@
-//! From light to what a screen can show.
+//! Tone mapping: from light to displayable colours.
 
 use orogen_io::palette::color::Light;
 
-/// Red, green and blue light from the scene as a film would take it: shadows keep their colour, highlights roll off to white.
+/// Filmic tone mapping of red, green and blue light: shadows keep their colour, highlights roll off to white.
 ///
-/// S. Hill's fit of the Academy's reference rendering and output transforms (ACES, 2014), with its mixing of the three colours,
-/// which lets bright light pale as it does on film. `light` is what is seen, 1 where a white sheet in the sun is.
+/// S. Hill's fit of the ACES reference rendering and output transforms (2014), including its mixing of channels, which
+/// desaturates bright light. `light` is 1 for a white sheet in the sun.
 pub(super) fn tone_map(light: Light) -> Light {
     let [r, g, b] = light.map(|c| c.max(0.0));
     let mixed = [

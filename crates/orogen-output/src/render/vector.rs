@@ -1,8 +1,8 @@
-//! Directions and places in space.
+//! Vectors in space.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A direction or a place: x east, y south, z up, as grids have it.
+/// A direction or position: x east, y south, z up, as in grids.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vector {
     /// East.
@@ -17,7 +17,7 @@ impl Vector {
     /// Straight up.
     pub const UP: Vector = Vector { x: 0.0, y: 0.0, z: 1.0 };
 
-    /// From its three parts.
+    /// From its components.
     pub fn new(x: f64, y: f64, z: f64) -> Vector {
         Vector { x, y, z }
     }
@@ -29,12 +29,12 @@ impl Vector {
         Vector::new(sin * level, -cos * level, up)
     }
 
-    /// The sum of the products of the parts.
+    /// The dot product.
     pub fn dot(self, other: Vector) -> f64 {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
-    /// The vector at right angles to both. As y runs south, east x south is up.
+    /// The cross product. Because y points south, east x south is up.
     pub fn cross(self, other: Vector) -> Vector {
         Vector::new(
             self.y * other.z - self.z * other.y,
@@ -43,18 +43,18 @@ impl Vector {
         )
     }
 
-    /// How long it is.
+    /// The length.
     pub fn length(self) -> f64 {
         self.dot(self).sqrt()
     }
 
-    /// The same direction, of length 1. What has no length stays as it is.
+    /// The same direction with length 1; a zero vector is unchanged.
     pub fn unit(self) -> Vector {
         let length = self.length();
         if length > 0.0 { self * (1.0 / length) } else { self }
     }
 
-    /// The direction after a mirror at a surface with this unit normal.
+    /// The direction after reflection at a surface with this unit normal.
     pub fn mirrored(self, normal: Vector) -> Vector {
         self - normal * (2.0 * self.dot(normal))
     }

@@ -1,59 +1,60 @@
-//! Water: waves, what it mirrors, and how its colour changes with depth.
+//! Water: waves, reflection, and colour by depth.
 
 use super::grain::Grain;
 use super::vector::Vector;
 use orogen_io::palette::color::Light;
 
-/// What water takes of light in a metre: red first (after R. M. Pope and E. S. Fry, "Absorption spectrum (380-700 nm) of pure
-/// water", 1997, with the little that grows in it).
+/// Absorption of water per metre (after R. M. Pope and E. S. Fry, "Absorption spectrum (380-700 nm) of pure water",
+/// 1997, with a little algae).
 const TAKES: Light = [0.40, 0.085, 0.060];
 
-/// The share of light that deep water throws back.
+/// The albedo of deep water.
 const DEEP: Light = [0.006, 0.024, 0.036];
 
-/// What lies on the bottom.
+/// The albedo of the bottom.
 const BOTTOM: Light = [0.20, 0.18, 0.125];
 
-/// The same of lakes: water brown with humus and green with algae, in which a white disk is lost to sight at some 4 m (1.7 over the green's number:
-/// H. H. Poole and W. R. G. Atkins, "Photo-electric measurements of submarine illumination", 1929), over mud and dark stones.
+/// The same for lakes: brown with humus and green with algae, with a Secchi depth of about 4 m (1.7 over the
+/// coefficient of green: H. H. Poole and W. R. G. Atkins, "Photo-electric measurements of submarine illumination",
+/// 1929), over mud and dark stones.
 const LAKE_TAKES: Light = [0.85, 0.42, 0.65];
 const LAKE_DEEP: Light = [0.009, 0.026, 0.030];
 const LAKE_BOTTOM: Light = [0.060, 0.056, 0.040];
 
-/// In land of cells wider than this (metres) shores are drawn as if water were clearer, or they would be thinner than a pixel.
+/// With cells wider than this, in metres, water is drawn clearer; otherwise shores would be thinner than a pixel.
 const FINE_CELL: f64 = 10.0;
 
-/// Light refracted: the square of 1 / 1.33.
+/// The square of 1 / 1.33, for refraction.
 const BENDS: f32 = 0.565;
 
-/// Wavelengths of waves in metres, the longest first, and how steep each is.
+/// Wavelengths of waves in metres, the longest first, with their steepness.
 const WAVES: [(f32, f32); 4] = [(46.0, 0.012), (19.0, 0.018), (7.0, 0.026), (2.6, 0.030)];
 
-/// Which water it is.
+/// Kinds of water.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// The clear water of the sea, over sand.
+    /// Clear sea water over sand.
     Sea,
-    /// That of lakes.
+    /// Lake water.
     Lake,
 }
 
-/// Water as it is seen in a land.
+/// The appearance of water in a land.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Water {
-    /// What the sea takes of light in a metre.
+    /// Absorption of the sea per metre.
     takes: Light,
     cell: f32,
 }
 
 impl Water {
-    /// The water of a land of so wide cells.
+    /// Water for a land with this cell, in metres.
     pub fn new(cell: f64) -> Water {
         let clear = (FINE_CELL / cell.max(FINE_CELL)) as f32;
         Water { takes: TAKES.map(|takes| takes * clear), cell: cell as f32 }
     }
 
-    /// The normal of the waves at a place, where a pixel shows so many metres.
+    /// The normal of the waves at a position, for a pixel of `footprint` metres.
     pub fn normal(&self, grain: &Grain, x: f64, y: f64, footprint: f32) -> Vector {
         let mut slope = [0.0f32; 2];
         for (kind, (wavelength, steep)) in WAVES.into_iter().enumerate() {
@@ -69,8 +70,8 @@ impl Water {
         Vector::new(-f64::from(slope[0]), -f64::from(slope[1]), 1.0).unit()
     }
 
-    /// The share of light that water throws back from within, so many metres deep, seen under an angle with this cosine and lit under
-    /// one with that.
+    /// The share of light that water of this depth, in metres, scatters back; `seen` and `lit` are the cosines of the
+    /// viewing and lighting angles.
     pub fn body(&self, kind: Kind, depth: f32, seen: f32, lit: f32) -> Light {
         let (takes, deep, bottom) = match kind {
             Kind::Sea => (self.takes, DEEP, BOTTOM),
@@ -84,7 +85,7 @@ impl Water {
         })
     }
 
-    /// The colour of water cut open, so many metres below its surface.
+    /// The colour of a section through water, at a depth in metres.
     pub fn section(&self, depth: f32) -> Light {
         let left: Light = self.takes.map(|takes| libm::expf(-takes * depth * 0.12));
         const SHALLOW: Light = [0.16, 0.36, 0.40];
@@ -93,15 +94,15 @@ impl Water {
     }
 }
 
-/// The share of light that water mirrors under an angle with this cosine (C. Schlick's approximation of Fresnel's equations, 1994).
+/// The reflectance of water under an angle with this cosine (C. Schlick's approximation of Fresnel's equations, 1994).
 pub(super) fn mirrored(cosine: f32) -> f32 {
     let off = 1.0 - cosine.clamp(0.0, 1.0);
     let square = off * off;
     0.02 + 0.98 * square * square * off
 }
 
-/// How brightly the sun glitters: light mirrored by waves as they lie within a pixel, whose slopes vary by `rough`, per light on a surface that faces
-/// the sun.
+/// Glitter of the sun: light reflected by waves within a pixel, whose slopes vary by `rough`, relative to the light on
+/// a surface that faces the sun.
 pub(super) fn glitter(normal: Vector, to_eye: Vector, to_sun: Vector, rough: f32) -> f32 {
     let half = (to_eye + to_sun).unit();
     let cosine = normal.dot(half) as f32;

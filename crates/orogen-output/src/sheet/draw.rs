@@ -1,4 +1,4 @@
-//! A map sheet: heights, and all that belongs to a map of them, on a page.
+//! Map sheets: heights with all elements of a map, on a page.
 
 use super::font_set::FontSet;
 use super::furniture::{COLORS, Desk, Entry, LEGEND_ROWS, Sign, colors_block, legend_block, north_block, scale_block};
@@ -17,24 +17,25 @@ use orogen_grid::progress::Progress;
 use orogen_io::format::levels::Levels;
 use orogen_io::palette::tint::Tint;
 
-/// A sheet that is drawn.
+/// A drawn sheet.
 pub struct Sheet {
-    /// What is on it.
+    /// The items on the page.
     pub scene: Scene,
-    /// Letters of its title that no font at hand has; they are left out.
+    /// Characters of its texts that no installed font has; they are omitted.
     pub lacking: Vec<char>,
-    /// Metres from one contour to the next, if there are contours.
+    /// Distance between contours, in metres, if there are contours.
     pub interval: Option<f64>,
-    /// Pixels an inch, for [`raster::draw`](super::raster::draw).
+    /// Resolution in pixels per inch, for [`raster::draw`](super::raster::draw).
     pub dpi: f64,
-    /// Left, top, width and height of the ground on the page, in millimetres, from the middles of its first samples to those of its last.
+    /// Left, top, width and height of the ground on the page, in millimetres, between the centres of its first and its
+    /// last samples.
     pub ground: [f32; 4],
 }
 
-/// Draws a sheet of heights in metres. What is not finite has the palette's color of missing samples.
+/// Draws a sheet of heights in metres. Samples that are not finite have the palette's color of missing samples.
 ///
 /// # Errors
-/// If there are fewer than 2 x 2 heights or none at all, the contours asked for are too many, or the work is cancelled.
+/// If there are fewer than 2 x 2 heights or none is finite, there would be too many contours, or the work is cancelled.
 pub fn draw(heights: &Grid, options: &Options, progress: &Progress) -> Result<Sheet> {
     let window = heights.window();
     if window.width < 2 || window.height < 2 || heights.data().iter().all(|height| !height.is_finite()) {
@@ -118,7 +119,7 @@ pub fn draw(heights: &Grid, options: &Options, progress: &Progress) -> Result<Sh
     let directions = [Direction::Eastward, Direction::Southward];
     for profile in layout.profiles.iter().zip(directions) {
         let Some(profile) = Profile::new(heights, options, profile.1, *profile.0) else { continue };
-        // On a map of something else, the heights' colors would mean nothing.
+        // On a map of another layer, the colors of heights would be misleading.
         profile.draw(&mut desk, map, is_tint.then_some(&tint), layout.dpi);
     }
     if options.parts.title {
@@ -144,27 +145,27 @@ enum Part {
     Legend,
 }
 
-/// The colors of a sheet's heights. Without a sea level, all is land.
+/// The colors of a sheet's heights. Without a sea level, everything is land.
 fn tint(heights: &Grid, options: &Options) -> Tint {
-    // With a range, nothing depends on the window's own heights.
+    // With a given range, the colors must not depend on the window's own heights.
     let below_all = || options.range.map_or_else(|| Levels::of(heights).low() - 1.0, |_| f32::NEG_INFINITY);
     let sea = options.sea_level.map_or_else(below_all, |sea| sea as f32);
     match (&options.coloring, options.range) {
         (Coloring::Heights, Some(range)) => Tint::between(&options.palette, range, sea),
         (Coloring::Heights, None) => Tint::of(&options.palette, heights, sea),
-        // The palette is not that of the heights; the sea keeps the tint of its depths.
+        // The palette belongs to another layer; the sea keeps the tint of its depths.
         _ => Tint::fit(heights, sea),
     }
 }
 
-/// A surface in the legend.
+/// The legend entry of a surface.
 fn surface_entry(surface: &SurfaceEntry) -> Entry {
     let percent = (surface.share * 100.0).round();
     let share = if percent < 1.0 { "below 1 %".to_string() } else { format!("{percent} %") };
     Entry { sign: Sign::Swatch(surface.colors.clone()), text: format!("{}, {share}", surface.name) }
 }
 
-/// What the sides count: the values at the left and the right, at the top and the bottom.
+/// The coordinates at the left and the right, and at the top and the bottom, with their units.
 fn spans(heights: &Grid, options: &Options) -> ([[f64; 2]; 2], [Count; 2]) {
     let window = heights.window();
     let (west, east) = (window.east(0), window.east(window.width - 1));
@@ -176,12 +177,12 @@ fn spans(heights: &Grid, options: &Options) -> ([[f64; 2]; 2], [Count; 2]) {
             let counts = if degrees { [Count::Longitude, Count::Latitude] } else { [Count::Metres; 2] };
             ([[left, right], [top, bottom]], counts)
         }
-        // A world's own metres count south.
+        // A world's own metres increase southward.
         None => ([[west, east], [north, south]], [Count::Metres; 2]),
     }
 }
 
-/// What the sheet says of itself.
+/// The line of facts under the title.
 fn facts(metres: [f64; 2], [low, high]: [f64; 2], scale: f64, options: &Options) -> String {
     let size = match metres[0].max(metres[1]) >= 2000.0 {
         true => format!("{} × {} km", short(metres[0] / 1000.0), short(metres[1] / 1000.0)),
@@ -197,7 +198,7 @@ fn facts(metres: [f64; 2], [low, high]: [f64; 2], scale: f64, options: &Options)
     text
 }
 
-/// A number with three digits, or all before the point.
+/// A number with three significant digits, or all digits before the decimal point.
 fn short(value: f64) -> String {
     let decimals = (2.0 - libm::log10(value.max(1e-9)).floor()).clamp(0.0, 3.0) as usize;
     let text = format!("{value:.decimals$}");

@@ -1,4 +1,4 @@
-//! Words as outlines: in the font that comes with the library, and for what that has no letters for, in one of the system's.
+//! Text as outlines: in the built-in font and, for characters that it lacks, in a font of the system.
 
 use std::path::{Path, PathBuf};
 
@@ -11,13 +11,13 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 /// The fonts of a sheet.
 pub struct FontSet {
     faces: [FontRef<'static>; 3],
-    /// A font of the system, for letters that the built-in one lacks.
+    /// A font of the system, for characters that the built-in one lacks.
     other: Option<FontVec>,
-    /// Letters that no font has.
+    /// Characters that no font has.
     lacking: Vec<char>,
 }
 
-/// Where systems keep fonts.
+/// Font folders of common systems.
 const FOLDERS: [&str; 6] = [
     "/usr/share/fonts",
     "/usr/local/share/fonts",
@@ -27,17 +27,16 @@ const FOLDERS: [&str; 6] = [
     "/run/current-system/sw/share/fonts",
 ];
 
-/// Folders of fonts within the user's own.
+/// Font folders within the user's home.
 const OWN_FOLDERS: [&str; 3] = [".local/share/fonts", ".fonts", "Library/Fonts"];
 
-/// How deep folders are looked into, how many fonts are tried, and how large they may be.
+/// Maximum depth of folders, number of fonts, and size of a font file.
 const DEPTH: usize = 5;
 const MAX_FONTS: usize = 2000;
 const MAX_BYTES: u64 = 128 << 20;
 
 impl FontSet {
-    /// The fonts that `texts` need. Where the built-in one lacks a letter, the first font of the system that has the most of what
-    /// is lacking is taken.
+    /// The fonts for `texts`. If the built-in font lacks characters, the first system font with most of them is added.
     ///
     /// # Errors
     /// If the built-in font cannot be read.
@@ -65,17 +64,17 @@ impl FontSet {
         Ok(FontSet { faces, other, lacking })
     }
 
-    /// Letters that neither the built-in font nor any of the system's has; they are left out.
+    /// Characters that neither the built-in font nor the system font has; they are omitted.
     pub fn lacking(&self) -> &[char] {
         &self.lacking
     }
 
-    /// How many millimetres a line of text of this size (an em, in millimetres) is long.
+    /// The width of a line of text, in millimetres; `size` is the em in millimetres.
     pub fn width(&self, text: &str, face: Face, size: f32) -> f32 {
         self.set(text, face, size, |_, _, _| {})
     }
 
-    /// The outlines of a line of text from `at` on, standing on a line that rises by `angle` radians (counter-clockwise).
+    /// The outlines of a line of text from `at`, along a baseline that rises by `angle` radians (counter-clockwise).
     pub fn write(&self, text: &str, face: Face, size: f32, at: Point, angle: f32) -> Vec<Step> {
         let (sin, cos) = libm::sincosf(angle);
         let mut steps = Vec::new();
@@ -94,7 +93,8 @@ impl FontSet {
         steps
     }
 
-    /// The outline of each letter of a text by itself, with where its middle stands along the line: for text that bends.
+    /// The outline of each character separately, at the position that `place` returns for the distance of its centre
+    /// along the line: for curved text.
     pub fn each(&self, text: &str, face: Face, size: f32, mut place: impl FnMut(f32) -> (Point, f32)) -> Vec<Step> {
         let mut steps = Vec::new();
         self.set(text, face, size, |font, id, along| {
@@ -115,7 +115,7 @@ impl FontSet {
         steps
     }
 
-    /// Goes along a line, telling each letter, its font, and where it begins; returns where the line ends.
+    /// Lays out a line: calls `each` with each character, its font and its position; returns the width of the line.
     fn set(&self, text: &str, face: Face, size: f32, mut each: impl FnMut(&dyn Glyphs, GlyphId, f32)) -> f32 {
         let own = &self.faces[match face {
             Face::Regular => 0,
@@ -145,9 +145,9 @@ impl FontSet {
     }
 }
 
-/// What is asked of a font, whichever kind it is.
+/// Operations common to both kinds of fonts.
 trait Glyphs {
-    /// How far the next letter stands, in the unit of `size`, an em.
+    /// The distance to the next character, in the unit of `size`, an em.
     fn advance(&self, id: GlyphId, size: f32) -> f32;
     /// The outline in ems, y up.
     fn curves(&self, id: GlyphId) -> (Vec<OutlineCurve>, f32);
@@ -181,7 +181,7 @@ fn outline(font: &dyn Glyphs, id: GlyphId, size: f32, place: impl Fn([f32; 2]) -
         let end_at = at(end.x, end.y);
         steps.push(match curve {
             OutlineCurve::Line(..) => Step::Line(end_at),
-            // A quadratic curve is a cubic one whose handles are two thirds of the way to its own.
+            // A quadratic curve as a cubic one: its handles are two thirds of the way to the control point.
             OutlineCurve::Quad(a, h, b) => {
                 let toward = |p: f32, h: f32| p + (h - p) * 2.0 / 3.0;
                 Step::Curve(at(toward(a.x, h.x), toward(a.y, h.y)), at(toward(b.x, h.x), toward(b.y, h.y)), end_at)
@@ -191,7 +191,7 @@ fn outline(font: &dyn Glyphs, id: GlyphId, size: f32, place: impl Fn([f32; 2]) -
     }
 }
 
-/// The font of the system with the most of these letters; of equals the first by its path.
+/// The system font with the most of these characters; of equals the first by path.
 fn search(lacking: &[char]) -> Option<FontVec> {
     let own = std::env::var_os("HOME").map(PathBuf::from);
     let own = own.iter().flat_map(|home| OWN_FOLDERS.map(|folder| home.join(folder)));

@@ -1,4 +1,4 @@
-//! What stands around a map: heading, numbers along the sides, colour bar, scale, north arrow, legend.
+//! Elements around a map: heading, coordinates along the sides, colour bar, scale, north arrow, legend.
 
 use super::font_set::FontSet;
 use super::layout::{BLOCK_GAP, Block, MARGIN, ROW};
@@ -9,13 +9,13 @@ use orogen_grid::words;
 use orogen_io::palette::color::{Encoder, Rgb, decode, linear, mix, oklab};
 use orogen_io::palette::tint::Tint;
 
-/// Small print.
+/// Ink of small print.
 pub const SOFT: Rgb = [92, 90, 88];
-/// Size of small print, an em in millimetres.
+/// Size of small print, the em in millimetres.
 pub const SMALL: f32 = 2.7;
 const HEADING: f32 = 7.0;
 
-/// A scene that is written on.
+/// A scene with fonts for drawing text.
 pub struct Desk<'a> {
     /// The page.
     pub scene: Scene,
@@ -23,19 +23,19 @@ pub struct Desk<'a> {
     pub letters: &'a FontSet,
 }
 
-/// How words stand to their place: from it on, up to it, or around it.
+/// Horizontal alignment of a text relative to its anchor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Align {
-    /// From the place on.
+    /// The text starts at the anchor.
     Start,
-    /// Around it.
+    /// The text is centred at the anchor.
     Middle,
-    /// Up to it.
+    /// The text ends at the anchor.
     End,
 }
 
 impl Desk<'_> {
-    /// Writes words that stand on a place; returns how long they are.
+    /// Draws a text at an anchor on its baseline; returns its width.
     pub fn text(&mut self, text: &str, face: Face, size: f32, ink: Rgb, at: Point, align: Align) -> f32 {
         let width = self.letters.width(text, face, size);
         let shift = match align {
@@ -48,20 +48,20 @@ impl Desk<'_> {
         width
     }
 
-    /// Small print.
+    /// Draws small print.
     pub fn small(&mut self, text: &str, at: Point, align: Align) -> f32 {
         self.text(text, Face::Regular, SMALL, SOFT, at, align)
     }
 
-    /// As much of a text as a width holds.
+    /// The part of a text that fits in a width.
     fn shortened(&self, text: &str, face: Face, size: f32, width: f32) -> String {
         words::shortened(text, width, |text| self.letters.width(text, face, size))
     }
 
-    /// The heading and two lines beneath it.
+    /// The heading and two lines under it.
     pub fn heading(&mut self, title: &str, lines: [&str; 2]) {
         let width = self.scene.size[0] - 2.0 * MARGIN;
-        // A long title is set smaller, and only then cut.
+        // A long title is set smaller, and shortened only if that is not enough.
         let natural = self.letters.width(title, Face::Bold, HEADING).max(1e-3);
         let size = HEADING * (width / natural).clamp(0.55, 1.0);
         let title = self.shortened(title, Face::Bold, size, width);
@@ -72,8 +72,8 @@ impl Desk<'_> {
         }
     }
 
-    /// Numbers along the left and the bottom of the map, marks along all four sides. `spans` are the values at the map's left
-    /// and right, top and bottom.
+    /// Coordinates along the left and the bottom of the map, ticks along all four sides. `spans` are the values at the
+    /// map's left and right, top and bottom.
     pub fn axes(&mut self, map: [f32; 4], spans: [[f64; 2]; 2], counts: [Count; 2]) {
         let [left, top, width, height] = map;
         let (right, bottom) = (left + width, top + height);
@@ -101,7 +101,7 @@ impl Desk<'_> {
         self.scene.lines(marks, 0.2, INK, 1.0);
     }
 
-    /// A bar of the colours with their heights, so wide with its unit.
+    /// A colour bar with heights; `width` includes its unit.
     pub fn colors(&mut self, [left, top]: Point, width: f32, tint: &Tint, [low, high]: [f64; 2]) {
         const STEPS: usize = 600;
         let encoder = Encoder::new();
@@ -132,7 +132,7 @@ impl Desk<'_> {
         self.small("m", [left + area[2] + 2.0, top + 2.8], Align::Start);
     }
 
-    /// A bar of a round length.
+    /// A scale bar of a round length.
     pub fn scale(&mut self, [left, top]: Point, metres_a_millimetre: f64) {
         let most = f64::from(SCALE - 14.0);
         let length = {
@@ -162,7 +162,7 @@ impl Desk<'_> {
         }
     }
 
-    /// An arrow to the top of the page.
+    /// A north arrow, which points to the top of the page.
     pub fn north(&mut self, [left, top]: Point) {
         let (x, foot) = (left + NORTH / 2.0, top + 8.2);
         self.scene.area(polygon(&[[x, top + 0.2], [x + 2.1, foot], [x, foot - 1.5]]), INK, 1.0);
@@ -172,7 +172,7 @@ impl Desk<'_> {
         self.text("N", Face::Bold, 2.9, INK, [x + 2.8, top + 2.6], Align::Start);
     }
 
-    /// What lines and marks mean: in so many rows.
+    /// The legend, in `rows` rows.
     pub fn legend(&mut self, [left, top]: Point, entries: &[Entry], rows: usize) {
         let widths = columns(entries, self.letters, rows);
         for (k, entry) in entries.iter().enumerate() {
@@ -209,29 +209,29 @@ impl Desk<'_> {
     }
 }
 
-/// A line of the legend.
+/// A legend entry.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
-    /// What is drawn.
+    /// The symbol.
     pub sign: Sign,
-    /// What it means.
+    /// The description.
     pub text: String,
 }
 
-/// What the legend shows.
+/// A symbol of the legend.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Sign {
-    /// A line of some width.
+    /// A line with its width in millimetres.
     Line(f32, Rgb),
     /// A lake: its water and its shore.
     Water(Rgb, Rgb),
     /// A summit.
     Summit,
-    /// A patch of a color, or of several along a gradient.
+    /// A patch of one color, or of several along a gradient.
     Swatch(Vec<Rgb>),
 }
 
-/// The pixels of a swatch, from the first of its colors to the last.
+/// The pixels of a swatch, from its first color to its last.
 fn swatch(colors: &[Rgb]) -> Vec<u8> {
     const PIXELS: usize = 64;
     let encoder = Encoder::new();
@@ -245,11 +245,11 @@ fn swatch(colors: &[Rgb]) -> Vec<u8> {
 }
 
 const SIGN: f32 = 8.0;
-/// From one line of the legend to the next.
+/// Height of a legend line.
 const LINE: f32 = 4.6;
-/// Lines of the legend where it stands in a row.
+/// Lines of the legend in a row of blocks.
 pub const LEGEND_ROWS: usize = 2;
-/// The widths of blocks.
+/// Widths of blocks.
 pub const COLORS: f32 = 88.0;
 const SCALE: f32 = 62.0;
 const NORTH: f32 = 6.0;
@@ -259,12 +259,12 @@ fn columns(entries: &[Entry], letters: &FontSet, rows: usize) -> Vec<f32> {
     entries.chunks(rows.max(1)).map(|pair| pair.iter().map(width).fold(0.0, f32::max)).collect()
 }
 
-/// The block of the colours: in a column it is as wide as that.
+/// The block of the colour bar; in a column it takes the full width.
 pub fn colors_block() -> Block {
     Block { widths: [COLORS, 0.0], height: ROW }
 }
 
-/// The block of the scale.
+/// The block of the scale bar.
 pub fn scale_block() -> Block {
     Block { widths: [SCALE - BLOCK_GAP; 2], height: ROW - 3.0 }
 }

@@ -1,4 +1,4 @@
-//! The heights of a sheet, at as many samples as paper can show.
+//! Resampling of a sheet's heights to the resolution of the page.
 
 use orogen_noise::Points;
 use rayon::prelude::*;
@@ -7,8 +7,8 @@ use orogen_engine::layer::LayerKind;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::resample;
 
-/// A grid of `size` samples over the very extent of `heights`: its corners stand on the corners. Where samples become fewer,
-/// each is the mean around it; where they become more, they lie on the interpolating cubic.
+/// A grid of `size` samples over the extent of `heights`, with the same corners. If there are fewer samples, each is a
+/// local mean; if there are more, they are interpolated with the interpolating cubic.
 pub fn laid(heights: &Grid, size: [usize; 2]) -> Grid {
     let window = heights.window();
     let at = |count: usize, samples: usize| {
@@ -18,7 +18,7 @@ pub fn laid(heights: &Grid, size: [usize; 2]) -> Grid {
     read(heights, &at(size[0], window.width), &at(size[1], window.height))
 }
 
-/// The same at the middles of `size` pixels that cover that extent.
+/// The same at the centres of `size` pixels that cover that extent.
 pub fn at_pixels(heights: &Grid, size: [usize; 2]) -> Grid {
     let window = heights.window();
     let at = |count: usize, samples: usize| {
@@ -28,7 +28,7 @@ pub fn at_pixels(heights: &Grid, size: [usize; 2]) -> Grid {
     read(heights, &at(size[0], window.width), &at(size[1], window.height))
 }
 
-/// The heights at columns `xs` and rows `ys`, evenly apart, in samples.
+/// The heights at evenly spaced columns `xs` and rows `ys`, in samples.
 fn read(heights: &Grid, xs: &[f64], ys: &[f64]) -> Grid {
     let source = heights.window();
     let step = |at: &[f64]| if at.len() > 1 { at[1] - at[0] } else { 1.0 };
@@ -42,7 +42,7 @@ fn read(heights: &Grid, xs: &[f64], ys: &[f64]) -> Grid {
                 resample::read(&own, LayerKind::Height, &Points::Lattice { xs, ys: &[*y] }, row);
                 let j = (y.round() as usize).min(source.height - 1);
                 for (height, x) in row.iter_mut().zip(xs) {
-                    // A hole is as large as its sample's share of the ground.
+                    // A hole covers the area of its sample.
                     let nearest = own[((x.round() as usize).min(source.width - 1), j)];
                     if !nearest.is_finite() || !height.is_finite() {
                         *height = nearest;
@@ -59,7 +59,7 @@ fn read(heights: &Grid, xs: &[f64], ys: &[f64]) -> Grid {
     };
     let columns: Vec<std::ops::Range<usize>> = xs.iter().map(|x| around(*x, across, source.width)).collect();
     out.data_mut().par_chunks_mut(xs.len()).zip(ys).for_each(|(row, y)| {
-        // Down first: the sums of columns, then across.
+        // Columns first, then rows.
         let rows = around(*y, down, source.height);
         let (mut sums, mut counts) = (vec![0.0f32; source.width], vec![0.0f32; source.width]);
         for j in rows {

@@ -1,15 +1,15 @@
-//! The inks and widths of a map's lines.
+//! Inks and widths of a map's lines.
 
 use orogen_io::palette::color::{Light, Rgb};
 
 const BROWN: Rgb = [126, 82, 42];
 const DARK_BROWN: Rgb = [92, 56, 26];
 const ISOBATH: Rgb = [58, 112, 166];
-/// Rivers.
+/// Ink of rivers.
 pub const BLUE: Rgb = [34, 92, 156];
-/// Shores of lakes and of the sea.
+/// Ink of the shores of lakes and of the sea.
 pub const SHORE: Rgb = [40, 96, 152];
-/// The water of lakes.
+/// Colour of lakes.
 pub const LAKES: Rgb = [170, 211, 233];
 
 /// Relative luminance of the ground below which inks are bright.
@@ -17,22 +17,22 @@ const DARK: f32 = 0.14;
 
 /// Widths of contours and of index contours, in millimetres.
 pub const THIN: f32 = 0.12;
-/// See [`THIN`].
+/// Width of index contours, in millimetres.
 pub const THICK: f32 = 0.24;
 
-/// What contours and their heights are drawn with.
+/// The inks of contours and their labels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Inks {
-    /// The lines.
+    /// Ink of the lines.
     pub line: Rgb,
-    /// Their heights.
+    /// Ink of the labels.
     pub words: Rgb,
-    /// How much of the ground the lines cover, 0 to 1.
+    /// Opacity of the lines, 0 to 1.
     pub cover: f32,
 }
 
 impl Inks {
-    /// Those that are seen on a color: dark ones, and on dark ground bright ones.
+    /// Inks visible on a color: dark ones, or bright ones on dark ground.
     pub fn over([red, green, blue]: Light, is_land: bool) -> Inks {
         let dark = 0.2126 * red + 0.7152 * green + 0.0722 * blue < DARK;
         match (is_land, dark) {

@@ -1,13 +1,13 @@
-//! Heights written along contour lines, each in a gap of its line.
+//! Labels along contour lines, each in a gap of its line.
 
 use super::scene::Point;
 
-/// What is already on the sheet: where no word may stand.
+/// The occupied parts of a sheet, where no label may be placed.
 #[derive(Debug, Clone)]
 pub struct Taken {
     columns: usize,
     rows: usize,
-    /// Whether something stands in a square of [`SQUARE`] millimetres.
+    /// Whether each square of [`SQUARE`] millimetres is occupied.
     squares: Vec<bool>,
     origin: Point,
 }
@@ -16,7 +16,7 @@ pub struct Taken {
 const SQUARE: f32 = 0.4;
 
 impl Taken {
-    /// Nothing yet, over a rectangle: left, top, width, height. What lies outside is taken.
+    /// Nothing occupied in a rectangle: left, top, width, height. Everything outside counts as occupied.
     pub fn none([left, top, width, height]: [f32; 4]) -> Taken {
         let [columns, rows] = [width, height].map(|side| (side / SQUARE).floor().max(0.0) as usize);
         Taken { columns, rows, squares: vec![false; columns * rows], origin: [left, top] }
@@ -36,13 +36,13 @@ impl Taken {
             .map(move |[u, v]| self.square([place[0] + u, place[1] + v]))
     }
 
-    /// Takes what lies within `reach` of a place.
+    /// Marks all within `reach` of a point as occupied.
     pub fn take(&mut self, place: Point, reach: f32) {
         let found: Vec<usize> = self.squares_around(place, reach).flatten().collect();
         found.into_iter().for_each(|square| self.squares[square] = true);
     }
 
-    /// Takes a line.
+    /// Marks a line as occupied.
     pub fn take_line(&mut self, line: &[Point], reach: f32) {
         for pair in line.windows(2) {
             let [dx, dy] = [0, 1].map(|c| pair[1][c] - pair[0][c]);
@@ -54,7 +54,7 @@ impl Taken {
         }
     }
 
-    /// Whether all within `reach` of a place is free.
+    /// Whether everything within `reach` of a point is free.
     pub fn is_free(&self, place: Point, reach: f32) -> bool {
         self.squares_around(place, reach).all(|square| square.is_some_and(|square| !self.squares[square]))
     }
@@ -63,14 +63,14 @@ impl Taken {
 /// A label along a line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Label {
-    /// What it says.
+    /// The text.
     pub text: String,
-    /// Places along its middle, a letter's width or less apart, in the order it is read.
+    /// Points along its centre line, at most a letter's width apart, in reading order.
     pub path: Vec<Point>,
 }
 
 impl Label {
-    /// Where it is read at a distance along it, and how it is turned there: radians counter-clockwise.
+    /// The position at a distance along the label, and the rotation there in radians counter-clockwise.
     pub fn at(&self, along: f32) -> (Point, f32) {
         let mut left = along;
         let last = self.path.len().saturating_sub(2);
@@ -87,21 +87,21 @@ impl Label {
     }
 }
 
-/// How labels are set.
+/// The style of labels.
 #[derive(Debug, Clone, Copy)]
 pub struct LabelStyle {
-    /// Height of the letters in millimetres.
+    /// Height of the letters, in millimetres.
     pub size: f32,
-    /// Millimetres between two labels, at least.
+    /// Minimum distance between two labels, in millimetres.
     pub apart: f32,
-    /// Millimetres between two labels of one line.
+    /// Distance between two labels of one line, in millimetres.
     pub every: f32,
 }
 
-/// Finds places for a line's labels. `line` has higher ground to its left: a text along it has its head uphill. Where it would
-/// stand on its head it is set the other way around, if no better place is found.
+/// Finds positions for a line's labels. `line` has higher ground to its left, so a text along it points uphill. Where
+/// such a text would be upside down it is reversed, if there is no better position.
 ///
-/// What labels cover is taken.
+/// The area of the labels is marked as occupied.
 pub fn place(line: &[Point], text: &str, width: f32, style: LabelStyle, taken: &mut Taken) -> Vec<Label> {
     let along = Along::new(line);
     let (need, step) = (width + style.size, style.size * 0.6);
@@ -139,10 +139,10 @@ pub fn place(line: &[Point], text: &str, width: f32, style: LabelStyle, taken: &
     labels
 }
 
-/// A line by the distance along it.
+/// A line parametrised by distance.
 struct Along<'a> {
     line: &'a [Point],
-    /// The distance of each place from the first.
+    /// The distance of each point from the first.
     distances: Vec<f32>,
 }
 
@@ -172,7 +172,7 @@ impl<'a> Along<'a> {
 
     fn part(&self, from: f32, to: f32, step: f32) -> Vec<Point> {
         let count = ((to - from) / step).ceil().max(1.0) as usize;
-        // Wiggles shorter than a letter would turn letters against each other.
+        // Bends shorter than a letter would rotate letters against each other.
         let places: Vec<Point> = (0..=count).map(|k| self.at(from + (to - from) * k as f32 / count as f32)).collect();
         let reach = (count / 6).max(1);
         (0..=count)
@@ -183,7 +183,8 @@ impl<'a> Along<'a> {
             .collect()
     }
 
-    /// How bad a place is for a text, from 0: bends, and standing on its head; none if it bends too much to be read.
+    /// The cost of a position for a text, from 0: for bends, and for upside-down text; `None` if it bends too much to
+    /// be legible.
     fn score(&self, start: f32, need: f32) -> Option<f32> {
         let places = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| self.at(start + need * share));
         let [dx, dy] = [0, 1].map(|c| places[4][c] - places[0][c]);
@@ -203,12 +204,12 @@ impl<'a> Along<'a> {
     }
 }
 
-/// What is left of lines where labels stand: gaps as wide as the words and `margin` more.
+/// The lines without the parts under labels: gaps as wide as the text plus `margin`.
 pub fn gaps(lines: &[Vec<Point>], labels: &[Label], reach: f32, margin: f32) -> Vec<Vec<Point>> {
     if labels.is_empty() {
         return lines.to_vec();
     }
-    // Labels by squares, so that each place looks at few.
+    // Labels indexed by squares, so that each point tests only a few.
     let near = 12.0f32;
     let key = |place: Point| ((place[0] / near).floor() as i32, (place[1] / near).floor() as i32);
     let mut known: std::collections::BTreeMap<(i32, i32), Vec<Point>> = std::collections::BTreeMap::new();

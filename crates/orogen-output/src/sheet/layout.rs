@@ -1,56 +1,57 @@
-//! Where the parts of a sheet stand, in millimetres.
+//! The layout of a sheet, in millimetres.
 
 use super::options::{Options, Page, Resolution};
 
-/// Around everything.
+/// Margin of the page.
 pub const MARGIN: f32 = 9.0;
-/// The heading, and the two lines beneath it, with the space to the map.
+/// Height of the heading and the two lines under it, including the space above the map.
 const HEADING: f32 = 17.5;
-/// Room for numbers along the sides: at the left, the right, the top and the bottom.
+/// Room for coordinates at the left, the right, the top and the bottom.
 const AXES: [f32; 4] = [12.5, 5.0, 1.0, 6.0];
-/// Between the map and what stands beneath or beside it.
+/// Distance between the map and the blocks below or beside it.
 const FOOT_GAP: f32 = 5.0;
 /// The height of a row of blocks.
 pub const ROW: f32 = 12.5;
-/// Between two blocks of a column.
+/// Distance between two blocks of a column.
 const COLUMN_GAP: f32 = 3.5;
-/// The narrowest column of blocks beside a map, and the widest beside a map that is narrower still.
+/// Minimum width of a column of blocks beside a map, and its maximum width beside a narrow map.
 const COLUMN: [f32; 2] = [64.0, 88.0];
-/// The least width and height that a profile is drawn in, and its height over its width at most, beneath a map and beside it.
+/// Minimum width and height of a profile, and its maximum ratio of height to width, below a map and beside it.
 const PROFILE: [f32; 2] = [58.0, 30.0];
 const PROFILE_ASPECT: [f32; 2] = [0.45, 0.60];
-/// Between two blocks of a row.
+/// Distance between two blocks of a row.
 pub const BLOCK_GAP: f32 = 9.0;
-/// The narrowest page that is made to fit a map.
+/// Minimum width of a page that is fitted to a map.
 const NARROWEST: f32 = 118.0;
 
-/// A block beneath or beside the map, as large as it needs to be.
+/// A block below or beside the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Block {
-    /// Its width in a row, and in a column where it is as high as need be.
+    /// Its width in a row, and in a column where its height is flexible.
     pub widths: [f32; 2],
     /// Its height in a column.
     pub height: f32,
 }
 
-/// Where everything stands.
+/// The positions of all elements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
     /// Width and height of the page.
     pub page: [f32; 2],
-    /// Pixels an inch.
+    /// Pixels per inch.
     pub dpi: f64,
     /// Left, top, width and height of the map.
     pub map: [f32; 4],
     /// Left and top of each block.
     pub blocks: Vec<[f32; 2]>,
-    /// The width of the column that the blocks stand in; none if they stand in rows beneath the map.
+    /// Width of the column of blocks; `None` if they are in rows below the map.
     pub column: Option<f32>,
-    /// Left, top, width and height of what is left for profiles of the land, with their numbers; two where one would be out of proportion.
+    /// Left, top, width and height of the space for profiles, including their labels; two if one would be badly
+    /// proportioned.
     pub profiles: Vec<[f32; 4]>,
 }
 
-/// A map with its blocks, before it is put in its place.
+/// A map with its blocks, before it is positioned.
 struct Draft {
     /// Width and height of the map.
     size: [f32; 2],
@@ -58,10 +59,10 @@ struct Draft {
 }
 
 impl Layout {
-    /// Lays out a map of this width over height, and blocks in rows beneath it or, where a larger map is left room for that way, in a column beside
-    /// it. Room that is left on paper goes to a profile of the land.
+    /// Lays out a map with this ratio of width to height. Blocks are in rows below it or, if that makes the map larger,
+    /// in a column beside it. Remaining space on paper is used for profiles of the land.
     ///
-    /// The map's sides stand on whole pixels, so that its picture is shown as it is.
+    /// The map's sides are on whole pixels, so that its picture needs no resampling.
     pub fn new(aspect: f64, blocks: &[Block], options: &Options) -> Layout {
         let aspect = aspect.clamp(1e-3, 1e3) as f32;
         let head = if options.parts.title { HEADING } else { 0.0 };
@@ -89,7 +90,7 @@ impl Layout {
                 let aside = within([room[0] - column - FOOT_GAP, room[1]]);
                 let stacked = stack(blocks) <= page[1] - 2.0 * MARGIN - head;
                 let is_aside = !blocks.is_empty() && stacked && aside[0] > below[0];
-                // What is left beside the map, but no more than the map has with its numbers.
+                // The space beside the map, at most the width of the map with its coordinates.
                 let widest = column.max(COLUMN[1]).max(aside[0] + left + right);
                 let column = column.max(room[0] - FOOT_GAP - aside[0]).min(widest);
                 let draft = match is_aside {
@@ -131,7 +132,7 @@ impl Layout {
                     Some(_) => vec![fits([x, y + FOOT_GAP, column, half]); 2],
                     None => vec![fits([x, y + FOOT_GAP, column, free])],
                 };
-                // The last one's foot stands level with the map's.
+                // The foot of the last profile is aligned with the map's.
                 let mut foot = under;
                 for [x, _, width, height] in areas.into_iter().flatten() {
                     foot -= height;
@@ -145,7 +146,7 @@ impl Layout {
                 match fits([map[0] - left, under + FOOT_GAP, map[2] + left + right, free]) {
                     None => at[1] += free.clamp(0.0, 2.0 * FOOT_GAP),
                     Some([x, y, width, height]) => {
-                        // What is left of the page even so opens the gaps.
+                        // Any remaining space widens the gaps.
                         let apart = ((free - height) / 2.0).min(2.0 * FOOT_GAP);
                         layout.profiles.push([x, y + apart, width, height]);
                         at[1] += height + 2.0 * apart + FOOT_GAP;
@@ -164,7 +165,7 @@ impl Layout {
     }
 }
 
-/// The height of all rows that blocks take within a width.
+/// The height of all rows of blocks for a given width.
 fn foot(blocks: &[Block], width: f32) -> f32 {
     let (mut rows, mut used) = (0.0, f32::MAX);
     for block in blocks {

@@ -1,4 +1,4 @@
-//! Contours of a sheet: how far apart, and which are worth drawing.
+//! Contours of a sheet: their interval, and which are worth drawing.
 
 use orogen_grid::contour::chaikin::smooth;
 use orogen_grid::contour::levels::{every, is_index};
@@ -7,20 +7,20 @@ use orogen_grid::contour::trace::contours;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
-/// Millimetres that contours on steep ground are apart, at least; a tenth of the ground is steeper.
+/// Minimum distance between contours on steep ground, in millimetres; a tenth of the ground is steeper.
 const CLOSEST: f64 = 0.5;
 
-/// Contours on the whole relief: at least, at most.
+/// Minimum and maximum number of contours over the whole relief.
 const FEWEST: f64 = 8.0;
 const MOST: f64 = 60.0;
 
-/// Rings shorter than this are left out, in millimetres.
+/// Minimum length of rings, in millimetres.
 const SHORTEST: f64 = 3.0;
 
-/// Round distances between contours, as maps have them.
+/// Round intervals, as on published maps.
 const ROUND: [f64; 5] = [1.0, 2.0, 2.5, 5.0, 10.0];
 
-/// How far apart contours of the land suit a map on which a sample is `sample` millimetres wide.
+/// A contour interval for a map on which a sample is `sample` millimetres wide, in metres.
 pub fn interval(heights: &Grid, sea_level: Option<f64>, sample: f64) -> f64 {
     let sea = sea_level.unwrap_or(f64::NEG_INFINITY) as f32;
     let (mut low, mut high) = (f32::MAX, f32::MIN);
@@ -34,7 +34,7 @@ pub fn interval(heights: &Grid, sea_level: Option<f64>, sample: f64) -> f64 {
         }
     }
     if rises.is_empty() {
-        // No land: the sea's floor.
+        // Without land, the interval of the sea floor.
         return if sea_level.is_some() { interval(heights, None, sample) } else { 1.0 };
     }
     let at = rises.len() * 9 / 10;
@@ -45,12 +45,13 @@ pub fn interval(heights: &Grid, sea_level: Option<f64>, sample: f64) -> f64 {
         return 1.0;
     }
     let power = libm::pow(10.0, libm::log10(wanted).floor());
-    // 2.5 only for 25 and 250: nobody draws contours of 2.5 m.
+    // 2.5 only for 25 and 250: intervals of 2.5 m are not in use.
     let rounds = ROUND.into_iter().filter(|n| *n != 2.5 || power >= 10.0);
     rounds.map(|n| n * power).find(|step| *step >= wanted * 0.95).unwrap_or(10.0 * power)
 }
 
-/// The contours of heights in which a sample is `sample` millimetres wide: smoothed, none on the sea's level, no short rings.
+/// The contours of heights with samples of `sample` millimetres: smoothed, without the sea level and without short
+/// rings.
 ///
 /// # Errors
 /// If there are too many levels for the relief.
@@ -65,7 +66,8 @@ pub fn lines(heights: &Grid, interval: f64, sea_level: Option<f64>, sample: f64)
     Ok(lines.iter().map(|line| smooth(line, 1)).collect())
 }
 
-/// How far apart index contours are: every fifth contour, or of 25 m and the like every fourth, which is round.
+/// The interval of index contours: every fifth contour, or every fourth for 25 m and similar, which gives round
+/// numbers.
 pub fn thick_interval(interval: f64) -> f64 {
     let power = libm::pow(10.0, libm::log10(interval).floor());
     let digits = interval / power;
@@ -88,10 +90,10 @@ pub struct Summit {
     pub height: f32,
 }
 
-/// The highest samples within `apart` blocks of `block` x `block` samples, the highest first: no more than `most`, none at the border, and
-/// each standing out of its surroundings.
+/// The highest samples within `apart` blocks of `block` x `block` samples, the highest first: at most `most`, none at
+/// the border, and all of them above their surroundings.
 ///
-/// A block counts as high as its highest sample, so that each summit is the highest sample there is around it.
+/// The height of a block is that of its highest sample, so that each summit is the highest sample nearby.
 pub fn summits(heights: &Grid, sea_level: Option<f64>, block: usize, apart: usize, most: usize) -> Vec<Summit> {
     let sea = sea_level.unwrap_or(f64::NEG_INFINITY) as f32;
     let blocks = blocks(heights, block.max(1));
@@ -101,7 +103,7 @@ pub fn summits(heights: &Grid, sea_level: Option<f64>, block: usize, apart: usiz
         for i in 2..width.saturating_sub(2) {
             let Some(summit) = blocks[(i, j)] else { continue };
             let here = summit.height;
-            // The nearest first: almost all fall there. What has no height is no summit's neighbour.
+            // The nearest first, which rejects almost all. Missing samples are ignored.
             let top = |reach: usize| {
                 let rows = j.saturating_sub(reach)..(j + reach + 1).min(height);
                 rows.into_iter().all(|y| {

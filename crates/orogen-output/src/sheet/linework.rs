@@ -1,4 +1,4 @@
-//! What is drawn on the relief: contours, rivers, lakes, shores and summits, found in the heights at the scale of the map.
+//! Lines of a map: contours, rivers, lakes, shores and summits, found in the heights at the scale of the map.
 
 use super::furniture::{Entry, Sign};
 use super::ground::laid;
@@ -14,44 +14,45 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::Grid;
 use orogen_io::format::levels::Levels;
 
-/// How wide a sample is that lines are drawn from, in millimetres, and the most of them along a side.
+/// Width of a sample for finding lines, in millimetres, and the maximum number of samples along a side.
 const SAMPLE: f64 = 0.25;
 const MOST: usize = 2400;
 
-/// Where rivers begin, and how large lakes are, in square millimetres; how deep, as a share of the relief.
+/// Thresholds: area that drains to the start of a river and minimum area of a lake, in square millimetres; minimum
+/// depth of a lake, as a share of the relief.
 const SPRING: f64 = 42.0;
 const LAKE: f64 = 2.0;
 const DEPTH: f64 = 0.006;
 
-/// Heights of so many times finer samples are smooth between those that there were.
+/// Ratio of cells below which heights count as enlarged: they are smooth between the original samples.
 const ENLARGED: f64 = 0.6;
 
-/// How far summits are from each other in millimetres, and how many there are at most.
+/// Minimum distance between summits in millimetres, and maximum number of summits.
 const APART: f64 = 26.0;
 const SUMMITS: usize = 24;
 
-/// How many samples lie along the longer side of a map of so many millimetres, to draw lines from.
+/// Number of samples along the longer side of a map of this many millimetres, for finding lines.
 pub fn lines_at(longer: f64) -> usize {
     ((longer / SAMPLE).ceil() as usize).clamp(8, MOST)
 }
 
-/// The heights at the samples that lines are drawn from, and the lines.
+/// The heights at the resolution of lines, and the lines.
 pub struct Linework {
     /// The heights.
     pub grid: Grid,
-    /// Width over height.
+    /// Ratio of width to height.
     pub aspect: f64,
     /// Rivers and lakes.
     pub water: Water,
     /// Contours.
     pub contours: Vec<Line>,
-    /// Metres from one contour to the next, if there are contours.
+    /// Distance between contours in metres, if there are contours.
     pub interval: Option<f64>,
-    /// The shore of the sea.
+    /// The coast.
     pub shore: Vec<Line>,
-    /// Summits, in samples of the heights that the grid was made of.
+    /// Summits, in samples of the original heights.
     pub summits: Vec<Summit>,
-    /// Columns and rows of those heights.
+    /// Columns and rows of the original heights.
     pub samples: [usize; 2],
 }
 
@@ -59,12 +60,12 @@ impl Linework {
     /// Finds the lines of heights.
     ///
     /// # Errors
-    /// If the contours asked for are too many, or there are more shores than can be numbered.
+    /// If there would be too many contours or shores.
     pub fn of(heights: &Grid, options: &Options) -> Result<Linework> {
         let window = heights.window();
         let sides = [window.width - 1, window.height - 1].map(|side| side as f64);
         let aspect = sides[0] / sides[1];
-        // How large the map will be is known only with its legend; near enough.
+        // The exact size of the map depends on its legend; this is close enough.
         let longer = match options.page {
             Page::Fitted(longer) => longer,
             Page::Paper([width, height]) => {
@@ -83,7 +84,7 @@ impl Linework {
         let cells = |millimetres: f64| (millimetres / (sample * sample)).ceil().max(1.0) as u32;
         let water = match (parts.rivers || parts.lakes) && relief > 0.0 {
             true => {
-                // Rivers run through lakes that are not drawn.
+                // Rivers continue through lakes that are not drawn.
                 let lake = if parts.lakes { cells(LAKE) } else { u32::MAX };
                 let scattered = grid.window().cell < ENLARGED * window.cell;
                 let depth = (relief * DEPTH) as f32;
@@ -93,7 +94,7 @@ impl Linework {
         };
         let interval =
             parts.contours.then(|| options.interval.unwrap_or_else(|| interval(&grid, options.sea_level, sample)));
-        // Contours end at lakes that are drawn, and go on under those that are not.
+        // Contours end at lakes that are drawn, and continue under those that are not.
         let ground = Grid::from_data(*grid.window(), water.surface.data().to_vec()).filter(|_| parts.lakes);
         let contours = match interval {
             Some(interval) if relief > 0.0 => {
@@ -106,7 +107,7 @@ impl Linework {
             _ => Vec::new(),
         };
         let summits = match options.parts.summits {
-            // Looked for among the heights themselves: means, and the cubic between samples, have other summits.
+            // Summits are found in the original heights: resampling moves them.
             true => {
                 let block = (window.width - 1).div_ceil((size[0] - 1).max(1));
                 let block_width = sample * block as f64 * (size[0] - 1) as f64 / sides[0];
@@ -120,7 +121,7 @@ impl Linework {
         Ok(Linework { grid, aspect, water, contours, interval, shore, summits, samples })
     }
 
-    /// What its lines mean.
+    /// The legend entries of its lines.
     pub fn legend(&self, options: &Options) -> Vec<Entry> {
         let mut entries = Vec::new();
         if let Some(interval) = self.interval.filter(|_| !self.contours.is_empty()) {

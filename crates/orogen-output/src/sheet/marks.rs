@@ -1,19 +1,19 @@
-//! Marks on the map itself.
+//! Symbols on the map.
 
 use super::font_set::FontSet;
 use super::labels::Taken;
 use super::scene::{INK, Point, Scene, Step, polygon};
 use crate::map::text::Face;
 
-/// Size of a summit's height, an em in millimetres.
+/// Size of a summit's label, the em in millimetres.
 const SIZE: f32 = 2.5;
 
-/// A small triangle around a place.
+/// A small triangle around a point.
 pub fn triangle([x, y]: Point) -> Vec<Step> {
     polygon(&[[x, y - 0.95], [x + 0.85, y + 0.6], [x - 0.85, y + 0.6]])
 }
 
-/// Marks a summit and writes its height beside it, where there is room: to the right, else to the left. Takes that room.
+/// Draws a summit and its height, if there is room: to the right, otherwise to the left. Marks the room as occupied.
 pub fn summit(scene: &mut Scene, letters: &FontSet, taken: &mut Taken, at: Point, text: &str) {
     let width = letters.width(text, Face::Bold, SIZE);
     let starts = [at[0] + 1.5, at[0] - 1.5 - width];
@@ -23,7 +23,7 @@ pub fn summit(scene: &mut Scene, letters: &FontSet, taken: &mut Taken, at: Point
     let Some(start) = starts.iter().copied().find(free).filter(|_| taken.is_free(at, 0.8)) else { return };
     let outline = letters.write(text, Face::Bold, SIZE, [start, at[1] + SIZE * 0.35], 0.0);
     let mark = triangle(at);
-    // A bright edge, so that dark ground does not swallow it.
+    // A bright edge for visibility on dark ground.
     let edge: Vec<Vec<Point>> = rings(&outline).into_iter().chain(rings(&mark)).collect();
     scene.lines(edge, 0.75, [255; 3], 0.55);
     scene.area(mark, INK, 1.0);
@@ -32,7 +32,7 @@ pub fn summit(scene: &mut Scene, letters: &FontSet, taken: &mut Taken, at: Point
     shares().for_each(|share| taken.take(middle(start, share), SIZE * 0.75));
 }
 
-/// The parts of an outline as closed lines; curves as their ends, which at this size is near enough.
+/// The parts of an outline as closed lines; curves are replaced by their ends, which suffices at this size.
 fn rings(outline: &[Step]) -> Vec<Vec<Point>> {
     let mut rings: Vec<Vec<Point>> = Vec::new();
     for step in outline {

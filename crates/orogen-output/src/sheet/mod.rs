@@ -1,5 +1,5 @@
-//! Map sheets: heights with contours, rivers, lakes and all that belongs to a printed map, as one list of things to draw
-//! ([`scene`]), and that list as pixels ([`raster`]), SVG ([`vector`]) and PDF ([`pdf`]).
+//! Map sheets: heights with contours, rivers, lakes and other map elements, as a display list ([`scene`]), and the
+//! output of that list as pixels ([`raster`]), SVG ([`vector`]) and PDF ([`pdf`]).
 
 pub mod draw;
 pub mod font_set;

@@ -1,74 +1,74 @@
-//! What a sheet is to show.
+//! Options of a sheet.
 
 use orogen_grid::grid::Grid;
 use orogen_io::format::dem::Georeference;
 use orogen_io::palette::color::Rgb;
 use orogen_io::palette::palette::Palette;
 
-/// How relief is shaded.
+/// Relief shading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Shading {
-    /// Not at all.
+    /// No shading.
     None,
-    /// By one light from the north-west.
+    /// One light from the north-west.
     Single,
-    /// By three lights, which show ridges that run along the first.
+    /// Three lights, which also show ridges parallel to the first.
     #[default]
     Multi,
-    /// As on Swiss maps: three lights, lowlands soft and in haze, summits crisp and warm in the light (after E. Imhof,
+    /// In the style of Swiss maps: three lights, soft and hazy lowlands, crisp and warm summits (after E. Imhof,
     /// "Kartographische Geländedarstellung", 1965).
     Swiss,
 }
 
-/// How large a page is.
+/// The size of a page.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Page {
-    /// As large as a map with a longer side of so many millimetres needs.
+    /// Fitted to a map with a longer side of this many millimetres.
     Fitted(f64),
     /// Width and height in millimetres.
     Paper([f64; 2]),
 }
 
-/// How many pixels a page has.
+/// The resolution of a page.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Resolution {
-    /// So many an inch.
+    /// Pixels per inch.
     Inch(f64),
-    /// So many along the page's longer side.
+    /// Pixels along the page's longer side.
     Longer(u32),
 }
 
-/// The parts of a sheet.
+/// The parts of a sheet; each can be switched off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Parts {
-    /// The heading, and what is said of the map beneath it.
+    /// The heading, and the lines under it.
     pub title: bool,
-    /// Numbers along the sides.
+    /// Coordinates along the sides.
     pub axes: bool,
-    /// Lines of one height.
+    /// Contours.
     pub contours: bool,
-    /// Heights along index contours.
+    /// Labels along index contours.
     pub labels: bool,
-    /// The highest summits, with their heights.
+    /// The highest summits with their heights.
     pub summits: bool,
     /// Rivers.
     pub rivers: bool,
     /// Lakes.
     pub lakes: bool,
-    /// What the lines mean.
+    /// The legend.
     pub legend: bool,
-    /// What the colours mean.
+    /// The colour bar.
     pub colors: bool,
-    /// How long a kilometre is.
+    /// The scale bar.
     pub scale: bool,
-    /// Where north is.
+    /// The north arrow.
     pub north: bool,
-    /// The land cut from west to east through its highest place, where paper has room left for it.
+    /// Profiles through the highest sample, if the paper has room for them.
     pub profile: bool,
 }
 
 impl Default for Parts {
-    /// All of them.
+    /// All parts.
     fn default() -> Parts {
         Parts {
             title: true,
@@ -87,36 +87,36 @@ impl Default for Parts {
     }
 }
 
-/// How the values of a layer become colours.
+/// The mapping from values of a layer to colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
-    /// Evenly.
+    /// Linear.
     Linear,
-    /// By their logarithms: for amounts over orders of magnitude.
+    /// Logarithmic, for values over orders of magnitude.
     Log,
-    /// Each number a colour of its own.
+    /// A separate colour for each number.
     Labels,
 }
 
-/// A layer whose values colour the sheet in place of the heights.
+/// A layer that colours the sheet in place of the heights.
 #[derive(Debug, Clone)]
 pub struct Layer {
-    /// Its values, over the very window of the heights.
+    /// Its values, over the window of the heights.
     pub values: Grid,
-    /// What it is called.
+    /// The name.
     pub name: String,
-    /// What it is measured in, or empty.
+    /// The unit, or empty.
     pub unit: &'static str,
-    /// How values become colours.
+    /// The mapping from values to colours.
     pub scale: Scale,
-    /// The values at the ends of the palette; without, the lowest and the highest.
+    /// The values at the ends of the palette; by default the minimum and maximum.
     pub range: Option<[f32; 2]>,
 }
 
-/// A surface as it appears on a sheet.
+/// A surface in the legend of a sheet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfaceEntry {
-    /// What it is called.
+    /// The name.
     pub name: String,
     /// Its colors, sRGB: one, or several along a gradient.
     pub colors: Vec<Rgb>,
@@ -127,13 +127,13 @@ pub struct SurfaceEntry {
 /// The recipe's surfaces, whose albedo colors the sheet in place of the heights.
 #[derive(Debug, Clone)]
 pub struct SurfaceCover {
-    /// Red, green and blue as linear light, over the very window of the heights.
+    /// Red, green and blue in linear light, over the window of the heights.
     pub albedo: [Grid; 3],
     /// The surfaces in the legend.
     pub entries: Vec<SurfaceEntry>,
 }
 
-/// What the colors of a sheet show.
+/// What the colors of a sheet represent.
 #[derive(Debug, Clone, Default)]
 pub enum Coloring {
     /// The heights.
@@ -141,35 +141,36 @@ pub enum Coloring {
     Heights,
     /// Another layer.
     Layer(Layer),
-    /// What covers the ground.
+    /// The surfaces.
     Surfaces(SurfaceCover),
 }
 
-/// What a sheet is to show, and how.
+/// Options of a sheet.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// The heading.
     pub title: String,
-    /// What is said of the map beneath it, before what the sheet says itself.
+    /// The line under the heading, before the facts of the sheet.
     pub about: String,
-    /// Its colours.
+    /// The palette.
     pub palette: Palette,
-    /// How relief is shaded.
+    /// The relief shading.
     pub shading: Shading,
-    /// Metres from one contour to the next; without, what suits the ground and the scale.
+    /// Contour interval in metres; by default chosen by relief and scale.
     pub interval: Option<f64>,
-    /// What of it is drawn.
+    /// The parts that are drawn.
     pub parts: Parts,
     /// The page.
     pub page: Page,
-    /// How fine the picture is that the lines lie on, and the page where it is made of pixels.
+    /// The resolution of the relief picture, and of the page if it is written as pixels.
     pub resolution: Resolution,
-    /// The sea's surface in metres; without, all is land.
+    /// Sea level in metres; without it, everything is land.
     pub sea_level: Option<f64>,
-    /// What its colors show. The heights shade it in any case.
+    /// What the colors represent. The heights shade the relief in any case.
     pub coloring: Coloring,
-    /// The heights at the ends of the palette, the same for several sheets; without, the lowest and the highest of this one.
+    /// The heights at the ends of the palette, which make several sheets comparable; by default the minimum and maximum
+    /// of this one.
     pub range: Option<[f32; 2]>,
-    /// How the ground lies on a map of the Earth, if it does.
+    /// The position of the ground on a map of the Earth, if it has one.
     pub map: Option<Georeference>,
 }

@@ -1,4 +1,4 @@
-//! Draws the linework on the map, each line in an ink that is seen on the ground below it.
+//! Drawing of the lines on the map, each in an ink that is visible on the ground below it.
 
 use super::font_set::FontSet;
 use super::furniture::Desk;
@@ -18,19 +18,19 @@ use orogen_io::palette::tint::Tint;
 /// Widths of the smallest and the largest river, in millimetres.
 const RIVERS: [f32; 2] = [0.16, 0.95];
 
-/// Size of the heights along contours, an em in millimetres, and of that their reach above the line.
+/// Style of contour labels; `size` is the em in millimetres.
 const LABEL: LabelStyle = LabelStyle { size: 2.1, apart: 7.0, every: 95.0 };
 
-/// What lies below the lines: the ground's colors, by height or as they are in a picture.
+/// The background of the lines: colors by height, or a picture.
 pub enum Below<'a> {
     /// The tint of the heights.
     Tint(&'a Tint),
-    /// A picture over the map's area: its pixels a row, and its sRGB bytes.
+    /// A picture over the map's area: its pixels per row, and its sRGB bytes.
     Picture(usize, &'a [u8]),
 }
 
 impl Below<'_> {
-    /// The mean color under a line of one height, as linear light.
+    /// The mean color under a contour line, in linear light.
     fn color(&self, [left, top, width, height]: [f32; 4], elevation: f64, line: &[Point]) -> Light {
         match self {
             Below::Tint(tint) => tint.at(elevation as f32),
@@ -74,7 +74,7 @@ impl Linework {
         let shore: Vec<Vec<Point>> = self.shore.iter().map(path).collect();
         rivers.iter().for_each(|(width, line)| taken.take_line(line, 0.35 + width / 2.0));
         lakes.iter().chain(&shore).for_each(|line| taken.take_line(line, 0.5));
-        // Summits are written last, over the lines, but take their room first.
+        // Summits are drawn last, on top of the lines, but reserve their room first.
         let mut over = Desk {
             scene: Scene { size: desk.scene.size, title: String::new(), items: Vec::new() },
             letters: desk.letters,
@@ -88,7 +88,7 @@ impl Linework {
         }
         let sea = options.sea_level.unwrap_or(f64::NEG_INFINITY);
         let interval = self.interval.unwrap_or(1.0);
-        // By ink and thickness, in the order in which they were met.
+        // Grouped by ink and width, in the order of first use.
         let ink =
             |line: &Line, places: &[Point]| Inks::over(below.color(map, line.elevation, places), line.elevation > sea);
         let mut kinds: Vec<(Rgb, f32, f32, Vec<Vec<Point>>)> = Vec::new();
@@ -113,7 +113,7 @@ impl Linework {
         for (ink, width, cover, lines) in kinds {
             desk.scene.lines(gaps(&lines, &words, LABEL.size * 0.5, 0.25), width, ink, cover);
         }
-        // Thin rivers first, so that they end under those that they flow into.
+        // Thin rivers first, so that they end under the rivers that they flow into.
         let mut widths: Vec<f32> = rivers.iter().map(|river| river.0).collect();
         widths.sort_by(f32::total_cmp);
         widths.dedup();
@@ -131,7 +131,7 @@ impl Linework {
             let start = (length - width) / 2.0;
             let outline = desk.letters.each(&label.text, Face::Bold, LABEL.size, |along| {
                 let (at, angle) = label.at(start + along);
-                // The line runs through the middle of the letters, not along their feet.
+                // The line runs through the middle of the letters instead of their baseline.
                 let sink = LABEL.size * 0.34;
                 ([at[0] + sink * libm::sinf(angle), at[1] + sink * libm::cosf(angle)], angle)
             });
@@ -140,7 +140,7 @@ impl Linework {
         desk.scene.items.append(&mut over.scene.items);
     }
 
-    /// Heights along the index contours, the longest first, with their inks.
+    /// Labels of the index contours, the longest lines first, with their inks.
     fn labels(
         &self,
         letters: &FontSet,
@@ -160,7 +160,8 @@ impl Linework {
         labels
     }
 
-    /// How wide a river is drawn that so many samples drain to: as the root of its water, in steps that the eye can tell.
+    /// The width of a river with this many samples of drainage area, in millimetres: linear in the square root of the
+    /// area, in visible steps.
     fn width(&self, drained: u32) -> f32 {
         let share = (f64::from(drained) / self.grid.data().len() as f64).sqrt() as f32;
         let width = RIVERS[0] + (RIVERS[1] - RIVERS[0]) * (share * 1.3).min(1.0);

@@ -1,4 +1,5 @@
-//! A sheet as PDF (ISO 32000-1, version 1.4): one page, lines as paths, words as outlines, the picture as a compressed image.
+//! A sheet as PDF (ISO 32000-1, version 1.4): one page, lines as paths, text as outlines, the picture as a compressed
+//! image.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -7,22 +8,22 @@ use miniz_oxide::deflate::compress_to_vec_zlib;
 
 use super::scene::{Item, Point, Scene, Step};
 
-/// Points in a millimetre.
+/// Points per millimetre.
 const POINT: f32 = 72.0 / 25.4;
 
-/// How hard streams are compressed: 0 to 10.
+/// Compression level of streams: 0 to 10.
 const EFFORT: u8 = 6;
 
-/// Writes a scene on a page of its size.
+/// Writes a scene as a single page of its size.
 ///
 /// # Errors
-/// What writing brings.
+/// Errors of `out`.
 pub fn write(out: &mut dyn Write, scene: &Scene) -> io::Result<()> {
     let mut file = File { bytes: b"%PDF-1.4\n%\xe2\xe3\xcf\xd3\n".to_vec(), starts: Vec::new() };
     let mut page = Drawn { text: String::new(), height: scene.size[1], pictures: Vec::new(), covers: Vec::new() };
     scene.items.iter().for_each(|item| page.draw(item));
     let [width, height] = scene.size.map(|side| side * POINT);
-    // 1 catalogue, 2 pages, 3 the page, 4 what is drawn, 5 information, then pictures.
+    // Objects: 1 catalogue, 2 pages, 3 the page, 4 its content, 5 information, then pictures.
     let pictures: String = (0..page.pictures.len()).fold(String::new(), |mut text, k| {
         let _ = write!(text, "/P{k} {} 0 R ", 6 + k);
         text
@@ -40,7 +41,7 @@ pub fn write(out: &mut dyn Write, scene: &Scene) -> io::Result<()> {
     file.stream("", &compress_to_vec_zlib(page.text.as_bytes(), EFFORT));
     file.object(&format!("<< /Title <{}> /Producer (Orogen {}) >>", utf16(&scene.title), env!("CARGO_PKG_VERSION")));
     for (width, height, pixels) in &page.pictures {
-        // Each row as differences to the one above (PNG's filter 2): half the size of the plain pixels.
+        // Each row as differences from the one above (PNG filter 2), which halves the size.
         let stride = 3 * width;
         let mut rows = Vec::with_capacity((stride + 1) * height);
         let zeros = vec![0u8; stride];
@@ -59,7 +60,7 @@ pub fn write(out: &mut dyn Write, scene: &Scene) -> io::Result<()> {
     file.end(out)
 }
 
-/// Objects as they are written, and where each starts.
+/// Objects written so far, and their offsets.
 struct File {
     bytes: Vec<u8>,
     starts: Vec<usize>,
@@ -98,10 +99,10 @@ impl File {
     }
 }
 
-/// What is drawn on the page.
+/// The content of the page.
 struct Drawn<'a> {
     text: String,
-    /// The page's height in millimetres: y counts up in a PDF.
+    /// The page's height in millimetres: y points up in PDF.
     height: f32,
     pictures: Vec<(usize, usize, &'a [u8])>,
     covers: Vec<f32>,
@@ -168,7 +169,7 @@ impl<'a> Drawn<'a> {
     }
 }
 
-/// A text as hexadecimal UTF-16 with its mark, as PDF has texts beyond ASCII.
+/// A text as hexadecimal UTF-16 with a byte order mark, as PDF requires for non-ASCII text.
 fn utf16(text: &str) -> String {
     text.encode_utf16().fold(String::from("FEFF"), |mut hex, unit| {
         let _ = write!(hex, "{unit:04X}");

@@ -1,4 +1,5 @@
-//! Profiles of the land through its highest sample, from west to east and from north to south: what a sheet of paper has room for beside its map.
+//! Profiles of the land through its highest sample, from west to east and from north to south, for free space on a
+//! sheet.
 
 use super::furniture::{Align, Desk, SMALL, SOFT};
 use super::options::Options;
@@ -9,29 +10,29 @@ use orogen_grid::grid::Grid;
 use orogen_io::palette::color::{Encoder, Rgb};
 use orogen_io::palette::tint::Tint;
 
-/// Room for its heading, for the heights at its left, what stands right of it, and the distances below it, in millimetres.
+/// Room for its heading, for the heights on its left, on its right, and for the distances below it, in millimetres.
 const HEADING: f32 = 5.5;
 const LEFT: f32 = 12.5;
 const RIGHT: f32 = 5.0;
 const BELOW: f32 = 6.0;
 
-/// Millimetres from one place of the line to the next.
+/// Distance between points of the line, in millimetres.
 const STEP: f32 = 0.15;
 
-/// How many times heights count at most.
+/// Maximum exaggeration of heights.
 const MOST: f64 = 50.0;
 
-/// The share of its height that the land takes, and the share below it.
+/// The share of its height for the land, and the share below the land.
 const LAND: f64 = 0.80;
 const FOOT: f64 = 0.12;
 
-/// Rock: below the sea, and all of it where the map shows another layer than the heights.
+/// Ink of rock: below the sea, and everywhere if the map shows another layer than the heights.
 const LAND_INK: Rgb = [196, 192, 186];
 
-/// The sea cut open.
+/// Ink of a section through the sea.
 const SEA: Rgb = [150, 192, 222];
 
-/// Which way a profile runs.
+/// Direction of a profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
     /// From A in the west to B in the east.
@@ -41,7 +42,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// The names of its ends.
+    /// The labels of its ends.
     fn names(self) -> [&'static str; 2] {
         match self {
             Direction::Eastward => ["A", "B"],
@@ -53,24 +54,25 @@ impl Direction {
 /// The heights along a row or a column.
 pub struct Profile {
     direction: Direction,
-    /// Where it is drawn, without its numbers.
+    /// The area of the drawing, without labels.
     area: [f32; 4],
-    /// How far down or across the map its line lies, 0 to 1.
+    /// Position of its line on the map, down or across, 0 to 1.
     at: f32,
-    /// The lowest height along it.
+    /// The lowest height on the line.
     lowest: f32,
-    /// Heights, evenly apart from west to east.
+    /// Evenly spaced heights, from start to end.
     heights: Vec<f32>,
-    /// Metres from its west end to its east end.
+    /// Length in metres, from start to end.
     length: f64,
-    /// The heights at its foot and at its top.
+    /// The heights at its bottom and its top.
     span: [f64; 2],
     exaggeration: f64,
     sea_level: Option<f64>,
 }
 
-/// A row of samples at `count` places, evenly apart from its first sample to its last. Where places are closer than samples the line runs straight from
-/// sample to sample; where they are wider apart, each has the highest sample around it, so that no summit is lost.
+/// A row of samples at `count` evenly spaced positions from its first sample to its last. If positions are denser than
+/// samples they are interpolated linearly; if they are sparser, each has the highest sample around it, so that summits
+/// are kept.
 fn along(row: &[f32], count: usize) -> Vec<f32> {
     let step = (row.len() - 1) as f64 / (count - 1).max(1) as f64;
     let last = row.len() - 1;
@@ -89,7 +91,8 @@ fn along(row: &[f32], count: usize) -> Vec<f32> {
 }
 
 impl Profile {
-    /// The profile through the highest sample. None where no height is known, or the land is too flat or too steep to be told from a line.
+    /// The profile through the highest sample. `None` if no height is known, or the land is too flat or too steep for a
+    /// useful profile.
     pub fn new(
         heights: &Grid,
         options: &Options,
@@ -114,15 +117,15 @@ impl Profile {
         let sea_level = options.sea_level.filter(|_| options.palette.has_sea());
         let known = heights.iter().copied().filter(|height| height.is_finite());
         let lowest = known.fold(f32::MAX, f32::min);
-        // The sea is shown where it covers ground.
+        // The sea is shown if it covers ground on the line.
         let sea_level = sea_level.filter(|sea| f64::from(lowest) < *sea);
         let low = f64::from(lowest);
         let highest = f64::from(highest);
-        // Metres a millimetre across, and what the heights would take up at that scale.
+        // Metres per millimetre across, and the size of the heights at that scale.
         let scale = length / f64::from(area[2]);
         let natural = (highest - low) / scale;
         let exaggeration = (f64::from(area[3]) * LAND / natural).min(MOST);
-        // Two digits, not rounded up: the land has to fit.
+        // Two digits, rounded down, so that the land fits.
         let digits = libm::pow(10.0, 1.0 - libm::log10(exaggeration).floor());
         let exaggeration = (exaggeration * digits).floor() / digits;
         let rise = f64::from(area[3]) * scale / exaggeration;
@@ -135,7 +138,7 @@ impl Profile {
         Some(Profile { direction, area, at, lowest, heights, length, span, exaggeration, sea_level })
     }
 
-    /// Draws it, and where it runs on the map. Without a tint, the land is grey.
+    /// Draws the profile, and its line on the map. Without a tint, the land is grey.
     pub fn draw(&self, desk: &mut Desk, map: [f32; 4], tint: Option<&Tint>, dpi: f64) {
         let [left, top, width, height] = self.area;
         let (right, bottom) = (left + width, top + height);
@@ -144,7 +147,7 @@ impl Profile {
         let mut marks: Vec<Vec<Point>> = Vec::new();
         let mut lines: Vec<Vec<Point>> = Vec::new();
         let decimals = if self.span[1] - self.span[0] < 20.0 { 1 } else { 0 };
-        // Heights are metres however large they are.
+        // Heights are labelled in metres, whatever their size.
         for (value, _) in ticks(self.span, (height / 6.5).max(2.0) as usize, Count::Latitude) {
             let (y, name) = (up(value), format!("{} m", grouped(value, decimals)));
             marks.push(vec![[left, y], [left - 1.3, y]]);
@@ -165,7 +168,7 @@ impl Profile {
             let x = left + width * k as f32 / (self.heights.len() - 1) as f32;
             height.is_finite().then(|| [x, up(f64::from(*height))])
         };
-        // A line for each stretch without holes.
+        // One line for each part without holes.
         let places: Vec<Option<Point>> = self.heights.iter().enumerate().map(place).collect();
         let stretches = places.split(Option::is_none).map(|stretch| stretch.iter().copied().flatten().collect());
         desk.scene.lines(stretches.collect(), 0.22, INK, 1.0);
@@ -183,12 +186,12 @@ impl Profile {
         self.mark(desk, map);
     }
 
-    /// Marks its ends on the map: arrows inside the map's frame, with the names of the ends.
+    /// Marks its ends on the map: arrows inside the map's frame, with the labels of the ends.
     fn mark(&self, desk: &mut Desk, map: [f32; 4]) {
         let [start, end] = self.direction.names();
         for (name, end, inward) in [(start, 0.0, 1.0), (end, 1.0, -1.0)] {
             let wide = desk.letters.width(name, Face::Bold, SMALL);
-            // The arrow's tip, its foot on either side, and the middle of the name.
+            // The arrow's tip, both ends of its base, and the centre of the label.
             let (tip, feet, middle) = match self.direction {
                 Direction::Eastward => {
                     let [x, y] = [map[0] + map[2] * end, map[1] + map[3] * self.at];
@@ -200,7 +203,7 @@ impl Profile {
                     ([x, y + 2.0 * inward], [[x - 1.2, y], [x + 1.2, y]], [x, y + 4.0 * inward])
                 }
             };
-            // A bright patch, so that dark ground does not swallow the letter.
+            // A bright patch for visibility on dark ground.
             let (across, down) = (wide / 2.0 + 0.3, 1.5);
             let corners = [[-across, -down], [across, -down], [across, down], [-across, down]];
             let patch = corners.map(|[dx, dy]| [middle[0] + dx, middle[1] + dy]);
@@ -210,7 +213,7 @@ impl Profile {
         }
     }
 
-    /// The land under the line in the map's colours or in grey, and the sea over it.
+    /// The land under the line in the map's colours or in grey, and the sea above it.
     fn ground(&self, desk: &mut Desk, tint: Option<&Tint>, dpi: f64) {
         let [_, _, width, height] = self.area;
         let side = |millimetres: f32| ((f64::from(millimetres) * dpi / 25.4).round() as usize).clamp(2, 8000);
@@ -220,7 +223,8 @@ impl Profile {
         let mut pixels = Vec::with_capacity(3 * columns * rows);
         for j in 0..rows {
             let metres = self.span[1] - (j as f64 + 0.5) * rise;
-            // What lies below all ground on the line has the colour of the lowest; rock below the sea is not blue.
+            // Below the lowest ground on the line the colour is that of the lowest ground; rock below the sea is not
+            // blue.
             let is_land = self.sea_level.is_none_or(|sea| metres > sea);
             let color = match tint {
                 Some(tint) if is_land => encoder.bytes(tint.at((metres as f32).max(self.lowest))),

@@ -1,4 +1,4 @@
-//! The colours of a layer that is not height: along a linear or a logarithmic ramp, or a colour for each number.
+//! Colours of a layer other than height: along a linear or a logarithmic ramp, or one colour per number.
 
 use orogen_noise::Points;
 use rayon::prelude::*;
@@ -19,10 +19,10 @@ use orogen_io::palette::color::{Encoder, Light, decode};
 use orogen_io::palette::fitted::{Fitted, of_hsv};
 use orogen_io::palette::palette::{Palette, Position};
 
-/// Most decades of a logarithmic ramp: what lies lower has the colour of its lower end.
+/// Maximum number of decades of a logarithmic ramp; smaller values have the colour of its lower end.
 const MAX_DECADES: f64 = 8.0;
 
-/// Colours for the samples of a layer.
+/// A mapping from the samples of a layer to colours.
 pub struct Ramp {
     fitted: Fitted,
     scale: Scale,
@@ -30,15 +30,15 @@ pub struct Ramp {
     ends: [f64; 2],
     name: String,
     unit: &'static str,
-    /// What values are divided by before they are written down.
+    /// Divisor of values in labels.
     divide: f64,
 }
 
 impl Ramp {
-    /// The colours of `palette` over the samples of a layer, or over its range if it names one.
+    /// The colours of `palette` over the samples of a layer, or over its range if that is given.
     ///
     /// # Errors
-    /// If the palette follows heights, or a logarithmic ramp has no value above 0 to begin with.
+    /// If the palette is the atlas tint, or a logarithmic ramp has no positive value.
     pub fn new(layer: &Layer, palette: &Palette) -> Result<Ramp> {
         let fault = |message: String| Err(Error::new(ErrorKind::Request, message));
         let name = &layer.name;
@@ -66,7 +66,7 @@ impl Ramp {
         }
         let mut palette = palette.clone();
         if layer.scale == Scale::Log {
-            // Colours at values stay at them; shares are shares of the decades.
+            // Colours at values stay at them; shares refer to the decades.
             palette.stops.retain(|stop| !matches!(stop.at, Position::Value(value) if value <= 0.0));
             for stop in &mut palette.stops {
                 if let Position::Value(value) = stop.at {
@@ -95,7 +95,7 @@ impl Ramp {
         }
     }
 
-    /// Its values at the middles of pixels: means of numbers, the nearest of labels.
+    /// The values at pixel centres: means of numbers, or the nearest label.
     pub fn at_pixels(&self, values: &Grid, pixels: [usize; 2]) -> Grid {
         let mut out = at_pixels(values, pixels);
         if self.scale != Scale::Labels {
@@ -116,9 +116,9 @@ impl Ramp {
         out
     }
 
-    /// What it shows, in words.
+    /// A description of its range.
     pub fn words(&self) -> String {
-        // To three digits: more say nothing of a map.
+        // Three digits suffice for a map.
         let short = |value: f64| number(format!("{value:.2e}").parse().unwrap_or(value));
         let [low, high] =
             self.ends.map(|end| if self.scale == Scale::Labels { number(end) } else { short(end / self.divide) });
@@ -128,7 +128,7 @@ impl Ramp {
         }
     }
 
-    /// Round values along the ramp, each with its name and its share of the way.
+    /// Round values along the ramp, each with its label and its position, 0 to 1.
     fn marks(&self) -> Vec<(f64, String)> {
         let [low, high] = self.ends.map(|end| end / self.divide);
         if self.scale != Scale::Log || high / low < 20.0 {
@@ -156,12 +156,12 @@ impl Ramp {
     }
 }
 
-/// A color for a number: neighbours differ. 0, which belongs to no area, is grey.
+/// A color for a number: consecutive numbers differ. 0, which means no area, is grey.
 fn label(value: f32) -> Light {
     if value == 0.0 {
         return [0.6; 3];
     }
-    // Steps of the golden ratio leave the largest gaps between hues.
+    // Multiples of the golden ratio keep hues far apart.
     let k = f64::from(value.round());
     let hue = (k * 0.618_033_988_749_895).rem_euclid(1.0) * 360.0;
     let tone = (k * 0.381_966_011_250_105 * 7.0).rem_euclid(1.0);
@@ -169,7 +169,7 @@ fn label(value: f32) -> Light {
 }
 
 impl Desk<'_> {
-    /// A bar of the ramp's colours with its values and its name, so wide in all.
+    /// A bar of the ramp's colours with its values and its name; `width` is the total width.
     pub fn ramp(&mut self, [left, top]: Point, width: f32, ramp: &Ramp) {
         const STEPS: usize = 600;
         let encoder = Encoder::new();

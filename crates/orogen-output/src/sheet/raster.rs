@@ -1,4 +1,4 @@
-//! A sheet as pixels.
+//! Rasterisation of a sheet.
 
 use rayon::prelude::*;
 
@@ -6,16 +6,16 @@ use super::scene::{Item, Point, Scene, Step};
 use crate::map::canvas::Canvas;
 use orogen_io::palette::color::Rgb;
 
-/// Pieces that a curve is drawn in.
+/// Segments per curve.
 const PIECES: usize = 8;
 
-/// Rows that are drawn at a time, side by side.
+/// Rows per band; bands are drawn in parallel.
 const BAND: usize = 64;
 
-/// Draws a scene on white paper, `dpi` pixels an inch.
+/// Draws a scene on white paper at `dpi` pixels per inch.
 ///
-/// Edges are smooth: areas by how much of each pixel they cover, lines by their distance. Bands of rows are drawn side by side;
-/// none looks at another, so their number makes no difference.
+/// Edges are antialiased: areas by pixel coverage, lines by distance. Bands of rows are drawn in parallel and
+/// independently, so their number does not affect the result.
 pub fn draw(scene: &Scene, dpi: f64) -> Canvas {
     let scale = (dpi / 25.4) as f32;
     let [width, height] = pixels(scene, dpi);
@@ -78,7 +78,7 @@ fn span(values: impl Iterator<Item = f32>) -> (f32, f32) {
     values.fold((f32::MAX, f32::MIN), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-/// An outline as straight edges, every part of it closed.
+/// An outline as straight edges, with every part closed.
 fn edges(outline: &[Step], scale: f32) -> Vec<[Point; 2]> {
     let at = |place: Point| place.map(|side| side * scale);
     let mut edges = Vec::new();
@@ -118,7 +118,7 @@ struct Band {
     top: usize,
     width: usize,
     rows: Vec<Rgb>,
-    /// What a shape covers of each pixel, between two shapes all 0.
+    /// Coverage of each pixel by the current shape; all 0 between shapes.
     cover: Vec<f32>,
 }
 
@@ -127,7 +127,7 @@ impl Band {
         self.rows.len() / self.width
     }
 
-    /// Whether something between these heights is in the band.
+    /// Whether the band overlaps these heights.
     fn reaches(&self, top: f32, bottom: f32) -> bool {
         bottom >= self.top as f32 && top <= (self.top + self.height()) as f32
     }
@@ -159,7 +159,7 @@ impl Band {
         }
     }
 
-    /// A picture, each pixel of the page taking the nearest of its own.
+    /// A picture, with nearest-neighbour sampling.
     fn picture(&mut self, [left, top, width, height]: [f32; 4], size: [usize; 2], pixels: &[u8]) {
         let columns: Vec<Option<usize>> = (0..self.width)
             .map(|i| {
@@ -182,12 +182,12 @@ impl Band {
         }
     }
 
-    /// One stretch of a line: what it covers by its distance from each pixel's middle.
+    /// A segment of a line: coverage by the distance to each pixel's centre.
     fn stretch(&mut self, [ax, ay]: Point, [bx, by]: Point, half: f32, rows: &mut [usize; 2]) {
         let reach = half + 1.0;
         let (dx, dy) = (bx - ax, by - ay);
         let length = (dx * dx + dy * dy).max(1e-12);
-        // A line thinner than a pixel covers no more of it than it is wide.
+        // A line thinner than a pixel covers at most its width.
         let most = (2.0 * half).min(1.0);
         let (from, to) = within(ay.min(by) - reach, ay.max(by) + reach, self.top, self.height());
         let (left, right) = within(ax.min(bx) - reach, ax.max(bx) + reach, 0, self.width);
@@ -209,9 +209,9 @@ impl Band {
         }
     }
 
-    /// An area: every edge adds to the pixels on its right what lies to the right of it, with the sign of its way.
+    /// An area: every edge adds its signed coverage to the pixels on its right.
     fn area(&mut self, edges: &[[Point; 2]], ink: Rgb, cover: f32) {
-        // One column more takes what lies beyond the page.
+        // An extra column takes coverage beyond the page.
         let stride = self.width + 2;
         let (left, right) = span(edges.iter().flatten().map(|place| place[0]));
         let (from, to) = within(left - 1.0, right + 2.0, 0, self.width);
@@ -249,7 +249,7 @@ impl Band {
         }
     }
 
-    /// Lays ink over what a shape covers, and forgets what that was.
+    /// Blends ink by the coverage of a shape, and clears the coverage.
     fn lay(&mut self, [from, to]: [usize; 2], ink: Rgb, cover: f32) {
         for k in from.min(to) * self.width..to * self.width {
             let share = std::mem::take(&mut self.cover[k]);
@@ -260,12 +260,12 @@ impl Band {
     }
 }
 
-/// An edge between two columns of one row, of a height within it: what changes from pixel to pixel.
+/// An edge between two columns of one row, of a height within it: changes of coverage from pixel to pixel.
 fn accumulate(row: &mut [f32], height: f32, x0: f32, x1: f32) {
     let first = x0 as usize;
     let last = x1 as usize;
     if first == last {
-        // The share of the pixel that lies to the right of the edge's middle.
+        // The share of the pixel to the right of the edge's centre.
         let middle = (x0 + x1) / 2.0 - first as f32;
         row[first] += height * (1.0 - middle);
         row[first + 1] += height * middle;
@@ -283,13 +283,13 @@ fn accumulate(row: &mut [f32], height: f32, x0: f32, x1: f32) {
     row[last + 1] += before;
 }
 
-/// The whole pixels between two places, from `start` on, at most `count`: as indices.
+/// The whole pixels between two positions, from `start`, at most `count`: as indices.
 fn within(low: f32, high: f32, start: usize, count: usize) -> (usize, usize) {
     let clamp = |at: f32| (at - start as f32).clamp(0.0, count as f32);
     (clamp(low.floor()) as usize, clamp(high.ceil()) as usize)
 }
 
-/// Bytes are mixed, not light, as on [`Canvas`].
+/// Blends bytes instead of linear light, as [`Canvas`] does.
 fn over(pixel: &mut Rgb, ink: Rgb, share: f32) {
     for (under, ink) in pixel.iter_mut().zip(ink) {
         *under = (f32::from(*under) * (1.0 - share) + f32::from(ink) * share + 0.5) as u8;

@@ -1,4 +1,4 @@
-//! The picture that a sheet lies on: tint and shading.
+//! The relief picture of a sheet: tint and shading.
 
 use rayon::prelude::*;
 
@@ -11,41 +11,41 @@ use orogen_grid::grid::Grid;
 use orogen_io::palette::color::{Encoder, Light};
 use orogen_io::palette::tint::Tint;
 
-/// How much of the land's shading the sea floor gets: water lies over it.
+/// Strength of the shading of the sea floor relative to land.
 const UNDER_WATER: f32 = 0.35;
 
-/// How much of it colours get that stand for a layer: they must still be found on its bar.
+/// Strength of the shading on colours of a layer, which must remain readable on the colour bar.
 const ON_LAYER: f32 = 0.5;
 
-/// Swiss shading: contrast in the lowlands and on the summits, how much haze lies over the lowlands and its colour, and how many
-/// pixels their relief is smoothed over.
+/// Swiss shading: contrast in the lowlands and on the summits, amount and colour of the haze over the lowlands, and
+/// smoothing of the lowlands in pixels.
 const CONTRAST: [f32; 2] = [0.62, 1.22];
 const HAZE: f32 = 0.16;
 const AIR: Light = [0.62, 0.72, 0.84];
 const SOFT: usize = 7;
 
-/// What the relief is coloured by.
+/// The source of the relief's colours.
 #[derive(Clone, Copy)]
 pub enum Paint<'a> {
     /// The tint of the heights.
     Tint,
-    /// The values of a layer over the same window, by its ramp.
+    /// The values of a layer over the same window, with its ramp.
     Layer(&'a Grid, &'a Ramp),
-    /// Red, green and blue as linear light over the same window; the sea in the tint of its depths.
+    /// Red, green and blue in linear light over the same window; the sea has the tint of its depths.
     Albedo(&'a [Grid; 3]),
 }
 
-/// The same at the middles of pixels.
+/// The same at pixel centres.
 enum Painted<'a> {
     Tint,
     Layer(Grid, &'a Ramp),
     Albedo([Grid; 3]),
 }
 
-/// How much brighter than its albedo the ground is printed: paper is seen in less light than land.
+/// Brightness of the printed ground relative to its albedo: paper is viewed in less light than land.
 const PRINTED: f32 = 1.8;
 
-/// The relief of heights in pixels, as sRGB bytes.
+/// The relief of heights at pixels, in sRGB bytes.
 pub fn paint(
     heights: &Grid,
     colors: Paint,
@@ -109,7 +109,7 @@ pub fn paint(
                     };
                     let contrast = CONTRAST[0] + (CONTRAST[1] - CONTRAST[0]) * up;
                     let lit = shade.on(mixed);
-                    // The sun's side is warm.
+                    // Slopes in the sun are warmer.
                     let warm = if lit[1] > 1.0 { [0.02, 0.0, -0.05] } else { [0.0; 3] };
                     std::array::from_fn(|c| 1.0 + (lit[c] - 1.0) * contrast + warm[c])
                 }
@@ -122,7 +122,7 @@ pub fn paint(
     bytes
 }
 
-/// The lowest land and the highest; two different numbers.
+/// The lowest and the highest land; two different numbers.
 fn ends(grid: &Grid, sea_level: f32) -> (f32, f32) {
     let land = grid.data().iter().copied().filter(|height| height.is_finite() && *height > sea_level);
     let (low, high) = land.fold((f32::MAX, f32::MIN), |(low, high), height| (low.min(height), high.max(height)));

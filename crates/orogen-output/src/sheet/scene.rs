@@ -1,56 +1,56 @@
-//! What is drawn on a sheet, as a list from the lowest to the uppermost: the same for every kind of file.
+//! The display list of a sheet, from bottom to top: the same for every output format.
 
 use orogen_io::palette::color::Rgb;
 
-/// Words and frames.
+/// Ink of text and frames.
 pub const INK: Rgb = [38, 36, 34];
 
-/// A position on the page in millimetres: from the left, from the top.
+/// A position on the page in millimetres from the left and from the top.
 pub type Point = [f32; 2];
 
-/// A part of an outline, from where the last one ended.
+/// A part of an outline, continuing from the end of the previous one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Step {
-    /// Begins a new outline.
+    /// Starts a new outline.
     Move(Point),
     /// A straight line.
     Line(Point),
-    /// A cubic curve: two handles, then the end.
+    /// A cubic Bézier curve: two control points, then the end.
     Curve(Point, Point, Point),
 }
 
-/// One thing that is drawn.
+/// An item of the display list.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Item {
-    /// A picture, its rows from the top, over a rectangle.
+    /// A picture over a rectangle, rows from the top.
     Picture {
         /// Left, top, width and height in millimetres.
         area: [f32; 4],
-        /// Pixels a row.
+        /// Pixels per row.
         width: usize,
-        /// Rows.
+        /// Number of rows.
         height: usize,
-        /// sRGB bytes, three a pixel.
+        /// sRGB bytes, three per pixel.
         pixels: Vec<u8>,
     },
-    /// Lines with round ends and corners, of one width, as one: where they cross, ink is not laid twice.
+    /// Lines with round caps and joins, of one width. They are painted as one shape: crossings do not get ink twice.
     Lines {
-        /// Each an open line; a ring names its first place again.
+        /// Open lines; a ring repeats its first point.
         lines: Vec<Vec<Point>>,
-        /// In millimetres.
+        /// Width in millimetres.
         width: f32,
         /// The colour.
         ink: Rgb,
-        /// How much of what is below is covered, 0 to 1.
+        /// Opacity, 0 to 1.
         cover: f32,
     },
-    /// Areas within closed outlines; what runs clockwise and what runs counter-clockwise around a place cancel out.
+    /// Areas within closed outlines, with the non-zero winding rule.
     Area {
-        /// The outlines, closed by themselves.
+        /// The outlines, closed implicitly.
         outline: Vec<Step>,
         /// The colour.
         ink: Rgb,
-        /// How much of what is below is covered, 0 to 1.
+        /// Opacity, 0 to 1.
         cover: f32,
     },
 }
@@ -60,14 +60,14 @@ pub enum Item {
 pub struct Scene {
     /// Width and height in millimetres.
     pub size: [f32; 2],
-    /// What it is called: files say so to whoever opens them.
+    /// The title in the metadata of files.
     pub title: String,
-    /// From the lowest to the uppermost.
+    /// The items, from bottom to top.
     pub items: Vec<Item>,
 }
 
 impl Scene {
-    /// Adds lines, if there are any.
+    /// Adds lines, unless there are none.
     pub fn lines(&mut self, lines: Vec<Vec<Point>>, width: f32, ink: Rgb, cover: f32) {
         let lines: Vec<Vec<Point>> = lines.into_iter().filter(|line| line.len() > 1).collect();
         if !lines.is_empty() {
@@ -75,7 +75,7 @@ impl Scene {
         }
     }
 
-    /// Adds areas, if there are any.
+    /// Adds areas, unless there are none.
     pub fn area(&mut self, outline: Vec<Step>, ink: Rgb, cover: f32) {
         if !outline.is_empty() {
             self.items.push(Item::Area { outline, ink, cover });

@@ -1,6 +1,6 @@
-//! Round values along a side or a bar.
+//! Round values along an axis.
 
-/// What the numbers along a side count.
+/// The unit of the values along an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Count {
     /// Metres.
@@ -11,7 +11,7 @@ pub enum Count {
     Latitude,
 }
 
-/// Round values between two ends, at most so many, and what each is called.
+/// At most `most` round values between two ends, each with its label.
 pub fn ticks([from, to]: [f64; 2], most: usize, count: Count) -> Vec<(f64, String)> {
     let (low, high) = (from.min(to), from.max(to));
     let step = step(high - low, most);
@@ -43,7 +43,7 @@ pub fn step(length: f64, most: usize) -> f64 {
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|n| n * power).find(|step| *step >= rough * 0.999_999).unwrap_or(10.0 * power)
 }
 
-/// A number with narrow spaces between groups of three digits, and a true minus sign.
+/// A number with narrow spaces between groups of three digits, and a proper minus sign.
 pub fn grouped(value: f64, decimals: usize) -> String {
     let text = format!("{:.decimals$}", value.abs());
     let (whole, rest) = text.split_at(text.find('.').unwrap_or(text.len()));

@@ -1,4 +1,4 @@
-//! A sheet as SVG: lines stay lines, words are outlines, the picture beneath them is embedded in tiles.
+//! A sheet as SVG: lines as paths, text as outlines, the picture embedded in tiles.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -8,17 +8,18 @@ use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::format::svg::{self, MAX_PATH};
 use orogen_io::palette::color::Rgb;
 
-/// Side of a tile of a picture in pixels: as base64 even one that does not compress takes less than 1 MiB.
+/// Side of a picture tile in pixels: even an incompressible tile takes less than 1 MiB in base64.
 const TILE: usize = 432;
 
-/// How many pixels a tile reaches over the next ones to its right and below. Viewers blend the edge of a picture with what lies under it; under
-/// a tile's left and upper edge that is the same picture, down to a scale of 1 to so many pixels.
+/// Overlap of a tile with its right and lower neighbours, in pixels. Viewers blend the edge of a picture with the
+/// background; with the overlap the background of a tile's left and upper edge is the same picture, down to a scale of
+/// 1 to this many pixels.
 const OVERLAP: usize = 16;
 
-/// Writes a scene, its unit the millimetre.
+/// Writes a scene, in millimetres.
 ///
 /// # Errors
-/// What writing brings.
+/// Errors of `out`.
 pub fn write(out: &mut dyn Write, scene: &Scene) -> io::Result<()> {
     let [width, height] = scene.size;
     writeln!(
@@ -34,7 +35,7 @@ pub fn write(out: &mut dyn Write, scene: &Scene) -> io::Result<()> {
             Item::Picture { area, width, height, pixels } => embed(out, *area, [*width, *height], pixels)?,
             Item::Lines { lines, width, ink, cover } => {
                 let paths = paths(lines);
-                // Ink that covers in part must cover as one where lines of two paths meet.
+                // Translucent ink must have uniform opacity where lines of two paths meet.
                 let (group, stroke) = if paths.len() > 1 { (*cover, 1.0) } else { (1.0, *cover) };
                 if paths.len() > 1 {
                     writeln!(out, "<g opacity=\"{group}\">")?;
@@ -81,7 +82,7 @@ pub fn write(out: &mut dyn Write, scene: &Scene) -> io::Result<()> {
     writeln!(out, "</svg>")
 }
 
-/// Embeds a picture as tiles that overlap.
+/// Embeds a picture as overlapping tiles.
 fn embed(out: &mut dyn Write, area: [f32; 4], size: [usize; 2], pixels: &[u8]) -> io::Result<()> {
     let [x, y, w, h] = area.map(f64::from);
     let (across, down) = (w / size[0] as f64, h / size[1] as f64);
@@ -115,7 +116,7 @@ fn embed(out: &mut dyn Write, area: [f32; 4], size: [usize; 2], pixels: &[u8]) -
     Ok(())
 }
 
-/// Lines as the data of paths, none much longer than [`MAX_PATH`].
+/// Lines as path data, each not much longer than [`MAX_PATH`].
 fn paths(lines: &[Vec<Point>]) -> Vec<String> {
     let mut paths = vec![String::new()];
     let mut text = String::new();
@@ -125,7 +126,7 @@ fn paths(lines: &[Vec<Point>]) -> Vec<String> {
         text.clear();
         let mut last = [0, 0];
         for (k, place) in line.iter().enumerate() {
-            // Relative to the place before, as it was written: rounding does not add up.
+            // Relative to the rounded previous point, so that rounding errors do not accumulate.
             let here = place.map(|part| (f64::from(part) * 1000.0).round() as i64);
             match k {
                 0 => text.push('M'),
@@ -147,7 +148,7 @@ fn paths(lines: &[Vec<Point>]) -> Vec<String> {
     paths
 }
 
-/// Writes a number of thousandths in as few characters as there are; a space before it, where one is needed to tell it from the one before.
+/// Writes a number of thousandths in as few characters as possible, with a separating space if needed.
 fn thousandths(text: &mut String, number: i64, follows: bool) {
     if follows && number >= 0 {
         text.push(' ');
@@ -164,7 +165,7 @@ fn thousandths(text: &mut String, number: i64, follows: bool) {
     }
 }
 
-/// A place to a hundredth of a millimetre and a bit.
+/// A position with three decimals.
 fn spot(text: &mut String, [x, y]: Point) {
     let _ = write!(text, "{} {}", (x * 1000.0).round() / 1000.0, (y * 1000.0).round() / 1000.0);
 }

@@ -1,4 +1,4 @@
-//! Rivers and lakes of a sheet, found in its heights.
+//! Rivers and lakes of a sheet, from its heights.
 
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -14,32 +14,32 @@ pub use orogen_grid::hydrography::water::Least;
 pub struct River {
     /// Columns and rows, downstream.
     pub points: Vec<[f64; 2]>,
-    /// Samples that drain to its end.
+    /// Number of samples that drain to its end.
     pub drained: u32,
 }
 
 /// The water of a grid.
 #[derive(Debug, Clone)]
 pub struct Water {
-    /// Stretches of river, none of them within a lake or the sea.
+    /// Stretches of river outside of lakes and the sea.
     pub rivers: Vec<River>,
-    /// The shores of lakes, rings and what the border cuts, in columns and rows.
+    /// The shores of lakes, as rings or cut at the border, in columns and rows.
     pub lakes: Vec<Vec<[f64; 2]>>,
-    /// The heights, level where there is a lake.
+    /// The heights, level in lakes.
     pub surface: Grid,
 }
 
-/// How often the stairs of a river's cells are evened out, and the corners of shores are cut.
+/// Smoothing rounds of rivers, and of shores.
 const EVEN: usize = 6;
 const CUT: usize = 1;
 
 /// Finds the rivers and lakes of heights.
 ///
 /// # Errors
-/// If there are more shores than can be numbered.
+/// If there are too many shores.
 pub fn find(heights: &Grid, sea_level: Option<f32>, least: Least) -> Result<Water> {
     let window = Window::new(heights.width(), heights.height(), 1.0);
-    // In samples, so that what is found is, too.
+    // In units of samples, as the result requires.
     let grid = Grid::from_data(window, heights.data().to_vec()).filter(|_| window.width.min(window.height) > 2);
     let Some(grid) = grid else {
         return Ok(Water { rivers: Vec::new(), lakes: Vec::new(), surface: heights.clone() });

@@ -1,54 +1,54 @@
-//! Lines, bars and axes on a page.
+//! Charts on a page: lines, bars and axes.
 
 use crate::map::canvas::{Canvas, Ink};
 use crate::map::text::{BuiltinFont, Face, Style};
 
-/// What the page is drawn with.
+/// Colour of the page.
 pub const PAPER: Ink = [253, 253, 251];
-/// See [`PAPER`].
+/// Colour of text.
 pub const INK: Ink = [30, 30, 32];
-/// See [`PAPER`].
+/// Colour of small print.
 pub const SOFT: Ink = [105, 105, 108];
-/// See [`PAPER`].
+/// Colour of thin lines.
 pub const LINE: Ink = [206, 206, 204];
-/// See [`PAPER`].
+/// Colour of the range of real terrain.
 pub const BAND: Ink = [226, 232, 220];
-/// See [`PAPER`].
+/// Colour of marks.
 pub const MARK: Ink = [176, 58, 34];
-/// See [`PAPER`].
+/// Colour of water.
 pub const WATER: Ink = [36, 92, 160];
-/// See [`PAPER`].
+/// Colour of ground.
 pub const GROUND: Ink = [146, 120, 92];
 
-/// A page and its letters.
+/// A page with its font.
 pub struct Sheet {
     /// The page.
     pub canvas: Canvas,
-    /// Its letters.
+    /// The font.
     pub font: BuiltinFont,
 }
 
-/// How a chart's axis runs.
+/// An axis of a chart.
 #[derive(Debug, Clone, Copy)]
 pub struct Axis {
     /// The values at its ends.
     pub ends: [f64; 2],
-    /// Whether equal lengths are equal ratios.
+    /// Whether the scale is logarithmic.
     pub logarithmic: bool,
 }
 
 impl Axis {
-    /// Equal lengths are equal differences.
+    /// A linear axis.
     pub fn linear(from: f64, to: f64) -> Axis {
         Axis { ends: [from, to], logarithmic: false }
     }
 
-    /// Equal lengths are equal ratios.
+    /// A logarithmic axis.
     pub fn logarithmic(from: f64, to: f64) -> Axis {
         Axis { ends: [from, to], logarithmic: true }
     }
 
-    /// Where a value stands, 0 to 1.
+    /// The position of a value, 0 to 1.
     pub fn share(&self, value: f64) -> f64 {
         let [from, to] = self.ends;
         match self.logarithmic {
@@ -57,7 +57,7 @@ impl Axis {
         }
     }
 
-    /// Round values along it, few enough to be labelled.
+    /// Round values along it, few enough for labels.
     pub fn ticks(&self) -> Vec<f64> {
         let [from, to] = self.ends;
         if self.logarithmic {
@@ -73,26 +73,26 @@ impl Axis {
     }
 }
 
-/// A rectangle of the page that values are drawn in.
+/// A rectangle of the page in which values are drawn.
 #[derive(Debug, Clone, Copy)]
 pub struct Frame {
     /// Left, top, width and height in pixels.
     pub area: [f64; 4],
-    /// Along the bottom.
+    /// The horizontal axis.
     pub x: Axis,
-    /// Up the side.
+    /// The vertical axis.
     pub y: Axis,
 }
 
 impl Frame {
-    /// Where a pair of values stands.
+    /// The position of a pair of values, in pixels.
     pub fn at(&self, x: f64, y: f64) -> (f32, f32) {
         let [left, top, width, height] = self.area;
         ((left + width * self.x.share(x)) as f32, (top + height * (1.0 - self.y.share(y))) as f32)
     }
 }
 
-/// A number as an axis shows it.
+/// The label of a number.
 fn label(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
@@ -103,13 +103,13 @@ fn label(value: f64) -> String {
 }
 
 impl Sheet {
-    /// Writes words from a column on; `align` is 0 for from there on, 1 for up to there, 0.5 for around it.
+    /// Draws text at a column; `align` is 0 to start there, 1 to end there, 0.5 to centre.
     pub fn text(&mut self, x: f64, y: f64, align: f64, text: &str, style: Style) {
         let width = f64::from(self.font.width(text, style));
         self.font.write(&mut self.canvas, (x - align * width) as f32, y.round() as i64, text, style);
     }
 
-    /// Axes with their marks, a heading and what the axes show.
+    /// Draws axes with ticks, a heading and the labels of the axes.
     pub fn axes(&mut self, frame: &Frame, heading: &str, shows: [&str; 2]) {
         let [left, top, width, height] = frame.area;
         let (right, bottom) = (left + width, top + height);
@@ -129,7 +129,7 @@ impl Sheet {
         self.text(right, top - 12.0, 1.0, shows[1], small());
     }
 
-    /// A line through points, of some width, its edges smooth.
+    /// Draws a line through points, with antialiasing.
     pub fn line(&mut self, points: &[(f32, f32)], width: f32, ink: Ink) {
         let reach = width / 2.0 + 1.0;
         let finite: Vec<(f32, f32)> = points.iter().copied().filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
@@ -142,7 +142,7 @@ impl Sheet {
         }
         let (left, top) = ((west - reach).floor() as i64, (north - reach).floor() as i64);
         let (columns, rows) = ((east + reach) as i64 - left + 1, (south + reach) as i64 - top + 1);
-        // The cover of all stretches together: where two meet, ink is not laid twice.
+        // The coverage of all segments together, so that joints do not get ink twice.
         let mut cover = vec![0.0f32; (columns.max(0) * rows.max(0)) as usize];
         for pair in finite.windows(2) {
             let ((ax, ay), (bx, by)) = (pair[0], pair[1]);
@@ -165,24 +165,24 @@ impl Sheet {
         }
     }
 
-    /// A filled rectangle, to the pixel.
+    /// Fills a rectangle of whole pixels.
     pub fn block(&mut self, x: [f64; 2], y: [f64; 2], ink: Ink) {
         let [x0, x1, y0, y1] = [x[0], x[1], y[0], y[1]].map(|v| v.round() as i64);
         self.canvas.fill(x0.min(x1)..x1.max(x0), y0.min(y1)..y1.max(y0), ink);
     }
 }
 
-/// For small print.
+/// The style of small print.
 pub fn small() -> Style {
     Style { face: Face::Regular, size: 13.0, ink: SOFT }
 }
 
-/// For running text.
+/// The style of running text.
 pub fn plain(size: f32) -> Style {
     Style { face: Face::Regular, size, ink: INK }
 }
 
-/// For headings.
+/// The style of headings.
 pub fn bold(size: f32) -> Style {
     Style { face: Face::Bold, size, ink: INK }
 }

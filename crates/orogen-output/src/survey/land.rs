@@ -1,11 +1,11 @@
-//! The heights that are measured, read some rows at a time from memory or from disk.
+//! The heights that are measured, read in bands of rows from memory or from disk.
 
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_io::pages::SIDE;
 use orogen_io::raster::Raster;
 
-/// Heights, and the sea level at or below which there is no land.
+/// Heights, and the sea level; samples at or below it are not land.
 #[derive(Debug, Clone, Copy)]
 pub struct Land<'a> {
     heights: Heights<'a>,
@@ -18,10 +18,10 @@ enum Heights<'a> {
     Disk(&'a Raster),
 }
 
-/// About how many samples a band has where the heights are in memory.
+/// Approximate number of samples of a band of heights in memory.
 const SAMPLES: usize = 1 << 19;
 
-/// Bands have a multiple of so many rows, but for the last: blocks of so many rows never lie in two.
+/// Bands have a multiple of this number of rows, except the last: a block of this many rows is never in two bands.
 pub const ROWS: usize = 32;
 
 impl<'a> Land<'a> {
@@ -35,7 +35,7 @@ impl<'a> Land<'a> {
         Land { heights: Heights::Disk(heights), sea_level }
     }
 
-    /// Where they lie.
+    /// The window of the heights.
     pub fn window(&self) -> &'a Window {
         match self.heights {
             Heights::Memory(grid) => grid.window(),
@@ -48,12 +48,12 @@ impl<'a> Land<'a> {
         self.sea_level
     }
 
-    /// Whether they are on disk.
+    /// Whether the heights are on disk.
     pub fn is_on_disk(&self) -> bool {
         matches!(self.heights, Heights::Disk(_))
     }
 
-    /// Some rows as they are, the sea's bed included.
+    /// Some rows, including the sea bed.
     ///
     /// # Errors
     /// If the disk fails.
@@ -66,7 +66,7 @@ impl<'a> Land<'a> {
         }
     }
 
-    /// Some rows, NaN where there is no land.
+    /// Some rows, with NaN where there is no land.
     ///
     /// # Errors
     /// If the disk fails.
@@ -78,7 +78,7 @@ impl<'a> Land<'a> {
         Ok(land)
     }
 
-    /// Hands on all rows that have `halo` rows on either side, in bands from the north, each with its halo.
+    /// Visits all rows that have `halo` rows on both sides, in bands from the north, each with its halo.
     ///
     /// # Errors
     /// If the disk or `visit` fails.
@@ -90,7 +90,7 @@ impl<'a> Land<'a> {
         Ok(())
     }
 
-    /// Rows of a band without its halo: on disk those of a page, which is read whole.
+    /// Rows of a band without its halo; on disk those of a page, which is read as a whole.
     fn band_rows(&self) -> usize {
         match self.heights {
             Heights::Memory(grid) => (SAMPLES / grid.width().max(1)).next_multiple_of(ROWS).max(ROWS),
@@ -99,7 +99,7 @@ impl<'a> Land<'a> {
     }
 }
 
-/// Bytes that a band of a window on disk takes, with what is made of it.
+/// Memory of a band of a window on disk and of the results from it, in bytes.
 pub fn band_memory(window: &Window) -> u64 {
     (window.width as u64).saturating_mul((SIDE + ROWS) as u64 * 4 * 4)
 }

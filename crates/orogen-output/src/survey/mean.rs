@@ -1,6 +1,6 @@
-//! Means of samples that come some at a time.
+//! A running mean.
 
-/// The mean of what is finite.
+/// The mean of finite samples.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Mean {
     sum: f64,
@@ -8,7 +8,7 @@ pub struct Mean {
 }
 
 impl Mean {
-    /// Takes samples; the sum is made in their order.
+    /// Adds samples; the sum is computed in their order.
     pub fn add(&mut self, samples: &[f32]) {
         for sample in samples.iter().filter(|sample| sample.is_finite()) {
             self.sum += f64::from(*sample);
@@ -16,12 +16,12 @@ impl Mean {
         }
     }
 
-    /// How many there were.
+    /// Number of finite samples.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Their mean, NaN of none.
+    /// The mean; NaN if there are no samples.
     pub fn mean(&self) -> f64 {
         self.sum / self.count as f64
     }

@@ -1,4 +1,4 @@
-//! A piece of land in numbers.
+//! Statistics of a terrain.
 
 use std::path::Path;
 
@@ -18,86 +18,87 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_io::raster::Raster;
 
-/// Slopes are counted in classes of so many degrees.
+/// Width of a class of slopes, in degrees.
 pub const SLOPE_CLASS: f64 = 2.0;
 
-/// How far geomorphons look, in cells, and what counts as level, in degrees.
+/// Search radius of geomorphons in cells, and the limit of level ground in degrees.
 const SIGHT: usize = 10;
 const LEVEL: f64 = 1.0;
 
-/// Side of the blocks whose mean slopes are compared, in cells: no block lies in two bands.
+/// Side of the blocks whose mean slopes are compared, in cells: a block is never in two bands.
 const BLOCK: usize = ROWS;
 
-/// Bytes of a sample while its water is measured, which takes the most.
+/// Memory per sample during the measurement of water, which needs the most, in bytes.
 const SAMPLE: u64 = 48;
 
-/// Samples that are put in order at a time where the heights are on disk.
+/// Samples that are sorted at a time if the heights are on disk.
 const PART: usize = 4 << 20;
 
-/// Bytes that a spectrum takes beside its band of rows.
+/// Memory of a spectrum beside its band of rows, in bytes.
 const SPECTRUM: u64 = 12 << 20;
 
 /// Steps of the hypsometric curve.
 const STEPS: usize = 100;
 
-/// What was measured.
+/// The statistics of a terrain.
 #[derive(Debug, Clone)]
 pub struct Measures {
-    /// Samples of land.
+    /// Number of land samples.
     pub land: usize,
-    /// Share of the samples that are land.
+    /// The share of samples that are land, 0 to 1.
     pub land_share: f64,
-    /// Lowest, mean and highest height in metres.
+    /// Minimum, mean and maximum height, in metres.
     pub heights: [f64; 3],
-    /// The height that a thousandth of the land lies below, in metres.
+    /// The 0.1 % quantile of heights, in metres.
     pub base: f64,
-    /// From there to the height that a thousandth lies above: outliers do not count.
+    /// The 99.9 % quantile minus `base`, in metres, which excludes outliers.
     pub relief: f64,
-    /// Where the mean lies within that relief, 0 to 1.
+    /// The position of the mean within the relief, 0 to 1.
     pub hypsometric_integral: f64,
-    /// Mean slope in degrees.
+    /// Mean slope, in degrees.
     pub slope_mean: f64,
-    /// The slope that half the land exceeds, and that a tenth of it exceeds.
+    /// Median slope, in degrees.
     pub slope_median: f64,
-    /// See [`Measures::slope_median`].
+    /// 90 % quantile of slope, in degrees.
     pub slope_p90: f64,
-    /// Standard deviation of rise over run, as a share of its mean.
+    /// Coefficient of variation of the slope (rise over run).
     pub slope_spread: f64,
-    /// The same of the means of blocks of 32 x 32 cells: how much steep land keeps together.
+    /// The same for the means of blocks of 32 x 32 cells: how strongly steep land is clustered.
     pub slope_patches: f64,
-    /// Root of the mean square of the total curvature, in 1/km.
+    /// Root mean square of the total curvature, in 1/km.
     pub curvature: f64,
-    /// How much heavier the concave tail of the curvature is than the convex, -1 to 1.
+    /// Skew of the curvature: how much heavier its concave tail is than the convex one, -1 to 1.
     pub curvature_skew: f64,
     /// Mean difference between neighbours, in metres.
     pub ruggedness: f64,
     /// Preference of slopes for multiples of 45 degrees, 0 to 1.
     pub grid_bias: f64,
-    /// Exponent of the power spectrum.
+    /// Exponent of the power spectrum; see [`spectrum::slope`].
     pub spectrum: Option<f64>,
-    /// Hurst's exponent.
+    /// Hurst exponent.
     pub hurst: Option<f64>,
-    /// Share of each of the ten geomorphons.
+    /// Shares of the ten geomorphons.
     pub forms: [f64; 10],
-    /// What water does.
+    /// Statistics of the drainage.
     pub water: Water,
-    /// Share of the land above heights evenly spaced from the lowest to the highest of the relief.
+    /// Share of the land above evenly spaced heights from the bottom to the top of the relief.
     pub hypsometry: Vec<f64>,
     /// Share of the land in each class of slope.
     pub slopes: Vec<f64>,
-    /// Share of the land steeper than a degree that faces each 10 degrees, from north.
+    /// Share of the land steeper than one degree in each 10 degrees of aspect, from north.
     pub aspects: Vec<f64>,
-    /// Power by wavelength.
+    /// Power spectrum.
     pub bands: Vec<Band>,
 }
 
 impl Measures {
-    /// Bytes that measuring so many samples takes at most, the heights themselves included.
+    /// Maximum memory for measuring this many samples, in bytes, including the heights.
     pub fn memory(samples: u64) -> u64 {
         samples.saturating_mul(SAMPLE)
     }
 
-    /// Bytes that measuring a window takes whose heights are on disk, those of its rivers not counted: their number shows when the rest is measured.
+    /// Memory for measuring a window with heights on disk, in bytes, without its rivers, whose number is known only
+    /// afterwards.
     pub fn memory_on_disk(window: &Window) -> u64 {
         let rows = 4 * 512 * window.width as u64;
         let sorting = 4 * PART as u64 + (2 << 20);
@@ -105,13 +106,13 @@ impl Measures {
         counting.max(water::memory_on_disk(window))
     }
 
-    /// Measures heights; what lies at or below the sea level, if there is one, is no land and does not count. None if fewer than 64 x 64
-    /// samples or less than a hundredth of them are land, or all of it is level.
+    /// Measures heights. Samples at or below the sea level, if there is one, are not land and are ignored. `None` if
+    /// fewer than 64 x 64 samples or less than 1 % of them are land, or all of it is level.
     pub fn of(heights: &Grid, sea_level: Option<f32>) -> Option<Measures> {
         Measures::of_with(heights, sea_level, &Progress::none()).ok().flatten()
     }
 
-    /// [`Measures::of`] that reports how far it has come, and can be stopped.
+    /// [`Measures::of`] with progress and cancellation.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -123,8 +124,8 @@ impl Measures {
         })
     }
 
-    /// The same of heights on disk, to the bit, in little memory; rasters that it needs are made in `folder`. What rivers take is reserved
-    /// from `budget`.
+    /// [`Measures::of`] for heights on disk, with the same bits and little memory. Temporary rasters are made in
+    /// `folder`; the memory of rivers is reserved from `budget`.
     ///
     /// # Errors
     /// If the disk fails, the rivers do not fit, or the work is cancelled.
@@ -144,7 +145,8 @@ impl Measures {
         progress: &Progress,
         water: &dyn Fn(&Land, &Progress) -> Result<Water>,
     ) -> Result<Option<Measures>> {
-        // Sorted heights, slopes, curvatures, ruggedness, the spectrum, Hurst's exponent, geomorphons, water: by what each takes.
+        // Sorted heights, slopes, curvatures, ruggedness, the spectrum, the Hurst exponent, geomorphons, water:
+        // weighted by time.
         let weights = match land.is_on_disk() {
             false => [1.0, 2.0, 1.5, 0.5, 1.0, 1.0, 6.0, 8.0],
             true => [2.0, 4.0, 3.0, 0.5, 1.0, 1.0, 6.0, 40.0],
@@ -206,7 +208,7 @@ impl Measures {
     }
 }
 
-/// Land that is gone over, by samples that have `halo` others on each side.
+/// The part of the land whose samples have `halo` others on each side.
 struct Part<'a> {
     land: &'a Land<'a>,
     progress: &'a Progress,
@@ -214,7 +216,7 @@ struct Part<'a> {
 }
 
 impl Part<'_> {
-    /// Hands on bands of it, and asks whether they are still wanted.
+    /// Visits bands of it, and checks for cancellation.
     fn bands(&self, mut visit: impl FnMut(&Grid) -> Result<()>) -> Result<()> {
         self.land.bands(self.halo, |band| {
             self.progress.check()?;
@@ -222,7 +224,7 @@ impl Part<'_> {
         })
     }
 
-    /// Hands what is made of each band to `with`, in ascending order.
+    /// Computes a grid from each band and passes its samples to `with` in ascending order.
     fn sorted<T>(&self, made: impl Fn(&Grid) -> Grid, with: impl FnOnce(&Sorted) -> Result<T>) -> Result<T> {
         let samples: &Samples = &|visit| {
             self.bands(|band| {
@@ -240,7 +242,7 @@ impl Part<'_> {
     }
 }
 
-/// Hurst's exponent.
+/// The Hurst exponent.
 fn hurst(land: &Land, progress: &Progress) -> Result<Option<f64>> {
     let (height, mut rises) = (land.window().height, Rises::default());
     for first in (0..height).step_by(8 * ROWS) {
@@ -252,7 +254,7 @@ fn hurst(land: &Land, progress: &Progress) -> Result<Option<f64>> {
     Ok(rises.hurst(land.window()))
 }
 
-/// What is counted of heights.
+/// Statistics of heights.
 struct Heights {
     count: usize,
     ends: [f64; 2],
@@ -304,12 +306,12 @@ impl Heights {
     }
 }
 
-/// Root of the mean square of the total curvature in 1/km, and how much heavier its concave tail is than the convex.
+/// Root mean square of the total curvature in 1/km, and how much heavier its concave tail is than the convex one.
 fn bends(land: &Part) -> Result<(f64, f64)> {
     land.sorted(
         |band| curvature(band, Curvature::Total),
         |bend| {
-            // Means of the tails: quantiles of heights in whole metres would stand on steps.
+            // Means of the tails: with heights in whole metres, quantiles would lie on steps.
             let count = bend.count();
             let tail = (count / 50).max(1);
             let [mut concave, mut convex, mut middle] = [Mean::default(); 3];
@@ -335,7 +337,7 @@ fn bends(land: &Part) -> Result<(f64, f64)> {
     )
 }
 
-/// What is counted of slopes.
+/// Statistics of slopes.
 struct SlopeStatistics {
     mean: f64,
     median: f64,
@@ -414,7 +416,7 @@ fn means_of_blocks(steep: &Grid, means: &mut Vec<f64>) {
     }
 }
 
-/// Spread of means as a share of their mean.
+/// The coefficient of variation of the means.
 fn patches(means: &[f64]) -> f64 {
     let count = means.len() as f64;
     let mean = means.iter().sum::<f64>() / count;

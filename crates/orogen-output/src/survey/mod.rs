@@ -1,4 +1,4 @@
-//! What terrain is like, in numbers: measured, set beside what real terrain is like, and drawn on a page.
+//! Terrain statistics: measured, compared with real terrain, and drawn on a page.
 
 pub(crate) mod chart;
 pub mod land;

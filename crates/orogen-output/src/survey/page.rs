@@ -1,4 +1,4 @@
-//! The page that shows a piece of land and what was measured of it.
+//! A page with maps of a terrain and its statistics.
 
 use super::chart::{Axis, BAND, Frame, GROUND, INK, LINE, MARK, PAPER, SOFT, Sheet, WATER, bold, plain, small};
 use super::land::Land;
@@ -18,10 +18,10 @@ use orogen_grid::words;
 use orogen_io::palette::palette::NO_DATA;
 use orogen_noise::Points;
 
-/// Bytes that drawing it takes at most, beside the heights.
+/// Maximum memory for drawing it, beside the heights, in bytes.
 pub const MEMORY: u64 = 16 << 20;
 
-/// Bytes of the rows that are looked at at a time, of a window whose heights are on disk.
+/// Memory of the rows read at a time, for a window with heights on disk, in bytes.
 pub fn rows_memory(window: &Window) -> u64 {
     (window.width.max(window.height) as u64)
         .div_ceil(PICTURE as u64)
@@ -32,20 +32,20 @@ pub fn rows_memory(window: &Window) -> u64 {
 const WIDTH: f64 = 1500.0;
 const HEIGHT: f64 = 1490.0;
 const MARGIN: f64 = 54.0;
-/// Side of the two pictures.
+/// Side of the two pictures, in pixels.
 const PICTURE: f64 = 520.0;
 const GAP: f64 = 34.0;
 
-/// What the page says of where the land is from.
+/// The title of the page.
 #[derive(Debug, Clone, Default)]
 pub struct Title {
     /// Its name.
     pub name: String,
-    /// A line of small print: where it is from, what was done to it.
+    /// A line of small print: source and processing.
     pub about: String,
 }
 
-/// Draws the page of land and what was measured of it.
+/// Draws the page of a terrain.
 ///
 /// # Errors
 /// If the disk fails, or the built-in font cannot be read.
@@ -83,12 +83,12 @@ pub fn draw(title: &Title, land: &Land, measures: &Measures) -> Result<Canvas> {
     Ok(sheet.canvas)
 }
 
-/// The land at the size of a picture.
+/// The terrain at the size of a picture.
 struct Shown {
     grid: Grid,
-    /// Pixels a sample of the land.
+    /// Pixels per sample of the terrain.
     scale: f64,
-    /// Samples a row of the land.
+    /// Samples per row of the terrain.
     width: usize,
 }
 
@@ -103,7 +103,7 @@ impl Shown {
         if scale >= 1.0 {
             let heights = land.ground(0..window.height)?;
             let own = Grid::from_data(Window::new(window.width, window.height, 1.0), heights.data().to_vec());
-            // Pixels' middles, in samples.
+            // Pixel centres, in samples.
             let at = |count: usize| (0..count).map(|k| (k as f64 + 0.5) / scale - 0.5).collect::<Vec<f64>>();
             let (xs, ys) = (at(size[0]), at(size[1]));
             if let Some(own) = own {
@@ -131,7 +131,7 @@ impl Shown {
         Ok(Shown { grid, scale, width: window.width })
     }
 
-    /// Puts a picture of this size on the sheet, in the middle of its square.
+    /// Draws a picture of this size on the sheet, centred in its square.
     fn put(&self, sheet: &mut Sheet, corner: [f64; 2], pixel: impl Fn(usize, usize) -> [u8; 3]) -> [f64; 2] {
         let [left, top] = self.corner(corner);
         for j in 0..self.grid.height() {
@@ -143,11 +143,11 @@ impl Shown {
     }
 
     fn corner(&self, [left, top]: [f64; 2]) -> [f64; 2] {
-        // Tall pictures stand in the middle, wide ones hang from the top.
+        // Tall pictures are centred, wide ones are aligned at the top.
         [left + ((PICTURE - self.grid.width() as f64) / 2.0).floor(), top]
     }
 
-    /// The row beneath the picture.
+    /// The row below the picture.
     fn below(&self, top: f64) -> f64 {
         top + self.grid.height() as f64
     }
@@ -155,7 +155,7 @@ impl Shown {
 
 fn relief(sheet: &mut Sheet, shown: &Shown, sea_level: Option<f32>, corner: [f64; 2]) {
     let sea = sea_level.map_or(f64::NEG_INFINITY, f64::from);
-    // Without a sea, colours begin at the lowest ground.
+    // Without a sea, colours start at the lowest ground.
     let lowest = shown.grid.data().iter().copied().filter(|h| h.is_finite()).fold(f32::MAX, f32::min);
     let painter = Painter::fit(&shown.grid, if sea.is_finite() { sea } else { f64::from(lowest) - 1.0 });
     let wide = extended(&shown.grid);
@@ -169,7 +169,7 @@ fn relief(sheet: &mut Sheet, shown: &Shown, sea_level: Option<f32>, corner: [f64
     scale_bar(sheet, shown, corner);
 }
 
-/// A bar of a round length, beneath the picture.
+/// A scale bar of a round length, below the picture.
 fn scale_bar(sheet: &mut Sheet, shown: &Shown, [left, top]: [f64; 2]) {
     let metres = shown.grid.window().cell;
     let most = 0.3 * PICTURE * metres;
@@ -259,7 +259,7 @@ fn spectrum(sheet: &mut Sheet, measures: &Measures, area: [f64; 4]) {
     sheet.axes(&frame, "Power spectrum", ["wavelength, m", "m\u{b2} \u{b7} m\u{b2}"]);
     let text = |name: &str, value: Option<f64>| value.map_or(String::new(), |value| format!("{name} {value:.2}"));
     let [left, top, ..] = area;
-    // On paper of their own, so that no line of the grid runs through them; the spectrum lies over it.
+    // A blank background keeps grid lines from crossing the text; the spectrum is drawn over it.
     sheet.block([left + 11.0, left + 120.0], [top + 12.0, top + 47.0], PAPER);
     sheet.text(left + 14.0, top + 24.0, 0.0, &text("exponent", measures.spectrum), small());
     sheet.text(left + 14.0, top + 42.0, 0.0, &text("Hurst", measures.hurst), small());
@@ -280,7 +280,7 @@ fn rose(sheet: &mut Sheet, measures: &Measures, [x, y]: [f64; 2], radius: f64, r
     }
     for (k, share) in measures.aspects.iter().enumerate() {
         let length = radius * share / most;
-        // A petal of ten degrees, filled by rays.
+        // A petal of ten degrees, filled with lines.
         let rays: Vec<(f32, f32)> = (-10..=10)
             .flat_map(|step| {
                 let degrees = k as f64 * 10.0 + f64::from(step) * 0.42;
@@ -329,8 +329,8 @@ fn table(sheet: &mut Sheet, measures: &Measures, top: f64) {
         let text = value.map_or("-".to_string(), |value| figure.text(value));
         sheet.text(left + 252.0, y, 1.0, &text, bold(15.0));
         sheet.text(left + 260.0, y, 0.0, figure.unit, small());
-        // The band of real land in the middle, as much beyond it on either side; the numbers of its ends stand outside of all that, where no
-        // mark comes.
+        // The range of real terrain in the middle, with equal space on both sides; the numbers of its ends are outside
+        // of that space, where there are no marks.
         let track = track(left, column);
         sheet.block([track.at(-1.0), track.at(1.0)], [y - 12.0, y + 3.0], BAND);
         let middle = track.at(0.0) as f32;
@@ -345,22 +345,22 @@ fn table(sheet: &mut Sheet, measures: &Measures, top: f64) {
     }
 }
 
-/// Where a row of the table shows a value among those of real land.
+/// The track of a table row, on which a value is marked relative to real terrain.
 struct Track {
     begin: f64,
     end: f64,
 }
 
-/// How far beyond the band marks go, in half widths of it: what lies further stands at the end.
+/// Maximum distance of marks from the centre, in half widths of the range; values further out are drawn at the end.
 const FARTHEST: f64 = 2.4;
 
-/// The track of a row from `left`, `width` wide.
+/// The track of a row from `left`, `width` pixels wide.
 fn track(left: f64, width: f64) -> Track {
     Track { begin: left + 390.0, end: left + width - 58.0 }
 }
 
 impl Track {
-    /// Where a value stands: -1 and 1 are the ends of the band.
+    /// The position of a value: -1 and 1 are the ends of the range.
     fn at(&self, place: f64) -> f64 {
         self.begin + (self.end - self.begin) * (0.5 + place.clamp(-FARTHEST, FARTHEST) / (2.0 * FARTHEST + 0.2))
     }

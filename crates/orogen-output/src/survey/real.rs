@@ -1,26 +1,26 @@
-//! The figures that tell real terrain from invented, with the range that real terrain has.
+//! Statistics that distinguish real from generated terrain, with their ranges in real terrain.
 
 use super::measures::Measures;
 use orogen_grid::analysis::geomorphons::FORMS;
 
-/// A figure of a piece of land.
+/// A statistic of a terrain.
 #[derive(Debug, Clone, Copy)]
 pub struct Figure {
-    /// Its key in JSON.
+    /// The key in JSON.
     pub key: &'static str,
-    /// What people call it.
+    /// The name for users.
     pub name: &'static str,
-    /// Its unit, or empty.
+    /// The unit, or empty.
     pub unit: &'static str,
-    /// Digits behind the point.
+    /// Number of decimals.
     pub digits: usize,
-    /// What a tenth, half and nine tenths of windows of real land stay below.
+    /// The 10 %, 50 % and 90 % quantiles over windows of real terrain.
     pub real: [f64; 3],
-    /// Where it is found.
+    /// The value from measurements.
     pub of: fn(&Measures) -> Option<f64>,
 }
 
-/// Where [`FIGURES`] has its ranges from, for people.
+/// The source of the ranges of [`FIGURES`], for users.
 pub const SOURCE: &str =
     "38 windows of 256 x 256 cells of eight real places, 30 to 90 m (SRTM and USGS; docs/analysis.md)";
 
@@ -32,8 +32,8 @@ macro_rules! figures {
     };
 }
 
-/// All figures, in the order of the table. Measured by `orogen analyze` on every window of 256 x 256 cells, without missing heights, of the eight
-/// places that docs/analysis.md names.
+/// All statistics, in the order of the table. The ranges were measured by `orogen analyze` on every window of 256 x 256
+/// cells without missing heights, from the eight places that docs/analysis.md names.
 pub static FIGURES: &[Figure] = figures![
     "relief", "relief", "m", 0, [683.0, 1022.0, 2264.0], |m| m.relief;
     "hypsometric_integral", "hypsometric integral", "", 3, [0.26, 0.432, 0.705], |m| m.hypsometric_integral;
@@ -62,19 +62,19 @@ pub static FIGURES: &[Figure] = figures![
 ];
 
 impl Figure {
-    /// The figure, if it can be had and is a number.
+    /// The value, if it exists and is finite.
     pub fn value(&self, measures: &Measures) -> Option<f64> {
         (self.of)(measures).filter(|value| value.is_finite())
     }
 
-    /// Where a value lies in the range of real land: 0 its middle, -1 and 1 its tenths.
+    /// The position of a value in the range of real terrain: 0 is the median, -1 and 1 are the 10 % and 90 % quantiles.
     pub fn place(&self, value: f64) -> f64 {
         let [low, middle, high] = self.real;
         let half = if value < middle { middle - low } else { high - middle };
         (value - middle) / half.max(f64::MIN_POSITIVE)
     }
 
-    /// In a word.
+    /// An assessment in one word.
     pub fn verdict(&self, value: f64) -> &'static str {
         match self.place(value) {
             place if place < -2.0 => "far below",
@@ -85,13 +85,13 @@ impl Figure {
         }
     }
 
-    /// A value with its digits.
+    /// A value with its number of decimals.
     pub fn text(&self, value: f64) -> String {
         format!("{value:.*}", self.digits)
     }
 }
 
-/// The table for a terminal: each figure with the range of real land and a word.
+/// The table for a terminal: each statistic with its range in real terrain and an assessment.
 pub fn table(measures: &Measures) -> String {
     let mut out = format!("{:<24}{:>10} {:<8} {:>24}\n", "", "here", "", "real: 10 %, half, 90 %");
     for figure in FIGURES {

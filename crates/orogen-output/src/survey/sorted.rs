@@ -1,22 +1,23 @@
-//! Samples in ascending order, held in memory or gathered some at a time: the order, and so every sum in it, is the same.
+//! Samples in ascending order, sorted in memory or in parts. Both give the same order, so sums over it have the same
+//! bits.
 
 use orogen_grid::error::Result;
 
-/// Hands on all samples, some at a time, the same every time it is asked.
+/// A source of samples that calls its argument with all of them, in pieces, in the same order every time.
 pub type Samples<'a> = dyn Fn(&mut dyn FnMut(&[f32])) -> Result<()> + 'a;
 
 /// The finite samples of a source, in ascending order.
 pub struct Sorted<'a> {
     samples: &'a Samples<'a>,
-    /// All of them, if they may be held.
+    /// All samples, if they fit in memory.
     held: Option<Vec<f32>>,
-    /// How many there are of each [`high`] half of a key, if not.
+    /// Otherwise, the number of samples for each [`high`] half of a key.
     buckets: Vec<u64>,
     count: u64,
     most: usize,
 }
 
-/// A number that is ordered as `f32::total_cmp` orders samples.
+/// An integer that sorts like `f32::total_cmp`.
 fn key(sample: f32) -> u32 {
     let bits = sample.to_bits();
     if bits >> 31 == 1 { !bits } else { bits | 1 << 31 }
@@ -32,7 +33,7 @@ fn high(key: u32) -> usize {
 }
 
 impl<'a> Sorted<'a> {
-    /// Of all samples held at once.
+    /// Sorts all samples in memory.
     ///
     /// # Errors
     /// If the source fails.
@@ -43,7 +44,7 @@ impl<'a> Sorted<'a> {
         Ok(Sorted { samples, count: held.len() as u64, held: Some(held), buckets: Vec::new(), most: 0 })
     }
 
-    /// Of at most `most` samples held at a time: the source is read once for as many, and once more.
+    /// Holds at most `most` samples at a time: the source is read once per part, and once more to count.
     ///
     /// # Errors
     /// If the source fails.
@@ -53,12 +54,12 @@ impl<'a> Sorted<'a> {
         Ok(Sorted { samples, count: buckets.iter().sum(), held: None, buckets, most: most.max(1) })
     }
 
-    /// How many there are.
+    /// Number of samples.
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// Hands on all samples in order, some at a time.
+    /// Visits all samples in ascending order, in pieces.
     ///
     /// # Errors
     /// If the source fails.
@@ -93,7 +94,7 @@ impl<'a> Sorted<'a> {
         Ok(())
     }
 
-    /// The samples of a bucket that is too full to be held: they are counted by their value.
+    /// The samples of a bucket that is too large to be held: they are counted by value.
     fn alike(&self, bucket: usize, visit: &mut dyn FnMut(&[f32])) -> Result<()> {
         let mut counts = vec![0u64; 1 << 16];
         (self.samples)(&mut |some| {
@@ -111,7 +112,7 @@ impl<'a> Sorted<'a> {
         Ok(())
     }
 
-    /// The samples at places in the order, which must ascend; there is one at each.
+    /// The samples at these positions of the order; positions must be ascending and valid.
     ///
     /// # Errors
     /// If the source fails.

@@ -1,4 +1,4 @@
-//! What the drainage of a piece of land is like.
+//! Statistics of drainage.
 
 use std::ops::Range;
 use std::path::Path;
@@ -25,43 +25,43 @@ use orogen_grid::progress::Progress;
 use orogen_io::pages::{self, Pages, SIDE};
 use orogen_io::raster::Raster;
 
-/// Where rivers begin: the drainage area in m^2, and the fewest cells.
+/// Thresholds of rivers: minimum drainage area in m^2, and minimum number of cells.
 pub const SPRING: f64 = 5e5;
 const FEWEST_CELLS: u32 = 32;
 
-/// Depressions, rivers and their laws.
+/// Statistics of depressions and rivers.
 #[derive(Debug, Clone)]
 pub struct Water {
-    /// Share of the cells that lie below the level at which their depression spills.
+    /// Share of the cells below the spill level of their depression.
     pub depressions: f64,
-    /// Their mean depth in metres; 0 without any.
+    /// Mean depth of those cells, in metres; 0 if there are none.
     pub depression_depth: f64,
-    /// Exponent of P(area > a) ~ a^-t.
+    /// Exponent t of P(area > a) ~ a^-t.
     pub area_exponent: Option<f64>,
     /// Exponent of Hack's law.
     pub hack: Option<f64>,
     /// Concavity of the rivers.
     pub concavity: Option<f64>,
-    /// How many times more rivers an order has than the next (Horton 1945).
+    /// Bifurcation ratio: the number of streams of an order divided by that of the next (Horton 1945).
     pub bifurcation: Option<f64>,
-    /// How many times longer they are.
+    /// Length ratio: the mean length of streams of an order divided by that of the previous one.
     pub length_ratio: Option<f64>,
-    /// The highest order.
+    /// The highest Strahler order.
     pub order: u8,
-    /// Kilometres of river on a square kilometre.
+    /// Drainage density, in km per km^2.
     pub density: f64,
-    /// Mean topographic wetness.
+    /// Mean topographic wetness index.
     pub wetness: f64,
-    /// The rivers, from spring or confluence to confluence or outlet.
+    /// The rivers, from source or confluence to confluence or outlet.
     pub reaches: Vec<Reach>,
 }
 
-/// Cells that a river drains at least.
+/// Minimum number of cells that a river drains.
 fn spring(window: &Window) -> u32 {
     ((SPRING / (window.cell * window.cell)) as u32).max(FEWEST_CELLS)
 }
 
-/// Measures the drainage of heights in which what is no land is NaN.
+/// Measures the drainage of heights; samples that are not land are NaN.
 ///
 /// # Errors
 /// If the work is cancelled.
@@ -72,7 +72,7 @@ pub fn measure(heights: &Grid, progress: &Progress) -> Result<Water> {
     let filled =
         fill::filled(heights, &drainage::route_carving_with(heights, &outlets, Descent::Steepest, &filling)?.basins);
     let receivers = drainage::over_surface_with(&filled, &outlets, Descent::Steepest, &draining)?;
-    // Outlets are not asked for again.
+    // Outlets are not needed again.
     drop(outlets);
     counting.check()?;
     let drained = accumulate(&receivers);
@@ -93,7 +93,7 @@ pub fn measure(heights: &Grid, progress: &Progress) -> Result<Water> {
     Ok(Water::of(window, &ground, laws, wet.mean(), network(&receivers, &orders)))
 }
 
-/// Bytes that [`measure_on_disk`] takes, rivers not counted.
+/// Memory of [`measure_on_disk`] without rivers, in bytes.
 pub fn memory_on_disk(window: &Window) -> u64 {
     let cells = window.len() as u64;
     let side = large::side(cells) as u64;
@@ -102,7 +102,8 @@ pub fn memory_on_disk(window: &Window) -> u64 {
     large::memory(cells).saturating_add(strip).saturating_add(rows).saturating_add(3 * pages::memory(window))
 }
 
-/// The same as [`measure`] of land on disk, to the bit, tile by tile: rasters are made in `folder`, and what rivers take is reserved from `budget`.
+/// [`measure`] for land on disk, with the same bits, tile by tile. Temporary rasters are made in `folder`; the memory
+/// of rivers is reserved from `budget`.
 ///
 /// # Errors
 /// If the disk fails, the rivers do not fit, or the work is cancelled.
@@ -125,7 +126,7 @@ pub fn measure_on_disk(land: &Land, folder: &Path, budget: &Budget, progress: &P
     let streams = Streams::new(&codes, &tiling, spring, &passing)?;
     passing.finish();
 
-    // What is counted of all cells, and how many are rivers.
+    // Counts over all cells, and the number of river cells.
     let (mut ground, mut counts, mut wet) = (WaterCounts::default(), AreaCounts::new(window.len()), Mean::default());
     let (mut largest, mut rivers) = (0, 0);
     streams.each(|strip| {
@@ -193,13 +194,13 @@ pub fn measure_on_disk(land: &Land, folder: &Path, budget: &Budget, progress: &P
     Ok(Water::of(&window, &ground, laws, wet.mean(), network.network()))
 }
 
-/// Rows in bands of `most`.
+/// Splits rows into bands of at most `most`.
 fn bands(rows: Range<usize>, most: usize) -> impl Iterator<Item = Range<usize>> {
     let end = rows.end;
     rows.step_by(most).map(move |first| first..(first + most).min(end))
 }
 
-/// Rows and those beside them, as far as there are any.
+/// The rows and their neighbours, where they exist.
 fn near(rows: &Range<usize>, height: usize) -> Range<usize> {
     rows.start.saturating_sub(1)..(rows.end + 1).min(height)
 }
@@ -209,7 +210,7 @@ fn part(window: &Window, rows: &Range<usize>) -> Window {
     Window { y: window.y + rows.start as i64, height: rows.len(), ..*window }
 }
 
-/// What is counted of the ground.
+/// Counts over the ground.
 #[derive(Debug, Clone, Copy, Default)]
 struct WaterCounts {
     land: f64,
@@ -229,7 +230,7 @@ impl WaterCounts {
     }
 }
 
-/// Exponents of the laws of drainage.
+/// Exponents of drainage laws.
 struct Laws {
     area_exponent: Option<f64>,
     hack: Option<f64>,
@@ -244,7 +245,7 @@ impl Water {
         let order = streams.len() as u8;
         let counted: Vec<f64> = streams.iter().map(|(count, _)| *count).collect();
         let lengths: Vec<f64> = streams.iter().map(|(count, length)| length / count).collect();
-        // The highest order is cut off by the map's edge: its rivers are not whole.
+        // Rivers of the highest order are cut off at the map's edge.
         let whole = lengths.len().saturating_sub(1);
         Water {
             depressions: ground.wet / f64::max(ground.land, 1.0),
@@ -262,7 +263,8 @@ impl Water {
     }
 }
 
-/// Of each order from 1, how many streams there are (reaches of one order that follow each other are one) and how many metres of them.
+/// For each order from 1: the number of streams (consecutive reaches of one order count once) and their total length in
+/// metres.
 fn streams(reaches: &[Reach], window: &Window) -> Vec<(f64, f64)> {
     let highest = reaches.iter().map(|reach| reach.order).max().unwrap_or(0);
     let mut streams = vec![(0.0, 0.0); usize::from(highest)];
@@ -271,7 +273,7 @@ fn streams(reaches: &[Reach], window: &Window) -> Vec<(f64, f64)> {
             continue;
         };
         let next = reach.next.and_then(|next| reaches.get(next as usize));
-        // A stream is counted where it ends: where the next reach is of another order.
+        // A stream is counted at its end, where the next reach has another order.
         if next.is_none_or(|next| next.order != reach.order) {
             *count += 1.0;
         }
@@ -284,7 +286,7 @@ fn streams(reaches: &[Reach], window: &Window) -> Vec<(f64, f64)> {
     streams
 }
 
-/// The mean ratio from each number to the next: the slope of a line through their logarithms. None of fewer than two.
+/// The mean ratio between consecutive numbers: the slope of a line through their logarithms. `None` for fewer than two.
 fn ratio(numbers: &[f64]) -> Option<f64> {
     let count = numbers.len() as f64;
     if numbers.len() < 2 || numbers.iter().any(|number| *number <= 0.0) {

@@ -6,43 +6,43 @@ use orogen_io::dem::file_ref::FileRef;
 use orogen_io::palette::color::{Light, Rgb, decode, linear, mix, oklab};
 use std::fmt::Write as _;
 
-/// Colors of a gradient or a picture between its first and its last, these included.
+/// Number of colors of a gradient or a picture, including the first and the last.
 pub const RAMP: usize = 128;
 
-/// Most surfaces a recipe may have.
+/// Maximum number of surfaces of a recipe.
 pub const MAX_SURFACES: usize = 64;
 
-/// Most alternatives in a surface's `any`.
+/// Maximum number of alternatives in a surface's `any`.
 pub const MAX_ALTERNATIVES: usize = 16;
 
-/// Most colors in a gradient.
+/// Maximum number of colors in a gradient.
 pub const MAX_COLORS: usize = 256;
 
-/// Wavelength in metres of the noise that a gradient follows by default.
+/// Default wavelength of the noise along which a gradient runs, in metres.
 pub const DEFAULT_GRAIN: f64 = 200.0;
 
-/// Roughness by default: that of soil and plants.
+/// Default roughness: that of soil and plants.
 pub const DEFAULT_ROUGHNESS: f64 = 0.9;
 
 /// A surface: a material that covers the ground where its conditions hold.
 ///
-/// Surfaces are laid over one another in the order of the recipe. Each covers what lies below it by its share, 0 to 1; the first lies everywhere. So the
-/// weights of all surfaces add up to 1.
+/// Surfaces are layered in the order of the recipe. Each covers those below it by its share, 0 to 1; the first one is
+/// everywhere. The weights of all surfaces therefore add up to 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
-    /// Its name, which is also the name of its weight map. Surfaces of one name share a weight map.
+    /// The name, which is also the name of its weight map. Surfaces with the same name share a weight map.
     pub name: String,
-    /// Its color.
+    /// The color.
     pub color: Coloring,
-    /// Its roughness as glTF counts it: 0 is a mirror, 1 is matt.
+    /// The roughness as in glTF: 0 is a mirror, 1 is matt.
     pub roughness: f64,
-    /// Its greatest share, 0 to 1.
+    /// The maximum share, 0 to 1.
     pub opacity: f64,
-    /// Conditions that must all hold.
+    /// Conditions that must all hold; their shares are multiplied.
     pub all: Vec<Condition>,
-    /// Alternatives of which the one that holds best counts. None: only `all` counts.
+    /// Alternatives, of which the largest share counts. If empty, only `all` counts.
     pub any: Vec<Vec<Condition>>,
-    /// A node, a layer or a number that its share is multiplied with.
+    /// A node, a layer or a number that multiplies the share.
     pub mask: Input,
 }
 
@@ -65,88 +65,88 @@ impl Default for Surface {
 pub struct Expanded {
     /// The surface.
     pub surface: Surface,
-    /// The layer of its share, 0 to 1; none for the first, which lies everywhere.
+    /// The layer of its share, 0 to 1; `None` for the first surface, which is everywhere.
     pub share: Option<String>,
-    /// The layer of its position in its gradient, 0 to 1.
+    /// The layer of its position in the gradient, 0 to 1.
     pub position: Option<String>,
-    /// The nodes that were added for it, by their indices.
+    /// The indices of the nodes that were added for it.
     pub nodes: std::ops::Range<usize>,
-    /// Its colors as linear light from the first of its gradient to the last; empty until the picture that they come from is read.
+    /// Its colors in linear light, from the first of the gradient to the last; empty until its picture is read.
     pub colors: Vec<Light>,
 }
 
-/// A range of a quantity with soft ends: the share of a surface is 1 in it and falls smoothly to 0 outside.
+/// A range of a quantity with smooth ends: the share is 1 inside and decreases to 0 outside.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Condition {
     /// The quantity.
     pub of: Quantity,
-    /// Its lower end; none is no bound.
+    /// Lower end; `None` for no bound.
     pub min: Option<f64>,
-    /// Its upper end; none is no bound.
+    /// Upper end; `None` for no bound.
     pub max: Option<f64>,
-    /// How far below and above the range the share falls to 0, in the quantity's unit (of a flow: in powers of ten).
+    /// Widths of the transitions below and above the range, in the quantity's unit (for flow: in powers of ten).
     pub fade: [f64; 2],
 }
 
 impl Condition {
-    /// Whether a quantity lies within a range, its ends fading over so much below and above.
+    /// A condition on a range of a quantity, with transitions of these widths below and above.
     pub fn new(of: Quantity, min: Option<f64>, max: Option<f64>, fade: [f64; 2]) -> Condition {
         Condition { of, min, max, fade }
     }
 }
 
-/// What a condition looks at.
+/// The quantity of a condition.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Quantity {
-    /// The height above the sea in metres.
+    /// Height above sea level, in metres.
     Height,
-    /// The slope in degrees.
+    /// Slope in degrees.
     Slope,
-    /// The total curvature in 1/m, positive where the ground is convex, of heights so many metres apart.
+    /// Total curvature in 1/m, positive where the ground is convex, from heights at distances of `scale`.
     Curvature {
-        /// Metres.
+        /// Distance of the heights, in metres.
         scale: f64,
     },
-    /// The drainage area in m^2.
+    /// Drainage area in m^2.
     Flow,
     /// Fractal noise, -1 to 1.
     Noise(Noise),
-    /// Any node or layer of the recipe, in its own unit.
+    /// A node or layer of the recipe, in its own unit.
     Layer(String),
 }
 
 /// The noise of a condition: fBm of Perlin noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
-    /// Metres.
+    /// Wavelength in metres.
     pub wavelength: f64,
-    /// Octaves.
+    /// Number of octaves.
     pub octaves: u32,
     /// Seed, hashed with the world's.
     pub seed: u64,
 }
 
-/// How a surface is colored.
+/// The coloring of a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Coloring {
-    /// One color.
+    /// A single color.
     Plain(Rgb),
     /// Colors along a quantity, mixed in Oklab.
     Gradient(Vec<Rgb>, Along),
-    /// The colors of a picture along a quantity, each as often as it occurs there: its histogram.
+    /// The colors of a picture along a quantity, each with its frequency in the picture (histogram).
     Picture(FileRef, Along),
 }
 
-/// What a gradient follows from its first color to its last.
+/// The quantity along which a gradient runs from its first color to its last.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Along {
-    /// A noise of such a wavelength in metres; every color covers the same area.
+    /// Noise with this wavelength in metres; every color covers the same area.
     Noise(f64),
-    /// The height above the sea, from one to another in metres.
+    /// Height above sea level, over this range in metres.
     Height([f64; 2]),
-    /// The slope, from one to another in degrees.
+    /// Slope, over this range in degrees.
     Slope([f64; 2]),
-    /// A node or layer, from one value to another.
+    /// A node or layer, over this range of values.
     Layer(String, [f64; 2]),
 }
 
@@ -157,7 +157,7 @@ impl Default for Along {
 }
 
 impl Coloring {
-    /// The colors as linear light, at even steps; none of a picture that has to be read.
+    /// The colors in linear light, evenly spaced; empty for a picture that was not read yet.
     pub fn ramp(&self) -> Vec<Light> {
         match self {
             Coloring::Plain(color) => vec![color.map(decode)],
@@ -177,7 +177,7 @@ impl Coloring {
 }
 
 impl Surface {
-    /// The picture that its colors come from.
+    /// The picture of its colors.
     pub fn picture(&self) -> Option<&FileRef> {
         match &self.color {
             Coloring::Picture(file, _) => Some(file),
@@ -185,7 +185,7 @@ impl Surface {
         }
     }
 
-    /// Puts others in the places of the nodes and layers that it reads.
+    /// Renames the nodes and layers that it reads.
     pub(in crate::recipe) fn rename_inputs(&mut self, of: &impl Fn(&str) -> Option<Input>) {
         let renamed = |layer: &mut String| {
             if let Some(Input::Node(name)) = of(layer) {
@@ -209,7 +209,7 @@ impl Surface {
         }
     }
 
-    /// The same, to be changed.
+    /// The picture of its colors, mutable.
     pub fn picture_mut(&mut self) -> Option<&mut FileRef> {
         match &mut self.color {
             Coloring::Picture(file, _) => Some(file),
@@ -243,7 +243,7 @@ impl Surface {
             Some(Along::Layer(name, span)) => writeln!(text, "along = {}\nspan = {span:?}", toml_string(name)),
         };
         let _ = writeln!(text, "roughness = {:?}", self.roughness);
-        // The first surface takes none.
+        // The first surface has none.
         if self.opacity != 1.0 {
             let _ = writeln!(text, "opacity = {:?}", self.opacity);
         }

@@ -1,5 +1,5 @@
-//! Surfaces as nodes: the share of each, and the position in its gradient, are computed by the ops that recipes are made of. So they are the same for any
-//! tile, and their halos and memory are planned like those of any other layer.
+//! Expansion of surfaces to nodes: the share of each, and the position in its gradient, are computed by ordinary ops.
+//! They are therefore the same for any tile, and their halos and memory are planned like those of any other layer.
 
 use std::collections::HashSet;
 
@@ -21,13 +21,14 @@ use crate::node::Node;
 use crate::recipe::document::Recipe;
 use crate::solver::drainage::Drainage;
 
-/// The output that surfaces lie on.
+/// The output with the heights.
 const HEIGHT: &str = "height";
 
-/// The output that holds drainage areas, where a recipe has one.
+/// The output with drainage areas, if a recipe has one.
 const FLOW: &str = "flow";
 
-/// Quantiles of fBm of Perlin noise of four octaves and a gain of one half (2^24 samples): it makes every color of a gradient cover the same area.
+/// Quantiles of fBm of Perlin noise with four octaves and a gain of 0.5 (from 2^24 samples), with which every color of
+/// a gradient covers the same area.
 const QUANTILES: [[f64; 2]; 17] = [
     [-0.5707, 0.0005],
     [-0.4690, 0.005],
@@ -48,17 +49,17 @@ const QUANTILES: [[f64; 2]; 17] = [
     [0.5707, 0.9995],
 ];
 
-/// Octaves of the noise that gradients follow.
+/// Octaves of the noise of gradients.
 const OCTAVES: u32 = 4;
 
-/// Bounds of what the ops of conditions take.
+/// Bounds of the ops' parameters.
 const HEIGHTS: [f64; 2] = [-1e9, 1e9];
 const SLOPES: [f64; 2] = [0.0, 90.0];
 const CURVATURES: [f64; 2] = [-1e3, 1e3];
 const FLOWS: [f64; 2] = [0.0, 1e18];
 
-/// Adds to a recipe the nodes that compute its surfaces, those of [`standard`] if it lists none, unless they are there. A recipe without a layer `height`
-/// has no surfaces.
+/// Adds the nodes to a recipe that compute its surfaces, or those of [`standard`] if it has none, unless they exist. A
+/// recipe without a layer `height` has no surfaces.
 pub fn expand(recipe: &mut Recipe) {
     let Some((_, height)) = recipe.output_inputs().iter().find(|(name, _)| name == HEIGHT) else { return };
     if !recipe.expanded().is_empty() {
@@ -76,7 +77,7 @@ pub fn expand(recipe: &mut Recipe) {
     recipe.set_expanded(expanded);
 }
 
-/// Adds nodes whose names nobody has.
+/// Adds nodes with unused names.
 struct Nodes<'r> {
     recipe: &'r mut Recipe,
     names: HashSet<String>,
@@ -168,7 +169,7 @@ impl Nodes<'_> {
             }
             Quantity::Flow => match self.flow() {
                 Some(source) => self.add(name, SelectFlow { source, range: within(FLOWS), falloff }),
-                // Rivers of a world without bounds never end: nothing is known of them.
+                // The drainage area is unknown in unbounded worlds.
                 None => self.add(name, Constant { value: if min.unwrap_or(0.0) > 0.0 { 0.0 } else { 1.0 } }),
             },
             Quantity::Noise(Noise { wavelength, octaves, seed }) => {

@@ -1,9 +1,9 @@
-//! Surfaces: what covers the ground, where, and how it looks.
+//! Surfaces: the materials of the ground, their conditions and appearance.
 //!
 //! - [`document`]: a surface in memory, and as TOML
-//! - `read`: `[[surface]]` tables to surfaces, with every diagnostic at its own key
-//! - [`standard`]: the surfaces of a recipe that lists none
-//! - [`expand`]: surfaces to nodes that compute their shares
+//! - `read`: conversion of `[[surface]]` tables to surfaces, with diagnostics at their keys
+//! - [`standard`]: the surfaces of a recipe without any
+//! - [`expand`]: expansion of surfaces to nodes that compute their shares
 //! - `schema`: their part of the JSON Schema
 
 pub mod document;

@@ -1,4 +1,4 @@
-//! `[[surface]]` tables to surfaces.
+//! Conversion of `[[surface]]` tables to surfaces.
 
 use std::collections::HashSet;
 
@@ -14,7 +14,7 @@ use orogen_io::palette::names;
 
 type Entry = (Spanned<String>, Spanned<Value>);
 
-/// Keys of a condition: its name, the bounds of its ends, and the default scale of a curvature in metres.
+/// Bounds of the ends of each condition, and the default scale of a curvature in metres.
 const HEIGHTS: [f64; 2] = [-1e6, 1e6];
 const SLOPES: [f64; 2] = [0.0, 90.0];
 const CURVATURES: [f64; 2] = [-1e3, 1e3];
@@ -23,25 +23,25 @@ const NOISES: [f64; 2] = [-1.0, 1.0];
 const LAYERS: [f64; 2] = [-1e9, 1e9];
 const SCALE: f64 = 50.0;
 
-/// The keys that state conditions.
+/// The keys of conditions.
 pub const CONDITIONS: [&str; 6] = ["height", "slope", "curvature", "flow", "noise", "layers"];
 
 /// The other keys of a surface.
 pub const KEYS: [&str; 11] =
     ["name", "color", "gradient", "picture", "along", "span", "grain", "roughness", "opacity", "any", "mask"];
 
-/// The surfaces of a recipe, each with the place of its table, and what is wrong with them.
+/// The surfaces of a recipe with the positions of their tables, and their problems.
 #[derive(Debug, Default)]
 pub struct Read {
     /// The surfaces.
     pub surfaces: Vec<Surface>,
-    /// Where each stands.
+    /// The position of each.
     pub places: Vec<Span>,
-    /// What is wrong, and where.
+    /// The problems, with positions.
     pub diagnostics: Vec<(Span, String)>,
 }
 
-/// Reads the list of surfaces. `bounded` tells whether the world has bounds: only then are drainage areas known.
+/// Reads the list of surfaces. `bounded` tells whether the world is bounded: only then are drainage areas known.
 pub fn read(value: &Spanned<Value>, bounded: bool) -> Read {
     let mut reader = Reader { out: Read::default(), bounded };
     match &value.value {
@@ -306,7 +306,7 @@ impl Reader {
         all
     }
 
-    /// The conditions of a key: one, or one for each layer.
+    /// The conditions of a key: one, or one per layer.
     fn condition(&mut self, key: &str, value: &Spanned<Value>) -> Vec<Condition> {
         if key == "layers" {
             let Some(entries) = self.table("`layers`", value) else { return Vec::new() };
@@ -327,7 +327,7 @@ impl Reader {
         vec![self.range(of, key, value, bounds)]
     }
 
-    /// A range: `[MIN, MAX]` or a table of `min`, `max`, `fade` and what else the quantity takes.
+    /// A range: `[MIN, MAX]` or a table of `min`, `max`, `fade` and further keys of the quantity.
     fn range(&mut self, of: Quantity, key: &str, value: &Spanned<Value>, bounds: [f64; 2]) -> Condition {
         let mut condition = Condition::new(of, None, None, [0.0; 2]);
         match &value.value {

@@ -51,7 +51,7 @@ pub fn list() -> Json {
     })
 }
 
-/// The conditions' part.
+/// The schema of conditions.
 fn conditions() -> Json {
     let range = |about: &str, more: Json| {
         let number = json!({ "type": "number" });

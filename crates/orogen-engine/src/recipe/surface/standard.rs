@@ -1,22 +1,23 @@
-//! The surfaces of a recipe that lists none: grass, sand, scree, rock, snow and river beds by slope, height, curvature and flow.
+//! The standard surfaces, for a recipe without any: grass, sand, scree, rock, snow and river beds by slope, height,
+//! curvature and flow.
 //!
 //! | surface | where | fades over |
 //! |---|---|---|
-//! | grass | everywhere that nothing else covers | |
+//! | grass | everywhere that no other surface covers | |
 //! | sand | the floor of the sea | 2 m above it |
-//! | scree | 30 to 40 degrees, in hollows wholly, on convex ground by half | 6 degrees below, 4 above; curvature of 0.01 1/m |
-//! | rock | above 40 degrees, and on brows (curvature above 0.02 1/m) from 25 degrees | 8 degrees; 0.01 1/m |
-//! | snow | above 2600 m, not where it is steeper than 45 degrees | 400 m below; 10 degrees |
-//! | sand | up to 3 m above the sea, not where it is steeper than 15 degrees | 5 m; 10 degrees |
-//! | bed | where more than 1 km^2 drains, on land, not where it is steeper than 35 degrees | down to 0.2 km^2; 2 m; 10 degrees |
+//! | scree | 30 to 40 degrees, fully in hollows, by half on convex ground | 6 degrees below, 4 above; curvature of 0.01 1/m |
+//! | rock | above 40 degrees, and on convex edges (curvature above 0.02 1/m) from 25 degrees | 8 degrees; 0.01 1/m |
+//! | snow | above 2600 m, except on slopes steeper than 45 degrees | 400 m below; 10 degrees |
+//! | sand | up to 3 m above the sea, except on slopes steeper than 15 degrees | 5 m; 10 degrees |
+//! | bed | drainage area above 1 km^2, on land, except on slopes steeper than 35 degrees | down to 0.2 km^2; 2 m; 10 degrees |
 
 use super::document::{Along, Coloring, Condition, Quantity, Surface};
 use orogen_io::palette::color::rgb;
 
-/// Where snow begins, in metres above the sea: about the Alps'.
+/// The snow line in metres above the sea: about that of the Alps.
 const SNOW_LINE: f64 = 2600.0;
 
-/// Metres between the heights that curvature is taken from.
+/// Distance of the heights for curvature, in metres.
 const SCALE: f64 = 50.0;
 
 /// The surfaces, bottom to top.

@@ -1,11 +1,13 @@
-//! `.prj` files of ARC/INFO, older than well-known text: lines of a keyword and a value, which the USGS wrote beside its grids.
+//! `.prj` files of ARC/INFO, older than well-known text: lines of a keyword and a value, as the USGS wrote beside its
+//! grids.
 
 use super::epsg;
 
-/// The longest list of lines looked at.
+/// Maximum number of lines.
 const MAX_LINES: usize = 64;
 
-/// The EPSG code of such a text, if it is one: UTM or degrees, in metres, on the datums of North America and of GPS.
+/// The EPSG code of such a text, if it is supported: UTM or degrees, in metres, on the datums of North America or WGS
+/// 84.
 pub fn epsg(text: &str) -> Option<u16> {
     let value = |wanted: &str| {
         text.lines().take(MAX_LINES).find_map(|line| {
@@ -26,7 +28,7 @@ pub fn epsg(text: &str) -> Option<u16> {
             if value("Units").is_some_and(|units| !units.starts_with("METER") && !units.starts_with("METRE")) {
                 return None;
             }
-            // A southern zone is written as a shift, or as a number below 0.
+            // A southern zone is written with a false northing, or as a negative number.
             let zone: i32 = value("Zone")?.parse().ok()?;
             let shifted = value("Yshift").and_then(|shift| shift.parse::<f64>().ok()).is_some_and(|shift| shift != 0.0);
             let first = match (degrees, zone < 0) {

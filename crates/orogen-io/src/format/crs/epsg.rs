@@ -1,5 +1,6 @@
-//! Systems by their EPSG code (EPSG Geodetic Parameter Dataset, IOGP): the world's geographic systems and UTM grids that elevation data
-//! come in, Web Mercator, the polar grids, and the national grids of many countries. Names are ESRI's, so that its programs know them.
+//! Coordinate systems by EPSG code (EPSG Geodetic Parameter Dataset, IOGP): the geographic systems and UTM grids common
+//! for elevation data, Web Mercator, the polar grids, and national grids of many countries. Names are ESRI's, so that
+//! its programs recognise them.
 
 use super::system::{Geographic, Method, System};
 
@@ -121,8 +122,8 @@ const GEOGRAPHIC: &[Row] = &[
     (4669, "GCS_LKS_1994", "D_Lithuania_1994", "Lithuania_1994_ETRS89", "GRS_1980", 6378137.0, 298.257222101),
 ];
 
-/// UTM and grids like it: the codes of the first and the last zone, the first zone, the geographic system, the name before the zone's number, and the
-/// hemisphere behind it.
+/// UTM and similar grids: the codes of the first and the last zone, the first zone, the geographic system, the name
+/// before the zone's number, and the hemisphere after it.
 type Zones = (u16, u16, u16, u16, &'static str, &'static str);
 
 const ZONES: &[Zones] = &[
@@ -259,7 +260,7 @@ pub fn geographic(code: u16) -> Option<Geographic> {
     Some(Geographic { code, name, datum, datum_ogc, spheroid, radius, flattening })
 }
 
-/// The system of a code, if it is one of those known here.
+/// The system of a code, if it is in this module.
 pub fn find(code: u16) -> Option<System> {
     if let Some(geographic) = geographic(code) {
         return Some(System { name: geographic.name.to_string(), geographic, projection: None, unit: 1.0 });
@@ -270,14 +271,14 @@ pub fn find(code: u16) -> Option<System> {
     }
     let (from, _, zone, degrees, name, hemisphere) = ZONES.iter().find(|row| (row.0..=row.1).contains(&code))?;
     let zone = zone + code - from;
-    // The Australian grids carry no letter, and lie in the south.
+    // The Australian grids have no letter, and are in the southern hemisphere.
     let north = *hemisphere == "N";
     let parameters = vec![500_000.0, if north { 0.0 } else { 1e7 }, f64::from(zone) * 6.0 - 183.0, 0.9996, 0.0];
     let projection = Some((TransverseMercator, parameters));
     Some(System { name: format!("{name}{zone}{hemisphere}"), geographic: geographic(*degrees)?, projection, unit: 1.0 })
 }
 
-/// The codes of all systems known here.
+/// The codes of all systems of this module.
 pub fn codes() -> impl Iterator<Item = u16> {
     let zones = ZONES.iter().flat_map(|row| row.0..=row.1);
     GEOGRAPHIC.iter().map(|row| row.0).chain(zones).chain(PROJECTED.iter().map(|row| row.0))
@@ -310,10 +311,8 @@ mod tests {
             (6339, "NAD_1983_2011_UTM_Zone_10N", -123.0, 0.0),
         ] {
             let system = find(code).unwrap();
-            assert_eq!(
-                (system.name.as_str(), system.parameters()[2], system.parameters()[1]),
-                (name, meridian, northing)
-            );
+            let (_, parameters) = system.projection.unwrap();
+            assert_eq!((system.name.as_str(), parameters[2], parameters[1]), (name, meridian, northing));
         }
         assert_eq!(find(1), None);
     }

@@ -1,4 +1,4 @@
-//! The keys of GeoTIFF (OGC 19-008r4) from well-known text, and back.
+//! GeoTIFF keys (OGC 19-008r4) to and from well-known text.
 
 use super::system::{Geographic, Method, System};
 use super::unit::Unit;
@@ -6,10 +6,10 @@ use super::wkt::Node;
 use super::{arc_info, epsg};
 use serde::{Deserialize, Serialize};
 
-/// GeoTIFF's own directory (OGC 19-008r4, 7.1.2): which coordinate system its numbers are in.
+/// The GeoKey directory (OGC 19-008r4, 7.1.2), which describes the coordinate system.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct GeoKeys {
-    /// Tag 34735, its four numbers of head included.
+    /// Tag 34735, including its header of four numbers.
     pub directory: Vec<u16>,
     /// Tag 34736.
     pub doubles: Vec<f64>,
@@ -17,7 +17,7 @@ pub struct GeoKeys {
     pub text: String,
 }
 
-/// What ESRI's programs and GDAL write before a text that no other key can tell.
+/// The prefix of ESRI's programs and GDAL for well-known text that no other key can express.
 const ESRI_TEXT: &str = "ESRI PE String = ";
 
 const MODEL: u16 = 1024;
@@ -30,30 +30,30 @@ const SEMI_MINOR: u16 = 2058;
 const FLATTENING: u16 = 2059;
 const PROJECTED_CITATION: u16 = 3073;
 const LINEAR_UNIT: u16 = 3076;
-/// GeoTIFF's code for what no code tells.
+/// GeoTIFF's code for values without a code.
 pub const USER_DEFINED: u16 = 32767;
 const TEXTS: u16 = 34737;
 const DOUBLES: u16 = 34736;
 
-/// A key whose value is one short number.
+/// The value of a key with a single short.
 pub fn short(keys: &GeoKeys, wanted: u16) -> Option<u16> {
     keys.directory.chunks_exact(4).skip(1).find(|key| key[0] == wanted && key[1] == 0).map(|key| key[3])
 }
 
-/// A key whose value is a text.
+/// The value of a text key.
 fn text(keys: &GeoKeys, wanted: u16) -> Option<&str> {
     let key = keys.directory.chunks_exact(4).skip(1).find(|key| key[0] == wanted && key[1] == TEXTS)?;
     let (from, length) = (usize::from(key[3]), usize::from(key[2]));
     Some(keys.text.get(from..(from + length).min(keys.text.len()))?.trim_end_matches(['|', '\0']))
 }
 
-/// A key whose value is a number.
+/// The value of a numeric key.
 fn double(keys: &GeoKeys, wanted: u16) -> Option<f64> {
     let key = keys.directory.chunks_exact(4).skip(1).find(|key| key[0] == wanted && key[1] == DOUBLES)?;
     keys.doubles.get(usize::from(key[3])).copied()
 }
 
-/// Metres in a unit of length, by its EPSG code.
+/// Metres per unit of length, by its EPSG code.
 pub fn length_unit(code: u16) -> Option<f64> {
     match code {
         9001 => Some(1.0),
@@ -69,7 +69,7 @@ pub fn is_degrees(keys: &GeoKeys) -> bool {
     short(keys, MODEL) == Some(2)
 }
 
-/// Whether keys tell a coordinate system of the Earth: not local metres, not degrees of an unknown datum.
+/// Whether the keys describe a coordinate system on Earth: not local metres, and not degrees of an unknown datum.
 pub fn is_named(keys: &GeoKeys) -> bool {
     match short(keys, MODEL) {
         Some(1) => true,
@@ -78,18 +78,18 @@ pub fn is_named(keys: &GeoKeys) -> bool {
     }
 }
 
-/// What coordinates are measured in.
+/// The unit of the coordinates.
 pub fn unit(keys: &GeoKeys) -> Unit {
     if is_degrees(keys) { Unit::Degrees } else { Unit::Metres(metres(keys)) }
 }
 
-/// Metres of the unit of projected coordinates; 1 where the keys do not tell.
+/// Metres per unit of projected coordinates; 1 if the keys do not state it.
 pub fn metres(keys: &GeoKeys) -> f64 {
     let told = || Some(Node::parse(esri_text(keys)?).ok()?.metres());
     short(keys, LINEAR_UNIT).and_then(length_unit).or_else(told).unwrap_or(1.0)
 }
 
-/// The EPSG code of the system, if the keys tell one.
+/// The EPSG code of the system, if the keys have one.
 pub fn epsg(keys: &GeoKeys) -> Option<u16> {
     let key = |wanted: u16| short(keys, wanted).filter(|code| !matches!(*code, 0 | USER_DEFINED));
     // Model 2 is a geographic system, 1 a projected one.
@@ -105,10 +105,10 @@ pub fn of_epsg(code: u16, geographic: bool) -> GeoKeys {
     GeoKeys { directory, ..GeoKeys::default() }
 }
 
-/// The keys of the text of a `.prj`: its EPSG code where it has one or is a known system, else the text itself.
+/// The keys of the text of a `.prj`: the EPSG code if it states one or is a known system, otherwise the text itself.
 ///
 /// # Errors
-/// A message if it is no text of a coordinate system on Earth.
+/// A message if it is not the text of a coordinate system on Earth.
 pub fn of_wkt(wkt: &str) -> Result<GeoKeys, String> {
     let wkt = wkt.trim_start_matches('\u{feff}').trim();
     if let Some(code) = arc_info::epsg(wkt) {
@@ -128,7 +128,7 @@ pub fn of_wkt(wkt: &str) -> Result<GeoKeys, String> {
         return Ok(keys);
     }
     let text = format!("{ESRI_TEXT}{wkt}|");
-    // A bar would end the text, and nothing but ASCII is a text of GeoTIFF.
+    // A bar would end the text, and GeoTIFF texts are ASCII.
     if wkt.contains('|') || !wkt.is_ascii() {
         return Err("its well-known text contains invalid characters".into());
     }
@@ -160,7 +160,7 @@ pub fn of_text(text: &str) -> Result<GeoKeys, String> {
     }
 }
 
-/// Adds the unit of length; keys are sorted, and this is the last.
+/// Adds the unit of length. Keys are sorted, and this one is the last.
 fn push_unit(keys: &mut GeoKeys, metres: f64) {
     let code = [9001u16, 9002, 9003, 9036]
         .into_iter()
@@ -171,7 +171,7 @@ fn push_unit(keys: &mut GeoKeys, metres: f64) {
     }
 }
 
-/// The text that these keys carry as ESRI's programs do.
+/// The well-known text that these keys contain in ESRI's form.
 fn esri_text(keys: &GeoKeys) -> Option<&str> {
     let mut texts = [PROJECTED_CITATION, CITATION, 2049].into_iter().filter_map(|key| text(keys, key));
     texts.find_map(|text| Some(text.split_once(ESRI_TEXT)?.1))
@@ -180,12 +180,12 @@ fn esri_text(keys: &GeoKeys) -> Option<&str> {
 /// The well-known text of keys, for a `.prj` file.
 ///
 /// # Errors
-/// A message that says what could not be expressed.
+/// A message that names the part that cannot be expressed.
 pub fn to_wkt(keys: &GeoKeys) -> Result<String, String> {
     if let Some(code) = epsg(keys) {
         return match epsg::find(code) {
             Some(system) => Ok(system.to_wkt()),
-            // In OGC's terms, which all but ESRI's own programs take for as good.
+            // In OGC's terms, which all programs except ESRI's read equally well.
             None => match crs_definitions::from_code(code) {
                 Some(definition) => Ok(definition.wkt.to_string()),
                 None => Err(format!("the registry has no EPSG:{code}")),
@@ -208,14 +208,14 @@ pub fn to_wkt(keys: &GeoKeys) -> Result<String, String> {
     }
 }
 
-/// The geographic system of keys: by its code, by that of its datum, or by its ellipsoid alone.
+/// The geographic system of the keys: by its code, by that of its datum, or by its ellipsoid only.
 fn geographic(keys: &GeoKeys) -> Option<Geographic> {
     let coded = |key: u16| short(keys, key).filter(|code| *code != USER_DEFINED);
     if let Some(code) = coded(GEOGRAPHIC) {
         return epsg::geographic(code);
     }
     if let Some(datum) = coded(DATUM) {
-        // EPSG numbers the datum of a system by the system's code and 2000.
+        // EPSG numbers the datum of a system by the system's code plus 2000.
         return epsg::geographic(datum.checked_sub(2000)?);
     }
     let radius = double(keys, SEMI_MAJOR)?;
@@ -236,7 +236,7 @@ fn geographic(keys: &GeoKeys) -> Option<Geographic> {
     })
 }
 
-/// A projection that the keys define by themselves.
+/// A projection that the keys define by parameters.
 fn user_defined(keys: &GeoKeys) -> Option<System> {
     if short(keys, MODEL) != Some(1) {
         return None;
@@ -253,13 +253,13 @@ fn user_defined(keys: &GeoKeys) -> Option<System> {
         9 => (Method::LambertOne, vec![latitude, scale, latitude]),
         10 => (Method::AzimuthalEqualArea, vec![latitude]),
         11 => (Method::Albers, vec![double(keys, 3078)?, double(keys, 3079)?, latitude]),
-        // The latitude is that of the true scale, unless it is the pole itself.
+        // The latitude is that of true scale, unless it is the pole.
         15 if latitude.abs() == 90.0 => (Method::Stereographic, vec![scale, latitude]),
         15 if latitude > 0.0 && scale == 1.0 => (Method::NorthPole, vec![latitude]),
         15 if latitude < 0.0 && scale == 1.0 => (Method::SouthPole, vec![latitude]),
         _ => return None,
     };
-    // ESRI's name would be a lie; the citation is what the file itself calls it.
+    // ESRI's name would not match; the citation is the file's own name.
     let name = text(keys, PROJECTED_CITATION).or_else(|| text(keys, CITATION)).unwrap_or("Unknown");
     let name: String = name.chars().filter(|c| c.is_ascii_graphic() && !"\"[]|".contains(*c) || *c == ' ').collect();
     let unit = short(keys, LINEAR_UNIT).map_or(Some(1.0), length_unit)?;

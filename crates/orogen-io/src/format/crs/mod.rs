@@ -1,8 +1,9 @@
-//! Coordinate reference systems as files name them: EPSG codes, the keys of GeoTIFF, and the well-known text (WKT 1) of `.prj` files.
+//! Coordinate reference systems in files: EPSG codes, GeoTIFF keys, and the well-known text (WKT 1) of `.prj` files.
 //!
-//! [`keys`] takes both ways: [`keys::to_wkt`] writes the text that stands beside a file without georeferencing of its own, [`keys::of_wkt`] reads it. Known
-//! by their parameters are the systems of `epsg`, by their codes all of the [`registry`]; any other text is kept as it is, in the key where ESRI's programs
-//! and GDAL look for it. No coordinate is ever transformed here.
+//! [`keys`] converts in both directions: [`keys::to_wkt`] writes the text for a sidecar of a file without
+//! georeferencing, [`keys::of_wkt`] reads it. `epsg` knows systems by their parameters, the [`registry`] knows all
+//! systems by their codes. Any other text is kept unchanged, in the key where ESRI's programs and GDAL look for it.
+//! Coordinates are never transformed.
 
 pub(crate) mod arc_info;
 pub(crate) mod epsg;

@@ -1,4 +1,4 @@
-//! Coordinate reference systems by their EPSG codes.
+//! Coordinate reference systems by EPSG code.
 
 use std::str::FromStr;
 
@@ -18,14 +18,14 @@ use super::unit::Unit;
 pub struct Crs {
     code: u16,
     wkt: &'static str,
-    /// Its unit, and the unit's EPSG code.
+    /// The unit, and its EPSG code.
     unit: (Unit, u16),
 }
 
 impl FromStr for Crs {
     type Err = String;
 
-    /// Reads `EPSG:32632`, `urn:ogc:def:crs:EPSG::32632` or the code alone.
+    /// Reads `EPSG:32632`, `urn:ogc:def:crs:EPSG::32632` or a code alone.
     fn from_str(text: &str) -> Result<Crs, String> {
         let text = text.trim();
         let lower = text.to_ascii_lowercase();
@@ -42,7 +42,7 @@ impl Crs {
     /// The system of an EPSG code.
     ///
     /// # Errors
-    /// If the registry has no such code, or it is neither a projected system nor a geographic one in degrees.
+    /// If the registry does not have the code, or it is neither a projected system nor a geographic one in degrees.
     pub fn from_epsg(code: u16) -> Result<Crs, String> {
         let wkt = match crs_definitions::from_code(code) {
             Some(definition) => definition.wkt,
@@ -62,27 +62,27 @@ impl Crs {
         }
     }
 
-    /// Its EPSG code.
+    /// The EPSG code.
     pub fn code(&self) -> u16 {
         self.code
     }
 
-    /// Its name in the registry.
+    /// The name in the registry.
     pub fn name(&self) -> &'static str {
         name(self.wkt)
     }
 
-    /// Its definition as OGC well-known text, version 1.
+    /// The definition as OGC well-known text, version 1.
     pub fn wkt(&self) -> &'static str {
         self.wkt
     }
 
-    /// What its coordinates are measured in.
+    /// The unit of the coordinates.
     pub fn unit(&self) -> Unit {
         self.unit.0
     }
 
-    /// What a GeoTIFF says of it, with pixels that are points.
+    /// GeoTIFF keys of the system, with pixel-is-point.
     pub fn keys(&self) -> GeoKeys {
         let text = format!("{}|", self.name());
         let citation = [1026, 34737, text.len() as u16, 0];
@@ -104,7 +104,7 @@ fn name(wkt: &'static str) -> &'static str {
     wkt.split('"').nth(1).unwrap_or_default()
 }
 
-/// Metres in the unit of a projected system, and the unit's EPSG code: the `UNIT` that is not within another part.
+/// Metres per unit of a projected system, and the unit's EPSG code: the `UNIT` outside of all other parts.
 fn linear_unit(wkt: &str) -> Option<(f64, u16)> {
     let (mut depth, mut quoted, mut at) = (0, false, None);
     for (k, byte) in wkt.bytes().enumerate() {
@@ -123,7 +123,7 @@ fn linear_unit(wkt: &str) -> Option<(f64, u16)> {
     let unit = &wkt[at?..];
     let metres: f64 = unit.split([',', ']']).nth(1)?.parse().ok()?;
     let code = unit.split("AUTHORITY[\"EPSG\",\"").nth(1).and_then(|rest| rest.split('"').next()?.parse().ok());
-    // A metre needs no code of its own to be known as one.
+    // The metre is recognised without a code.
     code.filter(|_| unit.find("AUTHORITY") < unit.find(']'))
         .or((metres == 1.0).then_some(METRE))
         .map(|code| (metres, code))

@@ -2,18 +2,18 @@
 
 use std::fmt::Write;
 
-/// A geographic system, longitude and latitude in degrees from Greenwich.
+/// A geographic system: longitude and latitude in degrees, from Greenwich.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Geographic {
-    /// Its EPSG code.
+    /// The EPSG code.
     pub code: u16,
-    /// What ESRI calls it.
+    /// ESRI's name.
     pub name: &'static str,
-    /// What ESRI calls its datum.
+    /// ESRI's name of the datum.
     pub datum: &'static str,
-    /// What EPSG, and so the WKT of OGC, calls its datum.
+    /// EPSG's name of the datum, which OGC WKT uses.
     pub datum_ogc: &'static str,
-    /// The name of its ellipsoid.
+    /// The name of the ellipsoid.
     pub spheroid: &'static str,
     /// The semi-major axis, in metres.
     pub radius: f64,
@@ -21,20 +21,20 @@ pub struct Geographic {
     pub flattening: f64,
 }
 
-/// A map projection, as ESRI names it and its parameters.
+/// A map projection, with ESRI's name and parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
     /// Transverse Mercator.
     TransverseMercator,
-    /// The same by its name in Germany and China.
+    /// Transverse Mercator, under its name in Germany and China.
     GaussKruger,
-    /// Lambert's conformal conic projection with two standard parallels.
+    /// Lambert conformal conic with two standard parallels.
     Lambert,
-    /// The same with one standard parallel and a scale.
+    /// Lambert conformal conic with one standard parallel and a scale.
     LambertOne,
-    /// Albers' equal-area conic projection.
+    /// Albers equal-area conic.
     Albers,
-    /// Lambert's azimuthal equal-area projection.
+    /// Lambert azimuthal equal-area.
     AzimuthalEqualArea,
     /// Mercator with a standard parallel.
     Mercator,
@@ -48,12 +48,12 @@ pub enum Method {
     SouthPole,
     /// Oblique stereographic.
     DoubleStereographic,
-    /// Hotine's oblique Mercator with its centre on the initial line (variant B).
+    /// Hotine oblique Mercator with its centre on the initial line (variant B).
     ObliqueMercator,
 }
 
 impl Method {
-    /// What ESRI calls it, and its parameters in the order of [`System::parameters`].
+    /// ESRI's name of the projection, and its parameters in the order of [`System::parameters`].
     pub fn terms(self) -> (&'static str, &'static [&'static str]) {
         const CENTRE: [&str; 3] = ["False_Easting", "False_Northing", "Central_Meridian"];
         const SCALED: &[&str] = &[CENTRE[0], CENTRE[1], CENTRE[2], "Scale_Factor", "Latitude_Of_Origin"];
@@ -89,24 +89,24 @@ impl Method {
     }
 }
 
-/// A projected system, or a geographic one.
+/// A projected or geographic system.
 #[derive(Debug, Clone, PartialEq)]
 pub struct System {
-    /// What ESRI calls it; of a geographic one, its own name.
+    /// ESRI's name; for a geographic system, its own name.
     pub name: String,
-    /// What the degrees are measured on.
+    /// The underlying geographic system.
     pub geographic: Geographic,
-    /// The projection with its parameters, degrees and the system's unit of length; none of a geographic system.
+    /// The projection and its parameters, in degrees and the system's unit of length; none for a geographic system.
     pub projection: Option<(Method, Vec<f64>)>,
-    /// Metres of the unit of length.
+    /// Metres per unit of length.
     pub unit: f64,
 }
 
-/// How many degrees a radian has, as ESRI writes it.
+/// Radians per degree, as ESRI writes it.
 const RADIANS: &str = "0.0174532925199433";
 
 impl System {
-    /// As the text of a `.prj` file: WKT 1 in ESRI's terms, on one line.
+    /// The text of a `.prj` file: WKT 1 in ESRI's terms, on one line.
     pub fn to_wkt(&self) -> String {
         let Geographic { name, datum, spheroid, radius, flattening, .. } = self.geographic;
         let degrees = format!(
@@ -133,7 +133,7 @@ impl System {
     }
 }
 
-/// A number that has a point.
+/// A number with a decimal point.
 fn decimal(number: f64) -> String {
     let text = number.to_string();
     if text.contains('.') { text } else { text + ".0" }

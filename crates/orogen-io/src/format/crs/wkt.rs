@@ -1,14 +1,15 @@
-//! Well-known text of coordinate systems: taken apart, and recognised among the systems of [`epsg`].
+//! Well-known text of coordinate systems: a parser, and recognition of the systems of [`epsg`].
 //!
-//! OGC 01-009 (WKT 1) and ESRI's dialect of it are compared by parameters; of WKT 2 (OGC 18-010) the EPSG code is read, where it has one.
+//! OGC 01-009 (WKT 1) and ESRI's dialect of it are compared by parameters. Of WKT 2 (OGC 18-010) only the EPSG code is
+//! used.
 
 use super::epsg;
 use super::system::System;
 
-/// The longest text read.
+/// Maximum length of a text, in bytes.
 pub const MAX_LENGTH: usize = 1 << 15;
 
-/// The deepest nesting read: real texts have 6.
+/// Maximum nesting depth; real texts have 6.
 const MAX_DEPTH: usize = 24;
 
 /// `KEYWORD[...]`.
@@ -16,11 +17,11 @@ const MAX_DEPTH: usize = 24;
 pub struct Node {
     /// The keyword in capital letters.
     pub keyword: String,
-    /// What stands between the brackets.
+    /// The values between the brackets.
     pub values: Vec<Value>,
 }
 
-/// What can stand between brackets.
+/// A value between brackets.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// A text in quotes.
@@ -34,10 +35,10 @@ pub enum Value {
 }
 
 impl Node {
-    /// Takes a text apart.
+    /// Parses a text.
     ///
     /// # Errors
-    /// A message if it is no well-known text.
+    /// A message if it is not well-known text.
     pub fn parse(text: &str) -> Result<Node, String> {
         if text.len() > MAX_LENGTH {
             return Err(format!("the definition of its coordinate system has {} bytes, which is too long", text.len()));
@@ -52,7 +53,7 @@ impl Node {
         }
     }
 
-    /// The first node inside of one of these keywords.
+    /// The first child node with one of these keywords.
     pub fn child(&self, keywords: &[&str]) -> Option<&Node> {
         self.children().find(|node| keywords.contains(&node.keyword.as_str()))
     }
@@ -64,7 +65,7 @@ impl Node {
         })
     }
 
-    /// The text at a place.
+    /// The text at index `at`.
     fn text(&self, at: usize) -> Option<&str> {
         match self.values.get(at)? {
             Value::Text(text) => Some(text),
@@ -72,7 +73,7 @@ impl Node {
         }
     }
 
-    /// The number at a place.
+    /// The number at index `at`.
     fn number(&self, at: usize) -> Option<f64> {
         match self.values.get(at)? {
             Value::Number(number) => Some(*number),
@@ -80,7 +81,7 @@ impl Node {
         }
     }
 
-    /// The EPSG code that it says it has.
+    /// The EPSG code that the node states.
     fn code(&self) -> Option<u16> {
         let node = self.child(&["AUTHORITY", "ID"])?;
         if !node.text(0)?.eq_ignore_ascii_case("EPSG") {
@@ -93,7 +94,7 @@ impl Node {
         }
     }
 
-    /// The horizontal part of a system of several.
+    /// The horizontal part of a compound system.
     fn horizontal(&self) -> &Node {
         const HORIZONTAL: &[&str] =
             &["PROJCS", "GEOGCS", "PROJCRS", "PROJECTEDCRS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS"];
@@ -118,12 +119,12 @@ impl Node {
         matches!(self.horizontal().keyword.as_str(), "GEOGCS" | "GEOGCRS" | "GEOGRAPHICCRS" | "GEODCRS" | "GEODETICCRS")
     }
 
-    /// Whether it is a system of places on a map, not of heights alone or of nothing on Earth.
+    /// Whether it is a projected system: not a vertical one, and not one without a place on Earth.
     pub fn is_projected(&self) -> bool {
         matches!(self.horizontal().keyword.as_str(), "PROJCS" | "PROJCRS" | "PROJECTEDCRS")
     }
 
-    /// Metres of the unit of a projected system; 1 if it does not say.
+    /// Metres per unit of a projected system; 1 if it does not state the unit.
     pub fn metres(&self) -> f64 {
         let node = self.horizontal();
         if self.is_geographic() {
@@ -137,7 +138,7 @@ impl Node {
         unit.and_then(|unit| unit.number(1)).filter(|metres| metres.is_finite() && *metres > 0.0).unwrap_or(1.0)
     }
 
-    /// The EPSG code of the system: the one that it names, else that of the known system that has its parameters.
+    /// The EPSG code of the system: the stated one, otherwise that of the known system with the same parameters.
     pub fn epsg(&self) -> Option<u16> {
         let node = self.horizontal();
         if let Some(code) = node.code() {
@@ -165,12 +166,12 @@ impl Node {
         })
     }
 
-    /// Whether a projected system's parameters are those of a known one, and no more.
+    /// Whether a projected system has exactly the parameters of a known one.
     fn has_parameters_of(&self, system: &System) -> bool {
         let Some((method, parameters)) = &system.projection else { return true };
         let (name, names) = method.terms();
         let Some(said) = self.child(&["PROJECTION"]).and_then(|node| node.text(0)) else { return false };
-        // One projection under two names.
+        // One projection with two names.
         let one = |name: &str| plain(name).replace("gausskruger", "transversemercator");
         if one(said) != one(name) {
             return false;
@@ -189,7 +190,7 @@ impl Node {
     }
 }
 
-/// A name without what its writers vary: capitals, blanks, underscores, a D before a datum.
+/// A name without variations between writers: case, blanks, underscores, a D before a datum.
 fn plain(name: &str) -> String {
     let name = name.strip_prefix("D_").unwrap_or(name);
     name.chars().filter(|c| c.is_alphanumeric() || *c == '+').flat_map(char::to_lowercase).collect()
@@ -214,7 +215,7 @@ impl Reader<'_> {
         there
     }
 
-    /// What stands before the next bracket, comma or blank.
+    /// The text up to the next bracket, comma or blank.
     fn word(&mut self) -> String {
         self.blanks();
         let rest = &self.bytes[self.at..];
@@ -223,7 +224,7 @@ impl Reader<'_> {
         String::from_utf8_lossy(&rest[..length]).into_owned()
     }
 
-    /// A text; two quotes inside are one.
+    /// A quoted text; a doubled quote stands for one.
     fn quoted(&mut self) -> Result<String, String> {
         let mut text = Vec::new();
         loop {

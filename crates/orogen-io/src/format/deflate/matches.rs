@@ -1,32 +1,33 @@
-//! Sequences that come again within 32 KiB, for bytes whose counts alone save nothing: of each place only the last that began with the same three bytes
-//! is looked at.
+//! Matches within 32 KiB, for bytes whose entropy coding saves nothing. For each position only the latest earlier
+//! position with the same three bytes is tested.
 
 use super::{Packer, Token};
 
-/// The longest of deflate, and how far back it sees.
+/// Maximum match length of deflate, and its window.
 const LONGEST: usize = 258;
 const WINDOW: usize = 32768;
 
 /// Bits of a hash.
 const HASH: u32 = 15;
 
-/// Bits of a match beside those that tell how far back it is, about.
+/// Approximate bits of a match, without its distance.
 const MATCH: usize = 7;
 
-/// Where sequences of three bytes were last seen.
+/// The latest positions of sequences of three bytes.
 pub(super) struct Matches {
-    /// By hash: the place after theirs; 0 for none.
+    /// By hash: the position after the sequence; 0 for none.
     seen: Vec<u32>,
     tokens: Vec<Token>,
 }
 
 impl Matches {
-    /// Nothing was seen yet.
+    /// An empty table.
     pub fn new() -> Matches {
         Matches { seen: vec![0; 1 << HASH], tokens: Vec::new() }
     }
 
-    /// Codes a piece of `bytes` if that saves a twentieth; tells whether it did. What it codes may lie in any block: `bytes` are all that is packed.
+    /// Codes a piece of `bytes` if that saves at least a twentieth, and returns whether it did. Matches may refer to
+    /// any block: `bytes` is the whole input.
     pub fn code(&mut self, bytes: &[u8], piece: std::ops::Range<usize>, packer: &mut Packer) -> bool {
         self.tokens.clear();
         let (mut at, mut bits) = (piece.start, 0);
@@ -48,19 +49,20 @@ impl Matches {
         saves
     }
 
-    /// The length of the match with what was last seen that began like this, and how far back it is. This is seen now.
+    /// The length and the distance of the match with the latest position with the same start. Records the current
+    /// position.
     #[inline(always)]
     fn latest(&mut self, bytes: &[u8], at: usize, end: usize) -> Option<(usize, usize)> {
         let four = u32::from_le_bytes(*bytes.get(at..)?.first_chunk::<4>()?);
         let hash = ((four << 8).wrapping_mul(0x9E37_79B1) >> (32 - HASH)) as usize;
         let before = std::mem::replace(&mut self.seen[hash], at as u32 + 1).checked_sub(1)? as usize;
         let back = at - before;
-        // No longer than the piece: the next one may be stored.
+        // Matches end at the end of the piece: the next one may be stored.
         let most = LONGEST.min(end - at);
         if back > WINDOW || most < 3 {
             return None;
         }
-        // The first byte is the lowest: how many are the same.
+        // The first byte is the lowest, so trailing zero bits give the number of equal bytes.
         let other = u32::from_le_bytes(*bytes.get(before..)?.first_chunk::<4>()?);
         let differ = four ^ other;
         match differ.trailing_zeros() {

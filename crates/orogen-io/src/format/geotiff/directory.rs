@@ -1,49 +1,49 @@
-//! Everything of the file but the samples: header, ghost area, a directory for each level.
+//! All parts of the file except the samples: header, ghost area, and a directory per level.
 
 use crate::format::crs::keys::GeoKeys;
 use crate::format::dem::Georeference;
 use orogen_grid::grid::Window;
 
-/// What readers may count on. The space at its end leaves room for whoever edits the file to turn the NO into YES.
+/// Properties that readers may rely on. The final space leaves room for editors of the file to change NO to YES.
 const PROMISES: &str = "LAYOUT=IFDS_BEFORE_DATA\n\
     BLOCK_ORDER=ROW_MAJOR\n\
     BLOCK_LEADER=SIZE_AS_UINT4\n\
     BLOCK_TRAILER=LAST_4_BYTES_REPEATED\n\
     KNOWN_INCOMPATIBLE_EDITION=NO\n ";
 
-/// What the coordinates are called, ended as GeoTIFF ends its strings.
+/// The citation of the coordinate system, terminated as GeoTIFF requires.
 const CITATION: &str = "Local metres|";
 
 /// Bytes before and after each tile.
 pub const LEADER: u64 = 4;
 pub const TRAILER: u64 = 4;
 
-/// The full raster or an overview, as far as its directory tells of it.
+/// The full raster or an overview, as its directory describes it.
 #[derive(Debug)]
 pub struct Level {
-    /// Samples a row.
+    /// Samples per row.
     pub width: usize,
-    /// Rows.
+    /// Number of rows.
     pub height: usize,
-    /// The bytes of each packed tile, row by row.
+    /// Size of each compressed tile in bytes, row by row.
     pub lengths: Vec<u32>,
 }
 
-/// What all directories share.
+/// The common description of all directories.
 #[derive(Debug)]
 pub struct Description {
-    /// Where the full raster lies.
+    /// The window of the full raster.
     pub window: Window,
     /// Samples along a tile's side.
     pub tile: usize,
-    /// The value that stands for no value.
+    /// The nodata value.
     pub nodata: Option<f32>,
-    /// How metres lie on a map.
+    /// The position of metres on a map.
     pub map: Option<Georeference>,
 }
 
-/// The file's first bytes, behind which the tiles follow, from the last level to the first: as classic TIFF if `big` is not
-/// asked for and the file does not pass 4 GiB, else as BigTIFF.
+/// The file's first bytes, before the tiles, which follow from the last level to the first. Classic TIFF if `big` is
+/// false and the file is at most 4 GiB, otherwise BigTIFF.
 pub fn head(description: &Description, levels: &[Level], big: bool) -> Vec<u8> {
     let wanted = if big { Form::Big } else { Form::Classic };
     let (form, begin) = match length(description, levels, wanted) {
@@ -55,12 +55,12 @@ pub fn head(description: &Description, levels: &[Level], big: bool) -> Vec<u8> {
     encode(description, levels, &offsets(levels, begin), form)
 }
 
-/// How many bytes the tiles of all levels take.
+/// Number of bytes that the tiles of all levels take.
 pub fn data_length(levels: &[Level]) -> u64 {
     levels.iter().flat_map(|level| &level.lengths).map(|length| LEADER + u64::from(*length) + TRAILER).sum()
 }
 
-/// Where each tile of each level begins if the first leader stands at `begin`.
+/// The position of each tile of each level if the first leader is at `begin`.
 fn offsets(levels: &[Level], begin: u64) -> Vec<Vec<u64>> {
     let mut next = begin;
     let mut offsets: Vec<Vec<u64>> = levels
@@ -79,7 +79,7 @@ fn offsets(levels: &[Level], begin: u64) -> Vec<Vec<u64>> {
     offsets
 }
 
-/// How many bytes the head takes: the offsets in it do not change that.
+/// Length of the head in bytes; it does not depend on the offsets in it.
 fn length(description: &Description, levels: &[Level], form: Form) -> u64 {
     let nowhere: Vec<Vec<u64>> = levels.iter().map(|level| vec![0; level.lengths.len()]).collect();
     encode(description, levels, &nowhere, form).len() as u64
@@ -121,7 +121,7 @@ impl Field {
         Field::new(tag, 12, values.len(), values.iter().flat_map(|v| v.to_le_bytes()).collect())
     }
 
-    /// A text; TIFF counts the zero behind it.
+    /// A text field; TIFF counts the terminating zero.
     fn text(tag: u16, text: &str) -> Field {
         Field::new(tag, 2, text.len() + 1, [text.as_bytes(), &[0]].concat())
     }
@@ -131,16 +131,16 @@ impl Field {
     }
 }
 
-/// The entries of level `k`, in the order of their tags. Only the full raster says where it lies: the overviews lie there too.
+/// The entries of level `k`, sorted by tag. Only the full raster has the tags of position; overviews share it.
 fn fields(description: &Description, level: &Level, offsets: &[u64], k: usize, form: Form) -> Vec<Field> {
     let Description { window, tile, nodata, map } = description;
     let (width, height, tile) = (level.width as u32, level.height as u32, *tile as u32);
     let mut fields = vec![
-        // Of what there is more than one: 1 marks a coarser copy of the first.
+        // Subfile type: 1 marks a reduced copy of the first.
         Field::longs(254, &[u32::from(k > 0)]),
         Field::longs(256, &[width]),
         Field::longs(257, &[height]),
-        // One sample a pixel, of 32 bits, compressed with deflate, black the lowest.
+        // One 32-bit sample per pixel, compressed with deflate, black is the minimum.
         Field::shorts(258, &[32]),
         Field::shorts(259, &[8]),
         Field::shorts(262, &[1]),
@@ -151,12 +151,12 @@ fn fields(description: &Description, level: &Level, offsets: &[u64], k: usize, f
         Field::longs(323, &[tile]),
         form.offsets(324, offsets),
         Field::longs(325, &level.lengths),
-        // Floats.
+        // Floating point.
         Field::shorts(339, &[3]),
     ];
     if k == 0 {
-        // The tie point is column 0, row 0, whatever GeoKey 1025 says of pixels; here it says that they are points, so this is the
-        // first sample's own place. Added to 0, a south of 0 is no -0.
+        // The tie point is column 0, row 0. GeoKey 1025 declares pixel-is-point, so the tie point has the coordinates
+        // of the first sample. Subtraction from 0.0 avoids a -0.
         let local = ([window.east(0), 0.0 - window.south(0)], [window.cell; 2]);
         let ([east, north], steps) = map.as_ref().map_or(local, |map| map.of(window));
         fields.push(Field::doubles(33550, &[steps[0], steps[1], 0.0]));
@@ -178,13 +178,13 @@ fn fields(description: &Description, level: &Level, offsets: &[u64], k: usize, f
         }
     }
     if let Some(nodata) = nodata {
-        // In f64, whose digits every reader takes for the very same number.
+        // As f64, whose digits every reader parses to exactly this number.
         fields.push(Field::text(42113, &f64::from(*nodata).to_string().to_lowercase()));
     }
     fields
 }
 
-/// GeoTIFF's own directory in a tag: a system of its own whose unit is the metre; pixels are points.
+/// The GeoKey directory of a user-defined system in metres, with pixel-is-point.
 fn geo_keys() -> Vec<u16> {
     const USER_DEFINED: u16 = 32767;
     const POINT: u16 = 2;
@@ -195,7 +195,7 @@ fn geo_keys() -> Vec<u16> {
     [[1, 1, 0, keys.len() as u16]].iter().chain(&keys).flatten().copied().collect()
 }
 
-/// A foreign directory of keys, with pixels that are points as all are here. Keys are sorted by their numbers.
+/// A foreign GeoKey directory, changed to pixel-is-point. Keys are sorted by number.
 fn of_points(keys: &GeoKeys) -> Vec<u16> {
     const RASTER_TYPE: u16 = 1025;
     let head = keys.directory.get(..3).unwrap_or(&[1, 1, 0]);
@@ -231,7 +231,7 @@ fn put_directory(out: &mut Vec<u8>, fields: &[Field], last: bool, form: Form) {
     out.append(&mut values);
 }
 
-/// The two forms of TIFF: offsets of four bytes or of eight.
+/// The two forms of TIFF: offsets of four or of eight bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Form {
     Classic,
@@ -239,7 +239,7 @@ enum Form {
 }
 
 impl Form {
-    /// What comes before the offset of the first directory.
+    /// The bytes before the offset of the first directory.
     fn header(self) -> &'static [u8] {
         match self {
             Form::Classic => b"II\x2a\0",
@@ -247,7 +247,7 @@ impl Form {
         }
     }
 
-    /// Bytes of an offset or a count of values.
+    /// Bytes per offset or count of values.
     fn word(self) -> usize {
         match self {
             Form::Classic => 4,
@@ -274,7 +274,7 @@ impl Form {
         4 + 2 * self.word()
     }
 
-    /// A file that has no more than 4 GiB has no number here that four bytes do not hold.
+    /// In a file of at most 4 GiB all numbers fit in four bytes.
     fn put_word(self, out: &mut Vec<u8>, value: u64) {
         out.extend_from_slice(&value.to_le_bytes()[..self.word()]);
     }

@@ -1,21 +1,21 @@
-//! A TIFF's first directory, taken apart without believing it.
+//! The first directory of a TIFF, parsed without trusting it.
 
 use std::io::SeekFrom;
 
 use crate::format::dem::{self, Input};
 
-/// The most entries a directory may have: TIFF knows far fewer tags.
+/// Maximum number of entries of a directory; TIFF defines far fewer tags.
 const MAX_ENTRIES: u64 = 4096;
 
-/// The most directories looked through for the full raster.
+/// Maximum number of directories searched for the full raster.
 const MAX_DIRECTORIES: usize = 64;
 
-/// A TIFF opened: the entries of the directory that describes its full raster.
+/// An opened TIFF: the entries of the directory of its full raster.
 pub struct Tiff<'a> {
     input: &'a mut dyn Input,
-    /// Bytes of the file.
+    /// Length of the file in bytes.
     pub length: u64,
-    /// Whether its numbers begin with their highest byte.
+    /// Whether numbers are big-endian.
     pub big_endian: bool,
     big: bool,
     entries: Vec<Entry>,
@@ -25,7 +25,7 @@ struct Entry {
     tag: u16,
     kind: u16,
     count: u64,
-    /// Where its values lie.
+    /// Position of its values in the file.
     at: u64,
 }
 
@@ -53,7 +53,7 @@ impl<'a> Tiff<'a> {
                 break;
             }
             let next = tiff.directory(at)?;
-            // Bit 0 marks a coarser copy, bit 2 a mask.
+            // Bit 0 marks a reduced copy, bit 2 a mask.
             if tiff.one(254)?.unwrap_or(0) & 5 == 0 {
                 return Ok(tiff);
             }
@@ -77,7 +77,7 @@ impl<'a> Tiff<'a> {
         Ok(bytes)
     }
 
-    /// A whole number of `size` bytes.
+    /// An integer of `size` bytes.
     pub fn whole(&self, bytes: &[u8]) -> u64 {
         match self.big_endian {
             true => bytes.iter().fold(0, |number, byte| number << 8 | u64::from(*byte)),
@@ -90,7 +90,7 @@ impl<'a> Tiff<'a> {
         Ok(self.whole(&bytes))
     }
 
-    /// Reads the directory at `at`; tells where the next one is.
+    /// Reads the directory at `at`; returns the position of the next one.
     fn directory(&mut self, at: u64) -> Fallible<u64> {
         let (count_size, word) = if self.big { (8, 8) } else { (2, 4) };
         let count = self.number(at, count_size)?;
@@ -112,7 +112,7 @@ impl<'a> Tiff<'a> {
         self.number(first + count * each, word)
     }
 
-    /// A tag's values as bytes, with their type; none if it is not there.
+    /// A tag's values as bytes, with their type; `None` if the tag is absent.
     fn values(&mut self, tag: u16) -> Fallible<Option<(u16, Vec<u8>)>> {
         let Some(entry) = self.entries.iter().find(|entry| entry.tag == tag) else { return Ok(None) };
         let (kind, count, at) = (entry.kind, entry.count, entry.at);
@@ -121,7 +121,7 @@ impl<'a> Tiff<'a> {
         Ok(Some((kind, bytes)))
     }
 
-    /// A tag's whole numbers.
+    /// A tag's values as integers.
     pub fn wholes(&mut self, tag: u16) -> Fallible<Option<Vec<u64>>> {
         let Some((kind, bytes)) = self.values(tag)? else { return Ok(None) };
         match kind {
@@ -133,12 +133,12 @@ impl<'a> Tiff<'a> {
         }
     }
 
-    /// A tag's first whole number.
+    /// A tag's first value as an integer.
     pub fn one(&mut self, tag: u16) -> Fallible<Option<u64>> {
         Ok(self.wholes(tag)?.and_then(|values| values.first().copied()))
     }
 
-    /// A tag's f64s.
+    /// A tag's values as f64.
     pub fn doubles(&mut self, tag: u16) -> Fallible<Option<Vec<f64>>> {
         let Some((kind, bytes)) = self.values(tag)? else { return Ok(None) };
         match kind {
@@ -147,14 +147,14 @@ impl<'a> Tiff<'a> {
         }
     }
 
-    /// A tag's text without what ends it.
+    /// A tag's text without its terminator.
     pub fn text(&mut self, tag: u16) -> Fallible<Option<String>> {
         let Some((_, bytes)) = self.values(tag)? else { return Ok(None) };
         Ok(Some(String::from_utf8_lossy(&bytes).trim_end_matches('\0').to_string()))
     }
 }
 
-/// Bytes of one value of a type.
+/// Bytes per value of a type.
 fn size_of_kind(kind: u16) -> Option<u64> {
     match kind {
         1 | 2 | 6 | 7 => Some(1),

@@ -1,17 +1,17 @@
-//! What may be asked of a file.
+//! Options of a file.
 
 use crate::format::dem::Georeference;
 
-/// How a file is laid out.
+/// The layout of a file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Options {
-    /// Samples along a tile's side, a multiple of 16; `None` for 512, or 384 where a level would be just one tile of 512 wide and
-    /// taller than that: some readers take it for strips.
+    /// Side of a tile in samples, a multiple of 16. `None` means 512, or 384 if a level would be one tile of 512 wide
+    /// and several tall, which some readers mistake for strips.
     pub tile: Option<usize>,
-    /// The value that stands for no value, if there is one. Overviews leave it out of their means.
+    /// The nodata value, if there is one. Overviews exclude it from their means.
     pub nodata: Option<f32>,
-    /// How metres lie on a map; `None` for local metres from the origin.
+    /// The position of metres on a map; `None` for local metres from the origin.
     pub map: Option<Georeference>,
-    /// BigTIFF even where the file does not pass 4 GiB.
+    /// Write BigTIFF even if the file is smaller than 4 GiB.
     pub big: bool,
 }

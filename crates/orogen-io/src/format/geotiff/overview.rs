@@ -1,26 +1,26 @@
-//! Half the samples a side, each the mean over its own area.
+//! Overviews: half the samples along each side, each the mean over its own area.
 
 use rayon::prelude::*;
 
-/// How many samples a side of an overview of `n` has.
+/// Number of samples along a side of an overview, for a side of `n` samples.
 pub fn half(n: usize) -> usize {
     n.div_ceil(2)
 }
 
-/// Which samples along a side lie under one sample of the overview, and how much of it each covers. It has at most twice their
-/// extent and so touches at most three.
+/// The samples along a side under one sample of the overview, and how much of it each covers. A sample of the overview
+/// is at most twice as long, so it touches at most three.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    /// The first of the samples.
+    /// Index of the first sample.
     pub first: usize,
-    /// The share that each covers; 0 for those beyond.
+    /// The share that each covers; 0 for samples beyond the span.
     pub shares: [f64; 3],
 }
 
 impl Span {
-    /// What lies under sample `i` of the overview of a side of `n` samples.
+    /// The samples under sample `i` of the overview of a side of `n` samples.
     pub fn of(i: usize, n: usize) -> Span {
-        // In units in which a sample of the overview is n long and one below it m, all ends are whole numbers.
+        // In units in which a sample of the overview has the length n and one below it m, all ends are integers.
         let m = half(n);
         let (start, end) = (i * n, (i + 1) * n);
         let first = start / m;
@@ -32,33 +32,33 @@ impl Span {
         Span { first, shares }
     }
 
-    /// One past the last sample that it needs.
+    /// The index after the last sample that it needs.
     pub fn end(&self) -> usize {
         self.first + self.shares.iter().filter(|share| **share > 0.0).count()
     }
 }
 
-/// What lies below some of an overview's rows: the raster's rows, or a part of them.
+/// The input of some rows of an overview: rows of the raster, or a part of them.
 pub struct Below<'a> {
-    /// Samples, row after row.
+    /// Samples, row-major.
     pub rows: &'a [f32],
-    /// The column that they begin with.
+    /// The first column.
     pub left: usize,
-    /// The row that they begin with.
+    /// The first row.
     pub first: usize,
-    /// Samples a row of these.
+    /// Samples per row.
     pub width: usize,
-    /// Rows of the whole raster.
+    /// Number of rows of the whole raster.
     pub height: usize,
 }
 
-/// Makes the overview's rows from `made` on up to `until`, in the columns over the spans given, all of which `below` has. Samples that are NaN or `missing` are
-/// left out of the means; where nothing else is left, the overview has none either.
+/// Computes the overview's rows `made..until`, in the columns of the given spans, which `below` must contain. Samples
+/// that are NaN or `missing` are excluded from the means; if none is left, the overview's sample is missing too.
 pub fn reduce(below: &Below, columns: &[Span], made: usize, until: usize, missing: Option<f32>) -> Vec<f32> {
     let mut out = vec![0.0; columns.len() * (until - made)];
     out.par_chunks_exact_mut(columns.len()).enumerate().for_each(|(j, row)| {
         let span = Span::of(made + j, below.height);
-        // Rows and columns beyond the raster have no share; the last stands in for them.
+        // Rows and columns beyond the raster have no share; the last one is used in their place.
         let rows: [&[f32]; 3] = std::array::from_fn(|k| {
             let start = (span.first + k).min(span.end() - 1) - below.first;
             &below.rows[start * below.width..(start + 1) * below.width]
@@ -72,7 +72,7 @@ pub fn reduce(below: &Below, columns: &[Span], made: usize, until: usize, missin
     out
 }
 
-/// The mean of nine samples, in f64: level ground stays level to the last bit.
+/// The weighted mean of nine samples, in f64: level ground stays level bit for bit.
 fn mean(rows: [&[f32]; 3], at: [usize; 3], down: [f64; 3], across: [f64; 3], missing: Option<f32>) -> f32 {
     let mut sum = 0.0;
     for (row, down) in rows.iter().zip(down) {

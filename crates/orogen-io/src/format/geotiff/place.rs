@@ -1,4 +1,4 @@
-//! Where a GeoTIFF's samples stand.
+//! The position of a GeoTIFF's samples.
 
 use super::entries::Tiff;
 use crate::format::affine::Affine;
@@ -6,15 +6,16 @@ use crate::format::crs::keys::{self, GeoKeys, length_unit, short};
 use crate::format::crs::unit::Unit;
 use crate::format::dem::Placement;
 
-/// Where the samples stand, whether rows come from the south, and how many metres a unit of height is. A raster without tags of
-/// place has none; one without GeoKeys, or projected in a unit that they do not tell, counts in metres.
+/// The position of the samples, whether the first row is the southernmost, and metres per unit of height. A raster
+/// without position tags has no position. Without GeoKeys, or with an unknown unit of a projection, coordinates are
+/// metres.
 pub struct Found {
     pub place: Option<Placement>,
     pub from_south: bool,
     pub metres_high: f64,
 }
 
-/// Reads the tags of place.
+/// Reads the position tags.
 pub fn find(tiff: &mut Tiff, height: usize) -> Result<Found, String> {
     let keys = keys(tiff)?;
     let metres_high = match keys.as_ref().and_then(|keys| short(keys, 4099)) {
@@ -28,7 +29,7 @@ pub fn find(tiff: &mut Tiff, height: usize) -> Result<Found, String> {
         (_, Some([sx, sy, ..]), Some([i, j, _, x, y, ..])) => [*sx, 0.0, x - i * sx, 0.0, -sy, y + j * sy],
         _ => return Ok(Found { place: None, from_south: false, metres_high }),
     };
-    // The tags speak of pixels' corners, unless key 1025 says that pixels are points: then of the samples themselves.
+    // The tags refer to pixel corners, unless key 1025 declares pixel-is-point: then they refer to the samples.
     let half = match keys.as_ref().and_then(|keys| short(keys, 1025)) {
         Some(2) => 0.0,
         _ => 0.5,

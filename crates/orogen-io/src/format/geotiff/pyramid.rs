@@ -1,4 +1,4 @@
-//! A raster's levels and their tiles: what is where in a file.
+//! The levels of a raster and their tiles.
 
 use std::io::{self, Write};
 
@@ -8,7 +8,7 @@ use super::overview::half;
 
 use orogen_grid::grid::Window;
 
-/// The levels of a raster, from the full one to the coarsest, cut into tiles.
+/// The levels of a raster, from the full one to the coarsest, split into tiles.
 #[derive(Debug)]
 pub struct Pyramid {
     description: Description,
@@ -19,8 +19,8 @@ pub struct Pyramid {
 impl Pyramid {
     /// The pyramid of the samples of `window`.
     ///
-    /// Fails on a window without samples, without a cell or of more than 2^31 - 1 samples a side, and on a tile that TIFF or memory
-    /// does not allow.
+    /// Fails if the window has no samples, no valid cell or more than 2^31 - 1 samples per side, or if TIFF or memory
+    /// does not allow the tile.
     pub fn new(window: &Window, options: &Options) -> io::Result<Pyramid> {
         let refuse = |why: String| Err(io::Error::new(io::ErrorKind::InvalidInput, why));
         let tile = options.tile.unwrap_or_else(|| usual_tile(window));
@@ -41,12 +41,12 @@ impl Pyramid {
         Ok(Pyramid { description, big: options.big, sizes: sizes(window, tile).collect() })
     }
 
-    /// Samples along a tile's side.
+    /// Side of a tile, in samples.
     pub fn tile(&self) -> usize {
         self.description.tile
     }
 
-    /// The value that stands for no value.
+    /// The nodata value.
     pub fn nodata(&self) -> Option<f32> {
         self.description.nodata
     }
@@ -56,15 +56,15 @@ impl Pyramid {
         &self.sizes
     }
 
-    /// How many tiles a level has across and down.
+    /// Number of tiles of a level, across and down.
     pub fn tiles(&self, level: usize) -> [usize; 2] {
         self.sizes[level].map(|side| side.div_ceil(self.tile()))
     }
 
-    /// Writes the file whose packed tiles have these lengths, level by level and row by row: `read` is given a level and a tile's
-    /// number, and fills a buffer of its length.
+    /// Writes the file. `lengths` are the sizes of the compressed tiles, level by level and row by row. `read` gets a
+    /// level and a tile's number, and fills a buffer of that length.
     ///
-    /// Fails as `out` and `read` do.
+    /// Fails if `out` or `read` fails.
     pub fn write(
         &self,
         out: &mut dyn Write,
@@ -96,7 +96,7 @@ fn sizes(window: &Window, tile: usize) -> impl Iterator<Item = [usize; 2]> {
     })
 }
 
-/// No raster has both a level 512 wide and one 384 wide.
+/// The default tile: 512, or 384 if a level is 512 wide. No raster has levels of both widths.
 fn usual_tile(window: &Window) -> usize {
     match sizes(window, 512).any(|[width, height]| width == 512 && height > 512) {
         true => 384,

@@ -1,8 +1,9 @@
 //! Reading the heights of a GeoTIFF that any program wrote.
 //!
-//! Read: classic TIFF and BigTIFF of both byte orders; one band, of several that are interleaved or apart, of whole numbers (8, 16, 32, 64 bits, signed
-//! or not) or floats (32, 64); strips and tiles; none, LZW, deflate, PackBits, Zstandard, LZMA and LERC (with deflate and Zstandard); predictors 1,
-//! 2 and 3; GDAL's nodata; a band's scale and offset in GDAL's metadata; blocks that are left out. Never believed further than the file's bytes go.
+//! Supported: classic TIFF and BigTIFF of both byte orders; one band, of several that are interleaved or separate, of
+//! integers (8, 16, 32, 64 bits, signed or unsigned) or floats (32, 64); strips and tiles; no compression, LZW,
+//! deflate, PackBits, Zstandard, LZMA and LERC (with deflate and Zstandard); predictors 1, 2 and 3; GDAL's nodata; a
+//! band's scale and offset in GDAL's metadata; absent blocks. Sizes in a file are checked against its length.
 
 use super::entries::Tiff;
 use super::place;
@@ -10,18 +11,18 @@ use super::unpack::{Layout, Packing};
 use crate::format::dem::{Dem, Input, Placement, Request, afford, afford_beside, refused, turn_rows};
 use orogen_grid::error::Result;
 
-/// Reads a band of a GeoTIFF. `name` is what errors call it.
+/// Reads a band of a GeoTIFF. `name` is the file's name in errors.
 ///
 /// # Errors
-/// If it is no TIFF, is damaged, holds something else than heights, or is too large.
+/// If it is not a TIFF, is damaged, does not contain heights, or is too large.
 pub fn read(input: &mut dyn Input, name: &str, request: impl Into<Request>) -> Result<Dem> {
     open(input, request.into()).map_err(|why| refused(name, why))
 }
 
-/// Columns, rows and place of a GeoTIFF; its samples are not looked at.
+/// The size and position of a GeoTIFF, without reading its samples.
 ///
 /// # Errors
-/// If it is no TIFF, or its directory is damaged.
+/// If it is not a TIFF, or its directory is damaged.
 pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Placement>)> {
     let read = |input| {
         let tiff = &mut Tiff::open(input)?;
@@ -33,12 +34,12 @@ pub fn head(input: &mut dyn Input, name: &str) -> Result<([usize; 2], Option<Pla
     read(input).map_err(|why| refused(name, why))
 }
 
-/// A side's samples.
+/// The number of samples along a side.
 fn side(tiff: &mut Tiff, tag: u16, what: &str) -> std::result::Result<u64, String> {
     tiff.one(tag)?.ok_or_else(|| format!("its directory has no {what}"))
 }
 
-/// What the samples' bits mean.
+/// The type of the samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
     Unsigned,
@@ -46,7 +47,7 @@ enum Kind {
     Float,
 }
 
-/// How the raster is cut.
+/// The blocks of the raster.
 struct Blocks {
     width: u64,
     height: u64,
@@ -59,7 +60,7 @@ struct Samples {
     kind: Kind,
     layout: Layout,
     packing: Packing,
-    /// The band that is read, from 0, of those that lie together in a block.
+    /// The index, from 0, of the band among those interleaved in a block.
     band: usize,
     /// The first block of the band.
     plane: usize,
@@ -77,7 +78,7 @@ fn open(input: &mut dyn Input, request: Request) -> std::result::Result<Dem, Str
     let across = width.div_ceil(blocks.width);
     samples.plane *= (across * height.div_ceil(blocks.height)) as usize;
     let full = blocks.width.saturating_mul((samples.layout.size * samples.layout.bands) as u64);
-    // No block is larger than what is allowed and the tiles around a small raster.
+    // A block may exceed the limit only as much as the tiles around a small raster.
     let largest = request.allowed.saturating_mul(2 * samples.layout.bands as u64).saturating_add(4 << 20);
     let mut heights: Vec<f32> = Vec::new();
     let mut bits = Vec::new();
@@ -103,7 +104,7 @@ fn open(input: &mut dyn Input, request: Request) -> std::result::Result<Dem, Str
                 }
             };
             if column == 0 {
-                // Room for this row of blocks only: a file that lies about its size ends before it has cost much.
+                // Allocate only for this row of blocks: a file with a wrong size fails early.
                 let grown = heights.len() + (rows * width) as usize;
                 heights.reserve(if row == 0 { count.min(2 * grown) } else { grown - heights.len() });
                 heights.resize(grown, f32::NAN);
@@ -130,7 +131,7 @@ fn open(input: &mut dyn Input, request: Request) -> std::result::Result<Dem, Str
     Dem::new([width as usize, height as usize], heights, found.place)
 }
 
-/// The most bands that a file may have.
+/// Maximum number of bands.
 const MAX_BANDS: u64 = 4096;
 
 fn samples(tiff: &mut Tiff, request: Request) -> std::result::Result<Samples, String> {
@@ -168,7 +169,7 @@ fn samples(tiff: &mut Tiff, request: Request) -> std::result::Result<Samples, St
     }
     let nodata = tiff.text(42113)?.and_then(|text| text.trim().parse().ok());
     let [scale, offset] = scale_and_offset(&tiff.text(42112)?.unwrap_or_default(), band);
-    // Bands that lie apart have blocks of their own, one band after the other.
+    // Separate bands have their own blocks, one band after the other.
     let apart = tiff.one(284)?.unwrap_or(1) == 2;
     let (together, size) = (if apart { 1 } else { bands as usize }, bits as usize / 8);
     let packing = Packing {
@@ -179,7 +180,7 @@ fn samples(tiff: &mut Tiff, request: Request) -> std::result::Result<Samples, St
     };
     Ok(Samples {
         kind,
-        // LERC's numbers, too: libtiff packs a file's samples with their bytes in the file's order, whatever they mean then.
+        // Also for LERC: libtiff compresses a file's samples with their bytes in the file's order.
         layout: Layout { size, big_endian: tiff.big_endian, predictor, bands: together },
         packing,
         band: if apart { 0 } else { band },
@@ -215,14 +216,14 @@ fn blocks(tiff: &mut Tiff, [width, height]: [u64; 2]) -> std::result::Result<Blo
     let [Some(block_width), Some(block_height)] = sizes else {
         return Err("its directory has no tile size".into());
     };
-    // Tiles are multiples of 16; 2^16 a side is far beyond any.
+    // Tiles are multiples of 16; 2^16 per side is far beyond real ones.
     if block_width == 0 || block_height == 0 || tiled && block_width.max(block_height) > 1 << 16 {
         return Err(format!("its block size of {block_width} x {block_height} samples is invalid"));
     }
     let (Some(offsets), Some(lengths)) = (offsets, lengths) else {
         return Err("its directory has no offsets of strips or tiles".into());
     };
-    // Of bands that lie apart there are more.
+    // With separate bands there are more.
     let needed = width.div_ceil(block_width).saturating_mul(height.div_ceil(block_height));
     if (offsets.len() as u64) < needed || (lengths.len() as u64) < needed {
         let there = offsets.len().min(lengths.len());
@@ -232,7 +233,7 @@ fn blocks(tiff: &mut Tiff, [width, height]: [u64; 2]) -> std::result::Result<Blo
 }
 
 impl Samples {
-    /// A sample's bits as a height, NaN where it is missing.
+    /// A sample's bits as a height; NaN if it is missing.
     fn height(&self, bits: u64) -> f32 {
         let shift = 64 - 8 * self.layout.size as u32;
         let value = match (self.kind, self.layout.size) {
@@ -241,7 +242,7 @@ impl Samples {
             (Kind::Float, 4) => f64::from(f32::from_bits(bits as u32)),
             (Kind::Float, _) => f64::from_bits(bits),
         };
-        // Some programs write nodata with fewer digits than its float has.
+        // Some programs write nodata with fewer digits than the float has.
         let missing =
             self.nodata.is_some_and(|nodata| value == nodata || self.layout.size == 4 && value as f32 == nodata as f32);
         match missing {

@@ -1,4 +1,4 @@
-//! From a strip's or tile's packed bytes to its samples' bytes.
+//! Decoding of a strip or tile to the bytes of its samples.
 
 use std::io::Read;
 
@@ -11,35 +11,35 @@ use crate::format::lerc;
 /// Compression 34887.
 const LERC: u64 = 34887;
 
-/// How the blocks of a file are packed.
+/// The compression of a file's blocks.
 #[derive(Debug, Clone, Copy)]
 pub struct Packing {
     /// TIFF's tag 259.
     pub method: u64,
-    /// What LERC's blobs are compressed with: the second number of tag 50674. 0 none, 1 deflate, 2 Zstandard.
+    /// The compression of LERC blobs, from the second number of tag 50674: 0 none, 1 deflate, 2 Zstandard.
     pub outer: u64,
-    /// Samples of a pixel in a block.
+    /// Samples per pixel in a block.
     pub bands: usize,
-    /// Bytes of a sample.
+    /// Bytes per sample.
     pub size: usize,
 }
 
 impl Packing {
-    /// How much longer what was packed can be than its bytes: what a method can make of them at the very most.
+    /// The maximum ratio of decompressed to compressed size of the method.
     pub fn max_growth(&self) -> u64 {
         match self.method {
-            // LZW's longest run of a 12-bit code; deflate has 1032.
+            // The longest run of a 12-bit LZW code; deflate has 1032.
             1 | 5 | 8 | 32946 | 32773 => 4096,
-            // A block of one byte repeated: 4 bytes for 128 KiB.
+            // A block of one repeated byte: 4 bytes for 128 KiB.
             50000 => 1 << 15,
-            // LZMA's longest run is 273 bytes, whose bits cost almost nothing.
+            // LZMA's longest run is 273 bytes, at almost no cost in bits.
             34925 => 1 << 15,
-            // A block of one value has no more than a head.
+            // A block of one value has only a header.
             _ => u64::MAX,
         }
     }
 
-    /// Unpacks exactly `length` bytes, `size` pixels; what a file packs beyond them is refused, not read.
+    /// Decompresses exactly `length` bytes, `size` pixels. It is an error if the data holds more.
     pub fn unpack(&self, packed: Vec<u8>, length: usize, size: [usize; 2]) -> Result<Vec<u8>, String> {
         let out = match self.method {
             1 => packed,
@@ -49,7 +49,7 @@ impl Packing {
             50000 => zstandard(&packed, length)?,
             34925 => lzma(&packed, length)?,
             LERC => {
-                // A blob is at most its samples, a mask and a head.
+                // A blob has at most its samples, a mask and a header.
                 let most = length + length / 8 + 4096;
                 let blob = match self.outer {
                     0 => packed,
@@ -82,11 +82,11 @@ fn inflate(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
         .map_err(|fault| format!("a block compressed with deflate is damaged ({fault})"))
 }
 
-/// Zstandard (RFC 8878), of one frame.
+/// Zstandard (RFC 8878), a single frame.
 pub fn zstandard(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     let damaged = |fault: &dyn std::fmt::Display| format!("a block compressed with Zstandard is damaged ({fault})");
     let mut decoder = FrameDecoder::new();
-    // Levels up to 22 look back 128 MiB; the memory taken grows with what there is.
+    // Levels up to 22 have a window of 128 MiB; memory grows with the data.
     decoder.set_max_window_size(1 << 27);
     let mut input = packed;
     decoder.init(&mut input).map_err(|fault| damaged(&fault))?;
@@ -100,22 +100,22 @@ pub fn zstandard(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     if out.len() > most { Err(damaged(&"it is too long")) } else { Ok(out) }
 }
 
-/// LZMA2 in the container of xz, as libtiff writes it.
+/// LZMA2 in an xz container, as libtiff writes it.
 fn lzma(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     let mut out = Vec::new();
-    // The dictionary grows with what there is; presets have 64 MiB at most.
+    // The dictionary grows with the data; presets have at most 64 MiB.
     let read = XzReader::new_mem_limit(packed, false, 128 << 10).take(most as u64).read_to_end(&mut out);
     read.map_err(|fault| format!("a block compressed with LZMA is damaged ({fault})"))?;
     Ok(out)
 }
 
-/// TIFF 6.0's LZW: codes of 9 to 12 bits, highest bit first, one wider a code early. Stops when it has `most` bytes.
+/// LZW of TIFF 6.0: codes of 9 to 12 bits, highest bit first, which widen one code early. Stops after `most` bytes.
 fn lzw(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     const CLEAR: usize = 256;
     const END: usize = 257;
     const FIRST: usize = 258;
     let mut out: Vec<u8> = Vec::with_capacity(most.min(packed.len() * 4));
-    // Where in `out` each code's string stands, and its length: a string is the one before it and the byte behind that.
+    // The position and length of each code's string in `out`: a string is its predecessor plus the following byte.
     let mut table: Vec<(usize, usize)> = Vec::with_capacity(4096 - FIRST);
     let (mut width, mut bits, mut held) = (9u32, 0u32, 0u32);
     let mut last: Option<(usize, usize)> = None;
@@ -153,7 +153,7 @@ fn lzw(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
         } else {
             let damaged = || "a block compressed with LZW is damaged".to_string();
             let (from, length) = code.checked_sub(FIRST).and_then(|k| table.get(k)).copied().ok_or_else(damaged)?;
-            // One by one: the string may end in the byte that it begins with.
+            // Byte by byte: the string may overlap its own copy.
             for k in from..from + length {
                 let byte = out.get(k).copied().ok_or_else(damaged)?;
                 out.push(byte);
@@ -165,7 +165,7 @@ fn lzw(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     Ok(out)
 }
 
-/// Apple's PackBits: runs and literals. Stops when it has `most` bytes.
+/// Apple's PackBits: runs and literals. Stops after `most` bytes.
 fn pack_bits(packed: &[u8], most: usize) -> Vec<u8> {
     let mut out = Vec::with_capacity(most.min(packed.len() * 4));
     let mut rest = packed;
@@ -190,21 +190,21 @@ fn pack_bits(packed: &[u8], most: usize) -> Vec<u8> {
     out
 }
 
-/// How rows' bytes become samples.
+/// The layout of a row's bytes.
 #[derive(Debug, Clone, Copy)]
 pub struct Layout {
-    /// Bytes a sample: 1, 2, 4 or 8.
+    /// Bytes per sample: 1, 2, 4 or 8.
     pub size: usize,
-    /// Whether samples begin with their highest byte.
+    /// Whether samples are big-endian.
     pub big_endian: bool,
-    /// TIFF's tag 317: 1 none, 2 differences of whole numbers, 3 of floats' bytes.
+    /// TIFF's tag 317: 1 none, 2 differences of integers, 3 floating point.
     pub predictor: u64,
-    /// Samples of a pixel, which lie together.
+    /// Interleaved samples per pixel.
     pub bands: usize,
 }
 
 impl Layout {
-    /// A row's samples as bits, right-aligned in 64, its predictor undone.
+    /// A row's samples as bits, right-aligned in 64, with the predictor undone.
     pub fn row(&self, bytes: &mut [u8], out: &mut Vec<u64>) {
         let count = bytes.len() / self.size;
         out.clear();
@@ -212,7 +212,7 @@ impl Layout {
             for k in self.bands..bytes.len() {
                 bytes[k] = bytes[k].wrapping_add(bytes[k - self.bands]);
             }
-            // All samples' highest bytes, then all their next ones, whatever the order of the file.
+            // All samples' highest bytes, then all second highest, whatever the byte order of the file.
             let sample =
                 |i: usize| (0..self.size).fold(0, |bits, plane| bits << 8 | u64::from(bytes[plane * count + i]));
             out.extend((0..count).map(sample));

@@ -1,4 +1,4 @@
-//! Rows in, a file out.
+//! A writer that takes rows and writes a file.
 
 use std::io::{self, Write};
 
@@ -11,7 +11,7 @@ use super::tile::pack;
 use crate::spool::Spool;
 use orogen_grid::grid::{Grid, Window};
 
-/// Writes a grid. `spool` holds the packed tiles until their places in the file are known.
+/// Writes a grid. `spool` holds the compressed tiles until their offsets in the file are known.
 ///
 /// ```
 /// use orogen_io::format::geotiff::{options::Options, writer};
@@ -32,9 +32,10 @@ pub fn write(out: &mut dyn Write, grid: &Grid, options: &Options, spool: Spool) 
     writer.finish(out)
 }
 
-/// A raster on its way into a file: [`Writer::rows`] takes all rows, some at a time from the top, and [`Writer::finish`] writes.
+/// Writes a raster: [`Writer::rows`] takes all rows from the top, in any pieces, then [`Writer::finish`] writes the
+/// file.
 ///
-/// It holds a row of tiles of each level (two for each thread where rows are short), everything else lies in the spool: as many
+/// It holds a row of tiles per level in memory (two per thread if rows are short). The spool holds the rest: as many
 /// bytes as the file will have.
 pub struct Writer {
     pyramid: Pyramid,
@@ -46,48 +47,48 @@ pub struct Writer {
 struct Level {
     width: usize,
     height: usize,
-    /// The samples that are still needed, whole rows.
+    /// Samples that are still needed, whole rows.
     rows: Vec<f32>,
-    /// The row that they begin with.
+    /// The first of these rows.
     first: usize,
-    /// How many rows are packed.
+    /// Number of compressed rows.
     packed: usize,
-    /// How many rows of the next level are made.
+    /// Number of computed rows of the next level.
     made: usize,
-    /// What lies under each column of the next level.
+    /// The samples under each column of the next level.
     columns: Vec<Span>,
-    /// Where each packed tile is in the spool, and its length.
+    /// Position of each compressed tile in the spool, and its length.
     places: Vec<u64>,
     lengths: Vec<u32>,
 }
 
 impl Writer {
-    /// Begins a file of the samples of `window`.
+    /// Starts a file of the samples of `window`.
     ///
-    /// Fails on a window without samples, without a cell or of more than 2^31 - 1 samples a side, and on a tile that TIFF or memory
-    /// does not allow.
+    /// Fails if the window has no samples, no valid cell or more than 2^31 - 1 samples per side, or if TIFF or memory
+    /// does not allow the tile.
     pub fn new(window: &Window, options: &Options, spool: Spool) -> io::Result<Writer> {
         let pyramid = Pyramid::new(window, options)?;
         let levels = pyramid.sizes().iter().map(|[width, height]| Level::new(*width, *height)).collect();
         Ok(Writer { pyramid, levels, spool })
     }
 
-    /// Takes the next rows, any number of whole ones, each from west to east.
+    /// Takes the next whole rows, each from west to east.
     ///
-    /// Fails as the spool does, and on samples that are not whole rows or are more than the window has.
+    /// Fails if the spool fails, or if the samples are not whole rows or exceed the window.
     pub fn rows(&mut self, samples: &[f32]) -> io::Result<()> {
         let full = &self.levels[0];
         if !samples.len().is_multiple_of(full.width) || full.arrived() + samples.len() / full.width > full.height {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "these are not rows of the raster"));
         }
-        // In pieces, so that a whole grid is not held a second time.
+        // In pieces, so that a whole grid is not held twice.
         for piece in samples.chunks(full.width * self.pyramid.tile()) {
             self.take(piece)?;
         }
         Ok(())
     }
 
-    /// Passes rows down the levels, each of which goes on when it holds enough.
+    /// Passes rows down the levels; a level continues when it has enough rows.
     fn take(&mut self, samples: &[f32]) -> io::Result<()> {
         self.levels[0].rows.extend_from_slice(samples);
         for k in 0..self.levels.len() {
@@ -110,7 +111,7 @@ impl Writer {
 
     /// Writes the file.
     ///
-    /// Fails as `out` and the spool do, and if rows are still missing.
+    /// Fails if `out` or the spool fails, or if rows are missing.
     pub fn finish(mut self, out: &mut dyn Write) -> io::Result<()> {
         if self.levels.iter().any(|level| level.packed < level.height) {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "rows of the raster are missing"));
@@ -136,12 +137,12 @@ impl Level {
         }
     }
 
-    /// How many rows have come.
+    /// Number of rows received.
     fn arrived(&self) -> usize {
         self.first + self.rows.len() / self.width
     }
 
-    /// Up to which row there are rows of tiles to pack: as many as keep the threads busy, or all when no more rows come.
+    /// The row up to which rows of tiles can be compressed: enough to occupy the threads, or all after the last row.
     fn ready(&self, tile: usize) -> Option<usize> {
         let arrived = self.arrived();
         if arrived == self.height {
@@ -153,7 +154,7 @@ impl Level {
         (whole >= enough).then_some(self.packed + whole)
     }
 
-    /// Packs the rows of tiles up to row `until`.
+    /// Compresses the rows of tiles up to row `until`.
     fn pack(&mut self, tile: usize, until: usize) -> Vec<Vec<u8>> {
         let across = self.width.div_ceil(tile);
         let begin = (self.packed - self.first) * self.width;
@@ -171,7 +172,7 @@ impl Level {
         packed
     }
 
-    /// Makes what can be made of the next level.
+    /// Computes all rows of the next level that can be computed.
     fn reduce(&mut self, missing: Option<f32>) -> Vec<f32> {
         let arrived = self.arrived();
         let more = (self.made..half(self.height)).take_while(|j| Span::of(*j, self.height).end() <= arrived).count();
@@ -181,7 +182,7 @@ impl Level {
         coarser
     }
 
-    /// Lets go of the rows that neither a tile nor the next level needs any more.
+    /// Drops the rows that neither a tile nor the next level needs.
     fn forget(&mut self) {
         let needed = match self.made < half(self.height) {
             true => self.packed.min(Span::of(self.made, self.height).first),

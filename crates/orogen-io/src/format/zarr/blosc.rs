@@ -1,31 +1,31 @@
-//! The codec `blosc`: bytes shuffled, then compressed with zlib, in the frame of C-Blosc 1.
+//! The codec `blosc`: byte shuffle, then zlib, in the frame of C-Blosc 1.
 //!
-//! The frame (C-Blosc `README_CHUNK_FORMAT.rst`, format version 2): sixteen bytes of header, where each block starts, then the blocks,
-//! each behind its length. Everything is one block here.
+//! The frame (C-Blosc `README_CHUNK_FORMAT.rst`, format version 2): a header of sixteen bytes, the offset of each
+//! block, then the blocks, each preceded by its length. This module writes a single block.
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
-/// How hard to pack. Half of a height's bits are noise to deflate: its higher levels take longer and save a hundredth.
+/// Compression level. Half of a height's bits are noise to deflate: higher levels take longer and save 1 %.
 pub const LEVEL: u8 = 3;
 
-/// The version of the frame, and that of zlib's part in it.
+/// The version of the frame, and that of its zlib format.
 const VERSIONS: [u8; 2] = [2, 1];
 
-/// Flags: bytes are shuffled, blocks are not split into a stream for each byte of a number, zlib packs.
+/// Flags: shuffled bytes, blocks not split into a stream per byte of a number, zlib.
 const SHUFFLED: u8 = 1;
 const WHOLE: u8 = 1 << 4;
 const ZLIB: u8 = 3 << 5;
 
-/// Before the block: the header, where the block starts, its length.
+/// Bytes before the block: the header, the block's offset, its length.
 const HEADER: usize = 16;
 const BEFORE: usize = HEADER + 4 + 4;
 
-/// Packs numbers of `size` bytes each; `None` if they are more bytes than a frame can hold (2 GiB less a little).
+/// Compresses numbers of `size` bytes each; `None` if they are too long for a frame (about 2 GiB).
 pub fn pack(bytes: &[u8], size: u8) -> Option<Vec<u8>> {
     let length = i32::try_from(bytes.len() + BEFORE).ok()? as usize - BEFORE;
     let shuffled = shuffle(bytes, usize::from(size));
     let packed = compress_to_vec_zlib(&shuffled, LEVEL);
-    // A block that is as long as what is in it is taken for one that could not be packed.
+    // A block with the length of its content counts as uncompressed.
     let block = if packed.len() < length { &packed } else { &shuffled };
     let mut out = Vec::with_capacity(BEFORE + block.len());
     out.extend_from_slice(&VERSIONS);

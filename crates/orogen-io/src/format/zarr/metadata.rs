@@ -1,20 +1,20 @@
-//! What arrays and groups say of themselves: the text of `zarr.json`.
+//! Metadata of arrays and groups: the text of `zarr.json`.
 
 use serde_json::{Map, Value, json};
 
 use super::blosc;
 
-/// What a chunk holds.
+/// The data type of an array.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Number {
-    /// f32; samples without a value are NaN.
+    /// f32; the fill value is NaN.
     F32,
     /// f64.
     F64,
 }
 
 impl Number {
-    /// Bytes.
+    /// Bytes per number.
     pub fn size(self) -> u8 {
         match self {
             Number::F32 => 4,
@@ -23,22 +23,22 @@ impl Number {
     }
 }
 
-/// An array: its sides, the sides of its chunks, what the sides are called, and what it says of itself.
+/// Description of an array.
 #[derive(Debug, Clone)]
 pub struct Array<'a> {
-    /// Samples along each side, rows first.
+    /// Number of samples along each dimension, rows first.
     pub shape: &'a [usize],
-    /// Samples of a chunk along each side.
+    /// Number of samples of a chunk along each dimension.
     pub chunk: &'a [usize],
-    /// What the sides are called.
+    /// Names of the dimensions.
     pub sides: &'a [&'a str],
-    /// What it holds.
+    /// The data type.
     pub number: Number,
-    /// Its attributes.
+    /// The attributes.
     pub attributes: Value,
 }
 
-/// The metadata of an array. Its chunks are at `c/ROW/COLUMN` beside it.
+/// The metadata of an array. Its chunks are at `c/ROW/COLUMN` relative to it.
 pub fn array(array: &Array) -> Value {
     let Array { shape, chunk, sides, number, attributes } = array;
     let (name, fill) = match number {
@@ -67,8 +67,8 @@ pub fn array(array: &Array) -> Value {
     })
 }
 
-/// The metadata of a group with these arrays in it. It holds a copy of theirs, as zarr-python consolidates it, so that one file tells
-/// all; readers that do not know of that look for each.
+/// The metadata of a group with these arrays. It includes a copy of the arrays' metadata (consolidated metadata of
+/// zarr-python), so that one file suffices; other readers read the metadata of each array.
 pub fn group(arrays: &[(String, Value)], attributes: Value) -> Value {
     let members: Map<String, Value> = arrays.iter().cloned().collect();
     json!({

@@ -1,10 +1,13 @@
-//! Zarr v3: arrays in chunks, each a file, in folders that describe themselves.
+//! Zarr v3: arrays in chunks, each a file, in folders with metadata.
 //!
-//! Zarr core specification 3.1; chunks by the codecs `bytes` (little-endian) and `blosc` (byte shuffle, then zlib). The shuffle brings
-//! alike bytes of neighbouring samples together: a height map takes half of what plain gzip makes of it, in half the time.
+//! Zarr core specification 3.1, with the codecs `bytes` (little-endian) and `blosc` (byte shuffle, then zlib). The
+//! shuffle groups similar bytes of neighbouring samples: a height map takes half the space and half the time of plain
+//! gzip.
 //!
-//! **Where it lies.** Coordinates are arrays of their own, in metres: `x` grows east, `y` is the northing and falls from row to row,
-//! as in a GeoTIFF of the same window; of a world on a map, both are coordinates of that map, and each array tells its system (`_CRS`, `crs_wkt`). So an array looks like a picture, and what reads both finds the same sample at the same place.
+//! **Position.** Coordinates are separate arrays, in metres: `x` increases eastward, `y` is the northing and decreases
+//! from row to row, as in a GeoTIFF of the same window. For a world on a map, both are coordinates of that map, and
+//! each array states its system (`_CRS`, `crs_wkt`). Rows are in the order of a picture, and a sample has the same
+//! position as in the GeoTIFF.
 
 pub mod blosc;
 pub mod metadata;

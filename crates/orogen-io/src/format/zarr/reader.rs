@@ -1,7 +1,8 @@
-//! Reading heights from Zarr arrays of version 2 and 3: a folder that is an array, or a group with one.
+//! Reading heights from Zarr arrays of versions 2 and 3: a folder that is an array, or a group with one.
 //!
-//! Of a group, the array `height` is taken, else the only one of two dimensions; of three, the first counts bands. Where it lies is told by arrays of coordinates
-//! beside it that have the names of its sides (`x`, `y`, `lon`, `lat`, ...), and by `crs_wkt`, `spatial_ref` or GDAL's `_CRS`.
+//! In a group, the array `height` is read, otherwise the only two-dimensional one; of three dimensions, the first is
+//! the band. The position is taken from coordinate arrays with the names of its dimensions (`x`, `y`, `lon`, `lat`,
+//! ...), and the system from `crs_wkt`, `spatial_ref` or GDAL's `_CRS`.
 
 use std::path::{Path, PathBuf};
 
@@ -15,13 +16,13 @@ use crate::format::dem::{Dem, Placement, Request, afford, afford_beside, refused
 use crate::open;
 use orogen_grid::error::{Error, Result};
 
-/// The longest metadata read.
+/// Maximum length of metadata, in bytes.
 const MAX_METADATA: u64 = 4 << 20;
 
-/// The largest chunk, in bytes.
+/// Maximum size of a chunk, in bytes.
 const MAX_CHUNK: u64 = 1 << 30;
 
-/// The most samples along a side.
+/// Maximum number of samples along a side.
 const MAX_SIDE: u64 = 1 << 31;
 
 /// Whether a folder is a Zarr array or group.
@@ -32,7 +33,7 @@ pub fn is_zarr(folder: &Path) -> bool {
 /// Reads heights.
 ///
 /// # Errors
-/// If there is no such array, or it is damaged, packed in a way that is not supported, or too large.
+/// If there is no such array, or it is damaged, uses an unsupported codec, or is too large.
 pub fn read(folder: &Path, request: Request) -> Result<Dem> {
     let name = folder.display().to_string();
     open(folder, request).map_err(|fault| match fault {
@@ -41,7 +42,7 @@ pub fn read(folder: &Path, request: Request) -> Result<Dem> {
     })
 }
 
-/// Why an array is not read.
+/// The reason why an array was not read.
 enum ReadFault {
     Message(String),
     Other(Error),
@@ -72,7 +73,7 @@ enum Kind {
     Float,
 }
 
-/// An array as its metadata tells.
+/// An array as its metadata describes it.
 struct Array {
     folder: PathBuf,
     shape: Vec<u64>,
@@ -80,9 +81,9 @@ struct Array {
     kind: Kind,
     size: usize,
     big_endian: bool,
-    /// From the packed bytes to the samples.
+    /// The codecs, in the order of decoding.
     codecs: Vec<Codec>,
-    /// What stands between the numbers of a chunk's name, and before them.
+    /// The text between the numbers of a chunk's name, and before them.
     separator: String,
     prefix: &'static str,
     fill: f64,
@@ -90,7 +91,7 @@ struct Array {
     attributes: Value,
 }
 
-/// The bytes of a small file; none if it is not there.
+/// The content of a small file; `None` if it does not exist.
 fn text(path: &Path) -> std::result::Result<Option<Value>, ReadFault> {
     if !path.exists() {
         return Ok(None);
@@ -237,12 +238,12 @@ fn check(array: Array) -> std::result::Result<Array, String> {
 }
 
 impl Array {
-    /// Two dimensions, or three of which the first counts bands.
+    /// Whether it has two dimensions, or three of which the first is the band.
     fn is_map(&self) -> bool {
         matches!(self.shape.len(), 2 | 3)
     }
 
-    /// The bytes of a chunk's samples; none if it is left out. `count` heights are held beside it.
+    /// The bytes of a chunk's samples; `None` if the chunk is absent. `count` heights are held in addition.
     fn chunk(&self, at: &[u64], count: usize, allowed: u64) -> std::result::Result<Option<Vec<u8>>, ReadFault> {
         let numbers: Vec<String> = at.iter().map(u64::to_string).collect();
         let name = match (self.prefix, self.separator.as_str()) {
@@ -253,7 +254,7 @@ impl Array {
         let due = self.chunk.iter().product::<u64>() as usize * self.size;
         let most = due as u64 + due as u64 / 8 + (1 << 16);
         let Ok(there) = path.metadata() else { return Ok(None) };
-        // As it is packed, as it is unpacked, and a part of it between them.
+        // The compressed and the decompressed bytes, and one intermediate step.
         afford_beside(count, there.len().min(most) + 2 * due as u64, allowed)?;
         let bytes = open::bytes(&path, "read", most)?;
         let mut bytes = bytes.ok_or_else(|| format!("{} is longer than its samples", path.display()))?;
@@ -266,7 +267,7 @@ impl Array {
         Ok(Some(bytes))
     }
 
-    /// The samples of bytes, as they are stored.
+    /// The samples of these bytes, as stored.
     fn values<'a>(&'a self, bytes: &'a [u8]) -> impl Iterator<Item = f64> + 'a {
         let shift = 64 - 8 * self.size as u32;
         bytes.chunks_exact(self.size).map(move |bytes| {
@@ -283,13 +284,13 @@ impl Array {
         })
     }
 
-    /// A number among its attributes.
+    /// A numeric attribute.
     fn attribute(&self, name: &str) -> Option<f64> {
         let value = &self.attributes[name];
         value.as_f64().or_else(|| value.as_array()?.first()?.as_f64())
     }
 
-    /// All numbers of an array of one dimension.
+    /// All numbers of a one-dimensional array.
     fn line(&self, allowed: u64) -> std::result::Result<Vec<f64>, ReadFault> {
         let (length, chunk) = (self.shape[0], self.chunk[0]);
         let mut line = Vec::new();
@@ -315,7 +316,7 @@ fn open(folder: &Path, request: Request) -> std::result::Result<Dem, ReadFault> 
     let band = request.choose(usize::try_from(bands).unwrap_or(usize::MAX))? as u64;
     let place = place(&array, group.as_deref(), request.allowed)?;
     let nodata = array.attribute("_FillValue").or(array.attribute("missing_value"));
-    // Zarr's own fill value is what chunks that are left out are made of: of floats no height, of whole numbers a number.
+    // Absent chunks consist of the fill value: for floats it means no height, for integers it is a value.
     let (scale, offset) =
         (array.attribute("scale_factor").unwrap_or(1.0), array.attribute("add_offset").unwrap_or(0.0));
     let sample = |value: f64| match nodata == Some(value) {
@@ -378,7 +379,7 @@ fn find(folder: &Path) -> std::result::Result<Array, ReadFault> {
     }
 }
 
-/// Where an array's samples stand, and whether its rows come from the south.
+/// The position of an array's samples, and whether its first row is the southernmost.
 fn place(
     array: &Array,
     group: Option<&Path>,
@@ -418,7 +419,7 @@ fn regular(line: &[f64]) -> Option<(f64, f64)> {
     (line.len() > 1 && step != 0.0 && even).then_some((first, step))
 }
 
-/// The coordinate system that an array tells, or the array of none dimensions that it calls its `grid_mapping`.
+/// The coordinate system that an array states, itself or in the scalar array that it names as `grid_mapping`.
 fn system(array: &Array, group: Option<&Path>) -> std::result::Result<Option<GeoKeys>, ReadFault> {
     let mut all = vec![array.attributes.clone()];
     let mapping = array.attributes["grid_mapping"].as_str().unwrap_or("spatial_ref");

@@ -1,10 +1,10 @@
-//! Chunks of Zarr arrays, unpacked: gzip, zlib, Zstandard, LZ4 and frames of C-Blosc.
+//! Decoding of Zarr chunks: gzip, zlib, Zstandard, LZ4 and frames of C-Blosc.
 
 use miniz_oxide::inflate::{decompress_to_vec_with_limit, decompress_to_vec_zlib_with_limit};
 
 use crate::format::geotiff::unpack::zstandard;
 
-/// How a chunk's bytes were packed.
+/// A codec of a chunk's bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Codec {
     /// gzip (RFC 1952).
@@ -13,16 +13,16 @@ pub enum Codec {
     Zlib,
     /// Zstandard.
     Zstandard,
-    /// A block of LZ4 behind its length.
+    /// A block of LZ4 preceded by its length.
     Lz4,
     /// A frame of C-Blosc.
     Blosc,
-    /// Four bytes of checksum at the end, which are not checked.
+    /// A trailing checksum of four bytes, which is not verified.
     Checksum,
 }
 
 impl Codec {
-    /// By its name.
+    /// The codec with this name.
     pub fn named(name: &str) -> Option<Codec> {
         match name {
             "gzip" => Some(Codec::Gzip),
@@ -35,10 +35,10 @@ impl Codec {
         }
     }
 
-    /// Unpacks at most so many bytes.
+    /// Decompresses at most `most` bytes.
     ///
     /// # Errors
-    /// A message if they are damaged, or more.
+    /// A message if they are damaged, or there are more.
     pub fn unpack(self, packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
         let damaged = || "a chunk is damaged".to_string();
         match self {
@@ -70,7 +70,7 @@ fn gzip(packed: &[u8], most: usize) -> Option<Vec<u8>> {
 }
 
 fn lz4(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
-    // Memory only for what the bytes can hold: 255 for one.
+    // Allocates only as much as the bytes can expand to: 255 for one.
     let mut out = vec![0; most.min(packed.len().saturating_mul(255))];
     let length = lz4_flex::block::decompress_into(packed, &mut out)
         .map_err(|_| "a chunk compressed with LZ4 is damaged".to_string())?;
@@ -78,7 +78,7 @@ fn lz4(packed: &[u8], most: usize) -> Result<Vec<u8>, String> {
     Ok(out)
 }
 
-/// The least bytes of a part for which a block is parted by the bytes of its numbers.
+/// Minimum number of bytes per stream for which a block is split into a stream per byte of its numbers.
 const MIN_PART: usize = 128;
 
 /// A frame of C-Blosc 1 (README_CHUNK_FORMAT.rst).

@@ -1,4 +1,4 @@
-//! The color of the ground.
+//! The layer `albedo`: the color of the ground.
 
 use super::cover::{self, Cover};
 use super::layer::{Derived, Made, Nature, RowLayer};

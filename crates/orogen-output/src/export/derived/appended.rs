@@ -6,7 +6,7 @@ use orogen_engine::node::Node;
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::solver::drainage::Drainage;
 
-/// The option that says where streams begin.
+/// The option for the drainage area at which streams start.
 pub const STREAM: OptionSpec = OptionSpec {
     name: "stream",
     value: "AREA",
@@ -14,7 +14,7 @@ pub const STREAM: OptionSpec = OptionSpec {
     value_kind: ValueKind::Number(0.0, 1e15),
 };
 
-/// A recipe whose heights are known, and the options that were given.
+/// A recipe with known heights, and the given options.
 pub struct Appended<'a> {
     recipe: &'a mut Recipe,
     heights: Input,
@@ -22,7 +22,7 @@ pub struct Appended<'a> {
 }
 
 impl<'a> Appended<'a> {
-    /// For a recipe that shows `heights` as its heights.
+    /// For a recipe whose heights are the input `heights`.
     pub fn new(recipe: &'a mut Recipe, heights: Input, options: &'a Options) -> Appended<'a> {
         Appended { recipe, heights, options }
     }
@@ -32,7 +32,7 @@ impl<'a> Appended<'a> {
         self.recipe
     }
 
-    /// What a node has to read for the heights.
+    /// The input for a node that reads the heights.
     pub fn heights(&self) -> Input {
         self.heights.clone()
     }
@@ -42,7 +42,7 @@ impl<'a> Appended<'a> {
         self.options
     }
 
-    /// Appends a node, named after its op, unless one of that name is there already.
+    /// Appends a node named after its op, unless a node with that name exists already.
     pub fn add(&mut self, node: impl Into<Node>) -> AppendedNode {
         let node = node.into();
         let name = format!("{}-below-height", node.spec().op);
@@ -58,17 +58,17 @@ impl<'a> Appended<'a> {
         self.add(Drainage { source, stream, ..Drainage::default() })
     }
 
-    /// The drainage area from which on there is a stream.
+    /// The drainage area at which streams start, in m^2.
     pub fn stream(&self) -> f64 {
         self.options.number(STREAM.name).unwrap_or(Drainage::default().stream)
     }
 }
 
-/// A node that was appended.
+/// An appended node.
 pub struct AppendedNode(String);
 
 impl AppendedNode {
-    /// One of its layers.
+    /// A layer of the node, as an input.
     pub fn layer(&self, layer: &str) -> Input {
         Input::Node(format!("{}.{layer}", self.0))
     }

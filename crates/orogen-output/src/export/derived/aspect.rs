@@ -1,4 +1,4 @@
-//! Which way the ground faces.
+//! The layer `aspect`.
 
 use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
 use orogen_grid::analysis::aspect::aspect;

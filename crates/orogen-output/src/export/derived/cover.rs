@@ -1,4 +1,4 @@
-//! What covers a sample: the weights of the recipe's surfaces, laid over one another, and what they look like together.
+//! The cover of samples: the blended weights of the recipe's surfaces, and the resulting appearance.
 
 use super::layer::Around;
 use orogen_engine::recipe::document::Recipe;
@@ -7,7 +7,7 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_io::palette::color::{Light, decode};
 use orogen_io::palette::palette::NO_DATA;
 
-/// The names of the surfaces, each once, in the order of their first.
+/// The names of the surfaces without duplicates, in the order of first use.
 pub fn names(recipe: &Recipe) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for expanded in recipe.expanded() {
@@ -18,34 +18,34 @@ pub fn names(recipe: &Recipe) -> Vec<String> {
     names
 }
 
-/// The layers that hold the shares.
+/// The layers with the shares of surfaces.
 pub fn shares(recipe: &Recipe) -> Vec<String> {
     recipe.expanded().iter().filter_map(|expanded| expanded.share.clone()).collect()
 }
 
-/// The layers that hold the shares, and behind them those of the positions in gradients.
+/// The layers with the shares, followed by those with the positions in gradients.
 pub fn shares_and_positions(recipe: &Recipe) -> Vec<String> {
     let positions = recipe.expanded().iter().filter_map(|expanded| expanded.position.clone());
     shares(recipe).into_iter().chain(positions).collect()
 }
 
-/// One surface with the layers that it is read from.
+/// A surface with the layers that it reads.
 struct Laid<'a> {
     expanded: &'a Expanded,
     share: Option<&'a Grid>,
     position: Option<&'a Grid>,
 }
 
-/// The surfaces over some samples.
+/// The surfaces over a window.
 pub struct Cover<'a> {
     laid: Vec<Laid<'a>>,
-    /// Which of [`names`] each is.
+    /// For each surface, its index in [`names`].
     channels: Vec<usize>,
     around: &'a Around<'a>,
 }
 
 impl<'a> Cover<'a> {
-    /// Of layers that came in the order of [`shares`] or of [`shares_and_positions`].
+    /// From layers in the order of [`shares`] or of [`shares_and_positions`].
     pub fn new(around: &'a Around<'a>) -> Cover<'a> {
         let (recipe, names) = (around.recipe, names(around.recipe));
         let count = shares(recipe).len().min(around.layers.len());
@@ -59,7 +59,8 @@ impl<'a> Cover<'a> {
         Cover { laid: laid.collect(), channels: recipe.expanded().iter().map(channel).collect(), around }
     }
 
-    /// Gives `visit` each sample of a window with the weight of each surface, which add up to 1; all are 0 where there is no height.
+    /// Calls `visit` for each sample of a window with the weights of all surfaces, which add up to 1; all are 0 where
+    /// there is no height.
     fn each(&self, window: &Window, mut visit: impl FnMut([usize; 2], [usize; 2], &[f32])) {
         let there = self.around.heights.window();
         let mut weights = vec![0.0; self.laid.len()];
@@ -67,10 +68,10 @@ impl<'a> Cover<'a> {
             for i in 0..window.width {
                 let at = [(window.x - there.x) as usize + i, (window.y - there.y) as usize + j];
                 let has_height = self.around.heights[(at[0], at[1])].is_finite();
-                // From the top down: each takes its share of what is left.
+                // From the top down: each surface takes its share of the rest.
                 let mut left = if has_height { 1.0 } else { 0.0 };
                 for (weight, laid) in weights.iter_mut().zip(&self.laid).rev() {
-                    // A share that is not known is none.
+                    // A share that is NaN counts as 0.
                     let share = laid.share.map_or(1.0, |share| share[(at[0], at[1])].clamp(0.0, 1.0));
                     *weight = left * if share.is_nan() { 0.0 } else { share };
                     left -= *weight;
@@ -80,7 +81,7 @@ impl<'a> Cover<'a> {
         }
     }
 
-    /// A grid of weights for each name.
+    /// The weights: one grid per name.
     pub fn weights(&self, window: &Window) -> Vec<Grid> {
         let mut out = vec![Grid::filled(*window, 0.0); names(self.around.recipe).len()];
         self.each(window, |[i, j], _, weights| {
@@ -91,7 +92,7 @@ impl<'a> Cover<'a> {
         out
     }
 
-    /// The color as linear light: red, green and blue; the grey of missing samples where there is no height.
+    /// The color in linear light: red, green and blue; the grey of missing samples where there is no height.
     pub fn albedo(&self, window: &Window) -> Vec<Grid> {
         let mut out = vec![Grid::filled(*window, 0.0); 3];
         self.each(window, |[i, j], at, weights| {
@@ -109,7 +110,7 @@ impl<'a> Cover<'a> {
         out
     }
 
-    /// The mean roughness.
+    /// The mean roughness, 0 to 1.
     pub fn roughness(&self, window: &Window) -> Vec<Grid> {
         let mut out = Grid::filled(*window, 0.0);
         let roughness: Vec<f32> = self.laid.iter().map(|laid| laid.expanded.surface.roughness as f32).collect();
@@ -120,10 +121,10 @@ impl<'a> Cover<'a> {
     }
 }
 
-/// The color at a position, 0 to 1, of colors at even steps.
+/// The color at a position, 0 to 1, of evenly spaced colors.
 fn ramp(colors: &[Light], position: f32) -> Light {
     let Some(last) = colors.len().checked_sub(1) else { return [0.5; 3] };
-    // Of a position that is not known, the first color.
+    // A position that is NaN gives the first color.
     let at = if position.is_nan() { 0.0 } else { position.clamp(0.0, 1.0) * last as f32 };
     let from = (at as usize).min(last);
     let (a, b) = (colors[from], colors[(from + 1).min(last)]);

@@ -1,4 +1,4 @@
-//! How the ground bends.
+//! The layer `curvature`.
 
 use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
 use orogen_grid::analysis::curvature::{Curvature, curvature};

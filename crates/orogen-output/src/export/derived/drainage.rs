@@ -1,11 +1,11 @@
-//! Drainage: how much, which way, whose.
+//! Layers of drainage: area, direction, order, watersheds.
 
 use super::appended::STREAM;
 use super::layer::{Derived, Made, NodeLayer};
 use crate::export::options::{OptionSpec, ValueKind};
 use orogen_engine::filter::flow_direction::{Codes, FlowDirection};
 
-/// Numbers of directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster.
+/// Option for the codes of directions: esri (1 east, 2 south-east, 4 south ...), grass, taudem, whitebox or pcraster.
 const CODES: OptionSpec = OptionSpec {
     name: "codes",
     value: "WHOSE",
@@ -13,7 +13,7 @@ const CODES: OptionSpec = OptionSpec {
     value_kind: ValueKind::Word(&["esri", "grass", "taudem", "whitebox", "pcraster"]),
 };
 
-/// How much ground lies upstream.
+/// The layer `drainage-area`.
 pub static AREA: Derived = Derived {
     name: "drainage-area",
     about: "flow accumulation: drainage area of each cell including itself, in m^2 (D8)",
@@ -22,7 +22,7 @@ pub static AREA: Derived = Derived {
     made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(to.drainage().layer("flow")) }),
 };
 
-/// Which way water takes.
+/// The layer `flow-direction`.
 pub static DIRECTION: Derived = Derived {
     name: "flow-direction",
     about: "flow direction (D8), in the encoding of another program (--codes)",
@@ -44,7 +44,7 @@ pub static DIRECTION: Derived = Derived {
     }),
 };
 
-/// The order of the stream.
+/// The layer `strahler`.
 pub static STRAHLER: Derived = Derived {
     name: "strahler",
     about: "Strahler order of streams; 0 elsewhere",
@@ -53,7 +53,7 @@ pub static STRAHLER: Derived = Derived {
     made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(to.drainage().layer("strahler")) }),
 };
 
-/// What drains to one outlet.
+/// The layer `watershed`.
 pub static WATERSHED: Derived = Derived {
     name: "watershed",
     about: "watersheds: the ground that drains to each outlet, numbered from 1; 0 in the sea",

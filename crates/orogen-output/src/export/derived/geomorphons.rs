@@ -1,10 +1,10 @@
-//! What form the ground has.
+//! The layer `landforms`.
 
 use super::layer::{Derived, Made, NodeLayer};
 use crate::export::options::{OptionSpec, ValueKind};
 use orogen_engine::filter::geomorphons::Geomorphons;
 
-/// How far geomorphons look, in metres.
+/// Option for the search radius, in metres.
 const REACH: OptionSpec = OptionSpec {
     name: "reach",
     value: "M",
@@ -12,7 +12,7 @@ const REACH: OptionSpec = OptionSpec {
     value_kind: ValueKind::Number(0.0, 1e6),
 };
 
-/// Ground that rises or falls by less is level, in degrees.
+/// Option for the angle up to which ground is level, in degrees.
 const FLAT: OptionSpec = OptionSpec {
     name: "flat",
     value: "DEG",

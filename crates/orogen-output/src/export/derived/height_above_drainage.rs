@@ -1,4 +1,4 @@
-//! How high and how far ground lies above the streams.
+//! Layers of the height and distance above streams.
 
 use super::appended::{Appended, AppendedNode, STREAM};
 use super::layer::{Derived, Made, NodeLayer};
@@ -10,7 +10,7 @@ fn append(to: &mut Appended) -> AppendedNode {
     to.add(HeightAboveDrainage { source, stream, ..HeightAboveDrainage::default() })
 }
 
-/// Height above the stream.
+/// The layer `height-above-drainage`.
 pub static HEIGHT_ABOVE: Derived = Derived {
     name: "height-above-drainage",
     about: "height above nearest drainage (HAND) in m: above the stream that the ground drains to",
@@ -19,7 +19,7 @@ pub static HEIGHT_ABOVE: Derived = Derived {
     made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(append(to).layer("height")) }),
 };
 
-/// Length of the way to the stream.
+/// The layer `flow-distance`.
 pub static FLOW_DISTANCE: Derived = Derived {
     name: "flow-distance",
     about: "length of the flow path to the stream that the ground drains to, in m",
@@ -28,7 +28,7 @@ pub static FLOW_DISTANCE: Derived = Derived {
     made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(append(to).layer("flow_distance")) }),
 };
 
-/// Distance to the nearest stream.
+/// The layer `stream-distance`.
 pub static STREAM_DISTANCE: Derived = Derived {
     name: "stream-distance",
     about: "straight-line distance to the nearest stream, in m",

@@ -1,4 +1,4 @@
-//! How much light the ground catches.
+//! The layer `hillshade`.
 
 use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
 use orogen_grid::analysis::hillshade::{Light, hillshade};

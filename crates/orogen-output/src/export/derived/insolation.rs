@@ -1,4 +1,4 @@
-//! How much light of the sun the ground gets.
+//! The layer `insolation`.
 
 use super::appended::Appended;
 use super::layer::{Derived, Made, NodeLayer};
@@ -7,7 +7,7 @@ use orogen_engine::solver::insolation::Insolation;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_io::dem::latitude;
 
-/// One day.
+/// Option for a single day.
 const DAY: OptionSpec = OptionSpec {
     name: "day",
     value: "N",
@@ -15,7 +15,7 @@ const DAY: OptionSpec = OptionSpec {
     value_kind: ValueKind::Whole(1, 365),
 };
 
-/// A season.
+/// Option for a season.
 const SEASON: OptionSpec = OptionSpec {
     name: "season",
     value: "WHEN",
@@ -23,10 +23,11 @@ const SEASON: OptionSpec = OptionSpec {
     value_kind: ValueKind::Word(&["spring", "summer", "autumn", "winter"]),
 };
 
-/// The step through a single day, in hours. The days of a longer period have sunrise at different times, so shadows between the steps even out.
+/// The time step of a single day, in hours. The days of a longer period have different sunrises, which evens out
+/// shadows between time steps.
 const STEP_OF_A_DAY: f64 = 0.1;
 
-/// Where on the earth.
+/// Option for the latitude.
 const LATITUDE: OptionSpec = OptionSpec {
     name: "latitude",
     value: "DEG",
@@ -34,7 +35,7 @@ const LATITUDE: OptionSpec = OptionSpec {
     value_kind: ValueKind::Number(-90.0, 90.0),
 };
 
-/// How hazy the air is.
+/// Option for the turbidity of the air.
 const TURBIDITY: OptionSpec = OptionSpec {
     name: "turbidity",
     value: "T",
@@ -42,7 +43,7 @@ const TURBIDITY: OptionSpec = OptionSpec {
     value_kind: ValueKind::Number(1.0, 10.0),
 };
 
-/// The first day of each season in the north, and the last.
+/// The first and the last day of each season of the northern hemisphere.
 const SEASONS: [(&str, [f64; 2]); 4] =
     [("spring", [79.0, 171.0]), ("summer", [172.0, 265.0]), ("autumn", [266.0, 354.0]), ("winter", [355.0, 78.0])];
 
@@ -72,7 +73,7 @@ pub static LAYER: Derived = Derived {
     }),
 };
 
-/// The days that are asked for.
+/// The requested days.
 fn days(to: &Appended, latitude: f64) -> Result<Option<[f64; 2]>> {
     match (to.options().whole(DAY.name), to.options().word(SEASON.name)) {
         (Some(_), Some(_)) => {
@@ -81,14 +82,14 @@ fn days(to: &Appended, latitude: f64) -> Result<Option<[f64; 2]>> {
         (Some(day), None) => Ok(Some([day as f64; 2])),
         (None, Some(season)) => {
             let north = SEASONS.iter().position(|(name, _)| *name == season);
-            // In the south it is half a year away.
+            // In the southern hemisphere seasons are shifted by half a year.
             Ok(north.map(|k| SEASONS[if latitude < 0.0 { (k + 2) % 4 } else { k }].1))
         }
         (None, None) => Ok(None),
     }
 }
 
-/// The latitude of the world's middle, if its heights are a real place whose map tells it.
+/// The latitude of the centre of the world, if its heights are a real place and its map gives the latitude.
 fn latitude_of(to: &Appended) -> Option<f64> {
     let size = to.recipe().world.size?;
     latitude::latitude(&to.recipe().georeference()?, size[0] / 2.0, size[1] / 2.0)

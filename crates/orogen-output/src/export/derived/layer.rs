@@ -1,4 +1,4 @@
-//! What a derived layer is.
+//! Definition of derived layers.
 
 use super::appended::Appended;
 use crate::export::options::OptionSpec;
@@ -8,35 +8,35 @@ use orogen_grid::analysis::slope::beyond;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
-/// What the channels of a layer are.
+/// The meaning of a layer's channels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Nature {
     /// Plain numbers.
     Numbers,
-    /// A direction of length 1: its parts east, north and up, each -1 to 1.
+    /// A unit vector: east, north and up, each -1 to 1.
     Normal,
-    /// Shares of a whole: each 0 to 1, together 1.
+    /// Weights: each 0 to 1, with the sum 1.
     Weights,
-    /// A color as linear light: red, green and blue, 0 to 1.
+    /// A color in linear light: red, green and blue, 0 to 1.
     Color,
 }
 
-/// A layer that follows from the heights.
+/// A layer derived from the heights.
 pub struct Derived {
-    /// Its name after `--layer`.
+    /// The name for `--layer`.
     pub name: &'static str,
-    /// One line for a list.
+    /// A one-line description.
     pub about: &'static str,
-    /// The palette that suits a map of it; empty where a map of it makes no sense.
+    /// The palette for maps of it; empty if a map makes no sense.
     pub palette: &'static str,
-    /// The options it knows.
+    /// The options of the layer.
     pub options: &'static [OptionSpec],
-    /// How it is made.
+    /// How it is computed.
     pub made: Made,
 }
 
 impl Derived {
-    /// How its rows are made, if it is made of rows.
+    /// The row layer, if it is computed from rows.
     pub fn rows(&self) -> Option<&RowLayer> {
         match &self.made {
             Made::Rows(rows) => Some(rows),
@@ -45,45 +45,45 @@ impl Derived {
     }
 }
 
-/// How a derived layer is made.
+/// How a derived layer is computed.
 pub enum Made {
-    /// Band of rows by band of rows, from the heights around each sample.
+    /// In bands of rows, from the heights around each sample.
     Rows(RowLayer),
     /// By nodes that are appended to the recipe before its world is opened.
     Nodes(NodeLayer),
 }
 
-/// A layer that nodes make.
+/// A layer computed by nodes.
 pub struct NodeLayer {
-    /// Whether one of them is a solver, which needs a world with bounds.
+    /// Whether one of them is a solver, which needs a bounded world.
     pub bounded: bool,
-    /// Appends the nodes, and returns what the layer reads.
+    /// Appends the nodes, and returns the input that the layer reads.
     ///
-    /// Fails if an option is missing or does not fit.
+    /// Fails if an option is missing or invalid.
     pub append: fn(&mut Appended) -> Result<Input>,
 }
 
-/// A layer that is made of rows of heights.
+/// A layer computed from rows of heights.
 pub struct RowLayer {
     /// Unit of a sample, or empty.
     pub unit: &'static str,
-    /// What its channels are.
+    /// The meaning of its channels.
     pub nature: Nature,
-    /// Their names, of a recipe that was [prepared](super::list::prepare).
+    /// The names of the channels, for a [prepared](super::list::prepare) recipe.
     pub channels: fn(&Recipe) -> Vec<String>,
-    /// Adds to a recipe the nodes that compute what it reads beside the heights.
+    /// Adds the nodes to a recipe that compute the further inputs of the layer.
     pub prepare: fn(&mut Recipe),
     /// The layers of a prepared recipe that it reads beside the heights.
     pub layers: fn(&Recipe) -> Vec<String>,
-    /// How many samples around one it looks at, at such a cell.
+    /// The halo in samples, for a cell in metres.
     pub reach: fn(f64) -> usize,
-    /// Makes the samples of a window: a grid a channel.
+    /// Computes the samples of a window: one grid per channel.
     pub make: fn(&Around, &Window) -> Vec<Grid>,
 }
 
-/// The ground around the samples that are made.
+/// The ground around the samples to compute.
 pub struct Around<'a> {
-    /// Heights in metres: of the window and of what the layer reaches around it, as far as the world goes.
+    /// Heights in metres: of the window and its halo, as far as the world extends.
     pub heights: &'a Grid,
     /// The other layers that it reads, over the same window.
     pub layers: &'a [Grid],
@@ -91,17 +91,17 @@ pub struct Around<'a> {
     pub recipe: &'a Recipe,
 }
 
-/// The `prepare` of a layer that reads the heights alone.
+/// The `prepare` of a layer that reads only the heights.
 pub fn nothing(_: &mut Recipe) {}
 
-/// The `layers` of a layer that reads the heights alone.
+/// The `layers` of a layer that reads only the heights.
 pub fn none(_: &Recipe) -> Vec<String> {
     Vec::new()
 }
 
 impl Around<'_> {
-    /// The heights of a window with one more sample on each side: those of the ground, and past the ends of the world where its last two run on in a straight
-    /// line.
+    /// The heights of a window extended by one sample on each side, with linear extrapolation beyond the edges of the
+    /// world.
     pub fn bordered(&self, window: &Window) -> Grid {
         let wide = window.grown(1);
         let there = self.heights.window();
@@ -115,7 +115,7 @@ impl Around<'_> {
             let source = self.heights.row((y - there.y) as usize);
             let row = out.row_mut((y - wide.y) as usize);
             row[inside..inside + across].copy_from_slice(&source[from..from + across]);
-            // One sample at most is missing at each end.
+            // At most one sample is missing at each end.
             if inside > 0 {
                 row[0] = beyond(row[1], row[2.min(across)]);
             }

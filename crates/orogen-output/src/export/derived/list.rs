@@ -1,4 +1,4 @@
-//! The derived layers there are.
+//! The list of derived layers.
 
 use super::appended::Appended;
 use super::layer::{Derived, Made};
@@ -45,12 +45,12 @@ pub fn all() -> &'static [&'static Derived] {
     &ALL
 }
 
-/// The derived layer of that name.
+/// The derived layer with this name.
 pub fn named(name: &str) -> Option<&'static Derived> {
     ALL.into_iter().find(|derived| derived.name == name)
 }
 
-/// All options of all layers, by name, each with the layers that know it.
+/// All options of all layers, by name, each with the layers that have it.
 pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
     let mut all: Vec<(&OptionSpec, Vec<&str>)> = Vec::new();
     for derived in ALL {
@@ -65,11 +65,13 @@ pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
     all
 }
 
-/// Appends to a recipe what a derived layer needs: call it before the world is opened. A layer that is made by nodes becomes an output of that name, so that
-/// everything reads it like a layer of the recipe. A layer that the recipe has itself, and a name that is no derived layer's, change nothing.
+/// Appends to a recipe the nodes that a derived layer needs; call it before the world is opened. A layer made by nodes
+/// becomes an output with the layer's name, so that everything reads it like a layer of the recipe. Nothing changes if
+/// the recipe has a layer with this name, or if there is no such derived layer.
 ///
 /// # Errors
-/// If an option was given that the layer does not know or that does not fit, or the layer needs a world with bounds and this one has none.
+/// If an option does not belong to the layer or is invalid, or if the layer needs a bounded world and this one is
+/// unbounded.
 pub fn prepare(recipe: &mut Recipe, layer: &str, options: &Options) -> Result<()> {
     let has = recipe.outputs().any(|name| name == layer) || recipe.nodes().iter().any(|named| named.name == layer);
     let derived = if has { None } else { named(layer) };

@@ -1,4 +1,4 @@
-//! Layers that a recipe need not have: what follows from its heights. One file each, and [`list`] names them.
+//! Layers derived from the heights, available for every recipe. One file each; [`list`] names them.
 
 pub mod albedo;
 pub(crate) mod appended;

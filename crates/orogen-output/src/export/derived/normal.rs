@@ -1,4 +1,4 @@
-//! Where the ground points up.
+//! The layer `normal`.
 
 use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
 use orogen_grid::analysis::slope::gradients_between;

@@ -1,9 +1,9 @@
-//! How much sky the ground sees.
+//! The layer `occlusion`.
 
 use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
 use orogen_grid::analysis::sky;
 
-/// How far horizons are looked for, in metres, and at most in samples.
+/// Search radius of horizons, in metres, and its maximum in samples.
 const METRES: f64 = 1000.0;
 const MOST: f64 = 128.0;
 

@@ -1,11 +1,11 @@
-//! How high a sample lies among those around it.
+//! Layers of topographic position.
 
 use super::appended::{Appended, AppendedNode};
 use super::layer::{Derived, Made, NodeLayer};
 use crate::export::options::{OptionSpec, ValueKind};
 use orogen_engine::filter::topographic_position::TopographicPosition;
 
-/// Radius of the disc, in metres.
+/// Option for the radius of the disc, in metres.
 const RADIUS: OptionSpec = OptionSpec {
     name: "disc",
     value: "M",
@@ -20,7 +20,7 @@ fn append(to: &mut Appended) -> AppendedNode {
     to.add(TopographicPosition { source, radius })
 }
 
-/// Height above the mean of a disc.
+/// The layer `tpi`.
 pub static POSITION: Derived = Derived {
     name: "tpi",
     about: "topographic position index: height above the mean of a disc, in m (Weiss 2001)",
@@ -29,7 +29,7 @@ pub static POSITION: Derived = Derived {
     made: Made::Nodes(NodeLayer { bounded: false, append: |to| Ok(append(to).layer("position")) }),
 };
 
-/// Slope positions.
+/// The layer `slope-position`.
 pub static CLASS: Derived = Derived {
     name: "slope-position",
     about: "slope position (Weiss 2001): 1 ridge, 2 upper slope, 3 middle slope, 4 flat, 5 lower slope, 6 valley",

@@ -1,4 +1,4 @@
-//! How matt the ground is.
+//! The layer `roughness`.
 
 use super::cover::{self, Cover};
 use super::layer::{Derived, Made, Nature, RowLayer};

@@ -1,4 +1,4 @@
-//! A derived layer row after row: the ground around comes as bands, of which no more is held than is looked at.
+//! Computation of a derived layer in bands of rows; only the rows of the current halo are held.
 
 use rayon::prelude::*;
 
@@ -10,42 +10,42 @@ use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 
-/// Rows that are made at once, if they are not too wide.
+/// Rows that are computed at once, unless they are very wide.
 const ROWS: usize = 256;
 const SAMPLES: usize = 1 << 21;
 
-/// Rows that one thread makes.
+/// Rows per thread.
 const STRIP: usize = 16;
 
-/// The most rows that come at a time.
+/// Maximum number of rows of an input band.
 const BAND: usize = 512;
 
-/// A derived layer's rows from the north, some at a time: a grid a channel.
+/// The rows of a derived layer from the north, in bands: one grid per channel.
 pub struct Rows<'w> {
     derived: &'static RowLayer,
     channels: usize,
     window: Window,
     world: &'w World,
     source: Source<'w>,
-    /// The row that comes next.
+    /// The next row.
     next: usize,
 }
 
-/// The layers that are looked at.
+/// The input layers.
 struct Source<'w> {
     bands: Bands<'w>,
-    /// The window that they come over.
+    /// Their window.
     wide: Window,
-    /// Of each layer the rows that are held, whole ones; and the first of them.
+    /// For each layer, the rows that are held; and the first of them.
     rows: Vec<Vec<f32>>,
     first: usize,
 }
 
 impl<'w> Rows<'w> {
-    /// The rows over a window, in no more than the world's memory beside `beside` bytes.
+    /// The rows over a window, within the world's memory minus `beside` bytes.
     ///
     /// # Errors
-    /// As [`World::bands`].
+    /// The errors of [`World::bands`].
     pub fn new(
         derived: &'static RowLayer,
         world: &'w World,
@@ -66,10 +66,10 @@ impl<'w> Rows<'w> {
         Ok(Rows { derived, channels, window: *window, world, source, next: 0 })
     }
 
-    /// All rows at once: a grid a channel.
+    /// All rows at once: one grid per channel.
     ///
     /// # Errors
-    /// As the rows.
+    /// The errors of the rows.
     pub fn whole(self) -> Result<Vec<Grid>> {
         let mut all = vec![Grid::filled(self.window, 0.0); self.channels];
         for band in self {
@@ -78,7 +78,7 @@ impl<'w> Rows<'w> {
         Ok(all)
     }
 
-    /// The next rows, and how many of the heights in their place are finite.
+    /// The next rows, and the number of finite heights under them.
     fn make(&mut self) -> Result<(Vec<Grid>, FiniteCount)> {
         let height = at_once(&self.window).min(self.window.height - self.next);
         let band = Window { y: self.window.y + self.next as i64, height, ..self.window };
@@ -98,19 +98,19 @@ impl<'w> Rows<'w> {
         for strip in made {
             out.iter_mut().zip(&strip).for_each(|(out, strip)| out.paste(strip));
         }
-        // Shades and weights are finite whatever the heights are.
+        // Shades and weights are finite even if the heights are not.
         let beneath = heights.crop(&band.intersection(heights.window()));
         Ok((out, beneath.map_or_else(FiniteCount::default, |beneath| FiniteCount::of(beneath.data()))))
     }
 }
 
-/// How many rows are made at once.
+/// Number of rows that are computed at once.
 fn at_once(window: &Window) -> usize {
     (SAMPLES / window.width.max(1)).clamp(STRIP, ROWS).min(window.height.max(1))
 }
 
 impl Source<'_> {
-    /// What there is of a window, a grid a layer: all rows above it are let go.
+    /// The inputs over a window, one grid per layer; drops all rows above it.
     fn around(&mut self, window: &Window) -> Result<Vec<Grid>> {
         let window = window.intersection(&self.wide);
         let (top, bottom) = ((window.y - self.wide.y) as usize, (window.bottom() - self.wide.y) as usize);

@@ -1,4 +1,4 @@
-//! How rugged the ground is.
+//! The layer `tri`.
 
 use super::layer::{Derived, Made, NodeLayer};
 use orogen_engine::filter::ruggedness::Ruggedness;

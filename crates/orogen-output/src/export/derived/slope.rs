@@ -1,4 +1,4 @@
-//! How steep the ground is.
+//! The layer `slope`.
 
 use super::layer::{Derived, Made, Nature, RowLayer, none, nothing};
 use orogen_grid::analysis::slope::degrees;

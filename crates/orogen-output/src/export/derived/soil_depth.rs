@@ -1,4 +1,4 @@
-//! How deep the soil is.
+//! The layer `soil-depth`.
 
 use super::layer::{Derived, Made, NodeLayer};
 use orogen_engine::filter::soil_depth::SoilDepth;

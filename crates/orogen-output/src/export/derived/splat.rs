@@ -1,4 +1,4 @@
-//! What covers the ground.
+//! The layer `splat`: weights of the surfaces.
 
 use super::cover::{self, Cover};
 use super::layer::{Derived, Made, Nature, RowLayer};

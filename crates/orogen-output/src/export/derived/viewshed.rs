@@ -1,11 +1,11 @@
-//! What is seen from a point.
+//! The layer `viewshed`.
 
 use super::layer::{Derived, Made, NodeLayer};
 use crate::export::options::{OptionSpec, ValueKind};
 use orogen_engine::solver::viewshed::Viewshed;
 use orogen_grid::error::{Error, ErrorKind};
 
-/// Where the observer stands.
+/// Option for the position of the observer.
 const OBSERVER: OptionSpec = OptionSpec {
     name: "observer",
     value: "X,Y",
@@ -13,7 +13,7 @@ const OBSERVER: OptionSpec = OptionSpec {
     value_kind: ValueKind::Point,
 };
 
-/// Height of the eye.
+/// Option for the height of the eye.
 const OBSERVER_HEIGHT: OptionSpec = OptionSpec {
     name: "observer-height",
     value: "M",
@@ -21,7 +21,7 @@ const OBSERVER_HEIGHT: OptionSpec = OptionSpec {
     value_kind: ValueKind::Number(0.0, 1e6),
 };
 
-/// Height of what is looked at.
+/// Option for the height of the target.
 const TARGET_HEIGHT: OptionSpec = OptionSpec {
     name: "target-height",
     value: "M",
@@ -29,7 +29,7 @@ const TARGET_HEIGHT: OptionSpec = OptionSpec {
     value_kind: ValueKind::Number(0.0, 1e6),
 };
 
-/// How far the observer looks.
+/// Option for the range of sight.
 const RADIUS: OptionSpec = OptionSpec {
     name: "radius",
     value: "M",
@@ -37,7 +37,7 @@ const RADIUS: OptionSpec = OptionSpec {
     value_kind: ValueKind::Number(0.0, 1e9),
 };
 
-/// Whether the earth is curved, and the air bends rays.
+/// Option for the curvature of the earth and refraction.
 const REFRACTION: OptionSpec = OptionSpec {
     name: "refraction",
     value: "K",

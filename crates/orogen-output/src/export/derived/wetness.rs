@@ -1,4 +1,4 @@
-//! Indices of water and slope.
+//! Layers of indices of drainage area and slope.
 
 use super::appended::{Appended, AppendedNode};
 use super::layer::{Derived, Made, NodeLayer};
@@ -10,7 +10,7 @@ fn append(to: &mut Appended) -> AppendedNode {
     to.add(FlowIndices { source, flow, ..FlowIndices::default() })
 }
 
-/// The topographic wetness index.
+/// The layer `wetness`.
 pub static WETNESS: Derived = Derived {
     name: "wetness",
     about: "topographic wetness index ln(a / tan b) (Beven and Kirkby 1979)",
@@ -19,7 +19,7 @@ pub static WETNESS: Derived = Derived {
     made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(append(to).layer("wetness")) }),
 };
 
-/// The stream power index.
+/// The layer `stream-power-index`.
 pub static STREAM_POWER: Derived = Derived {
     name: "stream-power-index",
     about: "stream power index a tan b, in m (Moore, Grayson and Ladson 1991)",
@@ -28,7 +28,7 @@ pub static STREAM_POWER: Derived = Derived {
     made: Made::Nodes(NodeLayer { bounded: true, append: |to| Ok(append(to).layer("stream_power")) }),
 };
 
-/// The LS factor.
+/// The layer `ls-factor`.
 pub static LS_FACTOR: Derived = Derived {
     name: "ls-factor",
     about: "LS factor of soil erosion (Moore and Burch 1986)",

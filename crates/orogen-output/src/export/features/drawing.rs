@@ -1,4 +1,4 @@
-//! Layers ready to be written: those of vector features that were asked for, or the contours of a layer of samples.
+//! Layers prepared for writing: vector features, or the contours of a layer of samples.
 
 use std::io;
 
@@ -15,28 +15,28 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_io::format::dem::Georeference;
 use orogen_io::format::features::{Crs, FeatureLayer};
 
-/// Layers, and where they lie.
+/// Layers with their coordinate system.
 pub struct Drawing {
-    /// The layers, and how each is drawn.
+    /// The layers, each with its style.
     pub layers: Vec<(FeatureLayer, Style)>,
     map: Option<Georeference>,
     cell: f64,
-    /// What there is to say of the contours of a layer of samples.
+    /// The summary of the contours of a layer of samples.
     contours: Option<String>,
 }
 
-/// The contours of a subject's samples.
+/// The contours of a source's samples.
 ///
-/// Fails as the subject does, or if the levels cannot be read.
+/// Fails if the source fails, or the levels cannot be parsed.
 pub fn contours(source: &mut LayerSource, options: &Options) -> io::Result<Contours> {
     contour_options::check(options)?;
     Ok(contours::on(&source.whole()?.swap_remove(0), options)?)
 }
 
 impl Drawing {
-    /// What a subject's layers are as features, in metres east and south of the world's origin.
+    /// The source's layers as features, in metres east and south of the world's origin.
     ///
-    /// Fails as the subject does, and if an option was given that none of the layers knows.
+    /// Fails if the source fails, or an option belongs to none of the layers.
     pub fn of(source: &mut LayerSource, options: &Options) -> io::Result<Drawing> {
         let (map, cell) = (source.map(), source.window().cell);
         let asked = source.vectors().to_vec();
@@ -61,22 +61,22 @@ impl Drawing {
         Ok(Drawing { layers, map, cell, contours: words })
     }
 
-    /// Turns metres of the world into map coordinates.
+    /// Converts metres of the world to map coordinates.
     pub fn place(&mut self) {
         self.layers.iter_mut().for_each(|(layer, _)| layer.place(self.map.as_ref()));
     }
 
-    /// The system of the coordinates once they are placed.
+    /// The coordinate system after [`Drawing::place`].
     pub fn crs(&self) -> Crs<'_> {
         self.map.as_ref().map_or(Crs::Local, Crs::Map)
     }
 
-    /// From one sample to the next, in the map's unit.
+    /// Distance between samples, in map units.
     pub fn step(&self) -> f64 {
         self.map.as_ref().map_or(self.cell, |map| self.cell * map.per_metre[0].min(map.per_metre[1]))
     }
 
-    /// The only layer, for formats that hold no more.
+    /// The only layer, for formats with a single layer.
     ///
     /// Fails if there are several.
     pub fn only(&self, format: &str) -> io::Result<&FeatureLayer> {
@@ -89,7 +89,7 @@ impl Drawing {
         }
     }
 
-    /// How much there is, in words.
+    /// A summary of the number of features.
     pub fn words(&self) -> String {
         if let Some(words) = &self.contours {
             return words.clone();
@@ -104,7 +104,7 @@ impl Drawing {
     }
 }
 
-/// Whether each option that was given changes one of the layers.
+/// Checks that each given option belongs to one of the layers.
 fn check(layers: &[&VectorLayer], options: &Options) -> Result<()> {
     let all = || super::options::OPTIONS.iter().map(|spec| spec.name);
     for name in options.names().filter(|name| all().any(|known| known == *name)) {

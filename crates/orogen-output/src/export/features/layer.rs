@@ -1,33 +1,33 @@
-//! What a layer of vector features is.
+//! Definition of layers of vector features.
 
 use super::options::FeatureOptions;
 use super::source::FeatureSource;
 use orogen_grid::error::Result;
 use orogen_io::format::features::FeatureLayer;
 
-/// A layer of vector features, declared in a file of its own in `vectors/`.
+/// A layer of vector features, declared in its own file in `vectors/`.
 pub struct VectorLayer {
-    /// What `--layer` calls it.
+    /// The name for `--layer`.
     pub name: &'static str,
-    /// One line for a list.
+    /// A one-line description.
     pub about: &'static str,
-    /// The options that change it.
+    /// The names of its options.
     pub options: &'static [&'static str],
-    /// How it is drawn.
+    /// The style in drawings.
     pub style: Style,
-    /// Makes its features, in metres east and south of the world's origin.
+    /// Computes its features, in metres east and south of the world's origin.
     pub make: fn(&FeatureSource, &FeatureOptions) -> Result<FeatureLayer>,
 }
 
-/// How features are drawn.
+/// The style of features in a drawing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Style {
-    /// The colour of lines, and of the borders of areas, as SVG writes it.
+    /// The colour of lines and of the borders of polygons, in SVG syntax.
     pub stroke: &'static str,
-    /// How wide lines are, in thousandths of the longer side.
+    /// Width of lines, in thousandths of the longer side.
     pub width: f64,
-    /// The field by whose square root lines are wider, from half the width to four times it.
+    /// The field whose square root scales the width of lines, from half the width to four times the width.
     pub by: Option<&'static str>,
-    /// The colour that areas are filled with, or `none`.
+    /// The fill colour of polygons, or `none`.
     pub fill: &'static str,
 }

@@ -1,21 +1,21 @@
-//! The layers of vector features there are.
+//! The list of layers of vector features.
 
 use super::layer::VectorLayer;
 use crate::export::vectors;
 
 static ALL: &[&VectorLayer] = include!("../vector_list.rs");
 
-/// All of them, by name.
+/// All layers, by name.
 pub fn all() -> &'static [&'static VectorLayer] {
     ALL
 }
 
-/// The one of that name.
+/// The layer with this name.
 pub fn named(name: &str) -> Option<&'static VectorLayer> {
     ALL.iter().copied().find(|layer| layer.name == name)
 }
 
-/// The layers of a list of names with commas between them; none unless all of them are layers of vector features.
+/// The layers of a comma-separated list of names; `None` unless all of them are layers of vector features.
 pub fn listed(names: &str) -> Option<Vec<&'static VectorLayer>> {
     let mut layers: Vec<&VectorLayer> = Vec::new();
     for name in names.split(',') {

@@ -1,5 +1,5 @@
-//! Vector features out of heights: what is asked for (`options`, `layer`), the ground that it is made of (`ground`), and layers ready to be written
-//! (`drawing`). The layers themselves are in `vectors`.
+//! Vector features from heights: options (`options`, `layer`), the terrain that they are made of (`source`), and layers
+//! prepared for writing (`drawing`). The layers are in `vectors`.
 
 pub(crate) mod drawing;
 pub(crate) mod layer;

@@ -1,4 +1,4 @@
-//! What may be asked of vector features, and what the recipe says of its water.
+//! Options of vector features, and defaults from the recipe's own water.
 
 use crate::export::contour_options;
 use crate::export::options::{OptionSpec, Options, ValueKind};
@@ -50,31 +50,31 @@ pub const OPTIONS: &[OptionSpec] = &[
     PROMINENCE,
 ];
 
-/// The names of those that change the water.
+/// The names of the options that affect water.
 pub const WATER: &[&str] = &[RIVER_AREA.name, LAKE_AREA.name, RUNOFF.name, contour_options::SMOOTH.name];
 
-/// How often rivers are evened out and the corners of shores and watersheds are cut, where nobody says.
+/// Default number of smoothing rounds, for rivers and for shores and watersheds.
 const ROUNDS: [usize; 2] = [3, 1];
 
-/// What is asked for.
+/// The options in effect.
 pub struct FeatureOptions<'a> {
-    /// The options as they were given.
+    /// The options as given.
     pub given: &'a Options,
-    /// Drainage area in m^2 from which on there is a river, and the fewest samples.
+    /// Minimum drainage area of a river, in m^2, and minimum number of samples.
     pub river: (f64, u32),
-    /// Area in m^2 from which on there is a lake.
+    /// Minimum area of a lake, in m^2.
     pub lake: f64,
-    /// Whether water leaves into the sea.
+    /// Whether there is a sea.
     pub sea: bool,
-    /// How wide rivers are.
+    /// Width and depth of rivers.
     pub channel: Channel,
 }
 
-/// The fewest samples that drain to a spring, unless a drainage area is asked for.
+/// Minimum number of samples that drain to a source, unless a drainage area is given.
 const FEWEST: u32 = 32;
 
 impl<'a> FeatureOptions<'a> {
-    /// What is given, else what the recipe's own water is like, else the defaults.
+    /// The given values, otherwise those of the recipe's own water, otherwise the defaults.
     ///
     /// # Errors
     /// If options contradict each other.
@@ -113,14 +113,14 @@ impl<'a> FeatureOptions<'a> {
         Ok(options)
     }
 
-    /// The samples of a cell that drain to a spring, and that a lake has, at least.
+    /// Minimum number of samples, at this cell, that drain to a source, and of a lake.
     pub fn fewest(&self, cell: f64) -> [u32; 2] {
         let samples =
             |area: f64, fewest: u32| (area / (cell * cell)).ceil().clamp(f64::from(fewest), f64::from(u32::MAX)) as u32;
         [samples(self.river.0, self.river.1.max(1)), samples(self.lake, 4)]
     }
 
-    /// How often rivers are evened out, and the corners of areas are cut.
+    /// Number of smoothing rounds of rivers, and of the borders of polygons.
     pub fn rounds(&self) -> [usize; 2] {
         self.given.whole(contour_options::SMOOTH.name).map_or(ROUNDS, |rounds| [rounds as usize; 2])
     }

@@ -1,4 +1,4 @@
-//! The ground that features are made of: heights of a window, and the water of the world that it lies in.
+//! The terrain that features are made of: the heights of a window, and the water of the world around it.
 
 use super::options::FeatureOptions;
 use orogen_engine::plan::planner::world_windows;
@@ -12,36 +12,37 @@ use orogen_grid::progress::Progress;
 
 /// Heights and water.
 pub struct FeatureSource {
-    /// The water of all the ground that was looked at.
+    /// The water of the whole terrain that was processed.
     pub water: Water,
-    /// The part of it that is wanted.
+    /// The requested part of it.
     pub frame: Frame,
-    /// The shores within the frame, with the points at which rivers meet them.
+    /// The shores within the frame, including their crossings with rivers.
     pub shores: Shores,
-    /// The reaches within the frame. Their numbers are their places, from 1.
+    /// The reaches within the frame, numbered from 1 in this order.
     pub rivers: Vec<River>,
-    /// The lakes within the frame. Their numbers are their places, from 1.
+    /// The lakes within the frame, numbered from 1 in this order.
     pub lakes: Vec<LakeArea>,
     /// The window of the water's grid.
     window: Window,
 }
 
-/// Bytes for each sample that features take beside the water.
+/// Memory per sample for features, beside the water, in bytes.
 const FEATURES: u64 = 16;
 
-/// The window over which water has to be led to know that of `window`: at the world's cell or a larger one the whole world, so that the rivers of a
-/// window are those of the world; at a smaller one, and in worlds without bounds, the window alone.
+/// The window whose water must be computed for `window`. At the world's cell or a larger one it is the whole world, so
+/// that the rivers of a window are those of the world; at a smaller cell, and in unbounded worlds, it is the window
+/// itself.
 fn extent(world: &World, window: &Window) -> Window {
     let spec = &world.recipe().world;
     match spec.size {
-        // With the margin that the recipe's own solvers have.
+        // With the margin of the recipe's own solvers.
         Some(size) if window.cell >= spec.cell => world_windows(size, window.cell).1.union(window),
         _ => *window,
     }
 }
 
 impl FeatureSource {
-    /// The ground of a window, beside `beside` bytes that the caller holds.
+    /// The terrain of a window; the caller holds `beside` bytes.
     ///
     /// # Errors
     /// If the world has no heights, memory does not suffice, or the work was cancelled.
@@ -61,7 +62,7 @@ impl FeatureSource {
             );
             return Err(Error::new(ErrorKind::Request, message));
         }
-        // The heights are counted by the plan that makes them.
+        // The heights are counted by their plan.
         let held = samples.saturating_mul(MEMORY - 4 + FEATURES).saturating_add(reserved);
         let heights = world.grid_beside(HEIGHT, &all, held, progress)?;
         world.install(|| {
@@ -69,7 +70,7 @@ impl FeatureSource {
         })
     }
 
-    /// The same of heights at hand, which hold the window.
+    /// The same for given heights, which must contain the window.
     ///
     /// # Errors
     /// If the work was cancelled.
@@ -95,7 +96,7 @@ impl FeatureSource {
         Ok(FeatureSource { water, frame, shores, rivers, lakes, window: all })
     }
 
-    /// Metres from one sample to the next.
+    /// Distance between samples, in metres.
     pub fn cell(&self) -> f64 {
         self.window.cell
     }
@@ -105,7 +106,7 @@ impl FeatureSource {
         [(self.window.x as f64 + x) * self.window.cell, (self.window.y as f64 + y) * self.window.cell]
     }
 
-    /// Parts of an area, in metres.
+    /// The parts of a polygon, in metres.
     pub fn parts(&self, parts: &[Vec<Vec<[f64; 2]>>]) -> Vec<Vec<Vec<[f64; 2]>>> {
         let ring = |ring: &Vec<[f64; 2]>| ring.iter().map(|at| self.place(*at)).collect();
         parts.iter().map(|part| part.iter().map(ring).collect()).collect()
@@ -123,7 +124,7 @@ impl FeatureSource {
         self.water.heights.crop(&window)
     }
 
-    /// The number of a lake among those within the frame, from 1.
+    /// The number of a lake within the frame, from 1.
     pub fn lake_id(&self, lake: u32) -> Option<u32> {
         self.lakes.binary_search_by_key(&lake, |area| area.lake).ok().map(|k| k as u32 + 1)
     }

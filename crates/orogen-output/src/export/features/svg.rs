@@ -1,4 +1,4 @@
-//! Layers of features as a drawing.
+//! Layers of features as SVG.
 
 use std::io::{self, Write};
 
@@ -8,13 +8,13 @@ use orogen_io::format::features::{Feature, FeatureLayer, Geometry, GeometryType,
 use orogen_io::format::geojson::{decimals, number};
 use orogen_io::format::svg::{MAX_PATH, pad};
 
-/// Pixels of the longer side.
+/// Longer side in pixels.
 const LONGER: f64 = 1000.0;
 
-/// Writes layers, in metres of the world, as an SVG of the window's extent, its unit the metre, north up: a group for each layer, named by it, areas first and
-/// points last, with a path for each feature.
+/// Writes layers, in metres of the world, as an SVG of the window's extent, in metres, north up. Each layer has a group
+/// with its name, polygons first and points last, with a path per feature.
 ///
-/// Fails as `out` does.
+/// Fails if `out` fails.
 pub fn write(out: &mut dyn Write, layers: &[(FeatureLayer, Style)], window: &Window) -> io::Result<()> {
     let size = [window.width, window.height].map(|samples| samples.saturating_sub(1).max(1) as f64 * window.cell);
     let unit = size[0].max(size[1]) / LONGER;
@@ -27,7 +27,7 @@ pub fn write(out: &mut dyn Write, layers: &[(FeatureLayer, Style)], window: &Win
         size[1]
     )?;
     let mut sorted: Vec<&(FeatureLayer, Style)> = layers.iter().collect();
-    // Areas that are filled lie below lines, lines below points.
+    // Filled polygons are below lines, lines below points.
     sorted.sort_by_key(|(layer, style)| (layer.geometry == GeometryType::Point, style.fill == "none"));
     let pen = Pen { origin: [window.east(0), window.south(0)], decimals: decimals(window.cell), unit };
     let mut text = String::new();
@@ -76,7 +76,7 @@ impl Pen {
     fn path(&self, text: &mut String, geometry: &Geometry) {
         match geometry {
             Geometry::Point([x, y, _]) => {
-                // A triangle around it.
+                // A triangle around the point.
                 let unit = self.unit;
                 let corners = [[0.0, -4.0], [3.5, 2.5], [-3.5, 2.5]].map(|[u, v]| [x + u * unit, y + v * unit]);
                 self.points(text, corners.into_iter());

@@ -1,4 +1,4 @@
-//! ESRI's ASCII grid.
+//! ESRI ASCII grid.
 
 use std::io;
 

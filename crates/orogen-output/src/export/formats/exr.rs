@@ -25,7 +25,7 @@ pub static FORMAT: Format = Format {
     write,
 };
 
-/// The option of 16 bits.
+/// The option for half floats.
 pub const HALF: OptionSpec = OptionSpec {
     name: "half",
     value: "",
@@ -33,7 +33,7 @@ pub const HALF: OptionSpec = OptionSpec {
     value_kind: ValueKind::Nothing,
 };
 
-/// The option of three channels.
+/// The option for three channels.
 pub const RGB: OptionSpec = OptionSpec {
     name: "rgb",
     value: "",
@@ -41,7 +41,7 @@ pub const RGB: OptionSpec = OptionSpec {
     value_kind: ValueKind::Nothing,
 };
 
-/// Packed rows that wait, and rows on their way into blocks.
+/// Compressed rows that wait, and rows on their way into blocks.
 fn memory(window: &Window, _: &Options) -> u64 {
     aside(3 * whole(window)).saturating_add((window.width as u64).saturating_mul(4 * 3 * 600))
 }
@@ -79,7 +79,7 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
     Ok(format!("{} to {}{rounded}{told}", levels.low(), levels.high()))
 }
 
-/// From a half of this size to the next.
+/// The distance between half floats at this magnitude.
 fn half_step(value: f32) -> f32 {
     use orogen_io::format::half::{from_f32, to_f32};
     let half = from_f32(value.min(65000.0));

@@ -1,4 +1,4 @@
-//! The formats, one a file. A file that declares `pub static FORMAT: Format` is one, and joins the registry by existing.
+//! The formats, one per file. Every file that declares `pub static FORMAT: Format` is included in the registry.
 
 // The list below is written by `cargo xtask codegen`.
 pub mod asc;

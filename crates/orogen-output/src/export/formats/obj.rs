@@ -1,4 +1,4 @@
-//! Wavefront OBJ, its material and its picture.
+//! Wavefront OBJ with its material and texture.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -45,7 +45,7 @@ fn material(path: &Path) -> PathBuf {
     path.with_extension("mtl")
 }
 
-/// Not the plain name with another ending: a picture of the heights may have that.
+/// Not the plain name with another extension: a picture of the heights may use that.
 fn picture(path: &Path) -> PathBuf {
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     path.with_file_name(format!("{stem}-texture.png"))

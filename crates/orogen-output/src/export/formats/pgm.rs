@@ -1,4 +1,4 @@
-//! Netpbm's grey pictures.
+//! Netpbm greyscale pictures.
 
 use std::io;
 

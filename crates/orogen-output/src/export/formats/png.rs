@@ -1,4 +1,4 @@
-//! Grey pictures, pictures whose colours are heights, normal maps and splat maps.
+//! Greyscale pictures, heights encoded in colours, normal maps and splat maps.
 
 use std::io;
 
@@ -29,7 +29,7 @@ pub static FORMAT: Format = Format {
     write,
 };
 
-/// The option of colours that are heights.
+/// The option for heights encoded in colours.
 const ENCODING: OptionSpec = OptionSpec {
     name: "encoding",
     value: "NAME",

@@ -1,4 +1,4 @@
-//! Headerless whole numbers.
+//! Headerless 16-bit integers.
 
 use std::io;
 

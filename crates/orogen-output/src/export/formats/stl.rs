@@ -1,4 +1,4 @@
-//! Stereolithography: a solid to print.
+//! Stereolithography: a solid for printing.
 
 use std::io;
 

@@ -1,4 +1,4 @@
-//! Contours and vector features as a drawing.
+//! Contours and vector features as SVG.
 
 use std::io;
 

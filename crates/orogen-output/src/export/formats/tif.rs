@@ -1,4 +1,4 @@
-//! GeoTIFF for the cloud.
+//! Cloud-Optimised GeoTIFF.
 
 use std::io;
 
@@ -23,7 +23,8 @@ pub static FORMAT: Format = Format {
     write,
 };
 
-/// A row of tiles of each level while the next one comes in, as much again while it is packed, and packed tiles that wait.
+/// A row of tiles per level while the next one is filled, the same again during compression, and compressed tiles that
+/// wait.
 fn memory(window: &Window, _: &Options) -> u64 {
     aside(whole(window)).saturating_add((window.width as u64).saturating_mul(4 * 4 * 512))
 }

@@ -1,4 +1,4 @@
-//! Which samples an engine gets: a size that it allows, and the cell that makes the world fit.
+//! The samples for an engine: a size that it supports, and the cell that fits the world.
 
 use super::target::EngineTarget;
 use orogen_engine::tiles::Tiling;
@@ -7,40 +7,41 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_grid::words::number;
 
-/// What was asked for; all of it may be left to the target.
+/// The requested values; missing ones are chosen by the target.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Asked {
-    /// Samples along a side, of a tile where there are several.
+    /// Samples along a side; of a tile, if there are several.
     pub side: Option<usize>,
-    /// Metres from one sample to the next.
+    /// Distance between samples, in metres.
     pub cell: Option<f64>,
-    /// Samples to begin with, and how many.
+    /// The window; its size is optional for the target.
     pub window: Option<Window>,
-    /// Tiles, east and south.
+    /// Number of tiles, east and south.
     pub tiles: Option<[usize; 2]>,
 }
 
-/// What is exported.
+/// The samples of an export.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
-    /// All samples.
+    /// The window of all samples.
     pub window: Window,
     /// Samples along a side of a tile.
     pub side: usize,
-    /// Tiles, east and south, which share their edges.
+    /// Number of tiles, east and south; they share their edges.
     pub tiles: [usize; 2],
-    /// What became of the world, where it does not simply fit.
+    /// A note about how the world was fitted, if it was not exact.
     pub note: Option<String>,
 }
 
 impl Frame {
-    /// The samples that a target gets of a world.
+    /// The samples of a world for a target.
     ///
-    /// Without a size it is the largest that the world has samples for. Without a cell or a window the world's shorter extent (for several tiles: as much
-    /// of it as they cover) is spread over them; with either, they begin at the window's first sample.
+    /// The default size is the largest that the world has samples for. Without a cell or a window, the world's shorter
+    /// extent (with several tiles, the extent that they cover) is resampled to them; with either, they start at the
+    /// window's first sample.
     ///
     /// # Errors
-    /// If the target does not allow a size or tiles; the message names the nearest.
+    /// If the target does not support a size or tiles; the message names the closest.
     pub fn new(target: &EngineTarget, world: &World, asked: &Asked) -> Result<Frame> {
         let tiles = asked.tiles.unwrap_or([1, 1]);
         if asked.tiles.is_some() && target.tile.is_none() {
@@ -117,7 +118,7 @@ impl Frame {
         Ok(Frame { window, side, tiles, note })
     }
 
-    /// The samples of a tile.
+    /// The window of a tile.
     pub fn tile(&self, column: usize, row: usize) -> Window {
         Tiling { overlap: 1, ..Tiling::of(self.side - 1) }.tile(&self.window, column, row)
     }

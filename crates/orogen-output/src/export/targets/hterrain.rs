@@ -1,7 +1,7 @@
 //! HTerrain, for Godot 3 and 4 (godot_heightmap_plugin).
 //!
-//! Its height map is an EXR with one channel of half floats, 2^n + 1 samples a side, metres as they are; its splat maps have the size without the last row and
-//! column.
+//! Its height map is an EXR with one channel of half floats, 2^n + 1 samples per side, in metres; its splat maps have
+//! one row and one column less.
 
 use super::target::EngineTarget;
 use crate::export::formats::exr;

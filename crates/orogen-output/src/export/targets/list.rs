@@ -1,4 +1,4 @@
-//! The targets there are.
+//! The list of targets.
 
 use super::target::EngineTarget;
 use super::{hterrain, terrain3d, unity, unreal};
@@ -10,7 +10,7 @@ pub fn all() -> &'static [&'static EngineTarget] {
     &ALL
 }
 
-/// The target of that name.
+/// The target with this name.
 pub fn named(name: &str) -> Option<&'static EngineTarget> {
     ALL.into_iter().find(|target| target.name == name)
 }

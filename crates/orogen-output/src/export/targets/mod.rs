@@ -1,4 +1,4 @@
-//! Engines that worlds are exported for: one file each, and [`list`] names them.
+//! Engines as targets of exports: one file each; [`list`] names them.
 
 pub mod frame;
 pub(crate) mod hterrain;

@@ -1,4 +1,4 @@
-//! An export for an engine.
+//! Exports for an engine.
 
 use std::path::PathBuf;
 
@@ -19,25 +19,25 @@ use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_io::file::{self, Output};
 
-/// What was made.
+/// The result of an export.
 pub struct Exported {
-    /// The files that were asked for.
+    /// The main files.
     pub files: Vec<PathBuf>,
-    /// Samples of all of them, east and south, each shared edge once.
+    /// Number of samples east and south, with each shared edge counted once.
     pub samples: [usize; 2],
-    /// What the samples in them stand for.
+    /// A description of the samples.
     pub words: String,
-    /// How many samples there are, those of shared edges in each tile.
+    /// The count of samples; shared edges count in each tile.
     pub count: FiniteCount,
-    /// What to type into the engine's import dialogue, a line each; nothing for layers other than the heights.
+    /// Values for the engine's import dialogue, one line each; empty for layers other than the heights.
     pub import: Vec<String>,
 }
 
-/// Exports a layer over a frame, all tiles of it or none. Heights and their scale are the target's own; weights and normals have its way; other layers are
-/// grey pictures of 8 bits.
+/// Exports a layer over a frame, all tiles or none. Heights use the target's format and scale, weights and normals its
+/// conventions; other layers are 8-bit greyscale pictures.
 ///
 /// # Errors
-/// If the format is none of the target's, or as [`run::to_file`].
+/// If the target does not support the format, or the errors of [`run::to_file`].
 pub fn export(
     target: &EngineTarget,
     format: &Format,
@@ -49,7 +49,7 @@ pub fn export(
 ) -> Result<Exported> {
     let path = output.path();
     let mut options = Options::default();
-    // Plain numbers are made twice: for their range, and tile by tile.
+    // Plain numbers are computed twice: for their range, and tile by tile.
     let nature = LayerSource::new(world, layer, frame.window, progress)?.nature();
     let [ranging, writing] = progress.parts([if nature == Nature::Numbers { 1.0 } else { 0.0 }, 1.0]);
     writing.expect((frame.tiles[0] * frame.tiles[1]) as f64);
@@ -61,7 +61,7 @@ pub fn export(
         let message = format!("{} imports `{layer}` as {}, not as .{}", target.name, list.join(" or "), format.name);
         return Err(Error::new(ErrorKind::Request, message));
     }
-    // What may not be replaced is refused before the first tile is made.
+    // Outputs that may not be replaced are rejected before the first tile is computed.
     let mut outputs = Vec::new();
     for row in 0..frame.tiles[1] {
         for column in 0..frame.tiles[0] {
@@ -76,9 +76,9 @@ pub fn export(
     let mut import = Vec::new();
     let mut less = 0;
     match nature {
-        // One scale for all tiles: the whole range is known before the first is written.
+        // One scale for all tiles: the whole range is needed before the first one is written.
         Nature::Numbers => {
-            // What no tile can be written in is refused before the range is looked for.
+            // Tiles that cannot be written are rejected before the range is computed.
             all.prepare((format.memory)(&frame.tile(0, 0), &options))?;
             all.rows(|_| Ok(())).map_err(|cause| file::explain("make", path, &cause))?;
             if layer == HEIGHT {

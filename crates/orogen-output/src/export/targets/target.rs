@@ -1,30 +1,32 @@
-//! What an engine wants.
+//! Definition of engine targets.
 
 use crate::export::options::Options;
 use orogen_io::format::levels::Levels;
 
 use orogen_grid::error::Result;
 
-/// An engine's import of heights.
+/// The requirements of an engine's terrain import.
 pub struct EngineTarget {
-    /// What `--target` calls it.
+    /// The name for `--target`.
     pub name: &'static str,
-    /// One line for a list.
+    /// A one-line description.
     pub about: &'static str,
-    /// The samples that a side may have.
+    /// The supported numbers of samples per side.
     pub sides: &'static [usize],
-    /// The formats of heights that it reads, the usual one first.
+    /// The supported formats of heights, the default first.
     pub formats: &'static [&'static str],
-    /// What the name of a tile ends with, by its column, its row, and how many rows there are; none if it takes one file alone.
+    /// The suffix of a tile's name, from its column, its row, and the number of rows; `None` if only one file is
+    /// supported.
     pub tile: Option<fn(usize, usize, usize) -> String>,
-    /// How many samples fewer a side its weight maps have.
+    /// The number of samples that its weight maps have less per side.
     pub weights_less: usize,
-    /// How it wants weights: the value of the option `weights`.
+    /// Layout of weights: the value of the option `weights`.
     pub weights: &'static str,
-    /// Where green points in its normal maps: the value of the option `normal`.
+    /// Direction of green in normal maps: the value of the option `normal`.
     pub normal: &'static str,
-    /// Sets the formats' options for heights of this range; every tile is written by them.
+    /// Sets the formats' options for heights of this range; every tile is written with them.
     pub heights: fn(&Levels, &mut Options) -> Result<()>,
-    /// What to type into its import dialogue, a line each, for so many samples along a side (of a tile), so many metres apart, of these heights.
+    /// Values for the import dialogue, one line each, for the number of samples along a side (of a tile), the cell in
+    /// metres, and the range of heights.
     pub import: fn(usize, f64, &Levels) -> Vec<String>,
 }

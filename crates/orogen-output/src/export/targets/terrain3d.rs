@@ -1,7 +1,8 @@
 //! Terrain3D, for Godot 4.
 //!
-//! "Importing & Exporting Data" (terrain3d.readthedocs.io): EXR or r16 for heights, metres as they are; it cuts the map into regions of 1024
-//! samples by itself. Three channels of 32 bits without opacity, which Godot reads as floats; half floats would be steps of 2 m at 3000 m.
+//! "Importing & Exporting Data" (terrain3d.readthedocs.io): EXR or r16 for heights, in metres; it splits the map into
+//! regions of 1024 samples itself. Three channels of 32 bits without alpha, which Godot reads as floats; half floats
+//! would have steps of 2 m at 3000 m.
 
 use super::target::EngineTarget;
 use crate::export::formats::exr;

@@ -1,7 +1,8 @@
-//! Unity's terrains.
+//! Unity terrains.
 //!
-//! "Working with Heightmaps" and "Terrain Settings" (docs.unity3d.com): 2^n + 1 samples, 33 to 4097; RAW of 16 bits; a terrain's first row is its
-//! southern one (z grows north), so the rows are written from the south and nothing is flipped.
+//! "Working with Heightmaps" and "Terrain Settings" (docs.unity3d.com): 2^n + 1 samples, 33 to 4097; 16-bit RAW. A
+//! terrain's first row is the southern one (z increases northward), so rows are written from the south and no flip is
+//! needed.
 
 use super::target::EngineTarget;
 use crate::export::formats::r16;
@@ -14,9 +15,9 @@ pub static TARGET: EngineTarget = EngineTarget {
     about: "Unity terrains: r16, little-endian, first row in the south, 2^n + 1 samples, tiles _x_z",
     sides: &[33, 65, 129, 257, 513, 1025, 2049, 4097],
     formats: &[r16::FORMAT.name],
-    // Columns and rows from the south-west, as its Terrain Toolbox counts them.
+    // Columns and rows from the south-west, as in its Terrain Toolbox.
     tile: Some(|column, row, rows| format!("_{column}_{}", rows - 1 - row)),
-    // Its weights have a pixel a quad.
+    // Weights have one pixel per quad.
     weights_less: 1,
     weights: "rgba",
     normal: "opengl",
@@ -28,7 +29,7 @@ pub static TARGET: EngineTarget = EngineTarget {
     import,
 };
 
-/// The heights of 0 and 65535: level ground has a metre.
+/// The heights of 0 and 65535; level ground gets a range of one metre.
 fn ends(levels: &Levels) -> (f32, f32) {
     match levels.is_flat() {
         true => (levels.low(), levels.low() + 1.0),

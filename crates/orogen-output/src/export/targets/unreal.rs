@@ -1,7 +1,7 @@
-//! Unreal Engine's landscapes.
+//! Unreal Engine landscapes.
 //!
-//! "Landscape Technical Guide" (dev.epicgames.com): sizes that use whole components; 16 bits, of which 32768 is height 0 of the actor;
-//! height = (value - 32768) / 128 x the actor's Z scale / 100, in metres.
+//! "Landscape Technical Guide" (dev.epicgames.com): sizes that use whole components; 16 bits, where 32768 is height 0
+//! of the actor; height = (value - 32768) / 128 x the actor's Z scale / 100, in metres.
 
 use super::target::EngineTarget;
 use crate::export::formats::{png, r16};
@@ -20,16 +20,16 @@ pub static TARGET: EngineTarget = EngineTarget {
     normal: "directx",
     heights: |levels, options| {
         let metres = f64::from(z_scale(levels)) / 100.0;
-        // What 0 and 65535 are.
+        // The heights of 0 and 65535.
         options.give(&RANGE, &format!("{},{}", -256.0 * metres, 32767.0 / 128.0 * metres))
     },
     import,
 };
 
-/// The actor's Z scale with which all heights fit: 100 spans 256 m on both sides of 0.
+/// The actor's Z scale that fits all heights: 100 spans 256 m on both sides of 0.
 fn z_scale(levels: &Levels) -> f32 {
     let most = levels.low().abs().max(levels.high().abs());
-    // The upper end is a step short of 256 m.
+    // The upper end is one step less than 256 m.
     (most / 2.5599).ceil().max(1.0)
 }
 

@@ -1,4 +1,5 @@
-//! The layers of vector features, one a file. A file that declares `pub static LAYER: VectorLayer` is one, and joins the list by existing.
+//! The layers of vector features, one per file. Every file that declares `pub static LAYER: VectorLayer` is included in
+//! the list.
 
 // The list below is written by `cargo xtask codegen`.
 pub mod coast;

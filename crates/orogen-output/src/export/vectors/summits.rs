@@ -31,7 +31,7 @@ const FIELDS: &[Field] = &[
     },
 ];
 
-/// The prominence of a summit at least, as a share of the relief.
+/// Minimum prominence of a summit, as a share of the relief.
 const SHARE: f64 = 1.0 / 25.0;
 
 fn make(ground: &FeatureSource, options: &FeatureOptions) -> Result<FeatureLayer> {

@@ -33,7 +33,7 @@ const FIELDS: &[Field] = &[
     Field { name: "mean", kind: FieldType::Real, about: "mean height, m" },
 ];
 
-/// What is known of a watershed.
+/// Attributes of a watershed.
 #[derive(Clone, Copy)]
 struct Measures {
     count: u64,
