@@ -1,8 +1,8 @@
-//! What is declared of an op.
+//! Declarations of ops, as data.
 
 use crate::layer::Layer;
 
-/// What an op may look at: the idea everything else follows from.
+/// The locality of an op: what its result may depend on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Locality {
     /// One position and the seed.
@@ -14,7 +14,7 @@ pub enum Locality {
 }
 
 impl Locality {
-    /// The word for it.
+    /// The name.
     pub fn name(self) -> &'static str {
         match self {
             Locality::Field => "field",
@@ -24,24 +24,24 @@ impl Locality {
     }
 }
 
-/// Everything declared of an op.
+/// The declaration of an op.
 #[derive(Debug)]
 pub struct Spec {
-    /// Its name in recipes.
+    /// The name in recipes.
     pub op: &'static str,
-    /// What it may look at.
+    /// The locality.
     pub locality: Locality,
-    /// Raised when the op comes to make other bits (only before 1.0; later a better algorithm is a new op).
+    /// Incremented when the op's results change (only before 1.0; later a better algorithm is a new op).
     pub revision: u32,
-    /// Its documentation; the first paragraph is the short form.
+    /// The documentation; the first paragraph is the short form.
     pub doc: &'static str,
-    /// The nodes it reads.
+    /// The inputs.
     pub inputs: &'static [InputSpec],
-    /// Whether it also reads whatever its expression names.
+    /// Whether the names in its expression are inputs, too.
     pub named_inputs: bool,
-    /// What it can be told.
+    /// The parameters.
     pub params: &'static [ParamSpec],
-    /// What it makes: at least one layer.
+    /// The layers: at least one.
     pub layers: &'static [Layer],
 }
 
@@ -63,54 +63,54 @@ impl Spec {
     }
 }
 
-/// A node read by an op.
+/// The declaration of an input.
 #[derive(Debug)]
 pub struct InputSpec {
-    /// Its key.
+    /// The key.
     pub name: &'static str,
     /// A former key, which recipes may still use; or empty.
     pub alias: &'static str,
-    /// What it is for.
+    /// The documentation.
     pub doc: &'static str,
-    /// Whether the op cannot do without.
+    /// Whether the input is required.
     pub required: bool,
 }
 
-/// A parameter of an op.
+/// The declaration of a parameter.
 #[derive(Debug)]
 pub struct ParamSpec {
-    /// Its key.
+    /// The key.
     pub name: &'static str,
     /// A former key, which recipes may still use; or empty.
     pub alias: &'static str,
-    /// What it does.
+    /// The documentation.
     pub doc: &'static str,
-    /// Its unit, or empty.
+    /// The unit, or empty.
     pub unit: &'static str,
-    /// What kind of value it is.
+    /// The kind of value.
     pub shape: Shape,
-    /// Lowest and highest value allowed (of each number in it); infinite where there is no bound.
+    /// Minimum and maximum (of each number in the value); infinite if there is no bound.
     pub range: [f64; 2],
 }
 
-/// What kind of value a parameter takes.
+/// The kind of a parameter's value.
 #[derive(Debug, Clone, Copy)]
 pub enum Shape {
     /// A finite number.
     Number,
-    /// A whole number.
+    /// An integer.
     Integer,
-    /// A seed: a whole number from 0 to 2^63 - 1.
+    /// A seed: an integer from 0 to 2^63 - 1.
     Seed,
-    /// true or false.
+    /// A boolean.
     Flag,
-    /// One of some names; each with what it means.
+    /// One of several names; each with its description.
     Choice(fn() -> Vec<(&'static str, &'static str)>),
     /// Two numbers.
     Pair,
     /// An expression of the node's inputs.
     Expression,
-    /// Control points [[x, y], ...], at least two, x rising.
+    /// Control points [[x, y], ...], at least two, with ascending x.
     Curve,
     /// The path of a file.
     File,
@@ -118,20 +118,20 @@ pub enum Shape {
     Crs,
 }
 
-/// A bound as people write it: 1e9 rather than 1000000000.
+/// A bound in short form: 1e9 instead of 1000000000.
 fn number(bound: f64) -> String {
     let plain = (1e-3..1e6).contains(&bound.abs()) || bound == 0.0;
     if plain { format!("{bound}") } else { format!("{bound:e}") }
 }
 
-/// First paragraph of a doc, on one line.
+/// The first paragraph of a doc, on one line.
 pub fn short(doc: &str) -> String {
     let paragraph = doc.trim().split("\n\n").next().unwrap_or_default();
     paragraph.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 impl ParamSpec {
-    /// What the parameter must be, for a message: "a number from 0 to 1".
+    /// The valid values, for messages: "a number from 0 to 1".
     pub fn expected(&self) -> String {
         let unit = match self.unit {
             "" => String::new(),

@@ -1,18 +1,18 @@
-//! What is wrong with an expression.
+//! Errors in expressions.
 
 use crate::value::Span;
 
-/// What is wrong with an expression, and where.
+/// An error in an expression, with its position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpressionError {
-    /// Bytes of the text.
+    /// Position in the text, in bytes.
     pub span: Span,
-    /// What, and what to do.
+    /// The message: what is wrong, and what to do.
     pub message: String,
 }
 
 impl ExpressionError {
-    /// Something wrong at a part of the text.
+    /// An error at a position.
     pub fn new(span: Span, message: impl Into<String>) -> ExpressionError {
         ExpressionError { span, message: message.into() }
     }

@@ -1,4 +1,4 @@
-//! Formulas: expressions of parameters, computed once in f64.
+//! Formulas: expressions of parameters, evaluated once in f64.
 
 use super::error::ExpressionError;
 use super::parse::is_taken;
@@ -6,10 +6,10 @@ use super::text::Expression;
 use super::token::{Token, tokens};
 use crate::value::Span;
 
-/// What a formula begins with where a number could stand.
+/// The first character of a formula in place of a number.
 pub const MARK: char = '=';
 
-/// The text of a formula, if this is one: what follows the [`MARK`].
+/// The expression of a formula: the text after the [`MARK`]; `None` if the text is not a formula.
 pub fn formula(text: &str) -> Option<&str> {
     text.trim_start().strip_prefix(MARK)
 }
@@ -17,7 +17,7 @@ pub fn formula(text: &str) -> Option<&str> {
 /// The value of a formula.
 ///
 /// # Errors
-/// If it is no expression, a name in it has no value (`unknown` says why), or its value is not finite.
+/// If it is not an expression, a name in it has no value (`unknown` returns the reason), or its value is not finite.
 pub fn value(
     text: &str,
     value_of: impl Fn(&str) -> Option<f64>,
@@ -46,13 +46,13 @@ pub fn value(
     }
 }
 
-/// Where a name stands first in an expression; all of it, if it stands nowhere.
+/// The first position of a name in an expression; the whole text if there is none.
 pub fn place_of(text: &str, name: &str) -> Span {
     let tokens = tokens(text).unwrap_or_default();
     tokens.into_iter().find(|(token, _)| *token == Token::Name(name)).map_or(0..text.len(), |(_, span)| span)
 }
 
-/// The same expression with other texts in place of its names; names that `of` knows nothing of stay.
+/// The same expression with its names replaced; names for which `of` returns `None` stay.
 pub fn renamed(text: &str, of: impl Fn(&str) -> Option<String>) -> String {
     let mut out = String::with_capacity(text.len());
     let mut at = 0;
@@ -70,7 +70,7 @@ pub fn renamed(text: &str, of: impl Fn(&str) -> Option<String>) -> String {
     out
 }
 
-/// Whether a name can be that of a parameter: one that an expression reads as a name of its own.
+/// Whether a name is valid for a parameter: an expression must parse it as a name.
 pub fn is_parameter_name(name: &str) -> bool {
     let tokens = tokens(name).unwrap_or_default();
     name.len() <= 64

@@ -1,19 +1,20 @@
-//! The functions that expressions are made of, each declared once: its name, what it takes, and how it is computed in f32 and in f64.
+//! The functions of expressions, each declared once: its name, its arguments, and its computation in f32 and in f64.
 
 use serde::{Deserialize, Serialize};
 
-/// Samples computed at a time where a number stands among samples: it is repeated so often, and stays in the nearest cache.
+/// Samples that are computed at a time if an argument is a number: it is repeated this often, and stays in the nearest
+/// cache.
 const CHUNK: usize = 256;
 
-/// Most arguments of a function.
+/// Maximum number of arguments of a function.
 pub const MAX_ARGUMENTS: usize = 3;
 
-/// What one argument of a function is, over a block of samples.
+/// An argument of a function over a block of samples.
 #[derive(Debug, Clone, Copy)]
 pub enum Argument<'a> {
-    /// The same number everywhere.
+    /// A constant.
     Number(f32),
-    /// One number a sample.
+    /// One number per sample.
     Samples(&'a [f32]),
 }
 
@@ -22,51 +23,51 @@ macro_rules! functions {
         $(#[doc = $doc:literal])+
         $variant:ident = $name:literal $arguments:tt, $cost:literal, |$($arg:ident),+| $single:expr, $double:expr;
     )*) => {
-        /// A function of one, two or three numbers. Arithmetic is IEEE 754; everything else is computed by the pinned `libm`, so the bits
-        /// are the same on every machine.
+        /// A function of one, two or three numbers. Arithmetic is IEEE 754; other functions use the pinned `libm`, so
+        /// the bits are the same on every machine.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
         pub enum Function { $( $(#[doc = $doc])+ $variant, )* }
 
         impl Function {
-            /// All of them.
+            /// All functions.
             pub const ALL: &'static [Function] = &[$( Function::$variant, )*];
 
-            /// Its name in expressions; operators have their sign.
+            /// The name in expressions; operators have their symbol.
             pub fn name(self) -> &'static str {
                 match self { $( Function::$variant => $name, )* }
             }
 
-            /// What it does, on one line.
+            /// The description, on one line.
             pub fn doc(self) -> &'static str {
                 match self { $( Function::$variant => concat!($($doc,)+), )* }
             }
 
-            /// How it is written, its arguments named.
+            /// The syntax, with named arguments.
             pub fn usage(self) -> &'static str {
                 match self { $( Function::$variant => concat!($name, stringify!($arguments)), )* }
             }
 
-            /// How many arguments it takes.
+            /// Number of arguments.
             pub fn arity(self) -> usize {
                 match self { $( Function::$variant => [$(stringify!($arg)),+].len(), )* }
             }
 
-            /// About how many nanoseconds a sample takes.
+            /// Approximate nanoseconds per sample.
             pub fn cost(self) -> f64 {
                 match self { $( Function::$variant => $cost, )* }
             }
 
-            /// Of single numbers, in f64.
+            /// The value for single numbers, in f64.
             pub fn of_f64(self, arguments: [f64; MAX_ARGUMENTS]) -> f64 {
                 match self { $( Function::$variant => { functions!(@bind arguments, $($arg),+); $double } )* }
             }
 
-            /// Of single numbers, in f32: the very bits that [`Function::apply`] makes.
+            /// The value for single numbers, in f32: the same bits as [`Function::apply`].
             pub fn of_f32(self, arguments: [f32; MAX_ARGUMENTS]) -> f32 {
                 match self { $( Function::$variant => { functions!(@bind arguments, $($arg),+); $single } )* }
             }
 
-            /// Of blocks of samples, all as long as `out`.
+            /// The values for blocks of samples, all of the length of `out`.
             pub fn apply(self, arguments: &[Argument], out: &mut [f32]) {
                 match self { $( Function::$variant => functions!(@apply arguments, out, |$($arg),+| $single), )* }
             }
@@ -82,9 +83,9 @@ macro_rules! functions {
     };
 }
 
-/// The smaller of a and b, their seam rounded where they differ by less than `smooth`: min(a, b) - h^2 smooth / 4 with
-/// h = max(0, smooth - |a - b|) / smooth (Quilez, "Smooth minimum", the quadratic polynomial). With `>` and `+` instead of `<` and `-` it is the
-/// greater, by the same rule upside down.
+/// The minimum of a and b, with the seam rounded where they differ by less than `smooth`: min(a, b) - h^2 smooth / 4
+/// with h = max(0, smooth - |a - b|) / smooth (Quilez, "Smooth minimum", the quadratic polynomial). With `>` and `+`
+/// instead of `<` and `-` it is the maximum, with the mirrored rule.
 macro_rules! seam {
     ($a:ident $comparison:tt $b:ident, $sign:tt $smooth:ident) => {{
         let extreme = if $a $comparison $b { $a } else { $b };
@@ -194,12 +195,12 @@ functions! {
 }
 
 impl Function {
-    /// The function of that name; operators have none.
+    /// The function with this name; operators have none.
     pub fn named(name: &str) -> Option<Function> {
         Function::functions().find(|function| function.name() == name)
     }
 
-    /// Those that are written with a name.
+    /// The functions that are written with a name.
     pub fn functions() -> impl Iterator<Item = Function> + Clone {
         Function::ALL.iter().copied().filter(|function| function.name().starts_with(|c: char| c.is_ascii_alphabetic()))
     }
@@ -209,16 +210,18 @@ fn truth(holds: bool) -> f64 {
     if holds { 1.0 } else { 0.0 }
 }
 
-/// The greatest whole number that is at most x. The standard library's is a call a sample where the processor's oldest level is compiled for.
+/// The largest integer that is at most x. The standard library's floor is a function call when compiled for the
+/// processor's oldest level.
 fn floor(x: f32) -> f32 {
-    // From here on every f32 is whole; what is no number stays what it is.
+    // From here on every f32 is an integer; NaN stays NaN.
     const WHOLE: f32 = 8_388_608.0;
     let whole = (x as i32) as f32;
     let below = if whole > x { whole - 1.0 } else { whole };
     if x.abs() < WHOLE { below.copysign(x) } else { x }
 }
 
-/// A number cut off at both ends. Unlike the standard library's it has a result for ends in the wrong order: the upper one.
+/// A number clamped at both ends. Unlike the standard library's clamp it also has a result for ends in the wrong order:
+/// the upper one.
 fn cut(a: f32, low: f32, high: f32) -> f32 {
     let a = if a < low { low } else { a };
     if a > high { high } else { a }
@@ -263,7 +266,7 @@ fn ternary(arguments: &[Argument], out: &mut [f32], f: impl Fn(f32, f32, f32) ->
     }
 }
 
-/// A part of an argument: its samples there, or the number repeated.
+/// A part of an argument: its samples, or the repeated number.
 fn part<'a>(argument: &Argument<'a>, repeated: &'a [f32; CHUNK], from: usize, count: usize) -> &'a [f32] {
     match argument {
         Argument::Number(_) => &repeated[..count],

@@ -1,11 +1,11 @@
-//! Arithmetic in a line of text: what formulas of parameters and the op `expr` are written in.
+//! Arithmetic expressions, for formulas of parameters and for the op `expr`.
 //!
-//! - `function`: what can be computed of samples, each function once
-//! - `token`: a text as tokens
-//! - `parse`: tokens as terms, without recursion deeper than a bound
-//! - `term`: an expression as a list of terms, each after those that it reads
+//! - [`function`]: the functions of expressions
+//! - `token`: the tokenizer
+//! - `parse`: the parser, with bounded recursion
+//! - [`term`]: an expression as a list of terms, each after those that it reads
 //! - [`text`]: an expression with its text
-//! - `formula`: an expression of parameters, computed once in f64
+//! - [`formula`]: an expression of parameters, evaluated once in f64
 
 pub(crate) mod error;
 pub(crate) mod formula;

@@ -1,7 +1,7 @@
-//! Tokens to terms: precedence climbing (Clarke 1986), with a bound on its depth.
+//! The parser: precedence climbing (Clarke 1986) with bounded depth.
 //!
-//! From loose to tight: comparisons, `+ -`, `* / %`, the signs `- +`, `^` (from the right). The same term is made once, however often it is
-//! written.
+//! From lowest to highest precedence: comparisons, `+ -`, `* / %`, unary `- +`, `^` (right associative). Equal terms
+//! are shared.
 
 use super::error::ExpressionError;
 use super::function::{Function, MAX_ARGUMENTS};
@@ -11,10 +11,10 @@ use crate::value::Span;
 use orogen_grid::words::{count, suggestion};
 use std::collections::HashMap;
 
-/// Numbers with a name.
+/// Named constants.
 const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("tau", std::f64::consts::TAU)];
 
-/// Reads an expression: its names and its terms.
+/// Parses an expression: its names and its terms.
 pub fn parse(text: &str) -> Result<(Vec<String>, Vec<Term>), ExpressionError> {
     if text.len() > MAX_LENGTH {
         let message = format!("the expression has {} bytes, the most it may have is {MAX_LENGTH}", text.len());
@@ -36,7 +36,7 @@ pub fn parse(text: &str) -> Result<(Vec<String>, Vec<Term>), ExpressionError> {
     let value = parser.comparison()?;
     match parser.tokens.get(parser.at) {
         None => {
-            // What was made once may be the value; what stands behind it then was only read on the way.
+            // An earlier term may be the value; terms after it were only needed during parsing.
             parser.terms.truncate(value + 1);
             Ok((parser.names, parser.terms))
         }
@@ -52,7 +52,7 @@ pub fn parse(text: &str) -> Result<(Vec<String>, Vec<Term>), ExpressionError> {
     }
 }
 
-/// What makes two terms the same.
+/// The key of equal terms.
 #[derive(PartialEq, Eq, Hash)]
 enum Same {
     Number(u64),
@@ -78,7 +78,7 @@ impl<'t> Parser<'t> {
         }
     }
 
-    /// Where the next token stands, or the end of the text.
+    /// The position of the next token, or the end of the text.
     fn here(&self) -> Span {
         match (self.tokens.get(self.at), self.tokens.last()) {
             (Some((_, span)), _) => span.clone(),
@@ -113,7 +113,7 @@ impl<'t> Parser<'t> {
         self.push(Term::Apply(function, all))
     }
 
-    /// Runs a part one level deeper.
+    /// Parses a part one level deeper.
     fn deeper(
         &mut self,
         part: impl FnOnce(&mut Self) -> Result<usize, ExpressionError>,
@@ -201,7 +201,8 @@ impl<'t> Parser<'t> {
         self.raised(base, exponent)
     }
 
-    /// A power. Those with an exponent that multiplication or a root computes are made of these, which are exact and much faster.
+    /// A power. Powers whose exponent allows multiplication or a root are computed that way, which is exact and much
+    /// faster.
     fn raised(&mut self, base: usize, exponent: usize) -> Result<usize, ExpressionError> {
         match self.terms.get(exponent) {
             Some(Term::Number(1.0)) => Ok(base),
@@ -293,7 +294,7 @@ impl<'t> Parser<'t> {
         self.push(Term::Name(index))
     }
 
-    /// A function's arguments, from its `(` on.
+    /// A function's arguments, starting with its `(`.
     fn call(&mut self, name: &str, span: &Span) -> Result<usize, ExpressionError> {
         let Some(function) = Function::named(name) else {
             let hint = suggestion(name, Function::functions().map(Function::name));
@@ -346,7 +347,7 @@ fn comparison(sign: &str) -> Option<Function> {
     })
 }
 
-/// Whether a name means something in every expression: a function or a constant.
+/// Whether a name has a fixed meaning: a function or a constant.
 pub fn is_taken(name: &str) -> bool {
     Function::named(name).is_some() || CONSTANTS.iter().any(|(constant, _)| *constant == name)
 }

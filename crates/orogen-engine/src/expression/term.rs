@@ -2,30 +2,30 @@
 
 use super::function::{Argument, Function, MAX_ARGUMENTS};
 
-/// Longest text of an expression, in bytes.
+/// Maximum length of an expression, in bytes.
 pub const MAX_LENGTH: usize = 65_536;
 
-/// Deepest nesting of parentheses, signs and powers.
+/// Maximum nesting of parentheses, signs and powers.
 pub const MAX_DEPTH: usize = 64;
 
-/// Most terms of an expression: numbers, names and what is computed of them, the same one counted once.
+/// Maximum number of terms of an expression: numbers, names and functions, equal ones counted once.
 pub const MAX_TERMS: usize = 4096;
 
-/// Most names of an expression.
+/// Maximum number of names of an expression.
 pub const MAX_NAMES: usize = 64;
 
-/// A part of an expression. It reads only terms that stand before it.
+/// A part of an expression, which reads only earlier terms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Term {
     /// A number.
     Number(f64),
     /// The value of a name, by its index.
     Name(usize),
-    /// A function of earlier terms, by their indices; those beyond its arity mean nothing.
+    /// A function of earlier terms, by their indices; indices beyond its arity are ignored.
     Apply(Function, [usize; MAX_ARGUMENTS]),
 }
 
-/// Computes terms over a block of samples, given the samples of its names; a name without any is 0.
+/// Evaluates terms over a block of samples, given the samples of its names; a name without samples is 0.
 pub fn evaluate<'a>(terms: &[Term], names: impl Fn(usize) -> Option<&'a [f32]>, out: &mut [f32]) {
     let mut made: Vec<Vec<f32>> = Vec::with_capacity(terms.len());
     for term in terms {

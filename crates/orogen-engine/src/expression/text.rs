@@ -1,11 +1,11 @@
-//! An expression: its text, read into terms.
+//! Expressions: a text and its terms.
 
 use super::error::ExpressionError;
 use super::parse::parse;
 use super::term::Term;
 use std::fmt;
 
-/// An expression: its text, and what it says.
+/// An expression: its text, and the terms parsed from it.
 ///
 /// ```
 /// use orogen_engine::expression::text::Expression;
@@ -25,7 +25,7 @@ pub struct Expression {
 }
 
 impl Default for Expression {
-    /// No expression yet, which is a error.
+    /// An empty expression, which has an error.
     fn default() -> Expression {
         Expression::from("")
     }
@@ -52,27 +52,27 @@ impl fmt::Display for Expression {
 }
 
 impl Expression {
-    /// The text that it was read from.
+    /// The text of the expression.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// The names in it, in the order of the text, each once; functions and constants are none.
+    /// The names in it, in the order of the text, without duplicates, functions and constants.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// Its terms; the last is its value. None if it has a error.
+    /// Its terms; the last one is its value. Empty if it has an error.
     pub fn terms(&self) -> &[Term] {
         &self.terms
     }
 
-    /// What is wrong with it.
+    /// The error, if there is one.
     pub fn error(&self) -> Option<&ExpressionError> {
         self.error.as_deref()
     }
 
-    /// What it computes, whatever its names are called: decides about results.
+    /// A description of the computation, independent of names, for content keys.
     pub fn key(&self) -> String {
         let mut key = String::new();
         for term in &self.terms {
@@ -85,7 +85,7 @@ impl Expression {
         key
     }
 
-    /// Its value in f64 where its names have these values.
+    /// The value in f64 for these values of its names.
     pub fn value(&self, names: &[f64]) -> Option<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.terms.len());
         for term in &self.terms {

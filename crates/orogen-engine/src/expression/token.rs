@@ -1,9 +1,9 @@
-//! A text as tokens, each with its place.
+//! The tokenizer: tokens with their positions.
 
 use super::error::ExpressionError;
 use crate::value::Span;
 
-/// What a text is made of.
+/// A token.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Token<'t> {
     /// A number.
@@ -14,10 +14,10 @@ pub enum Token<'t> {
     Sign(&'static str),
 }
 
-/// Longer signs first.
+/// Longer symbols first.
 const SIGNS: [&str; 15] = ["<=", ">=", "==", "!=", "+", "-", "*", "/", "^", "%", "<", ">", "(", ")", ","];
 
-/// What other languages write, and what is written here.
+/// Symbols of other languages, with ours.
 const FOREIGN: [(&str, &str); 7] = [
     ("**", "powers are written `a ^ b`"),
     ("&&", "write `a * b`: comparisons are 1 or 0"),
@@ -28,7 +28,7 @@ const FOREIGN: [(&str, &str); 7] = [
     ("[", "parentheses are round"),
 ];
 
-/// All tokens of a text.
+/// The tokens of a text.
 pub fn tokens(text: &str) -> Result<Vec<(Token<'_>, Span)>, ExpressionError> {
     let bytes = text.as_bytes();
     let (mut tokens, mut at) = (Vec::new(), 0);
@@ -74,7 +74,7 @@ pub fn tokens(text: &str) -> Result<Vec<(Token<'_>, Span)>, ExpressionError> {
     Ok(tokens)
 }
 
-/// Digits with a point and an exponent.
+/// The end of a number: digits with a point and an exponent.
 fn number_end(bytes: &[u8], start: usize) -> usize {
     let mut at = start;
     while bytes.get(at).is_some_and(|byte| byte.is_ascii_digit() || *byte == b'.') {
@@ -92,7 +92,7 @@ fn number_end(bytes: &[u8], start: usize) -> usize {
     at
 }
 
-/// Letters, digits and `_`; one point leads to a layer.
+/// The end of a name: letters, digits and `_`; one point separates a layer.
 fn name_end(bytes: &[u8], start: usize) -> usize {
     let letters = |mut at: usize| {
         while bytes.get(at).is_some_and(|byte| byte.is_ascii_alphanumeric() || *byte == b'_') {

@@ -1,12 +1,13 @@
-//! Many numbers to one power, with the bits of `libm::powf`.
+//! Powers of many numbers with one exponent, with the bits of `libm::powf`.
 
 use orogen_simd::{Body, Simd, dispatch};
 
 /// Raises each base to the exponent: the bits of `libm::powf` on every machine.
 ///
-/// Where the base is in 2^-12 .. 1 and the exponent in 0.1 .. 10, as nearly always, the same operations are done for several bases at once.
+/// If the base is in 2^-12 .. 1 and the exponent in 0.1 .. 10, which is the usual case, several bases are processed
+/// together.
 pub(super) fn raise(bases: &mut [f32], exponent: f32) {
-    // Exponents that libm treats by themselves, and those whose powers may be too small for the short way.
+    // Exponents that libm handles separately, and those whose powers may be too small for the fast path.
     if !(0.1..=10.0).contains(&exponent) || [0.5, 1.0, 2.0].contains(&exponent) {
         bases.iter_mut().for_each(|base| *base = libm::powf(*base, exponent));
         return;
@@ -22,7 +23,7 @@ pub(super) fn raise(bases: &mut [f32], exponent: f32) {
 
 const CHUNK: usize = 256;
 
-/// 2^-12: the least base whose tenth power is still a normal number.
+/// 2^-12: the smallest base whose tenth power is a normal number.
 const LEAST: f32 = 1.0 / 4096.0;
 
 struct Powers<'a> {
@@ -42,14 +43,14 @@ impl Body for Powers<'_> {
     }
 }
 
-/// The upper bits of a number: the product of two such is exact.
+/// The upper bits of a number: the product of two such numbers is exact.
 #[inline(always)]
 fn upper(x: f32, bits: u32) -> f32 {
     f32::from_bits(x.to_bits() & bits)
 }
 
-/// The way of `libm::powf` (after e_powf.c of FreeBSD's msun, Sun Microsystems 1993) for bases from [`LEAST`] up to 1, exponents from 0.1 to 10,
-/// without its branches.
+/// The algorithm of `libm::powf` (after e_powf.c of FreeBSD's msun, Sun Microsystems 1993) without its branches, for
+/// bases from [`LEAST`] to 1 and exponents from 0.1 to 10.
 #[inline(always)]
 fn power(x: f32, y: f32) -> f32 {
     const HIGH: u32 = 0xFFFF_F000;
@@ -93,12 +94,12 @@ fn power(x: f32, y: f32) -> f32 {
     let t = n as f32;
     let t1 = upper(((z_high + z_low) + dp_high) + t, HIGH);
     let t2 = z_low - (((t1 - t) - dp_high) - z_high);
-    // Times the exponent.
+    // Multiplied by the exponent.
     let y1 = upper(y, HIGH);
     let p_low = (y - y1) * t1 + y * t2;
     let p_high = y1 * t1;
     let z = p_low + p_high;
-    // 2 to that: a whole number and a rest of at most a half. z is negative.
+    // 2 to that power: an integer and a remainder of at most a half. z is negative.
     let size = z.abs();
     let whole = if size > 0.5 { (size + 0.5) as i32 } else { 0 };
     let p_high = p_high + whole as f32;

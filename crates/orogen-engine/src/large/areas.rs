@@ -1,8 +1,8 @@
-//! Drainage areas, watersheds and orders of streams tile by tile (Barnes, "Parallel non-divergent flow accumulation for trillion
-//! cell digital elevation models on desktops or clusters", 2016).
+//! Drainage areas, watersheds and stream orders, tile by tile (Barnes, "Parallel non-divergent flow accumulation for
+//! trillion cell digital elevation models on desktops or clusters", 2016).
 //!
-//! Of each tile only the cells at which water leaves it and those at which it comes in are kept: a graph of a few thousand
-//! cells a tile, through which sums are passed on before each tile is finished by itself.
+//! Of each tile only the cells where water leaves it or enters it are kept: a graph of a few thousand cells per tile.
+//! Sums are passed through this graph, and then each tile is finished separately.
 
 use super::tiling::{Border, Queue, Tiling, border};
 use orogen_grid::error::Result;
@@ -11,42 +11,42 @@ use orogen_grid::hydrology::direction::{NONE, STEPS};
 use orogen_grid::progress::Progress;
 use orogen_io::raster::Raster;
 
-/// No exit, no outlet.
+/// No exit or outlet.
 const NOWHERE: u32 = u32::MAX;
 
-/// What is made of the receivers.
+/// The results.
 pub struct Layers<'a> {
-    /// Areas in m^2.
+    /// Drainage areas in m^2.
     pub flow: &'a mut Raster,
     /// Watersheds, numbered from 1 in row order of their outlets.
     pub watershed: &'a mut Raster,
-    /// Strahler's orders.
+    /// Strahler orders.
     pub strahler: &'a mut Raster,
-    /// Cells from which on there is a stream.
+    /// Minimum number of cells that a stream drains.
     pub threshold: u64,
 }
 
-/// A cell at which water leaves its tile.
+/// A cell where water leaves its tile.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Exit {
     /// Its index in the tile.
     pub index: u32,
     /// The cell of another tile that it drains to.
     pub to: u64,
-    /// Cells that drain through it.
+    /// Number of cells that drain through it.
     area: u64,
-    /// The watershed it belongs to.
+    /// Its watershed.
     watershed: u32,
     /// The order of the stream through it.
     order: u8,
 }
 
-/// What water comes in at a cell of a tile's border.
+/// The inflow at a cell of a tile's border.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Inflow {
     area: u64,
     order: u8,
-    /// Whether two streams of that order come in.
+    /// Whether two streams of that order flow in.
     met: bool,
 }
 
@@ -57,14 +57,14 @@ impl Inflow {
     }
 }
 
-/// Makes the layers from complete receivers: every cell leads to an outlet, which has the code [`NONE`].
+/// Computes the layers from complete receivers: every cell leads to an outlet, which has the code [`NONE`].
 ///
 /// # Errors
 /// If the disk fails, or the work is cancelled.
 pub fn make(codes: &Raster, tiling: &Tiling, layers: Layers, progress: &Progress) -> Result<()> {
     let mut areas = Areas::new(codes, tiling, progress)?;
     let cell_area = tiling.whole.cell * tiling.whole.cell;
-    // Outlets with a watershed of their own, by row and column of tiles.
+    // Outlets with their own watershed, by row and column of tiles.
     let mut outlets = vec![0u32; tiling.whole.height * tiling.columns()];
     for t in 0..tiling.count() {
         let tile = areas.tile(t)?;
@@ -94,13 +94,13 @@ pub(super) struct Areas<'a> {
     codes: &'a Raster,
     pub tiling: &'a Tiling,
     progress: &'a Progress,
-    /// By tile.
+    /// The exits of each tile.
     pub exits: Vec<Vec<Exit>>,
-    /// By tile and cell along its border: where water that comes in there leaves.
+    /// For each tile and cell along its border: where water that enters there ends.
     ends: Vec<Border<End>>,
 }
 
-/// Where water leaves a tile, or ends in it.
+/// The end of a flow path within a tile.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum End {
     /// One of the tile's exits.
@@ -110,7 +110,7 @@ pub(super) enum End {
 }
 
 impl<'a> Areas<'a> {
-    /// With the areas of all exits.
+    /// The graph, with the areas of all exits.
     pub(super) fn new(codes: &'a Raster, tiling: &'a Tiling, progress: &'a Progress) -> Result<Areas<'a>> {
         let mut areas = Areas { codes, tiling, progress, exits: Vec::new(), ends: Vec::new() };
         for t in 0..tiling.count() {
@@ -129,13 +129,13 @@ impl<'a> Areas<'a> {
         Ok(Tile::new(&self.codes.get(&self.tiling.tile(t))?, self.tiling))
     }
 
-    /// Where a row of a tile begins among the outlets.
+    /// The index of the first outlet in a row of a tile.
     fn segment(&self, t: usize, row: usize) -> usize {
         let top = (self.tiling.tile(t).y - self.tiling.whole.y) as usize;
         (top + row) * self.tiling.columns() + t % self.tiling.columns()
     }
 
-    /// The exit that water leaving by an exit comes to next.
+    /// The exit that water from an exit reaches next.
     pub(super) fn next(&self, exit: &Exit) -> Option<(usize, usize)> {
         let (t, index) = self.tiling.locate(exit.to);
         match self.ends[t].get(index) {
@@ -174,7 +174,7 @@ impl<'a> Areas<'a> {
         order
     }
 
-    /// What comes into a tile, by the cell's index in it.
+    /// The inflows of a tile, by the cell's index in it.
     pub(super) fn inflows(&self, t: usize) -> Border<Inflow> {
         let mut inflows = Border::filled(&self.tiling.tile(t), Inflow::default());
         self.each_inflow(t, |index, from, k| {
@@ -188,7 +188,7 @@ impl<'a> Areas<'a> {
         inflows
     }
 
-    /// Hands on each cell's index of a tile into which water comes from another, that tile, and its exit.
+    /// Visits each inflow of a tile: the index of its cell, the tile that it comes from, and its exit.
     pub(super) fn each_inflow(&self, t: usize, mut each: impl FnMut(usize, usize, usize)) {
         let (column, row) = (t % self.tiling.columns(), t / self.tiling.columns());
         for near in
@@ -207,7 +207,7 @@ impl<'a> Areas<'a> {
         }
     }
 
-    /// Gives every exit the number of the watershed that it drains to; `before` counts the outlets before each row of a tile.
+    /// Assigns each exit the number of its watershed; `before` counts the outlets before each row of a tile.
     fn name_outlets(&mut self, before: &[u32]) -> Result<()> {
         let mut numbers: Vec<Vec<(u32, u32)>> = Vec::new();
         for t in 0..self.exits.len() {
@@ -236,7 +236,7 @@ impl<'a> Areas<'a> {
         Ok(())
     }
 
-    /// Finds the orders at the exits: tiles are looked at again as long as what comes in grows.
+    /// Computes the orders at the exits: tiles are processed again as long as their inflow grows.
     pub(super) fn order_streams(&mut self, threshold: u64) -> Result<()> {
         let mut queue = Queue::new(self.exits.len());
         (0..self.exits.len()).for_each(|t| queue.push(t));
@@ -257,16 +257,16 @@ impl<'a> Areas<'a> {
     }
 }
 
-/// A tile's receivers.
+/// The receivers of a tile.
 pub(super) struct Tile {
     pub window: Window,
-    /// The cell of the tile that each drains to; itself at outlets and exits.
+    /// The receiver of each cell within the tile; the cell itself at outlets and exits.
     pub receivers: Vec<u32>,
-    /// The cell of another tile that an exit drains to.
+    /// The exits, each with the cell of another tile that it drains to.
     leaving: Vec<(u32, u64)>,
-    /// Each before its receiver.
+    /// The cells, each before its receiver.
     pub order: Vec<u32>,
-    /// The directions of the receivers.
+    /// The direction codes of the receivers.
     pub codes: Vec<u8>,
 }
 
@@ -309,7 +309,7 @@ impl Tile {
         Grid::from_data(self.window, data).unwrap_or_else(|| Grid::filled(self.window, 0.0))
     }
 
-    /// Adds up from the springs down; `inflows` come from other tiles.
+    /// The areas from the sources downstream; `inflows` come from other tiles.
     pub(super) fn areas(&self, inflows: &Border<Inflow>) -> Vec<u64> {
         let mut area = vec![1u64; self.window.len()];
         for index in border(&self.window) {
@@ -324,7 +324,7 @@ impl Tile {
         area
     }
 
-    /// The exits with what of the tile drains to them, and where water leaves that comes in along the border.
+    /// The exits with their areas within the tile, and the ends of flow paths that enter along the border.
     fn exits(&self) -> (Vec<Exit>, Border<End>) {
         let area = self.areas(&Border::filled(&self.window, Inflow::default()));
         let exit = |(index, to): &(u32, u64)| Exit {
@@ -357,7 +357,7 @@ impl Tile {
         marks
     }
 
-    /// Hands on how many outlets of more than themselves each row has.
+    /// Calls `row` with the number of outlets of each row that drain other cells.
     fn count_outlets(&self, area: &[u64], mut row: impl FnMut(usize, u32)) {
         let exits = self.exit_marks();
         for j in 0..self.window.height {
@@ -366,7 +366,7 @@ impl Tile {
         }
     }
 
-    /// The watershed of each outlet, 0 if it is no more than itself; `before` tells how many there are before a row.
+    /// The watershed of each outlet, 0 if it drains only itself; `before` returns their number before a row.
     fn own_watersheds(&self, area: &[u64], before: impl Fn(usize) -> u32) -> Vec<u32> {
         let exits = self.exit_marks();
         let mut labels = vec![0u32; self.window.len()];
@@ -382,7 +382,7 @@ impl Tile {
         labels
     }
 
-    /// The watersheds of some outlets, in order of their index.
+    /// The watersheds of some outlets, sorted by index.
     fn numbers(&self, area: &[u64], mut wanted: Vec<u32>, before: impl Fn(usize) -> u32) -> Vec<(u32, u32)> {
         wanted.sort_unstable();
         wanted.dedup();
@@ -402,7 +402,7 @@ impl Tile {
         labels
     }
 
-    /// Strahler's orders (see [`strahler`](orogen_grid::hydrology::strahler)).
+    /// Strahler orders (see [`strahler`](crate::hydrology::strahler)).
     pub(super) fn orders(&self, area: &[u64], inflows: &Border<Inflow>, threshold: u64) -> Vec<u8> {
         let mut streams = vec![(0u8, false); self.window.len()];
         for index in border(&self.window) {

@@ -1,7 +1,8 @@
-//! Basins tile by tile: how high water rises, and receivers led out of depressions over the lowest passes.
+//! Basins, tile by tile: spill levels, and receivers routed out of depressions over the lowest passes.
 //!
-//! After Barnes, "Parallel Priority-Flood depression filling for trillion cell digital elevation models" (2016), with the tree of
-//! passes kept (see [`tree`](super::tree)), so that not only the levels but the ways are those found in memory.
+//! After Barnes, "Parallel Priority-Flood depression filling for trillion cell digital elevation models" (2016). The
+//! tree of passes is kept (see [`tree`](super::tree)), so that not only the levels but also the flow paths equal those
+//! computed in memory.
 
 use super::tiling::{Border, Tiling, border};
 use super::tree::{self, Beside, Branch, Sets};
@@ -13,8 +14,8 @@ use orogen_grid::hydrology::outlets::Outlets;
 use orogen_grid::progress::Progress;
 use orogen_io::raster::Raster;
 
-/// Fills depressions: writes the filled heights into `filled`, and turns `codes`, receivers whose flats are resolved, into ones that
-/// lead out of every depression.
+/// Fills depressions: writes the filled heights to `filled`, and changes `codes`, receivers with resolved flats, so
+/// that they lead out of every depression.
 ///
 /// # Errors
 /// If the disk fails, or the work is cancelled.
@@ -33,7 +34,7 @@ pub fn drain(
         progress.advance(1.0);
     }
     let map = Map::new(tiling, &shares);
-    // Ways that go on in another tile: the cell where they do, and its new receiver.
+    // Paths that continue in another tile: the cell where they do, and its new receiver.
     let mut turns: Vec<Vec<(u32, u8)>> = vec![Vec::new(); tiling.count()];
     for (last, code) in map.over_borders(tiling) {
         let (t, index) = tiling.locate(last);
@@ -54,7 +55,7 @@ pub fn drain(
         turns[t].extend(ways);
         progress.advance(1.0);
     }
-    // Ways of different basins share no cell, so it is all one in which order they are turned around.
+    // Paths of different basins share no cells, so the order in which they are reversed does not matter.
     while turns.iter().any(|turns| !turns.is_empty()) {
         for t in 0..tiling.count() {
             let starts = std::mem::take(&mut turns[t]);
@@ -73,7 +74,7 @@ pub fn drain(
     Ok(())
 }
 
-/// Turns the way from a cell to its pit around, as far as it lies in the tile; returns where it goes on.
+/// Reverses the path from a cell to its pit within the tile; returns where it continues.
 fn turn_around(codes: &mut Grid, (start, first): (u32, u8)) -> Option<((i64, i64), u8)> {
     let window = *codes.window();
     let (mut cell, mut code) = (start as usize, first);
@@ -90,7 +91,7 @@ fn turn_around(codes: &mut Grid, (start, first): (u32, u8)) -> Option<((i64, i64
     }
 }
 
-/// The cell of a window that a code leads to, or where it lies beyond.
+/// The cell of a window that a code leads to, or its position if it is outside.
 fn step(window: &Window, cell: usize, code: u8) -> std::result::Result<usize, (i64, i64)> {
     let (east, south) = STEPS[usize::from(code & 7)];
     let (i, j) = ((cell % window.width) as i64 + east as i64, (cell / window.width) as i64 + south as i64);
@@ -101,15 +102,16 @@ fn step(window: &Window, cell: usize, code: u8) -> std::result::Result<usize, (i
     }
 }
 
-/// The basins of a tile: the outside, those with a pit in it, and one for each cell at which water leaves it.
+/// The basins of a tile: the outside, those with a pit in it, and one for each cell where water leaves it.
 struct Basins {
     heights: Grid,
     labels: Vec<u32>,
-    /// How many there are, the outside included.
+    /// Number of basins, including the outside.
     count: usize,
-    /// Where water leaves the tile: the basin, and the place of the cell that it comes to.
+    /// Exits of the tile: the basin, and the position of the receiving cell.
     exits: Vec<(u32, (i64, i64))>,
-    /// The names of those the map knows: the outside is 0, then come those along the border, then those where ways between them part.
+    /// The names of basins that the map knows: 0 is the outside, then those along the border, then those where paths
+    /// between them branch.
     names: Vec<Option<u32>>,
     branches: Vec<Branch>,
 }
@@ -162,8 +164,8 @@ impl Basins {
         Ok(Basins { heights, labels, count, exits, names, branches })
     }
 
-    /// The level of each basin, and where the receivers have to be turned around: the last cell of each basin before the pass
-    /// that it drains over in this tile, and the code over it.
+    /// The level of each basin, and the starts of paths to reverse: the last cell of each basin before the pass that it
+    /// drains over in this tile, and the code over it.
     fn spills(&self, known: &Known) -> (Vec<f32>, Vec<(u32, u8)>) {
         let mut levels = vec![f32::NEG_INFINITY; self.count];
         let mut taken = known.taken.iter();
@@ -203,15 +205,15 @@ impl Basins {
     }
 }
 
-/// What the map has to know of a tile's basins.
+/// The data of a tile's basins for the map.
 struct Share {
-    /// How many of them have names.
+    /// Number of named basins.
     named: usize,
     labels: Border<u32>,
     heights: Border<f32>,
-    /// Basins that water leaves the tile from, and the cells it comes to.
+    /// Basins with an exit from the tile, and the receiving cells.
     exits: Vec<(u32, u64)>,
-    /// The passes that may be replaced: the names they join, the height, and the place in row order.
+    /// The passes that may be replaced: the names that they join, the height, and the position in row order.
     joins: Vec<([u32; 2], f32, u64)>,
 }
 
@@ -234,9 +236,9 @@ impl Share {
     }
 }
 
-/// What a tile is told of its named basins.
+/// The results of the map for a tile's named basins.
 struct Known<'a> {
-    /// Whether each of the passes that may be replaced is taken, in their order.
+    /// Whether each of the passes that may be replaced is part of the map's tree, in their order.
     taken: &'a [bool],
     /// The level of each, and whether it drains over a pass of the tile.
     levels: Vec<(f32, bool)>,
@@ -245,23 +247,23 @@ struct Known<'a> {
 /// A pass between named basins of the map.
 struct Join {
     height: f32,
-    /// The cell and code it leads from, for passes between tiles.
+    /// The cell and code from which it leads, for passes between tiles.
     place: u64,
     ends: [u32; 2],
-    /// The tile it lies in, and which of its passes it is; none for one that leads from tile to tile.
+    /// The tile that contains it, and its index there; `None` for a pass between tiles.
     origin: Option<(u32, u32)>,
 }
 
-/// The tree of the whole map's named basins.
+/// The tree of all named basins of the map.
 struct Map {
-    /// Where each tile's names begin among all.
+    /// The first global name of each tile.
     bases: Vec<u32>,
     taken: Vec<Vec<bool>>,
-    /// By the name among all.
+    /// The levels by global name.
     levels: Vec<f32>,
-    /// Whether that very name is where its basin drains over a pass of its tile.
+    /// Whether the basin drains over a pass of its tile at this name.
     up: Vec<bool>,
-    /// Passes from tile to tile that basins drain over: the last cell and its new code.
+    /// Passes between tiles that basins drain over: the last cell and its new code.
     crossings: Vec<(u64, u8)>,
 }
 
@@ -276,7 +278,8 @@ impl Map {
             let (t, index) = tiling.locate(cell);
             shares[t].labels.get(index).map(|label| bases[t] + label)
         };
-        // Which names are one basin: the outside is the same in all tiles, and water that leaves a tile is the other's.
+        // Names of the same basin: the outside is the same in all tiles, and water that leaves a tile belongs to the
+        // next one's basin.
         let mut same = Sets::new(count);
         for (t, share) in shares.iter().enumerate() {
             same.join(0, bases[t]);
@@ -310,7 +313,7 @@ impl Map {
         map
     }
 
-    /// The passes from tile to tile.
+    /// The passes between tiles.
     fn crossings(tiling: &Tiling, shares: &[Share], bases: &[u32]) -> Vec<Join> {
         let mut joins = Vec::new();
         for (t, share) in shares.iter().enumerate() {
@@ -336,7 +339,7 @@ impl Map {
         joins
     }
 
-    /// Goes up from the outside, over the passes of the tree.
+    /// Traverses the tree of passes from the outside upward.
     fn flood(&mut self, joins: &[Join], same: &mut Sets) {
         let basins: Vec<u32> = (0..self.levels.len() as u32).map(|name| same.find(name)).collect();
         let ends = joins.iter().map(|join| join.ends.map(|end| basins[end as usize]));
@@ -368,7 +371,7 @@ impl Map {
         }
     }
 
-    /// The last cells of basins that drain from tile to tile, and their codes.
+    /// The last cells of basins that drain to another tile, and their codes.
     fn over_borders(&self, tiling: &Tiling) -> Vec<(u64, u8)> {
         let way = |(place, child): &(u64, u8)| {
             let (cell, code) = (place / 4, (place % 4) as u8);

@@ -1,4 +1,4 @@
-//! Filling and drainage of a whole map on disk.
+//! Filling and drainage of a map on disk.
 
 use super::areas::{self, Layers};
 use super::tiling::Tiling;
@@ -7,7 +7,8 @@ use orogen_grid::error::Result;
 use orogen_grid::progress::Progress;
 use orogen_io::raster::Raster;
 
-/// Cells along the side of a tile of a map of so many cells. Larger tiles take more memory each, but have shorter borders together.
+/// Side of a tile, in cells, for a map with this many cells. Larger tiles take more memory each, but have shorter
+/// borders in total.
 pub fn side(cells: u64) -> usize {
     match cells {
         0..0x40_0000 => 256,
@@ -16,30 +17,30 @@ pub fn side(cells: u64) -> usize {
     }
 }
 
-/// Bytes of memory that work on one tile takes, with what is kept along the borders of all tiles of a map of so many cells.
+/// Memory for the work on one tile and for the borders of all tiles of a map with this many cells, in bytes.
 pub fn memory(cells: u64) -> u64 {
     let side = side(cells) as u64;
     let tiles = cells.div_ceil(side * side);
-    // At most distances over flats, basins, passes and exits take this for each cell along a border.
+    // Upper bound per border cell: distances over flats, basins, passes and exits.
     side * side * 100 + tiles * 4 * side * 256
 }
 
-/// A map of heights, and where its water goes.
+/// A map of heights on disk, and its drainage.
 pub struct Water<'a> {
     /// The heights.
     pub heights: &'a Raster,
-    /// Water also leaves at or below this height.
+    /// Sea level: cells at or below it are outlets.
     pub sea: Option<f32>,
-    /// Tiles to work in.
+    /// The tiles.
     pub tiling: Tiling,
-    /// Whether the work is still wanted.
+    /// Progress and cancellation.
     pub progress: &'a Progress,
 }
 
 impl Water<'_> {
-    /// Writes the filled heights into `filled`, and into `codes` the receivers over the bed of depressions: what
-    /// [`hydrology::drainage::route_carving`](orogen_grid::hydrology::drainage::route_carving) and
-    /// [`hydrology::fill::filled`](orogen_grid::hydrology::fill::filled) make.
+    /// Writes the filled heights to `filled`, and the receivers to `codes`: the same as
+    /// [`hydrology::drainage::route_carving`](crate::hydrology::drainage::route_carving) and
+    /// [`hydrology::fill::filled`](crate::hydrology::fill::filled).
     ///
     /// # Errors
     /// If the disk fails, or the work is cancelled.
@@ -49,8 +50,8 @@ impl Water<'_> {
         basins::drain(self.heights, &self.tiling, self.sea, codes, filled, self.progress)
     }
 
-    /// Writes into `codes` the receivers over heights without depressions: those of
-    /// [`hydrology::drainage::over_surface`](orogen_grid::hydrology::drainage::over_surface).
+    /// Writes the receivers of heights without depressions to `codes`: the same as
+    /// [`hydrology::drainage::over_surface`](crate::hydrology::drainage::over_surface).
     ///
     /// # Errors
     /// If the disk fails, or the work is cancelled.
@@ -59,7 +60,7 @@ impl Water<'_> {
         flats::resolve(self.heights, &self.tiling, self.sea, codes, self.progress)
     }
 
-    /// Makes areas, watersheds and orders of complete receivers.
+    /// Computes areas, watersheds and orders from complete receivers.
     ///
     /// # Errors
     /// If the disk fails, or the work is cancelled.
@@ -69,7 +70,7 @@ impl Water<'_> {
     }
 }
 
-/// How often a tile is worked on, about: the unit of progress.
+/// Approximate number of passes over each tile, the unit of progress.
 const FLAT_PASSES: f64 = 3.0;
 const BASIN_PASSES: f64 = 2.0;
 const AREA_PASSES: f64 = 4.0;

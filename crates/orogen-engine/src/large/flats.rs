@@ -1,8 +1,8 @@
-//! Receivers tile by tile, flats included.
+//! Receivers, tile by tile, including flats.
 //!
-//! Over a flat water is led by two distances (see [`hydrology::flats`](orogen_grid::hydrology::flats)), and a flat may reach over many
-//! tiles. Distances are the least of all ways, so they may be found by going from tile to tile, each time with what is known along
-//! the borders, until nothing becomes less; then every tile can finish by itself.
+//! On a flat water follows two distances (see [`hydrology::flats`](crate::hydrology::flats)), and a flat may extend
+//! over many tiles. Distances are minima over all paths, so they are found by processing tiles repeatedly, each time
+//! with the known values along the borders, until no value decreases. Then every tile can be finished separately.
 
 use super::tiling::{Border, Queue, Tiling};
 use orogen_grid::error::Result;
@@ -16,10 +16,10 @@ use orogen_io::raster::Raster;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// What is not known yet; all else is less.
+/// A value that is not known yet; known values are smaller.
 const UNKNOWN: u64 = u64::MAX;
 
-/// Writes the codes of the receivers into `codes`: those of steepest descent with flats resolved.
+/// Writes the codes of the receivers to `codes`: steepest descent with resolved flats.
 ///
 /// # Errors
 /// If the disk fails, or the work is cancelled.
@@ -47,15 +47,15 @@ struct Flats<'a> {
 
 type Borders = Vec<Border<u64>>;
 
-/// What is known of flats along the tiles' borders.
+/// The known values of flats along the tiles' borders.
 struct Known {
     /// Steps from the higher ground.
     away: Borders,
     /// Steps from the rim.
     rims: Borders,
-    /// The first cell of a flat without a rim.
+    /// The first cell of each flat without a rim.
     first: Borders,
-    /// Steps from the rim or that first cell.
+    /// Steps from the rim or from that first cell.
     toward: Borders,
 }
 
@@ -91,7 +91,7 @@ impl Flats<'_> {
         Ok(known)
     }
 
-    /// Goes from tile to tile until no value along a border becomes less.
+    /// Processes tiles until no value along a border decreases.
     fn settle(
         &self,
         tiles: &[usize],
@@ -121,7 +121,7 @@ impl Flats<'_> {
         Ok(())
     }
 
-    /// The codes of a tile, all being known along the borders.
+    /// The codes of a tile, when all values along the borders are known.
     fn finished(&self, t: usize, known: &Known) -> Result<Grid> {
         let ground = self.ground(t)?;
         let tile = self.tiling.tile(t);
@@ -138,7 +138,7 @@ impl Flats<'_> {
     }
 }
 
-/// A tile and two cells around it: its receivers by steepest descent, and the cells of flats in it and right beside it.
+/// A tile and two cells around it: its receivers by steepest descent, and the flat cells in it and next to it.
 struct FlatTile<'a> {
     tiling: &'a Tiling,
     heights: Grid,
@@ -146,9 +146,9 @@ struct FlatTile<'a> {
     strides: [isize; 8],
     /// The flat cells.
     flat: Vec<u32>,
-    /// The place of each cell among them.
+    /// The index of each cell among them.
     places: Vec<u32>,
-    /// The index in the tile of each of them; none if it lies beside it.
+    /// The index in the tile of each of them; `None` if it is outside.
     own: Vec<Option<u32>>,
     /// Their numbers in the map.
     numbers: Vec<u64>,
@@ -182,7 +182,7 @@ impl<'a> FlatTile<'a> {
         Ok(FlatTile { tiling, heights, receivers, strides, flat, places, own, numbers })
     }
 
-    /// The places of the flat neighbours of a cell that are as high, with their directions.
+    /// The flat neighbours of a cell with the same height: their indices and directions.
     fn beside(&self, cell: usize) -> impl Iterator<Item = (usize, usize)> {
         let h = self.heights.data();
         let level = move |(k, stride): (usize, &isize)| {
@@ -192,14 +192,14 @@ impl<'a> FlatTile<'a> {
         self.strides.iter().enumerate().filter_map(level)
     }
 
-    /// The directions in which a neighbour as high as a cell drains by itself.
+    /// The directions with a neighbour as high as the cell that has a receiver of its own.
     fn drained_beside(&self, cell: usize) -> u8 {
         let h = self.heights.data();
         let drains = |n: usize| h[n] == h[cell] && self.places[n] == NO_PLACE;
         (0..8).filter(|k| drains(neighbour(cell, self.strides[*k]))).fold(0, |set, k| set | 1 << k)
     }
 
-    /// One for each flat cell of the tile of which `at` is true, by its place and index.
+    /// 1 for each flat cell of the tile for which `at` is true, given its index among flat cells and in the tile.
     fn seeds(&self, at: impl Fn(usize, usize) -> bool) -> Vec<u64> {
         let cells = self.flat.iter().zip(&self.own).enumerate();
         cells.map(|(place, (c, own))| if own.is_some() && at(place, *c as usize) { 1 } else { UNKNOWN }).collect()
@@ -228,8 +228,8 @@ impl<'a> FlatTile<'a> {
             .collect()
     }
 
-    /// Spreads values over level ground, `step` more from cell to cell: the least that reaches each flat cell, from `seeds` and
-    /// from what is known beside the tile.
+    /// Spreads values over level ground, increasing by `step` from cell to cell: the minimum that reaches each flat
+    /// cell from `seeds` and from the known values around the tile.
     fn spread(&self, seeds: Vec<u64>, borders: &Borders, step: u64) -> Vec<u64> {
         let mut values = seeds;
         for (place, value) in values.iter_mut().enumerate().filter(|(place, _)| self.own[*place].is_none()) {
@@ -259,7 +259,7 @@ impl<'a> FlatTile<'a> {
         if toward[place] == 1 {
             return one_of(self.drained_beside(cell), hash);
         }
-        // Nothing stands above a flat that knows no way away from it.
+        // A flat without a known distance has no higher ground around it.
         let away = |place: usize| if away[place] == UNKNOWN { 1 } else { away[place] as i64 };
         let sum = |place: usize| 2 * toward[place] as i64 - away(place);
         let (mut least, mut set) = (sum(place), 0);

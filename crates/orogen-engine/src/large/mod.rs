@@ -1,5 +1,5 @@
-//! Water on maps that do not fit in memory: the same to the bit as [`hydrology`](orogen_grid::hydrology) makes it, tile by tile, the
-//! map itself on disk and in memory only what goes on along the tiles' borders.
+//! Hydrology of maps that do not fit in memory, with the same bits as [`hydrology`](crate::hydrology): tile by tile,
+//! with the map on disk and only the values along the tiles' borders in memory.
 
 pub(crate) mod areas;
 pub(crate) mod basins;

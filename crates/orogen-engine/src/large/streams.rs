@@ -1,4 +1,4 @@
-//! Streams of a whole map on disk, handed on row by row of tiles: drainage areas, orders, and the longest way that water has come.
+//! Streams of a map on disk, by rows of tiles: drainage areas, orders, and longest flow paths.
 
 use super::areas::{Areas, Tile};
 use super::tiling::{Border, Tiling, border};
@@ -8,37 +8,37 @@ use orogen_grid::hydrology::statistics::Way;
 use orogen_grid::progress::Progress;
 use orogen_io::raster::Raster;
 
-/// What is known of the streams of a map once its tiles' borders are: each tile follows by itself.
+/// The streams of a map after the values along its tiles' borders are known.
 pub struct Streams<'a> {
     areas: Areas<'a>,
-    /// The longest way that water has come to each exit of each tile.
+    /// The longest flow path to each exit of each tile.
     ways: Vec<Vec<Way>>,
     threshold: u32,
 }
 
-/// Rows of the map, as high as a tile, row-major.
+/// Rows of the map with the height of a tile, row-major.
 pub struct Strip {
-    /// Where they lie.
+    /// The window of the rows.
     pub window: Window,
-    /// The direction of each cell's receiver.
+    /// The direction code of each cell's receiver.
     pub codes: Vec<u8>,
-    /// Cells that drain through each.
+    /// Number of cells that drain through each cell.
     pub areas: Vec<u32>,
-    /// Strahler's orders; 0 where there is no stream.
+    /// Strahler orders; 0 where there is no stream.
     pub orders: Vec<u8>,
-    /// The longest way that water has come to each.
+    /// The longest flow path to each cell.
     pub ways: Vec<Way>,
 }
 
-/// Bytes of a sample of a [`Strip`].
+/// Memory per sample of a [`Strip`], in bytes.
 pub const STRIP_SAMPLE: u64 = 14;
 
-/// How often a tile is worked on before the strips, about: the unit of progress.
+/// Approximate number of passes over each tile before the strips, the unit of progress.
 pub const PASSES: f64 = 4.0;
 
 impl<'a> Streams<'a> {
-    /// Of complete receivers, which are directions, [`NONE`](orogen_grid::hydrology::direction::NONE) for outlets. A cell that drains fewer than `threshold`
-    /// cells is no stream. The map has fewer than 2^32 cells.
+    /// From complete receivers, as direction codes, with [`NONE`](crate::hydrology::direction::NONE) for outlets. A
+    /// cell that drains fewer than `threshold` cells is not a stream. The map must have fewer than 2^32 cells.
     ///
     /// # Errors
     /// If the disk fails, or the work is cancelled.
@@ -66,16 +66,16 @@ impl<'a> Streams<'a> {
         Ok(streams)
     }
 
-    /// The longest way that comes out of an exit, to the cell that it drains to.
+    /// The longest flow path out of an exit, up to the receiving cell.
     fn spills(&self, t: usize, k: usize) -> Way {
         let (tiling, exit) = (self.areas.tiling, &self.areas.exits[t][k]);
         let from = tiling.place(tiling.cell_of(&tiling.tile(t), exit.index as usize));
         let to = tiling.place(exit.to);
-        // Directions of odd codes are diagonal.
+        // Odd codes are diagonal.
         self.ways[t][k].step(u8::from(from.0 != to.0 && from.1 != to.1))
     }
 
-    /// Hands on all rows of tiles from the north.
+    /// Visits all rows of tiles from the north.
     ///
     /// # Errors
     /// If the disk fails, the work is cancelled, or `visit` fails.
@@ -119,7 +119,7 @@ impl<'a> Streams<'a> {
 }
 
 impl Tile {
-    /// The longest way that water has come to each cell; `incoming` is what comes from other tiles.
+    /// The longest flow path to each cell; `incoming` are those from other tiles.
     fn ways(&self, incoming: &Border<Way>) -> Vec<Way> {
         let mut ways = vec![Way::default(); self.window.len()];
         border(&self.window).for_each(|index| ways[index] = incoming.get(index).unwrap_or_default());
@@ -132,7 +132,7 @@ impl Tile {
         ways
     }
 
-    /// How far it is from each cell along the border to where its water leaves the tile.
+    /// The length of the path from each border cell to the exit of its water.
     fn through(&self) -> Border<Way> {
         let mut ways = vec![Way::default(); self.window.len()];
         for cell in self.order.iter().rev().map(|cell| *cell as usize) {

@@ -1,9 +1,9 @@
-//! A map cut into tiles, and what is known along their borders.
+//! Division of a map into tiles, and values along their borders.
 
 use orogen_grid::grid::Window;
 use std::collections::VecDeque;
 
-/// A map in square tiles.
+/// A map divided into square tiles.
 #[derive(Debug, Clone, Copy)]
 pub struct Tiling {
     /// The map.
@@ -14,23 +14,23 @@ pub struct Tiling {
 }
 
 impl Tiling {
-    /// Tiles of `side` x `side` cells, smaller at the far ends.
+    /// Tiles of `side` x `side` cells, smaller at the far edges.
     pub fn new(whole: Window, side: usize) -> Tiling {
         let side = side.max(1);
         Tiling { whole, side, columns: whole.width.div_ceil(side), rows: whole.height.div_ceil(side) }
     }
 
-    /// How many tiles there are.
+    /// Number of tiles.
     pub fn count(&self) -> usize {
         self.columns * self.rows
     }
 
-    /// Tiles side by side.
+    /// Number of columns of tiles.
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// The cells of a tile.
+    /// The window of a tile.
     pub fn tile(&self, index: usize) -> Window {
         let (left, top) = (index % self.columns * self.side, index / self.columns * self.side);
         Window {
@@ -42,7 +42,7 @@ impl Tiling {
         }
     }
 
-    /// A tile with `halo` cells more on each side where the map has them.
+    /// The window of a tile extended by `halo` cells on each side, where the map has them.
     pub fn near(&self, index: usize, halo: usize) -> Window {
         let grown = self.tile(index).grown(halo);
         let (x, y) = (grown.x.max(self.whole.x), grown.y.max(self.whole.y));
@@ -50,23 +50,23 @@ impl Tiling {
         Window { x, y, width: (right - x) as usize, height: (bottom - y) as usize, cell: grown.cell }
     }
 
-    /// The number of a cell of the map, row by row.
+    /// The number of a cell of the map, in row-major order.
     pub fn cell(&self, x: i64, y: i64) -> u64 {
         (y - self.whole.y) as u64 * self.whole.width as u64 + (x - self.whole.x) as u64
     }
 
-    /// The number in the map of the cell that is `index` in a window.
+    /// The number in the map of the cell with this index in a window.
     pub fn cell_of(&self, window: &Window, index: usize) -> u64 {
         self.cell(window.x + (index % window.width) as i64, window.y + (index / window.width) as i64)
     }
 
-    /// Where a cell lies.
+    /// The position of a cell.
     pub fn place(&self, cell: u64) -> (i64, i64) {
         let width = self.whole.width as u64;
         (self.whole.x + (cell % width) as i64, self.whole.y + (cell / width) as i64)
     }
 
-    /// The tile that a cell lies in, and its index there.
+    /// The tile that contains a cell, and the cell's index in it.
     pub fn locate(&self, cell: u64) -> (usize, usize) {
         let width = self.whole.width as u64;
         let (i, j) = ((cell % width) as usize, (cell / width) as usize);
@@ -74,7 +74,7 @@ impl Tiling {
         (tile, j % self.side * self.tile(tile).width + i % self.side)
     }
 
-    /// The cell that a direction leads to, if the map has it.
+    /// The cell in a direction, if it is on the map.
     pub fn step(&self, cell: u64, (east, south): (isize, isize)) -> Option<u64> {
         let (x, y) = self.place(cell);
         let (x, y) = (x + east as i64, y + south as i64);
@@ -92,17 +92,17 @@ pub struct Border<T> {
 }
 
 impl<T: Copy> Border<T> {
-    /// The same value everywhere along the border of a tile.
+    /// The same value for all border cells of a tile.
     pub fn filled(tile: &Window, value: T) -> Border<T> {
         Border { width: tile.width, height: tile.height, values: vec![value; 2 * (tile.width + tile.height)] }
     }
 
-    /// The value of the cell that is `index` in the tile.
+    /// The value of the cell with this index in the tile; `None` if it is not on the border.
     pub fn get(&self, index: usize) -> Option<T> {
         self.slot(index).map(|slot| self.values[slot])
     }
 
-    /// Sets the value of the cell that is `index` in the tile; nothing of one that is not on the border.
+    /// Sets the value of the cell with this index in the tile; does nothing if it is not on the border.
     pub fn set(&mut self, index: usize, value: T) {
         if let Some(slot) = self.slot(index) {
             self.values[slot] = value;
@@ -121,7 +121,7 @@ impl<T: Copy> Border<T> {
     }
 }
 
-/// The cells along a tile's border, by their index in it, each once.
+/// The indices of the cells along a tile's border, each once.
 pub fn border(tile: &Window) -> impl Iterator<Item = usize> + use<> {
     let (width, height) = (tile.width, tile.height);
     (0..height).flat_map(move |j| {
@@ -130,7 +130,7 @@ pub fn border(tile: &Window) -> impl Iterator<Item = usize> + use<> {
     })
 }
 
-/// Tiles that wait to be looked at, each once.
+/// A queue of tiles, each contained at most once.
 #[derive(Debug)]
 pub struct Queue {
     tiles: VecDeque<usize>,
@@ -138,19 +138,19 @@ pub struct Queue {
 }
 
 impl Queue {
-    /// No tile of `count` waits.
+    /// An empty queue for `count` tiles.
     pub fn new(count: usize) -> Queue {
         Queue { tiles: VecDeque::new(), waiting: vec![false; count] }
     }
 
-    /// Puts a tile at the end unless it waits.
+    /// Appends a tile unless it is in the queue.
     pub fn push(&mut self, tile: usize) {
         if !std::mem::replace(&mut self.waiting[tile], true) {
             self.tiles.push_back(tile);
         }
     }
 
-    /// Takes the first.
+    /// Removes the first tile.
     pub fn pop(&mut self) -> Option<usize> {
         let tile = self.tiles.pop_front()?;
         self.waiting[tile] = false;

@@ -1,25 +1,26 @@
-//! The tree of lowest passes that spans a tile's basins, and its share in the map's.
+//! The minimum spanning tree of a tile's passes, and its contribution to the map's tree.
 //!
-//! Which pass each basin's water takes is told by the least spanning tree of all basins (see
-//! [`hydrology::basins`](orogen_grid::hydrology::basins)). What a tile's own least tree leaves out, the map's leaves out too. What it keeps, the
-//! map's keeps as well, but for the highest pass on each way between two basins that go on beyond the tile: that one may be replaced by a
-//! lower one elsewhere. So of each tile the map need know no more than these, and the basins where such ways part.
+//! The pass that each basin drains over follows from the minimum spanning tree of all basins (see
+//! [`hydrology::basins`](crate::hydrology::basins)). A pass that is not in a tile's tree is not in the map's tree
+//! either. A pass in a tile's tree is also in the map's tree, except for the highest pass on each path between two
+//! basins that extend beyond the tile: a lower one elsewhere may replace it. The map therefore needs only these passes
+//! of each tile, and the basins where such paths branch.
 
 use orogen_grid::hydrology::basins::{Pass, ordered};
 
-/// Sets that can be joined.
+/// Disjoint sets (union-find).
 #[derive(Debug, Clone)]
 pub struct Sets {
     parents: Vec<u32>,
 }
 
 impl Sets {
-    /// `count` sets of one.
+    /// `count` sets of one member each.
     pub fn new(count: usize) -> Sets {
         Sets { parents: (0..count as u32).collect() }
     }
 
-    /// The one that stands for the set of `member`.
+    /// The representative of the set of `member`.
     pub fn find(&mut self, member: u32) -> u32 {
         let mut at = member;
         while self.parents[at as usize] != at {
@@ -30,7 +31,7 @@ impl Sets {
         at
     }
 
-    /// Joins two sets; the first's stands for both. False if they were one.
+    /// Joins two sets; the first one's representative stands for both. False if they were the same set.
     pub fn join(&mut self, a: u32, b: u32) -> bool {
         let (a, b) = (self.find(a), self.find(b));
         self.parents[b as usize] = a;
@@ -43,12 +44,12 @@ impl Sets {
 pub struct Branch {
     /// The pass, between basins of the tile.
     pub pass: Pass,
-    /// The names of the two basins between which it is the highest, if it may be replaced.
+    /// The names of the two basins between which it is the highest pass, if it may be replaced.
     pub joins: Option<[u32; 2]>,
 }
 
-/// The least spanning tree, or trees, of a tile's basins. `names` are those of the basins known beyond the tile, numbered from 0; where ways
-/// between them part, basins get the next ones.
+/// The minimum spanning tree, or forest, of a tile's basins. `names` are those of basins known beyond the tile,
+/// numbered from 0; basins where paths between them branch get the next numbers.
 pub fn least(mut passes: Vec<Pass>, names: &mut [Option<u32>]) -> Vec<Branch> {
     passes.sort_unstable_by_key(|pass| (ordered(pass.height), pass.from, pass.code));
     let mut sets = Sets::new(names.len());
@@ -58,7 +59,7 @@ pub fn least(mut passes: Vec<Pass>, names: &mut [Option<u32>]) -> Vec<Branch> {
         let [a, b] = passes[k as usize].basins;
         if a == basin { b } else { a }
     };
-    // What hangs on one branch alone and goes nowhere is cut off, from the tips inwards.
+    // Removes dead ends, from the tips inward.
     let mut degrees: Vec<u32> = (0..names.len() as u32).map(|basin| beside.of(basin).len() as u32).collect();
     let mut alive = vec![true; passes.len()];
     for tip in 0..names.len() as u32 {
@@ -81,7 +82,7 @@ pub fn least(mut passes: Vec<Pass>, names: &mut [Option<u32>]) -> Vec<Branch> {
     let mut branches: Vec<Branch> = passes.iter().map(|pass| Branch { pass: *pass, joins: None }).collect();
     for start in (0..names.len() as u32).filter(|basin| names[*basin as usize].is_some()) {
         for first in beside.of(start) {
-            // Along the way to the next basin with a name. Passes are in order: the highest has the highest number.
+            // Follows the path to the next named basin. Passes are sorted, so the highest one has the largest index.
             let (mut at, mut k, mut highest) = (start, *first, *first);
             while std::mem::replace(&mut alive[k as usize], false) {
                 highest = highest.max(k);
@@ -99,7 +100,7 @@ pub fn least(mut passes: Vec<Pass>, names: &mut [Option<u32>]) -> Vec<Branch> {
     branches
 }
 
-/// A tree's branches at each of its nodes, side by side.
+/// The branches of a tree at each of its nodes.
 #[derive(Debug, Clone)]
 pub struct Beside {
     starts: Vec<u32>,
@@ -107,7 +108,7 @@ pub struct Beside {
 }
 
 impl Beside {
-    /// Of `count` nodes; `ends` are those of each branch.
+    /// From `count` nodes, and the two ends of each branch.
     pub fn new(count: usize, ends: impl Iterator<Item = [u32; 2]> + Clone) -> Beside {
         let mut starts = vec![0u32; count + 1];
         for node in ends.clone().flatten() {
