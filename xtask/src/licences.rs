@@ -22,9 +22,9 @@ const ACCEPTED: &[&str] = &[
     "Zlib",
 ];
 
-/// Checks every package that Cargo.lock names for this workspace.
+/// Checks every package that this workspace may be built with, optional ones included.
 pub fn check() -> Result {
-    let text = shell::capture(&mut shell::cargo("metadata --format-version 1"))?;
+    let text = shell::capture(&mut shell::cargo("metadata --all-features --format-version 1"))?;
     let metadata: Value =
         serde_json::from_str(&text).map_err(|e| Failure::new(format!("cargo metadata printed no JSON: {e}")))?;
     let packages = metadata["packages"].as_array().map(Vec::as_slice).unwrap_or_default();

@@ -145,10 +145,39 @@ impl Window {
 }
 
 /// Samples over a window, row-major from the north, each row from west to east, like a picture.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// Serialised it is a table of `window` and `data`; data of another length than the window has are refused. JSON has no NaN, and so
+/// cannot carry samples without a value.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "GridData<T>", bound(serialize = "T: Serialize", deserialize = "T: Copy + Deserialize<'de>"))]
 pub struct Grid<T = f32> {
     window: Window,
     data: Vec<T>,
+}
+
+/// A grid as it was read, not checked.
+#[derive(Deserialize)]
+#[serde(rename = "Grid")]
+struct GridData<T> {
+    window: Window,
+    data: Vec<T>,
+}
+
+impl<T: Copy> TryFrom<GridData<T>> for Grid<T> {
+    type Error = String;
+
+    fn try_from(GridData { window, data }: GridData<T>) -> Result<Grid<T>, String> {
+        // The product of two sides that anybody wrote may overflow.
+        match window.width.checked_mul(window.height) {
+            Some(samples) if samples == data.len() => Ok(Grid { window, data }),
+            _ => Err(format!(
+                "a grid of {} x {} samples cannot have {} in `data`",
+                window.width,
+                window.height,
+                data.len()
+            )),
+        }
+    }
 }
 
 impl<T: Copy> Grid<T> {
@@ -279,6 +308,33 @@ pub fn transposed<T: Copy + Default + Send + Sync>(samples: &[T], columns: usize
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn grids_are_read_as_they_were_written() {
+        let grid =
+            Grid::from_data(Window::new(3, 2, 0.1).at(-4, 9), vec![0.1f32, -0.0, 1e-45, f32::MAX, 5.0, 6.5]).unwrap();
+        let text = serde_json::to_string(&grid).unwrap();
+        assert!(text.starts_with(r#"{"window":{"x":-4,"y":9,"width":3,"height":2,"cell":0.1},"data":[0.1,"#), "{text}");
+        let read: Grid = serde_json::from_str(&text).unwrap();
+        let bits = |grid: &Grid| grid.data().iter().map(|sample| sample.to_bits()).collect::<Vec<_>>();
+        assert_eq!((read.window(), bits(&read)), (grid.window(), bits(&grid)));
+        let labels = Grid::filled(Window::new(2, 2, 1.0), 7u32);
+        assert_eq!(serde_json::from_str::<Grid<u32>>(&serde_json::to_string(&labels).unwrap()).unwrap(), labels);
+    }
+
+    #[test]
+    fn data_of_another_length_are_refused() {
+        for (width, height, samples) in
+            [("3", "2", "1,2,3,4,5"), ("2", "2", "1,2,3,4,5"), ("4294967296", "4294967296", "")]
+        {
+            let text = format!(
+                r#"{{"window":{{"x":0,"y":0,"width":{width},"height":{height},"cell":1.0}},"data":[{samples}]}}"#
+            );
+            let count = samples.split_terminator(',').count();
+            let message = serde_json::from_str::<Grid>(&text).unwrap_err().to_string();
+            assert_eq!(message, format!("a grid of {width} x {height} samples cannot have {count} in `data`"));
+        }
+    }
 
     #[test]
     fn rows_become_columns() {

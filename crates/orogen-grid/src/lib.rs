@@ -32,6 +32,15 @@
 //! assert_eq!(drained.area[(3, 0)], 26);
 //! ```
 //!
+//! # Features
+//!
+//! | feature | what it adds |
+//! |---|---|
+//! | `ndarray` | grids to and from arrays of `ndarray`: `ArrayView2::from(&grid)`, `Array2::from(grid)`, `Grid::from_array` |
+//! | `image` | grids to and from buffers of `image`: `Grid::into_image`, `from_image`, and in 16 bits `to_image16`, `from_image16` |
+//!
+//! Both are off by default. Grids and windows implement `Serialize` and `Deserialize` of `serde` in any case.
+//!
 //! The crate `orogen` is the terrain engine around it: recipes, tiles of any size, files, maps and meshes.
 #![forbid(unsafe_code)]
 
@@ -43,6 +52,7 @@ pub mod error;
 pub mod grid;
 pub mod hydrography;
 pub mod hydrology;
+mod interop;
 pub mod progress;
 pub mod resample;
 pub mod words;

@@ -23,7 +23,7 @@ macro_rules! functions {
         $(#[doc = $doc:literal])+
         $variant:ident = $name:literal $arguments:tt, $cost:literal, |$($arg:ident),+| $single:expr, $double:expr;
     )*) => {
-        /// A function of one, two or three numbers. Arithmetic is IEEE 754; other functions use the pinned `libm`, so
+        /// A function of one, two or three numbers. Arithmetic is IEEE 754; other functions use `orogen-libm`, so
         /// the bits are the same on every machine.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
         pub enum Function { $( $(#[doc = $doc])+ $variant, )* }
