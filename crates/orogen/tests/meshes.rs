@@ -542,7 +542,7 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
     let obj = String::from_utf8(one["c.obj"].clone()).unwrap();
     assert!(
         obj.contains("mtllib c.mtl\n")
-            && obj.contains("the first sample, at the origin, stands 2000 m east and 2000 m south")
+            && obj.contains("the first sample, at the origin, is 2000 m east and 2000 m south")
     );
     assert!(String::from_utf8(one["c.mtl"].clone()).unwrap().contains("map_Kd -clamp on c-texture.png\n"));
     let heights = world.window("height", &window).unwrap();

@@ -79,7 +79,7 @@ fn another_place_is_not_overwritten() {
     let said = folder.run(&["export", &source, "-o", "a.asc"]);
     assert_eq!((said.code, said.out.len()), (1, 0), "{}", said.err);
     assert!(said.err.contains("filled 1 sample without height (0.12 %)"), "{}", said.err);
-    assert!(said.err.contains("error: cannot write a.asc: a.prj exists and gives another location"), "{}", said.err);
+    assert!(said.err.contains("error: cannot write a.asc: a.prj exists and contains another position"), "{}", said.err);
     assert_eq!(folder.names(""), ["a.prj"]);
     folder.good(&["export", &source, "-o", "a.asc", "-q", "--no-sidecar"]);
     assert_eq!(folder.text("a.prj"), "PROJCS[\"somebody's\"]");

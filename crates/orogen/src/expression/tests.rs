@@ -76,11 +76,11 @@ fn what_is_wrong_and_where() {
         ("a = 3", 2, "equality is `==`"),
         ("a ** 2", 2, "a ^ b"),
         ("a && b", 2, "comparisons are 1 or 0"),
-        ("1.2.3", 0, "is no number"),
+        ("1.2.3", 0, "is not a number"),
         ("1e999", 0, "more than a number can be"),
-        ("a + ü", 4, "means nothing"),
-        ("a \u{0} b", 2, "means nothing"),
-        ("a # b", 2, "means nothing"),
+        ("a + ü", 4, "unknown symbol"),
+        ("a \u{0} b", 2, "unknown symbol"),
+        ("a # b", 2, "unknown symbol"),
         ("max(1, )", 7, "before this `)`"),
     ] {
         let expression = Expression::from(text);
