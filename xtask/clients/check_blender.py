@@ -1,4 +1,4 @@
-"""Blender imports meshes: bounding boxes as large as the ground, the bump in the north-east, and light on it."""
+"""Imports meshes into Blender: bounding boxes with the size of the ground, the bump in the north-east, visible light."""
 
 import contextlib
 import os
@@ -14,7 +14,7 @@ BUMP = ROOT / "xtask/clients/bump.toml"
 
 @contextlib.contextmanager
 def quiet():
-    """Blender tells the world about every file."""
+    """Suppresses stdout, to which Blender logs every file."""
     kept = os.dup(1)
     with open(os.devnull, "w") as nowhere:
         sys.stdout.flush()
@@ -36,7 +36,7 @@ IMPORT = {
 
 
 def load(path):
-    """The corners of all meshes of a file, as Blender places them: east, north, up."""
+    """Returns the vertices of all meshes of a file in world coordinates: east, north, up."""
     with quiet():
         bpy.ops.wm.read_factory_settings(use_empty=True)
         IMPORT[path.suffix](str(path))
@@ -45,7 +45,7 @@ def load(path):
 
 
 def render(path):
-    """A small picture from above, by the processor alone."""
+    """Renders a small picture from above on the CPU."""
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.cycles.samples = 4
@@ -68,7 +68,7 @@ def render(path):
 
 
 def load_bounds():
-    """The two corners of all that is there."""
+    """Returns the minimum and maximum corners of the bounding box of all meshes."""
     corners = [item.matrix_world @ vertex.co for item in bpy.data.objects if item.type == "MESH" for vertex in item.data.vertices]
     places = numpy.array([list(corner) for corner in corners])
     return places.min(axis=0), places.max(axis=0)

@@ -1,4 +1,4 @@
-"""GDAL reads contours and draws its own of the same heights: the same lines at the same places, none of them mirrored."""
+"""Checks contours: GDAL reads them and computes its own from the same heights; both sets have the same lines in the same places."""
 
 import json
 import subprocess
@@ -13,7 +13,7 @@ INTERVAL = 50
 
 
 def lines_of(path):
-    """The lines of a GeoJSON file, as pairs of height and points."""
+    """Returns the lines of a GeoJSON file as pairs of height and points."""
     found = []
     for feature in json.loads(path.read_text())["features"]:
         geometry = feature["geometry"]
@@ -23,7 +23,7 @@ def lines_of(path):
 
 
 def within(lines, box):
-    """The stretches of lines whose both ends lie in a box."""
+    """Returns the segments with both ends in a box."""
     west, south, east, north = box
     found = {}
     for height, points in lines:
@@ -36,7 +36,7 @@ def within(lines, box):
 
 
 def share_near(points, others, tolerance):
-    """The share of points that another set has within a tolerance, in each coordinate."""
+    """Returns the share of points that another set contains within a tolerance in each coordinate."""
     grid = {}
     for x, y in others:
         grid.setdefault((round(x / tolerance / 4), round(y / tolerance / 4)), []).append((x, y))
@@ -49,7 +49,7 @@ def share_near(points, others, tolerance):
 
 
 def compare(ours, theirs):
-    """The largest difference of lengths as a share, and the least share of points that both have."""
+    """Returns the largest relative difference of lengths, and the smallest share of common points."""
     if ours.keys() != theirs.keys():
         return 1.0, 0.0
     lengths = max(abs(ours[height][0] / max(theirs[height][0], 1e-9) - 1.0) for height in ours)
@@ -58,7 +58,7 @@ def compare(ours, theirs):
 
 
 def summary(path):
-    """What ogrinfo says of a file, and whether it opened it."""
+    """Returns the output of ogrinfo for a file, and whether it opened the file."""
     done = subprocess.run(["ogrinfo", "-al", "-so", path], capture_output=True, text=True)
     return done.returncode == 0 and "Feature Count" in done.stdout, done.stdout
 
@@ -67,14 +67,14 @@ for name, recipe in [("alpine", "alpine"), ("plane", ROOT / "xtask/clients/plane
     options = ("--window", ",".join(map(str, WINDOW)), "--cell", CELL) if name == "alpine" else ()
     tiff = export(recipe, f"{name}.tif", *options)
     interval = INTERVAL if name == "alpine" else 30
-    # Off the round numbers: on a plane of whole metres every sample would stand on a level.
+    # An offset from round numbers: on a plane of whole metres every sample would be exactly on a level.
     levels = [str(0.37 + interval * k) for k in range(-10, 100)]
     path = export(recipe, f"{name}.geojson", *options, f"--levels={','.join(levels)}")
     own = WORK / f"{name}_gdal.geojson"
     subprocess.run(
         ["gdal_contour", "-q", "-a", "elevation", "-fl", *levels, "-f", "GeoJSON", tiff, own], check=True, capture_output=True
     )
-    # GDAL goes on from the outermost samples to the edges of their pixels: only what lies between samples is compared.
+    # GDAL continues lines from the outermost samples to the edges of their pixels. Only the area between samples is compared.
     told = json.loads(subprocess.run(["gdalinfo", "-json", tiff], check=True, capture_output=True, text=True).stdout)
     (x, dx, _, y, _, dy), (width, height) = told["geoTransform"], told["size"]
     slack = abs(dx) / 1000
@@ -100,7 +100,7 @@ for name, recipe in [("alpine", "alpine"), ("plane", ROOT / "xtask/clients/plane
     damaged = WORK / f"{name}_damaged.geojson"
     damaged.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
     checks.that(f"{name}: half of the file is refused", not summary(damaged)[0])
-    # A file in which one height is another's is found out.
+    # The comparison must detect a file with one wrong height.
     wrong = {height: (length * 1.02, points) for height, (length, points) in ours.items()}
     checks.that(f"{name}: lines 2 % longer are found out", compare(wrong, theirs)[0] > 0.002)
 

@@ -1,4 +1,4 @@
-"""orogen reads what rasterio writes: every kind of GeoTIFF and the other formats, to the last bit, and keeps where it lies."""
+"""Checks imports: orogen reads files written by rasterio (all kinds of GeoTIFF, other formats) bit for bit and keeps the position."""
 
 import shutil
 import subprocess
@@ -21,7 +21,7 @@ folder = WORK / "dems"
 
 
 def refused(path):
-    """What orogen says of a file that it must not read."""
+    """Returns the message of orogen for a file that it must reject."""
     done = subprocess.run([BINARY, "export", path, "-o", WORK / "no.npy"], capture_output=True, stdin=subprocess.DEVNULL)
     checks.equal(f"{path.name}: exit code", done.returncode, 1)
     return done.stderr.decode()
@@ -61,7 +61,7 @@ for name, said in [("bands.tif", "3 bands"), ("webp.tif:1", "WebP"), ("turned.ti
     said_really = refused(folder / name)
     checks.that(f"{name}: refused by name", said in said_really, said_really)
 
-# One band of several, however they lie.
+# One band of several, in every band layout.
 for path in sorted(folder.glob("bands*.tif")):
     with rasterio.open(path) as file:
         for band in [1, 2, 3]:
@@ -70,7 +70,7 @@ for path in sorted(folder.glob("bands*.tif")):
 with rasterio.open(folder / "lossy-lerc.tif") as file:
     got = numpy.load(export(folder / "lossy-lerc.tif", "lossy.npy", "-q"))
     checks.that("lossy-lerc.tif: as GDAL unpacks it", numpy.array_equal(got, file.read(1)))
-# LERC with a mask, large enough for every kind of block, and floats that no packer makes smaller.
+# LERC with a mask, large enough for every kind of block, and floats that do not compress.
 rng = numpy.random.default_rng(1)
 j, i = numpy.mgrid[:300, :260]
 ground = (900 + 300 * numpy.sin(i / 40) * numpy.cos(j / 30) + rng.normal(0, 2, (300, 260))).astype("f4")
@@ -97,7 +97,7 @@ for name, data, options in [
         known = ~numpy.isnan(want)
         checks.that(f"{name} {tiled}: samples", numpy.array_equal(got[known], want[known]), numpy.abs(got - want)[known].max())
 
-# Many files as one.
+# Mosaics of several files.
 for name in ["tiles", "tiles.vrt"]:
     got = numpy.load(export(folder / name, name + ".npy", "-q"))
     want = (heights() + 0.25).astype("f4")
@@ -105,7 +105,7 @@ for name in ["tiles", "tiles.vrt"]:
     with rasterio.open(export(folder / name, name + "-out.tif", "-q")) as after:
         checks.equal(f"{name}: where it lies", (after.transform, after.crs), (from_origin(500000, 5200000, 30, 30), rasterio.CRS.from_epsg(32632)))
 
-# Zarr as its own library writes it, of both versions.
+# Zarr versions 2 and 3, written by zarr-python.
 place = {"x": 500015 + 30 * numpy.arange(WIDTH), "y": 5199985 - 30.0 * numpy.arange(HEIGHT)}
 for version, codecs in [(2, [None, numcodecs.Zlib(), numcodecs.Zstd(), numcodecs.GZip(), numcodecs.LZ4(), numcodecs.Blosc("lz4"), numcodecs.Blosc("zstd", shuffle=0), numcodecs.Blosc("zlib")]),
                         (3, [None, zarr.codecs.GzipCodec(), zarr.codecs.ZstdCodec(), zarr.codecs.BloscCodec(cname="lz4"), zarr.codecs.BloscCodec(cname="zstd")])]:
@@ -126,7 +126,7 @@ for version, codecs in [(2, [None, numcodecs.Zlib(), numcodecs.Zstd(), numcodecs
         with rasterio.open(export(path, path.stem + ".tif", "-q")) as after:
             checks.equal(f"{path.name}: where it lies", (after.transform, after.crs), (from_origin(500000, 5200000, 30, 30), rasterio.CRS.from_epsg(32632)))
 
-# OpenEXR as its own library writes it.
+# OpenEXR written by the OpenEXR library.
 for name, sample in [("NO", "f4"), ("RLE", "f4"), ("ZIPS", "f4"), ("ZIP", "f4"), ("ZIP", "f2"), ("ZIP", "u4")]:
     path = WORK / f"library-{name}-{sample}.exr"
     data = heights().astype(sample)
@@ -139,7 +139,7 @@ for name, sample in [("NO", "f4"), ("RLE", "f4"), ("ZIPS", "f4"), ("ZIP", "f4"),
     got = numpy.load(export(f"{path}:1", f"{path.stem}-1.npy", "-q"))
     checks.that(f"{path.name}: its first channel", numpy.array_equal(got, heights().astype("f4") + 2))
 
-# What is exported lies where it lay, for GDAL and for orogen itself.
+# Exports keep the position of the import, as read by GDAL and by orogen.
 source = folder / "f32-strips.tif"
 with rasterio.open(source) as before:
     for extension in ["asc", "png", "pgm"]:
@@ -161,12 +161,12 @@ with rasterio.open(source) as before:
                 off = numpy.abs(after.read(1) - (heights() + 0.25))
                 off[HOLE[1], HOLE[0]] = 0
                 checks.that(f".{extension}, {first_row} first, and back: samples", off.max() < 0.01, off.max())
-# Degrees have oblong pixels, and come back to the very samples; without NAME.json to nearly those.
+# Degrees have oblong pixels. With NAME.json the samples are restored exactly, without it approximately.
 degrees = export(folder / "degrees.tif", "degrees.r32", "-q")
 first, second = (numpy.load(export(path, name, "-q")) for path, name in [(folder / "degrees.tif", "a.npy"), (degrees, "b.npy")])
 checks.that("degrees by .r32 and back", numpy.array_equal(first, second))
 
-# The texts of .prj, in ESRI's terms: a point of each system is where the registry says.
+# The WKT of .prj files, in ESRI's dialect: a point of each system has the position of the EPSG registry.
 codes = [4326, 4269, 4267, 4258, 32632, 32719, 26910, 26710, 25832, 6339, 28355, 7855, 31983, 3857, 3395, 3413, 3031, 32661, 2154, 3035, 5070, 3577, 27700,
          2193, 31467, 2056, 28992, 31370, 3006, 3347, 31287, 23700, 2927, 5514, 3112]
 for code in codes:
@@ -190,7 +190,7 @@ for code in codes:
         checks.that(f"EPSG:{code}: GDAL understands it", file.crs is not None and file.crs.is_projected == system.is_projected, file.crs)
     with rasterio.open(export(WORK / f"epsg{code}.asc", f"epsg{code}-back.tif", "-q")) as file:
         checks.equal(f"EPSG:{code}: its .prj and back", file.crs.to_epsg() if file.crs else None, code)
-# A system without a code is kept word by word, also in a GeoTIFF.
+# A coordinate system without a code is kept verbatim, also in a GeoTIFF.
 own = pyproj.CRS.from_proj4("+proj=sinu +lon_0=10 +datum=WGS84").to_wkt("WKT1_ESRI")
 shutil.copy(folder / "arc.asc", WORK / "own.asc")
 (WORK / "own.prj").write_text(own)
@@ -198,7 +198,7 @@ with rasterio.open(export(WORK / "own.asc", "own.tif", "-q")) as file:
     checks.that("a system of its own", file.crs is not None and "Sinusoidal" in file.crs.to_wkt(), file.crs)
 checks.equal("a system of its own, and back", (export(WORK / "own.tif", "own-back.asc", "-q").with_suffix(".prj")).read_text().strip(), own)
 
-# An SRTM tile of GDAL's own driver, and a whole world written by orogen and packed anew by GDAL.
+# An SRTM tile of GDAL's own driver, and a whole world written by orogen and compressed again by GDAL.
 with rasterio.open(WORK / "tile.tif", "w", driver="GTiff", width=1201, height=1201, count=1, dtype="int16", nodata=-32768, crs="EPSG:4326",
                    transform=from_origin(7 - 0.5 / 1200, 47 + 0.5 / 1200, 1 / 1200, 1 / 1200)) as file:
     j, i = numpy.mgrid[:1201, :1201]
@@ -209,7 +209,7 @@ with rasterio.open(export(WORK / "N46E007.hgt", "hgt-out.tif", "-q")) as after:
     got = after.read(1)
     checks.equal("N46E007.hgt: its western and northern edge", (round(after.bounds.left, 3), round(after.bounds.top, 3)), (7.0, 47.0))
     checks.that("N46E007.hgt: its first column", abs(float(got[0, 0]) - tile[0, 0]) < 1 and got.shape[1] == 1201, got.shape)
-# A folder of SRTM's tiles: two that share a column, and a gap.
+# A folder of SRTM tiles: two with a shared column, and a gap.
 (WORK / "srtm").mkdir(exist_ok=True)
 for name, data in [("N46E007", tile), ("N46E008", tile[:, ::-1]), ("N45E008", tile)]:
     data.astype(">i2").tofile(WORK / "srtm" / f"{name}.hgt")
@@ -225,7 +225,7 @@ for k, options in enumerate([{"compress": "lzw", "predictor": 3, "tiled": True},
     copy(world, WORK / f"packed{k}.tif", driver="GTiff", **options)
     got = numpy.load(export(WORK / f"packed{k}.tif", f"packed{k}.npy", "-q"))
     checks.that(f"packed anew by {options}", numpy.array_equal(got.view("u4"), want.view("u4")))
-# That these checks can fail: a byte changed within the samples.
+# The checks must fail if a byte of the samples is changed.
 broken = bytearray((folder / "f32-strips.tif").read_bytes())
 broken[2000] ^= 0x40
 (WORK / "broken.tif").write_bytes(broken)

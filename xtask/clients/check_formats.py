@@ -1,4 +1,4 @@
-"""OpenEXR, GDAL, rasterio, Pillow and Godot read exported heights: the samples of the .npy, none mirrored, turned or moved."""
+"""Checks raster exports with OpenEXR, GDAL, rasterio, Pillow and Godot: the samples of the .npy, in the same orientation and position."""
 
 import json
 import subprocess
@@ -18,24 +18,24 @@ WINDOW = ("--window", "0,0,230,150")
 
 heights = numpy.load(export(BUMP, "all.npy", *WINDOW))
 checks.equal("size", heights.shape, (150, 230))
-# What makes it unlike its mirror images: a bump around column 60, row 40, on a plane that rises east and falls south.
+# An asymmetric test terrain: a bump around column 60, row 40, on a plane that rises to the east and falls to the south.
 bump = heights - (numpy.arange(230) * 5 / 4 - numpy.arange(150)[:, None] * 5 / 32)
 checks.equal("the bump is in the north-west", tuple(int(k) for k in numpy.unravel_index(bump.argmax(), bump.shape)), (40, 60))
 
 
 def same_bits(a, b):
-    """Equal to the last bit."""
+    """Compares bit for bit."""
     return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
 
 
 def exr(path):
-    """The channels of an EXR picture, each by its name."""
+    """Returns the channels of an EXR picture by name."""
     with OpenEXR.File(str(path), separate_channels=True) as file:
         return {name: channel.pixels.copy() for name, channel in file.channels().items()}
 
 
 def noticed(what, damaged, read):
-    """A damaged file is either refused or read as something else."""
+    """Checks that a damaged file is either rejected or read with other contents."""
     try:
         found = read(damaged)
     except (RuntimeError, OSError, RasterioIOError, ValueError, SyntaxError):
@@ -44,7 +44,7 @@ def noticed(what, damaged, read):
 
 
 def damage(path, change):
-    """A copy whose bytes are changed."""
+    """Writes a copy with changed bytes."""
     broken = path.with_name("broken-" + path.name)
     content = bytearray(path.read_bytes())
     broken.write_bytes(bytes(change(content)))
@@ -52,12 +52,12 @@ def damage(path, change):
 
 
 def flipped(content):
-    """One bit of three quarters through is another."""
+    """Flips one bit at three quarters of the file."""
     content[3 * len(content) // 4] ^= 0x10
     return content
 
 
-# OpenEXR: the very floats, halves rounded to nearest, three channels, normals of length 1.
+# OpenEXR: exact 32-bit floats, 16-bit floats rounded to nearest, three channels, normals of length 1.
 path = export(BUMP, "float.exr", *WINDOW)
 channels = exr(path)
 checks.equal("exr: one channel", list(channels), ["Y"])
@@ -78,7 +78,7 @@ length = numpy.sqrt(sum(channels[part].astype("f8") ** 2 for part in "XYZ"))
 checks.that("exr: normals have length 1", float(numpy.abs(length - 1).max()) < 1e-6)
 checks.that("exr: the plane faces west and a little south", -0.25 < channels["X"][120, 200] < -0.23 and -0.04 < channels["Y"][120, 200] < -0.02)
 
-# ESRI's grid: every number, where it stands.
+# ESRI ASCII grid: every number and its position.
 path = export(BUMP, "grid.asc", *WINDOW)
 with rasterio.open(path) as grid:
     checks.equal("asc: driver", grid.driver, "AAIGrid")
@@ -88,19 +88,19 @@ with rasterio.open(path) as grid:
 
 
 def read_grid(path):
-    """Whether rasterio reads the very samples."""
+    """Checks that rasterio reads the exact samples."""
     with rasterio.open(path) as grid:
         return same_bits(grid.read(1), heights)
 
 
 noticed("ASCII grid", damage(path, lambda content: content.replace(b" 7", b" 8", 1)), read_grid)
 
-# Levels: PGM and PNG of 16 and 8 bits, raw ones by their sidecar.
+# Integer levels: PGM and PNG with 16 and 8 bits, raw files as described by their sidecar.
 low, high = numpy.float64(heights.min()), numpy.float64(heights.max())
 
 
 def levels(most):
-    """What heights should be as levels."""
+    """Returns the expected levels of heights."""
     return numpy.floor((heights.astype("f8") - low) / (high - low) * most + 0.5)
 
 
@@ -121,7 +121,7 @@ for name, most, options in [
 
 
 def read_levels(path):
-    """Whether rasterio reads the very levels."""
+    """Checks that rasterio reads the exact levels."""
     with rasterio.open(path) as grid:
         return numpy.array_equal(grid.read(1), levels(65535))
 
@@ -147,7 +147,7 @@ for name, scale in [("terrarium", (256.0, 1.0, 1 / 256.0, -32768.0)), ("terrain-
     found = rgb[..., 0] * scale[0] + rgb[..., 1] * scale[1] + rgb[..., 2] * scale[2] + scale[3]
     checks.that(f"{name}: to half a step", float(numpy.abs(found - heights).max()) <= 0.501 * scale[2])
 
-# SRTM: whole metres, halves away from zero, at the corner that its name tells.
+# SRTM: whole metres, halves rounded away from zero, positioned by the corner in the file name.
 square = ("--cell", 0.5, "--window", "0,0,1201,1201")
 fine = numpy.load(export(BUMP, "square.npy", *square)).astype("f8")
 path = export(BUMP, "N46E007.hgt", *square)
@@ -159,12 +159,12 @@ with rasterio.open(path) as grid:
     checks.that("hgt: its south-west corner", abs(corner[0] - 7) < 1e-9 and abs(corner[1] - 46) < 1e-9, corner)
 noticed("half of an .hgt", damage(path, lambda content: content[: len(content) // 2]), lambda path: rasterio.open(path).read(1).size)
 
-# Weights add up to 255 over both pictures.
+# The weights of both pictures add up to 255.
 export(BUMP, "splat.png", "--layer", "splat", *WINDOW)
 total = sum(numpy.asarray(Image.open(WORK / name)).astype(int).sum(axis=2) for name in ("splat.png", "splat_2.png"))
 checks.equal("splat: sums", (int(total.min()), int(total.max())), (255, 255))
 
-# Unreal's formula and Unity's, by the sidecar's numbers alone.
+# Unreal's and Unity's formulas with the numbers of the sidecar only.
 told = json.loads(export(BUMP, "unreal.png", "--target", "unreal", "--size", 127, "--cell", 5).with_suffix(".json").read_text())
 near = heights[:127, :127].astype("f8")
 values = numpy.asarray(Image.open(WORK / "unreal.png")).astype("f8")
@@ -176,7 +176,7 @@ told = json.loads(export(BUMP, "unity.r16", "--target", "unity", "--size", 129, 
 found = numpy.fromfile(WORK / "unity.r16", "<u2").reshape(129, 129)[::-1] / 65535.0 * (told["high"] - told["low"]) + told["low"]
 checks.that("unity: heights, rows from the south", float(numpy.abs(found - heights[:129, :129]).max()) <= 0.51 * (high - low) / 65535)
 
-# Godot 3 opens them; it reads PNG as 8 bits and EXR as halves.
+# Godot 3 opens the files; it reads PNG as 8 bits and EXR as 16-bit floats.
 (WORK / "project.godot").write_text("config_version=4\n")
 (WORK / "look.gd").write_text(
     """extends SceneTree

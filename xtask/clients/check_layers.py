@@ -1,7 +1,7 @@
-"""GRASS, WhiteboxTools and gdaldem make the layers that follow from heights.
+"""Compares terrain layers with those of GRASS, WhiteboxTools and gdaldem.
 
-Named files of heights on the command line are measured instead of the presets, at most the middle 400 x 400 samples of each, and a table of
-what was found is printed.
+Files of heights on the command line replace the presets: at most the middle 400 x 400 samples of each are compared. The differences are
+printed as a table.
 """
 
 import os
@@ -21,7 +21,7 @@ checks = Checks()
 GRASS = WORK / "grass"
 DAY, LATITUDE = 172, 46
 STREAM = 1e6
-# Two programs that do the same in other words differ by what is lost where f32 is rounded.
+# Tolerance for equivalent algorithms: rounding to f32.
 SAME = 1e-4
 
 
@@ -32,23 +32,23 @@ def read(path):
 
 
 def inner(data, border):
-    """Without the border, where a neighbourhood reaches beyond the map and each program makes up what is there."""
+    """Removes the border, where a neighbourhood extends beyond the map and each program extrapolates in its own way."""
     return data[border:-border, border:-border]
 
 
 class Place:
-    """Heights, what orogen makes of them and what others do."""
+    """Heights, the layers of orogen and the layers of other programs."""
 
     def __init__(self, heights, crs, transform):
         self.z = heights.astype("f4").astype("f8")
         self.cell, self.transform = transform.a, transform
         self.options = [] if crs else ["--latitude", LATITUDE]
-        # r.sun asks the map for the latitude.
+        # r.sun reads the latitude from the map.
         self.crs = crs or f"+proj=tmerc +lat_0={LATITUDE} +lon_0=0 +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m"
         self.heights = self.write("heights.tif", self.z)
 
     def write(self, name, data):
-        """A plain GeoTIFF over the place, which every program reads."""
+        """Writes a plain GeoTIFF at the position, which every program reads."""
         rows, columns = data.shape
         profile = {"width": columns, "height": rows, "count": 1, "dtype": "float32", "crs": self.crs, "transform": self.transform}
         with rasterio.open(WORK / name, "w", driver="GTiff", nodata=-32768, **profile) as raster:
@@ -59,7 +59,7 @@ class Place:
         return read(export(self.heights, f"ours-{layer}.tif", "--layer", layer, "--no-cache", "-q", *options))
 
     def grass(self, script, *rasters):
-        """Runs a script over the map `z`; returns rasters of it."""
+        """Runs a script on the map `z` and returns its output rasters."""
         shutil.rmtree(GRASS, ignore_errors=True)
         lines = ["set -e", f"r.in.gdal -o input={self.heights} output=z --o --q", "g.region raster=z", script]
         lines += [f"r.out.gdal -f -c input={name} output={WORK}/grass-{name}.tif type=Float64 --o --q" for name in rasters]
@@ -74,25 +74,25 @@ class Place:
 
 
 def off(ours, theirs, where=None):
-    """The mean absolute difference as a share of the mean absolute deviation of theirs."""
+    """Returns the mean absolute difference relative to the mean absolute deviation of the other layer."""
     both = numpy.isfinite(ours) & numpy.isfinite(theirs) & (True if where is None else where)
     ours, theirs = ours[both], theirs[both]
     return numpy.abs(ours - theirs).mean() / numpy.abs(theirs - theirs.mean()).mean()
 
 
 def unlike(ours, theirs, tolerance=0):
-    """The share of samples that differ by more than this share of theirs."""
+    """Returns the share of samples with a relative difference above the threshold."""
     both = numpy.isfinite(ours) & numpy.isfinite(theirs)
     ours, theirs = ours[both], theirs[both]
     return (numpy.abs(ours - theirs) > tolerance * numpy.abs(theirs)).mean()
 
 
 def neighbourhoods(name, place):
-    """Layers that look around, beside GRASS and gdaldem: the differences by name, each with the most that is allowed."""
+    """Compares neighbourhood layers with GRASS and gdaldem: differences by name, each with its tolerance."""
     found = {}
     cell, z = place.cell, place.z
     search = max(3, round(500 / cell))
-    # Half a cell further, so that no program's rounding decides whether the last cell is in reach.
+    # Half a cell more, so that rounding does not decide whether the last cell is in range.
     reach = (search + 0.5) * cell
     disc = max(2, round(300 / cell))
     middle = [dimension // 2 for dimension in z.shape]
@@ -120,11 +120,11 @@ r.sun elevation=z aspect=aspect slope=slope linke_value=3 albedo_value=0.2 day={
     landforms = place.ours("landforms", "--reach", reach)
     found["landforms (r.geomorphon)"] = unlike(inner(landforms, search), inner(forms, search)), 0.01
     found["wetness (r.slope.aspect)"] = off(inner(place.ours("wetness"), 1), inner(wet, 1)), SAME
-    # Where the border is nearer than a stream, another stream may lie beyond it: Orogen's world goes on there for two samples.
+    # If the border is nearer than a stream, a stream outside may be nearer: orogen computes two samples beyond the border.
     known = far <= to_border(z.shape) * cell
     ours = place.ours("stream-distance")
     found["stream-distance (r.grow.distance)"] = off(ours, far, known), SAME
-    # r.grow.distance passes the nearest stream from cell to cell and misses it in a few; it never finds a nearer one.
+    # r.grow.distance passes the nearest stream from cell to cell and misses it in a few cells; it never finds a nearer one.
     checks.that(f"{name}: no stream is nearer than r.grow.distance finds", (ours[known] <= far[known] + 1e-5 * far.max()).all())
     visible = place.ours("viewshed", "--observer", f"{middle[1] * cell},{middle[0] * cell}", "--observer-height", 10)
     elsewhere = place.ours("viewshed", "--observer", f"{middle[1] * cell / 2},{middle[0] * cell / 2}", "--observer-height", 10)
@@ -135,13 +135,13 @@ r.sun elevation=z aspect=aspect slope=slope linke_value=3 albedo_value=0.2 day={
     other = place.ours("insolation", "--day", DAY - 60, *place.options)
     told = numpy.nanmean(inner(numpy.abs(1000 * other - sun) / sun, 1))
     checks.that(f"{name}: another day is told apart", told > 0.05, told)
-    # r.sun looks for shadows in the nearest samples of the ray, so what is left does not vanish with its steps: see docs/layers.md.
+    # r.sun samples shadows at the nearest cells of the ray, so the remaining difference does not vanish with its step: see docs/layers.md.
     found["insolation (r.sun)"] = numpy.nanmean(inner(numpy.abs(light - sun) / sun, 1)), 0.01
     return found
 
 
 def beside(program, place, cells, to, length, above, known):
-    """Orogen's layers of water beside the same by another program, where the map knows them."""
+    """Compares the water layers of orogen with those of another program, where the map determines them."""
     cell = place.cell
     meets = known & (to >= 0)
     clean = ~below_border(place.ours("flow-direction").astype("int64"))
@@ -155,7 +155,7 @@ def beside(program, place, cells, to, length, above, known):
 
 
 def walked(place):
-    """Layers of water beside walks down `flow-direction`, through depressions as they are."""
+    """Compares water layers with traces along `flow-direction`; depressions are not filled."""
     codes = place.ours("flow-direction").astype("int64")
     cells = accumulated(codes)
     to, length, known = downstream(codes, cells * place.cell**2 >= STREAM)
@@ -164,10 +164,10 @@ def walked(place):
 
 
 def whitebox(place):
-    """Layers of water beside those of WhiteboxTools.
+    """Compares water layers with those of WhiteboxTools.
 
-    Each program leads water over level ground and out of depressions in its own way, so both get ground that falls everywhere: flooded,
-    each cell 2 cm above the next, and roughened by less so that no two neighbours are equally steep.
+    Programs route water across level ground and out of depressions differently, so both get ground without them: filled, with each cell
+    2 cm above the next, plus smaller noise so that no two neighbours are equally steep.
     """
     random = numpy.random.default_rng(1)
     falling = flooded(place.z - place.z.min() + 1, step=0.02)
@@ -192,13 +192,13 @@ def whitebox(place):
     codes = place.ours("flow-direction").astype("int64")
     to, _, known = downstream(codes, streams)
     found = beside("WhiteboxTools", place, cells, to, length, above, known)
-    # WhiteboxTools ends at the border; Orogen's world goes on.
+    # WhiteboxTools ends at the border; orogen continues beyond it.
     ours = place.ours("flow-direction", "--codes", "whitebox")
     return {"flow-direction (WhiteboxTools)": (unlike(inner(ours, 1), inner(pointer, 1)), 0)} | found
 
 
 def middle(source):
-    """The middle of a file of heights, with its holes filled as orogen fills them."""
+    """Returns the middle of a file of heights, with holes filled in the same way as orogen."""
     with rasterio.open(source) as raster:
         rows, columns = (min(400, size) for size in raster.shape)
         left, top = (raster.width - columns) // 2, (raster.height - rows) // 2
@@ -214,7 +214,7 @@ if __name__ == "__main__":
             source = source.rsplit("/")[-1]
             print(f"{source}: {said}")
         else:
-            # GRASS works in a coordinate system that it knows.
+            # GRASS needs a known coordinate system.
             map_options = ("--crs", "EPSG:32632", "--origin", "500000,5000000")
             path = export(source, "preset.tif", "--window", "200,300,320,300", *map_options, "-q")
         with rasterio.open(path) as raster:

@@ -1,4 +1,4 @@
-"""Poppler and librsvg draw map sheets: the same picture as the .png of the same sheet."""
+"""Checks map sheets: Poppler and librsvg render PDF and SVG to the same picture as the .png of the sheet."""
 
 import re
 import subprocess
@@ -12,12 +12,12 @@ DPI = 110
 
 
 def pixels(path):
-    """A picture as numbers from 0 to 255."""
+    """Returns a picture as an array of values from 0 to 255."""
     return numpy.asarray(Image.open(path).convert("RGB"), dtype=float)
 
 
 def difference(a, b):
-    """The mean difference of two pictures of one size, and of the worst of all squares of 16 pixels."""
+    """Returns the mean difference of two pictures of one size, and the largest mean of all squares of 16 pixels."""
     height, width = (min(a.shape[k], b.shape[k]) for k in (0, 1))
     apart = numpy.abs(a[:height, :width] - b[:height, :width]).mean(axis=2)
     squares = apart[: height // 16 * 16, : width // 16 * 16].reshape(height // 16, 16, width // 16, 16).mean(axis=(1, 3))
@@ -43,14 +43,14 @@ for name, recipe, options in [
         mean, worst = difference(ours, theirs)
         print(f"{name}: the .{kind} differs from the .png by {mean:.2f} of 255 on average, {worst:.1f} in the worst square")
         checks.that(f"{name}: the .{kind} looks like the .png", mean < 2.5 and worst < 30.0)
-        # Mirrored, the comparison must fail.
+        # The comparison must fail for a mirrored picture.
         checks.that(f"{name}: the mirrored .{kind} is another", difference(ours, theirs[:, ::-1])[0] > 8.0)
     info = subprocess.run(["pdfinfo", paths["pdf"]], capture_output=True, text=True)
     checks.that(f"{name}: pdfinfo finds nothing wrong", info.returncode == 0 and not info.stderr, info.stderr)
     checks.that(f"{name}: with its title", f"{name} & Höhen" in info.stdout)
     checks.that(f"{name}: on A4", "(A4)" in info.stdout)
 
-# At the resolution of print: more than 10 MB, where libxml2 gives up on elements that are too long.
+# Print resolution: more than 10 MB, above the size limit of libxml2 for one element.
 large = WORK / "large.svg"
 orogen("map", "alpine", "-o", large, "--quiet")
 text = large.read_text()

@@ -1,4 +1,4 @@
-"""The Khronos validator, trimesh, meshio and admesh read meshes: the samples of the .npy, the right way round, solids closed."""
+"""Checks meshes with the Khronos validator, trimesh, meshio and admesh: the samples of the .npy, correct orientation, closed solids."""
 
 import json
 import re
@@ -18,7 +18,7 @@ ADAPTIVE = ("--max-error", "4")
 
 
 def validate(*paths):
-    """The validator's report of each .glb file."""
+    """Returns the validator's report of each .glb file."""
     line = ["node", ROOT / "xtask/clients/validate_glb.js", NODE_BIN.parent, *paths]
     done = subprocess.run(line, capture_output=True, text=True, stdin=subprocess.DEVNULL)
     if done.returncode != 0:
@@ -27,7 +27,7 @@ def validate(*paths):
 
 
 def admesh(path):
-    """What admesh would have to mend: the counts of its closing table."""
+    """Returns the number of repairs that admesh reports in its table."""
     done = subprocess.run(["admesh", path], capture_output=True, text=True, stdin=subprocess.DEVNULL)
     if done.returncode != 0:
         return {"refused": done.returncode}
@@ -44,7 +44,7 @@ def admesh(path):
 
 
 def load(path):
-    """The one mesh of a file and where it is moved to, as trimesh reads it, nothing merged."""
+    """Returns the only mesh of a file and its translation, as read by trimesh without merging vertices."""
     scene = trimesh.load_scene(path, process=False)
     checks.equal(f"{path.name}: one mesh is shown", len(scene.graph.nodes_geometry), 1)
     transform, name = scene.graph[scene.graph.nodes_geometry[0]]
@@ -52,13 +52,13 @@ def load(path):
 
 
 def ground(places, kind):
-    """East, up, south of places in the axes of a format."""
+    """Converts positions in the axes of a format to east, up, south."""
     x, y, z = places.T
     return numpy.stack([x, z, -y] if kind == "z up" else [x, y, z], axis=1)
 
 
 def height_at(heights, east, south):
-    """The ground between samples, in cells: the lower and the higher of the two ways in which a square may be cut into triangles."""
+    """Returns the lower and the higher bound of the ground within cells, for both ways to split a square into triangles."""
     i = numpy.clip(numpy.floor(east).astype(int), 0, heights.shape[1] - 2)
     j = numpy.clip(numpy.floor(south).astype(int), 0, heights.shape[0] - 2)
     u, v = east - i, south - j
@@ -69,7 +69,7 @@ def height_at(heights, east, south):
 
 
 def check_water(path, cell, expected, whole):
-    """Rivers lie on the ground, lakes and the sea are level and where the ground is lower; everything faces up."""
+    """Checks that rivers are on the ground, lakes and the sea are level and above their bed, and all faces point up."""
     name = path.name
     scene = trimesh.load_scene(path, process=False)
     parts = {node: scene.geometry[scene.graph[node][1]] for node in scene.graph.nodes_geometry}
@@ -102,7 +102,7 @@ def check_water(path, cell, expected, whole):
             lit = (places[faces][:, :, 1].max(axis=1) > low).mean()
             checks.that(f"{name}: {part} cover lower ground", lit > (0.9 if part == "sea" else 0.5), f"({lit:.2%})")
     if whole is not None:
-        # Of the squares between samples of which every corner is below the sea, all are covered, and none that has none.
+        # All squares with every corner below the sea are covered, and none without such a corner.
         mesh = parts["sea"]
         covered = numpy.zeros((heights.shape[0] - 1, heights.shape[1] - 1), bool)
         box = numpy.rint(mesh.vertices.reshape(-1, 4, 3)[:, :, [0, 2]] / cell).astype(int)
@@ -114,7 +114,7 @@ def check_water(path, cell, expected, whole):
 
 
 def check_places(name, places, heights, cell=CELL):
-    """Every place is a sample of the grid, its height equal to the last bit; returns which samples are there."""
+    """Checks that every vertex is a sample of the grid with the same height bit for bit; returns the samples that are used."""
     column = numpy.rint(places[:, 0] / cell).astype(int)
     row = numpy.rint(places[:, 2] / cell).astype(int)
     off = max(numpy.abs(places[:, 0] - column * cell).max(), numpy.abs(places[:, 2] - row * cell).max())
@@ -128,7 +128,7 @@ def check_places(name, places, heights, cell=CELL):
 
 
 def check_faces(name, places, faces, heights, cell=CELL):
-    """Counter-clockwise from above, and over the whole ground once."""
+    """Checks that triangles are counter-clockwise from above and cover the ground exactly once."""
     a, b, c = (places[faces[:, k]].astype("f8") for k in range(3))
     normal = numpy.cross(b - a, c - a)
     checks.that(f"{name}: all triangles face up", bool((normal[:, 1] > 0).all()))
@@ -137,7 +137,7 @@ def check_faces(name, places, faces, heights, cell=CELL):
 
 
 def check_normals(name, normals, places, heights, cell):
-    """Normals lean as the samples do: within a few degrees of the central differences."""
+    """Checks that normals are within a few degrees of the central differences of the samples."""
     south, east = numpy.gradient(heights.astype("f8"), cell)
     column, row = numpy.rint(places[:, 0] / cell).astype(int), numpy.rint(places[:, 2] / cell).astype(int)
     inner = (column > 0) & (row > 0) & (column < heights.shape[1] - 1) & (row < heights.shape[0] - 1)
@@ -152,7 +152,7 @@ high = numpy.unravel_index(heights.argmax(), heights.shape)
 checks.that("the bump is in the north-east", high[0] < 24 and high[1] > 32, f"(row and column {high})")
 full = 2 * (heights.shape[0] - 1) * (heights.shape[1] - 1)
 
-# The same land in the formats that hold places as they are.
+# The same terrain in the formats with absolute positions.
 for kind, options in (("full", ()), ("adaptive", ADAPTIVE)):
     for extension, axes in (("glb", "y up"), ("obj", "y up"), ("ply", "z up")):
         path = export(BUMP, f"bump-{kind}.{extension}", *options)
@@ -172,7 +172,7 @@ for kind, options in (("full", ()), ("adaptive", ADAPTIVE)):
             checks.that(f"{path.name}: meshio reads the places that trimesh reads", same)
             checks.that(f"{path.name}: and the triangles", numpy.array_equal(other.cells_dict["triangle"], mesh.faces))
         if kind == "adaptive":
-            # The surface at every sample, by the triangle over it.
+            # The surface at every sample, from the triangle that contains it.
             flat = numpy.stack([places[:, 0], places[:, 2]], axis=1)
             worst = 0.0
             for corners in mesh.faces:
@@ -189,7 +189,7 @@ for kind, options in (("full", ()), ("adaptive", ADAPTIVE)):
                 worst = max(worst, float(off.max()))
             checks.that(f"{path.name}: no sample is further than 4 m", worst <= 4 + 1e-6, f"({worst})")
 
-# A picture lies on it: the colour at a corner is that of its pixel.
+# With a texture, the colour at a vertex is that of its pixel.
 picture = trimesh.load_scene(WORK / "bump-full.glb", process=False).geometry.values()
 material = next(iter(picture)).visual.material
 checks.equal("bump-full.glb: its picture has a pixel for each sample",
@@ -204,7 +204,7 @@ place = numpy.stack([mesh.visual.uv[:, 0] * pixels.shape[1], (1 - mesh.visual.uv
 off = float(numpy.abs(place - mesh.vertices[:, [0, 2]] / CELL).max())
 checks.that("bump-adaptive.obj: texture coordinates are the middles of pixels", off < 1e-3, f"(off by {off})")
 
-# Every kind of .glb passes the validator without an error or a warning.
+# Every kind of .glb passes the validator without errors and warnings.
 kinds = {
     "texture": (), "vertex": ("--color", "vertex"), "none": ("--color", "none"), "lods": ("--lods", "4"),
     "adaptive-lods": ("--lods", "3", *ADAPTIVE), "surfaces": ("--surfaces", "--lods", "3"), "exaggerated": ("--exaggeration", "2.5", "--height-curve", "0:0,0.5:0.2,1:1"),
@@ -216,7 +216,7 @@ for report in validate(*paths):
     checks.equal(f"{name}: errors and warnings", (report["numErrors"], report["numWarnings"]), (0, 0))
     if report["numErrors"] or report["numWarnings"]:
         print(json.dumps(report["messages"], indent=1))
-# Rivers, lakes and the sea lie on the ground.
+# Rivers, lakes and the sea are on the ground.
 wet = {
     "alpine": (120.0, ["rivers", "lakes"], None, ("--size", "512")),
     "island": (40.0, ["rivers", "lakes", "sea"], 0.0, ("--size", "512")),
@@ -235,7 +235,7 @@ for report in validate(*watery):
 place = load(WORK / "alpine-vertex.glb")[1][:3, 3]
 checks.equal("alpine: the node stands where the window begins", [float(x) for x in place], [200 * 60.0, 0.0, 300 * 60.0])
 
-# The normal map of few triangles, read as a viewer does, gives the normals of all samples: those of the full grid.
+# The normal map of an adaptive mesh, read as a viewer does, gives the normals of the full grid.
 few, all_of_it = (load(WORK / f"bump-{kind}.glb")[0] for kind in ("normals", "full"))
 texels = numpy.asarray(few.visual.material.normalTexture).astype("f8") / 127.5 - 1.0
 checks.equal("bump-normals.glb: its normal map has a pixel for each sample", texels.shape, (*heights.shape, 3))
@@ -268,7 +268,7 @@ for corners in few.faces:
 checks.that("bump-normals.glb: normals as a viewer makes them are those of all samples", worst > 0.9995, f"(cosine {worst})")
 checks.that("bump-normals.glb: without its normal map they are not", plain < 0.999, f"(cosine {plain})")
 
-# The validator is shown to fail: an index beyond the corners, and a file cut short.
+# The validator must reject an index out of range and a truncated file.
 whole = (WORK / "bump-full.glb").read_bytes()
 json_length = int.from_bytes(whole[12:16], "little")
 document = json.loads(whole[20:20 + json_length])
@@ -285,7 +285,7 @@ column, row = (numpy.rint(mesh.vertices[:, k] / CELL).astype(int) for k in (0, 2
 different = mesh.vertices[:, 1].astype("f4").view("u4") != bent[row, column].view("u4")
 checks.equal("a height that differs is noticed", int(different.sum()), 1)
 
-# Solids are closed, face outwards, and need no mending.
+# Solids are closed, face outwards, and need no repair.
 nothing = {"Degenerate facets": 0, "Edges fixed": 0, "Facets removed": 0, "Facets added": 0, "Facets reversed": 0,
            "Backwards edges": 0, "Normals fixed": 0, "parts": 1, "disconnected": 0}
 for kind, options in (("full", ()), ("adaptive", ADAPTIVE)):
@@ -295,7 +295,7 @@ for kind, options in (("full", ()), ("adaptive", ADAPTIVE)):
     checks.that(f"{path.name}: wound the same way", bool(solid.is_winding_consistent))
     scale = 120 / (CELL * (heights.shape[1] - 1))
     sides = [120.0, CELL * (heights.shape[0] - 1) * scale, 2 + float(numpy.ptp(heights)) * scale]
-    # The highest and the lowest sample may both be off by the error of an adaptive mesh.
+    # In an adaptive mesh both the highest and the lowest sample may be off by the allowed error.
     off = numpy.abs(solid.bounds - [[0, 0, 0], sides])
     most = [1e-3, 1e-3, 1e-3 if kind == "full" else 8 * scale]
     checks.that(f"{path.name}: its size", bool((off <= most).all()), f"({solid.bounds})")

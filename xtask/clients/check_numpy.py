@@ -1,4 +1,4 @@
-"""NumPy reads exported heights: the same numbers as the summary's, the same samples as the program's own windows."""
+"""Checks .npy exports with NumPy: the numbers of the summary, the samples of the program's own windows."""
 
 import hashlib
 import io
@@ -21,20 +21,20 @@ for preset in ("alpine", "island"):
     checks.that(f"{preset}: finite", bool(numpy.isfinite(heights).all()))
     digest = hashlib.sha256(heights.astype("<f4").tobytes(order="C")).hexdigest()
     checks.equal(f"{preset}: sha256", digest, summary["sha256"])
-    # The summary writes an f32 in as few digits as tell it from its neighbours.
+    # The summary writes an f32 with the fewest digits that identify it.
     checks.equal(f"{preset}: lowest", heights.min(), numpy.float32(summary["height_min"]))
     checks.equal(f"{preset}: highest", heights.max(), numpy.float32(summary["height_max"]))
     span = summary["height_max"] - summary["height_min"]
     checks.near(f"{preset}: mean", float(heights.mean(dtype="f8")), summary["height_mean"], 1e-6 * span)
 
-    # A window is the crop of the whole, bit for bit; x counts columns, y counts rows.
+    # A window equals the same crop of the whole raster bit for bit; x counts columns, y counts rows.
     x, y, w, h = 31, 77, 90, 41
     part = numpy.load(export(preset, "part.npy", "--cell", cell, "--window", f"{x},{y},{w},{h}"), allow_pickle=False)
     checks.that(f"{preset}: a window is a crop", numpy.array_equal(part, heights[y : y + h, x : x + w]))
     piped = numpy.load(io.BytesIO(orogen("export", preset, "-o", "-", "--cell", cell, "--window", f"{x},{y},{w},{h}")))
     checks.that(f"{preset}: a pipe gets the same bytes", numpy.array_equal(piped, part))
 
-# A plane that rises 3 m a metre to the east and falls 2 m a metre to the south: no mirror and no turn leaves it as it is.
+# A plane that rises 3 m per metre to the east and falls 2 m per metre to the south: every mirror image and rotation differs.
 plane = numpy.load(export(ROOT / "xtask/clients/plane.toml", "plane.npy", "--window", "0,0,40,30"), allow_pickle=False)
 rows, columns = numpy.mgrid[0:30, 0:40]
 checks.equal("plane: shape", plane.shape, (30, 40))

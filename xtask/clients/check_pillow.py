@@ -1,4 +1,4 @@
-"""Pillow reads the pictures: grey values stand for the heights the summary says, sea is where the heights are below it; animations move."""
+"""Checks pictures with Pillow: grey values match the heights of the summary, water covers heights below the sea, animations move."""
 
 import numpy
 from orogen import ROOT, WORK, Checks, export, generate, orogen
@@ -9,7 +9,7 @@ SIZE = 256
 
 
 def pixels(path, mode, shape):
-    """The picture as an array, if it is of this kind and size."""
+    """Returns the picture as an array if it has this mode and size."""
     with Image.open(path) as image:
         image.load()
         checks.equal(f"{path.name}: format", image.format, "PNG")
@@ -19,12 +19,12 @@ def pixels(path, mode, shape):
 
 
 def check_greys(name, grey, top, heights, summary):
-    """Grey 0 is height_min and the top grey is height_max; between them within half a step."""
+    """Grey 0 is height_min and the maximum grey is height_max; values in between are within half a step."""
     low, span = summary["height_min"], summary["height_max"] - summary["height_min"]
     step = span / top
     checks.equal(f"{name}: black and white are both there", (int(grey.min()), int(grey.max())), (0, top))
     off = float(numpy.abs(low + grey.astype("f8") * step - heights).max())
-    # The bound is half a step and what f32 heights of this size are rounded by.
+    # The tolerance is half a step plus the rounding of f32 heights of this magnitude.
     bound = 0.5 * step + 1e-6 * max(abs(low), abs(low + span))
     checks.that(f"{name}: heights within half a step", off <= bound, f"(off by {off}, allowed {bound})")
 
@@ -42,7 +42,7 @@ for preset in ("alpine", "island"):
     check_greys(f"{preset} height8.png", coarse, 255, heights, summary)
     colours = pixels(folder / "map.png", "RGB", shape).astype("i4")
 
-    # Seen as blue: more blue than red. At the shore the two may touch, so one part in fifty is let pass.
+    # Water is where blue is above red. Up to 2 % of the pixels may differ at the shore.
     blue = colours[..., 2] > colours[..., 0]
     sea = float(blue.mean())
     checks.near(f"{preset} map.png: sea and land are told apart", 1.0 - sea, summary["land_share"], 0.02)
@@ -51,7 +51,7 @@ for preset in ("alpine", "island"):
     likeness = float(numpy.corrcoef(exported.ravel(), heights.ravel())[0, 1])
     checks.that(f"{preset}: an exported PNG shows the heights", likeness > 0.9999, f"(correlation {likeness})")
 
-# A plane that rises to the east and falls to the south: the brightest corner is the top right, the darkest the bottom left.
+# A plane that rises to the east and falls to the south: the top right corner is the brightest, the bottom left the darkest.
 folder, summary = generate(ROOT / "xtask/clients/plane.toml")
 shape = (summary["height"], summary["width"])
 for name, mode in (("height.png", "I;16"), ("height8.png", "L")):
@@ -62,7 +62,7 @@ for name, mode in (("height.png", "I;16"), ("height8.png", "L")):
     checks.that(f"plane {name}: falls south", bool((numpy.diff(grey.astype("i4"), axis=0) < 0).all()))
 
 def frames(path):
-    """Every frame as an array, and how long each is shown."""
+    """Returns every frame as an array, and its duration."""
     with Image.open(path) as image:
         pictures, delays = [], []
         for frame in range(image.n_frames):
@@ -73,14 +73,14 @@ def frames(path):
 
 
 def refused(path):
-    """Whether Pillow complains of the file, or finds other frames in it than there were."""
+    """Checks that Pillow rejects the file or reads other frames."""
     try:
         return len(frames(path)[0]) != FRAMES
     except (OSError, SyntaxError, EOFError, ValueError, IndexError):
         return True
 
 
-# Moving pictures: an APNG holds the very bytes of each frame; a GIF shows them in 255 colours.
+# Animations: an APNG contains exactly the bytes of each frame; a GIF approximates them with 255 colours.
 FRAMES, DELAY, WIDE, HIGH = 6, 80, 160, 90
 turn = ("render", "island", "--cell", 160, "--size", f"{WIDE}x{HIGH}", "--turntable", FRAMES, "--delay", DELAY, "--quiet", "-o")
 orogen(*turn, WORK / "turn-%02d.png")
@@ -95,7 +95,7 @@ for name in ("turn.png", "turn.gif"):
     off = max(float(numpy.abs(a - b).mean()) for a, b in zip(pictures, single))
     checks.that(f"{name}: frames as they are by themselves", off <= (0 if name.endswith("png") else 6), f"(off by {off})")
     checks.that(f"{name}: frames differ", all((a != b).any() for a, b in zip(pictures, pictures[1:])))
-    # What is damaged has to be noticed.
+    # Damage must be detected.
     whole = (WORK / name).read_bytes()
     for what, damaged in (("cut short", whole[: len(whole) // 2]), ("of another kind", b"X" + whole[1:])):
         (WORK / f"damaged-{name}").write_bytes(damaged)

@@ -1,4 +1,4 @@
-"""rasterio reads exported and built GeoTIFFs: the samples of the .npy, at their places; rio-cogeo finds their layout fit for the cloud."""
+"""Checks GeoTIFFs with rasterio: the samples of the .npy at their positions; rio-cogeo accepts them as Cloud Optimized GeoTIFFs."""
 
 import logging
 import subprocess
@@ -15,7 +15,7 @@ from rio_cogeo.cogeo import cog_validate
 checks = Checks()
 RIO = Path(sys.executable).with_name("rio")
 
-# What GDAL grumbles about comes as log records, what rasterio and PROJ do as Python warnings: both must stay silent.
+# GDAL reports problems as log records, rasterio and PROJ as Python warnings: neither may occur.
 grumbles = []
 listener = logging.Handler(level=logging.WARNING)
 listener.emit = lambda record: grumbles.append(record.getMessage())
@@ -24,18 +24,18 @@ warnings.simplefilter("error")
 
 
 def same_bits(a, b):
-    """Equal to the last bit, of zeros and NaNs too."""
+    """Compares bit for bit, including zeros and NaNs."""
     return a.dtype == b.dtype and a.shape == b.shape and numpy.array_equal(a.view("u4"), b.view("u4"))
 
 
 def both(recipe, name, cell, window):
-    """One window as GeoTIFF and as an array."""
+    """Returns one window as GeoTIFF and as an array."""
     options = ("--cell", cell, "--window", ",".join(map(str, window)))
     return export(recipe, f"{name}.tif", *options), numpy.load(export(recipe, f"{name}.npy", *options))
 
 
 def factors(width, height, tile):
-    """The decimations of overviews that halve, rounded up, down to one tile."""
+    """The decimation factors of overviews: powers of two, sizes rounded up, down to one tile."""
     found, size = [], (width, height)
     while max(size) > tile:
         size = tuple((side + 1) // 2 for side in size)
@@ -43,7 +43,7 @@ def factors(width, height, tile):
     return found
 
 
-# Odd sides, whole tiles, an overview that would be just one tile of 512 wide, less than a tile, a single sample.
+# Odd sizes, whole tiles, an overview of exactly one 512-wide tile, less than a tile, a single sample.
 for name, recipe, cell, window, tile in [
     ("alpine", "alpine", 30, (31, 77, 1237, 899), 512),
     ("wide", "alpine", 30, (0, 0, 1536, 1024), 512),
@@ -62,7 +62,7 @@ for name, recipe, cell, window, tile in [
         checks.equal(f"{name}: layout", tiff.tags(ns="IMAGE_STRUCTURE").get("LAYOUT"), "COG")
         checks.equal(f"{name}: no value stands for none", tiff.nodata, None)
         checks.that(f"{name}: a system of its own, in metres", "metre" in tiff.crs.to_wkt() and not tiff.crs.to_epsg())
-        # The middle of a pixel is where its sample stands: x east, y south of the origin.
+        # The centre of a pixel is the position of its sample: x east, y south of the origin.
         for row, column in [(0, 0), (height - 1, 0), (0, width - 1), (height // 2, width // 3)]:
             place = tuple(map(float, tiff.xy(row, column)))
             checks.equal(f"{name}: place of {column}, {row}", place, ((x + column) * cell, -(y + row) * cell))
@@ -72,7 +72,7 @@ for name, recipe, cell, window, tile in [
 said = subprocess.run([RIO, "cogeo", "validate", "--strict", WORK / "alpine.tif"], capture_output=True, text=True)
 checks.that("rio cogeo validate --strict", said.stdout.strip().endswith("is a valid cloud optimized GeoTIFF"), said)
 
-# Invented worlds on a map: where they were laid, and parts of them by their pixels' edges, as gdal_translate -projwin takes them.
+# Generated worlds on a map: their position, and windows given by pixel edges as for gdal_translate -projwin.
 for code, origin in [(32632, (600000, 5200000)), (2264, (1500000, 500000)), (2056, (2600000, 1200000)), (4326, (11, 47))]:
     place = ("--crs", f"EPSG:{code}", "--origin", ",".join(map(str, origin)))
     path = export("hills", f"placed-{code}.tif", "--cell", 20, "--window", "0,0,200,150", *place)
@@ -81,13 +81,13 @@ for code, origin in [(32632, (600000, 5200000)), (2264, (1500000, 500000)), (205
         checks.equal(f"EPSG:{code}: the place", tuple(map(float, tiff.xy(0, 0))), tuple(map(float, origin)))
         (left, top), (right, bottom) = tiff.transform @ (31, 17), tiff.transform @ (131, 77)
         expected = tiff.read(1, window=((17, 77), (31, 131)))
-    # Degrees come back as square metres, on another lattice.
+    # Degrees are resampled to square metres on another grid.
     if code != 4326:
         part = numpy.load(export(path, f"placed-{code}.npy", "--projwin", left, top, right, bottom))
         checks.that(f"EPSG:{code}: the part that -projwin takes", same_bits(part, expected))
 
-# A plane that rises 3 m a metre to the east and falls 2 m a metre to the south, as its northing does: 3 east + 2 north, wherever
-# one asks. Mirrored, turned or moved by half a cell it would be another.
+# A plane that rises 3 m per metre to the east and falls 2 m per metre to the south: 3 east + 2 north at every point. Mirrored,
+# rotated or shifted by half a cell it would differ.
 PLANE, CELL = ROOT / "xtask/clients/plane.toml", 0.05
 for name, window in [("even", (24, 8, 1216, 896)), ("odd", (31, 15, 1203, 901))]:
     path, heights = both(PLANE, f"plane-{name}", CELL, window)
@@ -104,11 +104,11 @@ for name, window in [("even", (24, 8, 1216, 896)), ("odd", (31, 15, 1203, 901))]
             place = coarse.transform
             east, north = place.c + (columns + 0.5) * place.a, place.f + (rows + 0.5) * place.e
             worst = float(numpy.abs(coarse.read(1) - (3.0 * east + 2.0 * north)).max())
-            # A quarter of a cell of the full raster, where sides are odd; half of one is what every second sample would be off.
+            # A quarter of a cell of the full raster, for odd sizes; plain decimation by two would be off by half a cell.
             most = 1e-3 if name == "even" else 0.25 * CELL
             checks.that(f"plane {name}, overview {level}: in its place", worst <= most, f"(off by {worst}, allowed {most})")
 
-# What is built tile by tile is the same file, and one too large to be exported at once is read the same way.
+# `build` writes the same file tile by tile, and a file too large for `export` reads the same way.
 for name, recipe, options in [
     ("built", "alpine", ("--cell", 30, "--window", "31,77,1237,899")),
     ("built-plane", PLANE, ("--cell", CELL, "--window", "31,15,1203,901")),
@@ -126,7 +126,7 @@ with rasterio.open(WORK / "built-plane.tif") as tiff:
 
 checks.equal("nothing was grumbled about", grumbles, [])
 
-# It can fail: a flipped byte in a tile, half a file, and a layout that is not for the cloud.
+# The checks must fail: a flipped byte in a tile, half a file, and a layout that is not cloud-optimized.
 path, heights = WORK / "alpine.tif", numpy.load(WORK / "alpine.npy")
 whole = path.read_bytes()
 flipped = bytearray(whole)

@@ -1,4 +1,4 @@
-"""gdaldem shades and measures the ground as orogen does: hillshade within a grey level, slope and aspect in degrees."""
+"""Compares hillshade (within one grey level), slope and aspect (degrees) with gdaldem."""
 
 import subprocess
 import warnings
@@ -13,7 +13,7 @@ WINDOW = ["--window", "200,300,500,400", "-q"]
 
 
 def gdaldem(mode, source, *options):
-    """What gdaldem makes of a file, without the border that it makes up otherwise than orogen."""
+    """Returns the output of gdaldem for a file without the border, where the extrapolation differs."""
     path = WORK / f"{mode}.tif"
     subprocess.run(["gdaldem", mode, source, path, *options], check=True, capture_output=True)
     with rasterio.open(path) as raster:
@@ -21,13 +21,13 @@ def gdaldem(mode, source, *options):
 
 
 def ours(recipe, layer):
-    """A layer of orogen without the same border."""
+    """Returns a layer of orogen without the same border."""
     return numpy.load(export(recipe, f"{recipe}-{layer}.npy", "--layer", layer, *WINDOW))[1:-1, 1:-1].astype("f8")
 
 
 for recipe in ["alpine", "canyon", "classic"]:
     heights = export(recipe, f"{recipe}.tif", *WINDOW)
-    # gdaldem's greys: 1 without light, 255 in full light.
+    # Greys of gdaldem: 1 without light, 255 in full light.
     greys = 1 + 254 * ours(recipe, "hillshade")
     off = numpy.abs(greys - gdaldem("hillshade", heights))
     checks.that(f"{recipe}: hillshade within a grey level", off.max() <= 1, off.max())
@@ -38,7 +38,7 @@ for recipe in ["alpine", "canyon", "classic"]:
     off = numpy.abs(ours(recipe, "slope") - slope)
     checks.that(f"{recipe}: slope in degrees", off.max() < 0.01, off.max())
     off = numpy.abs(ours(recipe, "aspect") - gdaldem("aspect", heights))
-    # Flat ground faces nowhere, and 0 degrees are 360.
+    # Flat ground has no aspect, and 0 degrees equal 360.
     off = numpy.minimum(off, 360 - off)[slope > 0.5]
     checks.that(f"{recipe}: aspect in degrees", off.max() < 0.05, off.max())
 

@@ -1,4 +1,4 @@
-"""taplo checks every recipe against the JSON Schema, as an editor would; recipes broken in known ways are refused."""
+"""Checks the JSON Schema of recipes with taplo: it accepts every recipe and rejects recipes with known errors."""
 
 import re
 import subprocess
@@ -12,12 +12,12 @@ SCHEMA = RECIPES / "orogen.schema.json"
 
 
 def lint(paths, *options):
-    """What taplo finds wrong, by path. One start of it takes seconds, so it is asked about many files at once."""
+    """Returns taplo's errors by path. taplo takes seconds to start, so one call checks many files."""
     line = [NODE_BIN / "taplo", "lint", "--no-auto-config", "--colors", "never", *options, *paths]
     done = subprocess.run(line, cwd=WORK, capture_output=True, text=True, stdin=subprocess.DEVNULL)
     wrong, said = {}, []
     for text in done.stderr.splitlines():
-        # The complaints about a file come first, then the line that names it.
+        # The errors of a file precede the line with its name.
         named = re.match(r'ERROR .*invalid file error=(.*) path="(.*)"', text)
         if named:
             wrong[named[2]] = "; ".join(dict.fromkeys(said + [named[1]]))
@@ -30,7 +30,7 @@ def lint(paths, *options):
 
 
 def lint_by_schema(*paths):
-    """The same, whatever schema the recipes name themselves."""
+    """Returns the same, regardless of the schema that the recipes name."""
     return lint(paths, "--schema", SCHEMA.as_uri())
 
 
@@ -41,11 +41,11 @@ for recipe in recipes:
     checks.that(f"{recipe.relative_to(ROOT)}: names the schema", "#:schema" in recipe.read_text().split("\n", 1)[0])
 checks.equal("recipes that their own schema refuses", lint(recipes), {})
 
-# What a run writes is a recipe too.
+# The recipe in the output of a run is valid too.
 orogen("generate", "alpine", "--size", 64, "-o", WORK / "run", "--quiet")
 checks.equal("recipes that the schema refuses", lint_by_schema(WORK / "run/recipe.toml", *recipes), {})
 
-# Each of these must be refused, by name: a check that accepts everything would have passed all of the above.
+# Each of these must be rejected by name; otherwise the checks above prove nothing.
 sound = (RECIPES / "classic.toml").read_text()
 broken = {
     "a version that does not exist": (sound.replace("orogen = 1", "orogen = 99"), "1 was expected"),

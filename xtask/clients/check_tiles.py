@@ -1,4 +1,4 @@
-"""NumPy and Pillow read built tiles: edges that are shared, one scale for all, and Terrarium heights where a map has them."""
+"""Checks built tiles with NumPy and Pillow: shared edges, one scale for all tiles, and Terrarium heights of worlds with a position."""
 
 import json
 import math
@@ -14,7 +14,7 @@ PLANE = ROOT / "xtask/clients/plane.toml"
 
 
 def numbers(path, kind, side):
-    """The numbers of a tile's file."""
+    """Returns the values of a tile's file."""
     if kind == "png":
         with Image.open(path) as picture:
             checks.equal(f"{path.name}: 16 bits", picture.mode, "I;16")
@@ -23,7 +23,7 @@ def numbers(path, kind, side):
 
 
 def tiles(folder, kind):
-    """The manifest, and the metres and numbers of each tile by its column and row."""
+    """Returns the manifest, and the metres and levels of each tile by column and row."""
     manifest = json.loads((folder / "manifest.json").read_text())
     [layer], side = manifest["layers"], manifest["tile"]["samples"]
     found = {}
@@ -38,7 +38,7 @@ def tiles(folder, kind):
 
 
 def compare(folder, kind, heights, window):
-    """Whether all tiles hold the samples of an array, within half a step, where the manifest puts them."""
+    """Checks that all tiles contain the samples of an array, within half a step, at the positions of the manifest."""
     manifest, layer, found = tiles(folder, kind)
     x, y, width, height = window
     step = manifest["tile"]["step"]
@@ -89,7 +89,7 @@ for kind in ("png", "r16", "r32"):
         worst = float(numpy.abs(metres - expect).max())
         checks.that(f"plane {kind} {tile['column']}, {tile['row']}", worst <= step + 1e-3, f"(off by {worst})")
 
-    # It can fail.
+    # The checks must fail for a changed tile.
     path = folder / f"height_x1_y0.{kind}"
     damaged = bytearray(path.read_bytes())
     damaged[len(damaged) // 2 + (3 if kind == "r32" else 1)] ^= 0x40
@@ -102,7 +102,7 @@ for kind in ("png", "r16", "r32"):
 
 
 def terrarium(path):
-    """The metres of a Terrarium tile."""
+    """Returns the metres of a Terrarium tile."""
     with Image.open(path) as picture:
         checks.equal(f"{path.name}: colours", picture.mode, "RGB")
         red, green, blue = (numpy.array(picture).astype("f8")[..., k] for k in range(3))
@@ -110,7 +110,7 @@ def terrarium(path):
 
 
 def mosaic(folder, zoom):
-    """All tiles of a zoom in one array, and the pixel it begins with on the whole map."""
+    """Returns all tiles of a zoom in one array, and its first pixel on the whole map."""
     there = sorted((int(p.parent.name), int(p.stem), p) for p in (folder / str(zoom)).glob("*/*.png"))
     columns, rows = [[entry[k] for entry in there] for k in (0, 1)]
     left, top = min(columns), min(rows)
@@ -121,7 +121,7 @@ def mosaic(folder, zoom):
 
 
 def on_map(folder, heights, x, y):
-    """The worst difference between an array that begins at sample x, y and the tiles of the deepest zoom."""
+    """Returns the largest difference between an array whose first sample is x, y and the tiles of the deepest zoom."""
     about = json.loads((folder / "tiles.json").read_text())
     pixels, left, top = mosaic(folder, about["maxzoom"])
     middle = 256 * 2 ** (about["maxzoom"] - 1)
@@ -130,7 +130,7 @@ def on_map(folder, heights, x, y):
     return float(numpy.abs(pixels[row : row + height, column : column + width] - heights).max())
 
 
-# At a cell of the map's own.
+# At the map's own cell size.
 ZOOM = 13
 PIXEL = 2 * math.pi * 6378137 / 256 / 2**ZOOM
 window = (100, 200, 500, 300)
@@ -143,7 +143,7 @@ checks.equal("map: encoding", about["encoding"], "terrarium")
 checks.near("map: true to scale", about["map_metres_per_metre"], 1.0, 1e-12)
 worst = on_map(folder, heights, *window[:2])
 checks.that("map: within 1/256 m", worst <= 1 / 256, f"(off by {worst})")
-# Where TileJSON says that the window ends: the sample in the middle of its pixel, half a pixel from the border.
+# The bounds of TileJSON: the sample is at the centre of its pixel, half a pixel from the border.
 west, south, east, north = about["bounds"]
 degrees = 360 / 2**ZOOM / 256
 checks.near("map: west", west, window[0] * degrees, 1e-9)
@@ -151,7 +151,7 @@ checks.near("map: east", east, (window[0] + window[2]) * degrees, 1e-9)
 checks.that("map: the world lies south and east of 0, 0", west > 0 and north < 0)
 checks.near("map: metres to the south", -math.asinh(math.tan(math.radians(north))) * 6378137, window[1] * PIXEL, 1e-3)
 
-# Every zoom below is the mean of the one above, rounded once.
+# Every lower zoom is the mean of the next higher zoom, rounded once.
 exact, left, top = mosaic(folder, ZOOM)
 for zoom in range(ZOOM - 1, about["minzoom"] - 1, -1):
     coarse, coarse_left, coarse_top = mosaic(folder, zoom)
@@ -165,7 +165,7 @@ for zoom in range(ZOOM - 1, about["minzoom"] - 1, -1):
     exact, left, top = whole, coarse_left, coarse_top
 checks.equal("map: one tile in the end", exact.shape, (256, 256))
 
-# The plane, at its own cell: 3 east - 2 south, no mirror, no turn, no shift.
+# The plane at its own cell size: 3 east - 2 south; no mirror image, rotation or shift.
 folder = build(PLANE, "plane-map", "--tiles", "terrarium", "--cell", 0.125)
 rows, columns = numpy.mgrid[0:384, 0:512]
 plane = 3.0 * columns * 0.125 - 2.0 * rows * 0.125
@@ -173,7 +173,7 @@ worst = on_map(folder, plane, 0, 0)
 checks.that("plane on a map", worst <= 1 / 256 + 1e-3, f"(off by {worst})")
 checks.that("plane on a map: a shift would be noticed", on_map(folder, plane[:-1], 0, 1) > 0.1)
 
-# It can fail.
+# The checks must fail for a changed tile.
 [path, *_] = sorted((WORK / "map" / str(ZOOM)).glob("*/*.png"))
 damaged = bytearray(path.read_bytes())
 damaged[len(damaged) // 2] ^= 0x10

@@ -1,4 +1,4 @@
-"""GDAL, SQLite and Shapely read the water: every format alike, areas valid and without gaps, beds that never rise, reaches that join."""
+"""Checks water features with GDAL, SQLite and Shapely: equal in every format, valid areas without gaps, beds that never rise, joined reaches."""
 
 import json
 import sqlite3
@@ -24,13 +24,13 @@ TYPES = {
 
 
 def read(path, layer=None):
-    """The columns of a layer, its geometries and its coordinate system."""
+    """Returns the columns of a layer, its geometries and its coordinate system."""
     meta, _, geometry, values = pyogrio.raw.read(path, layer=layer)
     return dict(zip(meta["fields"], values)), shapely.from_wkb(geometry), meta
 
 
 def rivers_join(name, rivers, lines, lakes, areas, coasts):
-    """What holds of every network."""
+    """Checks the invariants of every network."""
     ids = rivers["id"].astype(int)
     at = {number: k for k, number in enumerate(ids)}
     parts = [shapely.get_coordinates(line, include_z=True) for line in lines]
@@ -71,7 +71,7 @@ def rivers_join(name, rivers, lines, lakes, areas, coasts):
 
 
 def ends(k, downstream, at):
-    """Whether the way down from a reach comes to an end."""
+    """Checks that the path downstream of a reach ends."""
     for _ in range(len(downstream) + 1):
         if numpy.isnan(downstream[k]):
             return True
@@ -80,7 +80,7 @@ def ends(k, downstream, at):
 
 
 def tiles(name, areas, frame, land):
-    """Areas that cover the land and do not overlap."""
+    """Checks that areas cover the land and do not overlap."""
     checks.that(f"{name}: watersheds are valid", shapely.is_valid(areas).all(), shapely.is_valid_reason(areas[~shapely.is_valid(areas)])[:3])
     whole = shapely.union_all(areas)
     checks.near(f"{name}: watersheds do not overlap", shapely.area(areas).sum() / whole.area, 1.0, 1e-9)
@@ -92,7 +92,7 @@ def tiles(name, areas, frame, land):
 
 DEM = WORK / "place.tif"
 export("rolling", DEM.name, "--window", "100,150,260,220")
-# The same ground where it lies on a map.
+# The same terrain with a position on a map.
 with rasterio.open(DEM) as source:
     heights = source.read(1)
 UTM = WORK / "utm.tif"
@@ -104,8 +104,8 @@ step = 30 / 111_195
 with rasterio.open(DEGREES, "w", crs="EPSG:4326", transform=rasterio.transform.from_origin(11, 1, step, step), **profile) as out:
     out.write(heights, 1)
 
-# The last is the least share of banks that rise above their river. No water has eroded the two that have the lowest: their streams run down slopes of noise that no
-# valley has formed in, and cells straight down the steepest descent, not evened out, have as low banks (0.77 of them rise on the island, 0.78 by the lines).
+# The last column is the minimum share of banks above their river. The two lowest are of terrain without erosion: its streams run down slopes of noise without
+# valleys. Paths of steepest descent, not smoothed, have equally low banks (0.77 of them rise on the island, 0.78 with the smoothed lines).
 CASES = [
     ("alpine", "alpine", ["--cell", "120"], None, 0.95),
     ("alpine_part", "alpine", ["--window", "150,210,300,260"], None, 0.95),
@@ -156,13 +156,13 @@ for name, recipe, options, crs, banks in CASES:
     whole, gaps = tiles(name, data["watersheds"][1], box, land)
     if len(data["coast"][1]) == 0:
         checks.equal(f"{name}: watersheds fill the GeoTIFF's extent without a gap", (whole.geom_type, len(gaps), whole.bounds == tuple(shapely.box(*box).bounds)), ("Polygon", 0, True)) if crs is None else checks.equal(f"{name}: no gap", len(gaps), 0)
-    # Summits are samples of the GeoTIFF, the highest of those around them.
+    # Summits are samples of the GeoTIFF, the highest of their neighbourhood.
     summits, points, _ = data["summits"]
     for point, height in zip(points, summits["height"]):
         i, j = int((point.x - box.left) / cell[0]), int((box.top - point.y) / cell[1])
         beside = ground[max(j - 1, 0) : j + 2, max(i - 1, 0) : i + 2]
         checks.that(f"{name}: a summit stands at its height", ground[j, i] == height == beside.max() and point.z == height)
-    # Lines lie in valleys: the middle of a reach is lower than the ground 3 cells to its sides, mostly.
+    # Lines are in valleys: the middle of most reaches is lower than the ground 3 cells to each side.
     lower = sides = 0
     for line in lines:
         part = shapely.get_coordinates(line)
@@ -180,7 +180,7 @@ for name, recipe, options, crs, banks in CASES:
     checks.that(f"{name}: rivers lie in valleys", sides > 0 and lower / sides > banks, f"({lower} of {sides})")
     print(f"{name}: {', '.join(f'{len(data[layer][1])} {layer}' for layer in LAYERS)}; {shores} mouths at shores, {lower / max(sides, 1):.3f} of banks higher")
 
-# All formats hold the same.
+# All formats contain the same features.
 for layer in LAYERS:
     columns, geometries, _ = read(WORK / "island.gpkg", layer)
     for ending in ["geojson", "fgb"]:
@@ -199,14 +199,14 @@ for layer in LAYERS:
             for a, b in zip(columns[field], others[field][order])
         )
         checks.that(f"{layer}.{ending}: the same attributes", list(columns) == [field for field in others] and same)
-    # The indexes find what a search of all finds.
+    # The spatial indexes return the same features as a full scan.
     box = tuple(shapely.total_bounds(geometries[: max(1, len(geometries) // 3)]))
     expect = int(shapely.intersects(shapely.box(*box), geometries).sum())
     for path in [WORK / "island.gpkg", WORK / f"island_{layer}.fgb"]:
         found = pyogrio.raw.read(path, layer=layer, bbox=box)[2]
         checks.that(f"{layer}: {path.suffix} finds what lies in a box", len(found) >= expect > 0, f"({len(found)}, {expect})")
 
-# A coordinate system without an EPSG code is the same in every format: a point of it lies at the same longitude and latitude.
+# A coordinate system without an EPSG code is the same in every format: a point has the same longitude and latitude.
 CUSTOM = rasterio.CRS.from_proj4("+proj=laea +lat_0=47.25 +lon_0=11.5 +x_0=1000 +y_0=2000 +datum=WGS84")
 place = WORK / "custom.tif"
 with rasterio.open(place, "w", crs=CUSTOM, transform=rasterio.transform.from_origin(4000, 9000, 30, 30), **profile) as out:
@@ -218,7 +218,7 @@ for ending in ["gpkg", "fgb", "geojson", "tif"]:
     found = rasterio.warp.transform(crs, "EPSG:4326", [4000], [9000])
     checks.near(f"a system without a code in .{ending}", max(abs(a[0] - b[0]) for a, b in zip(found, expect)), 0.0, 1e-9)
 
-# A file that is cut short is refused, and one in which a river rises is found out.
+# A truncated file must be rejected, and a rising river must be detected.
 whole = (WORK / "island.gpkg").read_bytes()
 damaged = WORK / "damaged.gpkg"
 damaged.write_bytes(whole[: len(whole) // 2])

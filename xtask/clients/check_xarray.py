@@ -1,4 +1,4 @@
-"""xarray and zarr-python read built Zarr groups: the samples of the .npy, at their places."""
+"""Checks Zarr groups with xarray and zarr-python: the samples of the .npy at their positions."""
 
 import warnings
 
@@ -12,12 +12,12 @@ warnings.simplefilter("error")
 
 
 def same_bits(a, b):
-    """Equal to the last bit, of zeros and NaNs too."""
+    """Compares bit for bit, including zeros and NaNs."""
     a, b = numpy.ascontiguousarray(a), numpy.ascontiguousarray(b)
     return a.dtype == b.dtype and a.shape == b.shape and numpy.array_equal(a.view("u4"), b.view("u4"))
 
 
-# Odd sides, whole chunks, less than a chunk, a single sample.
+# Odd sizes, whole chunks, less than a chunk, a single sample.
 for name, recipe, cell, window, tile in [
     ("alpine", "alpine", 30, (31, 77, 1237, 899), 512),
     ("whole", "alpine", 30, (0, 0, 512, 256), 128),
@@ -51,14 +51,14 @@ with xarray.open_zarr(path) as group:
     heights = numpy.load(export("alpine", "layers.npy", *options))
     checks.that("layers: bit-equal", same_bits(group["height"].values, heights))
 
-# A plane that rises 3 m a metre to the east and falls 2 m a metre to the south: 3 east + 2 north, wherever one asks.
+# A plane that rises 3 m per metre to the east and falls 2 m per metre to the south: 3 east + 2 north at every point.
 path = build(ROOT / "xtask/clients/plane.toml", "plane.zarr", "--tile", 16)
 with xarray.open_zarr(path) as group:
     for east, north in [(0.0, 0.0), (50.0, -1.0), (2.0, -40.0), (63.0, -47.0)]:
         value = float(group["height"].sel(x=east, y=north))
         checks.near(f"plane at {east}, {north}", value, 3.0 * east + 2.0 * north, 1e-3)
 
-# It can fail: a flipped byte in a chunk, half a chunk, a chunk that is gone.
+# The checks must fail: a flipped byte in a chunk, half a chunk, a missing chunk.
 chunk = WORK / "alpine.zarr/height/c/0/1"
 heights, whole = numpy.load(WORK / "alpine.npy"), chunk.read_bytes()
 flipped = bytearray(whole)
@@ -74,7 +74,7 @@ for name, damaged in [("flipped", bytes(flipped)), ("half", whole[: len(whole) /
         found = False
     checks.that(f"{name}: noticed", not found)
 
-# And it is mended.
+# The repaired group is read again.
 window = ("--cell", 30, "--window", "31,77,1237,899", "--tile", 512)
 build("alpine", "alpine.zarr", *window, "--resume")
 with xarray.open_zarr(WORK / "alpine.zarr") as group:

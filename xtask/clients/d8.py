@@ -1,15 +1,15 @@
-"""Water that flows from cell to cell by D8 directions, in NumPy: areas, ways downstream, and which of them a map knows wholly."""
+"""D8 flow routing in NumPy: areas, downstream paths, and the cells whose result the map determines."""
 
 import heapq
 
 import numpy
 
-# The row and column that each of ESRI's directions leads to.
+# The row and column offset of each ESRI direction.
 STEPS = {1: (0, 1), 2: (1, 1), 4: (1, 0), 8: (1, -1), 16: (0, -1), 32: (-1, -1), 64: (-1, 0), 128: (-1, 1)}
 
 
 def receivers(codes):
-    """The cell that each drains to by its ESRI direction, and how many cells away that is; itself where water leaves the map."""
+    """Returns the cell that each cell drains to by its ESRI direction, and its distance in cells; the cell itself where water leaves the map."""
     rows, columns = codes.shape
     index = numpy.arange(rows * columns).reshape(rows, columns)
     to, length = index.copy(), numpy.zeros(codes.shape)
@@ -23,7 +23,7 @@ def receivers(codes):
 
 
 def accumulated(codes):
-    """How many cells drain through each, itself included."""
+    """Returns the number of cells that drain through each cell, itself included."""
     to, _ = receivers(codes)
     waiting = numpy.bincount(to[to != numpy.arange(to.size)], minlength=to.size).tolist()
     to, count = to.tolist(), [1] * to.size
@@ -39,7 +39,7 @@ def accumulated(codes):
 
 
 def below_border(codes):
-    """The cells that water from the map's outermost cells reaches, and so water from beyond the map may reach."""
+    """Returns the cells downstream of the map's outermost cells, which may receive water from outside the map."""
     to, _ = receivers(codes)
     reached = numpy.zeros(codes.shape, bool)
     reached[[0, -1]] = reached[:, [0, -1]] = True
@@ -53,16 +53,16 @@ def below_border(codes):
 
 
 def downstream(codes, streams):
-    """The stream cell that each first meets (-1 where it meets none), the way there in cells, and whether the map knows that way wholly.
+    """Returns each cell's first stream cell downstream (-1 if none), its distance in cells, and whether the map determines the path.
 
-    It does unless there is a cell on the way that is no stream by the map's own water but may be one with water from beyond.
+    The path is not determined if a cell on it is no stream with the map's own water but may be one with water from outside.
     """
     to, length = receivers(codes)
     unknown = (below_border(codes) & ~streams).ravel()
     streams = streams.ravel()
     to[streams] = numpy.flatnonzero(streams)
     length[streams] = 0
-    # Twice as far each time.
+    # Pointer doubling.
     while not (to[to] == to).all():
         length, unknown, to = length + length[to], unknown | unknown[to], to[to]
     unknown |= unknown[to]
@@ -71,7 +71,7 @@ def downstream(codes, streams):
 
 
 def flooded(z, step=0.0, sea=0.0):
-    """The heights with depressions filled: Priority-Flood from the border and the sea, rising by at least a step per cell."""
+    """Returns the heights with depressions filled: Priority-Flood from the border and the sea with a minimum step per cell."""
     rows, columns = z.shape
     heights, level = z.tolist(), [[None] * columns for _ in range(rows)]
     border = [(y, x) for y in range(rows) for x in range(columns) if y in (0, rows - 1) or x in (0, columns - 1) or z[y, x] <= sea]
@@ -90,7 +90,7 @@ def flooded(z, step=0.0, sea=0.0):
 
 
 def torn(z):
-    """The inner cells whose two steepest ways down are equally steep, or nearly so, and the cells around them."""
+    """Returns the inner cells whose two steepest directions are (almost) equally steep, and the cells around them."""
     slopes = [
         (z[1:-1, 1:-1] - z[1 + down : z.shape[0] - 1 + down, 1 + right : z.shape[1] - 1 + right]) / numpy.hypot(down, right)
         for down, right in STEPS.values()
@@ -103,6 +103,6 @@ def torn(z):
 
 
 def to_border(shape):
-    """How many cells each lies from the nearest cell of the map's border."""
+    """Returns the distance of each cell from the nearest border cell, in cells."""
     rows, columns = (numpy.minimum(numpy.arange(size), size - 1 - numpy.arange(size)) for size in shape)
     return numpy.minimum(rows[:, None], columns[None, :])

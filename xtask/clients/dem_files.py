@@ -1,4 +1,4 @@
-"""Files of heights as other programs write them: one formula in every kind that orogen reads, and some that it must refuse."""
+"""Writes test files of heights as other programs do: one formula in every kind that orogen reads, and some that it must reject."""
 
 import shutil
 from pathlib import Path
@@ -13,13 +13,13 @@ HOLE = (5, 3)  # column, row
 
 
 def heights():
-    """Asymmetric in every way, within 8 to 108 so that eight bits hold them."""
+    """An asymmetric formula with values from 8 to 108, which fit into eight bits."""
     i, j = numpy.meshgrid(numpy.arange(WIDTH), numpy.arange(HEIGHT))
     return 30 + 2 * i - j + i * j % 7
 
 
 def write(path, dtype, nodata=None, crs="EPSG:32632", transform=None, add=0.0, bands=1, point=False, **options):
-    """Writes the formula, plus `add`, with a hole where there is a value for it."""
+    """Writes the formula plus `add`, with a hole if a nodata value is given."""
     data = (heights() + add).astype(dtype)
     if nodata is not None:
         data[HOLE[1], HOLE[0]] = nodata
@@ -34,7 +34,7 @@ def write(path, dtype, nodata=None, crs="EPSG:32632", transform=None, add=0.0, b
 
 
 def several_bands(path, dtype, **options):
-    """Three bands: the formula, the formula and 1000, and the formula turned about."""
+    """Writes three bands: the formula, the formula plus 1000, and the formula flipped."""
     bands = [heights(), heights() + 1000, heights()[::-1, ::-1]]
     profile = {"driver": "GTiff", "width": WIDTH, "height": HEIGHT, "count": 3, "dtype": dtype, "crs": "EPSG:32632"}
     with rasterio.open(path, "w", transform=from_origin(500000, 5200000, 30, 30), **profile, **options) as file:
@@ -46,7 +46,7 @@ TILES = {"tiled": True, "blockxsize": 16, "blockysize": 16}
 
 
 def geotiffs(folder):
-    """Every kind of GeoTIFF that is read: name, type, what is added to the formula."""
+    """Writes every kind of GeoTIFF that is read; returns name, type and offset of the formula."""
     kinds = [
         ("f32-strips", "float32", 0.25, {}),
         ("f32-tiles-deflate-p3", "float32", 0.25, {**TILES, "compress": "deflate", "predictor": 3}),
@@ -84,7 +84,7 @@ def geotiffs(folder):
 
 
 def odd_ones(folder):
-    """GeoTIFFs that lie otherwise, or are not to be read."""
+    """Writes GeoTIFFs with other transforms, and some that must be rejected."""
     write(folder / "point.tif", "float32", point=True)
     write(folder / "degrees.tif", "float32", crs="EPSG:4326", transform=from_origin(7, 46, 1 / 1200, 1 / 1200))
     write(folder / "oblong.tif", "float32", transform=from_origin(500000, 5200000, 20, 30))
@@ -95,7 +95,7 @@ def odd_ones(folder):
     several_bands(folder / "bands-pixels-p2.tif", "int16", interleave="pixel", compress="lzw", predictor=2)
     several_bands(folder / "bands-apart.tif", "int16", interleave="band", compress="zstd", predictor=2, **TILES)
     several_bands(folder / "bands-lerc.tif", "float32", interleave="pixel", compress="lerc", MAX_Z_ERROR=0)
-    # Every sample is within half a metre, and some are noise to any packer.
+    # Every sample is within half a metre; some do not compress.
     write(folder / "lossy-lerc.tif", "float32", add=0.25, compress="lerc", MAX_Z_ERROR=0.5, **TILES)
     write(folder / "webp.tif", "uint8", compress="webp", WEBP_LOSSLESS=True, bands=3)
     with rasterio.open(folder / "sparse.tif", "w", driver="GTiff", width=64, height=48, count=1, dtype="float32", nodata=-1,
@@ -111,7 +111,7 @@ def odd_ones(folder):
 
 
 def others(folder):
-    """The other formats."""
+    """Writes the other formats."""
     source = write(folder / "source.tif", "float32", -9999, add=0.25)
     copy(source, folder / "arc.asc", driver="AAIGrid", DECIMAL_PRECISION=3)
     numpy.save(folder / "array.npy", (heights() + 0.25).astype(">f8"))
@@ -128,7 +128,7 @@ def others(folder):
         beside.unlink()
     (folder / "arc.prj").rename(folder / "placed.prj")
     (folder / "placed.asc").write_bytes((folder / "arc.asc").read_bytes())
-    # A picture with a world file and a system, and another with GDAL's own notes.
+    # A picture with a world file and a coordinate system, and another with GDAL's .aux.xml.
     with rasterio.open(folder / "notes.png", "w", driver="PNG", width=WIDTH, height=HEIGHT, count=1, dtype="uint16",
                        crs="EPSG:32632", transform=from_origin(500000, 5200000, 30, 30)) as file:
         file.write(picture, 1)
@@ -141,7 +141,7 @@ def others(folder):
 
 
 def mosaics(folder):
-    """The formula in tiles that overlap, one of them missing, as a folder and as a virtual raster."""
+    """Writes the formula as overlapping tiles with one missing, as a folder and as a virtual raster."""
     tiles = folder / "tiles"
     tiles.mkdir(exist_ok=True)
     data = (heights() + 0.25).astype("float32")
@@ -169,7 +169,7 @@ def mosaics(folder):
 
 
 def everything(folder):
-    """All of them into a folder."""
+    """Writes all files into a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     made = list(geotiffs(folder))
     odd_ones(folder)

@@ -1,4 +1,4 @@
-"""What the checks share: asking orogen for files, and counting what was found."""
+"""Helpers of the checks: run orogen, and count results."""
 
 import json
 import os
@@ -13,7 +13,7 @@ NODE_BIN = Path(os.environ["OROGEN_NODE_BIN"])
 
 
 def orogen(*arguments):
-    """Runs the command and ends the check if it fails."""
+    """Runs the command; ends the check if it fails."""
     line = [BINARY, *map(str, arguments)]
     done = subprocess.run(line, cwd=WORK, capture_output=True, stdin=subprocess.DEVNULL)
     if done.returncode != 0:
@@ -22,14 +22,14 @@ def orogen(*arguments):
 
 
 def generate(recipe, *options):
-    """Generates into a folder of its own; returns the folder and its summary."""
+    """Runs `generate` into a new folder; returns the folder and its summary."""
     folder = WORK / Path(recipe).stem
     orogen("generate", recipe, "-o", folder, "--quiet", *options)
     return folder, json.loads((folder / "summary.json").read_text())
 
 
 def export(recipe, name, *options):
-    """Exports one layer into a file of this name; returns its path."""
+    """Exports one layer to a file of this name; returns its path."""
     path = WORK / name
     orogen("export", recipe, "-o", path, *options)
     return path
@@ -43,14 +43,14 @@ def build(recipe, name, *options):
 
 
 class Checks:
-    """Counts what holds; says what does not."""
+    """Counts passed checks and prints failed ones."""
 
     def __init__(self):
         self.passed = 0
         self.failed = 0
 
     def that(self, what, holds, found=""):
-        """A statement that must hold."""
+        """Checks that a statement is true."""
         if holds:
             self.passed += 1
         else:
@@ -58,14 +58,14 @@ class Checks:
             print(f"FAILED: {what} {found}")
 
     def equal(self, what, got, expected):
-        """Two values that must be equal."""
+        """Checks that two values are equal."""
         self.that(what, got == expected, f"(got {got}, expected {expected})")
 
     def near(self, what, got, expected, tolerance):
-        """Two numbers that may differ by no more than the tolerance."""
+        """Checks that two numbers differ by at most the tolerance."""
         self.that(what, abs(got - expected) <= tolerance, f"(got {got}, expected {expected} within {tolerance})")
 
     def end(self):
-        """Prints the count and leaves with its verdict."""
+        """Prints the count and exits with 0 if all checks passed."""
         print(f"{self.passed} passed, {self.failed} failed")
         sys.exit(1 if self.failed or not self.passed else 0)

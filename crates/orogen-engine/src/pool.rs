@@ -23,7 +23,7 @@ impl Pool {
     /// If the system cannot start them.
     pub fn new(threads: Option<usize>) -> Result<Pool> {
         let built = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build();
-        let refused = |cause| Error::new(ErrorKind::Request, format!("cannot start the threads asked for: {cause}"));
+        let refused = |cause| Error::new(ErrorKind::Request, format!("cannot start the requested threads: {cause}"));
         Ok(Pool { threads: built.map_err(refused)? })
     }
 

@@ -1,10 +1,10 @@
-//! Columns for a block game: 16 x 16 columns a chunk, each with the height of its ground and what lies on top.
+//! Columns for a block game: chunks of 16 x 16 columns, each with the height of its ground and its top material.
 //!
-//! `cargo run --release --example block_columns` prints chunks from above.
+//! `cargo run --release --example block_columns` prints chunks as seen from above.
 
 use orogen::{Recipe, Sampler, Window, World};
 
-/// Cells are a metre: a block. Valleys filled by the sea, hills, and mountains where another noise says so.
+/// The cell is 1 m: one block. Valleys below sea level, hills, and mountains where a second noise selects them.
 const RECIPE: &str = r#"
     orogen = 1
     world = { seed = 4, sea_level = 62 }
@@ -30,16 +30,16 @@ enum Block {
     Snow,
 }
 
-/// One column: the uppermost solid block, and what it is made of (water: how deep follows from the height).
+/// One column: the uppermost solid block and its material (the depth of water follows from the height).
 #[derive(Clone, Copy)]
 struct Column {
     height: i32,
     top: Block,
 }
 
-/// The columns of the chunk at (`east`, `south`), in chunks. Any chunk, in any order, on any thread: the same columns.
+/// Returns the columns of the chunk at (`east`, `south`), in chunks. The result does not depend on order or threads.
 fn columns(ground: &Sampler<World>, east: i64, south: i64) -> orogen::Result<[[Column; SIDE]; SIDE]> {
-    // One column more on each side, for the slope at the chunk's border.
+    // One more column on each side, for the slope at the chunk's border.
     let chunk = Window::new(SIDE, SIDE, 1.0).at(east * SIDE as i64, south * SIDE as i64);
     let heights = ground.window(&chunk.grown(1))?;
     let column = |i: usize, j: usize| {

@@ -1,7 +1,9 @@
-//! Makes every preset with 256 samples along its longer side, at the fastest SIMD level of the machine, and compares the bits with `golden/presets.txt`: on hosts
-//! that can neither read files nor run tests, such as WebAssembly without a system (`cargo xtask clients wasm`).
+//! Makes every preset with 256 samples along its longer side, at the fastest SIMD level of the machine, and compares
+//! the bits with `golden/presets.txt`. For hosts that can neither read files nor run tests, such as WebAssembly without
+//! a system (`cargo xtask clients wasm`).
 //!
-//! The exit code is 0 if all bits are the golden ones, else the number of the first preset that differs, from 1; 255 for any other error.
+//! The exit code is 0 if all bits are equal, else the number of the first preset that differs, counted from 1; 255 for
+//! any other error.
 
 use std::process::ExitCode;
 
@@ -25,7 +27,7 @@ fn first_difference() -> Result<Option<u8>, Box<dyn std::error::Error>> {
     let level = Level::current();
     for (number, preset) in (1..).zip(presets::all()) {
         let world = Session::new(Options::default())?.open(preset.recipe()?)?;
-        // Of a world without bounds, so many samples at its own cell.
+        // A world without bounds: this number of samples at its own cell size.
         let window = world.window_fitting(256).unwrap_or(Window::new(256, 256, world.recipe().world.cell));
         let hash = summary(world.window("height", &window)?.data(), 0.0).sha256;
         let expected = GOLDEN.lines().find_map(|line| line.strip_prefix(preset.name)?.strip_prefix(' '));

@@ -1,4 +1,4 @@
-//! The height at a point, and along a walk: no tile is made, whatever the size of the world.
+//! The height at a point and along a path. No raster is computed, whatever the size of the world.
 //!
 //! `cargo run --release --example height_at_a_point`
 
@@ -11,7 +11,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (east, south) = (30_720.0, 30_720.0);
     println!("{east} m east and {south} m south stands {:.1} m high", world.height(east, south)?);
 
-    // Many points at once are faster than one by one.
+    // One call for many points is faster than one call per point.
     let x: Vec<f64> = (0..=40).map(|step| 10_000.0 + 1000.0 * f64::from(step)).collect();
     let y = vec![south; x.len()];
     for (x, height) in x.iter().zip(world.points("height", &x, &y)?) {

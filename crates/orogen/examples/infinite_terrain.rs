@@ -1,6 +1,7 @@
-//! Ground without end: a viewer walks 10 km, chunks come and go around it, coarser the farther away they are.
+//! Unbounded terrain: a viewer walks 10 km; chunks around it are loaded and unloaded, and are coarser with distance.
 //!
-//! `cargo run --release --example infinite_terrain` prints each kilometre and draws the last view into `infinite_terrain.png`.
+//! `cargo run --release --example infinite_terrain` prints the state after each kilometre and writes the last view to
+//! `infinite_terrain.png`.
 
 use orogen::file::{OutputPolicy, write_whole};
 use orogen::map::canvas::Canvas;
@@ -9,7 +10,7 @@ use orogen::{ChunkId, ChunkStep, Grid, LodConfig, Recipe, Sampler, Window, World
 use std::collections::HashMap;
 use std::path::Path;
 
-/// A world without a `size` has no bounds. Plains everywhere, mountains here and there.
+/// A world without a `size` has no bounds. Plains with scattered mountains.
 const RECIPE: &str = r#"
     orogen = 1
     world = { seed = 11 }
@@ -26,7 +27,7 @@ const RECIPE: &str = r#"
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let world = World::open(Recipe::parse(RECIPE, "infinite_terrain")?)?;
     let ground = Sampler::new(&world, "height")?;
-    // Squares of 64 x 64 cells: 1 m near the viewer, 32 m at the horizon.
+    // Chunks of 64 x 64 cells: 1 m near the viewer, 32 m at the horizon.
     let mut chunks = world.chunks(LodConfig { range: 6000.0, ..LodConfig::default() })?;
     let mut scene: HashMap<ChunkId, Grid> = HashMap::new();
 
@@ -36,7 +37,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         chunks.set_viewer(x, y)?;
         while let Some(step) = chunks.next_step() {
             match step {
-                // Here a game makes a mesh, on any thread; `chunks.coarser(id)` tells which sides need stitching.
+                // A game would build a mesh here, on any thread; `chunks.coarser(id)` returns the sides that need
+                // stitching.
                 ChunkStep::Make(id) => {
                     scene.insert(id, ground.window(&chunks.window(id))?);
                     made += 1;
@@ -61,13 +63,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Where the viewer is after so many metres: it winds to the south-east.
+/// The position of the viewer after a distance in metres: a winding path to the south-east.
 fn walk(metres: f64) -> (f64, f64) {
     let turn = (metres / 2500.0).fract() * 2.0 - 1.0;
     (metres * 0.8 + 600.0 * (1.0 - turn * turn), metres * 0.6)
 }
 
-/// The ground around the viewer as a map: each pixel from the chunk that covers it, chunks outlined.
+/// The ground around the viewer as a map: each pixel from the chunk that covers it, with outlined chunks.
 fn draw(scene: &HashMap<ChunkId, Grid>, lod: &LodConfig, path: &Path) -> Result<(), Box<dyn std::error::Error>> {
     const PIXELS: usize = 900;
     let (x, y) = walk(10_000.0);
@@ -105,7 +107,7 @@ fn draw(scene: &HashMap<ChunkId, Grid>, lod: &LodConfig, path: &Path) -> Result<
     Ok(())
 }
 
-/// The finest chunk that is there at a place, and its height there.
+/// Returns the finest loaded chunk at a position, and its height there.
 fn sample(scene: &HashMap<ChunkId, Grid>, lod: &LodConfig, x: f64, y: f64) -> Option<(ChunkId, f32)> {
     let mut id = ChunkId { level: 0, x: (x / lod.side(0)).floor() as i64, y: (y / lod.side(0)).floor() as i64 };
     while id.level < lod.levels {

@@ -1,4 +1,4 @@
-//! A recipe built in code: nodes are plain structs, names join them, the compiler checks the rest.
+//! A recipe built in code: nodes are plain structs, connected by names; the compiler checks their types.
 //!
 //! `cargo run --release --example recipe_in_code`
 
@@ -19,7 +19,7 @@ fn main() -> Result<(), orogen::Error> {
         .add("height", Normalise { source: "raised".into(), low: -150.0, high: 620.0 })
         .output("height", "height");
 
-    // The same recipe as a document: `orogen generate` takes it.
+    // The same recipe as a TOML document, which `orogen generate` reads.
     println!("{}", recipe.to_toml());
 
     let world = World::open(recipe)?;

@@ -1,4 +1,4 @@
-//! A window of a world to an image: any part, at any resolution, cut from the same terrain.
+//! A window of a world as an image: any part at any resolution, sampled from the same terrain.
 //!
 //! `cargo run --release --example window_to_image`
 
@@ -12,7 +12,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let world = World::open(preset.recipe()?)?;
     let sea_level = world.recipe().world.sea_level;
 
-    // 20 km by 15 km around the middle, a sample every 25 m: sample (0, 0) of the window is number (820, 930) of the lattice.
+    // 20 km by 15 km around the middle, one sample every 25 m: sample (0, 0) of the window is sample (820, 930) of the
+    // grid.
     let window = Window::new(800, 600, 25.0).at(820, 930);
     let grid = world.window("height", &window)?;
 

@@ -1,10 +1,10 @@
-//! What is asked again and again asks for no memory.
+//! Repeated requests do not allocate memory.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use allocation_counter::measure;
 use orogen::{ChunkStep, Chunks, LodConfig, Sampler, Window, World, presets};
 
-/// How often `work` asks for memory.
+/// Returns the number of allocations of `work`.
 fn allocations(work: impl FnMut()) -> u64 {
     measure(work).count_total
 }
@@ -18,7 +18,7 @@ fn chunks_and_points_of_presets_allocate_nothing_once_warm() {
         let cell = spec.size.map_or(spec.cell, |size| size[0] / 4096.0);
         let plan = world.plan(&["height"], &Window::new(65, 65, cell)).unwrap();
         if world.explain(&plan).contains("  apply `") {
-            // A filter works on grids of its own, made for each chunk.
+            // A filter allocates grids for each chunk.
             continue;
         }
         seen += 1;
@@ -60,7 +60,7 @@ fn a_walk_through_chunks_allocates_nothing_once_warm() {
         }
         made
     };
-    // There and back; then the same again.
+    // There and back; then the same path again.
     let first = walk(&mut chunks);
     let mut again = 0;
     assert_eq!(allocations(|| again = walk(&mut chunks)), 0);

@@ -1,4 +1,4 @@
-//! Chunks around a moving viewer: they cover the ground once, have no holes in time, and are the world's own samples.
+//! Chunks around a moving viewer cover the ground exactly once, at every step, and have the samples of the world.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 mod support;
@@ -15,12 +15,12 @@ use support::{Random, open, recipe_of, world_of};
 
 const RINGS: LodConfig = LodConfig { cells: 8, cell: 2.0, levels: 5, detail: 1.25, range: 900.0, slack: 0.25 };
 
-/// A place in 0 ..= n, negative as often as not.
+/// Returns a random position in -n ..= n.
 fn about(random: &mut Random, n: u64) -> f64 {
     random.below(2 * n + 1) as f64 - n as f64
 }
 
-/// A walk with turns, jumps and standing still.
+/// A walk with turns, jumps and pauses.
 fn walk(seed: u64, steps: usize) -> impl Iterator<Item = [f64; 2]> {
     let mut random = Random(seed);
     let mut at = [about(&mut random, 5000), about(&mut random, 5000)];
@@ -31,7 +31,7 @@ fn walk(seed: u64, steps: usize) -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// The chunks among `sorted` that cover a chunk of the finest level.
+/// Returns the chunks of `sorted` that cover a chunk of the finest level.
 fn covering(sorted: &BTreeSet<ChunkId>, finest: ChunkId, levels: u8) -> Vec<ChunkId> {
     let mut id = finest;
     let mut found = Vec::new();
@@ -42,7 +42,7 @@ fn covering(sorted: &BTreeSet<ChunkId>, finest: ChunkId, levels: u8) -> Vec<Chun
     found
 }
 
-/// The chunk of the finest level at a place.
+/// Returns the chunk of the finest level at a position.
 fn finest(lod: &LodConfig, [x, y]: [f64; 2]) -> ChunkId {
     let side = lod.side(0);
     ChunkId { level: 0, y: (y / side).floor() as i64, x: (x / side).floor() as i64 }
@@ -68,7 +68,7 @@ fn the_ground_in_range_is_covered_once_and_neighbours_differ_by_one_level() {
                 let covers = covering(&wanted, finest(&lod, place), 5);
                 assert_eq!(covers.len(), 1, "{at:?}: {place:?} is covered by {covers:?}");
                 let id = covers[0];
-                // At least as fine as said, and not finer than said and slack.
+                // At least as fine as configured, and not finer than the configuration plus slack.
                 let distance = lod.distance(id, at);
                 assert!(id.level == 0 || distance >= detail * lod.side(id.level), "{id:?} at {distance} m is coarse");
                 let parent = id.parent();
@@ -103,7 +103,7 @@ fn chunks_come_nearest_first_and_leave_no_hole() {
             .filter(|place| !covering(&shown, *place, 5).is_empty() && !covering(&wanted, *place, 5).is_empty())
             .collect();
         let mut nearest = 0.0;
-        // Not all at once: the viewer moves on before everything is made.
+        // Not all at once: the viewer moves on before all chunks are made.
         for _ in 0..random_budget(number) {
             match chunks.next_step() {
                 Some(ChunkStep::Make(id)) => {
@@ -143,7 +143,7 @@ fn a_viewer_who_goes_to_and_fro_makes_nothing_anew() {
     assert!(steps(&mut chunks, 0.0) > 50);
     for x in [1.0, -1.0, 3.9, 0.0, 4.0] {
         let first = steps(&mut chunks, x);
-        // 4 m are the slack of the finest chunks, whose sides are 16 m.
+        // The finest chunks have sides of 16 m and a slack of 4 m.
         assert_eq!((steps(&mut chunks, x - 3.9), steps(&mut chunks, x)), (0, 0), "{x}, first {first}");
     }
     assert_eq!(steps(&mut chunks, 4.0), 0, "standing still takes no steps");
@@ -158,16 +158,16 @@ fn chunks_made_elsewhere_come_back_in_any_order() {
     let taken: Vec<ChunkId> = std::iter::from_fn(|| chunks.take()).collect();
     assert_eq!(taken.len(), count);
     assert_eq!((chunks.take(), chunks.evict()), (None, None));
-    // One fails and is handed out again.
+    // One chunk fails and is returned again.
     chunks.forget(taken[0]);
     assert_eq!(chunks.take(), Some(taken[0]));
-    // The viewer is far away before any is made: they come, and go again.
+    // The viewer leaves before any chunk is made: the chunks are requested and dropped.
     chunks.set_viewer(1e6, 1e6).unwrap();
     assert_eq!(chunks.evict(), None, "what is not made yet cannot be given up");
     taken.iter().rev().for_each(|id| chunks.done(*id));
     let gone: BTreeSet<ChunkId> = std::iter::from_fn(|| chunks.evict()).collect();
     assert_eq!(gone, taken.iter().copied().collect());
-    // A coarse chunk stays until all that replace it are made, in whatever order.
+    // A coarse chunk stays until all chunks that replace it are made, in any order.
     let mut chunks = Chunks::new(RINGS, None).unwrap();
     chunks.set_viewer(2000.0, 0.0).unwrap();
     while chunks.next_step().is_some() {}
@@ -204,7 +204,7 @@ fn every_chunk_is_the_window_and_shares_its_borders() {
             for (id, grid) in near {
                 let window = chunks.window(*id);
                 assert_eq!(grid, &world.window("height", &window).unwrap(), "{op} {id:?}");
-                // Points see filters at the world's cell, which is that of level 0.
+                // Points evaluate filters at the world's cell size, which is that of level 0.
                 if id.level == 0 {
                     let height = world.height(window.east(5), window.south(3)).unwrap();
                     assert_eq!(height.to_bits(), grid[(5, 3)].to_bits(), "{op} {id:?}");
@@ -219,7 +219,8 @@ fn every_chunk_is_the_window_and_shares_its_borders() {
                 if let Some(south) = made.get(&id.beside(0, 1)) {
                     assert!((0..9).all(|i| grid[(i, 8)].to_bits() == south[(i, 0)].to_bits()), "{op} {id:?}");
                 }
-                // The nodes' inputs are softened by a filter, whose result depends on the cell: levels agree for fields alone.
+                // A filter softens the inputs of nodes. Its result depends on the cell size: levels agree for fields
+                // only.
             }
             assert!(met > 10, "{met} neighbours met");
         }
@@ -241,7 +242,7 @@ fn chunks_of_bounded_worlds_are_windows_too() {
         let (world, sampler) = (open(&recipe, 2), Sampler::new(open(&recipe, 1), "height").unwrap());
         let lod = LodConfig { cells: 8, cell: 10.24, levels: 3, range: 5000.0, ..LodConfig::default() };
         let mut chunks = world.chunks(lod).unwrap();
-        // Beyond a corner: chunks of every level, those at the far edges cut.
+        // Outside a corner: chunks of every level; those at the far edges are clipped.
         chunks.set_viewer(1000.0, 900.0).unwrap();
         let mut levels = [0; 3];
         while let Some(id) = chunks.take() {
@@ -268,7 +269,7 @@ fn levels_meet_without_cracks() {
     let mut made: BTreeMap<ChunkId, Grid> = BTreeMap::new();
     while let Some(id) = chunks.take() {
         let mut grid = sampler.window(&chunks.window(id)).unwrap();
-        // Of fields, a chunk of any level is the ground at its points.
+        // For fields, a chunk of any level equals the values at its points.
         let height = sampler.at(grid.window().east(7), grid.window().south(9)).unwrap();
         assert_eq!(height.to_bits(), grid[(7, 9)].to_bits(), "{id:?}");
         stitch(&mut grid, chunks.coarser(id));
@@ -299,7 +300,7 @@ fn levels_meet_without_cracks() {
 fn a_world_with_bounds_has_no_chunks_beyond_them() {
     let world = open(&recipe_of(&Node::named("edge").unwrap(), world_of(10.0), false), 1);
     let sampler = Sampler::new(&world, "height").unwrap();
-    // 960 x 800 m: neither is a whole number of the coarser chunks of 128 and 256 m.
+    // Neither 960 m nor 800 m is a multiple of the coarser chunks of 128 and 256 m.
     let lod = LodConfig { cells: 8, cell: 8.0, levels: 3, range: 3000.0, ..LodConfig::default() };
     for at in [[0.0, 0.0], [960.0, 800.0], [-500.0, 400.0], [480.0, 1500.0]] {
         let mut chunks = world.chunks(lod).unwrap();
@@ -376,7 +377,7 @@ fn bands_of_rows_are_the_window_in_little_memory() {
     let recipe = recipe_of(&Node::named("blur").unwrap(), world_of(10.0), true);
     let whole_window = Window::new(900, 700, 1.0).at(31, 17);
     let whole = open(&recipe, 2).window("height", &whole_window).unwrap();
-    // 900 x 700 samples alone are 2.4 MiB.
+    // The 900 x 700 samples alone take 2.4 MiB.
     for (memory, beside, threads) in [(4 << 20, 0, 1), (8 << 20, 1 << 20, 2)] {
         let options = Options { threads: Some(threads), memory: Budget::of(memory), ..Options::default() };
         let world = World::with_options(recipe.clone(), options).unwrap();

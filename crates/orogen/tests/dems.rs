@@ -1,4 +1,4 @@
-//! Files of heights that other programs wrote, whole and damaged. `xtask/clients/dem_files.py` made them.
+//! Files of heights from other programs, intact and damaged. Source: `xtask/clients/dem_files.py`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 mod support;
@@ -31,12 +31,12 @@ fn refused(name: &str) -> String {
     import::read(&corpus().join(name), 1 << 20).unwrap_err().to_string()
 }
 
-/// What `dem_files.py` writes at column `i`, row `j`.
+/// The value that `dem_files.py` writes at column `i`, row `j`.
 fn formula(i: usize, j: usize) -> f32 {
     30.0 + 2.0 * i as f32 - j as f32 + (i * j % 7) as f32
 }
 
-/// Compares with the formula; (5, 3) is a hole where there is one at all.
+/// Compares with the formula; if `hole` is true, sample (5, 3) is a hole.
 fn same(name: &str, dem: &Dem, add: f32, within: f32, hole: bool) {
     assert_eq!((dem.width, dem.height, dem.missing()), (37, 23, usize::from(hole)), "{name}");
     for (k, height) in dem.heights.iter().enumerate() {
@@ -109,7 +109,7 @@ fn a_band_of_several_is_chosen() {
     let why = import::read(&corpus().join("arc.asc"), Request { band: Some(2), allowed: 1 << 20 }).unwrap_err();
     assert!(why.to_string().contains("one band, not a band 2"), "{why}");
     same("lossy-lerc.tif", &read("lossy-lerc.tif"), 0.25, 0.5, false);
-    // In a recipe, and behind a colon.
+    // In a recipe, and after a colon.
     let of_node = world(Node { band: 2, ..node("bands.tif") }, None);
     assert_eq!(of_node.height(30.0, 60.0).unwrap(), 1000.0 + formula(1, 2));
     let ground = PreparedDem::read(&corpus().join("bands-lerc.tif:2"), None, 1 << 20).unwrap();
@@ -125,7 +125,7 @@ fn what_stands_beside_a_file_tells_its_place() {
         assert_eq!(keys::epsg(&place.keys.unwrap()), Some(32632), "{name}");
         assert!(dem.notes.is_empty());
     }
-    // The same numbers are metres without a system, and say so where one is there that is not understood.
+    // Without a coordinate system the same numbers are metres; an unknown system is reported in a note.
     let folder = std::env::temp_dir().join(format!("orogen-dems-beside-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     std::fs::copy(corpus().join("arc.asc"), folder.join("a.asc")).unwrap();
@@ -154,7 +154,7 @@ fn tiles_are_one_place() {
         }
         let place = dem.place.unwrap();
         assert_eq!((place.origin, keys::epsg(&place.keys.unwrap())), ([500015.0, 5199985.0], Some(32632)), "{name}");
-        // The whole takes 3404 bytes and the largest tile 960.
+        // The whole file takes 3404 bytes, the largest tile 960.
         assert!(open::read(&corpus().join(name), 4364.into()).is_ok(), "{name}");
         let why = open::read(&corpus().join(name), 4300.into()).unwrap_err().to_string();
         assert!(why.contains("is allowed"), "{name}: {why}");
@@ -182,7 +182,7 @@ fn tiles_are_one_place() {
 
 #[test]
 fn files_that_lie_otherwise_are_understood_or_refused() {
-    // GDAL has tied the sample itself here, not its pixel's corner: the place is the same.
+    // This file gives the position of the sample itself instead of its pixel's corner: the result is the same.
     assert_eq!(read("point.tif").place.unwrap().origin, [500015.0, 5199985.0]);
     let south_up = read("south-up.tif");
     assert_eq!((south_up.heights[36], south_up.heights[22 * 37]), (formula(36, 22), formula(0, 0)));
@@ -270,7 +270,7 @@ fn what_is_in_the_file_is_the_key_and_not_its_name() {
     assert_eq!(key("a.tif"), key("b.tif"));
     std::fs::copy(corpus().join("point.tif"), &b).unwrap();
     assert_ne!(key("a.tif"), key("b.tif"));
-    // A recipe written elsewhere still finds its file.
+    // A recipe written to another folder still finds its file.
     let written = Recipe::read(&folder.join("recipe.toml")).unwrap().to_toml();
     assert!(World::open(Recipe::parse(&written, "elsewhere").unwrap()).is_ok(), "{written}");
     let error = World::open(Recipe::parse(&text("gone.tif"), "t").unwrap()).err().unwrap().to_string();
@@ -297,7 +297,7 @@ fn files_count_in_the_memory_of_a_plan() {
 fn what_a_file_says_of_its_map_is_kept_on_the_way_out() {
     for name in ["f32-strips.tif", "point.tif", "degrees.tif", "arc.asc"] {
         let mut recipe = Recipe::new(WorldSpec { cell: 30.0, ..WorldSpec::default() });
-        // Its corner stands two cells east and one north of the origin.
+        // The corner of the file is two cells east and one cell north of the origin.
         recipe.add("place", Node { at: [60.0, -30.0], ..node(name) }).output("height", "place");
         let world = World::open(recipe).unwrap();
         let grid = world.window("height", &Window::new(20, 10, 30.0).at(2, 3)).unwrap();
@@ -325,14 +325,14 @@ fn what_a_file_says_of_its_map_is_kept_on_the_way_out() {
     }
 }
 
-/// Changes bytes of a file the way damage and malice do.
+/// Changes bytes of a file at random, as damage or an attack may do.
 fn damage(bytes: &mut Vec<u8>, random: &mut Random) {
     for _ in 0..=random.below(3) {
         let length = bytes.len() as u64;
         if length == 0 {
             return;
         }
-        // Heads and directories lie at either end: most of what is said of a file is said there.
+        // Headers and directories are at either end and affect most of the parser.
         let at = match random.below(4) {
             0 => random.below(length),
             1 => length - 1 - random.below(length.min(600)),
@@ -357,8 +357,8 @@ fn damage(bytes: &mut Vec<u8>, random: &mut Random) {
     }
 }
 
-/// Any bytes at all: heights or a message, without a panic and without more memory than was allowed. With `OROGEN_LONG` a hundred times as
-/// many.
+/// Arbitrary bytes yield heights or an error, without a panic and within the memory limit. `OROGEN_LONG` runs a hundred
+/// times as many.
 #[test]
 fn damaged_files_are_heights_or_sentences() {
     let rounds = if std::env::var_os("OROGEN_LONG").is_some() { 30_000 } else { 300 };
@@ -390,7 +390,7 @@ fn damaged_files_are_heights_or_sentences() {
                 }
             }
         }
-        // Cut anywhere: never heights, unless only what nobody reads is gone.
+        // A truncated file never yields heights, unless only unused bytes are missing.
         for n in (0..whole.len()).step_by(7) {
             if let Ok(dem) = import::parse(&mut Cursor::new(&whole[..n]), "it", extension, sidecar.clone(), request) {
                 assert_eq!(dem.heights.len(), dem.width * dem.height, "{} cut at {n}", path.display());

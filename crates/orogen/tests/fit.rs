@@ -1,4 +1,4 @@
-//! Recipes fitted to places whose figures are known.
+//! Recipes fitted to places with known figures.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use orogen::fit::features::{FeatureVector, of_windows};
@@ -30,7 +30,7 @@ fn every_setting_is_a_valid_recipe() {
 
 #[test]
 fn the_search_comes_nearer_and_meets_slope_and_hypsometry() {
-    // A place that the template can make: another seed of one of its candidates.
+    // A target that the template can make: another seed of one of its candidates.
     let hidden: ParamValues = [0.6, 0.55, 0.5, 0.4, 0.6, 0.6, 0.5, 0.4, 0.4];
     let stretch = Stretch { from: [-400.0, 600.0], to: [200.0, 1400.0], bend: 0.8 };
     let place = land(&hidden, &stretch, 99);
@@ -41,7 +41,7 @@ fn the_search_comes_nearer_and_meets_slope_and_hypsometry() {
     let (first, better) = (at(1, 0), at(12, 6));
     assert!(better.distance <= first.distance, "{} {}", better.distance, first.distance);
     assert_eq!(at(3, 2).values, at(3, 2).values);
-    // Worlds of other seeds: nearer than land with the same relief and no valleys.
+    // Other seeds of the fitted recipe are nearer than land with the same relief and no valleys.
     let distance = |grid: &Grid| {
         let windows = of_windows(grid, target.side, 4);
         windows.iter().map(|window: &FeatureVector| window.distance(&target.middle)).sum::<f64>() / windows.len() as f64
@@ -84,7 +84,7 @@ fn a_world_of_a_fitted_recipe_has_no_rim() {
             }
             borders.push(border.0 / f64::from(border.1) / (inside.0 / f64::from(inside.1)));
         }
-        // Solved over the world alone, the border is half as steep again as the inside, and more.
+        // Solved for the world alone, the border would be at least half as steep again as the inside.
         let mean = borders.iter().sum::<f64>() / borders.len() as f64;
         assert!((0.8..1.2).contains(&mean), "{size:?}: {borders:?}");
     }

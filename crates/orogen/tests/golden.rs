@@ -1,4 +1,5 @@
-//! The very bits of every op and every preset. `OROGEN_BLESS=1` writes them anew; a changed line is changed terrain.
+//! Compares the bits of every op and every preset with stored hashes. `OROGEN_BLESS=1` updates them; a changed line
+//! means changed terrain.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 mod support;
@@ -64,7 +65,7 @@ fn every_preset_makes_its_golden_bits_on_one_thread_and_two() {
             let recipe = preset.recipe().unwrap_or_else(|error| panic!("{error}"));
             let options = Options { threads: Some(threads), ..Options::default() };
             let world = World::with_options(recipe, options).unwrap();
-            // Of a world without bounds, so many samples at its own cell.
+            // A world without bounds: this number of samples at its own cell size.
             let cell = world.recipe().world.cell;
             let window = world.window_fitting(256).unwrap_or(Window::new(256, 256, cell));
             let grid = world.window("height", &window).unwrap();

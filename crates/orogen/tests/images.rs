@@ -6,7 +6,7 @@ use orogen::format::png;
 use orogen::{Grid, Recipe, Window, World};
 use std::path::PathBuf;
 
-/// A folder of its own, removed in the end.
+/// A temporary folder, removed when dropped.
 struct Folder(PathBuf);
 
 impl Folder {

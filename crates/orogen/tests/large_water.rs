@@ -1,4 +1,4 @@
-//! Filling and drainage on disk, tile by tile, are those in memory, bit for bit.
+//! Filling and drainage on disk, tile by tile, equal those in memory bit for bit.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use orogen::{Budget, Options, Progress, Recipe, Window, World};
@@ -54,7 +54,8 @@ fn open(recipe: &Recipe, memory: Option<u64>) -> World {
     World::with_options(recipe.clone(), Options { memory: Budget::of(memory), ..Options::default() }).unwrap()
 }
 
-/// Compares all layers window by window. So little `memory` moves them to disk; without a limit the plan is told to.
+/// Compares all layers window by window. A small `memory` moves them to disk; without a limit the plan forces them
+/// there.
 fn compare(width: usize, height: usize, over: &str, memory: Option<u64>) {
     let recipe = recipe(width, height, over);
     let (whole, tiled) = (open(&recipe, None), open(&recipe, memory));

@@ -1,4 +1,4 @@
-//! The laws every node obeys, tested over all of them: a new node joins by existing.
+//! Invariants of all nodes. New nodes are included automatically.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 mod support;
@@ -21,8 +21,8 @@ fn same_bits(name: &str, whole: &Grid, tile: &Grid) {
     }
 }
 
-/// Tile == crop for every layer of one recipe: the whole against tiles of several sizes and offsets, thread counts, fresh and
-/// warm.
+/// Tiles equal crops for every layer of one recipe: the whole raster against tiles of several sizes and offsets, with
+/// several thread counts, cold and warm.
 fn tiles_equal_crop(name: &str, recipe: &Recipe, cell: f64) {
     let whole_window = Window::new(97, 81, cell);
     let layers: Vec<&str> = recipe.outputs().collect();
@@ -45,7 +45,7 @@ fn tiles_equal_crop(name: &str, recipe: &Recipe, cell: f64) {
             same_bits(&format!("{name}, {layer}"), whole, made);
         }
     }
-    // A point on the lattice is the sample there.
+    // A point on the grid has the value of the sample there.
     let (i, j) = (random.below(97) as usize, random.below(81) as usize);
     for (layer, whole) in layers.iter().zip(&wholes) {
         assert!(whole.data().iter().all(|sample| sample.is_finite()), "{name}, {layer}: makes numbers");
@@ -67,7 +67,7 @@ fn tile_equals_crop_for_every_node() {
     }
 }
 
-/// A plan is plain data: a test may say that all solutions are on disk, and that their sources are made in tiny tiles.
+/// A plan is plain data: a test can set all solutions to disk, and the tile size of their sources.
 #[test]
 fn every_node_is_the_same_from_disk_and_in_tiles_of_any_size() {
     for node in Node::all() {
@@ -77,7 +77,7 @@ fn every_node_is_the_same_from_disk_and_in_tiles_of_any_size() {
         for named in from.nodes() {
             recipe.add_masked(&named.name, named.node.clone(), named.mask.clone());
         }
-        // Warps that read filters that read solvers that read the node.
+        // Warps of filters of solvers of the node.
         let noise = Fbm { seed: 8, wavelength: 20.0 * cell, octaves: 2, ..Default::default() };
         recipe.add("move", noise).add("kept", Bake { source: "node".into(), cell: 0.7 * cell });
         recipe.add("soft2", Blur { source: "kept".into(), radius: 1.1 * cell });
@@ -143,7 +143,7 @@ fn unbounded_worlds_agree_far_out_and_below_zero() {
     }
 }
 
-/// The node and its inputs without the blur below them: what a filter makes depends on the cell.
+/// The node and its inputs without the blur below them, because the result of a filter depends on the cell size.
 fn unsoftened(from: &Recipe) -> Recipe {
     let mut recipe = Recipe::new(from.world);
     for named in from.nodes().iter().filter(|named| named.name != "soft") {
@@ -210,7 +210,7 @@ fn forty_diamonds_cost_forty_evaluations() {
 
 #[test]
 fn a_chain_of_ten_thousand_nodes_runs() {
-    // On a thread with a small stack: nothing may recurse along the chain.
+    // On a thread with a small stack: no recursion along the chain.
     let work = || {
         let mut recipe = Recipe::new(WorldSpec::default());
         recipe.add("n0", Perlin::default());
@@ -284,7 +284,7 @@ fn normalise_meets_its_range_over_the_world() {
 
 #[test]
 fn dear_sources_of_a_filter_are_made_once() {
-    // height and its slope in one layer: the fbm is made for the slope's halo and read again for the sum.
+    // height and its slope in one layer: the fbm is computed for the slope's halo and reused for the sum.
     let text = "orogen = 1\n[nodes.a]\nop = \"fbm\"\n[nodes.s]\nop = \"slope\"\nsource = \"a\"\n\
                 [nodes.z]\nop = \"add\"\na = \"a\"\nb = \"s\"\n[outputs]\nheight = \"z\"\n";
     let world = World::open(Recipe::parse(text, "t").unwrap()).unwrap();
@@ -320,7 +320,7 @@ fn layers_are_read_by_name_and_only_those_wanted_are_made() {
     };
     assert!(matches!(out.as_slice(), [None, None, Some(_)]), "{}", world.explain(&plan));
     assert!(world.explain(&plan).contains("apply `s` (south)"), "{}", world.explain(&plan));
-    // The layer is what it says: rise per metre, and with its neighbour the whole slope.
+    // The layer is the rise per metre; together with its neighbour it gives the whole slope.
     let source = world.window("a", &window.grown(1)).unwrap();
     let [east, south] = ["s.east", "s.south"].map(|layer| world.window(layer, &window).unwrap());
     let steep = (source[(5, 6)] - source[(5, 4)]) / 20.0;
@@ -347,7 +347,7 @@ fn a_plan_is_a_value_that_can_be_sent() {
     let came = serde_json::from_str(&sent).unwrap();
     assert_eq!(plan, came);
     assert_eq!(world.run(&came, &Progress::none()).unwrap()[0], world.window("height", &window).unwrap());
-    // Damage anywhere is found, before a number of it is used; so is another version's plan.
+    // Damage anywhere is detected before any number is used; so is a plan of another version.
     let damaged = |from: &str, to: &str| {
         assert!(sent.contains(from), "{from} in {sent}");
         serde_json::from_str::<Plan>(&sent.replacen(from, to, 1)).unwrap_err().to_string()
@@ -365,7 +365,7 @@ fn a_plan_is_a_value_that_can_be_sent() {
     assert!(error.kind() == orogen::ErrorKind::Request && error.to_string().contains("another recipe"), "{error}");
 }
 
-/// What changes a node's samples changes its content key: stored solutions and kept grids are never stale.
+/// Everything that changes a node's samples changes its content key: stored solutions and cached grids are never stale.
 #[test]
 fn content_keys_hold_all_that_a_node_reads_of_the_world() {
     let window = Window::new(24, 20, 30.0).at(20, 18);
@@ -450,7 +450,7 @@ fn cancelled_work_stops() {
 #[test]
 fn one_world_serves_many_threads_at_once() {
     use rayon::prelude::*;
-    // Requests from the threads of a pool, each waiting for solvers that need threads themselves.
+    // Requests from the threads of a pool, each waiting for solvers that need threads too.
     let world = open(&recipe_of(&Node::named("bake").unwrap(), world_of(10.0), false), 2);
     let window = Window::new(40, 40, 10.0).at(7, 9);
     let expect = world.window("height", &window).unwrap();

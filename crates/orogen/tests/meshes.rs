@@ -1,4 +1,4 @@
-//! Meshes read back: what is in the files is the land, the right way round.
+//! Reads meshes back: the files contain the terrain in the correct orientation.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
@@ -23,7 +23,7 @@ use serde_json::Value;
 
 type V3 = [f64; 3];
 
-/// A bump in the north-east of land that falls to the south, so that nothing mirrored or shifted looks the same.
+/// A bump in the north-east of land that falls to the south: every mirror image and shift differs.
 fn land(width: usize, height: usize) -> Grid {
     let mut grid = Grid::filled(Window::new(width, height, 12.5).at(40, -30), 0.0);
     for j in 0..height {
@@ -41,7 +41,7 @@ fn surface<'a>(grid: &'a Grid, shape: &'a Shape) -> Surface<'a> {
     Surface { grid, halo: &ALONE, shape, exaggeration: 1.0, painter: None, progress: None }
 }
 
-/// A mesh as it was read: places and normals as east, up, south.
+/// A mesh as read from a file: positions and normals as east, up, south.
 #[derive(Debug, Default)]
 struct Mesh {
     places: Vec<[f32; 3]>,
@@ -175,7 +175,8 @@ fn wide(v: [f32; 3]) -> V3 {
     v.map(f64::from)
 }
 
-/// Every corner is a sample with its very height, its normal leans as the land does, triangles face the sky and cover the grid.
+/// Checks that every vertex is a sample with its exact height, normals match the slope, triangles face up and cover the
+/// grid.
 fn check(mesh: &Mesh, grid: &Grid, shape: &Shape) {
     assert_eq!((mesh.places.len(), mesh.triangles.len()), (shape.corners(), shape.triangles()));
     let (width, height) = (grid.width(), grid.height());
@@ -398,7 +399,7 @@ fn a_solid_is_closed_and_faces_outwards() {
             assert!((0..2).all(|i| (greatest[i] - sides[i]).abs() < 1e-4), "{greatest:?}");
             assert_eq!(least, [0.0; 3]);
             assert!((greatest[2] - high).abs() < 1e-4);
-            // The mean height over the base, by the trapezoids of the lattice.
+            // The mean height above the base, by the trapezoidal rule on the grid.
             if shape == Shape::lattice(&grid, 1).unwrap() && width * height > 1000 {
                 let lowest = grid.data().iter().copied().fold(f32::MAX, f32::min);
                 let mean = grid.data().iter().map(|&z| f64::from(z - lowest)).sum::<f64>() / grid.data().len() as f64;
@@ -427,7 +428,7 @@ fn holes_are_left_out_or_refused() {
     assert!(error.contains("1 of 400 samples are nodata"), "{error}");
 }
 
-/// Takes `left` bytes, then fails.
+/// Accepts `left` bytes, then fails.
 struct Full {
     left: usize,
 }
@@ -542,7 +543,7 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
     let obj = String::from_utf8(one["c.obj"].clone()).unwrap();
     assert!(
         obj.contains("mtllib c.mtl\n")
-            && obj.contains("the first sample, at the origin, stands 2000 m east and 2000 m south")
+            && obj.contains("the first sample, at the origin, is 2000 m east and 2000 m south")
     );
     assert!(String::from_utf8(one["c.mtl"].clone()).unwrap().contains("map_Kd -clamp on c-texture.png\n"));
     let heights = world.window("height", &window).unwrap();
@@ -574,7 +575,7 @@ fn triangles_have_their_share_of_the_progress() {
         export_with(&world, Window::new(200, 160, 25.0), &path, given, &progress).unwrap();
         let shares = shares.lock().unwrap();
         assert!(shares.windows(2).all(|pair| pair[0] < pair[1]), "{shares:?}");
-        // Making heights of one fractal is the least of it.
+        // Computing the heights of one fractal is only a small share of the work.
         assert!(shares.iter().any(|share| (0.3..0.99).contains(share)), "{shares:?}");
     }
     std::fs::remove_file(&path).unwrap();

@@ -1,4 +1,5 @@
-//! Windows that share a row or a column of samples agree along it: colors and textures of meshes, normals of an engine's tiles.
+//! Windows that share a row or a column of samples agree there: colors and textures of meshes, normals of an engine's
+//! tiles.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
@@ -28,7 +29,7 @@ fn recipe(size: &str) -> Recipe {
     Recipe::parse(&text, "test").unwrap()
 }
 
-/// Width, bytes a pixel and bytes of a PNG.
+/// Width, bytes per pixel and bytes of a PNG.
 fn png(path: &Path) -> (usize, usize, Vec<u8>) {
     let bytes = std::fs::read(path).unwrap();
     pixels(&bytes)
@@ -49,7 +50,7 @@ fn row((width, size, data): &(usize, usize, Vec<u8>), at: usize) -> Vec<u8> {
     data[at * width * size..(at + 1) * width * size].to_vec()
 }
 
-/// The colors of a .ply file's corners, its samples row after row.
+/// The colors of the vertices of a .ply file, row by row.
 fn ply_colors(path: &Path) -> Vec<[u8; 3]> {
     let bytes = std::fs::read(path).unwrap();
     let end = b"end_header\n";
@@ -127,7 +128,7 @@ fn layers_of_engine_tiles() {
         let png_format = registry::named("png").unwrap();
         let made = targets::run::export(target, png_format, &frame, &world, layer, &Progress::none(), &output).unwrap();
         assert_eq!(made.files.len(), 4, "{layer}");
-        // Unity numbers rows from the south, and its pictures begin in the north.
+        // Unity numbers rows from the south, and its pictures start in the north.
         let tile = |column: usize, south: usize| {
             let path = target.tile.unwrap()(column, 1 - south, 2);
             let file = made.files.iter().find(|file| file.to_string_lossy().contains(&path)).unwrap();
@@ -136,7 +137,7 @@ fn layers_of_engine_tiles() {
         let [north_west, north_east, south_west] = [tile(0, 1), tile(1, 1), tile(0, 0)];
         let side = north_west.0;
         if layer == "splat" {
-            // Weights have a pixel for each cell, so tiles share none.
+            // Weights have one pixel per cell, so tiles share none.
             assert_eq!(side, 64);
             continue;
         }

@@ -53,7 +53,7 @@ color = "green"
 height = { max = "= relief / 2", fade = "= relief / 10" }
 "#;
 
-/// The same recipe with numbers.
+/// The same recipe with plain numbers.
 fn plain(relief: f64) -> String {
     let minus = -relief;
     format!(
@@ -140,11 +140,11 @@ fn what_is_written_back_keeps_parameters_and_formulas() {
     assert!(!written.contains("bent = \"bent\""), "what names mean by themselves is not written:\n{written}");
     let again = Recipe::parse(&written, "again").unwrap_or_else(|error| panic!("{error}\n{written}"));
     assert_eq!(again, recipe);
-    // What is written back still is a program: other values make what they make of the first text.
+    // A recipe written back keeps its program: other values give the same result as with the first text.
     let values = set(&[("relief", 700.0), ("seed", 2.0)]);
     let [one, other] = [HILLS, &written].map(|text| Recipe::parse_with(text, "one", &values).unwrap());
     assert_eq!(one, other);
-    // A node that was changed in code keeps its number.
+    // A node changed in code keeps its number.
     let mut changed = recipe.clone();
     changed.change(|node| {
         if let orogen::node::Node::Fbm(fbm) = node {
@@ -155,7 +155,7 @@ fn what_is_written_back_keeps_parameters_and_formulas() {
     assert!(written.contains("wavelength = 77.0") && written.contains("octaves = \"= octaves\""), "{written}");
 }
 
-/// A recipe of one node with these lines, and what stands around it.
+/// A recipe of one node with these lines.
 fn recipe(parameters: &str, node: &str) -> String {
     format!(
         "orogen = 1\n{parameters}\n[world]\nsize = 900\n[nodes.a]\nop = \"fbm\"\n[nodes.n]\n{node}\n[outputs]\nheight = \"n\"\n"
@@ -230,7 +230,7 @@ fn what_cannot_be_set() {
     assert!(error.contains("this recipe has none"), "{error}");
 }
 
-/// A world with this node `n` beside two noises.
+/// A world with the node `n` and two noises.
 fn world(nodes: &str) -> World {
     let text = format!(
         "orogen = 1\n[world]\nseed = 3\n[nodes.a]\nop = \"fbm\"\nwavelength = 300\n[nodes.b]\nop = \"ridged\"\nwavelength = 500\n\
@@ -239,7 +239,7 @@ fn world(nodes: &str) -> World {
     World::open(Recipe::parse(&text, "r").unwrap_or_else(|error| panic!("{error}"))).unwrap()
 }
 
-/// The instructions that make the height, without their registers: functions by name, all else by kind.
+/// The instructions that compute the height, without registers: functions by name, all others by kind.
 fn instructions(world: &World) -> Vec<String> {
     let plan = world.plan(&["height"], &Window::new(64, 64, 10.0)).unwrap();
     let [Step::Fill { program, .. }] = plan.steps() else { panic!("one fill") };
@@ -254,7 +254,7 @@ fn instructions(world: &World) -> Vec<String> {
     names
 }
 
-/// Pairs of an expression and the nodes that say the same.
+/// Pairs of an expression and the equivalent nodes.
 const PAIRS: [(&str, &str); 8] = [
     ("a + b", "[nodes.n]\nop = \"add\"\na = \"a\"\nb = \"b\""),
     ("a * 14", "[nodes.n]\nop = \"multiply\"\na = \"a\"\nb = 14"),
@@ -298,16 +298,16 @@ fn expressions_compute_what_they_say() {
         let expect = t * t * (3.0 - 2.0 * t) * b * b * b - libm_sin(a) / 2.0 + over + std::f64::consts::PI;
         assert!((f64::from(*made) - expect).abs() < 1e-5, "{made}, {expect}");
     }
-    // Of numbers alone nothing is left to compute.
+    // An expression of constants leaves nothing to compute.
     let still = world("[nodes.n]\nop = \"expr\"\nexpr = \"2 ^ 10 + c\"\nc = 1");
     assert_eq!(still.height(5.0, 5.0).unwrap(), 1025.0);
     assert_eq!(instructions(&still).len(), 1);
-    // Not a number, and infinity, are samples like others.
+    // NaN and infinity are valid samples.
     assert!(of("sqrt(a - 10)").data().iter().all(|sample| sample.is_nan()));
     assert!(of("1 / (a - a)").data().iter().all(|sample| *sample == f32::INFINITY));
 }
 
-/// The sine of a small angle, by its series: the platform's differs between machines.
+/// The sine of a small angle as a series, because the platform's function differs between machines.
 fn libm_sin(x: f64) -> f64 {
     let square = x * x;
     x * (1.0 - square / 6.0 * (1.0 - square / 20.0 * (1.0 - square / 42.0 * (1.0 - square / 72.0))))

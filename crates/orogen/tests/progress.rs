@@ -1,4 +1,4 @@
-//! Progress is told truly and work stops when it is asked to, for every node: a new one joins by existing.
+//! Progress is reported correctly and work can be cancelled, for every node. New nodes are included automatically.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 mod support;
@@ -10,12 +10,12 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use support::{Random, open, recipe_of, world_of};
 
-/// Samples along a side of the worlds made here.
+/// Samples along a side of the test worlds.
 fn side() -> usize {
     if std::env::var_os("OROGEN_LONG").is_some() { 1024 } else { 384 }
 }
 
-/// A node in a world large enough that it takes its time.
+/// A node in a world large enough to take some time.
 fn recipe(node: &Node) -> Recipe {
     let size = (side() - 1) as f64 * 10.0;
     let world = WorldSpec { size: Some([size, size]), ..world_of(10.0) };
@@ -27,7 +27,7 @@ fn make(world: &World, progress: &Progress) -> Result<Vec<Grid>> {
     world.grids(&layers, &Window::new(side(), side(), 10.0), progress)
 }
 
-/// When which share was told.
+/// Times and shares of the reports.
 type Told = Vec<(Duration, f64)>;
 
 fn recorded(world: &World) -> (Told, Duration) {
@@ -37,7 +37,7 @@ fn recorded(world: &World) -> (Told, Duration) {
     (std::mem::take(&mut told.lock().unwrap()), begun.elapsed())
 }
 
-/// The longest time without a word, from the beginning to the end.
+/// The longest time without a report, from the beginning to the end.
 fn silence(told: &Told, all: Duration) -> Duration {
     let times = || told.iter().map(|(at, _)| *at);
     let pairs = std::iter::once(Duration::ZERO).chain(times()).zip(times().chain([all]));
@@ -48,7 +48,7 @@ fn silence(told: &Told, all: Duration) -> Duration {
 fn shares_grow_from_nothing_to_all_without_long_silences() {
     for node in Node::all() {
         let name = node.spec().op;
-        // A busy machine may be silent by itself: the quietest of three runs counts.
+        // A busy machine may delay reports: the best of three runs counts.
         let mut runs = Vec::new();
         for _ in 0..3 {
             let (told, all) = recorded(&open(&recipe(&node), 2));
@@ -67,7 +67,7 @@ fn shares_grow_from_nothing_to_all_without_long_silences() {
     }
 }
 
-/// What is over at once needs to say nothing.
+/// Short work needs no reports.
 fn is_short((silence, all, _): (Duration, Duration, usize)) -> bool {
     silence < all / 3 || silence < Duration::from_millis(100)
 }

@@ -1,9 +1,9 @@
-//! Recipes that are wrong, and what is said about them.
+//! Invalid recipes and their messages.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use orogen::{ErrorKind, Grid, Recipe, Window, World, presets};
 
-/// The first diagnostic as "line:column: message" must be at `place` and hold every word of `words`.
+/// Checks that the first diagnostic, as "line:column: message", is at `place` and contains every word of `words`.
 fn complains(text: &str, place: &str, words: &[&str]) {
     let error = match Recipe::parse(text, "r.toml").and_then(World::open) {
         Ok(_) => panic!("this was accepted: {}", text.chars().take(300).collect::<String>()),
@@ -12,7 +12,7 @@ fn complains(text: &str, place: &str, words: &[&str]) {
     assert_eq!(error.kind(), ErrorKind::Recipe);
     let said = error.to_string();
     let first = said.lines().next().unwrap();
-    // "4:8" is that place, "4:" any column of that line, "" anywhere.
+    // "4:8" is an exact position, "4:" any column of that line, "" any position.
     let place =
         if place.ends_with(':') || place.is_empty() { format!("r.toml:{place}") } else { format!("r.toml:{place}: ") };
     let shown: String = text.chars().take(300).collect();
@@ -170,7 +170,7 @@ fn what_is_written_reads_back() {
     assert!(presets::find(presets::DEFAULT).is_some());
 }
 
-/// Recipes broken at random end in a recipe or in messages, never in a panic: every cut, flipped and doubled byte.
+/// Recipes damaged at random (cut, flipped and doubled bytes) yield a recipe or messages, never a panic.
 #[test]
 fn broken_texts_never_panic() {
     let mut seed = 0x9E37_79B9_7F4A_7C15u64;
@@ -235,8 +235,8 @@ fn recipes_in_the_docs_are_recipes() {
     assert_eq!(found, 3);
 }
 
-/// Teeth and notches of a cliff: samples more than 40 m above, or below, the ground on both sides, one or two samples away; and the steps of
-/// more than 40 m that there are.
+/// Counts teeth and notches of a cliff: samples more than 40 m above, or below, the ground on both sides, one or two
+/// samples away; and steps of more than 40 m.
 fn teeth(grid: &Grid) -> (usize, usize, f32) {
     let (width, height) = (grid.width() as i64, grid.height() as i64);
     let (mut teeth, mut steps, mut most) = (0, 0, 0.0f32);
@@ -266,7 +266,7 @@ fn cliffs_of_the_preset_mesa_have_no_teeth() {
         let grid = world.window("height", &Window::new(700, 700, 20.0).at(150, 150)).unwrap();
         let (teeth, steps, most) = teeth(&grid);
         assert!(steps > 5000, "{seed}: no cliffs, {steps}");
-        // Noise alone had 1.7 to 1.9 of 100, and steps of 200 m.
+        // Noise alone had 1.7 to 1.9 per 100 steps, and steps of 200 m.
         assert!((teeth as f64) < 0.012 * steps as f64, "{seed}: {teeth} of {steps}");
         assert!(most < 80.0, "{seed}: {most} m from one sample to the next");
     }

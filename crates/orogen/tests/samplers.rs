@@ -1,4 +1,4 @@
-//! A sampler makes what its world makes, whatever was asked before and from however many threads.
+//! A sampler returns the values of its world, independent of earlier requests and the number of threads.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 mod support;
@@ -41,7 +41,7 @@ fn windows_and_points_of_every_node_are_the_worlds() {
     }
 }
 
-/// A world without bounds whose ground has a halo, read off its lattice.
+/// A world without bounds whose ground needs a halo and is interpolated from the grid.
 fn soft() -> Recipe {
     let mut recipe = Recipe::new(WorldSpec { seed: 5, size: None, cell: 2.0, ..WorldSpec::default() });
     recipe.add("noise", Fbm { wavelength: 70.0, ..Fbm::default() });
@@ -54,7 +54,7 @@ fn soft() -> Recipe {
 #[test]
 fn patches_of_ground_have_no_seams_and_do_not_run_out() {
     let (world, sampler) = (open(&soft(), 1), Sampler::new(open(&soft(), 1), "height").unwrap());
-    // A walk over far more patches than are kept, along and across their borders (every 128 m), and back again.
+    // A path across far more patches than are cached, along and across their borders (every 128 m), and back again.
     let x: Vec<f64> = (-30..30).map(|i| f64::from(i) * 97.3).chain((-5..5).map(|i| f64::from(i) * 128.0)).collect();
     let y: Vec<f64> = x.iter().map(|x| 128.0 - x * 0.4).collect();
     let expect = world.points("height", &x, &y).unwrap();

@@ -9,7 +9,7 @@ fn session(memory: Option<u64>) -> Session {
     Session::new(Options { threads: Some(2), memory: Budget::of(memory), ..Options::default() }).unwrap()
 }
 
-/// Two solvers, an expensive filter, and a cheap field that the layer `other` alone reads.
+/// Two solvers, an expensive filter, and a cheap field that only the layer `other` reads.
 const RECIPE: &str = r#"
     orogen = 1
     [world]
@@ -60,7 +60,7 @@ fn two_worlds_in_two_threads_stay_below_one_budget() {
         recipe.world.seed = seed;
         (World::open(recipe.clone()).unwrap().window("height", &window()).unwrap(), recipe)
     });
-    // Enough for one request and a half.
+    // Enough for one and a half requests.
     let world = session(None).open(recipe()).unwrap();
     let one = world.memory_of(&world.plan(&["height"], &window()).unwrap());
     let session = session(Some(one * 3 / 2));
@@ -89,7 +89,7 @@ fn sixteen_threads_that_want_one_tile_solve_once() {
         for k in 0..16 {
             let (session, begin, expect) = (&session, &begin, &expect);
             scope.spawn(move || {
-                // Half of them are worlds of their own.
+                // Half of the requests open a new world.
                 let world = session.open(recipe()).unwrap();
                 begin.wait();
                 match k % 2 {
@@ -102,7 +102,7 @@ fn sixteen_threads_that_want_one_tile_solve_once() {
     assert_eq!(session.solutions_made(), 2, "`land` and `carved`");
 }
 
-/// Threads of somebody else's pool wait, too, and do not lock each other out.
+/// Threads of another pool can wait too, without a deadlock.
 #[test]
 fn threads_of_other_pools_solve_once() {
     use rayon::prelude::*;
@@ -165,7 +165,8 @@ fn grids_of_expensive_filters_are_found_again() {
     assert_eq!(none.filters_found(), 0);
 }
 
-/// Cancels at many moments: what was stored until then is sound, nothing stays reserved, and the next request has the same bits.
+/// Cancels at many moments: the stored solutions are valid, no memory stays reserved, and the next request has the same
+/// bits.
 fn cancelled_at_many_moments(recipe: &Recipe, samples: usize, moments: u64) {
     let open = |session: &Session| session.open(recipe.clone()).unwrap();
     let expect = {
@@ -176,7 +177,7 @@ fn cancelled_at_many_moments(recipe: &Recipe, samples: usize, moments: u64) {
     let session = session(Some(2 << 30));
     let mut cancelled = 0;
     for moment in 0..moments {
-        // Each report of progress is a moment; the k-th run stops at one that no other stopped at.
+        // Each report of progress is a moment; the k-th run stops at a moment that no other run used.
         let heard = AtomicU64::new(0);
         let stop = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
         let told = std::sync::Arc::clone(&stop);

@@ -1,4 +1,4 @@
-//! Where solutions are kept changes no bit: in memory, on disk, in a folder for later runs.
+//! The storage of solutions changes no bit: in memory, on disk, in a cache folder for later runs.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 mod support;
@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use support::world_of;
 
-/// A folder of its own, gone at the end.
+/// A temporary folder, removed when dropped.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -42,7 +42,7 @@ impl Drop for Folder {
     }
 }
 
-/// Warps that read filters that read solvers, twice over: more than one page and tile of everything if the world is `large`.
+/// Warps of filters of solvers, twice: more than one page and tile of everything if the world is `large`.
 fn stacked(cell: f64, large: bool) -> Recipe {
     let size = if large { [1300.0 * cell, 1030.0 * cell] } else { [640.0 * cell, 512.0 * cell] };
     let spec = orogen::WorldSpec { size: Some(size), ..world_of(cell) };
@@ -124,7 +124,7 @@ fn memory_disk_and_folder_make_the_same_bits() {
             let point = world.points("height", &[window.east(i)], &[window.south(j)]).unwrap()[0];
             assert_eq!(point.to_bits(), whole[0][(i, j)].to_bits(), "{name}");
             if cell != 10.24 {
-                // The others differ in their positions alone: one way through the disk tells.
+                // The others differ in their positions only: one run on disk is sufficient.
                 let world =
                     open(&recipe, Options { threads: Some(2), memory: Budget::of(short), ..Options::default() });
                 same("disk", &whole, &layers(&world, &parts[2]));
@@ -151,7 +151,7 @@ fn tiles_of_any_size_solve_the_same() {
     assert!(sides[0] > sides[2], "several sizes of tiles were seen: {sides:?}");
 }
 
-/// The work that making a window takes, how often progress was reported meanwhile, and what was made.
+/// Returns the work to make a window, the number of progress reports, and the grid.
 fn made(recipe: &Recipe, cache: Cache, window: &Window) -> (f64, u64, Grid) {
     let world = open(recipe, Options { cache: Some(cache), ..Options::default() });
     let plan = world.plan(&["height"], window).unwrap();
@@ -172,7 +172,7 @@ fn a_later_run_finds_what_was_solved_and_makes_again_what_is_damaged() {
     let (less, fewer, again) = made(&recipe, folder.cache(), &window);
     assert_eq!(expect, again);
     assert!(less * 20.0 < work && fewer < reports, "{less} after {work}, {fewer} reports after {reports}");
-    // Of the last solver's solution alone, the ones it was made of are not needed.
+    // Only the last solver's solution is read; its inputs are not needed.
     let entries = folder.names();
     assert_eq!(entries.len(), 3);
     let height: Vec<&PathBuf> = entries.iter().filter(|path| fs::metadata(path).unwrap().len() < 1000).collect();
@@ -188,7 +188,7 @@ fn a_later_run_finds_what_was_solved_and_makes_again_what_is_damaged() {
         assert!(third > fewer && again == expect, "{third}");
         assert!(fs::read(&damaged).unwrap() != bytes, "it was made again");
     }
-    // Another world's solutions are others.
+    // Another world has other solutions.
     let mut other = recipe.clone();
     other.world.seed += 1;
     assert!(made(&other, folder.cache(), &window).0 > less);

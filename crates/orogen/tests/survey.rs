@@ -1,4 +1,4 @@
-//! What is measured of land whose answer is known.
+//! Measurements of terrain with known results.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use orogen::survey::land::Land;
@@ -26,7 +26,7 @@ fn a_plane_is_what_it_is() {
     assert!(figure(&measures, "slope_spread") < 1e-4 && figure(&measures, "curvature") < 0.05);
     assert_eq!((measures.slopes.len(), measures.aspects.len()), (45, 36));
     assert!(measures.slopes[21] + measures.slopes[22] > 0.999);
-    // 225 degrees lies between two of the tens.
+    // 225 degrees is between two of the 10-degree bins.
     assert!(measures.aspects[22] + measures.aspects[23] > 0.999, "{:?}", measures.aspects);
     assert!((figure(&measures, "grid_bias") - 1.0).abs() < 1e-6);
     assert!((figure(&measures, "slopes") - 100.0).abs() < 1e-9 && figure(&measures, "depressions") == 0.0);
@@ -41,7 +41,7 @@ fn the_sea_is_no_land() {
     // A disc of 500 m.
     let share = std::f64::consts::PI * 500.0 * 500.0 / (1600.0 * 1600.0);
     assert!((land.land_share - share).abs() < 0.01, "{}", land.land_share);
-    // A cone's mean lies at a third of its height.
+    // The mean of a cone is a third of its height.
     assert!((figure(&land, "hypsometric_integral") - 1.0 / 3.0).abs() < 0.02);
     assert!(Measures::of(&cone, Some(600.0)).is_none());
     assert!(Measures::of(&grid(63, 10.0, |x, _| x), None).is_none());
@@ -63,7 +63,7 @@ fn real_ranges_are_in_order_and_every_figure_can_be_had() {
     }
     let text = table(&measures);
     assert_eq!(text.lines().count(), FIGURES.len() + 3, "{text}");
-    // The page is drawn, and is as wide as it is for any land.
+    // The page is drawn, with the same width for any terrain.
     for heights in
         [heights, grid(64, 1e-3, |x, y| x * y), grid(700, 5000.0, |x, y| libm::sin(x / 9000.0) * 500.0 + y / 1e4)]
     {

@@ -1,4 +1,4 @@
-//! Big windows as streams of tiles.
+//! Large windows as streams of tiles.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 mod support;

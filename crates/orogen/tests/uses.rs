@@ -5,7 +5,7 @@ use orogen::{Recipe, Window, World};
 use std::fs;
 use std::path::PathBuf;
 
-/// A folder that is removed at the end.
+/// A temporary folder, removed when dropped.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -30,7 +30,7 @@ impl Drop for Folder {
     }
 }
 
-/// A part: hills on a base that is given, with two outputs.
+/// A part: hills on a given base, with two outputs.
 const HILLS: &str = r#"
 orogen = 1
 [parameters]
@@ -142,10 +142,10 @@ fn a_used_recipe_makes_what_its_nodes_make() {
     for layer in ["hills", "rough"] {
         assert_eq!(bits(&world, layer), bits(&by_hand, layer), "{layer}");
     }
-    // Another seed is another noise.
+    // Another seed gives another noise.
     let other = folder.read("parts/hills.toml").unwrap();
     assert_ne!(recipe.nodes()[8].node, other.nodes()[2].node);
-    // Written back it needs no other file, and its parameters still reach into what it used.
+    // A recipe written back needs no other file, and its parameters still apply to the parts.
     let written = recipe.to_toml();
     assert!(written.contains("relief = \"= (scale * 50)\"") && written.contains("[nodes.\"hills/land\"]"), "{written}");
     let again = Recipe::parse(&written, "again").unwrap_or_else(|error| panic!("{error}\n{written}"));
@@ -172,7 +172,7 @@ fn by_itself_an_input_is_its_source() {
 fn presets_by_name_and_recipes_in_recipes() {
     let folder = Folder::new("nested");
     folder.write("parts/hills.toml", HILLS);
-    // A path counts from the folder of the recipe that names it.
+    // A path is relative to the folder of the recipe that names it.
     folder.write(
         "parts/middle.toml",
         "orogen = 1\n[use.inner]\nrecipe = \"hills.toml\"\n[world]\nsize = 1000\n[outputs]\nheight = \"inner\"\n",
@@ -235,7 +235,7 @@ fn what_is_wrong_with_a_use() {
 #[test]
 fn recipes_that_multiply_are_refused() {
     let folder = Folder::new("many");
-    // Each uses the next twice: 2^n recipes.
+    // Each recipe uses the next one twice: 2^n recipes.
     for k in 0..12 {
         let text = format!(
             "orogen = 1\n[use.a]\nrecipe = \"r{0}.toml\"\n[use.b]\nrecipe = \"r{0}.toml\"\n[nodes.n]\nop = \"add\"\na = \"a\"\nb = \"b\"\n[outputs]\nheight = \"n\"\n",
@@ -257,7 +257,7 @@ fn recipes_that_multiply_are_refused() {
     folder.write("c40.toml", "orogen = 1\n[nodes.n]\nop = \"fbm\"\n[outputs]\nheight = \"n\"\n");
     assert!(folder.read("c0.toml").unwrap_err().contains("16 levels deep"));
     assert_eq!(folder.read("c30.toml").unwrap().nodes().len(), 1);
-    // Much text.
+    // A large text.
     let long = format!("orogen = 1\n# {}\n[nodes.n]\nop = \"fbm\"\n[outputs]\nheight = \"n\"\n", "x".repeat(6 << 20));
     folder.write("long.toml", &long);
     let uses: String = (0..4).map(|k| format!("[use.u{k}]\nrecipe = \"long.toml\"\n")).collect();

@@ -1,4 +1,4 @@
-//! What each op makes, against what its doc says, worked out another way.
+//! Compares the values of each op with its documentation, computed independently.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 mod support;
@@ -15,7 +15,7 @@ fn world() -> WorldSpec {
     WorldSpec { seed: 5, size: Some([SIZE, SIZE]), cell: 10.0, ..WorldSpec::default() }
 }
 
-/// A world of the nodes, asked for its last one.
+/// A world of the nodes; the last one is the output.
 fn of(nodes: Vec<(&str, Node)>) -> World {
     let mut recipe = Recipe::new(world());
     let last = nodes.last().map(|(name, _)| name.to_string()).unwrap();
@@ -106,7 +106,7 @@ fn transform_looks_elsewhere() {
     };
     near(&seen([30.0, 0.0], 1.0, 0.0), &[(100.0, 0.0, 130.0)]);
     near(&seen([0.0, 0.0], 4.0, 0.0), &[(100.0, 0.0, 25.0)]);
-    // Turned by 90 degrees clockwise, what rose east rises south.
+    // Rotated by 90 degrees clockwise, a rise to the east becomes a rise to the south.
     near(&seen([0.0, 0.0], 1.0, 90.0), &[(0.0, 100.0, 100.0), (70.0, 100.0, 100.0)]);
     near(&seen([0.0, 0.0], 1.0, 45.0), &[(100.0, 0.0, 70.710_68), (0.0, 100.0, 70.710_68)]);
 }
@@ -117,7 +117,7 @@ fn warp_reads_the_source_where_it_is_sent() {
     let sent = |x: f64, y: f64| Warp { source: "r".into(), x: x.into(), y: y.into(), strength: 40.0 };
     near(&of(vec![("r", ramp.clone()), ("w", sent(0.5, 0.9).into())]), &[(100.0, 0.0, 120.0)]);
     near(&of(vec![("r", ramp.clone()), ("w", sent(-1.0, 0.0).into())]), &[(100.0, 0.0, 60.0)]);
-    // Farther than its strength it never reaches.
+    // The displacement never exceeds its strength.
     near(&of(vec![("r", ramp), ("w", sent(-7.0, 0.0).into())]), &[(100.0, 0.0, 60.0)]);
 }
 
@@ -160,7 +160,7 @@ fn slope_of_a_plane_is_its_slope() {
 
 #[test]
 fn fractals_read_their_parameters() {
-    // Each parameter of the noises changes what is made: none is dropped on the way.
+    // Each parameter of the noises changes the result.
     for op in ["fbm", "ridged", "billow", "weighted-fbm", "perlin", "value", "white", "classic"] {
         let base = Node::named(op).unwrap();
         let make = |node: Node| of(vec![("n", node)]).window("height", &Window::new(20, 20, 10.0)).unwrap();

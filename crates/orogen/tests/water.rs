@@ -1,9 +1,9 @@
-//! Water in `alpine`: all land drains, lakes are lakes, rivers fall. Looked at with nothing but heights and layers, as anyone could.
+//! Water in `alpine`, checked with heights and layers only: all land drains, lakes are valid lakes, rivers descend.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
 use orogen::{Grid, Progress, Recipe, Window, World, presets};
 
-/// Steps to the eight neighbours, and how far they are.
+/// Offsets and distances of the eight neighbours.
 const AROUND: [(i64, i64, f32); 8] = [
     (1, 0, 1.0),
     (1, 1, std::f32::consts::SQRT_2),
@@ -24,7 +24,7 @@ struct Land {
 }
 
 impl Land {
-    /// The world of a recipe at its own cell, with this seed.
+    /// The world of a recipe at its own cell size, with this seed.
     fn of(recipe: &str, seed: u64) -> Land {
         let mut recipe = Recipe::parse(recipe, "the recipe").unwrap();
         recipe.world.seed = seed;
@@ -46,7 +46,7 @@ impl Land {
         self.lake[(i, j)] as u32
     }
 
-    /// Where water leaves: the sea, and the border, beyond which it runs on.
+    /// Returns whether water leaves the map here: in the sea, or at the border.
     fn is_outside(&self, (i, j): (usize, usize)) -> bool {
         let border = i == 0 || j == 0 || i + 1 == self.height.width() || j + 1 == self.height.height();
         border || self.height[(i, j)] <= self.sea_level
@@ -60,7 +60,7 @@ impl Land {
         })
     }
 
-    /// The neighbour that water takes by D8 over `heights`, if there is a lower one.
+    /// The D8 receiver over `heights`, if there is a lower neighbour.
     fn receiver(&self, heights: &Grid, (i, j): (usize, usize)) -> Option<(usize, usize)> {
         let here = heights[(i, j)];
         let mut best = (0.0, None);
@@ -73,15 +73,16 @@ impl Land {
         best.1
     }
 
-    /// Every cell of the land outside lakes leads down to the sea, the border or a lake. Each step is strictly downwards, so a cell that
-    /// has a lower neighbour is all there is to show.
+    /// Checks that every land cell outside lakes drains to the sea, the border or a lake. Each step goes strictly down,
+    /// so it is sufficient that each cell has a lower neighbour.
     fn drains(&self) {
         for cell in self.cells().filter(|cell| !self.is_outside(*cell) && self.lake(*cell) == 0) {
             assert!(self.receiver(&self.height, cell).is_some(), "{cell:?} is a pit");
         }
     }
 
-    /// A lake is level, has at least four cells, and at its edge a cell over which it runs down to elsewhere. Returns the share of the land.
+    /// Checks that each lake is level, has at least four cells, and has an outlet at its edge. Returns the lakes' share
+    /// of the land.
     fn lakes_are_lakes(&self) -> f64 {
         let count = self.cells().map(|cell| self.lake(cell)).max().unwrap_or(0) as usize;
         let mut cells = vec![0usize; count + 1];
@@ -96,12 +97,12 @@ impl Land {
             level[lake] = surface;
             assert!(surface >= self.height[(i, j)], "water is above its bed");
             for (shore, _) in self.neighbours((i, j)).filter(|(cell, _)| self.lake(*cell) as usize != lake) {
-                // Not over a shore from which water would come back.
+                // The outlet must not be at a shore from which water returns.
                 let low = self.surface[(shore.0, shore.1)] <= surface;
                 let on = || self.receiver(&self.surface, shore).is_some_and(|to| self.lake(to) as usize != lake);
                 spills[lake] |= low && (self.is_outside(shore) || on());
             }
-            // Of a lake at the border a part lies beyond, perhaps with its outlet.
+            // A lake at the border is partly outside, perhaps with its outlet.
             cut[lake] |= self.is_outside((i, j));
         }
         for lake in (1..=count).filter(|lake| cells[*lake] > 0 && !cut[*lake]) {
@@ -112,7 +113,7 @@ impl Land {
         cells.iter().sum::<usize>() as f64 / land as f64
     }
 
-    /// From wherever a square kilometre drains, water goes on to where still more does, and never up.
+    /// Checks that from each cell with a drainage area of 1 km² or more, water flows down to a cell with a larger area.
     fn rivers_fall(&self) -> usize {
         let mut rivers = 0;
         for (i, j) in self.cells().filter(|cell| !self.is_outside(*cell) && self.flow[(cell.0, cell.1)] >= 1e6) {
@@ -142,7 +143,7 @@ fn alpine() -> &'static str {
 
 #[test]
 fn water_in_a_small_alpine() {
-    // A quarter as long and wide, its wider view placed around its own middle.
+    // A quarter of the length and width, with the wide view centred on its own middle.
     let mut small = alpine().to_string();
     for (whole, quarter) in [("[61440.0, 61440.0]", "[15360.0, 15360.0]"), ("[6144.0, 6144.0]", "[1536.0, 1536.0]")] {
         assert!(small.contains(whole), "{whole}");
@@ -151,7 +152,7 @@ fn water_in_a_small_alpine() {
     check(&small, &[1, 2, 3]);
 }
 
-/// The whole of it, which takes longer: with `OROGEN_LONG` set.
+/// The whole preset, which takes longer: with `OROGEN_LONG` only.
 #[test]
 fn water_in_the_whole_of_alpine() {
     if std::env::var_os("OROGEN_LONG").is_some() {

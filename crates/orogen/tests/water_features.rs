@@ -1,5 +1,5 @@
-//! Water as vector features: rivers that agree with the recipe's own drainage, on presets and seeds.
-// Clippy knows test functions, but not that all of this file is for them.
+//! Water as vector features: rivers agree with the recipe's own drainage, for presets and seeds.
+// Clippy detects test functions, but not that this whole file contains tests.
 #![allow(clippy::unwrap_used)]
 
 use orogen::export::features::list;
@@ -92,7 +92,7 @@ fn every_layer_has_its_fields_and_lies_in_the_window() {
         let made = (layer.make)(&ground, &options).unwrap();
         assert!(!made.features.is_empty(), "{}", layer.name);
         let [west, north, east, south] = made.bounds().unwrap();
-        // Squares around samples reach half a cell beyond them.
+        // Squares around samples extend half a cell beyond them.
         let (left, top) = (window.east(0) - 80.0, window.south(0) - 80.0);
         assert!(
             west >= left && north >= top && east <= left + 120.0 * 160.0 && south <= top + 110.0 * 160.0,
@@ -105,11 +105,11 @@ fn every_layer_has_its_fields_and_lies_in_the_window() {
                 assert!(parts.iter().flatten().all(|ring| ring.len() > 3 && ring.first() == ring.last()));
             }
         }
-        // A name that is asked for twice is one layer.
+        // A name that is requested twice is one layer.
         assert_eq!(list::listed(&format!("{0}, {0}", layer.name)).unwrap().len(), 1);
     }
     assert!(list::listed("rivers,nothing").is_none());
-    // Ids refer to features that are there.
+    // Ids refer to existing features.
     let rivers = (list::named("rivers").unwrap().make)(&ground, &options).unwrap();
     let column = |name: &str| rivers.fields.iter().position(|field| field.name == name).unwrap();
     let lakes = ground.lakes.len() as i64;

@@ -143,7 +143,7 @@ fn land(
     let world = args.limits.open(recipe, budget)?;
     let grids = world.grids(&[HEIGHT], &land_window(&world, target)?, progress);
     let mut grids = grids.map_err(|error| interrupt::explain(error.into(), "no recipe was written"))?;
-    grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "nothing was asked for").into())
+    grids.pop().ok_or_else(|| Error::new(ErrorKind::Request, "the world made no layer").into())
 }
 
 /// The measurements of windows, without those that cannot be measured.

@@ -230,7 +230,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     let range = range(args)?;
     let is_covered = args.color == ColorOf::Surfaces;
     if is_covered && (args.layer != HEIGHT || args.palette.is_some() || range.is_some()) {
-        return Err(Failure::Usage("--color surfaces takes no --layer, --palette or --range".into()));
+        return Err(Failure::Usage("--color surfaces cannot be combined with --layer, --palette or --range".into()));
     }
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();

@@ -1,4 +1,4 @@
-//! Places that cannot be written to, or not all the way: a message, and nothing half-written.
+//! Output paths that cannot be written, or only partly: an error message, and no partial files.
 
 use crate::harness::Folder;
 
@@ -15,7 +15,7 @@ fn a_folder_that_is_a_file() {
     assert_eq!(folder.text("file"), "x");
 }
 
-/// What even root cannot write to.
+/// A path that even root cannot write to.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_folder_that_takes_no_files() {
@@ -50,7 +50,7 @@ mod full {
     use crate::harness::{Folder, Outcome, is_whole};
     use std::process::{Command, Stdio};
 
-    /// Runs the program so that its files cannot grow beyond `blocks` of 512 bytes: writing then fails half way, as on a full
+    /// Runs the program with a file size limit of `blocks` of 512 bytes: writing then fails half way, as on a full
     /// disk, but for any user and on any file system.
     fn limited(folder: &Folder, blocks: u32, arguments: &[&str]) -> Outcome {
         let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
@@ -90,7 +90,7 @@ mod full {
         }
     }
 
-    /// The real thing, where this user may mount.
+    /// A full disk, if this user is allowed to mount.
     #[cfg(target_os = "linux")]
     #[test]
     fn a_full_disk_leaves_the_old_set() {

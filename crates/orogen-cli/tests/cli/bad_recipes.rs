@@ -1,15 +1,15 @@
-//! Recipes that cannot be made: each ends in a message at its place, and writes nothing.
+//! Invalid recipes: each yields a message with its position, and no files.
 
 use crate::harness::Folder;
 
-/// Recipes begin like this where nothing else is said.
+/// The default head of the recipes.
 const HEAD: &str = "orogen = 1\n[world]\nsize = [100, 100]\n";
 
 fn check(content: impl AsRef<[u8]>, expect: &str) {
     check_as("a.toml", content, expect);
 }
 
-/// `generate`, `export` and `explain` all refuse it with `expect`, in time, and leave the folder as it was.
+/// Checks that `generate`, `export` and `explain` reject it with `expect`, in time, and leave the folder unchanged.
 fn check_as(name: &str, content: impl AsRef<[u8]>, expect: &str) {
     let folder = Folder::new();
     folder.write(name, content);
@@ -123,7 +123,7 @@ fn a_recipe_without_heights_has_nothing_to_generate() {
 fn a_million_nodes() {
     let many: String = (0..1_000_000).map(|i| format!("n{i} = {{ op = \"fbm\" }}\n")).collect();
     check(format!("orogen = 1\n[nodes]\n{many}[outputs]\nheight = \"n1\"\n"), "a.toml");
-    // Few enough bytes to be read, too many nodes to be a recipe.
+    // Few enough bytes to be read, but too many nodes.
     let many: String = (0..100_000).map(|i| format!("n{i} = {{ op = \"fbm\" }}\n")).collect();
     check(format!("orogen = 1\n[nodes]\n{many}[outputs]\nheight = \"n1\"\n"), "65536");
 }
@@ -149,7 +149,7 @@ fn a_file_that_is_not_there_is_told_at_its_line() {
     let told = folder.bad(&["generate", "a.toml"], 1, "error: a.toml:6:8: node `place`: cannot read none.tif: ");
     assert!(told.err.contains(" 6 | path = \"none.tif\"\n   |        ^^^^^^^^^^\n"), "{}", told.err);
     folder.bad(&["explain", "a.json"], 1, "error: a.json:1:");
-    // A file that is no such file, as well.
+    // Also a file that is no image.
     folder.write("none.tif", "text");
     let told = folder.bad(&["generate", "a.toml"], 1, "error: a.toml:6:8: node `place`: ");
     assert!(told.err.contains("^^^^^^^^^^"), "{}", told.err);

@@ -1,4 +1,4 @@
-//! `orogen build`: killed, interrupted, out of room, and still the same bytes in the end.
+//! `orogen build`: killed, interrupted, without disk space, with the same bytes in the end.
 
 use crate::harness::{Folder, Outcome};
 use std::collections::BTreeMap;
@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-/// How many kills a run of the tests tries; the short number if nobody says.
+/// Environment variable: the number of kills of one run of the tests. A small number by default.
 const KILLS: &str = "OROGEN_KILLS";
 const FEW: u32 = 8;
 
-/// What is built, and how: a name and what is asked for.
+/// The builds: a name and the options.
 const BUILDS: [(&str, &[&str]); 6] = [
     ("a.tif", &["small.toml", "--tile", "64", "--cell", "0.7"]),
     ("a.zarr", &["small.toml", "--tile", "100", "--layers", "height,noise", "--cell", "0.9"]),
@@ -26,7 +26,7 @@ fn arguments<'a>(name: &'a str, asked: &'a [&'a str], more: &'a [&'a str]) -> Ve
     [&["build"][..], asked, &["-o", name], more].concat()
 }
 
-/// All files of a result, by their paths within it.
+/// All files of a result, by relative path.
 fn files(path: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut left = vec![path.to_path_buf()];
@@ -68,7 +68,7 @@ fn what_is_built_and_what_is_said() {
     folder.good(&["export", "small.toml", "--cell", "0.7", "-o", "b.tif"]);
     folder.good(&["build", "small.toml", "--cell", "0.7", "-o", "c.tif"]);
     assert!(folder.read("b.tif") == folder.read("c.tif"), "build and export write the same file");
-    // Tiles reach the far edge; everything else leaves it to the neighbour.
+    // Tiles with shared edges include the far edge; other builds leave it to the neighbour.
     assert_eq!(folder.json("r16/manifest.json")["window"]["width"], 769);
     assert_eq!(folder.json("a.zarr/height/zarr.json")["shape"][1], 711);
     assert_eq!(folder.json("map/tiles.json")["map_metres_per_metre"], 1.0);
@@ -116,7 +116,7 @@ fn killed_at_any_moment_it_ends_with_the_same_bytes() {
     let (mut killed, mut state) = (0, 88_172_645_463_325_252u64);
     for ((name, asked), (expect, usual)) in BUILDS.iter().zip(&references).cycle() {
         let folder = Folder::with_small();
-        // Killed again and again, until it is through; not more often than every build once on average.
+        // Killed repeatedly until it completes, on average at most once per build.
         let mut left = 1 + kills / BUILDS.len() as u32;
         loop {
             let mut child = start(&folder, &arguments(name, asked, &["--resume", "-q"]));
@@ -144,14 +144,14 @@ fn killed_at_any_moment_it_ends_with_the_same_bytes() {
     }
 }
 
-/// Asks a process to stop, as Ctrl-C does.
+/// Interrupts a process, as Ctrl-C does.
 #[cfg(unix)]
 fn interrupt(child: &Child, signal: &str) {
     let status = std::process::Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
     assert!(status.success());
 }
 
-/// Waits until a process handles the signal of Ctrl-C itself: before that, the system would end it.
+/// Waits until a process handles the signal of Ctrl-C. Before that, the system would end it.
 #[cfg(unix)]
 fn wait_until_it_listens(child: &Child) {
     let status = format!("/proc/{}/status", child.id());
@@ -176,7 +176,7 @@ fn ctrl_c_stops_cleanly() {
     let asked = ["small.toml", "--cell", "0.1", "--tile", "64", "--memory", "22MiB", "--threads", "1"];
     for signal in ["-INT", "-TERM"] {
         let child = start(&folder, &arguments("a.zarr", &asked, &["--resume"]));
-        // Not before it has begun.
+        // Not before the build has started.
         while !folder.path("a.zarr/height").exists() {
             std::thread::sleep(Duration::from_millis(5));
         }
@@ -205,7 +205,7 @@ fn ctrl_c_stops_cleanly() {
     }
 }
 
-/// Files that may not grow beyond a limit: the system ends the process in the middle of a write.
+/// File size limits: the system ends the process in the middle of a write.
 #[cfg(unix)]
 #[test]
 fn a_limit_on_files_leaves_a_build_to_go_on_with() {
@@ -234,7 +234,7 @@ fn two_builds_do_not_work_on_one_place() {
     }
     child.kill().unwrap();
     child.wait().unwrap();
-    // The lock went with the process that held it.
+    // The lock was released with the process that held it.
     folder.bad(&arguments("a.zarr", &asked, &["-q"]), 1, "is an unfinished build; use --resume to continue it");
 }
 
@@ -263,7 +263,7 @@ fn force_removes_a_builds_own_files_and_no_others() {
             fs::remove_file(folder.path(&format!("{name}/{file}"))).unwrap();
         }
         assert!(files(&folder.path(name)) == expect, "{name}");
-        // What is in the way of the new files stops it before anything is removed.
+        // A conflict with the new files stops the build before it removes anything.
         let other = ["small.toml", "--tiles", "r16", "--tile", "33"];
         if *name == "png" {
             folder.write("png/height_x0_y0.r16", "mine");
@@ -281,7 +281,7 @@ fn force_removes_a_builds_own_files_and_no_others() {
             );
         }
     }
-    // The recipe in the folder of its own result, and a user's folder where the build would work.
+    // A recipe in the folder of its own result, and a user's folder at the build's working path.
     folder.write("map/small.toml", crate::harness::SMALL);
     folder.good(&["build", "map/small.toml", "--tiles", "r32", "--tile", "33", "-o", "map", "--force", "-q"]);
     assert_eq!(folder.text("map/small.toml"), crate::harness::SMALL);
@@ -302,7 +302,7 @@ fn resuming_after_damage_says_what_was_made() {
     folder.good(&arguments(name, asked, &["-q"]));
     let expect = files(&folder.path(name));
     let tiles = expect.keys().filter(|path| path.extension().is_some_and(|extension| extension == "png")).count();
-    // The widest view is made of all others.
+    // The lowest zoom is computed from all others.
     let zoom = |path: &&PathBuf| path.iter().next().unwrap().to_string_lossy().parse::<u32>().unwrap_or(u32::MAX);
     let top = expect.keys().min_by_key(zoom).unwrap();
     fs::write(folder.path(name).join(top), "tampered").unwrap();

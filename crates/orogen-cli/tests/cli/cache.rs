@@ -1,8 +1,8 @@
-//! Solutions kept from run to run.
+//! The cache of solutions.
 
 use crate::harness::Folder;
 
-/// A world whose stretching takes longer than what is not worth keeping.
+/// A world whose normalisation takes longer than the minimum time for the cache.
 pub const SLOW: &str = r#"
 orogen = 1
 [world]
@@ -32,7 +32,7 @@ fn a_slow_solution_is_kept_where_it_was_asked_for_and_changes_nothing() {
     let first = export("a.npy", &["--cache", "kept"]);
     assert_eq!(folder.names("kept").len(), 1, "one solution");
     assert_eq!(export("b.npy", &["--cache", "kept"]), first);
-    // From the environment, and damaged: found and made again.
+    // The folder from the environment; a damaged entry is detected and recomputed.
     let entry = folder.path("kept").join(&folder.names("kept")[0]);
     let sound = std::fs::read(&entry).unwrap();
     std::fs::write(&entry, &sound[..sound.len() - 1]).unwrap();

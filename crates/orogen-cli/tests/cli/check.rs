@@ -40,12 +40,12 @@ fn every_fault_of_every_recipe_is_told() {
     folder.bad(&["check"], 2, "required");
 }
 
-/// Runs it with something on standard input.
+/// Runs the command with data on standard input.
 fn piped(folder: &Folder, arguments: &[&str], input: &[u8]) -> Outcome {
     let mut command = folder.command(arguments);
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut stdin = child.stdin.take().unwrap();
-    // A command that refuses its arguments may be gone before it has read anything.
+    // A command that rejects its arguments may exit before it reads any data.
     match stdin.write_all(input) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => {}
         written => written.unwrap(),
@@ -66,7 +66,7 @@ fn recipes_come_from_standard_input() {
         &["explain", "-"],
         &["check", "-"],
         &["graph", "-", "-o", "g.svg"],
-        // Standard input comes once, and two seeds need it twice.
+        // Standard input can be read only once; two seeds need it twice.
         &["export", "-", "-o", "b.npy", "--seed", "1,2"],
     ] {
         let outcome = piped(&folder, command, SMALL.as_bytes());
@@ -141,7 +141,7 @@ fn a_graph_is_drawn_and_written_for_graphviz() {
     ] {
         assert!(dot.contains(expect), "{expect}: {dot}");
     }
-    // A name from a recipe cannot end a string of DOT.
+    // A name from a recipe cannot end a DOT string.
     assert_eq!(dot.matches('"').count() % 2, 0);
 }
 

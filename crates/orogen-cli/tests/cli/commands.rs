@@ -1,4 +1,5 @@
-//! All commands in tables, so that what every command owes its users is tested on every command. A command that is in none fails here.
+//! Tables of all commands. Tests of requirements for every command iterate over them. A command that is in no table
+//! fails here.
 
 use std::collections::BTreeSet;
 
@@ -6,9 +7,9 @@ use crate::harness::Folder;
 
 /// A command that writes files.
 pub struct Writer {
-    /// What is asked for, the output's name last.
+    /// The arguments; the output path is last.
     pub arguments: &'static [&'static str],
-    /// The files it makes that carry data of the user's.
+    /// The files it writes that contain user data.
     pub files: &'static [&'static str],
 }
 
@@ -16,7 +17,7 @@ const fn writer(arguments: &'static [&'static str], files: &'static [&'static st
     Writer { arguments, files }
 }
 
-/// Every command that writes, in each way that it has of writing. They run in a folder that [`workplace`] made.
+/// Every command that writes files, in each variant. They run in a folder made by [`workplace`].
 pub const WRITERS: &[Writer] = &[
     writer(
         &["generate", "small.toml", "-o", "made"],
@@ -66,13 +67,13 @@ pub const WRITERS: &[Writer] = &[
     writer(&["graph", "hills", "-o", "graph.dot"], &["graph.dot"]),
 ];
 
-/// Commands that write nothing but words on standard output.
+/// Commands that only write text to standard output.
 const TALKERS: &[&str] = &["presets", "ops", "schema", "explain", "check", "cache", "completions", "help"];
 
-/// Commands that never write over anything.
+/// Commands that never overwrite files.
 const STARTERS: &[&str] = &["new"];
 
-/// A recipe that grows.
+/// A recipe with erosion.
 const RIVERS: &str = r#"
 orogen = 1
 [world]
@@ -89,14 +90,14 @@ steps = 3
 height = "land"
 "#;
 
-/// A folder with all that the commands of [`WRITERS`] read.
+/// A folder with all inputs of the commands in [`WRITERS`].
 pub fn workplace() -> Folder {
     let folder = Folder::with_small();
     folder.write("rivers.toml", RIVERS);
     folder
 }
 
-/// What a command reads that is dear to make, made where it is asked for.
+/// Makes an input that takes long to compute, only for commands that need it.
 pub fn prepare(folder: &Folder, writer: &Writer) {
     if writer.arguments.contains(&"place.tif") && !folder.path("place.tif").exists() {
         folder.good(&["export", "hills", "-o", "place.tif", "--cell", "30", "--window", "100,120,96,80", "-q"]);

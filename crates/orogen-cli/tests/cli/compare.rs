@@ -15,7 +15,7 @@ fn the_page_is_one_picture_that_grows_with_its_parts() {
     assert!(a.width.abs_diff(b.width / 2) <= 1 && a.height.abs_diff(b.height / 2) <= 1);
     assert!((a.width, a.height) == (c.width, c.height) && a.data != c.data);
     assert_eq!(folder.read("compare.png"), folder.read("d.png"));
-    // Paper in all corners, and words in the margin's ink.
+    // The corners have the paper color, and the margin has text.
     assert!(a.data.first() == a.data.last() && a.data[0] > 240);
     assert!(a.data.iter().take(a.width * 60).any(|&grey| grey < 60), "a title");
 }

@@ -25,7 +25,7 @@ fn a_file_of_heights_is_a_recipe() {
     folder.good(&["export", "a.tif", "-o", "b.npy", "-q"]);
     folder.good(&["export", "small.toml", "-o", "c.npy", "-q"]);
     assert!(folder.read("b.npy") == folder.read("c.npy"));
-    // A node of another recipe: the path counts from the recipe's folder, wherever the command runs.
+    // A node of another recipe: the path is relative to the recipe's folder, not to the working directory.
     let text = "orogen = 1\n[world]\nsize = 200\ncell = 10\n[nodes.a]\nop = \"dem\"\npath = \"../a.tif\"\nat = [-100, -50]\n\
                 [outputs]\nheight = \"a\"\n";
     std::fs::create_dir(folder.path("sub")).unwrap();
@@ -37,7 +37,7 @@ fn a_file_of_heights_is_a_recipe() {
     folder.bad(&["generate", "cut.tif"], 1, "cannot read cut.tif: it ends within its");
     folder.bad(&["generate", "a.tif", "--watch"], 2, "a.tif is a file of heights");
     folder.bad(&["generate", "gone.tif"], 1, "cannot read gone.tif: no such file");
-    // A height picture with the summary beside it.
+    // A height picture with its summary file.
     folder.good(&["generate", "small.toml", "-o", "made", "-q"]);
     let told = folder.good(&["export", "made/height.png", "-o", "e.npy"]).text().to_string();
     assert!(told.contains("64 x 48 samples of 10 m"), "{told}");
@@ -88,7 +88,7 @@ fn off(folder: &Folder, a: &str, b: &str) -> f32 {
 fn formats_with_a_sidecar_come_back_as_heights() {
     let folder = Folder::with_small();
     folder.good(&["export", "small.toml", "-o", "all.npy", "-q"]);
-    // 250 m over 65535 or 255 levels; half a level at most, and what f32 rounds.
+    // 250 m over 65535 or 255 levels: the error is at most half a level plus f32 rounding.
     for (file, options, most) in [
         ("a.asc", &[][..], 0.0),
         ("b.r32", &[], 0.0),
@@ -122,7 +122,7 @@ fn formats_with_a_sidecar_come_back_as_heights() {
         assert_eq!(told[key].to_string(), expect, "{key}");
     }
     assert_eq!(told["layer_sha256"].as_str().unwrap().len(), 64);
-    // The rows of one are those of the other, turned.
+    // Both files have the same rows in opposite order.
     let (north, south) = (folder.read("b.r32"), folder.read("c.r32"));
     assert!(north.chunks(256).eq(south.chunks(256).rev()));
 }
@@ -137,7 +137,7 @@ fn a_sidecar_takes_nobodys_place() {
     folder.good(&["export", "b.png", "-o", "back.npy", "-q"]);
     folder.good(&["export", "small.toml", "-o", "all.npy", "-q"]);
     assert!(off(&folder, "all.npy", "back.npy") <= 1.97, "each file is read by its own sidecar");
-    // A recipe of that name stays what it is.
+    // A recipe with that name is kept.
     folder.write("c.json", "{\"orogen\": 1}");
     folder.good(&["export", "small.toml", "-o", "c.r16", "-q"]);
     assert_eq!(folder.text("c.json"), "{\"orogen\": 1}");
@@ -214,7 +214,7 @@ fn layers_that_follow_from_the_heights() {
             assert!(npy(&folder.read("a.npy")).data().iter().all(|sample| (low..=high).contains(sample)), "{layer}");
         }
     }
-    // Green is turned for DirectX, and nothing else.
+    // Only green is inverted for DirectX.
     folder.good(&["export", "small.toml", "-o", "b.png", "--layer", "normal", "--normal", "directx", "-q"]);
     folder.good(&["export", "small.toml", "-o", "a.png", "--layer", "normal", "-q"]);
     let (up, down) = (png(&folder.read("a.png")).data, png(&folder.read("b.png")).data);
@@ -268,7 +268,7 @@ fn engines_get_what_they_ask_for() {
         (Some(253), Some(true))
     );
 
-    // Tiles of one scale that share their edges; rows from the south, counted from the south.
+    // Tiles with one scale and shared edges; rows from the south, counted from the south.
     folder.good(&[
         "export",
         "small.toml",
@@ -431,7 +431,7 @@ fn what_cannot_be_asked_for_is_usage() {
     }
     folder.bad(&["export", "small.toml", "-o", "none/a.npy"], 1, "cannot write into none: the folder does not exist");
     folder.bad(&["export", "small.toml", "-o", "a.npy", "--memory", "1kB"], 1, "of memory");
-    // What is offered instead is there.
+    // The suggested window is valid.
     folder.good(&["export", "small.toml", "-o", "a.hgt", "--cell", "0.4", "--window", "0,0,1201,1201"]);
 }
 
@@ -445,7 +445,7 @@ fn contours_are_lines_of_the_heights_asked_for() {
     let levels: std::collections::BTreeSet<i64> =
         all.iter().map(|line| line["properties"]["elevation"].as_i64().unwrap()).collect();
     assert_eq!(levels.into_iter().collect::<Vec<i64>>(), [0, 50, 100, 150, 200]);
-    // A point on an edge between two samples has the height that is written beside it.
+    // A point on an edge between two samples has the interpolated height.
     for line in &all {
         for point in line["geometry"]["coordinates"].as_array().unwrap() {
             let at = |k: usize| point[k].as_f64().unwrap() / 10.0;
@@ -494,7 +494,7 @@ fn layers_that_follow_from_the_heights_have_options_of_their_own() {
         folder.good(&arguments);
         npy(&folder.read("layer.npy"))
     };
-    // Every one is made, with what it cannot do without.
+    // Every layer is made, with its required options.
     let numbers = derived::all().iter().filter(|layer| match &layer.made {
         Made::Rows(rows) => rows.nature == Nature::Numbers,
         Made::Nodes(_) => true,
@@ -504,17 +504,17 @@ fn layers_that_follow_from_the_heights_have_options_of_their_own() {
         let made = export(name, needed);
         assert_eq!((made.width(), made.height()), (64, 48), "{name}");
     }
-    // Options change what is made.
+    // Options change the result.
     let (june, winter) = (export("insolation", &["--day", "172"]), export("insolation", &["--season", "winter"]));
     assert!(june.data().iter().zip(winter.data()).all(|(june, winter)| june > winter));
-    // A single day is stepped through more finely than the node does by itself.
+    // A single day uses a smaller time step than the node's default.
     let node = "[nodes.sun]\nop = \"insolation\"\nsource = \"land\"\ndays = [172, 172]\nstep = 0.1\n[outputs]\nsun = \"sun\"\n";
     folder.write("sun.toml", SMALL.replace("[outputs]\n", node));
     folder.good(&["export", "sun.toml", "-o", "node.npy", "-q", "--layer", "sun"]);
     folder.good(&["export", "small.toml", "-o", "layer.npy", "-q", "--layer", "insolation", "--day", "172"]);
     assert_eq!(npy(&folder.read("node.npy")).data(), npy(&folder.read("layer.npy")).data());
     let south = export("insolation", &["--season", "winter", "--latitude", "-45"]);
-    // Not everywhere: a steep slope to the north gets more of a low northern sun than of a high southern one.
+    // Not everywhere: a steep north slope gets more of a low northern sun than of a high southern one.
     assert!(south.data().iter().sum::<f32>() < june.data().iter().sum::<f32>());
     let few = export("height-above-drainage", &["--stream", "1e9"]);
     let many = export("height-above-drainage", &["--stream", "500"]);
@@ -555,6 +555,6 @@ fn what_a_layer_cannot_do_is_a_sentence() {
         folder.bad(&arguments, 2, expect);
     }
     assert!(!folder.path("x.npy").exists());
-    // What needs no bounds is made without.
+    // Layers that need no bounds work without them.
     folder.good(&["export", "endless.toml", "-o", "x.npy", "--layer", "landforms", "--window", "0,0,9,9", "-q"]);
 }

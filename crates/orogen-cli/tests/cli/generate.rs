@@ -42,7 +42,7 @@ fn it_writes_its_files_and_they_agree() {
     assert_eq!(grey8.data, levels);
     let map = png(&folder.read("a/b/map.png"));
     assert_eq!((map.width, map.height, map.bits, map.channels), (64, 48, 8, 3));
-    // Sea is blue and land is not, exactly where the heights say.
+    // Pixels are blue exactly where the height is below the sea level.
     for (pixel, &height) in map.data.chunks_exact(3).zip(heights.data()) {
         assert_eq!(pixel[2] > pixel[1], height <= 0.0, "{pixel:?} at {height} m");
     }
@@ -73,7 +73,7 @@ fn threads_and_memory_change_nothing() {
 #[test]
 fn every_preset_is_made() {
     let folder = Folder::new();
-    // Those that rivers make take longer: tests/golden.rs of the library makes them all.
+    // Presets with river erosion take longer: tests/golden.rs of the library makes all presets.
     for name in ["archipelago", "classic", "endless", "hills", "island", "mesa", "rolling"] {
         folder.good(&["generate", name, "--size", "32", "-o", name, "-q"]);
         assert_eq!(folder.names(name), FILES);
@@ -107,7 +107,7 @@ fn sizes_and_cells_choose_the_samples() {
         );
         assert_eq!(got, expect, "{options:?}");
     }
-    // At twice the cell, every second sample is the very same.
+    // At twice the cell size, every second sample is identical.
     folder.good(&["export", "small.toml", "-o", "fine.npy", "--layer", "noise", "--cell", "5"]);
     folder.good(&["export", "small.toml", "-o", "coarse.npy", "--layer", "noise", "--cell", "10"]);
     let (fine, coarse) = (npy(&folder.read("fine.npy")), npy(&folder.read("coarse.npy")));

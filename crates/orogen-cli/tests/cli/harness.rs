@@ -1,11 +1,11 @@
-//! Folders to work in, and the program to run there.
+//! Temporary folders, and a way to run the program there.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// A world of 64 x 48 samples that is made at once.
+/// A world of 64 x 48 samples that takes almost no time.
 pub const SMALL: &str = r#"
 orogen = 1
 about = "a test"
@@ -40,7 +40,7 @@ impl Folder {
         Folder(path)
     }
 
-    /// One with [`SMALL`] in it as `small.toml`.
+    /// A folder with [`SMALL`] as `small.toml`.
     pub fn with_small() -> Folder {
         let folder = Folder::new();
         folder.write("small.toml", SMALL);
@@ -67,7 +67,7 @@ impl Folder {
         serde_json::from_str(&self.text(name)).unwrap()
     }
 
-    /// The names of what is in a folder within, hidden files too.
+    /// The names of all files in a subfolder, including hidden files.
     pub fn names(&self, within: &str) -> Vec<String> {
         let mut names: Vec<String> = fs::read_dir(self.path(within))
             .unwrap()
@@ -77,28 +77,29 @@ impl Folder {
         names
     }
 
-    /// The program, about to be run in here.
+    /// The program as a command with this folder as working directory.
     pub fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_orogen"));
         command.args(arguments).current_dir(&self.0).stdin(Stdio::null()).env_remove("NO_COLOR");
-        // No test may find what another run has solved, nor leave anything behind.
+        // No test may use or leave cached solutions.
         command.env("OROGEN_CACHE", "");
         command
     }
 
-    /// Runs it.
+    /// Runs the command.
     pub fn run(&self, arguments: &[&str]) -> Outcome {
         Outcome::of(&self.command(arguments).output().unwrap())
     }
 
-    /// Runs it to success.
+    /// Runs the command and checks that it succeeds.
     pub fn good(&self, arguments: &[&str]) -> Outcome {
         let outcome = self.run(arguments);
         assert_eq!(outcome.code, 0, "{arguments:?}: {}", outcome.err);
         outcome
     }
 
-    /// Runs it to an end with `code`, nothing on standard output, and an error that has `expect` in it.
+    /// Runs the command and checks that it exits with `code`, prints nothing on standard output, and prints an error
+    /// that contains `expect`.
     pub fn bad(&self, arguments: &[&str], code: i32, expect: &str) -> Outcome {
         let outcome = self.run(arguments);
         assert!(outcome.err.contains(expect), "{arguments:?}: {} / {expect}", outcome.err);
@@ -114,7 +115,7 @@ impl Drop for Folder {
     }
 }
 
-/// How a run ended.
+/// The outcome of a run.
 pub struct Outcome {
     pub code: i32,
     pub out: Vec<u8>,
@@ -122,7 +123,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Whatever happens, the program ends by itself, and not by a panic.
+    /// Checks that the program exited by itself and without a panic.
     pub fn of(output: &Output) -> Outcome {
         let err = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(!err.contains("panicked"), "{err}");
@@ -136,7 +137,7 @@ impl Outcome {
     }
 }
 
-/// The samples of an array file.
+/// Reads the samples of a .npy file.
 pub fn npy(bytes: &[u8]) -> orogen::Grid {
     orogen::format::npy::read(&mut &bytes[..], "test.npy", 1.0).unwrap()
 }
@@ -164,14 +165,14 @@ pub fn png(bytes: &[u8]) -> Picture {
 }
 
 impl Picture {
-    /// The levels of 16-bit grey.
+    /// The levels of a 16-bit grey picture.
     pub fn grey16(&self) -> Vec<u16> {
         assert_eq!((self.bits, self.channels), (16, 1));
         self.data.chunks_exact(2).map(|b| u16::from_be_bytes([b[0], b[1]])).collect()
     }
 }
 
-/// Whether `path` is a whole picture, array or JSON, by its extension.
+/// Returns whether `path` is a complete picture, array or JSON file, by its extension.
 pub fn is_whole(path: &Path) -> bool {
     let bytes = fs::read(path).unwrap();
     match path.extension().and_then(|extension| extension.to_str()) {

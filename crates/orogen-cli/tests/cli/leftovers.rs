@@ -1,4 +1,4 @@
-//! What killed commands leave behind: removed by the next command that writes there, and nothing else is.
+//! Leftovers of killed commands: the next command that writes there removes them, and nothing else.
 
 use std::process::{Child, Stdio};
 use std::time::Duration;
@@ -9,14 +9,14 @@ fn start(folder: &Folder, arguments: &[&str]) -> Child {
     folder.command(arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
 }
 
-/// The files on their way in a folder that belong to this process.
+/// The temporary files of this process in a folder.
 fn files_of(folder: &Folder, child: &Child) -> Vec<String> {
     let mut names = folder.names("");
     names.retain(|name| name.starts_with(&format!(".orogen-{}-", child.id())) && name.ends_with(".tmp"));
     names
 }
 
-/// Starts a command and waits until it has a file on its way.
+/// Starts a command and waits until it has a temporary file.
 fn busy(folder: &Folder, arguments: &[&str]) -> Child {
     let mut child = start(folder, arguments);
     for _ in 0..2000 {
@@ -44,7 +44,7 @@ fn files_of_killed_commands_go_and_those_of_the_living_stay() {
         killed.kill().unwrap();
         killed.wait().unwrap();
         assert!(!files_of(&folder, &killed).is_empty(), "{arguments:?}: {:?}", folder.names(""));
-        // Another one is alive while a third writes.
+        // Another process is running while a third one writes.
         let mut living = busy(&folder, arguments);
         folder.good(&["export", "small.toml", "-o", "b.npy", "-q"]);
         assert!(files_of(&folder, &killed).is_empty(), "{arguments:?}: {:?}", folder.names(""));

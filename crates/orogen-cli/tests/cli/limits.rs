@@ -1,5 +1,5 @@
-//! What every command owes its users, command by command. The table in docs/development.md says what is tested here; it is compared with what the
-//! tests really did, and `OROGEN_BLESS=1` writes it anew.
+//! Requirements for every command, tested command by command. The table in docs/development.md lists them; the test
+//! compares it with the results, and `OROGEN_BLESS=1` updates it.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -9,10 +9,10 @@ use std::time::{Duration, Instant};
 use crate::commands::{WRITERS, Writer, prepare, workplace};
 use crate::harness::{Folder, SMALL};
 
-/// One promise, in the order of the table's columns.
+/// One requirement, in the order of the table's columns.
 struct Promise {
     name: &'static str,
-    /// Tests it on a way of writing. False where the promise does not apply.
+    /// Tests one variant of a command. False if the requirement does not apply.
     check: fn(&Writer) -> bool,
 }
 
@@ -25,7 +25,7 @@ const PROMISES: [Promise; 6] = [
     Promise { name: "bad input", check: bad_input },
 ];
 
-/// Where the table stands, and between which lines.
+/// The file with the table, and the lines around it.
 const TABLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/development.md");
 const BEGIN: &str = "<!-- commands and limits: begin -->\n";
 const END: &str = "<!-- commands and limits: end -->\n";
@@ -39,7 +39,7 @@ fn every_command_keeps_every_promise() {
         for (cell, promise) in row.iter_mut().zip(&PROMISES) {
             match std::panic::catch_unwind(|| (promise.check)(writer)) {
                 Ok(applies) => *cell |= applies,
-                // All that is broken is told at once.
+                // All failures are reported at once.
                 Err(_) => broken.push(format!("{}: {}", writer.arguments.join(" "), promise.name)),
             }
         }
@@ -68,7 +68,7 @@ fn ready(writer: &Writer) -> Folder {
     folder
 }
 
-/// The arguments with some of them replaced.
+/// The arguments with replacements.
 fn with(writer: &Writer, change: impl Fn(&'static str) -> &'static str) -> Vec<&'static str> {
     writer.arguments.iter().map(|argument| change(argument)).collect()
 }
@@ -91,11 +91,12 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// A command that may take 64 KiB refuses with a message that says so, and writes nothing. What it takes of larger limits is measured in memory.rs.
+/// A command with a limit of 64 KiB rejects the request with a message that names the limit, and writes nothing.
+/// memory.rs measures larger limits.
 fn memory(writer: &Writer) -> bool {
     let folder = ready(writer);
     let help = folder.good(&[writer.arguments[0], "--help"]).text().to_string();
-    // A graph is drawn of the recipe alone: only the files of heights that it names take memory.
+    // A graph only reads the recipe: only the files of heights that it names take memory.
     if !help.contains("--memory") || writer.arguments[0] == "graph" {
         return false;
     }
@@ -106,10 +107,10 @@ fn memory(writer: &Writer) -> bool {
     true
 }
 
-/// A world that takes long.
+/// A world that takes a long time.
 const LONG: &str = "size = [60000, 40000]";
 
-/// A command that is interrupted while it works ends with code 130 within seconds, and leaves nothing.
+/// A command that is interrupted while it works exits with code 130 within seconds, and leaves no files.
 fn cancel(writer: &Writer) -> bool {
     let mut arguments = with(writer, |argument| match argument {
         "12" if writer.arguments[0] == "fit" => "10000",
@@ -121,9 +122,9 @@ fn cancel(writer: &Writer) -> bool {
         argument => argument,
     });
     match writer.arguments[0] {
-        // Pages of fixed size, made in the blink of an eye; a build keeps what it has made, which build.rs tests.
+        // Pages of fixed size take almost no time; a build keeps its progress, which build.rs tests.
         "compare" | "palettes" | "graph" | "build" => return false,
-        // One way of writing stands for all.
+        // One variant of export represents all.
         "export" if !arguments.contains(&"a.tif") => return false,
         "noise" if !arguments.contains(&"block.npy") => return false,
         "noise" => arguments.iter_mut().filter(|argument| **argument == "3").for_each(|argument| *argument = "1000"),
@@ -147,9 +148,9 @@ fn cancel(writer: &Writer) -> bool {
     true
 }
 
-/// A disk that is full is told, and no other file of the same run is left.
+/// A full disk is reported, and no other file of the same run remains.
 fn full_disk(writer: &Writer) -> bool {
-    // A build checks the room before it starts; build.rs fills disks below it.
+    // A build checks the free space before it starts; build.rs tests full disks.
     if !Path::new("/dev/full").exists() || writer.arguments[0] == "build" {
         return false;
     }
@@ -164,7 +165,7 @@ fn full_disk(writer: &Writer) -> bool {
     true
 }
 
-/// What a person has put where the output goes is kept. outputs.rs tests all that may be there.
+/// A user's file at the output path is kept. outputs.rs tests all cases.
 fn existing(writer: &Writer) -> bool {
     let folder = ready(writer);
     let file = writer.files[0];
@@ -177,7 +178,7 @@ fn existing(writer: &Writer) -> bool {
     true
 }
 
-/// A recipe on standard input makes the same files.
+/// A recipe on standard input yields the same files.
 fn stdin(writer: &Writer) -> bool {
     let Some(name) = recipe(writer) else { return false };
     let folder = ready(writer);
@@ -190,14 +191,14 @@ fn stdin(writer: &Writer) -> bool {
     let said = String::from_utf8_lossy(&ended.stderr);
     assert!(ended.status.success(), "{:?}: {said}", writer.arguments);
     for (file, first) in writer.files.iter().zip(&first) {
-        // Summaries tell the time that it took, sheets and reports the name of the recipe.
+        // Summaries contain the elapsed time, sheets and reports the name of the recipe.
         let named = file.ends_with(".json") || matches!(writer.arguments[0], "map" | "analyze" | "variants");
         assert!(named || other.read(file) == *first, "{:?}: {file}", writer.arguments);
     }
     true
 }
 
-/// What is no recipe is refused with a message, and nothing is written.
+/// Invalid recipes are rejected with a message, and no file is written.
 fn bad_input(writer: &Writer) -> bool {
     let Some(name) = writer.arguments[1..]
         .iter()

@@ -1,5 +1,5 @@
-//! The `orogen` command as its users meet it: the built program, run in folders of its own.
-// Clippy knows test functions, but not that all of this file is for them.
+//! Tests of the `orogen` command: the built program, run in temporary folders.
+// Clippy detects test functions, but not that this whole file contains tests.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod bad_places;

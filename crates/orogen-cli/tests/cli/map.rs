@@ -17,11 +17,11 @@ fn one_sheet_as_picture_svg_and_pdf() {
     folder.good(&["map", "small.toml", "-o", "a.pdf", "--paper", "letter", "--landscape", "--contours", "20", "-q"]);
     let page = folder.read("a.pdf");
     assert!(page.starts_with(b"%PDF-1.4") && page.ends_with(b"%%EOF\n"));
-    // The same again has the same bytes; without a part it has others.
+    // The same command writes the same bytes; without one part the bytes differ.
     folder.good(&["map", "small.toml", "-o", "b.png", "--size", "600", "-q", "--threads", "1"]);
     folder.good(&["map", "small.toml", "-o", "c.png", "--size", "600", "-q", "--no-contours"]);
     assert!(folder.read("a.png") == folder.read("b.png") && folder.read("a.png") != folder.read("c.png"));
-    // A title in letters that the built-in font lacks is drawn or told of, and never stops the map.
+    // A title with letters that the built-in font lacks is drawn or reported, and never stops the map.
     folder.good(&["map", "small.toml", "-o", "d.png", "--size", "300", "--title", "\u{5c71}\u{6cb3}", "-q"]);
 }
 
@@ -34,7 +34,7 @@ fn colours_by_name_and_from_files() {
             ["--no-contours", "--no-rivers", "--no-lakes", "--no-summits", "--shade", "none", "--size", "300", "-q"];
         folder.good(&[&["map", "small.toml", "-o", "a.png", "--palette", palette][..], &plain].concat());
         let picture = png(&folder.read("a.png"));
-        // Greys have no colour anywhere but in the small print.
+        // A grey map has colors only in the small print.
         let colored =
             picture.data.chunks(3).filter(|pixel| pixel.iter().max().unwrap() - pixel.iter().min().unwrap() > 20);
         assert_eq!(colored.count() > 1000, palette == "viridis", "{palette}");
@@ -106,9 +106,9 @@ fn any_layer_colours_a_map() {
         (&["--layer", "normal"], "`normal` has 3 channels"),
         (&["--layer", "slope", "--range", "5"], "--range must be LOW,HIGH"),
         (&["--layer", "slope", "--range", "9,5"], "the lower value first"),
-        (&["--color", "surfaces", "--layer", "slope"], "takes no --layer, --palette or --range"),
-        (&["--color", "surfaces", "--palette", "viridis"], "takes no --layer, --palette or --range"),
-        (&["--color", "surfaces", "--range", "0,5"], "takes no --layer, --palette or --range"),
+        (&["--color", "surfaces", "--layer", "slope"], "cannot be combined with --layer, --palette or --range"),
+        (&["--color", "surfaces", "--palette", "viridis"], "cannot be combined with --layer, --palette or --range"),
+        (&["--color", "surfaces", "--range", "0,5"], "cannot be combined with --layer, --palette or --range"),
         (&["--ramp", "log"], "needs a --layer other than height"),
         (&["--layer", "noise", "--ramp", "log", "--range", "-1,1"], "a logarithmic ramp needs values above 0"),
         (&["--layer", "slope", "--palette", "hypsometric"], "applies to heights only"),

@@ -1,7 +1,8 @@
-//! What every command takes of memory beside what `--memory` allows. The whole process counts: its peak is read from the system.
+//! Peak memory of every command compared with `--memory`. The whole process counts; the system reports its peak.
 //!
-//! The table goes over all formats, derived layers, engines and forms of builds that the library lists, and a command that is in no row fails
-//! the test, so what is new is measured by existing. With `OROGEN_LONG` set it is measured on 4096 x 4096 samples at three limits:
+//! The table covers all formats, derived layers, engines and build forms that the library lists, and a command without
+//! a row fails the test, so new ones are included automatically. With `OROGEN_LONG` set, the test measures 4096 x 4096
+//! samples at three limits:
 //!
 //!     OROGEN_LONG=1 cargo test -p orogen-cli --test cli memory -- --nocapture
 
@@ -16,13 +17,13 @@ use orogen::export::targets::list as targets;
 
 use crate::harness::Folder;
 
-/// The most that a process may take of what it is allowed.
+/// The maximum peak as a multiple of the limit.
 const MOST: f64 = 1.1;
 
-/// Commands that hold no more than a text or a page of fixed size, and have no `--memory`.
+/// Commands that only hold a text or a page of fixed size, and have no `--memory`.
 const SMALL: [&str; 8] = ["cache", "presets", "new", "ops", "palettes", "schema", "completions", "help"];
 
-/// Rough land, which makes many contours, rivers and triangles.
+/// Rough terrain with many contours, rivers and triangles.
 fn recipe(side: usize, last: &str) -> String {
     format!(
         "orogen = 1\n[world]\nseed = 3\nsize = [{0}.0, {0}.0]\ncell = 10.0\n\
@@ -32,7 +33,7 @@ fn recipe(side: usize, last: &str) -> String {
     )
 }
 
-/// Everything that takes memory, as arguments after which `--memory` may stand.
+/// All commands that need memory, as arguments that `--memory` can follow.
 fn rows(side: usize) -> Vec<Vec<String>> {
     let mut rows: Vec<String> = vec![
         "explain land.toml".into(),
@@ -56,9 +57,9 @@ fn rows(side: usize) -> Vec<Vec<String>> {
     rows.extend(["png", "svg", "pdf"].map(|kind| format!("map land.toml -o map.{kind} -q")));
     rows.push("map land.toml --color surfaces -o ground.png -q".into());
     rows.push("export land.toml --surfaces --max-error 20 -o ground.glb -q".into());
-    // Few pixels, but as many samples to draw lines from.
+    // Few pixels, but many samples for the lines.
     rows.push("map land.toml --dpi 40 -o small.png -q".into());
-    // SRTM's sizes are its own.
+    // SRTM has fixed sizes.
     let formats = registry::all().iter().filter(|format| format.name != "hgt");
     for format in formats {
         rows.push(format!("export land.toml -o out.{} -q", format.name));
@@ -85,12 +86,12 @@ fn rows(side: usize) -> Vec<Vec<String>> {
     rows.iter().map(|row| row.split_whitespace().map(String::from).collect()).collect()
 }
 
-/// How a run ended: its exit code, what it said on standard error, and the most memory that it took, in bytes.
+/// Returns the exit code of a run, its standard error, and its peak memory in bytes.
 fn measured(mut command: Command) -> (i32, String, u64) {
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     let (status, mut peak) = (format!("/proc/{}/status", child.id()), 0);
     let code = loop {
-        // The system keeps the most that there was, so only what comes after the last look is missed.
+        // The system keeps the peak, so only the growth after the last reading is missed.
         let text = std::fs::read_to_string(&status).unwrap_or_default();
         let most = text.lines().find_map(|line| line.strip_prefix("VmHWM:"));
         let most = most.and_then(|most| most.trim().trim_end_matches(" kB").parse::<u64>().ok());
@@ -127,7 +128,7 @@ fn every_command_keeps_its_memory() {
             let (code, said, peak) = measured(folder.command(&arguments));
             let share = peak as f64 / f64::from(limit << 20);
             line += &format!(" {:>9.2}{}", share, if code == 0 { ' ' } else { '-' });
-            // What does not fit is refused at once, with what it needs and what it may have.
+            // A request that does not fit is rejected at once, with the required and the allowed memory.
             let refused = code == 1 && said.contains("MiB is allowed");
             if share > MOST || code != 0 && !refused {
                 worst.push(format!("{arguments:?}: {share:.2} times {limit} MiB, exit {code}: {said}"));
@@ -173,7 +174,7 @@ fn no_command_is_forgotten() {
 
 #[test]
 fn a_file_that_unpacks_to_more_than_is_allowed_is_refused() {
-    // A picture of 20000 x 20000 in a few hundred kilobytes.
+    // A picture of 20000 x 20000 pixels in a few hundred kilobytes.
     let folder = Folder::new();
     let mut picture = Vec::new();
     let side = 20_000u32;
@@ -229,7 +230,7 @@ fn what_may_never_end_is_refused() {
     }
     folder.write("reads.toml", "orogen = 1\n[nodes.a]\nop = \"dem\"\npath = \"pipe.tif\"\n[outputs]\nheight = \"a\"\n");
     folder.bad(&["export", "reads.toml", "-o", "a.npy"], 1, "pipe.tif: it is a pipe or a device");
-    // What a shell puts in place of <(command) is read.
+    // The file that a shell passes for <(command) is read.
     let script = format!("{} explain /dev/fd/3 3< <(cat small.toml)", env!("CARGO_BIN_EXE_orogen"));
     let ended = Command::new("bash").arg("-c").arg(script).current_dir(&folder.0).output().unwrap();
     assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
@@ -244,7 +245,7 @@ fn many_threads_are_no_more_than_there_is_work_for() {
     };
     assert!(made("1") == made("1000"));
     if cfg!(target_os = "linux") {
-        // A thousand stacks would take more.
+        // A thousand thread stacks would take more.
         let (code, said, peak) =
             measured(folder.command(&["export", "small.toml", "-o", "a.npy", "--threads", "1000"]));
         assert!(code == 0 && peak < 24 << 20, "{peak}: {said}");

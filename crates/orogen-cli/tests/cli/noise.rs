@@ -3,7 +3,7 @@
 use crate::harness::{Folder, npy, png};
 use orogen_noise::{Basis, Depth, Falloff, Fractal, Kind, Points};
 
-/// The noise's own samples over W x H.
+/// The samples of the noise over W x H.
 fn samples(noise: &Fractal, width: u32, height: u32, depth: Option<f64>) -> Vec<f32> {
     let side = |n| (0..n).map(f64::from).collect::<Vec<_>>();
     let (xs, ys) = (side(width), side(height));
@@ -16,7 +16,7 @@ fn samples(noise: &Fractal, width: u32, height: u32, depth: Option<f64>) -> Vec<
     value
 }
 
-/// The f32 at the end of an array file, and its shape as it stands in the header.
+/// The f32 values at the end of an array file, and its shape in the header.
 fn array(bytes: &[u8], count: usize) -> (Vec<f32>, String) {
     let (header, data) = bytes.split_at(bytes.len() - count * 4);
     let header = String::from_utf8_lossy(header).into_owned();
@@ -75,7 +75,7 @@ fn every_parameter_reaches_the_noise() {
         let expect = samples(&Fractal { basis: Basis::Value, kind, ..noise }, 33, 33, depth);
         assert_eq!(npy(&folder.read("a.npy")).data(), expect, "{more:?}");
     }
-    // A fractal has six octaves where nobody says, a noise by itself one.
+    // A fractal has six octaves by default, a plain noise one.
     for (more, octaves) in [(&["--fractal", "fbm"][..], 6), (&[], 1)] {
         folder.good(&[&["noise", "value", "-o", "a.npy", "--size", "33"], more].concat());
         let expect = Fractal { basis: Basis::Value, wavelength: 64.0, octaves, ..Fractal::default() };
@@ -116,7 +116,7 @@ fn an_animation_has_its_frames_and_comes_back() {
         .collect();
     assert_eq!(frames[0], png(&folder.read("first.png")).data);
     assert!(frames[1] != frames[0] && frames[2] != frames[1] && frames[3] != frames[2]);
-    // There and back, but for the rounding of the cosine.
+    // The animation goes there and back, except for the rounding of the cosine.
     let far = frames[1].iter().zip(&frames[5]).map(|(a, b)| a.abs_diff(*b)).max();
     assert!(far <= Some(1), "{far:?}");
 }
@@ -194,7 +194,7 @@ fn wavelengths_are_rounded_to_fit_and_it_is_said() {
     }
     let quiet = folder.good(&[&["noise", "perlin", "--wavelength", "30", "-q"], &size[..]].concat());
     assert_eq!(quiet.err, "");
-    // A wavelength longer than the picture is the picture's.
+    // A wavelength longer than the picture is limited to its size.
     let outcome = folder.good(&["noise", "value", "--wavelength", "500", "--size", "40", "--tileable"]);
     assert!(outcome.err.contains("it is 40, so that 1 x 1 fit"), "{}", outcome.err);
 }
@@ -203,7 +203,7 @@ fn wavelengths_are_rounded_to_fit_and_it_is_said() {
 fn tileable_animations_blocks_slopes_and_materials_close() {
     let folder = Folder::new();
     let options = ["--size", "48", "--wavelength", "16", "--tileable"];
-    // A block of 20 slices holds one wavelength of 20 along its depth.
+    // A block of 20 slices has one wavelength of 20 along its depth.
     let outcome =
         folder.good(&[&["noise", "perlin", "--volume", "20", "--z", "3", "-o", "a.npy"], &options[..]].concat());
     assert!(outcome.err.ends_with("wavelength 16; through the slices it is 20, so that 1 fit\n"), "{}", outcome.err);
@@ -214,7 +214,7 @@ fn tileable_animations_blocks_slopes_and_materials_close() {
         assert_eq!(values[k], tiled.sample3(x + 48.0, y, z), "{k}");
         assert_eq!(tiled.sample3(x, y, z), tiled.sample3(x, y - 48.0, z + 16.0), "{k}");
     }
-    // As many frames as a wavelength takes: frame 12 of 24 is half way, and the step after the last leads to the first.
+    // One wavelength over all frames: frame 12 of 24 is half way, and the frame after the last equals the first.
     folder.good(&[&["noise", "perlin", "--frames", "24", "-o", "a.png"], &options[..]].concat());
     let bytes = folder.read("a.png");
     let mut reader = ::png::Decoder::new(std::io::Cursor::new(&bytes)).read_info().unwrap();
@@ -232,7 +232,7 @@ fn tileable_animations_blocks_slopes_and_materials_close() {
             assert!((f32::from(data[k]) - (value + 1.0) * 127.5).abs() <= 0.501, "{frame} {k}");
         }
     }
-    // Seams of what is made of the noise are no steeper than its inside.
+    // Seams of textures made from the noise are no steeper than the inside.
     for more in [&["--gradient"][..], &["--texture", "marble"], &["--texture", "wood"], &["--texture", "clouds"]] {
         let options = ["--size", "96", "--wavelength", "32", "--tileable", "-q", "-o", "b.png"];
         folder.good(&[&["noise", "perlin"], more, &options[..]].concat());

@@ -1,9 +1,11 @@
-//! Heights that are NaN or infinite: refused if none is finite, told if some are not, by every command that makes heights.
+//! Heights that are NaN or infinite: an error if none is finite, a warning if some are not, in every command that makes
+//! heights.
 
 use crate::commands::{WRITERS, Writer, prepare, workplace};
 use crate::harness::Folder;
 
-/// A recipe of the size of `small.toml` whose heights are NaN where a number becomes too large for 32-bit floats: where noise is high, or everywhere.
+/// A recipe with the size of `small.toml` whose heights are NaN where a number overflows 32-bit floats: where the noise
+/// is high, or everywhere.
 fn recipe(everywhere: bool) -> String {
     let large = match everywhere {
         true => "op = \"constant\"\nvalue = 1e5",
@@ -13,7 +15,7 @@ fn recipe(everywhere: bool) -> String {
         "orogen = 1\n[world]\nsize = [640, 480]\ncell = 10\n[nodes.noise]\nop = \"fbm\"\nwavelength = 200\n[nodes.hills]\n\
          op = \"remap\"\nsource = \"noise\"\nto = [0, 200]\n[nodes.large]\n{large}\n"
     );
-    // The eighth power of what is above 63 000 is infinite, and infinity times 0 is NaN.
+    // The eighth power of numbers above 63 000 is infinite, and infinity times 0 is NaN.
     for (name, a, b) in
         [("a", "\"large\"", "\"large\""), ("b", "\"a\"", "\"a\""), ("c", "\"b\"", "\"b\""), ("d", "\"c\"", "0")]
     {
@@ -22,7 +24,7 @@ fn recipe(everywhere: bool) -> String {
     text + "[nodes.land]\nop = \"add\"\na = \"hills\"\nb = \"d\"\n[outputs]\nheight = \"land\"\n"
 }
 
-/// Commands that make heights of a recipe.
+/// Commands that make heights from a recipe.
 fn of_recipes() -> impl Iterator<Item = &'static Writer> {
     WRITERS.iter().filter(|writer| writer.arguments.contains(&"small.toml"))
 }
@@ -38,7 +40,7 @@ fn no_finite_height_is_an_error_of_every_command() {
     }
 }
 
-/// Layers that follow from the heights are finite where these are not.
+/// Derived layers can be finite where the heights are not.
 #[test]
 fn derived_layers_tell_of_the_heights_beneath() {
     let folder = Folder::new();

@@ -1,4 +1,4 @@
-//! The small commands.
+//! Short commands.
 
 use crate::harness::{Folder, SMALL, png};
 use std::process::Stdio;
@@ -187,12 +187,12 @@ fn fit_writes_a_recipe_that_holds_nothing_of_the_place() {
     }
     let recipe = folder.text("like.toml");
     assert!(!recipe.contains("\"dem\"") && !recipe.contains("place.tif") && recipe.len() < 6000, "{recipe}");
-    // The same search finds the same, on another number of threads too.
+    // The same search has the same result, with any number of threads.
     let json = folder.good(&[&fit[..], &["-o", "again.toml", "--threads", "1", "--json"]].concat()).text().to_string();
     assert_eq!(recipe, folder.text("again.toml"));
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert!(json["recipe"]["distance"].as_f64().unwrap() > 0.0 && json["place"]["figures"]["relief"].is_number());
-    // It makes land, with about the slopes that were asked for.
+    // It makes terrain with approximately the given slopes.
     folder.good(&["export", "like.toml", "-o", "like.npy", "-q"]);
     folder.write("like.toml", recipe + "# mine\n");
     folder.bad(&[&fit[..], &["-o", "like.toml"]].concat(), 1, "written or edited by hand");
@@ -219,7 +219,7 @@ fn a_growing_terrain_ends_as_the_recipe_says() {
     };
     let frames = [frame(), frame(), frame(), frame(), frame()];
     assert!(frames.windows(2).all(|pair| pair[0] != pair[1]), "each is another");
-    // As many steps as frames come after the first: the last is the map of the recipe itself.
+    // One step per frame after the first; the last frame is the map of the recipe itself.
     folder.good(&["generate", "rivers.toml", "-o", "rivers", "-q"]);
     assert!(frames[4] == png(&folder.read("rivers/map.png")).data);
     folder.bad(&["grow", "hills", "-o", "x.png"], 2, "hills has no node with op");

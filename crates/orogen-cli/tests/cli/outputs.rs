@@ -1,20 +1,20 @@
-//! What is there before a command writes: inputs, files made by hand, files of other kinds, its own earlier output.
+//! Files that exist before a command writes: inputs, user files, files of other kinds, its own earlier output.
 
 use std::fs;
 
 use crate::commands::{WRITERS, Writer, prepare, workplace};
 use crate::harness::{Folder, SMALL};
 
-/// Whether the command can be asked to replace nothing, or anything.
+/// Options to overwrite nothing or everything.
 const FLAGS: [&str; 2] = ["--no-clobber", "--force"];
 
-/// The arguments with more of them.
+/// The arguments with additional ones.
 fn with<'a>(writer: &Writer, more: &[&'a str]) -> Vec<&'a str> {
     let asked = writer.arguments.iter().copied().filter(|argument| !FLAGS.contains(argument));
     asked.chain(more.iter().copied()).collect()
 }
 
-/// What it takes to write again where a build lies.
+/// The options to write again over a build.
 fn again(writer: &Writer) -> &'static [&'static str] {
     if writer.arguments[0] == "build" { &["--force"] } else { &[] }
 }
@@ -32,14 +32,14 @@ fn a_run_replaces_its_own_output_and_nothing_else() {
         folder.good(&with(writer, &[]));
         let first: Vec<Vec<u8>> = writer.files.iter().map(|file| folder.read(file)).collect();
         folder.good(&with(writer, again(writer)));
-        // --no-clobber stops it, whatever is there.
+        // --no-clobber stops the command in every case.
         let kept = folder.run(&with(writer, &["-n"]));
         assert_eq!(kept.code, 1, "{name}: {}", kept.err);
-        // What a person has put there is kept, whichever of the files it is.
+        // A user's file is kept, in place of any of the output files.
         for (file, own) in writer.files.iter().zip(&first) {
             folder.write(file, "My notes on the walk to the lake.\n");
             let refused = folder.run(&with(writer, &[]));
-            // What stands beside a file may go beside the other one instead.
+            // A sidecar may be written next to the other file instead.
             let elsewhere = file.ends_with(".json") && writer.arguments[0] == "export";
             assert_eq!(refused.code, i32::from(!elsewhere), "{name}: {file}: {}", refused.err);
             assert_eq!(folder.text(file), "My notes on the walk to the lake.\n", "{name}: {file}");
@@ -66,7 +66,7 @@ fn a_recipe_by_hand_is_replaced_by_no_command() {
             folder.write(file, SMALL);
             for more in [&[][..], &["--force"], &["--no-clobber"]] {
                 let refused = folder.run(&with(writer, more));
-                // What stands beside a file may go beside the other one instead.
+                // A sidecar may be written next to the other file instead.
                 let elsewhere = file.ends_with(".json") && writer.arguments[0] == "export";
                 assert!(elsewhere || refused.code == 1, "{file} {more:?}: {}", refused.err);
                 assert_eq!(folder.text(file), SMALL, "{file} {more:?}");
@@ -86,7 +86,7 @@ fn no_command_writes_over_what_it_reads() {
         "orogen = 1\n[world]\nsize = [600, 400]\n[nodes.a]\nop = \"dem\"\npath = \"dem.tif\"\n[nodes.b]\n\
          op = \"stream-power\"\nsource = \"a\"\nsteps = 2\n[outputs]\nheight = \"b\"\n",
     );
-    // Every name under which the file can be met.
+    // Every path of the same file.
     fs::hard_link(folder.path("dem.tif"), folder.path("hard.tif")).unwrap();
     #[cfg(unix)]
     std::os::unix::fs::symlink("dem.tif", folder.path("soft.tif")).unwrap();
@@ -101,7 +101,7 @@ fn no_command_writes_over_what_it_reads() {
             }
         }
     }
-    // Outputs whose names say another kind: the file is a link to what is read.
+    // Output paths with another extension: the path is a link to an input.
     #[cfg(unix)]
     for (command, more, name) in [
         ("map", &[][..], "l.png"),
@@ -126,7 +126,7 @@ fn no_command_writes_over_what_it_reads() {
             );
         }
     }
-    // Palettes are read, too.
+    // Palettes are inputs too.
     folder.write("tint.gpl", "GIMP Palette\n0 0 0 a\n255 255 255 b\n");
     fs::hard_link(folder.path("tint.gpl"), folder.path("tint.png")).unwrap();
     for arguments in [
@@ -149,7 +149,7 @@ fn a_users_recipe_in_the_folder_of_the_result_is_kept() {
     folder.bad(&["generate", "hills", "--size", "16", "-o", "w", "--force"], 1, "written or edited by hand");
     assert_eq!(folder.text("w/recipe.toml"), mine);
     assert_eq!(folder.names("w"), ["recipe.toml"]);
-    // One that Orogen wrote is its own until somebody changes it.
+    // A recipe written by Orogen may be overwritten until someone changes it.
     folder.good(&["generate", "w/recipe.toml", "-o", "v", "-q"]);
     folder.good(&["generate", "w/recipe.toml", "-o", "v", "-q"]);
     let changed = folder.text("v/recipe.toml").replace("octaves = 4", "octaves = 5");

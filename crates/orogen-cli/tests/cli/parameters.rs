@@ -51,7 +51,7 @@ fn variants_on_one_sheet() {
     };
     folder.good(&["variants", "a.toml", "--seeds", "4", "--size", "96", "-o", "seeds.png", "-q"]);
     folder.good(&["variants", "a.toml", "--sweep", "relief=100..900:6", "--size", "96", "-o", "sweep.png", "-q"]);
-    // Two by two, and three by two, of 96 x 64 samples.
+    // Two by two, and three by two tiles of 96 x 64 samples.
     assert_eq!((size("seeds.png")[0], size("sweep.png")[0]), (88 + 2 * 96 + 20, 88 + 3 * 96 + 2 * 20));
     assert_eq!(size("seeds.png")[1], size("sweep.png")[1]);
     folder.good(&["variants", "a.toml", "--seeds", "4", "--size", "96", "-o", "again.png", "-q", "--threads", "1"]);

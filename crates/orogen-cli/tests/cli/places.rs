@@ -1,9 +1,9 @@
-//! Real places in and out: where they lie is kept by every format.
+//! Import and export of real places: every format keeps the position.
 
 use crate::harness::{Folder, npy};
 use std::path::Path;
 
-/// A file of heights that another program wrote, in EPSG:32632.
+/// A file of heights from another program, in EPSG:32632.
 fn corpus(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/dem").join(name);
     path.to_string_lossy().into_owned()
@@ -38,7 +38,7 @@ fn every_format_says_where_it_lies() {
         if name == "c.pgm" {
             continue;
         }
-        // And back: the coordinates and the samples.
+        // Round trip: the coordinates and the samples.
         folder.good(&["export", name, "-o", "z.asc", "-q"]);
         let head: String = folder.text("z.asc").lines().take(5).collect::<Vec<_>>().join(" ");
         assert_eq!(head, "ncols 37 nrows 23 xllcenter 500015 yllcenter 5199325 cellsize 30", "{name}");
@@ -63,7 +63,7 @@ fn southern_rows_layers_and_windows_lie_where_they_are() {
     assert_eq!(folder.text("d.pgw"), "30\n0\n0\n-30\n500315\n5199835\n");
     folder.good(&["export", &source, "-o", "n.png", "-q", "--layer", "normal"]);
     assert_eq!(folder.text("n.pgw"), "30\n0\n0\n-30\n500015\n5199985\n");
-    // Degrees are kept by the cell in NAME.json: the very samples come back.
+    // NAME.json stores the cell size in degrees: the samples are restored exactly.
     folder.good(&["export", &corpus("degrees.tif"), "-o", "e.r32", "-q"]);
     folder.good(&["export", "e.r32", "-o", "f.npy", "-q"]);
     folder.good(&["export", &corpus("degrees.tif"), "-o", "g.npy", "-q"]);
@@ -79,7 +79,7 @@ fn another_place_is_not_overwritten() {
     let said = folder.run(&["export", &source, "-o", "a.asc"]);
     assert_eq!((said.code, said.out.len()), (1, 0), "{}", said.err);
     assert!(said.err.contains("filled 1 sample without height (0.12 %)"), "{}", said.err);
-    assert!(said.err.contains("error: cannot write a.asc: a.prj exists and gives another location"), "{}", said.err);
+    assert!(said.err.contains("error: cannot write a.asc: a.prj exists and contains another position"), "{}", said.err);
     assert_eq!(folder.names(""), ["a.prj"]);
     folder.good(&["export", &source, "-o", "a.asc", "-q", "--no-sidecar"]);
     assert_eq!(folder.text("a.prj"), "PROJCS[\"somebody's\"]");
@@ -94,7 +94,7 @@ fn what_is_generated_lies_on_its_map() {
     folder.good(&["export", "out/height.png", "-o", "a.asc", "-q"]);
     assert!(folder.text("a.asc").contains("xllcenter 500015\nyllcenter 5199325\ncellsize 30\n"));
     assert!(folder.path("a.prj").exists());
-    // A world without a map has nothing to tell.
+    // A world without a position writes none.
     folder.write("small.toml", crate::harness::SMALL);
     folder.good(&["generate", "small.toml", "-o", "own", "-q"]);
     assert_eq!(folder.names("own"), ["height.png", "height8.png", "map.png", "recipe.toml", "summary.json"]);
@@ -110,7 +110,7 @@ fn a_map_sheet_lies_on_its_map() {
     assert_eq!(folder.names(""), ["a.pgw", "a.png", "a.png.aux.xml", "a.prj"]);
     let numbers: Vec<f64> = folder.text("a.pgw").lines().map(|line| line.parse().unwrap()).collect();
     let [across, 0.0, 0.0, down, east, north] = numbers[..] else { panic!("{numbers:?}") };
-    // The first and the last sample stand at the margins, which are as wide on either side.
+    // The first and the last sample are at the margins, which have the same width on both sides.
     let size = image_size(&folder.read("a.png"));
     let middle = [east + across * (size[0] - 1.0) / 2.0, north + down * (size[1] - 1.0) / 2.0];
     assert!((middle[0] - (500_015.0 + 18.0 * 30.0)).abs() < across, "{middle:?}");
@@ -121,7 +121,7 @@ fn a_map_sheet_lies_on_its_map() {
     assert_eq!(folder.names("")[4..], ["b.png", "c.svg"]);
 }
 
-/// Columns and rows that a PNG tells.
+/// Width and height of a PNG.
 fn image_size(bytes: &[u8]) -> [f64; 2] {
     [16, 20].map(|at| f64::from(u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap())))
 }
@@ -132,7 +132,7 @@ fn bands_tiles_and_meshes() {
     folder.bad(&["export", &corpus("bands.tif"), "-o", "a.npy"], 1, "it has 3 bands");
     folder.good(&["export", &(corpus("bands.tif") + ":2"), "-o", "a.npy", "-q"]);
     assert_eq!(npy(&folder.read("a.npy"))[(1, 2)], 1032.0);
-    // A recipe names the band beside the file.
+    // A recipe selects the band of the file.
     folder.good(&["generate", &(corpus("bands.tif") + ":2"), "-o", "out", "-q"]);
     assert!(folder.text("out/recipe.toml").contains("band = 2"));
     folder.good(&["export", "out/recipe.toml", "-o", "again.npy", "-q"]);

@@ -1,4 +1,4 @@
-//! Progress as other programs read it, and what a run leaves behind that is stopped.
+//! Progress for other programs, and the files of a cancelled run.
 
 use crate::harness::Folder;
 
@@ -52,7 +52,7 @@ fn every_command_reports_one_share_that_only_grows_to_the_end() {
         assert!(shares.windows(2).all(|pair| pair[0] <= pair[1]), "{command:?}: {shares:?}");
         assert_eq!(shares.last(), Some(&1.0), "{command:?}: {shares:?}");
     }
-    // Nothing where nobody asks for it.
+    // No progress by default.
     assert_eq!(folder.good(&["generate", "rivers.toml", "-o", "out"]).err, "");
     assert!(folder.good(&["generate", "rivers.toml", "-o", "out", "--progress", "plain"]).err.ends_with("100 %\n"));
 }

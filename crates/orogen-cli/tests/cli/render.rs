@@ -104,7 +104,7 @@ fn a_turntable_goes_into_one_file_or_many() {
     folder.good(&with(&[&turn[..], &["turn-%02d.png"]].concat()));
     let names = ["small.toml", "turn-00.png", "turn-01.png", "turn-02.png", "turn-03.png", "turn.gif", "turn.png"];
     assert_eq!(folder.names(""), names);
-    // Four sides of the land, all as far away, the first of them the first frame of the animation.
+    // Views from four sides at the same distance; the first is the first frame of the animation.
     let frames: Vec<Vec<u8>> = (0..4).map(|k| png(&folder.read(&format!("turn-0{k}.png"))).data).collect();
     assert!((1..4).all(|k| frames[k] != frames[0]) && png(&folder.read("turn.png")).data == frames[0]);
     assert!(folder.read("turn.gif").starts_with(b"GIF89a"));

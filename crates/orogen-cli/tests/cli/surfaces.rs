@@ -40,7 +40,7 @@ layers = { land = { min = 950 } }
 
 fn folder() -> Folder {
     let folder = Folder::new();
-    // Two colors, as many pixels of each.
+    // Two colors with the same number of pixels.
     let mut bytes = Vec::new();
     let mut encoder = ::png::Encoder::new(&mut bytes, 2, 1);
     encoder.set_color(::png::ColorType::Rgb);
@@ -69,7 +69,7 @@ fn weights_albedo_and_roughness_follow_the_rules() {
         [0, 1, 2].map(|channel| weights.data[at + channel])
     };
     let color = |i: usize| [0, 1, 2].map(|channel| colors.data[(20 * 100 + i) * 3 + channel]);
-    // Channels: rock, sand, moss. Sample i stands at a height of 10 i - 100 metres.
+    // Channels: rock, sand, moss. Sample i has a height of 10 i - 100 metres.
     for (i, expect, rough) in
         [(5, [0, 255, 0], 0.9), (40, [0, 0, 255], 0.9), (80, [255, 0, 0], 0.5), (97, [0, 255, 0], 1.0)]
     {
@@ -77,7 +77,7 @@ fn weights_albedo_and_roughness_follow_the_rules() {
         assert_eq!(roughness[(i, 20)], rough, "{i}");
     }
     assert_eq!([color(40), color(80), color(97)], [[0x20, 0x40, 0x10], [0x80; 3], [0xff, 0xe0, 0xa0]]);
-    // The picture's two colors cover half of the sand each, with a short mix between.
+    // The picture's two colors cover half of the sand each, with a short blend between them.
     let sand: Vec<[u8; 3]> = (0..25)
         .flat_map(|i| (0..64).map(move |j| (i, j)))
         .map(|(i, j)| [0, 1, 2].map(|channel| colors.data[(j * 100 + i) * 3 + channel]))
@@ -106,7 +106,8 @@ fn meshes_wear_them() {
         png(&glb[start..start + view["byteLength"].as_u64().unwrap() as usize])
     };
     assert!(picture(0).data == png(&folder.read("c.png")).data);
-    // Occlusion, roughness, metalness of the rock: ground of 45 degrees, which sees three quarters of the sky; a roughness of one half; no metal.
+    // Occlusion, roughness, metalness of the rock: a slope of 45 degrees, where three quarters of the sky are visible;
+    // a roughness of 0.5; no metal.
     let packed = picture(1);
     let at = 3 * (20 * 100 + 80);
     assert_eq!(packed.data[at..at + 3], [192, 128, 0]);
@@ -124,10 +125,10 @@ fn a_render_shows_them_and_what_is_wrong_is_told_at_its_place() {
     folder.good(&["render", "a.toml", "-o", "natural.png", "--size", "160x90", "-q"]);
     assert!(folder.read("view.png") != folder.read("natural.png"));
     folder.write("b.toml", RECIPE.replace("sand.png", "none.png"));
-    // Who does not ask for colors does not need the picture.
+    // The picture is read only for colors.
     folder.good(&["export", "b.toml", "-o", "h.npy", "-q"]);
     folder.bad(&["export", "b.toml", "-o", "x.png", "--layer", "albedo"], 1, "surface `sand`: cannot read");
-    // The picture is read, so it is not written over.
+    // The picture is an input, so it is not overwritten.
     folder.bad(
         &["export", "a.toml", "-o", "sand.png", "--layer", "albedo", "--force"],
         1,

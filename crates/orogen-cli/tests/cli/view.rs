@@ -1,4 +1,4 @@
-//! Which samples of which world: the options that all commands share.
+//! The common options that select samples and worlds.
 
 use crate::harness::{Folder, npy};
 
@@ -15,13 +15,13 @@ fn export_in_a_size_of_its_own() {
         2,
         "the nearest sizes that do are 30x23 and 40x30",
     );
-    // An engine's size is that of a side.
+    // The size of an engine is the length of one side.
     folder.bad(
         &["export", "small.toml", "-o", "c.png", "--size", "33x65", "--target", "unity"],
         2,
         "unity only takes square terrains",
     );
-    // Numbers are rounded for people.
+    // Numbers are rounded for display.
     let told = folder.good(&["export", "small.toml", "-o", "d.npy", "--size", "3"]).text().to_string();
     assert!(told.contains("3 x 2 samples of 213.333 m, "), "{told}");
 }
@@ -58,7 +58,7 @@ fn one_part_in_samples_metres_and_coordinates() {
     ] {
         folder.bad(&[&["export", "small.toml", "-o", "c.npy"][..], options].concat(), 2, expect);
     }
-    // The same options everywhere.
+    // The same options in every command.
     for command in [
         &["generate", "-o", "made"][..],
         &["map", "-o", "m.png", "--size", "300"],
@@ -83,14 +83,15 @@ fn a_world_on_a_map_carries_its_coordinates() {
     assert_eq!(head, ["ncols 64", "nrows 48", "xllcenter 600000", "yllcenter 5199530", "cellsize 10"]);
     folder.good(&[&["export", "small.toml", "-q", "-o", "c.geojson"][..], &place].concat());
     assert!(folder.text("c.geojson").contains("urn:ogc:def:crs:EPSG::32632"));
-    // A file of heights has a CRS, and bounds in it; along its pixels' edges, as gdalinfo tells them, they are all of it.
+    // A file of heights has a CRS and bounds in it; the bounds of its pixel edges, as printed by gdalinfo, select all
+    // of it.
     folder.good(&["export", "small.toml", "-q", "-o", "all.npy"]);
     folder.good(&["export", "a.tif", "-q", "-o", "b.npy", "--projwin", "599995", "5200005", "600635", "5199525"]);
     assert!(folder.read("b.npy") == folder.read("all.npy"));
     folder.good(&["export", "a.tif", "-q", "-o", "d.npy", "--bounds", "600100,5199650,600400,5199800"]);
     folder.good(&["export", "small.toml", "-q", "-o", "e.npy", "--window", "10,20,30,15"]);
     assert!(folder.read("d.npy") == folder.read("e.npy"));
-    // Kept by the recipe that generate writes.
+    // The recipe written by `generate` keeps the position.
     folder.good(&[&["generate", "small.toml", "-q", "-o", "made"][..], &place].concat());
     folder.good(&["export", "made/recipe.toml", "-q", "-o", "f.tif", "--cell", "10"]);
     assert!(folder.read("f.tif") == folder.read("a.tif"));

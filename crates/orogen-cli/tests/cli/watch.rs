@@ -6,7 +6,7 @@ use std::process::{Child, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-/// A watching program, ended when dropped.
+/// A watching process, ended when dropped.
 struct Watcher {
     child: Child,
     lines: Receiver<String>,
@@ -21,7 +21,7 @@ impl Watcher {
         Watcher { child, lines }
     }
 
-    /// Waits until it says a line with `expect` in it.
+    /// Waits until the process prints a line that contains `expect`.
     fn says(&self, expect: &str) {
         let until = Instant::now() + Duration::from_secs(60);
         let mut said = Vec::new();
@@ -72,7 +72,7 @@ fn a_change_cancels_work_that_is_outdated() {
     std::thread::sleep(Duration::from_millis(500));
     folder.write("small.toml", SMALL);
     watcher.says("watching small.toml");
-    // Had the first one been finished, it would have said so, and its 12 800 samples a row would be here.
+    // A finished first run would have printed so, and its 12 800 samples per row would be here.
     assert_eq!(folder.json("out/summary.json")["width"], 64);
 }
 

@@ -20,7 +20,7 @@ fn water_goes_into_formats_of_features() {
     assert_eq!(folder.json("w.geojson")["features"][0]["geometry"]["type"], "MultiPolygon");
     said(&["-o", "w.svg", "--layer", "rivers,lakes"]);
     assert!(folder.text("w.svg").contains("<g id=\"rivers\""));
-    // Contours of any layer of samples go where features go.
+    // Contours of any raster layer can be written to the vector formats.
     said(&["-o", "c.gpkg", "--layer", "slope"]);
 }
 

@@ -40,7 +40,7 @@ pub fn value(
             let value = value.unwrap_or(f64::NAN);
             Err(ExpressionError::new(
                 0..text.len(),
-                format!("the value of this formula is {value}, which is no finite number"),
+                format!("the value of this formula is {value}, which is not finite"),
             ))
         }
     }

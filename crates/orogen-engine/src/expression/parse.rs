@@ -40,11 +40,9 @@ pub fn parse(text: &str) -> Result<(Vec<String>, Vec<Term>), ExpressionError> {
             parser.terms.truncate(value + 1);
             Ok((parser.names, parser.terms))
         }
-        Some((Token::Sign(")"), span)) => {
-            Err(ExpressionError::new(span.clone(), "there is no `(` that this `)` closes"))
-        }
+        Some((Token::Sign(")"), span)) => Err(ExpressionError::new(span.clone(), "there is no `(` for this `)`")),
         Some((Token::Sign(","), span)) => {
-            Err(ExpressionError::new(span.clone(), "a comma stands between the arguments of a function only"))
+            Err(ExpressionError::new(span.clone(), "a comma only separates arguments of a function"))
         }
         Some((_, span)) => {
             Err(ExpressionError::new(span.clone(), "an operator such as `+` or `*` is missing before this"))
@@ -263,7 +261,7 @@ impl<'t> Parser<'t> {
                 Ok(())
             }
             Some((Token::Sign(","), span)) => {
-                Err(ExpressionError::new(span.clone(), "a comma stands between the arguments of a function only"))
+                Err(ExpressionError::new(span.clone(), "a comma only separates arguments of a function"))
             }
             Some((_, span)) => Err(ExpressionError::new(span.clone(), "an operator or a `)` is missing before this")),
             None => Err(ExpressionError::new(opened.clone(), "the `)` that closes this is missing")),

@@ -53,7 +53,7 @@ fn what_expressions_are_worth() {
     assert_eq!(of("height^2 - noise.east", &[3.0, 1.0]), 8.0);
 }
 
-/// Each with the byte where its fault is, and a part of the message.
+/// Expressions with the byte offset of their error, and a part of the message.
 #[test]
 fn what_is_wrong_and_where() {
     for (text, at, expect) in [
@@ -76,11 +76,11 @@ fn what_is_wrong_and_where() {
         ("a = 3", 2, "equality is `==`"),
         ("a ** 2", 2, "a ^ b"),
         ("a && b", 2, "comparisons are 1 or 0"),
-        ("1.2.3", 0, "is no number"),
+        ("1.2.3", 0, "is not a number"),
         ("1e999", 0, "more than a number can be"),
-        ("a + ü", 4, "means nothing"),
-        ("a \u{0} b", 2, "means nothing"),
-        ("a # b", 2, "means nothing"),
+        ("a + ü", 4, "unknown symbol"),
+        ("a \u{0} b", 2, "unknown symbol"),
+        ("a # b", 2, "unknown symbol"),
         ("max(1, )", 7, "before this `)`"),
     ] {
         let expression = Expression::from(text);
@@ -111,14 +111,14 @@ fn what_is_too_large_is_refused_quickly() {
         let fault = expression.error().unwrap();
         assert!(fault.message.contains(expect), "{}", fault.message);
     }
-    // The same term is made once, so length alone is no harm.
+    // Equal terms are computed once, so the length alone is no error.
     assert!(Expression::from(wide("a", 30_000).as_str()).error().is_some());
     assert!(Expression::from(wide("a*b", 1000).as_str()).error().is_none());
     assert!(Expression::from(("(".repeat(MAX_DEPTH) + "1" + &")".repeat(MAX_DEPTH)).as_str()).error().is_none());
     assert!(begun.elapsed().as_secs() < 5, "{:?}", begun.elapsed());
 }
 
-/// Texts of random pieces: none breaks the reader, and what it reads lists each term after those it reads.
+/// Random texts never panic, and a parsed expression lists each term after its operands.
 #[test]
 fn random_texts() {
     let pieces = [
@@ -154,7 +154,7 @@ fn random_texts() {
     assert!(sound > 1000, "{sound}");
 }
 
-/// Blocks of samples, single numbers, and numbers in place of blocks: the same bits.
+/// Blocks of samples, single numbers, and constants in place of blocks give the same bits.
 #[test]
 fn blocks_and_single_numbers_agree() {
     let special = [0.0, -0.0, 1.0, -1.0, 0.5, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e-40, 3.4e38, -2.75];
@@ -178,7 +178,7 @@ fn blocks_and_single_numbers_agree() {
                 assert!(same(*made, expect), "{function:?} of {sample}: {made}");
             }
         }
-        // The last argument the same number everywhere, then the first, then all but the last.
+        // The last argument is constant, then the first, then all but the last.
         for number in special {
             let mut mixed = blocks.clone();
             mixed.pop();
@@ -205,12 +205,12 @@ fn blocks_and_single_numbers_agree() {
     }
 }
 
-/// Equal bits, or both no number.
+/// Equal bits, or both NaN.
 fn same(a: f32, b: f32) -> bool {
     a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan())
 }
 
-/// f32 and f64 are two texts of one function: they agree as far as f32 reaches.
+/// f32 and f64 are two implementations of one function: they agree within the precision of f32.
 #[test]
 fn single_and_double_precision_agree() {
     for function in Function::ALL {
@@ -218,7 +218,7 @@ fn single_and_double_precision_agree() {
             let number = |seed: usize| ((k * (seed + 7) * 31 + seed * 17) % 199) as f64 / 100.0 - 0.97;
             let arguments = [number(1), number(2), number(3)];
             let (double, single) = (function.of_f64(arguments), function.of_f32(arguments.map(|n| n as f32)));
-            // Steps lie elsewhere in f32.
+            // Steps have other positions in f32.
             if matches!(
                 function,
                 Function::Modulo | Function::Floor | Function::Ceil | Function::Round | Function::Fract

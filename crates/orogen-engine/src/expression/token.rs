@@ -48,13 +48,13 @@ pub fn tokens(text: &str) -> Result<Vec<(Token<'_>, Span)>, ExpressionError> {
                 .iter()
                 .find(|(sign, _)| rest.starts_with(sign) && !rest.starts_with("==") && !rest.starts_with("!="))
             {
-                return Err(ExpressionError::new(at..at + sign.len(), format!("`{sign}` means nothing here: {why}")));
+                return Err(ExpressionError::new(at..at + sign.len(), format!("unknown symbol `{sign}`: {why}")));
             }
             let Some(sign) = SIGNS.iter().find(|sign| rest.starts_with(**sign)) else {
                 let found = rest.chars().next().unwrap_or(' ');
                 return Err(ExpressionError::new(
                     at..at + found.len_utf8(),
-                    format!("`{}` means nothing here", found.escape_debug()),
+                    format!("unknown symbol `{}`", found.escape_debug()),
                 ));
             };
             (Token::Sign(sign), at..at + sign.len())
@@ -63,7 +63,7 @@ pub fn tokens(text: &str) -> Result<Vec<(Token<'_>, Span)>, ExpressionError> {
             match written.parse::<f64>() {
                 Ok(number) if number.is_finite() => (Token::Number(number), at..end),
                 Ok(_) => return Err(ExpressionError::new(at..end, format!("{written} is more than a number can be"))),
-                Err(_) => return Err(ExpressionError::new(at..end, format!("`{written}` is no number"))),
+                Err(_) => return Err(ExpressionError::new(at..end, format!("`{written}` is not a number"))),
             }
         } else {
             (Token::Name(&text[at..end]), at..end)

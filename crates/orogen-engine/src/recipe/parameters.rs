@@ -321,7 +321,7 @@ fn read(value: &Spanned<Value>, parameters: &mut Vec<Parameter>, diagnostics: &m
                 .push((name.span.clone(), format!("there are two parameters named `{}`: rename one", name.value)));
         } else if !is_parameter_name(&name.value) {
             let message = format!(
-                "`{}` cannot be a parameter's name: names are 1 to 64 letters, digits and `_`, do not begin with a digit, and are no function or constant",
+                "`{}` cannot be a parameter's name: names are 1 to 64 letters, digits and `_`, do not begin with a digit, and are not the name of a function or constant",
                 name.value
             );
             diagnostics.push((name.span.clone(), message));
@@ -343,7 +343,8 @@ fn one(name: &Spanned<String>, value: &Spanned<Value>, diagnostics: &mut Diagnos
             let mut seen = HashSet::new();
             for (key, value) in entries {
                 if !seen.insert(key.value.as_str()) {
-                    diagnostics.push((key.span.clone(), format!("the key `{}` stands twice in this table", key.value)));
+                    diagnostics
+                        .push((key.span.clone(), format!("the key `{}` appears twice in this table", key.value)));
                     continue;
                 }
                 match (key.value.as_str(), &value.value) {

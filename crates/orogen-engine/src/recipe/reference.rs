@@ -40,7 +40,7 @@ pub fn describe(node: &Node) -> String {
     let longest = longest.unwrap_or(0);
     if spec.named_inputs {
         text.push_str(
-            "\ninputs: a key for each name in the expression that is no node's: a node, `node.layer`, or a number\n",
+            "\ninputs: a key for each name in the expression that is not a node: a node, `node.layer`, or a number\n",
         );
     }
     for input in spec.inputs {
@@ -139,7 +139,7 @@ fn keys(text: &mut String, node: &Node) {
     if spec.named_inputs {
         let _ = writeln!(
             text,
-            "| any name | What that name in the expression stands for. | input | the parameter or node of that name |"
+            "| any name | Value of this name in the expression. | input | the parameter or node of that name |"
         );
     }
     for (i, param) in spec.params.iter().enumerate() {

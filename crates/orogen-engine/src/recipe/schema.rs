@@ -193,7 +193,7 @@ fn parameters_schema(name: &Json) -> Json {
                     "required": ["default"],
                     "additionalProperties": false,
                     "properties": {
-                        "default": { "type": "number", "description": "Its value if nobody gives another." },
+                        "default": { "type": "number", "description": "The default value." },
                         "unit": { "type": "string", "description": "Its unit." },
                         "range": {
                             "type": "array", "minItems": 2, "maxItems": 2, "items": number,
@@ -211,7 +211,7 @@ fn parameters_schema(name: &Json) -> Json {
 fn uses_schema(name: &Json) -> Json {
     json!({
         "type": "object",
-        "description": "Other recipes as parts of this one, by name. `NAME.layer` reads one of their outputs, `NAME` their `height`.",
+        "description": "Other recipes that this one includes, by name. `NAME.layer` is one of their outputs, `NAME` is their `height`.",
         "propertyNames": name,
         "additionalProperties": {
             "type": "object",
@@ -281,7 +281,7 @@ fn joined(docs: &[(&str, String)]) -> String {
 
 fn mask_schema() -> Json {
     json!({
-        "description": "Where the op takes effect: 1 fully, 0 not at all (its first input shows instead, or 0).",
+        "description": "Weight of the op, 0 to 1: 1 is its full effect, 0 none (the result is its first input, or 0).",
         "allOf": [{ "$ref": "#/definitions/input" }],
     })
 }

@@ -201,7 +201,7 @@ fn asked<'v>(name: &Spanned<String>, value: &'v Spanned<Value>) -> std::result::
     let mut seen = HashSet::new();
     for (key, value) in entries {
         if !seen.insert(key.value.as_str()) {
-            return Err(here(&key.span, format!("the key `{}` stands twice in this table", key.value)));
+            return Err(here(&key.span, format!("the key `{}` appears twice in this table", key.value)));
         }
         match (key.value.as_str(), &value.value) {
             ("recipe", Value::Text(file)) => recipe = Some((value, file.as_str())),

@@ -201,7 +201,7 @@ fn lay(name: &str, size: [u64; 2], place: Option<Placement>, parts: &[Part], req
             refused(
                 name,
                 format!(
-                    "the part that it takes of {path} does not lie in {width} x {height} samples, or not in that file"
+                    "the part of {path} that it uses is outside its {width} x {height} samples, or outside that file"
                 ),
             )
         };

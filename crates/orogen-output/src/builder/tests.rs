@@ -1,4 +1,5 @@
-//! Builds interrupted, damaged, repeated and refused: the result is always that of an undisturbed one.
+//! Builds that are interrupted, damaged, repeated and rejected: the result always equals that of an uninterrupted
+//! build.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -20,7 +21,7 @@ use orogen_io::format::encoding::Encoding;
 use orogen_io::format::geotiff::{options, writer};
 use orogen_io::spool::Spool;
 
-/// A world with a filter and a solver in it, and an unbounded one.
+/// A bounded world with a filter and a solver, and an unbounded one.
 const BOUNDED: &str = r#"
 orogen = 1
 [world]
@@ -53,7 +54,7 @@ fn world(memory: Option<u64>, threads: usize) -> World {
         .unwrap()
 }
 
-/// Odd sides, so that tiles and overviews do not come out even.
+/// Odd sizes, which are no multiples of the tiles and overviews.
 fn spec(form: Form) -> BuildSpec {
     let tile = match form {
         Form::Cog => 32,
@@ -61,7 +62,7 @@ fn spec(form: Form) -> BuildSpec {
         _ => 40,
     };
     let window = match form {
-        // A cell with which the window lies on several tiles of the map.
+        // A cell size for which the window covers several tiles of the map.
         Form::Xyz(_) => Window::new(300, 257, 3.0).at(3, 10),
         _ => Window::new(101, 77, 5.0).at(7, 11),
     };
@@ -92,7 +93,7 @@ impl Drop for Folder {
     }
 }
 
-/// All files below a path, or the one that it is, by their paths.
+/// All files below a path, or the file itself, by relative path.
 fn files(path: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     let mut left = vec![path.to_path_buf()];
@@ -108,7 +109,7 @@ fn files(path: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     found
 }
 
-/// What is there after a build, below the folder it was made in.
+/// All files after a build, below the folder of the build.
 fn result(out: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     files(out).into_iter().map(|(path, bytes)| (path.strip_prefix(out).unwrap().to_path_buf(), bytes)).collect()
 }
@@ -121,7 +122,7 @@ fn run(world: &World, spec: &BuildSpec, out: &Path, start: Start) -> Report {
     Build::new(world, spec, &output(out)).unwrap().run(start, &Progress::none()).unwrap()
 }
 
-/// An undisturbed build.
+/// An uninterrupted build.
 fn undisturbed(form: Form) -> (BTreeMap<PathBuf, Vec<u8>>, Report) {
     let folder = Folder::new();
     let report = run(&world(None, 2), &spec(form), &folder.out(), Start::Fresh);
@@ -138,7 +139,7 @@ fn the_bytes_depend_neither_on_memory_nor_on_threads() {
         assert!(report.made > 3 && report.kept == 0, "{form:?} {report:?}");
         assert_eq!(report.bytes, expect.values().map(|bytes| bytes.len() as u64).sum::<u64>(), "{form:?}");
         let spec = spec(form);
-        // So little that each tile is made alone.
+        // A limit so small that each tile is made alone.
         let folder = Folder::new();
         let fits = |memory: &u64| Build::new(&world(Some(*memory), 1), &spec, &output(&folder.out())).is_ok();
         let smaller = |memory: &u64| Some(memory / 4 * 3);
@@ -185,7 +186,7 @@ fn a_geotiff_is_the_one_that_export_writes() {
     }
 }
 
-/// A disk that is full after so many files: the next one is cut short.
+/// Simulates a disk that is full after `files` files: the next file is truncated.
 fn fill_after(build: &mut Build, files: usize) {
     let left = AtomicUsize::new(files);
     build.put = Box::new(move |path, bytes| {
@@ -201,7 +202,7 @@ fn interrupted_anywhere_it_ends_with_the_same_bytes() {
         let (expect, whole) = undisturbed(form);
         let (world, spec) = (world(None, 2), spec(form));
         let folder = Folder::new();
-        // Full again and again, a little later each time.
+        // The disk is full repeatedly, each time a little later.
         let mut kept = 0;
         for files in (0..).step_by(3) {
             let mut build = Build::new(&world, &spec, &output(&folder.out())).unwrap();
@@ -216,7 +217,7 @@ fn interrupted_anywhere_it_ends_with_the_same_bytes() {
             }
             let left = fs::read_to_string(folder.0.join("out.build/journal")).unwrap();
             let entered = left.lines().filter(|line| line.starts_with("{\"tile\"")).count();
-            // Nothing that was entered is made again.
+            // Tiles in the journal are not made again.
             assert!(entered >= kept, "{form:?}: {entered} after {kept}");
             kept = entered;
         }
@@ -232,7 +233,7 @@ fn cancelled_it_goes_on() {
     for form in FORMS {
         let (expect, whole) = undisturbed(form);
         let (world, spec) = (world(None, 1), spec(form));
-        // Somewhere among these some tiles are made and others are not.
+        // In at least one of these cases some tiles are made and others are not.
         let mut amid = false;
         for share_at_stop in [0.5, 0.7, 0.8, 0.9, 0.95, 0.98] {
             let folder = Folder::new();
@@ -270,7 +271,7 @@ fn what_is_damaged_is_made_again() {
                 2 => fs::write(&path, []).unwrap(),
                 _ => fs::remove_file(&path).unwrap(),
             }
-            // One by one, and all that are left at once.
+            // One by one, and all remaining tiles at once.
             if n < 6 || n + 1 == expect.len() {
                 run(&world, &spec, &folder.out(), Start::Resume);
                 assert!(result(&folder.out()) == expect, "{form:?}: {}", path.display());
@@ -340,7 +341,7 @@ fn what_is_there_is_not_overwritten() {
             .unwrap_err()
             .contains("is missing, so it cannot be resumed; use --force to build it again")
     );
-    // What no build has made is safe even from --force.
+    // `--force` does not remove files that no build has made.
     fs::remove_dir_all(folder.out()).unwrap();
     fs::create_dir_all(folder.out()).unwrap();
     fs::write(folder.out().join("diary"), "mine").unwrap();

@@ -175,11 +175,8 @@ impl Prepared {
     /// Position and axes, for the comments of a file.
     pub fn comments(&self, axes: &str) -> Vec<String> {
         let window = self.grid.window();
-        let place = format!(
-            "the first sample, at the origin, stands {} m east and {} m south",
-            window.east(0),
-            window.south(0)
-        );
+        let place =
+            format!("the first sample, at the origin, is {} m east and {} m south", window.east(0), window.south(0));
         let mut comments =
             vec![concat!("Orogen ", env!("CARGO_PKG_VERSION")).into(), format!("metres; {axes}; {place}")];
         if let Some(map) = &self.map {

@@ -105,7 +105,7 @@ fn check(path: &Path, beside: &Path, bytes: &[u8]) -> Result<()> {
         return Ok(());
     }
     let message = format!(
-        "cannot write {}: {} exists and gives another location, which readers would use; write to another name, or use --{} or --force",
+        "cannot write {}: {} exists and contains another position, which readers would use; write to another name, or use --{} or --force",
         path.display(),
         beside.display(),
         NO_SIDECAR.name

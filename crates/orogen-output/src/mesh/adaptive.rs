@@ -44,7 +44,7 @@ pub fn adaptive_with(grid: &Grid, max_error: f64, progress: &Progress) -> Result
     let holes = grid.data().par_iter().filter(|height| !height.is_finite()).count();
     if holes > 0 {
         return refuse(format!(
-            "{holes} of {} samples are nodata, and an adaptive mesh needs all samples; write the full grid instead (without --max-error), which leaves out triangles at nodata samples",
+            "{holes} of {} samples are nodata, and an adaptive mesh needs all samples; write the full grid instead (without --max-error), which omits triangles at nodata samples",
             grid.data().len()
         ));
     }

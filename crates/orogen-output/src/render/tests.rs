@@ -1,4 +1,4 @@
-//! Pictures of lands whose answers are known.
+//! Pictures of terrain with known results.
 
 use super::camera::{Camera, View};
 use super::relief::Land;
@@ -69,7 +69,7 @@ fn the_picture_is_the_one_it_always_was() {
         }
     }
     let hash: String = hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect();
-    // If pictures were meant to change, this is the place to say so.
+    // Update this hash if pictures are meant to change.
     assert_eq!(hash, "072134ea89c2dc3b");
 }
 
@@ -104,12 +104,12 @@ fn senseless_lands_have_a_picture() {
 
 #[test]
 fn the_horizon_lies_where_the_eye_is_level() {
-    // Over level ground without end; the camera stands 14 m high and looks down by 14 in 100.
+    // Level ground without bounds; the camera is 14 m high and looks down by 14 in 100.
     let heights = grid(20, 20, |_, _| 0.0);
     let view = View::At { eye: [100.0, 190.0, 14.0], look: [100.0, 90.0] };
     let style = Style { samples: 1, colors: Colors::Clay, haze: 0.0, edge: Some(Edge::Haze), ..Style::default() };
     let bytes = paint(&land(&heights, -100.0), &style, &view, 60.0);
-    // Half the picture's height is 36 / 64 of half its width, whose tangent is that of 30 degrees.
+    // Half the picture's height is 36/64 of half its width, which corresponds to the tangent of 30 degrees.
     let half = libm::tan(30f64.to_radians()) * SIZE[1] as f64 / SIZE[0] as f64;
     let expect = (0.5 - 0.5 * 0.14 / half) * SIZE[1] as f64;
     let blue = |j: usize| pixel(&bytes, 32, j)[2] - pixel(&bytes, 32, j)[0];
@@ -120,7 +120,8 @@ fn the_horizon_lies_where_the_eye_is_level() {
 
 #[test]
 fn a_wall_throws_its_shadow_away_from_the_sun() {
-    // A wall 80 m high runs north to south at x = 400 m; the sun stands in the west at 45 degrees: the ground is dark for 80 m east.
+    // A wall 80 m high runs north to south at x = 400 m; the sun is in the west at 45 degrees: the ground is dark for
+    // 80 m to the east.
     let heights = grid(81, 41, |x, _| if x == 40.0 { 80.0 } else { 0.0 });
     let style = Style {
         samples: 1,
@@ -146,7 +147,8 @@ fn a_wall_throws_its_shadow_away_from_the_sun() {
 
 #[test]
 fn still_water_mirrors_the_mountain_behind_it() {
-    // A white mountain in the north, the sea before it: grazing the water, the camera sees it twice.
+    // A white mountain in the north, the sea in front of it: from just above the water, the camera sees the mountain
+    // and its reflection.
     let mountain = |top: f64| grid(60, 60, move |_, y| if y < 30.0 { top * (30.0 - y) / 30.0 } else { -40.0 });
     let style = Style {
         samples: 2,
@@ -158,7 +160,7 @@ fn still_water_mirrors_the_mountain_behind_it() {
     };
     let view = View::At { eye: [300.0, 585.0, 12.0], look: [300.0, 330.0] };
     let [with, without] = [240.0, 0.5].map(|top| paint(&land(&mountain(top), 0.0), &style, &view, 50.0));
-    // Below the shore by as much as the mountain stands above it.
+    // As far below the shore as the mountain is above it.
     let shore = |bytes: &[u8], j: usize| (20..44).map(|i| brightness(pixel(bytes, i, j))).sum::<i32>() / 24;
     let (near, far) = (shore(&with, 24), shore(&without, 24));
     assert!((near - far).abs() > 25, "{near} {far}");
@@ -166,7 +168,8 @@ fn still_water_mirrors_the_mountain_behind_it() {
 
 #[test]
 fn the_camera_sees_the_land_from_where_it_stands() {
-    // One corner of the land is a peak; seen from the south it is on the right and far, from the north on the left and near.
+    // One corner of the land is a peak: seen from the south it is far away on the right, from the north near on the
+    // left.
     let heights = grid(40, 40, |x, y| if x > 30.0 && y < 9.0 { 300.0 } else { 0.0 });
     let style = Style { samples: 1, colors: Colors::Clay, haze: 0.0, sun: [180.0, 50.0], ..Style::default() };
     let scene = Scene::new(&land(&heights, -10.0), &style, &Progress::none()).unwrap();
@@ -194,7 +197,8 @@ fn work_that_is_cancelled_stops() {
 
 #[test]
 fn a_shallow_lake_is_one_water_and_not_a_marsh() {
-    // Two to eight metres deep over a bumpy bed, its cells wider than its bumps are high: seen from where its bed must not show through in spots.
+    // Water of two to eight metres over a bumpy bed, with cells wider than the bumps are high, at an angle where the
+    // bed must not be visible in spots.
     let heights = grid(90, 70, |x, y| 95.0 + 3.0 * libm::sin(x * 0.9) * libm::cos(y * 0.7));
     let wide = |grid: &Grid| Grid::from_data(Window::new(90, 70, 60.0), grid.data().to_vec()).unwrap();
     let (heights, surface) = (wide(&heights), wide(&grid(90, 70, |_, _| 100.0)));
@@ -205,6 +209,6 @@ fn a_shallow_lake_is_one_water_and_not_a_marsh() {
         (15..22).flat_map(middle).map(|[i, j]| brightness(pixel(&bytes, i, j))).collect::<Vec<i32>>();
     bright.sort_unstable();
     let [low, half, high] = [5, 50, 95].map(|share| bright[bright.len() * share / 100]);
-    // A bed that shows through makes three times the difference.
+    // A visible bed makes three times the difference.
     assert!(high - low < half / 8, "{low} {half} {high}");
 }

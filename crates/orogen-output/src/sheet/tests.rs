@@ -1,4 +1,5 @@
-//! Whole sheets: all on the page, parts left out, the same on any number of threads.
+//! Whole sheets: everything is on the page, parts can be omitted, and the result does not depend on the number of
+//! threads.
 
 use super::draw::{self, Sheet};
 use super::options::Shading;
@@ -72,7 +73,7 @@ fn all_is_on_the_page_whatever_the_world() {
             let [width, height] = sheet.scene.size;
             let small = page == Page::Paper([60.0; 2]);
             for [x, y] in places(&sheet.scene) {
-                // What stands beneath the map may be more than so small a paper holds.
+                // The content below the map may be more than this small paper can hold.
                 let inside = (0.0..=width).contains(&x) && (0.0..=height).contains(&y) || small;
                 assert!(x.is_finite() && y.is_finite() && inside, "{k} {page:?}: {x} {y} of {width} x {height}");
             }
@@ -88,7 +89,7 @@ fn parts_are_left_out_one_by_one() {
     let heights = hills(120, 90);
     let all = draw(&heights, &options()).unwrap();
     assert!(all.interval.is_some_and(|interval| interval > 0.0));
-    // Paper with room for a profile.
+    // Paper with space for a profile.
     let paper = || Options { page: Page::Paper([150.0, 270.0]), ..options() };
     let all = draw(&heights, &paper()).unwrap();
     let count = |change: fn(&mut Parts)| {
@@ -162,7 +163,7 @@ fn surfaces_color_the_map_and_stand_in_the_legend() {
             _ => None,
         })
         .collect();
-    // The map first, then a swatch for each surface; the profile is rock.
+    // The map first, then a swatch for each surface; the profile shows rock.
     assert!(pictures[0].1.chunks_exact(3).all(|pixel| pixel[1] > pixel[0] && pixel[1] > pixel[2]));
     let swatches: Vec<&Vec<u8>> = pictures.iter().filter(|(area, _)| area[3] == 3.0).map(|picture| picture.1).collect();
     assert_eq!(swatches.len(), 2);

@@ -1,4 +1,4 @@
-//! Shared by the tests: every node in a recipe of its own.
+//! Helpers of the tests: a recipe for every node.
 #![allow(dead_code, reason = "each test binary uses its part")]
 
 use orogen::declare::Input;
@@ -21,13 +21,13 @@ impl Random {
     }
 }
 
-/// Heights for the node that reads them.
+/// A file of heights for the `dem` node.
 const DEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/f32-tiles-deflate-p3.tif");
 
-/// A grey picture for the node that reads one.
+/// A grey picture for the `image` node.
 const PICTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/grey.png");
 
-/// The node alone: each input a noise of its own, lengths fitted so that a small world shows every effect.
+/// The node alone: each input is a noise, and lengths are scaled so that a small world shows every effect.
 pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     let mut node = node.clone();
     let mut recipe = Recipe::new(world);
@@ -57,7 +57,7 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             ("distance", "reach") => Value::Number(8.3 * world.cell),
             ("topographic-position", "radius") => Value::Number(4.4 * world.cell),
             ("geomorphons", "reach") => Value::Number(6.3 * world.cell),
-            // The noise rises by a metre at most, over many.
+            // The noise rises by a metre at most, over many metres.
             ("geomorphons", "flat") => Value::Number(0.2),
             ("height-above-drainage", "stream") => Value::Number(40.0 * world.cell * world.cell),
             ("viewshed", "observer") => pair(40.3 * world.cell, 31.0 * world.cell),
@@ -94,7 +94,7 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
             recipe.add("soft", Blur { source: Input::from(&name), radius: 1.2 * world.cell });
             node.set_input(i, Input::from("soft"));
             if spec.op == "flow-direction" {
-                // It reads codes of directions, 0 to 8.
+                // It reads direction codes from 0 to 8.
                 let (from, to) = ([-0.5, 0.5], [0.0, 8.5]);
                 recipe.add("codes", Remap { source: Input::from("soft"), from, to, clamp: true });
                 node.set_input(i, Input::from("codes"));

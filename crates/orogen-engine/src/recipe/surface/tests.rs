@@ -36,7 +36,7 @@ any = [{ height = { min = 600, fade = 100 } }, { curvature = { max = 0, scale = 
 
 #[test]
 fn surfaces_read_back_as_they_were_written() {
-    // `land.a` is no layer; the text is right all the same.
+    // `land.a` is no layer; the text is still valid.
     let text = recipe(SIZE, &SURFACES.replace(", \"land.a\" = [0, 5]", ""));
     let first = Recipe::parse(&text, "test").unwrap();
     let again = Recipe::parse(&first.to_toml(), "again").unwrap();
@@ -47,7 +47,7 @@ fn surfaces_read_back_as_they_were_written() {
     assert!(matches!(&snow.color, Coloring::Picture(file, Along::Noise(50.0)) if file.text() == "snow.png"));
     assert_eq!((rock.all.len(), rock.opacity, snow.any.len(), snow.any[1].len()), (3, 0.9, 2, 2));
     assert_eq!(rock.all[0].of, Quantity::Slope);
-    // The nodes that compute them do not show.
+    // The nodes that compute them are not listed.
     let mut expanded = first.clone();
     expand(&mut expanded);
     assert_eq!(expanded.to_toml(), first.to_toml());

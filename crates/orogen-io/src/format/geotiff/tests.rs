@@ -1,4 +1,4 @@
-//! What was written, read back by a reader that knows nothing of the writer.
+//! Reads the written files with an independent reader.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -10,12 +10,12 @@ use crate::file;
 use crate::spool::Spool;
 use orogen_grid::grid::{Grid, Window};
 
-/// A file taken apart.
+/// A parsed file.
 struct Tiff {
     bytes: Vec<u8>,
     big: bool,
     directories: Vec<BTreeMap<u16, Vec<u8>>>,
-    /// Where each directory stands.
+    /// The offset of each directory.
     stands: Vec<usize>,
 }
 
@@ -40,7 +40,7 @@ impl Tiff {
         u64::from_le_bytes(number) as usize
     }
 
-    /// Reads the directory at `at`; returns where the next one is.
+    /// Reads the directory at `at`; returns the offset of the next one.
     fn directory(&mut self, at: usize) -> usize {
         assert_eq!(at % 2, 0, "directories begin at words");
         let (count_length, word) = if self.big { (8, 8) } else { (2, 4) };
@@ -126,7 +126,7 @@ impl Tiff {
     }
 }
 
-/// Undoes deflate and the predictor.
+/// Reverses the compression and the predictor.
 fn unpack(packed: &[u8], side: usize) -> Vec<f32> {
     let mut bytes = miniz_oxide::inflate::decompress_to_vec_zlib(packed).unwrap();
     assert_eq!(bytes.len(), 4 * side * side);
@@ -140,7 +140,7 @@ fn unpack(packed: &[u8], side: usize) -> Vec<f32> {
     samples
 }
 
-/// Something without any symmetry, negative numbers and all mantissas.
+/// An asymmetric grid with negative numbers and all mantissas.
 fn rough(window: Window) -> Grid {
     let data = (0..window.len()).map(|n| {
         let (i, j) = ((n % window.width) as f32, (n / window.width) as f32);
@@ -210,7 +210,7 @@ fn everything_lies_in_the_order_that_is_promised() {
         let tiff = Tiff::open(written(&grid, &Options { big, ..small_tiles() }));
         assert!(tiff.stands.is_sorted() && tiff.stands[0] == if big { 200 } else { 192 });
         assert!(tiff.bytes[if big { 16 } else { 8 }..].starts_with(b"GDAL_STRUCTURAL_METADATA_SIZE=000140 bytes\n"));
-        // Tile follows tile without a gap, from the coarsest level to the full one, to the end of the file.
+        // Tiles are contiguous, from the coarsest level to the full one, up to the end of the file.
         let tiles: Vec<(usize, usize)> = (0..tiff.directories.len()).rev().flat_map(|k| tiff.tiles(k)).collect();
         assert!(tiff.stands.iter().all(|at| *at < tiles[0].0));
         assert!(tiles.windows(2).all(|pair| pair[0].0 + pair[0].1 + 8 == pair[1].0));
@@ -245,7 +245,7 @@ fn it_says_where_it_lies() {
 
 #[test]
 fn overviews_stand_where_readers_put_them() {
-    // A plane is its own mean, at the middle of the area that a sample covers.
+    // On a plane, the mean of the area of a sample is the value at its centre.
     for (width, height) in [(128, 96), (127, 97), (1001, 333)] {
         let plane = |x: f64, y: f64| 3.0 * x - 2.0 * y;
         let window = Window::new(width, height, 1.0);
@@ -258,7 +258,7 @@ fn overviews_stand_where_readers_put_them() {
             for (n, sample) in tiff.samples(k).into_iter().enumerate() {
                 let (x, y) = ((n % w) as f64 + 0.5, (n / w) as f64 + 0.5);
                 let expect = plane(x * a - 0.5, y * b - 0.5);
-                // Where sides are odd, a fiftieth of the overview's own cell.
+                // For odd sizes, a fiftieth of the overview's cell.
                 let most = if width % 2 == 0 { 1e-3 } else { 0.02 * (3.0 * a + 2.0 * b) };
                 assert!((f64::from(sample) - expect).abs() <= most, "{width} {k} {n}: {sample}, not {expect}");
             }
@@ -312,7 +312,7 @@ fn what_cannot_be_written_is_an_error() {
     assert!(short.finish(&mut Vec::new()).is_err());
 }
 
-/// Takes `left` bytes, then fails as a full disk does.
+/// Accepts `left` bytes, then fails as a full disk does.
 struct Full<'a> {
     out: &'a mut dyn Write,
     left: usize,

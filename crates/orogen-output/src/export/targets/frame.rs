@@ -103,7 +103,7 @@ impl Frame {
                 }
                 if left {
                     note.push(format!(
-                        "of the world's {} x {} m the first {} x {} m are written, because the engine only takes squares",
+                        "only the first {2} x {3} m of the world's {0} x {1} m are written, because the engine only takes squares",
                         number(size[0]),
                         number(size[1]),
                         number(covered[0]),

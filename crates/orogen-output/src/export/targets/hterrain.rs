@@ -25,6 +25,6 @@ fn import(side: usize, cell: f64, levels: &Levels) -> Vec<String> {
     vec![
         format!("Terrain > Import Maps > Heightmap: {0} x {0}, metres, {1} to {2}", side, levels.low(), levels.high()),
         format!("HTerrain > Map Scale {cell}, 1, {cell}"),
-        "rows grow south, which is +Z: nothing is flipped".to_string(),
+        "rows run south, which is +Z: no flip is needed".to_string(),
     ]
 }

@@ -31,6 +31,6 @@ fn import(side: usize, cell: f64, levels: &Levels) -> Vec<String> {
             levels.high()
         ),
         format!("Import Position {middle}, 0, {middle} puts the first sample at the origin; Vertex Spacing {}", cell),
-        "rows grow south, which is +Z: nothing is flipped".to_string(),
+        "rows run south, which is +Z: no flip is needed".to_string(),
     ]
 }

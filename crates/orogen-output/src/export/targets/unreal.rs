@@ -46,10 +46,7 @@ fn import(side: usize, cell: f64, levels: &Levels) -> Vec<String> {
     let scale = cell * 100.0;
     vec![
         format!("Landscape > Import from File: {0} x {0}, {sections}", side),
-        format!(
-            "Scale X {scale}, Y {scale}, Z {} (centimetres; Location Z 0: the height 0 m lies at Z 0)",
-            z_scale(levels)
-        ),
+        format!("Scale X {scale}, Y {scale}, Z {} (centimetres; Location Z 0: height 0 m is at Z 0)", z_scale(levels)),
         "Y grows south: the first row is the northern one, do not flip it".to_string(),
     ]
 }
