@@ -22,6 +22,9 @@
 //!
 //! Where to go on: [`Recipe`] builds a world in code; a [`Sampler`] answers many questions quickly, [`Chunks`] follow a viewer; [`node::Node::all`] lists the ops; [`presets`] are the recipes that come
 //! with the library; [`mod@format`], [`map`] and [`palette`] make files and pictures of grids.
+//!
+//! Features: `threads` (on by default) shares work out to threads; `ndarray` and `image` turn grids into arrays of `ndarray` and buffers of
+//! `image`, and back. Grids, windows and recipes implement `Serialize` and `Deserialize` of `serde`.
 #![forbid(unsafe_code)]
 
 #[doc(inline)]
