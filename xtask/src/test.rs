@@ -54,7 +54,8 @@ pub fn run(args: &[String]) -> Result {
 fn features() -> Result {
     let grid = "--package orogen-grid --all-features";
     sh(&mut cargo(&format!("clippy --quiet {grid} --all-targets -- -D warnings")))?;
-    sh(&mut cargo(&format!("test --quiet {grid} interop")))
+    sh(&mut cargo(&format!("test --quiet {grid} --lib interop")))?;
+    sh(&mut cargo(&format!("test --quiet {grid} --doc")))
 }
 
 /// The binary `orogen` is left out: its pages would be written over those of the library of the same name.
