@@ -17,6 +17,7 @@ Runs the steps in this order, or only those named, and stops at the first failur
   words     names and texts use the field's terms
   clippy    no warning in any target
   tests     unit tests, integration tests, doctests, examples build
+  features  what is off by default: no warning, unit tests and doctests
   schema    crates/orogen-engine/recipes/orogen.schema.json is what `orogen schema` prints
   docs      the libraries' documentation builds without a warning
   licences  every dependency has a licence we accept
@@ -35,6 +36,7 @@ const STEPS: &[&Step] = &[
         run: || sh(&mut cargo("clippy --quiet --workspace --all-targets --features orogen-bench/peers -- -D warnings")),
     },
     &Step { name: "tests", about: "cargo test --workspace", run: || sh(&mut cargo("test --workspace")) },
+    &Step { name: "features", about: "orogen-grid with ndarray and image", run: features },
     &Step {
         name: "schema",
         about: "crates/orogen-engine/recipes/orogen.schema.json is what `orogen schema` prints",
@@ -48,6 +50,14 @@ const STEPS: &[&Step] = &[
 /// Runs the checks.
 pub fn run(args: &[String]) -> Result {
     steps::run("cargo xtask test", STEPS, args)
+}
+
+/// A step of its own: other features of the whole workspace would have everything compiled twice.
+fn features() -> Result {
+    let grid = "--package orogen-grid --all-features";
+    sh(&mut cargo(&format!("clippy --quiet {grid} --all-targets -- -D warnings")))?;
+    sh(&mut cargo(&format!("test --quiet {grid} --lib interop")))?;
+    sh(&mut cargo(&format!("test --quiet {grid} --doc")))
 }
 
 /// Without the binary `orogen`, whose pages would overwrite those of the library of the same name.

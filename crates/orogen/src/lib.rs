@@ -22,9 +22,11 @@
 //! (normalise, bake). Therefore any tile equals the crop of the whole, bit for bit, for any tile size, number of
 //! threads, SIMD level and machine.
 //!
-//! Further entry points: [`Recipe`] also builds a world in code; a [`Sampler`] is fast for many requests; [`Chunks`]
-//! follow a viewer; [`node::Node::all`] lists the ops; [`presets`] are the built-in recipes; [`mod@format`], [`map`]
-//! and [`palette`] make files and pictures of grids.
+//! Where to go on: [`Recipe`] builds a world in code; a [`Sampler`] answers many questions quickly, [`Chunks`] follow a viewer; [`node::Node::all`] lists the ops; [`presets`] are the recipes that come
+//! with the library; [`mod@format`], [`map`] and [`palette`] make files and pictures of grids.
+//!
+//! Features: `threads` (on by default) shares work out to threads; `ndarray` and `image` turn grids into arrays of `ndarray` and buffers of
+//! `image`, and back. Grids, windows and recipes implement `Serialize` and `Deserialize` of `serde`.
 #![forbid(unsafe_code)]
 
 #[doc(inline)]

@@ -8,6 +8,7 @@ mod parse;
 pub mod presets;
 pub mod reference;
 pub mod schema;
+mod serialise;
 mod subgraph;
 pub mod surface;
 mod text;
