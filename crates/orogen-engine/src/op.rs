@@ -10,6 +10,7 @@ use orogen_io::format::dem::Georeference;
 use orogen_io::raster::Raster;
 use orogen_noise::Points;
 use serde::{Deserialize, Serialize};
+use std::fmt::Debug;
 
 /// What the world tells every op.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -364,6 +365,12 @@ pub trait Solver: Declared + Send + Sync {
     fn reads_sea_level(&self) -> bool {
         false
     }
+}
+
+/// A type that is an op. [`op!`](crate::op!) implements it, by the locality that it declares.
+pub trait OpType: Declared + Debug + Default + Clone + PartialEq + Send + Sync + 'static {
+    /// The op as what it is.
+    fn as_op(&self) -> Op<'_>;
 }
 
 /// A node as what it is.

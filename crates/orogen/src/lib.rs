@@ -21,13 +21,13 @@
 //! crop of the whole, bit for bit, whatever the tile size, the number of threads, the SIMD level or the machine.
 //!
 //! Where to go on: [`Recipe`] builds a world in code; a [`Sampler`] answers many questions quickly, [`Chunks`] follow a viewer; [`node::Node::all`] lists the ops; [`presets`] are the recipes that come
-//! with the library; [`mod@format`], [`map`] and [`palette`] make files and pictures of grids.
+//! with the library; a [`Registry`] adds ops of your own, which [`op!`] declares and [`laws`] tests; [`mod@format`], [`map`] and [`palette`] make files and pictures of grids.
 #![forbid(unsafe_code)]
 
 #[doc(inline)]
 pub use orogen_engine::{
-    bands, budget, chunks, declare, expression, field, filter, growth, layer, node, op, plan, recipe, sampler, session,
-    solver, store, tiles, value, world,
+    bands, budget, choice, chunks, declare, expression, field, filter, growth, laws, layer, node, op, plan, recipe,
+    registered, registry, sampler, session, solver, store, tiles, value, world,
 };
 #[doc(inline)]
 pub use orogen_grid::{
@@ -51,6 +51,7 @@ pub use orogen_noise::Points;
 pub use progress::Progress;
 pub use recipe::document::{Recipe, WorldSpec};
 pub use recipe::presets;
+pub use registry::Registry;
 pub use sampler::Sampler;
 pub use session::{Options, Session};
 pub use store::cache::Cache;

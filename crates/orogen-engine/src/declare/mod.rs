@@ -7,7 +7,7 @@
 //! - [`input`]: what a node reads
 //! - [`param`]: the types that parameters can have
 //! - [`declared`]: what every op implements
-//! - `macros`: `op!` and `choice!`, which write all of it
+//! - `macros`: [`op!`](crate::op!) and [`choice!`](crate::choice), which write all of it
 
 #[macro_use]
 mod macros;
@@ -20,5 +20,8 @@ pub mod spec;
 pub use declared::Declared;
 pub use input::{Input, InputName, set_named};
 pub use orogen_io::dem::file_ref::FileRef;
+/// What the octaves of a fractal are made of.
+#[doc(hidden)]
+pub use orogen_noise as noise;
 pub use param::{Param, read_param};
 pub use spec::{InputSpec, Locality, ParamSpec, Shape, Spec, short};

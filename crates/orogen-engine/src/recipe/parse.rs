@@ -6,10 +6,11 @@ use super::parameters::{Formula, Parameters, Step, resolve};
 use super::subgraph::{Origin, Shared, UseDiagnostic, Uses, take_in};
 use super::text::{LONGEST_TEXT, Text, text_of, too_long};
 use super::{json, surface, toml};
-use crate::declare::Input;
+use crate::declare::{Input, Shape};
 use crate::expression::formula::place_of;
-use crate::field::expr::Expr;
+use crate::expression::text::Expression;
 use crate::node::Node;
+use crate::registry::Registry;
 use crate::value::{Span, Spanned, Value};
 use orogen_grid::error::{Diagnostic, Error, ErrorKind, Result};
 use orogen_grid::words::{list, respelled, suggestion};
@@ -42,11 +43,51 @@ fn unknown_key(key: &str, node: &Node) -> String {
 
 type Table = [(Spanned<String>, Spanned<Value>)];
 
-impl Recipe {
-    /// Reads a recipe from a file, TOML or JSON.
+impl Registry {
+    /// Reads a recipe of these ops from a file, TOML or JSON.
     ///
     /// # Errors
     /// If the file cannot be read, is no text, or is no valid recipe: then every diagnostic has its line and column.
+    pub fn read(&self, path: &Path) -> Result<Recipe> {
+        self.read_with(path, &[])
+    }
+
+    /// The same with other values for some of its parameters.
+    ///
+    /// # Errors
+    /// As [`Registry::read`], and if a parameter is not there or may not have that value.
+    pub fn read_with(&self, path: &Path, set: &[(String, f64)]) -> Result<Recipe> {
+        let doing = "read the recipe";
+        let Some(bytes) = open::bytes(path, doing, LONGEST_TEXT)? else {
+            return Err(too_long(&path.display().to_string()));
+        };
+        let shared = Shared::new(self, parse);
+        parse(&text_of(bytes, path)?, &path.display().to_string(), set, &Origin::file(path, &shared))
+    }
+
+    /// Reads a recipe of these ops from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics call it.
+    ///
+    /// # Errors
+    /// If it is no valid recipe. All diagnostics are told at once, in the order of the text.
+    pub fn parse(&self, text: &str, name: &str) -> Result<Recipe> {
+        self.parse_with(text, name, &[])
+    }
+
+    /// The same with other values for some of its parameters.
+    ///
+    /// # Errors
+    /// As [`Registry::parse`], and if a parameter is not there or may not have that value.
+    pub fn parse_with(&self, text: &str, name: &str, set: &[(String, f64)]) -> Result<Recipe> {
+        let shared = Shared::new(self, parse);
+        parse(text, name, set, &Origin::text(&shared))
+    }
+}
+
+impl Recipe {
+    /// Reads a recipe of built-in ops from a file, TOML or JSON.
+    ///
+    /// # Errors
+    /// As [`Registry::read`].
     pub fn read(path: &Path) -> Result<Recipe> {
         Recipe::read_with(path, &[])
     }
@@ -54,26 +95,22 @@ impl Recipe {
     /// The same with other values for some of its parameters.
     ///
     /// # Errors
-    /// As [`Recipe::read`], and if a parameter is not there or may not have that value.
+    /// As [`Registry::read_with`].
     pub fn read_with(path: &Path, set: &[(String, f64)]) -> Result<Recipe> {
-        let doing = "read the recipe";
-        let Some(bytes) = open::bytes(path, doing, LONGEST_TEXT)? else {
-            return Err(too_long(&path.display().to_string()));
-        };
-        let shared = Shared::new(parse);
-        parse(&text_of(bytes, path)?, &path.display().to_string(), set, &Origin::file(path, &shared))
+        Registry::new().read_with(path, set)
     }
 
     /// Reads a preset.
     pub(super) fn parse_preset(name: &str, text: &str, set: &[(String, f64)]) -> Result<Recipe> {
-        let shared = Shared::new(parse);
+        let registry = Registry::new();
+        let shared = Shared::new(&registry, parse);
         parse(text, &format!("recipes/{name}.toml"), set, &Origin::preset(name, &shared))
     }
 
-    /// Reads a recipe from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics call it.
+    /// Reads a recipe of built-in ops from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics call it.
     ///
     /// # Errors
-    /// If it is no valid recipe. All diagnostics are told at once, in the order of the text.
+    /// As [`Registry::parse`].
     pub fn parse(text: &str, name: &str) -> Result<Recipe> {
         Recipe::parse_with(text, name, &[])
     }
@@ -81,10 +118,9 @@ impl Recipe {
     /// The same with other values for some of its parameters.
     ///
     /// # Errors
-    /// As [`Recipe::parse`], and if a parameter is not there or may not have that value.
+    /// As [`Registry::parse_with`].
     pub fn parse_with(text: &str, name: &str, set: &[(String, f64)]) -> Result<Recipe> {
-        let shared = Shared::new(parse);
-        parse(text, name, set, &Origin::text(&shared))
+        Registry::new().parse_with(text, name, set)
     }
 }
 
@@ -106,6 +142,7 @@ fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Resu
     let tree = if is_json { json::read(&text)? } else { toml::read(&text)? };
     let walk = Walk {
         text: &text,
+        registry: origin.registry(),
         diagnostics: Vec::new(),
         more: 0,
         places: HashMap::new(),
@@ -120,6 +157,8 @@ fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Resu
 /// The walk through the tree: gathers diagnostics and remembers where keys stood, for what only the whole graph can tell.
 struct Walk<'a> {
     text: &'a Text<'a>,
+    /// The ops that nodes may have.
+    registry: &'a Registry,
     diagnostics: Vec<Diagnostic>,
     /// How many diagnostics were not written down because there are too many to be of use.
     more: usize,
@@ -390,11 +429,9 @@ impl Walk<'_> {
             self.complain(&op.span, format!("`op` must be the name of an op, not {}", op.value.describe()));
             return None;
         };
-        let other = || respelled(op_name).and_then(|other| Node::named(&other));
-        let Some(mut node) = Node::named(op_name).or_else(other) else {
-            let all = Node::all();
-            let hint = suggestion(op_name, all.iter().map(|node| node.spec().op));
-            self.complain(&op.span, format!("unknown op `{op_name}`; {hint}"));
+        let other = || respelled(op_name).and_then(|other| self.registry.named(&other));
+        let Some(mut node) = self.registry.named(op_name).or_else(other) else {
+            self.complain(&op.span, self.registry.unknown(op_name));
             return None;
         };
         let spec = node.spec();
@@ -425,7 +462,9 @@ impl Walk<'_> {
                 match node.set_param(i, &value.value) {
                     Ok(()) => {
                         self.remember(&mut node, value);
-                        sound &= self.expression(index, &node, value);
+                        if let Shape::Expression = spec.params[i].shape {
+                            sound &= self.expression(index, value);
+                        }
                     }
                     Err(message) => {
                         self.complain(&value.span, message);
@@ -451,8 +490,9 @@ impl Walk<'_> {
     }
 
     /// Complains of what is wrong within an expression, where it is wrong.
-    fn expression(&mut self, index: usize, node: &Node, value: &Spanned<Value>) -> bool {
-        let (Node::Expr(Expr { expr, .. }), Value::Text(text)) = (node, &value.value) else { return true };
+    fn expression(&mut self, index: usize, value: &Spanned<Value>) -> bool {
+        let Value::Text(text) = &value.value else { return true };
+        let expr = Expression::from(text.as_str());
         let Some(fault) = expr.error() else {
             // What a name stands for is wrong where the name stands, unless a key says what it is.
             for name in expr.names() {

@@ -9,6 +9,7 @@ use crate::declare::{Input, Shape};
 use crate::expression::formula::renamed;
 use crate::expression::text::Expression;
 use crate::node::Node;
+use crate::registry::Registry;
 use crate::value::{Span, Spanned, Value};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::{bytes, suggestion};
@@ -30,40 +31,47 @@ pub struct Origin<'a> {
     /// What it is known by, and the recipes that use it, the first one first.
     chain: Vec<String>,
     /// What all recipes of one reading share.
-    shared: &'a Shared,
+    shared: &'a Shared<'a>,
 }
 
 /// Reads a recipe from a text: what it is called, other values for parameters, and where it comes from.
 pub type Parse = fn(&str, &str, &[(String, f64)], &Origin) -> Result<Recipe>;
 
 /// What all recipes of one reading share: what is left to read, and how.
-pub struct Shared {
+pub struct Shared<'a> {
     uses: Cell<usize>,
     bytes: Cell<u64>,
+    /// The ops that all of them may use.
+    registry: &'a Registry,
     /// Given from outside: used recipes are read as the first one is.
     parse: Parse,
 }
 
-impl Shared {
+impl<'a> Shared<'a> {
     /// Nothing is read yet.
-    pub fn new(parse: Parse) -> Shared {
-        Shared { uses: Cell::new(MAX_USES), bytes: Cell::new(LONGEST_TEXT), parse }
+    pub fn new(registry: &'a Registry, parse: Parse) -> Shared<'a> {
+        Shared { uses: Cell::new(MAX_USES), bytes: Cell::new(LONGEST_TEXT), registry, parse }
     }
 }
 
 impl<'a> Origin<'a> {
+    /// The ops that recipes may use.
+    pub fn registry(&self) -> &'a Registry {
+        self.shared.registry
+    }
+
     /// A text without a file.
-    pub fn text(shared: &'a Shared) -> Origin<'a> {
+    pub fn text(shared: &'a Shared<'a>) -> Origin<'a> {
         Origin { folder: None, chain: Vec::new(), shared }
     }
 
     /// A file.
-    pub fn file(path: &Path, shared: &'a Shared) -> Origin<'a> {
+    pub fn file(path: &Path, shared: &'a Shared<'a>) -> Origin<'a> {
         Origin { folder: Some(folder_of(path)), chain: vec![known_as(path)], shared }
     }
 
     /// A preset.
-    pub fn preset(name: &str, shared: &'a Shared) -> Origin<'a> {
+    pub fn preset(name: &str, shared: &'a Shared<'a>) -> Origin<'a> {
         Origin { folder: None, chain: vec![name.to_string()], shared }
     }
 
