@@ -3,7 +3,6 @@
 
 use orogen::declare::Input;
 use orogen::field::remap::Remap;
-pub use orogen::laws::world_of;
 use orogen::laws::{self, Laws};
 use orogen::node::Node;
 use orogen::value::{Spanned, Value};
@@ -101,6 +100,10 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
 /// The laws of a built-in op, in recipes of [`recipe_of`].
 pub fn laws_of(node: &Node) -> Laws<'_> {
     Laws::in_recipes(node.clone(), |world, masked| recipe_of(node, world, masked))
+}
+
+pub fn world_of(cell: f64) -> WorldSpec {
+    laws::world_of(cell)
 }
 
 pub fn open(recipe: &Recipe, threads: usize) -> World {
