@@ -1,11 +1,13 @@
-//! The list of all ops, as an enum.
+//! The list of all built-in ops, and the ops of programs: one enum that a recipe is made of.
 
 use crate::declare::{Declared, Input, InputName, Spec};
 use crate::layer::Layer;
-use crate::op::{Field, Filter, Op, Solver};
+use crate::op::{Field, Filter, Op, OpType, Solver};
+use crate::registered::RegisteredOp;
 use crate::value::Value;
 use crate::{field, filter, solver};
 use orogen_io::dem::file_ref::FileRef;
+use std::any::Any;
 
 macro_rules! nodes {
     (
@@ -20,14 +22,23 @@ macro_rules! nodes {
             $( $field(field::$field_mod::$field), )*
             $( $filter(filter::$filter_mod::$filter), )*
             $( $solver(solver::$solver_mod::$solver), )*
+            /// An op of the program that uses this crate.
+            Registered(RegisteredOp),
         }
 
-        $( impl From<field::$field_mod::$field> for Node { fn from(op: field::$field_mod::$field) -> Node { Node::$field(op) } } )*
-        $( impl From<filter::$filter_mod::$filter> for Node { fn from(op: filter::$filter_mod::$filter) -> Node { Node::$filter(op) } } )*
-        $( impl From<solver::$solver_mod::$solver> for Node { fn from(op: solver::$solver_mod::$solver) -> Node { Node::$solver(op) } } )*
+        impl<T: OpType> From<T> for Node {
+            /// A built-in op becomes its own variant, any other [`Node::Registered`].
+            fn from(op: T) -> Node {
+                let any: &dyn Any = &op;
+                $( if let Some(op) = any.downcast_ref::<field::$field_mod::$field>() { return Node::$field(op.clone()); } )*
+                $( if let Some(op) = any.downcast_ref::<filter::$filter_mod::$filter>() { return Node::$filter(op.clone()); } )*
+                $( if let Some(op) = any.downcast_ref::<solver::$solver_mod::$solver>() { return Node::$solver(op.clone()); } )*
+                Node::Registered(RegisteredOp::new(op))
+            }
+        }
 
         impl Node {
-            /// All ops with their defaults.
+            /// Every built-in op, with its defaults. A [`Registry`](crate::registry::Registry) lists those of the program, too.
             pub fn all() -> Vec<Node> {
                 vec![
                     $( Node::$field(Default::default()), )*
@@ -37,11 +48,21 @@ macro_rules! nodes {
             }
 
             fn declared(&self) -> &dyn Declared {
-                match self { $( Node::$field(op) => op, )* $( Node::$filter(op) => op, )* $( Node::$solver(op) => op, )* }
+                match self {
+                    $( Node::$field(op) => op, )*
+                    $( Node::$filter(op) => op, )*
+                    $( Node::$solver(op) => op, )*
+                    Node::Registered(op) => op.declared(),
+                }
             }
 
             fn declared_mut(&mut self) -> &mut dyn Declared {
-                match self { $( Node::$field(op) => op, )* $( Node::$filter(op) => op, )* $( Node::$solver(op) => op, )* }
+                match self {
+                    $( Node::$field(op) => op, )*
+                    $( Node::$filter(op) => op, )*
+                    $( Node::$solver(op) => op, )*
+                    Node::Registered(op) => op.declared_mut(),
+                }
             }
 
             /// The node as a field, a filter or a solver.
@@ -50,6 +71,7 @@ macro_rules! nodes {
                     $( Node::$field(op) => Op::Field(op as &dyn Field), )*
                     $( Node::$filter(op) => Op::Filter(op as &dyn Filter), )*
                     $( Node::$solver(op) => Op::Solver(op as &dyn Solver), )*
+                    Node::Registered(op) => op.op(),
                 }
             }
         }
@@ -59,7 +81,7 @@ macro_rules! nodes {
 include!("node_list.rs");
 
 impl Node {
-    /// The op with this name, with its defaults.
+    /// The built-in op of that name with its defaults.
     pub fn named(op: &str) -> Option<Node> {
         Node::all().into_iter().find(|node| node.spec().op == op)
     }

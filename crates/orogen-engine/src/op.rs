@@ -10,6 +10,7 @@ use orogen_io::format::dem::Georeference;
 use orogen_io::raster::Raster;
 use orogen_noise::Points;
 use serde::{Deserialize, Serialize};
+use std::fmt::Debug;
 
 /// Properties of the world that every op receives.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -368,7 +369,13 @@ pub trait Solver: Declared + Send + Sync {
     }
 }
 
-/// A node by its locality.
+/// A type that is an op. [`op!`](crate::op!) implements it, by the locality that it declares.
+pub trait OpType: Declared + Debug + Default + Clone + PartialEq + Send + Sync + 'static {
+    /// The op as what it is.
+    fn as_op(&self) -> Op<'_>;
+}
+
+/// A node as what it is.
 pub enum Op<'a> {
     /// Depends on one position.
     Field(&'a dyn Field),

@@ -23,16 +23,13 @@
 //! threads, SIMD level and machine.
 //!
 //! Where to go on: [`Recipe`] builds a world in code; a [`Sampler`] answers many questions quickly, [`Chunks`] follow a viewer; [`node::Node::all`] lists the ops; [`presets`] are the recipes that come
-//! with the library; [`mod@format`], [`map`] and [`palette`] make files and pictures of grids.
-//!
-//! Features: `threads` (on by default) shares work out to threads; `ndarray` and `image` turn grids into arrays of `ndarray` and buffers of
-//! `image`, and back. Grids, windows and recipes implement `Serialize` and `Deserialize` of `serde`.
+//! with the library; a [`Registry`] adds ops of your own, which [`op!`] declares and [`laws`] tests; [`mod@format`], [`map`] and [`palette`] make files and pictures of grids.
 #![forbid(unsafe_code)]
 
 #[doc(inline)]
 pub use orogen_engine::{
-    bands, budget, chunks, declare, expression, field, filter, growth, layer, node, op, plan, recipe, sampler, session,
-    solver, store, tiles, value, world,
+    bands, budget, choice, chunks, declare, expression, field, filter, growth, laws, layer, node, op, plan, recipe,
+    registered, registry, sampler, session, solver, store, tiles, value, world,
 };
 #[doc(inline)]
 pub use orogen_grid::{
@@ -56,6 +53,7 @@ pub use orogen_noise::Points;
 pub use progress::Progress;
 pub use recipe::document::{Recipe, WorldSpec};
 pub use recipe::presets;
+pub use registry::Registry;
 pub use sampler::Sampler;
 pub use session::{Options, Session};
 pub use store::cache::Cache;

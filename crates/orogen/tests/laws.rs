@@ -3,190 +3,62 @@
 
 mod support;
 
-use orogen::declare::Input;
-use orogen::field::{add::Add, constant::Constant, fbm::Fbm, perlin::Perlin, transform::Transform, warp::Warp};
-use orogen::filter::blur::Blur;
+use orogen::field::{add::Add, constant::Constant, fbm::Fbm, perlin::Perlin, warp::Warp};
+use orogen::laws::{CELLS, Violation};
 use orogen::node::Node;
-use orogen::op::Op;
 use orogen::plan::steps::{Plan, Step};
-use orogen::solver::{bake::Bake, normalise::Normalise};
+use orogen::solver::normalise::Normalise;
 use orogen::{Grid, Progress, Recipe, Window, World, WorldSpec};
-use support::{Random, open, recipe_of, world_of};
+use support::{laws_of, open, recipe_of, world_of};
 
-fn same_bits(name: &str, whole: &Grid, tile: &Grid) {
-    let crop = whole.crop(tile.window()).expect("the tile is part of the whole");
-    for (k, (a, b)) in crop.data().iter().zip(tile.data()).enumerate() {
-        let (i, j) = (k % tile.width(), k / tile.width());
-        assert_eq!(a.to_bits(), b.to_bits(), "{name}: {a} in the whole, {b} in {:?} at ({i}, {j})", tile.window());
-    }
-}
-
-/// Tiles equal crops for every layer of one recipe: the whole raster against tiles of several sizes and offsets, with
-/// several thread counts, cold and warm.
-fn tiles_equal_crop(name: &str, recipe: &Recipe, cell: f64) {
-    let whole_window = Window::new(97, 81, cell);
-    let layers: Vec<&str> = recipe.outputs().collect();
-    let all = |world: &World, window: &Window| world.grids(&layers, window, &Progress::none()).unwrap();
-    let wholes = all(&open(recipe, 2), &whole_window);
-    let warm = open(recipe, 1);
-    let mut random = Random(name.len() as u64);
-    let mut tiles = vec![(Window::new(31, 17, cell).at(13, 44), true)];
-    tiles.push((whole_window, true));
-    for size in [1usize, 2, 7, 33, 64] {
-        for _ in 0..2 {
-            let x = random.below((97 - size) as u64 + 1) as i64;
-            let y = random.below((81 - size) as u64 + 1) as i64;
-            tiles.push((Window::new(size, size, cell).at(x, y), false));
-        }
-    }
-    for (tile, fresh) in tiles {
-        let made = if fresh { all(&open(recipe, 2), &tile) } else { all(&warm, &tile) };
-        for ((layer, whole), made) in layers.iter().zip(&wholes).zip(&made) {
-            same_bits(&format!("{name}, {layer}"), whole, made);
-        }
-    }
-    // A point on the grid has the value of the sample there.
-    let (i, j) = (random.below(97) as usize, random.below(81) as usize);
-    for (layer, whole) in layers.iter().zip(&wholes) {
-        assert!(whole.data().iter().all(|sample| sample.is_finite()), "{name}, {layer}: makes numbers");
-        let point = warm.points(layer, &[whole_window.east(i)], &[whole_window.south(j)]).unwrap()[0];
-        assert_eq!(point.to_bits(), whole[(i, j)].to_bits(), "{name}, {layer}: point ({i}, {j})");
-    }
+fn holds<T>(verdict: Result<T, Violation>) -> T {
+    verdict.unwrap_or_else(|violation| panic!("{violation}"))
 }
 
 #[test]
 fn tile_equals_crop_for_every_node() {
-    for cell in [10.24, 0.1, 1.0 / 3.0] {
+    for cell in CELLS {
         for node in Node::all() {
             for masked in [false, true] {
-                let recipe = recipe_of(&node, world_of(cell), masked);
-                let name = format!("{}{} at {cell}", node.spec().op, if masked { " masked" } else { "" });
-                tiles_equal_crop(&name, &recipe, cell);
+                holds(laws_of(&node).tiles(cell, masked));
             }
         }
     }
 }
 
-/// A plan is plain data: a test can set all solutions to disk, and the tile size of their sources.
+#[test]
+fn every_node_has_the_same_bits_at_every_level() {
+    for node in Node::all() {
+        holds(laws_of(&node).levels());
+    }
+}
+
 #[test]
 fn every_node_is_the_same_from_disk_and_in_tiles_of_any_size() {
     for node in Node::all() {
-        let cell = 1.0 / 3.0;
-        let from = recipe_of(&node, world_of(cell), false);
-        let mut recipe = Recipe::new(from.world);
-        for named in from.nodes() {
-            recipe.add_masked(&named.name, named.node.clone(), named.mask.clone());
-        }
-        // Warps of filters of solvers of the node.
-        let noise = Fbm { seed: 8, wavelength: 20.0 * cell, octaves: 2, ..Default::default() };
-        recipe.add("move", noise).add("kept", Bake { source: "node".into(), cell: 0.7 * cell });
-        recipe.add("soft2", Blur { source: "kept".into(), radius: 1.1 * cell });
-        recipe.add("last", Warp { source: "soft2".into(), x: "move".into(), y: "move".into(), strength: 9.0 * cell });
-        recipe.output("height", "last").output("node", "node");
-        let window = Window::new(60, 50, cell).at(30, 29);
-        let layers = ["height", "node"];
-        let expect = open(&recipe, 2).grids(&layers, &window, &Progress::none()).unwrap();
-        for (side, threads, tile) in
-            [(1 << 20, 1, window), (33, 2, window), (50, 2, Window::new(7, 1, cell).at(41, 77))]
-        {
-            let world = open(&recipe, threads);
-            let mut plan = world.plan(&layers, &tile).unwrap();
-            assert!(!plan.solves().is_empty());
-            plan.solve_on_disk(side);
-            for (whole, made) in expect.iter().zip(world.run(&plan, &Progress::none()).unwrap()) {
-                same_bits(&format!("{} in tiles of {side}, on disk", node.spec().op), whole, &made);
-            }
-            // In memory again, from what is on disk.
-            same_bits(node.spec().op, &expect[0], &world.window("height", &tile).unwrap());
-        }
+        holds(laws_of(&node).stored(1.0 / 3.0));
     }
 }
 
 #[test]
 fn every_node_can_be_warped_and_turned() {
     for node in Node::all() {
-        let world = world_of(30.0);
-        let from = recipe_of(&node, world, false);
-        let mut recipe = Recipe::new(world);
-        for named in from.nodes() {
-            recipe.add_masked(&named.name, named.node.clone(), named.mask.clone());
-        }
-        let noise = |seed| Fbm { seed, wavelength: 300.0, octaves: 2, ..Default::default() };
-        recipe.add("wx", noise(1)).add("wy", noise(2));
-        for layer in node.layers() {
-            let [warped, turned, sum] = ["warped", "turned", "sum"].map(|what| format!("{what}-{}", layer.name));
-            let source = Input::Node(format!("node.{}", layer.name));
-            recipe.add(&warped, Warp { source, x: "wx".into(), y: "wy".into(), strength: 95.0 });
-            let source = Input::from(&warped);
-            recipe.add(&turned, Transform { source, offset: [200.0, -77.0], scale: 1.5, angle: 25.0 });
-            recipe.add(&sum, Add { a: (&turned).into(), b: (&warped).into() });
-            recipe.output(layer.name, &sum);
-        }
-        tiles_equal_crop(&format!("warped {}", node.spec().op), &recipe, 30.0);
+        holds(laws_of(&node).warped(30.0));
     }
 }
 
 #[test]
 fn unbounded_worlds_agree_far_out_and_below_zero() {
     for node in Node::all() {
-        if matches!(node.op(), Op::Solver(_)) || matches!(node.op(), Op::Field(field) if field.needs_bounds()) {
-            continue;
-        }
-        let world = WorldSpec { seed: 3, size: None, cell: 10.24, ..WorldSpec::default() };
-        let recipe = recipe_of(&node, world, false);
-        for (x, y) in [(-40, -17), (1_000_003, -999_999_937), (97_656_250, 5)] {
-            let window = Window::new(40, 30, 10.24).at(x, y);
-            let whole = open(&recipe, 2).window("height", &window).unwrap();
-            let tile = Window::new(9, 11, 10.24).at(x + 21, y + 6);
-            same_bits(node.spec().op, &whole, &open(&recipe, 1).window("height", &tile).unwrap());
-        }
+        holds(laws_of(&node).unbounded());
     }
-}
-
-/// The node and its inputs without the blur below them, because the result of a filter depends on the cell size.
-fn unsoftened(from: &Recipe) -> Recipe {
-    let mut recipe = Recipe::new(from.world);
-    for named in from.nodes().iter().filter(|named| named.name != "soft") {
-        let mut node = named.node.clone();
-        for i in 0..node.inputs().len() {
-            if *node.input(i) == Input::from("soft") {
-                node.set_input(i, Input::Node(format!("in{i}")));
-            }
-        }
-        recipe.add_masked(&named.name, node, named.mask.clone());
-    }
-    recipe.output("height", "node");
-    recipe
 }
 
 #[test]
 fn fields_agree_where_two_resolutions_share_samples() {
-    for node in Node::all().into_iter().filter(|node| matches!(node.op(), Op::Field(_))) {
-        let unbounded = !matches!(node.op(), Op::Field(field) if field.needs_bounds());
+    for node in Node::all() {
         for cell in [8.0, 10.24, 0.1, 1.0 / 3.0] {
-            for (ratio, masked) in [(2usize, false), (4, true), (8, false)] {
-                let sized = unsoftened(&recipe_of(&node, world_of(cell), masked));
-                let mut free = sized.clone();
-                if unbounded {
-                    free.world.size = None;
-                }
-                let (bounded, free) = (open(&sized, 2), open(&free, 2));
-                let mut places = vec![(&bounded, 0, 0)];
-                if unbounded {
-                    places.extend([(&free, -3, -11), (&free, 1_000_003, -999_999_937), (&free, -97_656_250, 5)]);
-                }
-                for (world, x, y) in places {
-                    let coarse = Window::new(9, 9, cell).at(x, y);
-                    let steps = 8 * ratio + 1;
-                    let fine = Window::new(steps, steps, cell / ratio as f64).at(x * ratio as i64, y * ratio as i64);
-                    let [coarse, fine] = [coarse, fine].map(|window| world.window("height", &window).unwrap());
-                    for (j, i) in (0..9).flat_map(|j| (0..9).map(move |i| (j, i))) {
-                        let (a, b) = (fine[(ratio * i, ratio * j)], coarse[(i, j)]);
-                        let op = node.spec().op;
-                        assert_eq!(a.to_bits(), b.to_bits(), "{op} at ({x} + {i}, {y} + {j}), {cell} m over {ratio}");
-                    }
-                }
-            }
+            holds(laws_of(&node).resolutions(cell));
         }
     }
 }
@@ -239,19 +111,6 @@ fn warps_within_warps_are_refused_before_they_explode() {
     recipe.output("height", "n39");
     let error = open(&recipe, 1).window("height", &Window::new(8, 8, 10.0)).unwrap_err();
     assert!(error.to_string().contains("nested warps multiply"), "{error}");
-}
-
-#[test]
-fn a_zero_displacement_changes_nothing() {
-    for op in ["fbm", "blur", "slope", "normalise", "bake"] {
-        let world = world_of(1.0 / 3.0);
-        let mut recipe = recipe_of(&Node::named(op).unwrap(), world, false);
-        recipe.add("still", Warp { source: "node".into(), x: 0.0.into(), y: 0.0.into(), strength: 10.0 });
-        recipe.output("still", "still");
-        let window = Window::new(50, 40, world.cell).at(3, 5);
-        let grids = open(&recipe, 2).grids(&["height", "still"], &window, &Progress::none()).unwrap();
-        same_bits(op, &grids[0], &grids[1]);
-    }
 }
 
 #[test]
@@ -368,36 +227,9 @@ fn a_plan_is_a_value_that_can_be_sent() {
 /// Everything that changes a node's samples changes its content key: stored solutions and cached grids are never stale.
 #[test]
 fn content_keys_hold_all_that_a_node_reads_of_the_world() {
-    let window = Window::new(24, 20, 30.0).at(20, 18);
-    let (mut same, mut other) = (0, 0);
-    for node in Node::all() {
-        let world = world_of(30.0);
-        let recipe = recipe_of(&node, world, false);
-        let made = |recipe: &Recipe| {
-            let world = open(recipe, 1);
-            (world.key("node").unwrap(), world.window("node", &window).unwrap())
-        };
-        let (key, grid) = made(&recipe);
-        let size = world.size.unwrap_or_default();
-        for changed in [
-            WorldSpec { seed: 43, ..world },
-            WorldSpec { sea_level: 0.25, ..world },
-            WorldSpec { size: Some([size[0] + 300.0, size[1]]), ..world },
-            WorldSpec { size: Some([size[0], size[1] + 600.0]), ..world },
-            WorldSpec { cell: 60.0, ..world },
-        ] {
-            let mut recipe = recipe.clone();
-            recipe.world = changed;
-            let (changed_key, changed_grid) = made(&recipe);
-            match key == changed_key {
-                true => {
-                    same_bits(&format!("{} with {changed:?}", node.spec().op), &grid, &changed_grid);
-                    same += 1;
-                }
-                false => other += 1,
-            }
-        }
-    }
+    let nodes = Node::all();
+    let same: usize = nodes.iter().map(|node| holds(laws_of(node).content_keys())).sum();
+    let other = 5 * nodes.len() - same;
     assert!(same > 100 && other > 100, "{same} {other}");
 }
 

@@ -49,7 +49,9 @@ fn parse(line: &str) -> Option<Op> {
     let whole = parts.next().is_none()
         && revision.trim().parse::<u32>().is_ok()
         && super::LOCALITIES.contains(&locality)
-        && !op.is_empty();
+        // Names with a namespace are left to ops of other crates.
+        && !op.is_empty()
+        && !op.contains('.');
     whole.then(|| Op {
         module: String::new(),
         name: name.trim().to_owned(),
@@ -97,6 +99,7 @@ op! {
             (BLUR.to_owned() + BLUR, "a second op! block"),
             (BLUR.replace("filter,", "brush,"), "found `pub struct Blur = \"blur\", brush, revision 1;`"),
             (BLUR.replace(", revision 1", ""), "expected `pub struct NAME"),
+            (BLUR.replace("\"blur\"", "\"orogen.blur\""), "found `pub struct Blur = \"orogen.blur\""),
             ("op! {\n/// nothing\n".to_owned(), "never begins"),
         ] {
             let error = find(&text).expect_err(expect);

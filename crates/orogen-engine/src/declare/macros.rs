@@ -1,15 +1,29 @@
-//! `op!` and `choice!`.
+//! `op!` and `choice!`, for ops of this crate and of any other: every path begins with `$crate`.
 
-/// An enum of named choices, each variant with its doc: `choice! { /// .. pub enum Unit { /// .. Degrees = "degrees",
-/// .. } }`. The first variant is the default.
+/// A parameter that is one of several names. The first variant is the default.
+///
+/// ```
+/// orogen_engine::choice! {
+///     /// Unit of a slope.
+///     pub enum Unit {
+///         /// Degrees from the horizontal.
+///         Degrees = "degrees",
+///         /// Rise over run.
+///         Ratio = "ratio",
+///     }
+/// }
+///
+/// assert_eq!(Unit::default(), Unit::Degrees);
+/// ```
+#[macro_export]
 macro_rules! choice {
     (
         $(#[doc = $doc:literal])+
-        pub enum $name:ident { $(#[doc = $first_doc:literal])+ $first:ident = $first_text:literal, $( $(#[doc = $vdoc:literal])+ $variant:ident = $text:literal, )* }
+        $visibility:vis enum $name:ident { $(#[doc = $first_doc:literal])+ $first:ident = $first_text:literal, $( $(#[doc = $vdoc:literal])+ $variant:ident = $text:literal, )* }
     ) => {
         $(#[doc = $doc])+
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-        pub enum $name { $(#[doc = $first_doc])+ #[default] $first, $( $(#[doc = $vdoc])+ $variant, )* }
+        $visibility enum $name { $(#[doc = $first_doc])+ #[default] $first, $( $(#[doc = $vdoc])+ $variant, )* }
 
         impl $crate::declare::Param for $name {
             const SHAPE: $crate::declare::Shape = $crate::declare::Shape::Choice(|| {
@@ -35,34 +49,79 @@ macro_rules! choice {
     };
 }
 
-/// Declares an op: see any file in `field/`, `filter/` or `solver/`.
+/// Declares an op: its struct, defaults, name in recipes, inputs, parameters and layers. The struct then implements [`Field`](crate::op::Field),
+/// [`Filter`](crate::op::Filter) or [`Solver`](crate::op::Solver), the locality that the declaration names.
 ///
-/// Layers of a filter or solver other than a single layer of heights are declared in a block `layers`: each with its
-/// doc, its interpolation (`height`, `label`, `flow`, or as its `source`) and its unit.
+/// The name of an op that is not part of this crate has a namespace: `"mygame.terraces"`. A [`Registry`](crate::registry::Registry) makes it known
+/// to recipes. The revision is part of the content key of every node of the op: raise it when the op comes to make other bits.
 ///
-/// With `inputs of NAME;` its inputs are the names in the expression of its parameter NAME.
+/// The blocks, in this order, all of them optional:
 ///
-/// With `octaves;` after its name the op is a fractal: it has the common parameters of fractals, in addition to its
-/// own.
+/// - `inputs { /// .. source: required, /// .. other: optional, }`: the nodes it reads, by their index in the `inputs` that it is given.
+///   `inputs of NAME;` instead reads whatever the expression in its parameter NAME names.
+/// - `params { /// .. name: TYPE = DEFAULT, unit "m", range 0.0 to 1e5; }`: unit and range are optional. A type is any
+///   [`Param`](crate::declare::Param): `f64`, `u32`, `u64` (a seed), `bool`, `[f64; 2]`, `Vec<[f64; 2]>` (a curve), `FileRef`, `Expression`, or a
+///   [`choice!`](crate::choice).
+/// - `layers { /// .. name: height, unit "m"; }`: what a filter or solver makes besides one layer of heights, and how each is read
+///   between samples (`height`, `label`, `flow`, or as its `source`).
+/// - `check |op| Ok(());`: what a single parameter cannot see, a key and a message if parameters contradict each other.
+///
+/// After an input's need, or at the end of a parameter, `alias "former"` names a former key. With `octaves;` after its name the op is a fractal: it
+/// gets the parameters all fractals share, beside its own.
+///
+/// ```
+/// use orogen_engine::op::{Context, Filter};
+/// use orogen_engine::{Grid, Result, Window};
+///
+/// orogen_engine::op! {
+///     /// Raises the source by a constant height.
+///     pub struct Raise = "example.raise", filter, revision 1;
+///     inputs {
+///         /// The heights to raise.
+///         source: required,
+///     }
+///     params {
+///         /// How far.
+///         by: f64 = 10.0, unit "m", range -1e4 to 1e4;
+///     }
+/// }
+///
+/// impl Filter for Raise {
+///     fn halo(&self, _cell: f64) -> usize {
+///         0
+///     }
+///
+///     fn apply(&self, inputs: &[Option<&Grid>], _: &Window, out: &mut [Option<Grid>], _: &Context) -> Result<()> {
+///         let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
+///         for (out, source) in out.data_mut().iter_mut().zip(source.data()) {
+///             *out = source + self.by as f32;
+///         }
+///         Ok(())
+///     }
+/// }
+///
+/// assert_eq!(Raise::default().by, 10.0);
+/// ```
+#[macro_export]
 macro_rules! op {
     (
         $(#[doc = $doc:literal])+
-        pub struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
+        $visibility:vis struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
         octaves;
         $(params { $($params:tt)* })?
     ) => {
-        op! {
+        $crate::op! {
             $(#[doc = $doc])+
-            pub struct $name = $op, $locality, revision $revision;
+            $visibility struct $name = $op, $locality, revision $revision;
             params {
                 /// Noise basis of the octaves.
-                basis: orogen_noise::Basis = orogen_noise::Basis::Perlin;
+                basis: $crate::declare::noise::Basis = $crate::declare::noise::Basis::Perlin;
                 /// Seed of the node, hashed with the world's seed. Two nodes with equal seeds make the same noise.
                 seed: u64 = 0;
                 /// Wavelength of the first octave, which is about the distance between its hills.
                 wavelength: f64 = 1000.0, unit "m", range 1e-3 to 1e9;
                 /// Number of octaves. Each octave is finer than the one before.
-                octaves: u32 = 6, range 1 to orogen_noise::MAX_OCTAVES;
+                octaves: u32 = 6, range 1 to $crate::declare::noise::MAX_OCTAVES;
                 /// Frequency ratio between successive octaves.
                 lacunarity: f64 = 2.0, range 1.0 to 16.0;
                 /// Amplitude ratio between successive octaves (also called persistence).
@@ -72,9 +131,9 @@ macro_rules! op {
         }
 
         impl $name {
-            /// The octaves, as the noise library sums them.
-            fn fractal(&self, world_params: &$crate::op::WorldParams, kind: orogen_noise::Kind) -> orogen_noise::Fractal {
-                orogen_noise::Fractal {
+            /// The octaves as the noise library sums them.
+            fn fractal(&self, world_params: &$crate::op::WorldParams, kind: $crate::declare::noise::Kind) -> $crate::declare::noise::Fractal {
+                $crate::declare::noise::Fractal {
                     basis: self.basis,
                     kind,
                     seed: world_params.seed_of(self.seed),
@@ -88,7 +147,7 @@ macro_rules! op {
     };
     (
         $(#[doc = $doc:literal])+
-        pub struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
+        $visibility:vis struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
         $(inputs of $expression:ident;)?
         $(inputs { $( $(#[doc = $idoc:literal])+ $input:ident: $need:ident $(, alias $ialias:literal)?, )* })?
         $(params { $(
@@ -102,7 +161,7 @@ macro_rules! op {
         ///
         #[doc = concat!("In recipes: `op = \"", $op, "\"`.")]
         #[derive(Debug, Clone, PartialEq)]
-        pub struct $name {
+        $visibility struct $name {
             $(
                 #[doc = concat!("What the names in `", stringify!($expression), "` stand for.")]
                 pub inputs: Vec<(String, $crate::declare::Input)>,
@@ -120,7 +179,7 @@ macro_rules! op {
         impl Default for $name {
             fn default() -> $name {
                 $name {
-                    $( inputs: op!(@empty $expression), )?
+                    $( inputs: $crate::op!(@empty $expression), )?
                     $( $( $input: $crate::declare::Input::None, )* )?
                     $( $( $param: $default, )* )?
                 }
@@ -133,7 +192,7 @@ macro_rules! op {
                     name: stringify!($input),
                     alias: concat!($($ialias)?),
                     doc: concat!($($idoc, "\n"),+),
-                    required: op!(@required $need),
+                    required: $crate::op!(@required $need),
                 }, )* )?];
                 const PARAMS: &[$crate::declare::ParamSpec] = &[$( $( $crate::declare::ParamSpec {
                     name: stringify!($param),
@@ -141,21 +200,21 @@ macro_rules! op {
                     doc: concat!($($pdoc, "\n"),+),
                     unit: concat!($($unit)?),
                     shape: <$pty as $crate::declare::Param>::SHAPE,
-                    range: op!(@range $($low, $high)?),
+                    range: $crate::op!(@range $($low, $high)?),
                 }, )* )?];
                 const LAYERS: &[$crate::layer::Layer] = &[$( $( $crate::layer::Layer {
                     name: stringify!($layer),
                     doc: concat!($($ldoc, "\n"),+),
                     unit: concat!($($lunit)?),
-                    interpolation: op!(@interpolation $interpolation),
+                    interpolation: $crate::op!(@interpolation $interpolation),
                 }, )+ )?];
                 static SPEC: $crate::declare::Spec = $crate::declare::Spec {
                     op: $op,
-                    locality: op!(@locality $locality),
+                    locality: $crate::op!(@locality $locality),
                     revision: $revision,
                     doc: concat!($($doc, "\n"),+),
                     inputs: INPUTS,
-                    named_inputs: op!(@given $($expression)?),
+                    named_inputs: $crate::op!(@given $($expression)?),
                     params: PARAMS,
                     layers: if LAYERS.is_empty() { $crate::layer::ONE_LAYER } else { LAYERS },
                 };
@@ -163,7 +222,7 @@ macro_rules! op {
             }
 
             $(
-                fn inputs(&self) -> Vec<$crate::declare::InputName<'_>> {
+                fn inputs(&self) -> ::std::vec::Vec<$crate::declare::InputName<'_>> {
                     let names = self.$expression.names().iter();
                     names.map(|name| $crate::declare::InputName { name, required: true }).collect()
                 }
@@ -232,7 +291,16 @@ macro_rules! op {
                 Ok(())
             }
         }
+
+        impl $crate::op::OpType for $name {
+            fn as_op(&self) -> $crate::op::Op<'_> {
+                $crate::op!(@as_op $locality self)
+            }
+        }
     };
+    (@as_op field $op:expr) => { $crate::op::Op::Field($op) };
+    (@as_op filter $op:expr) => { $crate::op::Op::Filter($op) };
+    (@as_op solver $op:expr) => { $crate::op::Op::Solver($op) };
     (@empty $given:tt) => { Vec::new() };
     (@given) => { false };
     (@given $given:tt) => { true };

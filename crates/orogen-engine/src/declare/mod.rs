@@ -3,11 +3,11 @@
 //! One `op!` block gives the struct, its defaults, parsing and validation, serialisation, the JSON Schema, the help of
 //! the command line and the sliders of a user interface.
 //!
-//! - [`spec`]: the declaration of an op, its inputs and its parameters
-//! - [`input`]: the inputs of a node
-//! - [`param`]: the types of parameters
-//! - [`declared`]: the trait that every op implements
-//! - `macros`: `op!` and `choice!`, which generate the code
+//! - [`spec`]: what is declared of an op, its inputs and its parameters
+//! - [`input`]: what a node reads
+//! - [`param`]: the types that parameters can have
+//! - [`declared`]: what every op implements
+//! - `macros`: [`op!`](crate::op!) and [`choice!`](crate::choice), which write all of it
 
 #[macro_use]
 mod macros;
@@ -20,5 +20,8 @@ pub mod spec;
 pub use declared::Declared;
 pub use input::{Input, InputName, set_named};
 pub use orogen_io::dem::file_ref::FileRef;
+/// What the octaves of a fractal are made of.
+#[doc(hidden)]
+pub use orogen_noise as noise;
 pub use param::{Param, read_param};
 pub use spec::{InputSpec, Locality, ParamSpec, Shape, Spec, short};

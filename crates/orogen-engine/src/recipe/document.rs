@@ -441,7 +441,8 @@ impl Recipe {
             write_input(&mut text, &toml_key(layer), input);
         }
         self.surfaces.iter().for_each(|surface| surface.write_toml(&mut text));
-        self.parameters.restore(text)
+        let specs = self.nodes.iter().map(|named| named.node.spec());
+        self.parameters.restore(text, |op| specs.clone().find(|spec| spec.op == op))
     }
 
     /// Whether a name in an expression refers to this input by default.

@@ -1,10 +1,11 @@
 //! The graph of a recipe's nodes: resolved names, order, keys.
 
 use super::document::{MAX_NODES, Recipe};
-use crate::declare::Input;
+use crate::declare::{Input, Spec};
 use crate::layer::{Interpolation, LayerKind};
 use crate::node::Node;
 use crate::op::Op;
+use crate::registered::check_name;
 use orogen_grid::error::{Diagnostic, Error, ErrorKind};
 use orogen_grid::words::suggestion;
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -93,7 +94,8 @@ impl Graph {
             let message = format!("the recipe has {} nodes; at most {MAX_NODES} are allowed", nodes.len());
             return Err(vec![GraphDiagnostic { at: At::Node(MAX_NODES, String::new()), message }]);
         }
-        let mut resolver = Resolver { recipe, names: HashMap::with_capacity(nodes.len()), diagnostics: Vec::new() };
+        let names = HashMap::with_capacity(nodes.len());
+        let mut resolver = Resolver { recipe, names, registered: HashMap::new(), diagnostics: Vec::new() };
         resolver.check_world();
         (0..nodes.len()).try_for_each(|index| resolver.check_node(index))?;
         let linked: Vec<(Vec<Link>, Link)> =
@@ -238,6 +240,8 @@ fn named(recipe: &Recipe, text: &str, find: impl Fn(&str) -> Option<usize>) -> R
 struct Resolver<'a> {
     recipe: &'a Recipe,
     names: HashMap<&'a str, usize>,
+    /// The declarations of ops that are not built in, by their names.
+    registered: HashMap<&'static str, &'static Spec>,
     diagnostics: Vec<GraphDiagnostic>,
 }
 
@@ -289,6 +293,9 @@ impl<'a> Resolver<'a> {
         if self.names.insert(name, index).is_some() {
             self.diagnostic(At::Node(index, String::new()), format!("there are two nodes named `{name}`: rename one"));
         }
+        if let Node::Registered(_) = named.node {
+            self.check_registered(index, named.node.spec());
+        }
         self.check_params(index, &named.node);
         let needs_bounds = match named.node.op() {
             Op::Solver(_) => Some("looks at the whole world"),
@@ -305,7 +312,19 @@ impl<'a> Resolver<'a> {
         self.enough()
     }
 
-    /// Values set in code pass the same checks as those read from a text.
+    /// The name of an op decides about content keys: it is no built-in op's, and no other op's.
+    fn check_registered(&mut self, index: usize, spec: &'static Spec) {
+        let message = match (check_name(spec.op), self.registered.insert(spec.op, spec)) {
+            (Err(message), _) => message,
+            (Ok(()), Some(other)) if !std::ptr::eq(other, spec) => {
+                format!("two different ops are named `{}`; rename one", spec.op)
+            }
+            _ => return,
+        };
+        self.diagnostic(At::Node(index, String::new()), message);
+    }
+
+    /// Values set by a program pass the same checks as those read from a text.
     fn check_params(&mut self, index: usize, node: &Node) {
         let mut copy = node.clone();
         let mut sound = true;

@@ -4,9 +4,9 @@
 //! sees plain numbers. Their positions are recorded, so that a recipe keeps them when it is written.
 
 use super::text::Text;
+use crate::declare::Spec;
 use crate::expression::error::ExpressionError;
 use crate::expression::formula::{self, formula, is_parameter_name};
-use crate::node::Node;
 use crate::value::{Span, Spanned, Value, toml_key, toml_string};
 use orogen_grid::words::{number, respelled, suggestion};
 use std::collections::HashSet;
@@ -153,8 +153,9 @@ impl Parameters {
         self.list.iter().for_each(|parameter| parameter.write_toml(text));
     }
 
-    /// Puts formulas back into the text of a recipe, if the number there is still the formula's value.
-    pub fn restore(&self, text: String) -> String {
+    /// Puts formulas back into the text of a recipe, where the number there is still the one that the formula makes. `spec` says what is declared of
+    /// an op.
+    pub fn restore(&self, text: String, spec: impl Fn(&str) -> Option<&'static Spec>) -> String {
         if self.formulas.is_empty() {
             return text;
         }
@@ -163,7 +164,7 @@ impl Parameters {
         for formula in &self.formulas {
             let Ok(value) = self.evaluate(&formula.text) else { continue };
             let written = toml_string(&format!("={}", formula.text));
-            let Some(found) = formula.path.iter().try_fold(&tree, |at, step| follow(at, step)) else { continue };
+            let Some(found) = formula.path.iter().try_fold(&tree, |at, step| follow(at, step, &spec)) else { continue };
             let spans: Vec<&Spanned<Value>> = match &found.value {
                 // One number for both values of a pair.
                 Value::List(items) => items.iter().collect(),
@@ -186,15 +187,19 @@ impl Parameters {
     }
 }
 
-fn follow<'t>(at: &'t Spanned<Value>, step: &Step) -> Option<&'t Spanned<Value>> {
+fn follow<'t>(
+    at: &'t Spanned<Value>,
+    step: &Step,
+    spec: impl Fn(&str) -> Option<&'static Spec>,
+) -> Option<&'t Spanned<Value>> {
     match (&at.value, step) {
         (Value::Table(entries), Step::Key(key)) => {
             let find = |name: &str| entries.iter().find(|(key, _)| key.value == name).map(|(_, value)| value);
             let op = || match find("op").map(|op| &op.value) {
-                Some(Value::Text(op)) => Node::named(op),
+                Some(Value::Text(op)) => spec(op),
                 _ => None,
             };
-            let current = || op()?.spec().aliases().find(|(alias, _)| alias == key).map(|(_, name)| name);
+            let current = || op()?.aliases().find(|(alias, _)| alias == key).map(|(_, name)| name);
             find(key).or_else(|| find(&respelled(key)?)).or_else(|| find(current()?))
         }
         (Value::List(items), Step::Item(item)) => items.get(*item),

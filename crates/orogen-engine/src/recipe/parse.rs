@@ -6,10 +6,11 @@ use super::parameters::{Formula, Parameters, Step, resolve};
 use super::subgraph::{Origin, Shared, UseDiagnostic, Uses, take_in};
 use super::text::{LONGEST_TEXT, Text, text_of, too_long};
 use super::{json, surface, toml};
-use crate::declare::Input;
+use crate::declare::{Input, Shape};
 use crate::expression::formula::place_of;
-use crate::field::expr::Expr;
+use crate::expression::text::Expression;
 use crate::node::Node;
+use crate::registry::Registry;
 use crate::value::{Span, Spanned, Value};
 use orogen_grid::error::{Diagnostic, Error, ErrorKind, Result};
 use orogen_grid::words::{list, respelled, suggestion};
@@ -42,12 +43,51 @@ fn unknown_key(key: &str, node: &Node) -> String {
 
 type Table = [(Spanned<String>, Spanned<Value>)];
 
-impl Recipe {
-    /// Reads a recipe from a file, TOML or JSON.
+impl Registry {
+    /// Reads a recipe of these ops from a file, TOML or JSON.
     ///
     /// # Errors
-    /// If the file cannot be read, is not text, or is not a valid recipe: then every diagnostic has its line and
-    /// column.
+    /// If the file cannot be read, is no text, or is no valid recipe: then every diagnostic has its line and column.
+    pub fn read(&self, path: &Path) -> Result<Recipe> {
+        self.read_with(path, &[])
+    }
+
+    /// The same with other values for some of its parameters.
+    ///
+    /// # Errors
+    /// As [`Registry::read`], and if a parameter is not there or may not have that value.
+    pub fn read_with(&self, path: &Path, set: &[(String, f64)]) -> Result<Recipe> {
+        let doing = "read the recipe";
+        let Some(bytes) = open::bytes(path, doing, LONGEST_TEXT)? else {
+            return Err(too_long(&path.display().to_string()));
+        };
+        let shared = Shared::new(self, parse);
+        parse(&text_of(bytes, path)?, &path.display().to_string(), set, &Origin::file(path, &shared))
+    }
+
+    /// Reads a recipe of these ops from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics call it.
+    ///
+    /// # Errors
+    /// If it is no valid recipe. All diagnostics are told at once, in the order of the text.
+    pub fn parse(&self, text: &str, name: &str) -> Result<Recipe> {
+        self.parse_with(text, name, &[])
+    }
+
+    /// The same with other values for some of its parameters.
+    ///
+    /// # Errors
+    /// As [`Registry::parse`], and if a parameter is not there or may not have that value.
+    pub fn parse_with(&self, text: &str, name: &str, set: &[(String, f64)]) -> Result<Recipe> {
+        let shared = Shared::new(self, parse);
+        parse(text, name, set, &Origin::text(&shared))
+    }
+}
+
+impl Recipe {
+    /// Reads a recipe of built-in ops from a file, TOML or JSON.
+    ///
+    /// # Errors
+    /// As [`Registry::read`].
     pub fn read(path: &Path) -> Result<Recipe> {
         Recipe::read_with(path, &[])
     }
@@ -55,26 +95,22 @@ impl Recipe {
     /// [`Recipe::read`] with other values for some of its parameters.
     ///
     /// # Errors
-    /// The errors of [`Recipe::read`], and if a parameter does not exist or the value is out of range.
+    /// As [`Registry::read_with`].
     pub fn read_with(path: &Path, set: &[(String, f64)]) -> Result<Recipe> {
-        let doing = "read the recipe";
-        let Some(bytes) = open::bytes(path, doing, LONGEST_TEXT)? else {
-            return Err(too_long(&path.display().to_string()));
-        };
-        let shared = Shared::new(parse);
-        parse(&text_of(bytes, path)?, &path.display().to_string(), set, &Origin::file(path, &shared))
+        Registry::new().read_with(path, set)
     }
 
     /// Reads a preset.
     pub(super) fn parse_preset(name: &str, text: &str, set: &[(String, f64)]) -> Result<Recipe> {
-        let shared = Shared::new(parse);
+        let registry = Registry::new();
+        let shared = Shared::new(&registry, parse);
         parse(text, &format!("recipes/{name}.toml"), set, &Origin::preset(name, &shared))
     }
 
-    /// Reads a recipe from a text, TOML or (if it begins with a brace) JSON; `name` is its name in diagnostics.
+    /// Reads a recipe of built-in ops from a text, TOML or (if it begins with a brace) JSON; `name` is what diagnostics call it.
     ///
     /// # Errors
-    /// If it is not a valid recipe. All diagnostics are reported at once, in the order of the text.
+    /// As [`Registry::parse`].
     pub fn parse(text: &str, name: &str) -> Result<Recipe> {
         Recipe::parse_with(text, name, &[])
     }
@@ -82,10 +118,9 @@ impl Recipe {
     /// [`Recipe::parse`] with other values for some of its parameters.
     ///
     /// # Errors
-    /// The errors of [`Recipe::parse`], and if a parameter does not exist or the value is out of range.
+    /// As [`Registry::parse_with`].
     pub fn parse_with(text: &str, name: &str, set: &[(String, f64)]) -> Result<Recipe> {
-        let shared = Shared::new(parse);
-        parse(text, name, set, &Origin::text(&shared))
+        Registry::new().parse_with(text, name, set)
     }
 }
 
@@ -107,6 +142,7 @@ fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Resu
     let tree = if is_json { json::read(&text)? } else { toml::read(&text)? };
     let walk = Walk {
         text: &text,
+        registry: origin.registry(),
         diagnostics: Vec::new(),
         more: 0,
         places: HashMap::new(),
@@ -121,6 +157,8 @@ fn parse(text: &str, name: &str, set: &[(String, f64)], origin: &Origin) -> Resu
 /// A traversal of the tree that collects diagnostics and the positions of keys, which later checks of the graph need.
 struct Walk<'a> {
     text: &'a Text<'a>,
+    /// The ops that nodes may have.
+    registry: &'a Registry,
     diagnostics: Vec<Diagnostic>,
     /// Number of diagnostics beyond the limit.
     more: usize,
@@ -392,11 +430,9 @@ impl Walk<'_> {
             self.complain(&op.span, format!("`op` must be the name of an op, not {}", op.value.describe()));
             return None;
         };
-        let other = || respelled(op_name).and_then(|other| Node::named(&other));
-        let Some(mut node) = Node::named(op_name).or_else(other) else {
-            let all = Node::all();
-            let hint = suggestion(op_name, all.iter().map(|node| node.spec().op));
-            self.complain(&op.span, format!("unknown op `{op_name}`; {hint}"));
+        let other = || respelled(op_name).and_then(|other| self.registry.named(&other));
+        let Some(mut node) = self.registry.named(op_name).or_else(other) else {
+            self.complain(&op.span, self.registry.unknown(op_name));
             return None;
         };
         let spec = node.spec();
@@ -427,7 +463,9 @@ impl Walk<'_> {
                 match node.set_param(i, &value.value) {
                     Ok(()) => {
                         self.remember(&mut node, value);
-                        sound &= self.expression(index, &node, value);
+                        if let Shape::Expression = spec.params[i].shape {
+                            sound &= self.expression(index, value);
+                        }
                     }
                     Err(message) => {
                         self.complain(&value.span, message);
@@ -452,9 +490,10 @@ impl Walk<'_> {
         Some((node, mask))
     }
 
-    /// Reports errors in an expression, at their positions.
-    fn expression(&mut self, index: usize, node: &Node, value: &Spanned<Value>) -> bool {
-        let (Node::Expr(Expr { expr, .. }), Value::Text(text)) = (node, &value.value) else { return true };
+    /// Complains of what is wrong within an expression, where it is wrong.
+    fn expression(&mut self, index: usize, value: &Spanned<Value>) -> bool {
+        let Value::Text(text) = &value.value else { return true };
+        let expr = Expression::from(text.as_str());
         let Some(fault) = expr.error() else {
             // An unknown name is reported where it is used, unless a key defines it.
             for name in expr.names() {

@@ -3,12 +3,18 @@
 use crate::declare::{Shape, Spec, short};
 use crate::layer::{Interpolation, Layer, ONE_LAYER};
 use crate::node::Node;
+use crate::registry::Registry;
 use crate::value::Value;
 use std::fmt::Write as _;
 
-/// One line per op: its name, its locality and its description.
+/// One line a built-in op: its name, its locality and what it does.
 pub fn overview() -> String {
-    let nodes = Node::all();
+    overview_of(&Registry::new())
+}
+
+/// One line for each of these ops.
+pub fn overview_of(registry: &Registry) -> String {
+    let nodes = registry.nodes();
     let longest = nodes.iter().map(|node| node.spec().op.len()).max().unwrap_or(0);
     let mut text = String::new();
     for node in &nodes {
@@ -88,10 +94,19 @@ fn between(layer: &Layer) -> String {
     }
 }
 
-/// The reference of all ops as a page of documentation, Markdown.
+/// The reference of all built-in ops as a page of documentation, Markdown.
 pub fn markdown() -> String {
+    format!(
+        "<!-- Written by `cargo xtask codegen` from the declarations in crates/orogen-engine/src. Do not edit. -->\n\n{}",
+        markdown_of(&Registry::new())
+    )
+}
+
+/// The reference of these ops as a page of documentation, Markdown.
+pub fn markdown_of(registry: &Registry) -> String {
+    let nodes = registry.nodes();
     let mut text = String::from(
-        "<!-- Written by `cargo xtask codegen` from the declarations in crates/orogen-engine/src. Do not edit. -->\n\n# The ops\n\n\
+        "# The ops\n\n\
          Each node of a recipe has an `op`. The value of an input is the name of a node, the name of one of its layers (`node.layer`; \
          the node's name alone is its first layer), or a number. \
          Every node also has an optional input `mask`, from 0 to 1: the result is mixed with the node's first input (or with 0, \
@@ -103,7 +118,7 @@ pub fn markdown() -> String {
         ("solver", "solved once over the whole bounded world"),
     ] {
         let _ = write!(text, "\n## {}s: {about}\n", capital(locality));
-        for node in Node::all().iter().filter(|node| node.spec().locality.name() == locality) {
+        for node in nodes.iter().filter(|node| node.spec().locality.name() == locality) {
             section(&mut text, node);
         }
     }

@@ -3,6 +3,7 @@
 use super::document::{VERSION, WorldSpec};
 use crate::declare::{Param, ParamSpec, Shape, read_param, short};
 use crate::node::Node;
+use crate::registry::Registry;
 use crate::value::Value;
 use orogen_grid::words::respelled;
 use serde_json::{Map, Value as Json, json};
@@ -91,8 +92,13 @@ pub fn world_values(world: &WorldSpec) -> Vec<(&'static str, Value)> {
     values
 }
 
-/// The schema (draft 7) for validation in editors.
+/// The schema (draft 7) that editors check recipes of built-in ops against.
 pub fn json_schema() -> Json {
+    json_schema_of(&Registry::new())
+}
+
+/// The schema of recipes of these ops.
+pub fn json_schema_of(registry: &Registry) -> Json {
     let name = json!({ "type": "string", "pattern": "^[A-Za-z_][A-Za-z0-9_-]{0,63}$" });
     let mut world: Map<String, Json> =
         WORLD.iter().map(|spec| (spec.name.to_string(), param_schema(spec, None))).collect();
@@ -142,7 +148,7 @@ pub fn json_schema() -> Json {
                     { "type": "number" },
                 ],
             },
-            "node": node_schema(),
+            "node": node_schema(&registry.nodes()),
         },
     });
     for part in ["properties", "definitions"] {
@@ -235,10 +241,9 @@ fn uses_schema(name: &Json) -> Json {
     })
 }
 
-/// A node: selects the schema of its op. It uses `if` and `then` instead of `oneOf`, so that editors report the wrong
-/// key instead of the whole node; all keys of all ops are listed beside them for completion.
-fn node_schema() -> Json {
-    let nodes = Node::all();
+/// A node: by its op, one of the ops' schemas. `if` and `then` rather than `oneOf`, so that a wrong key is named and not just the
+/// whole node called wrong; all keys of all ops beside them, because that is where editors look for completions.
+fn node_schema(nodes: &[Node]) -> Json {
     let ops: Vec<Json> = nodes
         .iter()
         .map(|node| json!({ "if": { "properties": { "op": op_name(node.spec().op) } }, "then": op_schema(node) }))

@@ -9,6 +9,7 @@ use crate::declare::{Input, Shape};
 use crate::expression::formula::renamed;
 use crate::expression::text::Expression;
 use crate::node::Node;
+use crate::registry::Registry;
 use crate::value::{Span, Spanned, Value};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::{bytes, suggestion};
@@ -29,41 +30,48 @@ pub struct Origin<'a> {
     pub folder: Option<PathBuf>,
     /// Its identity, after those of the recipes that use it, the outermost first.
     chain: Vec<String>,
-    /// State shared by all recipes of one reading.
-    shared: &'a Shared,
+    /// What all recipes of one reading share.
+    shared: &'a Shared<'a>,
 }
 
 /// Parses a recipe: text, name, values for parameters, and origin.
 pub type Parse = fn(&str, &str, &[(String, f64)], &Origin) -> Result<Recipe>;
 
-/// State shared by all recipes of one reading: the remaining budget, and the parser.
-pub struct Shared {
+/// What all recipes of one reading share: what is left to read, and how.
+pub struct Shared<'a> {
     uses: Cell<usize>,
     bytes: Cell<u64>,
-    /// Passed in, so that used recipes are parsed like the outermost one.
+    /// The ops that all of them may use.
+    registry: &'a Registry,
+    /// Given from outside: used recipes are read as the first one is.
     parse: Parse,
 }
 
-impl Shared {
-    /// The state before reading.
-    pub fn new(parse: Parse) -> Shared {
-        Shared { uses: Cell::new(MAX_USES), bytes: Cell::new(LONGEST_TEXT), parse }
+impl<'a> Shared<'a> {
+    /// Nothing is read yet.
+    pub fn new(registry: &'a Registry, parse: Parse) -> Shared<'a> {
+        Shared { uses: Cell::new(MAX_USES), bytes: Cell::new(LONGEST_TEXT), registry, parse }
     }
 }
 
 impl<'a> Origin<'a> {
-    /// The origin of a text without a file.
-    pub fn text(shared: &'a Shared) -> Origin<'a> {
+    /// The ops that recipes may use.
+    pub fn registry(&self) -> &'a Registry {
+        self.shared.registry
+    }
+
+    /// A text without a file.
+    pub fn text(shared: &'a Shared<'a>) -> Origin<'a> {
         Origin { folder: None, chain: Vec::new(), shared }
     }
 
-    /// The origin of a file.
-    pub fn file(path: &Path, shared: &'a Shared) -> Origin<'a> {
+    /// A file.
+    pub fn file(path: &Path, shared: &'a Shared<'a>) -> Origin<'a> {
         Origin { folder: Some(folder_of(path)), chain: vec![known_as(path)], shared }
     }
 
-    /// The origin of a preset.
-    pub fn preset(name: &str, shared: &'a Shared) -> Origin<'a> {
+    /// A preset.
+    pub fn preset(name: &str, shared: &'a Shared<'a>) -> Origin<'a> {
         Origin { folder: None, chain: vec![name.to_string()], shared }
     }
 

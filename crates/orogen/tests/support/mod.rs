@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "each test binary uses its part")]
 
 use orogen::declare::Input;
-use orogen::field::{fbm::Fbm, perlin::Perlin, remap::Remap};
-use orogen::filter::blur::Blur;
+use orogen::field::remap::Remap;
+use orogen::laws::{self, Laws};
 use orogen::node::Node;
 use orogen::value::{Spanned, Value};
 use orogen::{Options, Recipe, World, WorldSpec};
@@ -27,10 +27,9 @@ const DEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/f3
 /// A grey picture for the `image` node.
 const PICTURE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/corpus/dem/grey.png");
 
-/// The node alone: each input is a noise, and lengths are scaled so that a small world shows every effect.
+/// The node alone, each input a noise of its own: see [`laws::recipe_of`]. Lengths are fitted so that a small world shows every effect.
 pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     let mut node = node.clone();
-    let mut recipe = Recipe::new(world);
     let spec = node.spec();
     for (i, param) in spec.params.iter().enumerate() {
         let pair = |a: f64, b: f64| Value::List([a, b].map(|n| Spanned::unplaced(Value::Number(n))).into());
@@ -84,40 +83,27 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
         };
         node.set_param(i, &fitted).unwrap();
     }
-    let inputs: Vec<String> = node.inputs().iter().map(|input| input.name.to_string()).collect();
-    for (i, input) in inputs.iter().enumerate() {
-        let name = format!("in{i}");
-        let noise = Fbm { seed: i as u64, wavelength: 9.0 * world.cell, octaves: 3, ..Default::default() };
-        recipe.add(&name, noise);
-        // A filter below the node under test puts halos on top of halos.
-        if input == "source" {
-            recipe.add("soft", Blur { source: Input::from(&name), radius: 1.2 * world.cell });
-            node.set_input(i, Input::from("soft"));
-            if spec.op == "flow-direction" {
-                // It reads direction codes from 0 to 8.
-                let (from, to) = ([-0.5, 0.5], [0.0, 8.5]);
-                recipe.add("codes", Remap { source: Input::from("soft"), from, to, clamp: true });
-                node.set_input(i, Input::from("codes"));
+    let mut recipe = laws::recipe_of(&node, world, masked);
+    if spec.op == "flow-direction" {
+        // It reads codes of directions, 0 to 8.
+        let (from, to) = ([-0.5, 0.5], [0.0, 8.5]);
+        recipe.add("codes", Remap { source: Input::from("soft"), from, to, clamp: true });
+        recipe.change(|node| {
+            if node.spec().op == spec.op {
+                node.set_input(0, Input::from("codes"));
             }
-        } else {
-            node.set_input(i, Input::Node(name));
-        }
-    }
-    if masked {
-        recipe.add("mask", Perlin { seed: 99, wavelength: 7.0 * world.cell });
-        recipe.add_masked("node", node, "mask");
-    } else {
-        recipe.add("node", node);
-    }
-    recipe.output("height", "node");
-    for layer in spec.layers.iter().skip(1) {
-        recipe.output(layer.name, Input::Node(format!("node.{}", layer.name)));
+        });
     }
     recipe
 }
 
+/// The laws of a built-in op, in recipes of [`recipe_of`].
+pub fn laws_of(node: &Node) -> Laws<'_> {
+    Laws::in_recipes(node.clone(), |world, masked| recipe_of(node, world, masked))
+}
+
 pub fn world_of(cell: f64) -> WorldSpec {
-    WorldSpec { seed: 42, size: Some([96.0 * cell, 80.0 * cell]), cell, ..WorldSpec::default() }
+    laws::world_of(cell)
 }
 
 pub fn open(recipe: &Recipe, threads: usize) -> World {

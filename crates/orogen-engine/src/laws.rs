@@ -1,0 +1,584 @@
+//! The laws that every op obeys, as tests of one op: for the built-in ops and for those of programs.
+//!
+//! | law | what it says |
+//! |---|---|
+//! | [`Law::TileEqualsCrop`] | a tile has the bits of the crop of the whole, whatever its size and offset, the number of threads, and what was made before; a point has those of the sample there |
+//! | [`Law::Finite`] | finite inputs make finite results |
+//! | [`Law::Levels`] | every SIMD level makes the same bits |
+//! | [`Law::Stored`] | solutions on disk, and sources made in tiles of any size, change no bit |
+//! | [`Law::Warped`] | behind a warp and a turn a tile still equals the crop, and a warp by nothing changes no bit |
+//! | [`Law::Unbounded`] | far out and below zero a tile still equals the crop |
+//! | [`Law::Resolutions`] | a field has the same bits where the samples of two cells coincide |
+//! | [`Law::ContentKeys`] | what changes the samples changes the content key, so that nothing stored is stale |
+//! | [`Law::Cancel`] | work stops within [`LONGEST_CANCEL`] of being asked to |
+//!
+//! ```
+//! use orogen_engine::filter::blur::Blur;
+//! use orogen_engine::laws::Laws;
+//!
+//! let violations = Laws::of(|cell| Blur { radius: 2.5 * cell, ..Blur::default() }).check();
+//! assert!(violations.is_empty(), "{violations:#?}");
+//! ```
+
+use crate::declare::Input;
+use crate::field::{add::Add, fbm::Fbm, perlin::Perlin, transform::Transform, warp::Warp};
+use crate::filter::blur::Blur;
+use crate::node::Node;
+use crate::op::Op;
+use crate::recipe::document::{Recipe, WorldSpec};
+use crate::session::Options;
+use crate::solver::bake::Bake;
+use crate::world::World;
+use orogen_grid::error::{ErrorKind, Result};
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::progress::Progress;
+use orogen_noise::Level;
+use std::fmt;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// The cells at which [`Laws::check`] makes tiles: none of them is exact in binary.
+pub const CELLS: [f64; 3] = [10.24, 0.1, 1.0 / 3.0];
+
+/// Longest time that work may go on after it was asked to stop.
+pub const LONGEST_CANCEL: Duration = Duration::from_millis(100);
+
+/// The name of the node under test in the recipes of [`recipe_of`] and [`Laws::in_recipes`].
+pub const NODE: &str = "node";
+
+/// Samples along the sides of the worlds of [`world_of`], their far edges included.
+const SIDES: [usize; 2] = [97, 81];
+
+/// A law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Law {
+    /// A tile has the bits of the crop of the whole.
+    TileEqualsCrop,
+    /// Finite inputs make finite results.
+    Finite,
+    /// Every SIMD level makes the same bits.
+    Levels,
+    /// Solutions on disk and sources in tiles change no bit.
+    Stored,
+    /// Behind warps and turns a tile equals the crop.
+    Warped,
+    /// Far out a tile equals the crop.
+    Unbounded,
+    /// A field has the same bits where the samples of two cells coincide.
+    Resolutions,
+    /// What changes the samples changes the content key.
+    ContentKeys,
+    /// Work stops when it is asked to.
+    Cancel,
+}
+
+/// A law that an op breaks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Violation {
+    /// The op.
+    pub op: String,
+    /// The law.
+    pub law: Law,
+    /// The samples that were made.
+    pub window: Option<Window>,
+    /// What is wrong.
+    pub message: String,
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        write!(formatter, "`{}` breaks the law {:?}", self.op, self.law)?;
+        if let Some(Window { x, y, width, height, cell }) = self.window {
+            write!(formatter, " in {width} x {height} samples at ({x}, {y}), cell {cell} m")?;
+        }
+        write!(formatter, ": {}", self.message)
+    }
+}
+
+impl std::error::Error for Violation {}
+
+/// Whether a law holds.
+pub type Verdict = std::result::Result<(), Violation>;
+
+/// An op under the laws.
+pub struct Laws<'a> {
+    node: Node,
+    recipe: Box<dyn Fn(WorldSpec, bool) -> Recipe + 'a>,
+}
+
+impl<'a> Laws<'a> {
+    /// The op with the parameters that it has at a cell, each input a noise. The worlds have 97 x 81 samples, so lengths among the parameters are best
+    /// a few cells: an effect that is wider than the world, or narrower than a sample, does not show.
+    pub fn of<T: Into<Node>>(op: impl Fn(f64) -> T + 'a) -> Laws<'a> {
+        let node = op(CELLS[0]).into();
+        Laws::in_recipes(node, move |world, masked| recipe_of(&op(world.cell).into(), world, masked))
+    }
+
+    /// The op in recipes of its own, for one that cannot read any noise. `recipe` makes one for a world, with and without a mask; [`NODE`] is the op, and
+    /// the outputs are its layers, the first one named `height`. `node` says what the op is.
+    pub fn in_recipes(node: Node, recipe: impl Fn(WorldSpec, bool) -> Recipe + 'a) -> Laws<'a> {
+        Laws { node, recipe: Box::new(recipe) }
+    }
+
+    /// All laws. [`Law::Levels`] forces SIMD levels for the whole process while it runs.
+    pub fn check(&self) -> Vec<Violation> {
+        let at_cells = CELLS
+            .into_iter()
+            .flat_map(|cell| [self.tiles(cell, false), self.tiles(cell, true), self.resolutions(cell)]);
+        let others = [
+            self.levels(),
+            self.stored(CELLS[2]),
+            self.warped(30.0),
+            self.unbounded(),
+            self.content_keys().map(drop),
+            self.cancel(CANCELLED_SIDE).map(drop),
+        ];
+        at_cells.chain(others).filter_map(|verdict| verdict.err()).collect()
+    }
+
+    fn case(&self, law: Law) -> Case {
+        Case { op: self.node.spec().op.to_string(), law, window: None }
+    }
+
+    /// [`Law::TileEqualsCrop`] and [`Law::Finite`], for all layers.
+    ///
+    /// # Errors
+    /// The first difference.
+    pub fn tiles(&self, cell: f64, masked: bool) -> Verdict {
+        let recipe = (self.recipe)(world_of(cell), masked);
+        let what = if masked { "masked, " } else { "" };
+        tiles_equal_crop(&self.case(Law::TileEqualsCrop), what, &recipe, cell)?;
+        let case = self.case(Law::Finite).in_window(full(cell));
+        for (layer, grid) in recipe.outputs().zip(case.layers(&recipe, &full(cell))?) {
+            if let Some(k) = grid.data().iter().position(|sample| !sample.is_finite()) {
+                let (i, j) = (k % grid.width(), k / grid.width());
+                return case.breaks(format!("{what}layer `{layer}`: {} at ({i}, {j})", grid[(i, j)]));
+            }
+        }
+        Ok(())
+    }
+
+    /// [`Law::Levels`]. It forces levels for the whole process, and then the one that was in force.
+    ///
+    /// # Errors
+    /// The first difference.
+    pub fn levels(&self) -> Verdict {
+        let window = Window::new(75, 63, CELLS[0]).at(5, 9);
+        let case = self.case(Law::Levels).in_window(window);
+        let recipe = (self.recipe)(world_of(CELLS[0]), false);
+        let _forced = FORCED.lock().unwrap_or_else(PoisonError::into_inner);
+        let before = Level::current();
+        let made: std::result::Result<Vec<_>, Violation> = Level::available()
+            .into_iter()
+            .map(|level| {
+                Level::force(level).map_err(|error| case.violation(error.to_string()))?;
+                Ok((level, case.layers(&recipe, &window)?))
+            })
+            .collect();
+        Level::force(before).map_err(|error| case.violation(error.to_string()))?;
+        let made = made?;
+        for pair in made.windows(2) {
+            for ((layer, one), other) in recipe.outputs().zip(&pair[0].1).zip(&pair[1].1) {
+                case.same(&format!("layer `{layer}`, {:?} and {:?}", pair[0].0, pair[1].0), one, other)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// [`Law::Stored`]: a plan is plain data, so it may say that all solutions are on disk, and that their sources are made in tiny tiles.
+    ///
+    /// # Errors
+    /// The first difference.
+    pub fn stored(&self, cell: f64) -> Verdict {
+        let mut recipe = without_outputs(&(self.recipe)(world_of(cell), false));
+        // Warps that read filters that read solvers that read the node.
+        let noise = Fbm { seed: 8, wavelength: 20.0 * cell, octaves: 2, ..Default::default() };
+        recipe.add("move", noise).add("kept", Bake { source: NODE.into(), cell: 0.7 * cell });
+        recipe.add("soft2", Blur { source: "kept".into(), radius: 1.1 * cell });
+        recipe.add("last", Warp { source: "soft2".into(), x: "move".into(), y: "move".into(), strength: 9.0 * cell });
+        recipe.output("height", "last").output("node", NODE);
+        let window = Window::new(60, 50, cell).at(30, 29);
+        let layers = ["height", "node"];
+        let case = self.case(Law::Stored).in_window(window);
+        let expect = case.layers(&recipe, &window)?;
+        for (side, threads, tile) in
+            [(1 << 20, 1, window), (33, 2, window), (50, 2, Window::new(7, 1, cell).at(41, 77))]
+        {
+            let case = self.case(Law::Stored).in_window(tile);
+            let world = case.open(&recipe, threads)?;
+            let mut plan = case.of(world.plan(&layers, &tile))?;
+            plan.solve_on_disk(side);
+            let made = case.of(world.run(&plan, &Progress::none()))?;
+            for (whole, made) in expect.iter().zip(&made) {
+                case.same(&format!("in tiles of {side}, on disk"), whole, made)?;
+            }
+            // In memory again, from what is on disk.
+            case.same("in memory again", &expect[0], &case.of(world.window("height", &tile))?)?;
+        }
+        Ok(())
+    }
+
+    /// [`Law::Warped`], for all layers.
+    ///
+    /// # Errors
+    /// The first difference.
+    pub fn warped(&self, cell: f64) -> Verdict {
+        let from = (self.recipe)(world_of(cell), false);
+        let mut recipe = without_outputs(&from);
+        let noise = |seed| Fbm { seed, wavelength: 10.0 * cell, octaves: 2, ..Default::default() };
+        recipe.add("wx", noise(1)).add("wy", noise(2));
+        for layer in self.node.layers() {
+            let [warped, turned, sum] = ["warped", "turned", "sum"].map(|what| format!("{what}-{}", layer.name));
+            let source = Input::Node(format!("{NODE}.{}", layer.name));
+            recipe.add(&warped, Warp { source, x: "wx".into(), y: "wy".into(), strength: 3.2 * cell });
+            let (source, offset) = (Input::from(&warped), [6.7 * cell, -2.6 * cell]);
+            recipe.add(&turned, Transform { source, offset, scale: 1.5, angle: 25.0 });
+            recipe.add(&sum, Add { a: (&turned).into(), b: (&warped).into() });
+            recipe.output(layer.name, &sum);
+        }
+        tiles_equal_crop(&self.case(Law::Warped), "warped, ", &recipe, cell)?;
+        let mut still = without_outputs(&from);
+        still.add("still", Warp { source: NODE.into(), x: 0.0.into(), y: 0.0.into(), strength: 10.0 });
+        still.output(NODE, NODE).output("still", "still");
+        let window = Window::new(50, 40, cell).at(3, 5);
+        let case = self.case(Law::Warped).in_window(window);
+        let made = case.layers(&still, &window)?;
+        case.same("a warp by nothing", &made[0], &made[1])
+    }
+
+    /// [`Law::Unbounded`], unless the op needs a world with bounds.
+    ///
+    /// # Errors
+    /// The first difference.
+    pub fn unbounded(&self) -> Verdict {
+        if self.needs_bounds() {
+            return Ok(());
+        }
+        let recipe = (self.recipe)(WorldSpec { seed: 3, size: None, cell: 10.24, ..WorldSpec::default() }, false);
+        for (x, y) in [(-40, -17), (1_000_003, -999_999_937), (97_656_250, 5)] {
+            let window = Window::new(40, 30, 10.24).at(x, y);
+            let whole = self.case(Law::Unbounded).in_window(window).layers(&recipe, &window)?;
+            let tile = Window::new(9, 11, 10.24).at(x + 21, y + 6);
+            let case = self.case(Law::Unbounded).in_window(tile);
+            let world = case.open(&recipe, 1)?;
+            let layers: Vec<&str> = recipe.outputs().collect();
+            let made = case.of(world.grids(&layers, &tile, &Progress::none()))?;
+            for ((layer, whole), made) in layers.iter().zip(&whole).zip(&made) {
+                case.same(&format!("layer `{layer}`"), whole, made)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn needs_bounds(&self) -> bool {
+        match self.node.op() {
+            Op::Solver(_) => true,
+            Op::Field(field) => field.needs_bounds(),
+            Op::Filter(_) => false,
+        }
+    }
+
+    /// [`Law::Resolutions`], of a field. What a filter or solver makes depends on its cell.
+    ///
+    /// # Errors
+    /// The first difference.
+    pub fn resolutions(&self, cell: f64) -> Verdict {
+        if !matches!(self.node.op(), Op::Field(_)) {
+            return Ok(());
+        }
+        for (ratio, masked) in [(2usize, false), (4, true), (8, false)] {
+            let sized = unsoftened(&(self.recipe)(world_of(cell), masked));
+            let mut free = sized.clone();
+            let mut origins = vec![(&sized, 0, 0)];
+            if !self.needs_bounds() {
+                free.world.size = None;
+                origins.extend([(&free, -3, -11), (&free, 1_000_003, -999_999_937), (&free, -97_656_250, 5)]);
+            }
+            for (recipe, x, y) in origins {
+                let coarse = Window::new(9, 9, cell).at(x, y);
+                let side = 8 * ratio + 1;
+                let fine = Window::new(side, side, cell / ratio as f64).at(x * ratio as i64, y * ratio as i64);
+                let case = self.case(Law::Resolutions).in_window(fine);
+                let world = case.open(recipe, 2)?;
+                let [coarse, fine] =
+                    [case.of(world.window("height", &coarse))?, case.of(world.window("height", &fine))?];
+                for (i, j) in (0..9).flat_map(|j| (0..9).map(move |i| (i, j))) {
+                    let (a, b) = (fine[(ratio * i, ratio * j)], coarse[(i, j)]);
+                    if a.to_bits() != b.to_bits() {
+                        return case.breaks(format!(
+                            "{a}, but {b} at a cell of {cell} m, at its sample ({x} + {i}, {y} + {j})"
+                        ));
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// [`Law::ContentKeys`]: of five changes of the world, returns how many left the key (and the samples) as they were.
+    ///
+    /// # Errors
+    /// The first change that another sample shows, but no other key.
+    pub fn content_keys(&self) -> std::result::Result<usize, Violation> {
+        let window = Window::new(24, 20, 30.0).at(20, 18);
+        let case = self.case(Law::ContentKeys).in_window(window);
+        let world = world_of(30.0);
+        let recipe = (self.recipe)(world, false);
+        let made = |recipe: &Recipe| {
+            let world = case.open(recipe, 1)?;
+            let layers: Vec<&str> = recipe.outputs().collect();
+            Ok((case.of(world.key(NODE))?, case.of(world.grids(&layers, &window, &Progress::none()))?))
+        };
+        let (key, grids) = made(&recipe)?;
+        let [width, height] = world.size.unwrap_or_default();
+        let mut kept = 0;
+        for (what, changed) in [
+            ("the seed", WorldSpec { seed: 43, ..world }),
+            ("the sea level", WorldSpec { sea_level: 0.25, ..world }),
+            ("the width", WorldSpec { size: Some([width + 300.0, height]), ..world }),
+            ("the height", WorldSpec { size: Some([width, height + 600.0]), ..world }),
+            ("the cell", WorldSpec { cell: 60.0, ..world }),
+        ] {
+            let mut recipe = recipe.clone();
+            recipe.world = changed;
+            let (changed_key, changed_grids) = made(&recipe)?;
+            if key == changed_key {
+                kept += 1;
+                for (one, other) in grids.iter().zip(&changed_grids) {
+                    case.same(
+                        &format!("the world with {what} changed, which its content key does not hold"),
+                        one,
+                        other,
+                    )?;
+                }
+            }
+        }
+        Ok(kept)
+    }
+
+    /// [`Law::Cancel`], in a world of `side` x `side` samples: cancels at five moments of the work, and returns the longest time that it went on. A
+    /// field is asked by the engine, between blocks.
+    ///
+    /// # Errors
+    /// If it went on for longer than [`LONGEST_CANCEL`] three times, or ended with anything but [`ErrorKind::Cancelled`].
+    pub fn cancel(&self, side: usize) -> std::result::Result<Duration, Violation> {
+        let length = (side.max(2) - 1) as f64 * 10.0;
+        let window = Window::new(side, side, 10.0);
+        let case = self.case(Law::Cancel).in_window(window);
+        let recipe = (self.recipe)(WorldSpec { size: Some([length, length]), ..world_of(10.0) }, false);
+        let layers: Vec<&str> = recipe.outputs().collect();
+        let begun = Instant::now();
+        case.layers(&recipe, &window)?;
+        let all = begun.elapsed();
+        let mut longest = Duration::ZERO;
+        for share in [0.05, 0.27, 0.48, 0.71, 0.93] {
+            // A busy machine may be late by itself: the best of three runs counts.
+            let mut late = Duration::MAX;
+            for _ in 0..3 {
+                let world = case.open(&recipe, 2)?;
+                let progress = Progress::none();
+                let (made, ended, asked) = std::thread::scope(|scope| {
+                    let stopper = scope.spawn(|| {
+                        std::thread::sleep(all.mul_f64(share));
+                        progress.cancel();
+                        Instant::now()
+                    });
+                    let made = world.grids(&layers, &window, &progress);
+                    let ended = Instant::now();
+                    (made, ended, stopper.join())
+                });
+                if let Err(error) = made
+                    && error.kind() != ErrorKind::Cancelled
+                {
+                    return case.breaks(format!("cancelled work ended with another error: {error}"));
+                }
+                late = late.min(asked.map_or(Duration::ZERO, |asked| ended.saturating_duration_since(asked)));
+                if late < LONGEST_CANCEL {
+                    break;
+                }
+            }
+            longest = longest.max(late);
+        }
+        match longest < LONGEST_CANCEL {
+            true => Ok(longest),
+            false => {
+                case.breaks(format!("it went on for {longest:.1?} after it was asked to stop, of {all:.1?} in all"))
+            }
+        }
+    }
+}
+
+/// Samples along the sides of the world that [`Laws::check`] cancels.
+const CANCELLED_SIDE: usize = 384;
+
+/// Held while levels are forced, which is for the whole process.
+static FORCED: Mutex<()> = Mutex::new(());
+
+/// A law being tested.
+struct Case {
+    op: String,
+    law: Law,
+    window: Option<Window>,
+}
+
+impl Case {
+    fn in_window(&self, window: Window) -> Case {
+        Case { op: self.op.clone(), law: self.law, window: Some(window) }
+    }
+
+    fn violation(&self, message: String) -> Violation {
+        Violation { op: self.op.clone(), law: self.law, window: self.window, message }
+    }
+
+    fn breaks<T>(&self, message: String) -> std::result::Result<T, Violation> {
+        Err(self.violation(message))
+    }
+
+    fn of<T>(&self, result: Result<T>) -> std::result::Result<T, Violation> {
+        result.map_err(|error| self.violation(error.to_string()))
+    }
+
+    fn open(&self, recipe: &Recipe, threads: usize) -> std::result::Result<World, Violation> {
+        self.of(World::with_options(recipe.clone(), Options { threads: Some(threads), ..Options::default() }))
+    }
+
+    /// All layers, from a fresh world.
+    fn layers(&self, recipe: &Recipe, window: &Window) -> std::result::Result<Vec<Grid>, Violation> {
+        let layers: Vec<&str> = recipe.outputs().collect();
+        self.of(self.open(recipe, 2)?.grids(&layers, window, &Progress::none()))
+    }
+
+    /// Whether a tile has the bits of the part of the whole that it covers.
+    fn same(&self, what: &str, whole: &Grid, tile: &Grid) -> Verdict {
+        let Some(crop) = whole.crop(tile.window()) else {
+            return self.breaks(format!("{what}: {:?} is not part of {:?}", tile.window(), whole.window()));
+        };
+        let differs = |(a, b): (&f32, &f32)| a.to_bits() != b.to_bits();
+        match crop.data().iter().zip(tile.data()).position(differs) {
+            Some(k) => {
+                let (i, j) = (k % tile.width(), k / tile.width());
+                self.breaks(format!("{what}: {} and {} at ({i}, {j})", crop[(i, j)], tile[(i, j)]))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// The whole of [`world_of`], its far edges included.
+fn full(cell: f64) -> Window {
+    Window::new(SIDES[0], SIDES[1], cell)
+}
+
+/// Tile == crop for every layer of one recipe: the whole against tiles of several sizes and offsets, thread counts, fresh and warm.
+fn tiles_equal_crop(case: &Case, what: &str, recipe: &Recipe, cell: f64) -> Verdict {
+    let whole = full(cell);
+    let layers: Vec<&str> = recipe.outputs().collect();
+    let wholes = case.in_window(whole).layers(recipe, &whole)?;
+    let warm = case.open(recipe, 1)?;
+    let mut random = Random(case.op.len() as u64);
+    let mut tiles = vec![(Window::new(31, 17, cell).at(13, 44), true), (whole, true), (whole, false)];
+    for size in [1usize, 2, 7, 33, 64] {
+        for _ in 0..2 {
+            let [x, y] = SIDES.map(|side| random.below((side - size) as u64 + 1) as i64);
+            tiles.push((Window::new(size, size, cell).at(x, y), false));
+        }
+    }
+    for (tile, fresh) in tiles {
+        let case = case.in_window(tile);
+        let made = match fresh {
+            true => case.layers(recipe, &tile)?,
+            false => case.of(warm.grids(&layers, &tile, &Progress::none()))?,
+        };
+        for ((layer, whole), made) in layers.iter().zip(&wholes).zip(&made) {
+            case.same(&format!("{what}layer `{layer}`, the whole and the tile"), whole, made)?;
+        }
+    }
+    // A point on the lattice is the sample there.
+    let [i, j] = SIDES.map(|side| random.below(side as u64) as usize);
+    let case = case.in_window(Window::new(1, 1, cell).at(i as i64, j as i64));
+    for (layer, grid) in layers.iter().zip(&wholes) {
+        let points = case.of(warm.points(layer, &[whole.east(i)], &[whole.south(j)]))?;
+        if points.first().is_none_or(|point| point.to_bits() != grid[(i, j)].to_bits()) {
+            return case
+                .breaks(format!("{what}layer `{layer}`: {} in the whole, {points:?} at that point", grid[(i, j)]));
+        }
+    }
+    Ok(())
+}
+
+/// The nodes of a recipe.
+fn without_outputs(from: &Recipe) -> Recipe {
+    let mut recipe = Recipe::new(from.world);
+    for named in from.nodes() {
+        recipe.add_masked(&named.name, named.node.clone(), named.mask.clone());
+    }
+    recipe
+}
+
+/// The node and its inputs without the blur below them: what a filter makes depends on the cell.
+fn unsoftened(from: &Recipe) -> Recipe {
+    let mut recipe = Recipe::new(from.world);
+    for named in from.nodes().iter().filter(|named| named.name != SOFT) {
+        let mut node = named.node.clone();
+        for i in 0..node.inputs().len() {
+            if *node.input(i) == Input::from(SOFT) {
+                node.set_input(i, Input::Node(format!("in{i}")));
+            }
+        }
+        recipe.add_masked(&named.name, node, named.mask.clone());
+    }
+    recipe.output("height", NODE);
+    recipe
+}
+
+/// The node that a `source` is read through.
+const SOFT: &str = "soft";
+
+/// A bounded world of 97 x 81 samples at a cell.
+pub fn world_of(cell: f64) -> WorldSpec {
+    let size = SIDES.map(|side| (side - 1) as f64 * cell);
+    WorldSpec { seed: 42, size: Some(size), cell, ..WorldSpec::default() }
+}
+
+/// A recipe of the node alone, named [`NODE`]: each input is a noise of its own, about -1 to 1 and nine cells from hill to hill. An input called
+/// `source` is read through a blur, which puts halos on top of halos. The outputs are the node's layers, the first one named `height`.
+pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
+    let mut node = node.clone();
+    let mut recipe = Recipe::new(world);
+    let inputs: Vec<String> = node.inputs().iter().map(|input| input.name.to_string()).collect();
+    for (i, input) in inputs.iter().enumerate() {
+        let name = format!("in{i}");
+        recipe.add(&name, Fbm { seed: i as u64, wavelength: 9.0 * world.cell, octaves: 3, ..Default::default() });
+        if input == "source" {
+            recipe.add(SOFT, Blur { source: Input::from(&name), radius: 1.2 * world.cell });
+            node.set_input(i, Input::from(SOFT));
+        } else {
+            node.set_input(i, Input::Node(name));
+        }
+    }
+    let layers = node.layers();
+    if masked {
+        recipe.add("mask", Perlin { seed: 99, wavelength: 7.0 * world.cell });
+        recipe.add_masked(NODE, node, "mask");
+    } else {
+        recipe.add(NODE, node);
+    }
+    recipe.output("height", NODE);
+    for layer in layers.iter().skip(1) {
+        recipe.output(layer.name, Input::Node(format!("{NODE}.{}", layer.name)));
+    }
+    recipe
+}
+
+/// A small deterministic generator (splitmix64).
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        (z ^ (z >> 31)) % n
+    }
+}
