@@ -64,7 +64,7 @@ mod tests {
         assert!(free.is_some_and(|free| free > 0), "{free:?}");
         assert_eq!(free.is_some(), free_at(Path::new("x")).is_some());
         assert!(afford(&folder, 2, Some(1)).unwrap_err().to_string().contains("1 byte free"));
-        // Of the file system that a path is on, as the system's own tool tells: of all that are mounted, those in memory among them.
+        // Compares with the output of `df` for every mounted file system, including those in memory.
         #[cfg(unix)]
         for mounted in ["/", "/dev/shm", "/run", "/tmp", "."] {
             let output = std::process::Command::new("df").args(["-P", "-k", mounted]).output();
@@ -72,7 +72,7 @@ mod tests {
             let text = String::from_utf8_lossy(&output.stdout).into_owned();
             let expect: f64 = text.lines().last().unwrap().split_whitespace().nth(3).unwrap().parse().unwrap();
             let free = free_at(&Path::new(mounted).join("not/yet/there")).unwrap() as f64 / 1024.0;
-            // Others write there meanwhile.
+            // Other processes may write between both calls.
             assert!((free - expect).abs() <= 0.05 * expect + 65536.0, "{mounted}: {free} KiB, df says {expect}");
         }
         assert!(afford(&folder, 1, Some(1)).is_ok() && afford(&folder, u64::MAX, None).is_ok());

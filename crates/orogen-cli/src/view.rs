@@ -306,7 +306,7 @@ mod tests {
             (local, part("100,50,30,20", "", &[])),
             (local, part("1km,500m,300m,200m", "", &[])),
             (local, part("", "1000,-700,1300,-500", &[])),
-            // Along the edges of pixels, and anywhere between samples.
+            // At the edges of pixels, and at other points between samples.
             (local, part("", "995,-695,1295,-495", &[])),
             (local, part("", "991,-691,1291,-491", &[])),
             (mapped, part("100,50,30,20", "", &[])),
@@ -317,7 +317,7 @@ mod tests {
         }
         let sized = SizedView { size: Some(Size::Longer(60)), ..part("", "1000,-700,1300,-500", &[]) };
         assert_eq!(look(local, &sized), Ok(Window::new(60, 40, 5.0).at(200, 100)));
-        // Parts that touch share no sample, and together are the whole.
+        // Adjacent parts share no sample, and together equal the whole.
         let halves = ["0,-4000,3333,0", "3333,-4000,8000,0"].map(|bounds| look(local, &part("", bounds, &[])).unwrap());
         assert_eq!((halves[0].x, halves[0].width as i64, halves[1].x), (0, halves[1].x, 334));
         assert_eq!(halves[0].width + halves[1].width, 800);

@@ -168,7 +168,7 @@ mod tests {
         let mut seen = Seen::look(&top);
         assert_eq!(seen.0.len(), 2);
         assert!(!seen.changed());
-        // A fault in the part, and its end.
+        // An error in the part, and its correction.
         part(99);
         assert!(seen.changed());
         seen.settle(&top);

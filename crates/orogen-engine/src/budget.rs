@@ -222,7 +222,7 @@ mod tests {
         let error = other.reserve(301).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Memory);
         assert!(error.to_string().contains("1001 bytes of memory, and 1000 bytes is allowed"), "{error}");
-        // What is there anyway may exceed the limit; then nothing more fits.
+        // Memory in use may exceed the limit; then no request fits.
         other.charge(500).keep();
         assert_eq!(budget.left(), Some(0));
         drop(held);

@@ -167,7 +167,7 @@ impl Progress {
 mod tests {
     use super::*;
 
-    /// Progress, and all shares that were heard.
+    /// A progress handle, and the list of all reported shares.
     fn heard() -> (Progress, Arc<Mutex<Vec<f64>>>) {
         let shares = Arc::new(Mutex::new(Vec::new()));
         let told = Arc::clone(&shares);
@@ -191,7 +191,7 @@ mod tests {
         let [first, second] = progress.parts([3.0, 1.0]);
         first.expect(1000.0);
         first.advance(500.0);
-        // Nothing was expected of this one, and nothing is heard before its end.
+        // This step had no expected share, so nothing is reported before its end.
         second.advance(7.0);
         second.finish();
         first.advance(9000.0);

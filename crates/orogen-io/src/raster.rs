@@ -182,7 +182,7 @@ mod tests {
             let window = Window::new(700, 530, cell).at(-2, -2);
             let grid = pattern(window);
             let (memory, mut disk) = (Raster::in_memory(grid.clone()), scratch(window));
-            // Parts that fit no page, each written once, out of order.
+            // Parts that do not match pages, each written once, in random order.
             let parts: Vec<Window> = window.tiles(190).collect();
             parts.iter().rev().for_each(|part| disk.put(&grid.crop(part).unwrap()).unwrap());
             let extent = [700.0 * cell, 530.0 * cell];
@@ -216,7 +216,7 @@ mod tests {
         let window = Window::new(300, 20, 1.0).at(-2, 5);
         let mut raster = scratch(window);
         assert_eq!(raster.get(&window).unwrap(), Grid::filled(window, 0.0));
-        // More than the raster: only what lies in it is written.
+        // A window larger than the raster: only the part inside is written.
         raster.put(&pattern(window.grown(3))).unwrap();
         assert_eq!(raster.get(&window).unwrap(), pattern(window.grown(3)).crop(&window).unwrap());
         let spilled = Raster::in_memory(pattern(window)).copied_to_disk(&std::env::temp_dir()).unwrap();

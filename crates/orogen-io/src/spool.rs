@@ -105,7 +105,7 @@ mod tests {
     use super::*;
     use std::io::Cursor;
 
-    /// Takes `left` bytes, then fails as a full disk does.
+    /// Accepts `left` bytes, then fails as a full disk does.
     struct Full {
         disk: Cursor<Vec<u8>>,
         left: usize,

@@ -11,7 +11,7 @@ impl Rng {
         let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         z ^ (z >> 31)
     }
-    /// A bit pattern of an f32: any at all, or one where things go wrong.
+    /// A bit pattern of an f32: any one, or an edge case.
     fn pattern(&mut self) -> u32 {
         let word = self.word();
         let special = [

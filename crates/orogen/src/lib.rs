@@ -46,9 +46,9 @@ pub use chunks::lod::LodConfig;
 pub use chunks::stream::{ChunkStep, Chunks};
 pub use error::{Error, ErrorKind, Result};
 pub use grid::{Grid, Window};
-/// The SIMD level that noise is made at, and the way to force one: the bits are the same at all of them.
+/// The SIMD level that computes noise, and how to select one. The results are bit-identical at all levels.
 pub use orogen_noise::Level;
-/// Where a field is asked.
+/// The positions where a field is evaluated.
 pub use orogen_noise::Points;
 pub use progress::Progress;
 pub use recipe::document::{Recipe, WorldSpec};

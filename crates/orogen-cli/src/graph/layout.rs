@@ -177,7 +177,7 @@ fn median(values: &mut [f32]) -> f32 {
 mod tests {
     use super::*;
 
-    /// Boxes that a seeded generator wires.
+    /// Boxes with random edges from a seeded generator.
     fn random(count: usize, seed: u64) -> (Vec<Size>, Vec<Link>) {
         let mut state = seed;
         let mut next = move |below: usize| {

@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn crossings_that_need_not_be_are_not() {
-        // Two chains whose ends are written the other way round, and a pair that reads both.
+        // Two chains whose ends are given in reverse order, and a pair that reads both.
         let wires = [(0, 3), (1, 2), (2, 5), (3, 4)];
         let columns = Columns::new(6, &wires);
         let mut right = vec![Vec::new(); columns.slots.len()];

@@ -138,9 +138,9 @@ functions! {
         let a = if a < low { low } else { a };
         if a > high { high } else { a }
     };
-    /// From a to b as t goes from 0 to 1: a + (b - a) * t, with t cut to 0 ..= 1.
+    /// Linear interpolation from a to b: a + (b - a) * t, with t clamped to 0 ..= 1.
     Mix = "mix" (a, b, t), 0.3, |a, b, t| a + (b - a) * cut(t, 0.0, 1.0), a + (b - a) * t.clamp(0.0, 1.0);
-    /// The same without a cut: a + (b - a) * t goes on beyond a and b.
+    /// Linear interpolation without clamping: a + (b - a) * t.
     Lerp = "lerp" (a, b, t), 0.3, |a, b, t| a + (b - a) * t, a + (b - a) * t;
     /// 0 below low, 1 above high, and the cubic t t (3 - 2 t) in between.
     Smoothstep = "smoothstep" (low, high, x), 0.5, |low, high, x| {

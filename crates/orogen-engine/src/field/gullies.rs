@@ -186,7 +186,8 @@ mod tests {
 
     const SETTING: WorldParams = WorldParams { seed: 1, size: None, cell: 1.0, sea_level: 0.0 };
 
-    /// Gullies in a plane that rises by `rise` a metre towards the east, at points 10 m apart, `side` a side; the plane taken away.
+    /// Gullies on a plane that rises by `rise` per metre to the east, minus the plane, at `side` x `side` points 10 m
+    /// apart.
     fn in_a_plane(gullies: &Gullies, rise: f32, side: usize, fade: Option<f32>) -> Vec<f32> {
         let axis: Vec<f64> = (0..side).map(|i| i as f64 * 10.0).collect();
         let plane = |moved: f64| -> Vec<f32> {

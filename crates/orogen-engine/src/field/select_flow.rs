@@ -29,7 +29,7 @@ impl Field for SelectFlow {
     fn eval(&self, _: &Points, inputs: &Inputs, _: &WorldParams, out: &mut [f32]) {
         let selection = Selection::new(self.range.map(libm::log10), self.falloff);
         for (sample, source) in out.iter_mut().zip(inputs.required(0)) {
-            // No area at all lies below every other.
+            // An area of 0 is below all others.
             *sample = selection.of(if *source > 0.0 { libm::log10f(*source) } else { f32::NEG_INFINITY });
         }
     }

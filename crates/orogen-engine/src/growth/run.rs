@@ -393,7 +393,7 @@ mod tests {
     use super::*;
     use std::sync::Mutex;
 
-    /// Coarse rivers, then fine ones in what these have left; a solver that nothing changes, and one after all.
+    /// Coarse rivers, then fine ones on the result; `land` does not depend on them, `filled` depends on both.
     const STAGES: &str = r#"
         orogen = 1
         [world]
@@ -444,7 +444,7 @@ mod tests {
         growth.run(&wanted, &progress, &visit).unwrap();
         let seen = seen.into_inner().unwrap();
         assert_eq!(seen.iter().map(|(step, _)| *step).collect::<Vec<_>>(), wanted.into_iter().collect::<Vec<_>>());
-        // Of either node: years and steps.
+        // For both nodes: years and steps.
         let runs = [(0, [0, 0]), (1, [1, 0]), (3, [3, 0]), (4, [4, 0]), (5, [4, 1]), (6, [4, 2])];
         for ((step, grid), (expect, done)) in seen.iter().zip(runs) {
             let mut recipe = recipe.clone();
@@ -464,7 +464,7 @@ mod tests {
         assert!(shares.windows(2).all(|pair| pair[0] < pair[1]) && shares.last() == Some(&1.0));
     }
 
-    /// The frames that are wanted, and how many solutions were made for them.
+    /// The requested frames, and the number of solutions made for them.
     fn frames(growth: &Growth, wanted: &[u32]) -> (BTreeMap<u32, Grid>, Solves) {
         let seen = Mutex::new(BTreeMap::new());
         let visit = |step: u32, grid: &Grid| {
@@ -502,7 +502,7 @@ mod tests {
                     _ => assert!(apart > 0.0 && apart < 0.1 * grown, "step {step}: {apart} of {grown} m"),
                 }
             }
-            // A frame does not depend on which others are wanted.
+            // A frame does not depend on which others are requested.
             let (some, _) = frames(&growth(&open(), window), &[2, 5]);
             assert!(some[&2] == drafted[&2] && some[&5] == drafted[&5]);
         }
@@ -513,10 +513,11 @@ mod tests {
         let open = || World::open(Recipe::parse(STAGES, "stages").unwrap()).unwrap();
         let window = Window::new(60, 40, 100.0);
         let all = [0, 1, 2, 3, 4, 5, 6];
-        // Both stages and the land before them, once; and `filled` in each frame. The end of the first stage is drafted, too.
+        // Both stages and the land before them, once; and `filled` in each frame. The end of the first stage is also
+        // computed as a draft.
         let (_, solves) = frames(&growth(&open(), window), &all);
         assert_eq!(solves, Solves { shared: 3, in_frames: 7 + 1 });
-        // In full the second stage follows every frame of the first.
+        // In a full run the second stage follows every frame of the first.
         let (_, solves) = frames(&growth(&open(), window).in_full(), &all);
         assert_eq!(solves, Solves { shared: 3, in_frames: 7 + 4 });
     }

@@ -132,7 +132,7 @@ mod tests {
         same(&strahler, |c| f32::from(orders.data()[c]), "strahler");
     }
 
-    /// Wide flats, nested depressions, ties: few heights, over and over, with plateaus and bowls.
+    /// Wide flats, nested depressions, ties: few different heights, with plateaus and bowls.
     fn terraced(width: usize, height: usize, seed: i64) -> Grid {
         let mut grid = samples::hills(width, height, seed);
         let levels = [120.0, 250.0, 400.0][seed as usize % 3];
@@ -140,7 +140,7 @@ mod tests {
         grid
     }
 
-    /// Level ground with pits and walls strewn over it.
+    /// Level ground with scattered pits and walls.
     fn strewn(width: usize, height: usize, seed: i64) -> Grid {
         let mut grid = Grid::filled(Window::new(width, height, 3.0).at(-7, 12), 0.0);
         for (k, h) in grid.data_mut().iter_mut().enumerate() {

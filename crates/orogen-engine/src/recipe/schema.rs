@@ -390,7 +390,7 @@ mod tests {
     use super::*;
     use crate::recipe::document::Recipe;
 
-    /// The schemas of the nodes that the schema takes for this op.
+    /// The schemas of nodes that the schema selects for this op.
     fn taken<'a>(schema: &'a Json, op: &str) -> Vec<&'a Json> {
         let named =
             |name: &Json| name["const"] == op || name["enum"].as_array().is_some_and(|all| all.contains(&json!(op)));

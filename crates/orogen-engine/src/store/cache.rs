@@ -191,7 +191,7 @@ mod tests {
         let path = cache.place(&key).1;
         cache.keep(&key, &solution(300));
         let sound = fs::read(&path).unwrap();
-        // A flipped byte anywhere, a file cut short or gone on, another's file under this name.
+        // A flipped byte at any position, a truncated or extended file, another entry's file under this name.
         let mut damaged: Vec<Vec<u8>> =
             [0, 20, 50, 60, 70, 90, 200, 5000, sound.len() / 2, sound.len() - 9, sound.len() - 1]
                 .map(|at| {

@@ -158,7 +158,7 @@ mod tests {
 
     #[test]
     fn level_ground_gets_what_tables_say() {
-        // Rigollier and others, and r.sun at the same figures: about 1000 W/m^2 beneath a high sun in usual air.
+        // Rigollier et al., and r.sun with the same parameters: about 1000 W/m^2 with a high sun in average air.
         let level = Facet::new(0.0, 0.0);
         let high = on(65.0, level, 0.0, true);
         assert!((900.0..1000.0).contains(&high), "{high}");
@@ -166,7 +166,7 @@ mod tests {
         assert!(on(20.0, level, 0.0, true) < 0.4 * high);
         let shade = on(65.0, level, 0.0, false);
         assert!((70.0..140.0).contains(&shade), "{shade}");
-        // Through a lower sun nothing jumps where the model changes its formula.
+        // For a lower sun the result is continuous where the model switches its formula.
         let (below, above) = (on(5.72, level, 0.0, true), on(5.74, level, 0.0, true));
         assert!((below - above).abs() < 0.5, "{below} {above}");
     }

@@ -79,7 +79,8 @@ mod tests {
 
     #[test]
     fn quadrics_have_their_own_curvatures() {
-        // A cylinder's crest along y at x = 0 with z = -x^2 / 2: at (x, y) the slope is -x, all bending down the slope.
+        // The crest of a cylinder along y at x = 0 with z = -x^2 / 2: at (x, y) the slope is -x, and all curvature is
+        // in the direction of the slope.
         let crest = made(|x, _| -x * x / 2.0);
         let profile = curvature(&crest, Curvature::Profile);
         let expect = |x: f64| 1.0 / libm::pow(1.0 + x * x, 1.5);
@@ -89,7 +90,7 @@ mod tests {
         }
         assert!(curvature(&crest, Curvature::Plan).data().iter().all(|v| v.abs() < 1e-6));
         assert!(curvature(&crest, Curvature::Total).data().iter().all(|v| (v - 1.0).abs() < 1e-5));
-        // A saddle has none in total.
+        // The total curvature of a saddle is 0.
         assert!(curvature(&made(|x, y| x * y), Curvature::Total).data().iter().all(|v| v.abs() < 1e-5));
     }
 
@@ -100,7 +101,7 @@ mod tests {
         let (x, y) = (cone.window().east(17), cone.window().south(16));
         let radius = (x * x + y * y).sqrt();
         assert!((f64::from(plan[(16, 15)]) * radius - 1.0).abs() < 0.02);
-        // A valley gathers water: the other sign.
+        // Flow converges in a valley: the opposite sign.
         let hollow = curvature(&made(|x, y| (x * x + y * y).sqrt()), Curvature::Plan);
         assert!(hollow[(16, 15)] < 0.0);
     }

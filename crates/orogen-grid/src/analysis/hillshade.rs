@@ -113,7 +113,7 @@ mod tests {
     use super::*;
     use crate::grid::Window;
 
-    /// The textbook's angles, in f64.
+    /// The textbook formula with angles, in f64.
     fn by_angles(east: f64, north: f64, azimuth: f64, altitude: f64, z_factor: f64) -> f64 {
         let (p, q) = (east * z_factor, north * z_factor);
         let zenith = (90.0 - altitude).to_radians();

@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn a_tenth_of_an_hour_is_enough_for_a_day_in_the_mountains() {
-        // Peaks 700 m high and 450 m apart: long shadows move over narrow valleys.
+        // Peaks 700 m high and 450 m apart: long shadows cross narrow valleys.
         let peaks = |x: usize, y: usize| {
             let [x, y] = [x as f64 * 0.42, y as f64 * 0.39];
             (350.0 * (libm::sin(x) * libm::cos(y) + 0.5 * libm::sin(1.7 * x + 2.3 * y))) as f32
@@ -172,7 +172,7 @@ mod tests {
         assert!(made(&night, |_, _| 0.0).data().iter().all(|light| *light == 0.0));
         let winter = Period { latitude: 46.0, days: [355, 355], step: 0.5 };
         let open = made(&winter, |_, _| 0.0)[(20, 20)];
-        // A wall in the south that the sun never clears at noon.
+        // A wall in the south that is above the sun even at noon.
         let behind = made(&winter, |_, y| if y > 24 { 300.0 } else { 0.0 })[(20, 20)];
         assert!(behind < 0.4 * open && behind > 0.05 * open, "{behind} {open}");
     }

@@ -109,7 +109,7 @@ mod tests {
         // A pit whose sides rise by 1 in 1 hides sin 45 degrees in all directions.
         let pit = middle(&made(65, libm::hypot), 32);
         assert!((f64::from(pit) - (1.0 - libm::sqrt(0.5))).abs() < 1e-6, "{pit}");
-        // A wall without end to the east hides what the directions towards it see of it.
+        // An infinitely long and high wall to the east hides half of the sky.
         let wall = middle(&made(65, |x, _| if x > 0.0 { 1e9 } else { 0.0 }), 32);
         assert!((wall - 0.5).abs() < 0.08, "{wall}");
     }

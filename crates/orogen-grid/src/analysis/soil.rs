@@ -97,7 +97,8 @@ mod tests {
 
     #[test]
     fn a_gentle_dome_has_the_depth_of_the_balance() {
-        // z = -C (x^2 + y^2) / 4: the Laplacian is -C, and K C is carried away; slopes are too gentle for the rest.
+        // z = -C (x^2 + y^2) / 4: the Laplacian is -C, and K C is removed; the slopes are too gentle for the other
+        // terms.
         let bend = 1e-3;
         let depth = made(|x, y| -bend * (x * x + y * y) / 4.0)[(2, 2)];
         let expect = 0.43 * libm::log(2.0 * 7.7e-5 / (0.005 * bend));

@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn the_hash_is_of_the_little_endian_bytes() {
-        // sha256sum of nothing, and of the bytes 00 00 80 3f 00 00 00 c0.
+        // The output of sha256sum for no bytes, and for the bytes 00 00 80 3f 00 00 00 c0.
         assert_eq!(summary(&[], 0.0).sha256, "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
         assert_eq!(
             summary(&[1.0, -2.0], 0.0).sha256,

@@ -72,7 +72,7 @@ mod tests {
             (0.0, 218, 12.0, 0.0, 73.4),
             (-35.0, 355, 12.0, 0.0, 78.44),
             (70.0, 172, 0.0, 0.0, 3.44),
-            // On the equator at an equinox it rises due east and stands at 45 degrees three hours later.
+            // On the equator at an equinox the sun rises due east and is at 45 degrees three hours later.
             (0.0, 81, 6.0, 90.0, 0.0),
             (0.0, 81, 9.0, 90.0, 45.0),
             (0.0, 81, 15.0, 270.0, 45.0),

@@ -71,7 +71,7 @@ mod tests {
     fn multiples_within_the_ground() {
         for (interval, low, high, expect) in [
             (100.0, 95.0, 310.0, vec![100.0, 200.0, 300.0]),
-            // All the ground is above its lowest: no line. Its highest is reached.
+            // All samples are above the lowest height: no line. The highest height is included.
             (100.0, 100.0, 300.0, vec![200.0, 300.0]),
             (0.1, -0.25, 0.05, vec![-0.2, -0.1, 0.0]),
             (50.0, 7.0, 7.0, vec![]),

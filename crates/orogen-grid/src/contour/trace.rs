@@ -173,7 +173,7 @@ mod tests {
         grid
     }
 
-    /// Numbers without order, 0 to 1.
+    /// Random numbers, 0 to 1.
     fn noise(seed: u32, i: usize, j: usize) -> f32 {
         let mut x = (i as u32).wrapping_mul(0x9e37_79b1) ^ (j as u32).wrapping_mul(0x85eb_ca6b) ^ seed;
         x = (x ^ x >> 15).wrapping_mul(0x2c1b_3c6d);
@@ -190,7 +190,7 @@ mod tests {
     fn a_slope_ends_on_the_border() {
         let slope = grid(5, 4, |i, _| i as f32 * 10.0);
         let lines = contours(&slope, &[15.0, 40.0, 0.0, -5.0]).unwrap();
-        // 0 is the lowest ground's own height: all of it is above, and nothing below. 40 runs along the border itself.
+        // Level 0 is the lowest height: all samples count as above. Level 40 follows the border.
         assert_eq!(lines.iter().map(|line| line.elevation).collect::<Vec<_>>(), [15.0, 40.0]);
         assert_eq!(lines[0].points, (0..4).map(|j| [1.5, f64::from(j)]).collect::<Vec<_>>());
         assert_eq!(lines[1].points, (0..4).map(|j| [4.0, f64::from(j)]).collect::<Vec<_>>());
@@ -221,7 +221,7 @@ mod tests {
     #[test]
     fn a_saddle_is_cut_as_the_surface_through_its_corners_is() {
         let saddle = grid(2, 2, |i, j| if i == j { 1.0 } else { 0.0 });
-        // Its middle is at 0.5: below, the high corners are joined.
+        // The value in the middle is 0.5: below it, the high corners are connected.
         for (level, south) in [(0.4, 0.4), (0.6, 0.6)] {
             let lines = contours(&saddle, &[level]).unwrap();
             assert_eq!(lines.len(), 2);
@@ -235,7 +235,8 @@ mod tests {
 
     #[test]
     fn ties_leave_no_duplicates() {
-        // A plateau on the level is walked around once; a single summit, a ridge a sample wide and a flat world leave nothing.
+        // A plateau at the level is outlined once; a single summit, a ridge one sample wide and a flat world have no
+        // line.
         let plateau = grid(6, 6, |i, j| f32::from(u8::from((2..4).contains(&i) && (2..4).contains(&j))));
         let lines = contours(&plateau, &[1.0]).unwrap();
         assert_eq!((lines.len(), lines[0].closed, lines[0].area(), lines[0].points.len()), (1, true, 1.0, 4));
@@ -256,7 +257,7 @@ mod tests {
         }
     }
 
-    /// What must be true of any field, and how far it is walked around: every crossing of an edge is on one line.
+    /// Invariants of any field: every crossing of an edge is on exactly one line, with higher ground to its left.
     #[test]
     fn every_crossing_is_on_a_line_and_higher_ground_to_its_left() {
         for seed in 0..12 {
@@ -283,7 +284,7 @@ mod tests {
                 }
                 for (a, b) in line.path().zip(line.path().skip(1)) {
                     assert_eq!([a, b].map(|p| p[0].fract() != 0.0 && p[1].fract() != 0.0), [false; 2]);
-                    // The corner of an edge that is crossed at a point lies to the left of the line if it is high.
+                    // At a crossing, the high corner of the edge is to the left of the line.
                     let [low, high] = [[a[0].floor(), a[1].floor()], [a[0].ceil(), a[1].ceil()]];
                     for corner in [low, high] {
                         let side = (a[1] - b[1]) * (corner[0] - a[0]) - (b[0] - a[0]) * (a[1] - corner[1]);

@@ -258,7 +258,7 @@ mod tests {
 
     #[test]
     fn mass_is_kept() {
-        // A mountain on a plain: nothing crosses the window's edge.
+        // A mountain on a plain: no sediment crosses the window's border.
         let droplets = droplets();
         let window = Window::new(160, 160, 10.0).at(-80, -80).grown(droplets.halo(10.0));
         let mut ground = Grid::filled(window, 0.0f32);
@@ -280,7 +280,7 @@ mod tests {
         }
         // Each batch rounds each height once.
         assert!(net.abs() < 2e-6 * total, "{net} of {total}");
-        // What one batch cuts it lays down.
+        // The eroded and the deposited volume of a batch are equal.
         let mut sums = [Vec::new(), Vec::new()];
         droplets.sum(&ground, 0, &mut sums, &Progress::none()).unwrap();
         let [cut, laid] = sums;

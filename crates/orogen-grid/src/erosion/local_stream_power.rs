@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn on_a_plane_each_iteration_brings_the_area_of_another_cell() {
-        // Down along the rows, along the columns, and between: the area upstream of a strip as wide as a cell.
+        // Along the rows, the columns, and in between: the upstream area of a strip one cell wide.
         let iterations = 12;
         let window = Window::new(9, 7, 20.0);
         for (east, south) in [(0.2, 0.0), (0.0, -0.3), (0.15, 0.1), (0.2, 0.2)] {
@@ -271,7 +271,7 @@ mod tests {
             let [height, area, sediment] = run(&law, from.clone(), iterations, window);
             let before = from.grid(HEIGHT, window.grown(iterations * RADIUS)).crop(&window).unwrap();
             assert_eq!(height, before, "nothing is cut and nothing laid");
-            // On a plane every cell passes on all it has: the sum of what comes is what all have.
+            // On a plane every cell passes on its whole value, and receives the same value.
             let expect = 400.0 * (iterations + 1) as f32;
             assert!(area.data().iter().all(|a| (a / expect - 1.0).abs() < 1e-3), "{} {expect}", area[(4, 4)]);
             assert!(sediment.data().iter().all(|q| *q == 0.0));

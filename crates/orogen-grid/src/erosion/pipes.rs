@@ -324,7 +324,7 @@ mod tests {
         let wet = pipes.enclosed(Wet::new(&bed), 200, &ok).unwrap();
         let cells = bed.window().len() as f64;
         let dt = pipes.step(10.0);
-        // In each iteration evaporation takes its share of all water, then rain falls on all cells.
+        // Each iteration removes a fraction of all water by evaporation, then adds rain to all cells.
         let water = (0..200).fold(0.0, |water, _| water * (1.0 - pipes.evaporation * dt) + pipes.rain * dt * cells);
         let there = sum(&wet.plane(DEPTH));
         assert!((there / water - 1.0).abs() < 1e-5, "{there} of {water}");
@@ -332,7 +332,7 @@ mod tests {
         let moved: f64 = bed.data().iter().zip(wet.plane(BED).data()).map(|(a, b)| f64::from((a - b).abs())).sum();
         assert!(moved > 0.1 * cells, "{moved} m moved");
         assert!((before - after - carried).abs() < 1e-5 * moved, "{before} {after} {carried}, {moved} moved");
-        // The rounding of a bed 1500 m high is the sediment's to bear.
+        // The rounding of a bed 1500 m high changes the sediment.
         assert!(wet.plane(DEPTH).data().iter().chain(wet.plane(SEDIMENT).data()).all(|v| *v > -2e-4));
     }
 
@@ -354,7 +354,7 @@ mod tests {
 
     #[test]
     fn water_comes_to_rest_level() {
-        // A bowl with water of its own: no rain, no erosion.
+        // A bowl that contains water: no rain, no erosion.
         let still = Pipes { rain: 0.0, evaporation: 0.0, capacity: 0.0, friction: 0.2, ..pipes() };
         let window = Window::new(41, 41, 5.0).at(-20, -20);
         let mut bed = Grid::filled(window, 0.0);

@@ -160,7 +160,7 @@ mod tests {
                 for i in 0..degrees.width() {
                     let (x, y) = (degrees.window().east(i), degrees.window().south(j));
                     let r = (x * x + y * y).sqrt();
-                    // Neither the tip nor the foot, which are rounded.
+                    // Without the tip and the foot, which are rounded.
                     if (24.0..46.0).contains(&r) {
                         let off = f64::from(degrees[(i, j)]) - angle;
                         assert!(off.abs() < 0.5, "{angle}: {off} off at ({x}, {y})");
@@ -192,7 +192,7 @@ mod tests {
         let window = Window::new(40, 30, 10.0).grown(9);
         let hills = made(window, |x, y| 3.0 * libm::sin(x / 40.0) * libm::cos(y / 55.0));
         assert_eq!(weathered(&hills, 40.0, 9), hills.crop(&window.shrunk(9)).unwrap());
-        // A chequerboard, the worst of all: it fades.
+        // A checkerboard, the worst case, is smoothed.
         let board = made(window, |x, y| if ((x + y) / 10.0).rem_euclid(2.0) < 0.5 { 50.0 } else { -50.0 });
         let done = weathered(&board, 10.0, 9);
         assert!(done.data().iter().all(|h| h.abs() < 8.0), "{:?}", done[(5, 5)]);

@@ -190,7 +190,7 @@ mod tests {
             let found = outlines(&labels, kinds as usize, rounds);
             let all: f64 = found.iter().map(|parts| area(parts)).sum();
             assert!((all - 1200.0).abs() < 1e-9, "{all}");
-            // Each stretch of border belongs to two areas, once each way, or to one and the rim.
+            // Each border segment belongs to two areas, once per direction, or to one area and the rim.
             let mut edges: HashMap<[[u64; 2]; 2], i32> = HashMap::new();
             for ring in found.iter().flatten().flatten() {
                 assert_eq!(ring.first(), ring.last());
@@ -219,7 +219,7 @@ mod tests {
         let data: Vec<u32> = picture.iter().flat_map(|row| row.bytes().map(|byte| u32::from(byte - b'0'))).collect();
         let labels = Grid::from_data(Window::new(6, 5, 1.0), data).unwrap();
         let found = outlines(&labels, 2, 0);
-        // The three zeros touch at corners: each is a hole.
+        // The three zeros touch at corners only: each is a hole.
         assert_eq!(found[0].len(), 1);
         assert_eq!(found[0][0].len(), 4);
         assert_eq!(found[1], [vec![vec![[5.5, 3.5], [4.5, 3.5], [4.5, 4.5], [5.5, 4.5], [5.5, 3.5]]]]);

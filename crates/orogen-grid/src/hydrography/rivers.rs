@@ -263,7 +263,7 @@ mod tests {
         (water, shores, rivers)
     }
 
-    /// What holds of all rivers.
+    /// Checks the invariants of all rivers.
     fn check(water: &Water, shores: &Shores, rivers: &[River]) {
         let on_shore = |at: [f64; 3], of: u32| {
             let lines = shores.lines.iter().zip(&shores.waters).filter(|(_, water)| **water == of);
@@ -293,7 +293,7 @@ mod tests {
             if let Some(next) = river.downstream.map(|next| &rivers[next as usize]) {
                 assert!(next.points[0][2] <= last[2] && next.order >= river.order && next.drained > river.drained);
             }
-            // The way down ends.
+            // The path downstream ends.
             let (mut at, mut steps) = (k, 0);
             while let Some(next) = rivers[at].downstream {
                 at = next as usize;
@@ -336,7 +336,7 @@ mod tests {
                 assert_eq!((river.drained, river.order), (other.drained, other.order));
             }
             assert!(same.count() * 3 > part.len(), "seed {seed}");
-            // Lakes that are cut off are closed along the frame, and their outlets may lie beyond it.
+            // Clipped lakes are closed along the frame, and their outlets may be outside.
             for area in shores.areas() {
                 for ring in area.parts.iter().flatten() {
                     assert_eq!(ring.first(), ring.last());

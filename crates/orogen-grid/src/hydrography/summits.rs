@@ -122,7 +122,7 @@ mod tests {
         // With the sea at 0, each hill is an island.
         let islands = summits(&grid, &frame, Some(0.0), 1.0);
         assert!(islands.iter().all(|summit| summit.col.is_none() && summit.prominence == summit.height));
-        // At the border of a frame nothing is a summit.
+        // A sample at the border of the frame is no summit.
         assert_eq!(summits(&grid, &Frame { columns: 5..10, rows: 1..5 }, None, 1.0).len(), 1);
         assert_eq!(summits(&grid, &frame, None, 6.0).len(), 2);
     }

@@ -51,7 +51,7 @@ mod tests {
                     assert!(deepest > 0.0 || new == full);
                     assert!(deepest < f32::INFINITY || new <= old, "only cut");
                     let receiver = drainage.receivers.of(c);
-                    // An outlet is not cut, so a channel that comes out below it is its pond.
+                    // An outlet is not lowered, so a channel that ends below it is a pond.
                     assert!(outlets.at(receiver) || out.data()[receiver] <= new);
                 }
             }

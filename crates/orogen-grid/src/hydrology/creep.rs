@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn a_point_spreads_as_a_gaussian() {
-        // After D t the variance of what was one point is 2 D t along each axis, and nothing is lost.
+        // After D t the variance of a point source is 2 D t along each axis, and mass is conserved.
         for amount in [20.0, 300.0, 900.0, 1600.0] {
             spreads(amount);
         }

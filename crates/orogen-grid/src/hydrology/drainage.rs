@@ -112,7 +112,7 @@ mod tests {
     use crate::hydrology::direction::NONE;
     use crate::hydrology::{fill, samples};
 
-    /// The outlet that each cell leads to.
+    /// Returns the outlet of each cell.
     fn ends(receivers: &Receivers, outlets: &Outlets) -> Vec<usize> {
         let end = |start: usize| {
             let mut at = start;

@@ -203,7 +203,7 @@ mod tests {
 
     #[test]
     fn slopes_between_irregular_points_do_not_face_the_grids_directions() {
-        // Ground that rises until it stands at the talus angle all over.
+        // Uplift until the ground has the talus angle everywhere.
         let heights = samples::hills(160, 160, 3);
         let aligned = |jitter: f64| {
             let law = StreamPower { uplift: 1.0, erodibility: 1e-6, max_slope: 0.8, ..StreamPower::default() };
@@ -220,7 +220,8 @@ mod tests {
             }
             f64::from(bins[4]) / f64::from(bins.iter().sum::<u32>())
         };
-        // On the lattice nearly all face what lies between two of its directions; otherwise each ninth has its ninth.
+        // On the regular grid nearly all slopes are between two of its directions; otherwise each ninth contains a
+        // ninth of them.
         let (regular, jitter) = (aligned(0.0), aligned(1.0));
         assert!(regular > 0.9 && (0.08..0.14).contains(&jitter), "{regular} {jitter}");
     }

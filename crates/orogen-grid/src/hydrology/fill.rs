@@ -39,7 +39,7 @@ mod tests {
     use crate::hydrology::direction::{neighbour, strides};
     use crate::hydrology::samples;
 
-    /// Planchon and Darboux (2002): water as high as the sky sinks until nothing changes.
+    /// Planchon and Darboux (2002): starts with infinitely high water, which sinks until the heights are stable.
     fn sunk(heights: &Grid, outlets: &Outlets) -> Vec<f32> {
         let h = heights.data();
         let strides = strides(heights.width());

@@ -232,7 +232,7 @@ mod tests {
         (outlets, receivers)
     }
 
-    /// The cells of equal height joined to `start`, by the plainest search.
+    /// The cells of equal height connected to `start`, by a simple search.
     fn level_ground(heights: &Grid, start: usize) -> Vec<usize> {
         let (h, strides) = (heights.data(), strides(heights.width()));
         let outlets = Outlets::new(heights, None);
@@ -267,7 +267,7 @@ mod tests {
                 if outlets.at(at) {
                     continue;
                 }
-                // A pit: nothing on its level ground is an outlet or has a lower neighbour, and it is the only pit there.
+                // A pit: its level ground has no outlet and no lower neighbour, and it is the only pit there.
                 let ground = level_ground(&heights, at);
                 for g in &ground {
                     assert!(!outlets.at(*g) && (*g == at || receivers.code(*g) != NONE));

@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn a_thin_dam_is_cut_where_the_valley_would_go_around() {
-        // A bowl with a lip of 3 that leads off to the north by a long way, and a thin wall of 5 to the east.
+        // A bowl with a rim of 3 at the end of a long way to the north, and a thin wall of 5 to the east.
         let mut heights = Grid::filled(Window::new(12, 9, 1.0), 20.0);
         heights.row_mut(5)[2..6].copy_from_slice(&[4.0, 2.0, 1.0, 1.5]);
         heights.row_mut(5)[6..].copy_from_slice(&[5.0, 0.8, 0.6, 0.4, 0.2, 0.0]);
@@ -189,7 +189,7 @@ mod tests {
         let out = breach(&heights, &outlets, &Limits { deepest: 10.0, longest: 20 }, &Progress::none()).unwrap();
         assert_eq!(out.row(5)[2..8], [4.0, 2.0, 1.0, 1.0, 1.0, 0.8]);
         assert_eq!(out[(3, 2)], 3.0, "the lip stays");
-        // Not so deep: through neither, so it is filled to the lip.
+        // With a smaller depth limit neither can be cut, so the bowl is filled to its rim.
         let shallow = breach(&heights, &outlets, &Limits { deepest: 1.0, longest: 20 }, &Progress::none()).unwrap();
         assert_eq!(shallow.row(5)[2..7], [4.0, 3.0, 3.0, 3.0, 5.0]);
         let drainage = drainage::route_carving(&heights, &outlets, Descent::Steepest);
@@ -202,7 +202,7 @@ mod tests {
         let (mut by_cost, mut by_valleys) = (0.0, 0.0);
         for seed in 0..8 {
             let mut heights = samples::hills(60, 50, seed);
-            // Low ground all around: neither has to end in an outlet that stands above its bed.
+            // Low ground all around: neither method ends in an outlet above its bed.
             for (c, h) in heights.data_mut().iter_mut().enumerate() {
                 if !(60..49 * 60).contains(&c) || c % 60 == 0 || c % 60 == 59 {
                     *h = -10.0;

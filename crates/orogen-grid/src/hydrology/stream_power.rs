@@ -268,7 +268,7 @@ mod tests {
         }
     }
 
-    /// A valley one cell wide that drains to the east, between walls that drain nowhere near.
+    /// A valley one cell wide that drains to the east, between walls that drain elsewhere.
     fn valley(length: usize, cell: f64) -> (Grid, Receivers) {
         let window = Window::new(length, 3, cell);
         let mut receivers = Receivers::none(window);
@@ -278,7 +278,8 @@ mod tests {
 
     #[test]
     fn a_river_comes_to_its_steady_profile() {
-        // Where uplift and cutting balance, S = (U / K)^(1/n) A^(-m/n) at every cell (Whipple and Tucker 1999).
+        // If uplift and incision are in equilibrium, S = (U / K)^(1/n) A^(-m/n) at every cell (Whipple and Tucker
+        // 1999).
         for (m, n) in [(0.45, 1.0), (0.5, 1.0), (0.9, 2.0), (0.4, 0.8)] {
             let (mut heights, receivers) = valley(60, 100.0);
             let drained = accumulate(&receivers);

@@ -52,7 +52,7 @@ mod tests {
 
     #[test]
     fn zones_and_degrees_tell_the_latitude() {
-        // What PROJ says of these places.
+        // Results of PROJ for these places.
         for (origin, epsg, expect) in [
             ([500_000.0, 5_000_000.0], 32632, 45.153_477),
             ([700_000.0, 4_100_000.0], 32612, 37.024_915),

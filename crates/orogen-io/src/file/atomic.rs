@@ -283,7 +283,7 @@ mod tests {
         }
     }
 
-    /// Takes `left` bytes, then fails as a full disk does.
+    /// Accepts `left` bytes, then fails as a full disk does.
     struct Full<'f> {
         file: &'f File,
         left: usize,
@@ -319,7 +319,7 @@ mod tests {
         write_whole(&path, |out| out.write_all(b"old")).unwrap();
         let text = b"a body of some length, written in pieces";
         for n in 0..text.len() {
-            // Pieces of a length of its own make the buffer and the writer disagree about boundaries.
+            // Pieces with other lengths than the buffer, so that their boundaries differ.
             let error = write_through(
                 &path,
                 |file| Box::new(Full { file, left: n }),
@@ -429,7 +429,7 @@ mod tests {
         assert_eq!(fs::read(&path).unwrap(), b"old");
     }
 
-    /// /proc refuses new files even to root, who ignores the permissions of ordinary folders.
+    /// /proc rejects new files even from root, who ignores the permissions of ordinary folders.
     #[cfg(target_os = "linux")]
     #[test]
     fn a_folder_that_takes_no_files_is_a_sentence() {

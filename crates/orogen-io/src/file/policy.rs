@@ -208,7 +208,7 @@ mod tests {
                 assert_eq!(done.is_ok(), allowed, "{existing:?}: {done:?} over {text}");
             }
         }
-        // Also under the name of a picture.
+        // Also with the file name of a picture.
         let path = folder.with("a.png", "orogen = 1\n");
         assert!(refusal(&OutputPolicy::new(Existing::Replace), &path).contains("by hand"));
     }

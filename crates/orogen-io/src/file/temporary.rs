@@ -212,12 +212,12 @@ mod tests {
     fn what_is_left_behind_goes_and_nothing_else() {
         let folder = folder("sweep");
         for name in [
-            // Of a killed process whose lock is left, and of one whose lock is not.
+            // Files of a killed process, with and without its lock file.
             ".orogen-7-0.lock",
             ".orogen-7-0-0.tmp",
             ".orogen-7-0-12.tmp",
             ".orogen-9-3-1.tmp",
-            // Whose names are others'.
+            // Files with other names.
             ".orogen-7-0-0.tmp.bak",
             ".orogen-7.tmp",
             ".orogen-a-0-0.tmp",
@@ -227,9 +227,9 @@ mod tests {
         ] {
             fs::write(folder.join(name), "x").unwrap();
         }
-        // Not a file.
+        // A folder with such a name.
         fs::create_dir(folder.join(".orogen-5-0-0.tmp")).unwrap();
-        // A process that is alive holds its lock: another open file of it locks as another process does.
+        // A running process holds its lock: a lock through another open file conflicts as with another process.
         fs::write(folder.join(".orogen-8-0-0.tmp"), "x").unwrap();
         let alive = File::create(folder.join(".orogen-8-0.lock")).unwrap();
         alive.try_lock().unwrap();
@@ -259,7 +259,7 @@ mod tests {
         let (one, _) = Temporary::create(&folder).unwrap();
         let (other, _) = Temporary::create(&folder.join(".")).unwrap();
         assert_eq!(names(&folder).len(), 3, "one lock for both: {:?}", names(&folder));
-        // A neighbour sweeps while they are at work.
+        // Another process removes leftovers while they are at work.
         sweep(&folder);
         assert_eq!(names(&folder).len(), 3);
         drop(one);

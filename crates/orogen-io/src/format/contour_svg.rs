@@ -99,7 +99,7 @@ mod tests {
         let text = String::from_utf8(bytes).unwrap();
         let paths: Vec<&str> = text.lines().filter(|line| line.starts_with("<path")).collect();
         assert!(paths.len() > 1 && paths.iter().all(|path| path.len() < 100_000), "{}", paths.len());
-        // Two rings of 9000 stretches, in five pieces each.
+        // Two rings of 9000 segments, in five pieces each.
         assert_eq!(paths.iter().map(|path| path.matches('L').count()).sum::<usize>(), 18_000);
         assert_eq!(paths.iter().map(|path| path.matches('M').count()).sum::<usize>(), 10);
     }

@@ -443,7 +443,7 @@ mod tests {
     use super::*;
     use miniz_oxide::inflate::decompress_to_vec_zlib;
 
-    /// Bytes without a pattern (splitmix64).
+    /// Random bytes (splitmix64).
     fn hashed(k: usize) -> u8 {
         let mut z = (k as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -460,7 +460,8 @@ mod tests {
                         .map(|i| {
                             let k = (row * 4 + plane) * side + i;
                             match (kind, plane) {
-                                // All noise; heights; level ground; rows that repeat; runs of all lengths; one noisy plane; skewed bytes.
+                                // Noise; heights; level ground; repeated rows; runs of all lengths; one noisy byte
+                                // plane; skewed bytes.
                                 (0, _) | (1 | 4 | 6, 2..) | (5, 3) => hashed(k),
                                 (1, 0) | (2, _) | (5, _) => 0,
                                 (1, 1) => hashed(k) & 3,
@@ -503,7 +504,7 @@ mod tests {
 
     #[test]
     fn codes_are_whole_and_short_enough() {
-        // Fibonacci's numbers make the deepest trees.
+        // Fibonacci numbers yield the deepest trees.
         let mut counts = [0u32; 30];
         let (mut a, mut b) = (1, 1);
         for count in &mut counts {
@@ -551,7 +552,8 @@ mod tests {
 
     #[test]
     fn a_plane_that_changes_slowly_is_found_among_noise() {
-        // As OpenEXR lays the two upper bytes of a height: one that hardly changes, one that goes up and down by a few, and their differences.
+        // The two upper bytes of a height in OpenEXR's order: one almost constant, one with small steps, and their
+        // differences.
         let upper =
             |k: usize| if k.is_multiple_of(2) { 67 } else { (k / 2 * 5 + usize::from(hashed(k / 2) & 3)) as u8 };
         let bytes: Vec<u8> = (1..100_000).map(|k| upper(k).wrapping_sub(upper(k - 1)).wrapping_add(128)).collect();

@@ -242,7 +242,7 @@ mod tests {
     use super::*;
     use miniz_oxide::inflate::decompress_to_vec_zlib;
 
-    /// Reads what the writer writes: the channels' names and samples.
+    /// Reads the output of the writer: the names and samples of the channels.
     fn read(bytes: &[u8]) -> Vec<(String, Vec<f32>)> {
         assert_eq!(bytes[..8], [0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0]);
         let mut at = 8;
@@ -317,7 +317,7 @@ mod tests {
         for (width, height) in [(1, 1), (7, 5), (33, 16), (20, 17), (9, 700)] {
             let y: Vec<f32> = (0..width * height).map(|k| libm::sinf(k as f32) * 1000.0).collect();
             let mut writer = Writer::new(picture(width, height, &["Y"], Sample::Float), Spool::in_memory()).unwrap();
-            // In pieces of a size that divides nothing.
+            // In pieces whose size is no divisor of the total.
             y.chunks(3 * width).for_each(|rows| writer.rows(&[rows]).unwrap());
             let mut bytes = Vec::new();
             writer.finish(&mut bytes).unwrap();

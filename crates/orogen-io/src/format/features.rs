@@ -231,7 +231,7 @@ pub mod samples {
         Field { name: "ends_in", kind: FieldType::Text, about: "where" },
     ];
 
-    /// So many features of a type, of different lengths, some of them long.
+    /// `count` features of a type, of different lengths, some of them long.
     pub fn layer(name: &'static str, geometry: GeometryType, count: usize) -> FeatureLayer {
         let feature = |k: usize| {
             let (x, y) = ((k * 37 % 101) as f64 * 10.0, (k * 53 % 97) as f64 * 10.0);

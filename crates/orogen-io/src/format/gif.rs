@@ -301,7 +301,7 @@ mod tests {
     use super::*;
     use crate::full_disk::Full;
 
-    /// What a reader makes of packed indices, and how many bytes they were.
+    /// Decodes compressed indices; returns them and the number of bytes read.
     fn unpack(bytes: &[u8]) -> (Vec<u8>, usize) {
         assert_eq!(bytes[0], 8);
         let (mut data, mut at) = (Vec::new(), 1);
@@ -353,7 +353,7 @@ mod tests {
             let (back, used) = unpack(&bytes);
             assert!(back == indices && used == bytes.len(), "{length} of {colors}");
         }
-        // Every length around those where codes get longer.
+        // Every length near those where codes get longer.
         for length in (200..800).chain(3500..4500) {
             let indices: Vec<u8> = (0..length).map(|k| (k * k / 7 % 256) as u8).collect();
             let mut bytes = Vec::new();

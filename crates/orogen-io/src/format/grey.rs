@@ -95,7 +95,7 @@ mod tests {
             assert!(why.contains("low and high"), "{why}");
             for n in 0..bytes.len() - 12 {
                 match read(&mut Cursor::new(&bytes[..n]), "a.png", &sidecar, 1 << 20) {
-                    // Only checksums are gone.
+                    // Only checksums are missing.
                     Ok(cut) => assert!(cut == dem && n + 24 > bytes.len(), "{n}"),
                     Err(error) => assert!(error.to_string().starts_with("cannot read a.png: "), "{n}: {error}"),
                 }

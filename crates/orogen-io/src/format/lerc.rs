@@ -504,7 +504,7 @@ mod tests {
         assert_eq!(fletcher(&[0, 1]), 0x0001_0001);
     }
 
-    /// Damage behind a checksum that is right: what another program wrote, changed byte by byte and sealed again.
+    /// Damage with a valid checksum: a file of another program, changed byte by byte, with a new checksum.
     #[test]
     fn sealed_damage_is_samples_or_a_sentence() {
         let corpus = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/corpus/dem");

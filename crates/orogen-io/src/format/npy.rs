@@ -324,7 +324,7 @@ mod tests {
         Grid::from_data(Window::new(5, 3, 2.0), data).unwrap()
     }
 
-    /// A file with a header of `text` and `data` behind it.
+    /// A file with the header `text`, followed by `data`.
     fn file(text: &str, data: &[u8]) -> Vec<u8> {
         let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
         bytes.extend((text.len() as u16).to_le_bytes());

@@ -61,7 +61,7 @@ mod tests {
 
     #[test]
     fn the_curve_goes_from_cell_to_neighbouring_cell() {
-        // The first 4^5 cells of the curve fill a square, each beside the one before.
+        // The first 4^5 cells of the curve fill a square; consecutive cells are adjacent.
         let mut cells: Vec<(u32, [i64; 2])> = Vec::new();
         for x in 0..32u32 {
             for y in 0..32u32 {

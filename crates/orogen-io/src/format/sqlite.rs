@@ -389,7 +389,7 @@ mod tests {
         database.table("t", "CREATE TABLE t(a)", [(1, vec![Column::Blob(&bytes)])]).unwrap();
         let mut out = Vec::new();
         database.write(&mut out, 1, 2).unwrap();
-        // The first page, two that go on, and the leaf.
+        // The first page, two overflow pages, and the leaf.
         assert_eq!((out.len() % PAGE, out.len() / PAGE, &out[..15]), (0, 4, &b"SQLite format 3"[..]));
         assert_eq!(u32::from_be_bytes([out[28], out[29], out[30], out[31]]), 4);
     }
@@ -402,7 +402,7 @@ mod tests {
             database.table("t", "CREATE TABLE t(a, b)", rows).unwrap();
             let mut out = Vec::new();
             database.write(&mut out, 0, 0).unwrap();
-            // Walk from the root: rows in order, all of them.
+            // A walk from the root visits all rows in order.
             let root = out.chunks(PAGE).count();
             let mut found = 0;
             walk(&out, root as u32, &mut found);

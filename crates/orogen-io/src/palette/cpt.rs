@@ -185,7 +185,7 @@ mod tests {
         assert_eq!(stops("# HINGE = 0\n-1 navy 0 aqua\n0 green 1 white")[1].0, Sea(0.0));
         assert_eq!(stops("-1 navy 1 white")[0].0, Share(0.0));
         assert_eq!(stops("# RANGE = -8000/4000\n0 navy 1 white")[1].0, Value(4000.0));
-        // Neighbouring lines that agree make no step.
+        // Adjacent slices with equal colours have no step between them.
         assert_eq!(stops("0 red 1 blue\n1 blue 2 red").len(), 3);
     }
 

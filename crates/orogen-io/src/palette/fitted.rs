@@ -213,7 +213,7 @@ mod tests {
             let at = [sea - 300.0, sea, sea.next_up(), sea + 800.0];
             assert_eq!(bytes(&shore, [sea - 300.0, sea + 800.0, sea], &at), [BLUE, RED, LIME, WHITE]);
         }
-        // A plateau far above the sea begins with the land's first colour; sea alone ends at its surface.
+        // A plateau far above the sea starts with the first land colour; a map of sea only ends at its surface.
         assert_eq!(bytes(&shore, [500.0, 900.0, 0.0], &[500.5, 900.0])[1], WHITE);
         assert_eq!(bytes(&shore, [500.0, 900.0, 0.0], &[500.0])[0], LIME);
         assert_eq!(bytes(&shore, [-500.0, -90.0, 0.0], &[-500.0, 0.0]), [BLUE, RED]);
@@ -229,7 +229,7 @@ mod tests {
         assert_eq!(bytes(&ends, [0.0, 9.0, 0.0], &at), [LIME, BLUE, RED, WHITE, [1, 2, 3]]);
     }
 
-    /// Halves may fall either way.
+    /// Halves may be rounded either way.
     fn near(a: Rgb, b: Rgb) -> bool {
         a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= 1)
     }

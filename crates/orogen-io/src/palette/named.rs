@@ -504,7 +504,7 @@ mod tests {
                 Span::Degrees => [0.0, named.ends()[1]],
             };
             assert_eq!(named.ends(), ends, "{}", named.name);
-            // Sea and land meet in a step.
+            // A step separates sea and land.
             let shores = named.stops.iter().filter(|stop| stop.0 == 0.0).count();
             assert_eq!(shores, if named.span == Span::Sea { 2 } else { 1 }, "{}", named.name);
         }
@@ -514,7 +514,7 @@ mod tests {
     fn the_textbooks_ramps_have_their_stops() {
         let steps = |name: &str| find(name).unwrap().stops.iter().map(|stop| stop.0).collect::<Vec<f64>>();
         assert_eq!(steps("bands"), [0.0, 0.3, 0.3, 0.4, 0.4, 0.7, 0.7, 0.9, 0.9, 1.0]);
-        // Written for noise from -1 to 1.
+        // Made for noise from -1 to 1.
         let planet: Vec<f64> = steps("planet").iter().map(|at| ((2.0 * at - 1.0) * 1000.0).round() / 1000.0).collect();
         assert_eq!(planet, [-1.0, -0.9, -0.8, -0.7, -0.1, 0.1, 0.25, 0.6, 0.7, 1.0]);
         assert_eq!(steps("meadow").len(), 4);

@@ -61,7 +61,7 @@ mod tests {
         ("txt", "# a comment\n100%  white\n0% 0 100 0 255\n\n1500:10,20,30\nnv\tgrey50\ndefault 1 2 3\n-7e2 white\n"),
     ];
 
-    /// Damaged texts are refused in a message or read; either way nothing panics, and what is read has colours.
+    /// Damaged texts yield a message or a palette with colours, never a panic.
     #[test]
     fn damage_is_no_danger() {
         let rounds = if std::env::var_os("OROGEN_LONG").is_some() { 200_000 } else { 1_000 };

@@ -189,7 +189,7 @@ mod tests {
         let mut state = state();
         let journal = Journal::write(&path, &temporary, &state).unwrap();
         assert_eq!(JournalState::read(&path).unwrap().as_ref(), Some(&state));
-        // What is entered one by one is read as what is written at once.
+        // Entries added one by one read the same as entries written at once.
         let (job, record) = (Job { stage: 9, row: 1, column: 2 }, Record { digests: vec![], ranges: vec![] });
         journal.enter(job, &record).unwrap();
         state.records.insert(job, record);
@@ -197,7 +197,7 @@ mod tests {
         state.finished = Some(vec![("a/b".into(), FileDigest::of(b"x"))]);
         Journal::write(&path, &temporary, &state).unwrap();
         assert_eq!(JournalState::read(&path).unwrap().as_ref(), Some(&state));
-        // Cut anywhere behind the first line, it tells of fewer jobs, and never of others.
+        // Truncated after the first line, it contains fewer jobs, and never different ones.
         let bytes = fs::read(&path).unwrap();
         let first = bytes.iter().position(|byte| *byte == b'\n').unwrap();
         for end in first..bytes.len() {
@@ -210,7 +210,7 @@ mod tests {
             fs::write(&path, &bytes[..end]).unwrap();
             assert!(JournalState::read(&path).unwrap_err().to_string().contains("use --force to start again"), "{end}");
         }
-        // A flipped bit takes its own line away and nothing else.
+        // A flipped bit invalidates its own line only.
         for at in first + 1..bytes.len() {
             let mut other = bytes.clone();
             other[at] ^= 1;

@@ -155,7 +155,7 @@ mod tests {
         let world = World::open(Recipe::parse(text, "test").unwrap()).unwrap();
         let progress = Progress::none();
         for format in registry::all() {
-            // SRTM's tiles have sizes of their own.
+            // SRTM tiles have fixed sizes.
             let side = if format.name == "hgt" { 1201 } else { 40 };
             let write = |out: &mut dyn Write| {
                 let source = LayerSource::new(&world, "height", Window::new(side, side, 2.0), &progress).unwrap();

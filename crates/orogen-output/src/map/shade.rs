@@ -126,7 +126,7 @@ mod tests {
         grid
     }
 
-    /// The lowest and the highest factor on green that the inner samples get.
+    /// The lowest and the highest factor of green at inner samples.
     fn range(grid: &Grid) -> (f32, f32) {
         let shade = Shade::fit(grid, 0.0);
         let mut range = (f32::INFINITY, 0.0f32);

@@ -133,7 +133,7 @@ mod tests {
 
     const PLAIN: Style = Style { face: Face::Regular, size: 20.0, ink: [0; 3] };
 
-    /// Columns and rows that have ink: first and one past the last.
+    /// Columns and rows with ink: the first and one past the last.
     fn inked(canvas: &Canvas) -> Option<[i64; 4]> {
         let mut bounds: Option<[i64; 4]> = None;
         for y in 0..canvas.height() as i64 {
@@ -157,7 +157,7 @@ mod tests {
             assert_eq!(end, 10.0 + font.width("HEIGHT", style));
             let [left, right, top, bottom] = inked(&canvas).unwrap();
             assert!((9..=13).contains(&left) && (right as f32 - end).abs() < 4.0, "{left} {right} {end}");
-            // Capitals are some seven tenths of an em high, and G and the like reach a hair below the line.
+            // Capitals are about 0.7 em high, and G and similar letters extend slightly below the baseline.
             assert!((24..=27).contains(&top) && (40..=41).contains(&bottom), "{top} {bottom}");
         }
     }

@@ -114,7 +114,8 @@ mod tests {
         all
     }
 
-    /// All triangles face up, cover the grid once and share their edges; returns the corners along the grid's border.
+    /// Checks that all triangles face up, cover the grid once and share their edges; returns the vertices along the
+    /// grid's border.
     fn check(shape: &Shape, grid: &Grid) -> BTreeSet<[usize; 2]> {
         let [east, south] = [grid.width() - 1, grid.height() - 1];
         let mut edges: BTreeMap<[u32; 2], usize> = BTreeMap::new();
@@ -225,7 +226,7 @@ mod tests {
         let mut high = land(40, 40);
         high.data_mut().iter_mut().for_each(|height| *height += 8e6);
         let shape = adaptive(&high, 1.0).unwrap();
-        // What f64 rounds the sum of three such heights by.
+        // The rounding error of the sum of three such heights in f64.
         assert!(shape.deviation(&high) <= 1.0 + 1e-8);
     }
 
@@ -261,7 +262,7 @@ mod tests {
         holes.row_mut(3)[4] = f32::INFINITY;
         holes.row_mut(0)[0] = f32::NAN;
         let shape = Shape::lattice(&holes, 1).unwrap();
-        // Four cells lose one triangle each, and the corner's cell one.
+        // Four cells lose one triangle each, and the cell at the corner loses one.
         assert_eq!((shape.corners(), shape.triangles()), (61, 91));
         for triangle in triangles(&shape, &holes) {
             for corner in triangle {

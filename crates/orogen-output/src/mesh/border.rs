@@ -60,7 +60,7 @@ mod tests {
         worst
     }
 
-    /// The fewest stretches there can be, by trying all.
+    /// The minimum number of segments, by exhaustive search.
     fn fewest(heights: &[f64], max_error: f64) -> usize {
         let mut best = vec![usize::MAX; heights.len()];
         best[0] = 0;

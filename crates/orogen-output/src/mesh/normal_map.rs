@@ -141,14 +141,15 @@ mod tests {
         for (east, south, expect) in
             [(1.0, 0.0, [0, 128]), (-1.0, 0.0, [255, 128]), (0.0, 1.0, [128, 255]), (0.0, -1.0, [128, 0])]
         {
-            // A texel of ground that rises east or south, over a level triangle: its normal leans west or north.
+            // A texel of ground that rises to the east or south, over a level triangle: its normal points to the west
+            // or north.
             let normal = unit([-east, 0.0001, -south]);
             let [x, y, _] = texel(frame([0.0, 1.0, 0.0]), normal);
             assert_eq!([x, y], expect, "{east} {south}");
         }
     }
 
-    /// What a viewer makes of a texel, from the corners of the triangle over it.
+    /// The normal that a viewer computes from a texel and the vertices of its triangle.
     #[test]
     fn a_viewer_finds_the_normals_of_all_samples_on_few_triangles() {
         let (grid, halo) = (waves(), Halo::default());

@@ -125,7 +125,7 @@ mod tests {
         for count in [0, 1, PIECE, 2 * PIECE + 5] {
             let triangles: Vec<[[i32; 2]; 3]> = (0..count)
                 .map(|k| {
-                    // Some reach across the tile, most are small and near each other, and some end where a byte does.
+                    // Some extend across the tile, most are small and close together, and some end at a byte boundary.
                     let reach = [5, 34, 260, 1025][draw(4) as usize];
                     let left = (k as i32 / 64) % 700;
                     [0; 3].map(|_| [(left + draw(reach)).min(1024), draw(reach)])

@@ -293,7 +293,7 @@ mod tests {
         i64::from(b[0] - a[0]) * i64::from(c[1] - a[1]) - i64::from(b[1] - a[1]) * i64::from(c[0] - a[0])
     }
 
-    /// Triangles of all kinds: wide, high, thin, level at the top or the bottom, at the tile's border.
+    /// Triangles of all kinds: wide, tall, thin, horizontal at the top or the bottom, at the tile's border.
     fn triangles(side: i32) -> Vec<[[i32; 2]; 3]> {
         let mut state = 1u32;
         let mut draw = || {
@@ -330,7 +330,7 @@ mod tests {
                 }
             }
             let found = exactly(&tile, corners.map(Sample::at));
-            // Samples on an edge may be further away than those inside.
+            // Samples on an edge may be at a larger distance than those inside.
             assert!(f64::from(found.error) >= worst - 1e-3, "{corners:?}");
             for level in Level::available() {
                 let quick = dispatch_at(level, Scan { tile: &tile, corners }).unwrap();
@@ -342,7 +342,7 @@ mod tests {
         }
     }
 
-    /// Two triangles that share an edge see every sample inside their square once between them.
+    /// Two triangles with a shared edge together visit every sample inside their square once.
     #[test]
     fn neighbours_leave_no_sample_out() {
         let side = 40;

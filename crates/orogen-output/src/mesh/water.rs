@@ -195,7 +195,7 @@ mod tests {
             let under = height(&ground, [f64::from(*east) / 10.0, f64::from(*south) / 10.0]);
             assert!(f64::from(*high) >= under + 0.099);
         }
-        // Its normals lean downstream, as steeply as it falls: by 1 in 10.
+        // Its normals point downstream and match the slope of 1 in 10.
         let middle = mesh.normals()[3 * 25 + 1];
         assert!((middle[0] / middle[1] - 0.1).abs() < 0.01 && middle[2].abs() < 0.01, "{middle:?}");
     }

@@ -269,7 +269,7 @@ mod tests {
             let at = camera.project(place).unwrap();
             assert!((at[0] - (2.0 * across - 1.0)).abs() < 1e-9 && (at[1] - (2.0 * down - 1.0)).abs() < 1e-9);
         }
-        // The middle of the picture is the ground that it looks at.
+        // The centre of the picture is the point that the camera looks at.
         let hit = relief.hit(&camera.ray(0.5, 0.5), 0.0).unwrap();
         let place = camera.ray(0.5, 0.5).at(hit.distance);
         assert!((place.x - 12.0).abs() < 1e-6 && (place.y - 4.0).abs() < 1e-6, "{place:?}");
@@ -298,7 +298,7 @@ mod tests {
         let view = View::At { eye: [55.0, 50.0, -80.0], look: [120.0, 40.0] };
         let camera = Camera::new(&view, &relief, [0.0; 2], [300, 200], 50.0, &frame(&relief));
         assert!(camera.lifted().unwrap() > 80.0 && camera.eye().z > relief.ground(5.5, 5.0));
-        // Beside the land it may stand as low as what the land stands on, but in a land that goes on.
+        // Outside a bounded terrain the camera may be as low as its base; not if the terrain continues there.
         let view = View::At { eye: [-45.0, 50.0, -5.0], look: [120.0, 40.0] };
         assert_eq!(Camera::new(&view, &relief, [0.0; 2], [300, 200], 50.0, &frame(&relief)).lifted(), None);
         let mirrored = Frame { mirrored: true, ..frame(&relief) };

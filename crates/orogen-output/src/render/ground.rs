@@ -424,7 +424,7 @@ mod tests {
     }
 
     fn site(height: f32) -> GroundPoint {
-        // Seen from so far that no noise is left.
+        // From a distance at which no noise is visible.
         GroundPoint { x: 2.0, y: f64::from(4000.0 - height) / 10.0, height, footprint: 1e6 }
     }
 

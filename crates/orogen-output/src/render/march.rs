@@ -305,7 +305,7 @@ mod tests {
     use crate::render::relief::Land;
     use orogen_grid::grid::{Grid, Window};
 
-    /// The land whose z at (x, y) in cells is f(x, y), over `columns` x `rows` samples.
+    /// Terrain with z = f(x, y), in cells, over `columns` x `rows` samples.
     fn relief(columns: usize, rows: usize, f: impl Fn(f64, f64) -> f64) -> Relief {
         let window = Window::new(columns, rows, 1.0);
         let mut heights = Grid::filled(window, 0.0);
@@ -360,7 +360,7 @@ mod tests {
             if let Some(hit) = saddle.hit(&ray, 0.0) {
                 let place = ray.at(hit.distance);
                 assert!((place.z - place.x * place.y / 8.0).abs() < 1e-9, "{along:?}: {place:?}");
-                // Nothing was passed on the way.
+                // No surface was missed on the way.
                 for k in 0..1000 {
                     let before = ray.at(hit.distance * f64::from(k) / 1000.0);
                     let over = before.x >= 0.0 && before.x <= 32.0 && before.y >= 0.0 && before.y <= 16.0;
@@ -378,7 +378,7 @@ mod tests {
             let from = Vector::new(-5.0 + k as f64, 12.5, 20.0);
             let ray = Ray { from, along };
             let found = rough.hit(&ray, 0.0).filter(|hit| hit.surface == Surface::GroundCover);
-            // Feeling one's way in steps of a thousandth.
+            // Brute force in steps of a thousandth.
             let felt = (0..90_000).map(|step| f64::from(step) / 1000.0).find(|&t| {
                 let place = ray.at(t);
                 let over = (0.0..=39.0).contains(&place.x) && (0.0..=29.0).contains(&place.y);

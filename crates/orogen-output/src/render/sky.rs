@@ -283,9 +283,9 @@ mod tests {
         let (zenith, horizon) = (sky.light(Vector::UP), sky.light(Vector::towards(0.0, 1.0)));
         assert!(zenith[2] > 2.0 * zenith[0] && sum(horizon) > 1.5 * sum(zenith), "{zenith:?} {horizon:?}");
         assert!(horizon[2] / horizon[0] < zenith[2] / zenith[0]);
-        // Around the sun it is brighter.
+        // The sky is brighter around the sun.
         assert!(sum(sky.light(Vector::towards(180.0, 50.0))) > sum(sky.light(Vector::towards(0.0, 50.0))));
-        // The sun gives level ground several times what the sky does; real skies, 4 to 10 times.
+        // On level ground the sun gives several times the light of the sky; real skies 4 to 10 times.
         let ratio = sum(sky.sunlight()) * sky.sun().z as f32 / sum(sky.dome());
         assert!((4.0..14.0).contains(&ratio), "{ratio}");
     }
@@ -315,7 +315,7 @@ mod tests {
         assert_eq!(haze.left(5.0, 60.0, 300.0), haze.left(60.0, 5.0, 300.0));
         assert!(haze.left(80.0, 80.0, 1000.0)[1] > along[1] + 0.3);
         assert_eq!(Haze::new(0.0, 1000.0, 40.0).left(0.0, 0.0, 5000.0), [1.0; 3]);
-        // Whether in one piece or in two.
+        // In one piece and in two.
         let whole = haze.left(0.0, 50.0, 200.0)[1];
         let halves = haze.left(0.0, 25.0, 100.0)[1] * haze.left(25.0, 50.0, 100.0)[1];
         assert!((whole - halves).abs() < 1e-5);

@@ -124,7 +124,7 @@ mod tests {
     #[test]
     fn it_mirrors_all_when_grazed_and_little_from_above() {
         assert!((mirrored(1.0) - 0.02).abs() < 1e-6 && (mirrored(0.0) - 1.0).abs() < 1e-6);
-        // Fresnel's equations for 1.33 at 60 and 80 degrees from the upright: 0.0595 and 0.388.
+        // Fresnel's equations for 1.33 at 60 and 80 degrees from the normal: 0.0595 and 0.388.
         assert!((mirrored(0.5) - 0.0595).abs() < 0.01 && (mirrored(0.173_65) - 0.388).abs() < 0.03);
     }
 
@@ -133,7 +133,7 @@ mod tests {
         let water = Water::new(5.0);
         let [shallow, deep] = [0.3, 60.0].map(|depth| water.body(Kind::Sea, depth, 0.7, 0.7));
         assert!(shallow[0] > 0.1 && deep[0] < 0.01 && deep[2] > 3.0 * deep[0]);
-        // Beer and Lambert: straight down and up again through a metre.
+        // Beer-Lambert: straight down and up again through one metre.
         let metre = water.body(Kind::Sea, 1.0, 1.0, 1.0)[1];
         let left = libm::expf(-2.0 * TAKES[1]);
         assert!((metre - (BOTTOM[1] * left + DEEP[1] * (1.0 - left))).abs() < 1e-6);

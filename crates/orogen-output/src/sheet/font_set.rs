@@ -251,7 +251,7 @@ mod tests {
         let [left, right, top, bottom] = ends(&letters.write("HIH", Face::Regular, 10.0, [5.0, 20.0], 0.0));
         assert!(left > 5.0 && right < 5.0 + width && right > 3.0 + width && (bottom - 20.0).abs() < 0.01);
         assert!((20.0 - top - 7.0).abs() < 0.6, "capitals are seven tenths of an em: {top}");
-        // Upwards along the page: what was to the right is above.
+        // Rotated upwards: an offset to the right becomes an offset upwards.
         let quarter = std::f32::consts::FRAC_PI_2;
         let [left, right, top, bottom] = ends(&letters.write("HIH", Face::Regular, 10.0, [5.0, 20.0], quarter));
         assert!((right - 5.0).abs() < 0.01 && left < -1.0 && top < 21.0 - width && bottom < 20.0);
@@ -259,7 +259,7 @@ mod tests {
 
     #[test]
     fn letters_that_nobody_has_are_named() {
-        // No font has letters for noncharacters.
+        // No font has glyphs for noncharacters.
         let letters = FontSet::for_texts(["Höhe \u{fdd0}"]).unwrap();
         assert_eq!(letters.lacking(), ['\u{fdd0}']);
         let widths = ["Höhe", "Höhe\u{fdd0}"].map(|text| letters.width(text, Face::Bold, 5.0));

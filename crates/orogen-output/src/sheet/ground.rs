@@ -98,7 +98,7 @@ mod tests {
         for size in [[51, 31], [101, 61], [201, 121], [21, 13]] {
             let laid = laid(&grid, size);
             assert!((laid.window().cell * (size[0] - 1) as f64 - 1000.0).abs() < 1e-9);
-            // Within: at the border a mean has only one side.
+            // Inside only: at the border a mean is one-sided.
             for (u, v) in [(0.2, 0.5), (0.5, 0.5), (0.8, 0.4)] {
                 let (i, j) = ((u * (size[0] - 1) as f64).round() as usize, (v * (size[1] - 1) as f64).round() as usize);
                 let (x, y) = (i as f32 / (size[0] - 1) as f32, j as f32 / (size[1] - 1) as f32);

@@ -269,7 +269,7 @@ mod tests {
                 assert!((start[1] - 50.0 - 10.0 * libm::sinf(start[0] / 12.0)).abs() < 0.5, "{start:?}");
                 assert!(label.path.last().unwrap()[0] > label.path[0][0]);
             }
-            // Nothing else may stand there now, nor beyond the edge.
+            // The area of the label and the area outside the page are occupied now.
             assert!(!taken.is_free(labels[0].at(2.0).0, 0.5) && !taken.is_free([99.9, 5.0], 0.5));
             assert!(taken.is_free([50.0, 5.0], 0.5));
             let left = gaps(&[line.clone()], &labels, 1.2, 0.3);

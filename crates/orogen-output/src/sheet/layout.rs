@@ -206,13 +206,13 @@ mod tests {
         }
     }
 
-    /// Colours, scale, north and legend, as they are.
+    /// The blocks of colours, scale, north and legend.
     fn blocks() -> [Block; 4] {
         let block = |row: f32, column: f32, height: f32| Block { widths: [row, column], height };
         [block(88.0, 0.0, ROW), block(53.0, 53.0, 9.5), block(10.0, 10.0, ROW), block(98.0, 50.0, 24.0)]
     }
 
-    /// Left, top, right and bottom of all that stands on a page.
+    /// Left, top, right and bottom of every item on a page.
     fn boxes(layout: &Layout) -> Vec<[f32; 4]> {
         let [x, y, w, h] = layout.map;
         let mut boxes = vec![[x - AXES[0], y - AXES[2], x + w + AXES[1], y + h + AXES[3]]];

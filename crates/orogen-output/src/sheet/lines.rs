@@ -181,7 +181,7 @@ mod tests {
         let places = |sea: Option<f64>, apart: usize, most: usize| -> Vec<(usize, usize)> {
             summits(&grid, sea, 1, apart, most).iter().map(|summit| (summit.x, summit.y)).collect()
         };
-        // The foot of the higher hill moves the lower one's summit.
+        // The foot of the higher hill moves the apparent summit of the lower one.
         assert_eq!(places(None, 40, 5), [(60, 80), (149, 70)]);
         assert_eq!(places(None, 40, 1), [(60, 80)]);
         assert_eq!(places(None, 150, 5), [(60, 80)]);
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn a_summit_is_the_highest_sample_however_coarse_the_map() {
         let mut grid = hills(1000.0);
-        // A spire of one sample, which no mean over its surroundings is as high as.
+        // A spire of one sample, higher than any mean over its surroundings.
         grid.row_mut(83)[63] = 1234.5;
         for block in [1, 2, 3, 7, 10] {
             let found = summits(&grid, None, block, 40 / block, 5);

@@ -58,7 +58,7 @@ mod tests {
         let mut taken = Taken::none([0.0, 0.0, 50.0, 50.0]);
         summit(&mut scene, &letters, &mut taken, [25.0, 25.0], "2345");
         assert_eq!(scene.items.len(), 3);
-        // Another just beside it has no room; one at the right edge is written to its left.
+        // A second mark next to it has no room; a mark at the right edge is labelled on its left.
         summit(&mut scene, &letters, &mut taken, [26.0, 25.5], "2344");
         assert_eq!(scene.items.len(), 3);
         summit(&mut scene, &letters, &mut taken, [47.0, 10.0], "1999");

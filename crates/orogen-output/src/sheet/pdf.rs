@@ -205,7 +205,7 @@ mod tests {
             let start: usize = row[..10].parse().unwrap();
             assert!(out[start..].starts_with(format!("{} 0 obj", k + 1).as_bytes()), "{row}");
         }
-        // What is drawn, unpacked: 25.4 mm are 72 points, and y counts from the bottom.
+        // The uncompressed drawing: 25.4 mm are 72 points, and y counts from the bottom.
         let start = find(b"4 0 obj").unwrap();
         let stream = start + out[start..].windows(7).position(|window| window == b"stream\n").unwrap() + 7;
         let drawn =

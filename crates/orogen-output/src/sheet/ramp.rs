@@ -237,7 +237,7 @@ mod tests {
         for decade in 2..=8 {
             assert_eq!(ramp.at(libm::powf(10.0, decade as f32)), plain.at(decade as f32), "{decade}");
         }
-        // What is not above 0 has the colour of the lower end.
+        // Values of 0 and below have the colour of the lower end.
         assert_eq!(ramp.at(0.0), ramp.at(100.0));
         let marks = ramp.marks();
         let names: Vec<&str> = marks.iter().map(|mark| mark.1.as_str()).collect();

@@ -302,7 +302,7 @@ mod tests {
     use super::*;
 
     fn drawn(items: Vec<Item>) -> Canvas {
-        // 100 pixels a side of a millimetre each.
+        // 100 x 100 pixels of one millimetre each.
         draw(&Scene { size: [100.0, 100.0], title: String::new(), items }, 25.4)
     }
 
@@ -317,14 +317,14 @@ mod tests {
 
     #[test]
     fn an_area_covers_what_it_is() {
-        // Across the bands' borders, at parts of pixels.
+        // Across the borders of bands, at fractions of pixels.
         let square = polygon(&[[10.25, 20.5], [70.75, 20.5], [70.75, 80.25], [10.25, 80.25]]);
         let canvas = drawn(vec![area(square.clone())]);
         assert!((dark(&canvas) - 60.5 * 59.75).abs() < 1.0, "{}", dark(&canvas));
         assert_eq!([canvas.get(40, 50), canvas.get(5, 50)], [Some([0; 3]), Some([255; 3])]);
         let edge = canvas.get(10, 50).unwrap()[0];
         assert!((i32::from(edge) - 64).abs() <= 1, "{edge}");
-        // The other way around makes no difference; a hole the other way is one.
+        // The orientation of a single ring makes no difference; an inner ring with the opposite orientation is a hole.
         let mut holed: Vec<Step> = square;
         holed.extend(polygon(&[[30.0, 40.0], [30.0, 60.0], [50.0, 60.0], [50.0, 40.0]]));
         assert!((dark(&drawn(vec![area(holed)])) - (60.5 * 59.75 - 400.0)).abs() < 1.0);

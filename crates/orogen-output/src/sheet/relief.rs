@@ -154,14 +154,14 @@ mod tests {
         let paint = |shading| paint(&grid, Paint::Tint, [120, 120], &tint, shading, -1.0);
         let green = |bytes: &[u8], i: usize, j: usize| i32::from(bytes[3 * (j * 120 + i) + 1]);
         let [none, single, multi, swiss] = [Shading::None, Shading::Single, Shading::Multi, Shading::Swiss].map(paint);
-        // The flanks of the ridge that runs along the light are lit alike, those of the other are not.
+        // Both flanks of the ridge parallel to the light are lit equally, those of the other are not.
         let along = |bytes: &[u8]| (green(bytes, 28, 20) - green(bytes, 20, 28)).abs();
         let across = |bytes: &[u8]| green(bytes, 28, 84) - green(bytes, 36, 92);
         assert!(along(&none) <= 2 && across(&none).abs() <= 2, "{} {}", along(&none), across(&none));
         assert!(along(&single) <= 4, "{}", along(&single));
         assert!([&single, &multi, &swiss].iter().all(|bytes| across(bytes) > 40));
         assert!(single != multi);
-        // At the foot, haze and softness take contrast away.
+        // At the foot, haze and softness reduce the contrast.
         let foot = |bytes: &[u8]| green(bytes, 24, 78) - green(bytes, 42, 96);
         assert!(foot(&swiss) < foot(&multi), "{} {}", foot(&swiss), foot(&multi));
     }

@@ -266,9 +266,9 @@ mod tests {
         let ((pictures, image), (paths, path)) = (longest("<image"), longest("<path"));
         assert!(pictures == 6 && image > 900_000 && image < 1 << 20, "{pictures} of {image}");
         assert!(paths > 2 && path < (1 << 16) + 200, "{paths} of {path}");
-        // All of one opacity, laid as one.
+        // All with the same opacity, drawn as one.
         assert!(text.contains("<g opacity=\"0.5\">") && text.matches("stroke-opacity=\"1\"").count() == paths);
-        // Tiles overlap, and the last ones end where the picture does.
+        // Tiles overlap, and the last ones end at the edge of the picture.
         assert!(text.contains("<image x=\"0.0000\" y=\"0.0000\" width=\"44.8000\" height=\"44.8000\""));
         assert!(text.contains("<image x=\"86.4000\" y=\"43.2000\" width=\"23.6000\" height=\"26.8000\""));
     }

@@ -66,7 +66,7 @@ pub fn find(heights: &Grid, sea_level: Option<f32>, least: Least) -> Result<Wate
 mod tests {
     use super::*;
 
-    /// A valley that falls to the south, with a hollow on its way.
+    /// A valley that descends to the south, with a depression.
     fn valley() -> Grid {
         let mut grid = Grid::filled(Window::new(61, 81, 30.0), 0.0);
         for j in 0..81 {
@@ -94,7 +94,7 @@ mod tests {
         assert!(rows.iter().any(|y| *y < 25.0) && rows.iter().any(|y| *y > 60.0));
         let level = water.surface[(30, 40)];
         assert!(level > heights[(30, 40)] + 20.0 && level == water.surface[(31, 41)]);
-        // A lake that must be larger or deeper is none.
+        // A lake below the minimum area or depth is omitted.
         for least in [
             Least { spring: 100, lake: 4000, depth: 5.0, scattered: false },
             Least { spring: 100, lake: 10, depth: 500.0, scattered: false },

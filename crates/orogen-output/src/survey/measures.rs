@@ -435,7 +435,7 @@ mod tests {
         let folder = std::env::temp_dir();
         // More rows and columns than a tile, a page and a band have, and fewer.
         for (k, (width, height)) in [(600, 300), (70, 530), (300, 64), (64, 300)].into_iter().enumerate() {
-            // Long slopes with hills on them, of cells so large that rivers begin soon.
+            // Long slopes with hills, and cells so large that rivers start early.
             let mut hills = samples::hills(width, height, k as i64);
             for j in 0..height {
                 hills.row_mut(j).iter_mut().enumerate().for_each(|(i, h)| *h += 9.0 * (i + j) as f32);
@@ -452,7 +452,7 @@ mod tests {
                 let made = Measures::of_raster(&raster, sea_level, &folder, &Budget::of(None), &Progress::none());
                 let expect = Measures::of(&grid, sea_level).unwrap();
                 assert!(expect.water.order > 1 && expect.water.area_exponent.is_some(), "{:?}", expect.water.order);
-                // A number's digits tell its bits.
+                // The digits of a number identify its bits.
                 assert_eq!(format!("{:?}", made.unwrap().unwrap()), format!("{expect:?}"));
             }
         }

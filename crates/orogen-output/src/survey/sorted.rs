@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn parts_are_in_the_order_of_all() {
-        // Many that are equal, both zeros, both signs, and some that are no numbers.
+        // Many equal numbers, both zeros, both signs, and some NaNs.
         let all: Vec<f32> = (0..5000u32)
             .map(|k| match k % 11 {
                 0 => f32::NAN,

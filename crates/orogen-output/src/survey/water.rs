@@ -325,7 +325,7 @@ mod tests {
         let water = measure(&grid, &Progress::none()).unwrap();
         assert!((water.depressions - 1.0 / 12_800.0).abs() < 1e-9, "{}", water.depressions);
         assert!(water.depression_depth > 200.0 && water.order >= 1);
-        // About 155 cells of river: 15 km on 128 km^2; no flank is long enough for one of its own.
+        // About 155 cells of river: 15 km on 128 km^2; no flank is long enough for a second river.
         assert!((0.05..0.15).contains(&water.density), "{}", water.density);
         let river = water.reaches.iter().find(|reach| reach.cells.contains(&(100 * 80 + 39))).unwrap();
         assert_eq!(river.order, water.order);

@@ -279,7 +279,7 @@ mod tests {
             assert_eq!(of_wkt(&text), Ok(keys.clone()), "{text}");
             assert_eq!((epsg(&keys), is_degrees(&keys)), (Some(code), geographic));
         }
-        // A system that is not among the known ones comes from the registry, in feet.
+        // A system that is not predefined comes from the registry, in feet.
         let feet = of_text("EPSG:2927").unwrap();
         assert_eq!((epsg(&feet), short(&feet, LINEAR_UNIT)), (Some(2927), Some(9003)));
         let text = to_wkt(&feet).unwrap();
@@ -311,7 +311,7 @@ mod tests {
         directory[3] = (directory.len() / 4 - 1) as u16;
         let keys =
             GeoKeys { directory, doubles: parameters.iter().map(|(_, value)| *value).collect(), text: String::new() };
-        // The same on a datum by its code, and on an ellipsoid alone.
+        // The same with a datum given by its code, and with an ellipsoid only.
         let with = |more: &[u16], doubles: &[f64]| {
             let mut keys = keys.clone();
             keys.directory[4 * 2 + 3] = USER_DEFINED;

@@ -283,7 +283,7 @@ mod tests {
             let system = epsg::find(code).unwrap();
             let node = Node::parse(&system.to_wkt()).unwrap();
             let found = node.epsg().unwrap();
-            // Of two codes with the same parameters, the first is found.
+            // Of two codes with the same parameters, the first is returned.
             let same = epsg::find(found).unwrap();
             assert_eq!(
                 (same.projection, same.geographic.datum),

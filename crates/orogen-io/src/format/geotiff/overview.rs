@@ -112,7 +112,7 @@ mod tests {
                 let middle: f64 =
                     span.shares.iter().enumerate().map(|(k, s)| s * ((span.first + k) as f64 + 0.5)).sum();
                 let expect = (i as f64 + 0.5) * n as f64 / half(n) as f64;
-                // A raster of any size that has overviews is hundreds of samples wide: this is a thousandth of a sample.
+                // A raster with overviews is hundreds of samples wide: this is a thousandth of a sample.
                 assert!((middle - expect).abs() < 0.5 / n as f64, "{n} {i}: {middle}, not {expect}");
             }
         }

@@ -51,7 +51,7 @@ mod tests {
     use super::*;
     use miniz_oxide::inflate::decompress_to_vec_zlib;
 
-    /// Reads a frame by the rules of its format; knows nothing of the writer.
+    /// Reads a frame as specified, independently of the writer.
     fn unpack(frame: &[u8]) -> Vec<u8> {
         let number = |at: usize| u32::from_le_bytes(frame[at..at + 4].try_into().unwrap()) as usize;
         assert_eq!((frame[0], frame[1], frame[2] & 2, frame[2] >> 5), (2, 1, 0, 3));
@@ -76,7 +76,7 @@ mod tests {
         let frame = pack(&ramp, 4).unwrap();
         assert!(frame.len() < 3000, "{}", frame.len());
         assert_eq!(unpack(&frame), ramp);
-        // What cannot be packed is kept as it is.
+        // Incompressible data is stored uncompressed.
         let mut state = 1u32;
         let noise: Vec<u8> = (0..256)
             .map(|_| {

@@ -160,7 +160,7 @@ mod tests {
         for n in 0..frame.len() {
             let mut frame = frame.clone();
             frame[n] ^= 0x55;
-            // Anything but a panic.
+            // Any result except a panic.
             let _ = Codec::Blosc.unpack(&frame, 4000);
         }
     }

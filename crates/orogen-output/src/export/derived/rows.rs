@@ -159,7 +159,7 @@ mod tests {
     use crate::export::options::Options;
     use orogen_engine::recipe::document::Recipe;
 
-    /// A world with a sea, steep ground and rivers, with bounds or without.
+    /// A world with a sea, steep ground and rivers, bounded or unbounded.
     fn world(size: &str, layer: &str) -> World {
         let text = format!(
             "orogen = 1\n[world]\nseed = 5\n{size}\ncell = 20\nsea_level = 40\n[nodes.hills]\nop = \"fbm\"\nwavelength = 900\n[nodes.land]\n\
@@ -193,7 +193,7 @@ mod tests {
             let Some(derived) = layer.rows() else { continue };
             for size in ["size = [6000, 8000]", ""] {
                 let world = world(size, layer.name);
-                // Past the rows that are made at once, and to the far edge that is left to a neighbour.
+                // More rows than are computed at once, up to the far edge that belongs to the neighbour.
                 let window = Window::new(301, 401, 20.0);
                 let whole = made(derived, &world, &window);
                 for part in [
