@@ -8,6 +8,8 @@ use crate::value::Value;
 use crate::{field, filter, solver};
 use orogen_io::dem::file_ref::FileRef;
 use std::any::Any;
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 macro_rules! nodes {
     (
@@ -83,7 +85,9 @@ include!("node_list.rs");
 impl Node {
     /// The built-in op of that name with its defaults.
     pub fn named(op: &str) -> Option<Node> {
-        Node::all().into_iter().find(|node| node.spec().op == op)
+        static BUILT_IN: LazyLock<BTreeMap<&str, Node>> =
+            LazyLock::new(|| Node::all().into_iter().map(|node| (node.spec().op, node)).collect());
+        BUILT_IN.get(op).cloned()
     }
 
     /// The declaration of its op.
