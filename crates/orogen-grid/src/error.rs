@@ -1,6 +1,7 @@
 //! The error type: a kind for programs, a message for people.
 
-use std::fmt;
+use std::sync::Arc;
+use std::{fmt, io};
 
 use crate::words::readable;
 
@@ -33,6 +34,7 @@ pub enum ErrorKind {
 pub struct Error {
     kind: ErrorKind,
     diagnostics: Vec<Diagnostic>,
+    source: Option<Arc<io::Error>>,
 }
 
 /// One problem, with its location in a text if it has one.
@@ -71,12 +73,18 @@ impl Error {
         for diagnostic in &mut diagnostics {
             diagnostic.message = readable(std::mem::take(&mut diagnostic.message));
         }
-        Error { kind, diagnostics }
+        Error { kind, diagnostics, source: None }
     }
 
     /// A file that could not be read or written: the message contains the file, the action and the system's reason.
-    pub fn file(doing: &str, path: &std::path::Path, cause: &std::io::Error) -> Error {
-        Error::new(ErrorKind::File, format!("cannot {doing} {}: {}", path.display(), reason(cause)))
+    pub fn file(doing: &str, path: &std::path::Path, cause: &io::Error) -> Error {
+        let message = format!("cannot {doing} {}: {}", path.display(), reason(cause));
+        // An I/O error cannot be cloned.
+        let source = match cause.raw_os_error() {
+            Some(code) => io::Error::from_raw_os_error(code),
+            None => io::Error::new(cause.kind(), cause.to_string()),
+        };
+        Error { source: Some(Arc::new(source)), ..Error::new(ErrorKind::File, message) }
     }
 
     /// The kind of the error.
@@ -91,7 +99,7 @@ impl Error {
 }
 
 /// The system's reason, without the number that the standard library appends.
-fn reason(cause: &std::io::Error) -> String {
+fn reason(cause: &io::Error) -> String {
     let text = cause.to_string();
     match text.find(" (os error") {
         Some(end) => text[..end].to_lowercase(),
@@ -114,11 +122,33 @@ impl fmt::Display for Error {
     }
 }
 
-impl std::error::Error for Error {}
+impl std::error::Error for Error {
+    /// The I/O error behind an [`Error::file`].
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.source.as_deref().map(|source| source as _)
+    }
+}
 
 /// An [`Error`] travels unchanged through code that returns [`std::io::Result`], such as the body of a writer.
-impl From<Error> for std::io::Error {
-    fn from(error: Error) -> std::io::Error {
-        std::io::Error::other(error)
+impl From<Error> for io::Error {
+    fn from(error: Error) -> io::Error {
+        io::Error::other(error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::error::Error as _;
+    use std::path::Path;
+
+    #[test]
+    fn the_error_of_the_system_is_the_source() {
+        let cause = io::Error::from_raw_os_error(2);
+        let error = Error::file("read", Path::new("gone.tif"), &cause);
+        assert!(error.to_string().starts_with("cannot read gone.tif: "), "{error}");
+        let source = error.source().and_then(|source| source.downcast_ref::<io::Error>()).unwrap();
+        assert_eq!((source.kind(), source.raw_os_error()), (cause.kind(), Some(2)));
+        assert!(Error::new(ErrorKind::Request, "no").source().is_none());
     }
 }
