@@ -66,22 +66,26 @@ impl Budget {
     }
 
     /// The limit in bytes.
+    #[must_use]
     pub fn limit(&self) -> Option<u64> {
         self.limit
     }
 
     /// Bytes that no caller holds, which a request may need. `None` if there is no limit.
+    #[must_use]
     pub fn left(&self) -> Option<u64> {
         self.limit.map(|limit| limit.saturating_sub(self.shared.lock().held))
     }
 
     /// Bytes that are neither held nor needed by running requests. `None` if there is no limit.
+    #[must_use]
     pub fn unused(&self) -> Option<u64> {
         let account = *self.shared.lock();
         self.limit.map(|limit| limit.saturating_sub(account.held).saturating_sub(account.running))
     }
 
     /// The maximum of held and needed bytes together so far.
+    #[must_use]
     pub fn peak(&self) -> u64 {
         self.shared.lock().peak
     }
@@ -155,6 +159,7 @@ impl Budget {
 
     /// The error for work that needs `needed` bytes beside those that are held: `what` needs them, and `instead` is the
     /// advice.
+    #[must_use]
     pub fn refusal(&self, what: &str, needed: u64, instead: &str) -> Error {
         let all = needed.saturating_add(self.shared.lock().held);
         let limit = self.limit.unwrap_or(u64::MAX);
@@ -190,6 +195,7 @@ pub struct Reservation {
 
 impl Reservation {
     /// The number of bytes.
+    #[must_use]
     pub fn bytes(&self) -> u64 {
         self.bytes
     }

@@ -535,6 +535,7 @@ fn unsoftened(from: &Recipe) -> Recipe {
 const SOFT: &str = "soft";
 
 /// A bounded world of 97 x 81 samples at a cell.
+#[must_use]
 pub fn world_of(cell: f64) -> WorldSpec {
     let size = SIDES.map(|side| (side - 1) as f64 * cell);
     WorldSpec { seed: 42, size: Some(size), cell, ..WorldSpec::default() }
@@ -542,6 +543,7 @@ pub fn world_of(cell: f64) -> WorldSpec {
 
 /// A recipe of the node alone, named [`NODE`]: each input is a noise of its own, about -1 to 1 and nine cells from hill to hill. An input called
 /// `source` is read through a blur, which puts halos on top of halos. The outputs are the node's layers, the first one named `height`.
+#[must_use]
 pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
     let mut node = node.clone();
     let mut recipe = Recipe::new(world);

@@ -91,16 +91,19 @@ impl Node {
     }
 
     /// The declaration of its op.
+    #[must_use]
     pub fn spec(&self) -> &'static Spec {
         self.declared().spec()
     }
 
     /// Its inputs: those that its op declares, or the names in its expression.
+    #[must_use]
     pub fn inputs(&self) -> Vec<InputName<'_>> {
         self.declared().inputs()
     }
 
     /// Input `i` of [`Node::inputs`].
+    #[must_use]
     pub fn input(&self, i: usize) -> &Input {
         self.declared().input(i)
     }
@@ -111,6 +114,7 @@ impl Node {
     }
 
     /// Parameter `i` of the declaration.
+    #[must_use]
     pub fn param(&self, i: usize) -> Value {
         self.declared().param(i)
     }
@@ -121,6 +125,7 @@ impl Node {
     }
 
     /// The part of parameter `i` that affects the node's result.
+    #[must_use]
     pub fn param_key(&self, i: usize) -> Value {
         self.declared().param_key(i)
     }
@@ -136,6 +141,7 @@ impl Node {
     }
 
     /// The layers of the node.
+    #[must_use]
     pub fn layers(&self) -> &'static [Layer] {
         self.spec().layers
     }

@@ -28,6 +28,7 @@ pub struct WorldParams {
 impl WorldParams {
     /// The seed of a node in this world: both seeds are hashed together, so that consecutive seeds give independent
     /// results (splitmix64's finaliser, Steele, Lea and Flood 2014, over both).
+    #[must_use]
     pub fn seed_of(&self, node_seed: u64) -> u64 {
         let mix = |mut z: u64| {
             z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -46,16 +47,19 @@ pub struct Inputs<'a> {
 
 impl<'a> Inputs<'a> {
     /// Inputs in the order of their declaration.
+    #[must_use]
     pub fn new(slots: &'a [Option<&'a [f32]>]) -> Inputs<'a> {
         Inputs { slots }
     }
 
     /// Input `i`, if it is given.
+    #[must_use]
     pub fn get(&self, i: usize) -> Option<&'a [f32]> {
         self.slots.get(i).copied().flatten()
     }
 
     /// Input `i`, which must be declared as required: plans always provide it.
+    #[must_use]
     pub fn required(&self, i: usize) -> &'a [f32] {
         self.get(i).unwrap_or(&[])
     }
@@ -129,6 +133,7 @@ pub struct Stencil {
 
 impl Stencil {
     /// The maps to the four positions: east, west, south, north.
+    #[must_use]
     pub fn maps(&self) -> [Affine; 4] {
         [[self.step, 0.0], [-self.step, 0.0], [0.0, self.step], [0.0, -self.step]].map(|offset| Affine {
             turn: [1.0, 0.0],
@@ -176,11 +181,13 @@ pub struct Affine {
 
 impl Affine {
     /// Whether columns stay columns and rows stay rows.
+    #[must_use]
     pub fn is_separable(&self) -> bool {
         self.turn == [1.0, 0.0]
     }
 
     /// Maps a position. Without a rotation the result is x * scale + offset bit for bit, so lattices stay lattices.
+    #[must_use]
     pub fn apply(&self, x: f64, y: f64) -> (f64, f64) {
         let (tx, ty) = if self.is_separable() {
             (x, y)

@@ -58,6 +58,7 @@ impl RegisteredOp {
     }
 
     /// The op, if it is of this type.
+    #[must_use]
     pub fn get<T: OpType>(&self) -> Option<&T> {
         self.0.any().downcast_ref()
     }
@@ -94,6 +95,7 @@ impl fmt::Debug for RegisteredOp {
 }
 
 /// The namespace of an op's name, if it has one.
+#[must_use]
 pub fn namespace(op: &str) -> Option<&str> {
     op.split_once('.').map(|(namespace, _)| namespace)
 }

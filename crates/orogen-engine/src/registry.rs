@@ -62,6 +62,7 @@ pub struct Registry {
 
 impl Registry {
     /// The built-in ops alone.
+    #[must_use]
     pub fn new() -> Registry {
         Registry::default()
     }
@@ -102,16 +103,19 @@ impl Registry {
     }
 
     /// All of them with their defaults: the built-in ones, then the registered ones in the order of their registration.
+    #[must_use]
     pub fn nodes(&self) -> Vec<Node> {
         Node::all().into_iter().chain(self.registered.iter().cloned()).collect()
     }
 
     /// The registered ones with their defaults.
+    #[must_use]
     pub fn registered(&self) -> &[Node] {
         &self.registered
     }
 
     /// The op of that name with its defaults.
+    #[must_use]
     pub fn named(&self, op: &str) -> Option<Node> {
         match namespace(op) {
             Some(_) => self.registered.iter().find(|node| node.spec().op == op).cloned(),
@@ -120,6 +124,7 @@ impl Registry {
     }
 
     /// What to say of a name that no op has.
+    #[must_use]
     pub fn unknown(&self, op: &str) -> String {
         let registered = || self.registered.iter().map(|node| node.spec().op);
         let of_namespace = |wanted: &str| registered().filter(|op| namespace(op) == Some(wanted)).collect::<Vec<_>>();

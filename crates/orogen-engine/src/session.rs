@@ -77,31 +77,37 @@ impl Session {
     }
 
     /// The memory budget, which callers can reserve from: see [`Budget::reserve`].
+    #[must_use]
     pub fn budget(&self) -> &Budget {
         &self.budget
     }
 
     /// Number of threads.
+    #[must_use]
     pub fn threads(&self) -> usize {
         self.pool.threads()
     }
 
     /// Number of solutions computed so far, without reused ones.
+    #[must_use]
     pub fn solutions_made(&self) -> u64 {
         self.store.made()
     }
 
     /// Number of filters that were not applied because their grids were kept from an earlier request.
+    #[must_use]
     pub fn filters_found(&self) -> u64 {
         self.grids.found()
     }
 
     /// Memory of kept solutions and grids, in bytes, without that of running requests.
+    #[must_use]
     pub fn kept_memory(&self) -> u64 {
         self.store.memory().saturating_add(self.grids.memory())
     }
 
     /// The same threads and memory with an empty store and without a cache.
+    #[must_use]
     pub fn with_empty_store(&self) -> Session {
         self.with_solutions(Vec::new())
     }

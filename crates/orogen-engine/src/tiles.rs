@@ -21,17 +21,20 @@ pub struct Tiling {
 
 impl Tiling {
     /// Tiles of `side` x `side` samples without overlap.
+    #[must_use]
     pub fn of(side: usize) -> Tiling {
         Tiling { side, overlap: 0, memory: None }
     }
 
     /// Number of tiles of `window`, east and south.
+    #[must_use]
     pub fn layout(&self, window: &Window) -> [usize; 2] {
         let side = self.side.max(1);
         [window.width, window.height].map(|samples| samples.saturating_sub(self.overlap).div_ceil(side).max(1))
     }
 
     /// The window of the tile in column `column` and row `row`.
+    #[must_use]
     pub fn tile(&self, window: &Window, column: usize, row: usize) -> Window {
         self.run(window, [column, row], [1, 1])
     }
@@ -157,11 +160,13 @@ impl<'w> Tiles<'w> {
     }
 
     /// Number of tiles of the window, east and south.
+    #[must_use]
     pub fn layout(&self) -> [usize; 2] {
         self.tiling.layout(&self.window)
     }
 
     /// Number of tiles made at once, east and south: more tiles share halos, fewer take less memory.
+    #[must_use]
     pub fn at_once(&self) -> [usize; 2] {
         self.at_once
     }

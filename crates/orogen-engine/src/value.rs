@@ -42,6 +42,7 @@ pub enum Value {
 
 impl Value {
     /// The description in messages: "the string `abc`", "a table".
+    #[must_use]
     pub fn describe(&self) -> String {
         match self {
             Value::Flag(flag) => format!("{flag}"),
@@ -62,6 +63,7 @@ impl Value {
     }
 
     /// The value as a number; includes integers.
+    #[must_use]
     pub fn number(&self) -> Option<f64> {
         match self {
             Value::Integer(integer) => Some(*integer as f64),
@@ -71,6 +73,7 @@ impl Value {
     }
 
     /// The value in TOML, on one line.
+    #[must_use]
     pub fn to_toml(&self) -> String {
         match self {
             Value::Flag(flag) => flag.to_string(),
@@ -106,6 +109,7 @@ fn toml_number(number: f64) -> String {
 }
 
 /// A TOML basic string.
+#[must_use]
 pub fn toml_string(text: &str) -> String {
     let mut quoted = String::with_capacity(text.len() + 2);
     quoted.push('"');
@@ -124,6 +128,7 @@ pub fn toml_string(text: &str) -> String {
 }
 
 /// A TOML key, quoted only if necessary.
+#[must_use]
 pub fn toml_key(key: &str) -> String {
     let bare = !key.is_empty() && key.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_' || b == b'-');
     if bare { key.to_string() } else { toml_string(key) }

@@ -69,6 +69,7 @@ impl Error {
 
     /// An error of several diagnostics, in the order of the text. Overlong names and numbers in them are
     /// [shortened](crate::words::readable).
+    #[must_use]
     pub fn from_diagnostics(kind: ErrorKind, mut diagnostics: Vec<Diagnostic>) -> Error {
         for diagnostic in &mut diagnostics {
             diagnostic.message = readable(std::mem::take(&mut diagnostic.message));
@@ -77,6 +78,7 @@ impl Error {
     }
 
     /// A file that could not be read or written: the message contains the file, the action and the system's reason.
+    #[must_use]
     pub fn file(doing: &str, path: &std::path::Path, cause: &io::Error) -> Error {
         let message = format!("cannot {doing} {}: {}", path.display(), reason(cause));
         // An I/O error cannot be cloned.
@@ -88,11 +90,13 @@ impl Error {
     }
 
     /// The kind of the error.
+    #[must_use]
     pub fn kind(&self) -> ErrorKind {
         self.kind
     }
 
     /// All problems.
+    #[must_use]
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.diagnostics
     }

@@ -25,36 +25,43 @@ pub struct Window {
 
 impl Window {
     /// The window of `width` x `height` samples that starts at the origin.
+    #[must_use]
     pub fn new(width: usize, height: usize, cell: f64) -> Window {
         Window { x: 0, y: 0, width, height, cell }
     }
 
     /// The same window, starting at column `x` and row `y`.
+    #[must_use]
     pub fn at(self, x: i64, y: i64) -> Window {
         Window { x, y, ..self }
     }
 
     /// The number of samples.
+    #[must_use]
     pub fn len(&self) -> usize {
         self.width * self.height
     }
 
     /// Whether it has no samples.
+    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.width == 0 || self.height == 0
     }
 
     /// The column after the last.
+    #[must_use]
     pub fn right(&self) -> i64 {
         self.x + self.width as i64
     }
 
     /// The row after the last.
+    #[must_use]
     pub fn bottom(&self) -> i64 {
         self.y + self.height as i64
     }
 
     /// The window extended by `halo` samples on each side.
+    #[must_use]
     pub fn grown(&self, halo: usize) -> Window {
         Window {
             x: self.x - halo as i64,
@@ -66,6 +73,7 @@ impl Window {
     }
 
     /// The window without `border` samples on each side; possibly empty.
+    #[must_use]
     pub fn shrunk(&self, border: usize) -> Window {
         Window {
             x: self.x + border as i64,
@@ -77,6 +85,7 @@ impl Window {
     }
 
     /// The smallest window that contains both. Both must have the same cell.
+    #[must_use]
     pub fn union(&self, other: &Window) -> Window {
         debug_assert_eq!(self.cell, other.cell);
         let (x, y) = (self.x.min(other.x), self.y.min(other.y));
@@ -90,6 +99,7 @@ impl Window {
     }
 
     /// The samples of both windows; empty if there are none. Both must have the same cell.
+    #[must_use]
     pub fn intersection(&self, other: &Window) -> Window {
         debug_assert_eq!(self.cell, other.cell);
         let (x, y) = (self.x.max(other.x), self.y.max(other.y));
@@ -98,6 +108,7 @@ impl Window {
     }
 
     /// Whether every sample of `other` belongs to this window.
+    #[must_use]
     pub fn contains(&self, other: &Window) -> bool {
         self.cell == other.cell
             && self.x <= other.x
@@ -124,21 +135,25 @@ impl Window {
     }
 
     /// The easting of column `i`, in metres. Always the global index times the cell, never a running sum.
+    #[must_use]
     pub fn east(&self, i: usize) -> f64 {
         (self.x + i as i64) as f64 * self.cell
     }
 
     /// The southing of row `j`, in metres.
+    #[must_use]
     pub fn south(&self, j: usize) -> f64 {
         (self.y + j as i64) as f64 * self.cell
     }
 
     /// The eastings of all columns, in metres.
+    #[must_use]
     pub fn eastings(&self) -> Vec<f64> {
         (0..self.width).map(|i| self.east(i)).collect()
     }
 
     /// The southings of all rows, in metres.
+    #[must_use]
     pub fn southings(&self) -> Vec<f64> {
         (0..self.height).map(|j| self.south(j)).collect()
     }
@@ -187,26 +202,31 @@ impl<T: Copy> Grid<T> {
     }
 
     /// A grid over `data`; `None` if the number of samples is not that of the window.
+    #[must_use]
     pub fn from_data(window: Window, data: Vec<T>) -> Option<Grid<T>> {
         (data.len() == window.len()).then_some(Grid { window, data })
     }
 
     /// The window of the samples.
+    #[must_use]
     pub fn window(&self) -> &Window {
         &self.window
     }
 
     /// Number of samples per row.
+    #[must_use]
     pub fn width(&self) -> usize {
         self.window.width
     }
 
     /// Number of rows.
+    #[must_use]
     pub fn height(&self) -> usize {
         self.window.height
     }
 
     /// All samples, row-major.
+    #[must_use]
     pub fn data(&self) -> &[T] {
         &self.data
     }
@@ -217,11 +237,13 @@ impl<T: Copy> Grid<T> {
     }
 
     /// The samples without the window, row-major.
+    #[must_use]
     pub fn into_data(self) -> Vec<T> {
         self.data
     }
 
     /// Row `j` of the window, from 0.
+    #[must_use]
     pub fn row(&self, j: usize) -> &[T] {
         &self.data[j * self.window.width..(j + 1) * self.window.width]
     }
@@ -240,6 +262,7 @@ impl<T: Copy> Grid<T> {
     }
 
     /// The part of the grid in `window`; `None` if the grid does not contain all of it.
+    #[must_use]
     pub fn crop(&self, window: &Window) -> Option<Grid<T>> {
         if !self.window.contains(window) {
             return None;

@@ -61,6 +61,7 @@ struct Count {
 
 impl Progress {
     /// Progress without a listener.
+    #[must_use]
     pub fn none() -> Progress {
         Progress::default()
     }
@@ -85,6 +86,7 @@ impl Progress {
     }
 
     /// Whether cancellation was requested.
+    #[must_use]
     pub fn is_cancelled(&self) -> bool {
         let run = &self.piece.run;
         run.cancelled.load(Ordering::Relaxed) || run.stop.get().is_some_and(|flag| flag.load(Ordering::Relaxed))
@@ -128,12 +130,14 @@ impl Progress {
 
     /// A part of this work that counts as `work` when it is finished. It does not add to the
     /// [expected](Progress::expect) amount.
+    #[must_use]
     pub fn part(&self, work: f64) -> Progress {
         let whole = Some((self.clone(), work.max(0.0)));
         Progress { piece: Arc::new(Node { run: Arc::clone(&self.piece.run), whole, ..Node::default() }) }
     }
 
     /// Divides this work into parts by weight. The sum of the weights becomes the expected amount.
+    #[must_use]
     pub fn parts<const N: usize>(&self, weights: [f64; N]) -> [Progress; N] {
         weights.iter().for_each(|weight| self.expect(*weight));
         weights.map(|weight| self.part(weight))

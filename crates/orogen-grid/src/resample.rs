@@ -19,6 +19,7 @@ pub enum LayerKind {
 
 impl LayerKind {
     /// The name in declarations.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             LayerKind::Height => "height",
@@ -28,6 +29,7 @@ impl LayerKind {
     }
 
     /// The description in the reference.
+    #[must_use]
     pub fn about(self) -> &'static str {
         match self {
             LayerKind::Height => "cubic interpolation",
@@ -44,6 +46,7 @@ pub const NOWHERE: (f64, f64) = (f64::NAN, f64::NAN);
 ///
 /// A position exactly at a lattice point (index * cell gives the same f64) has fraction 0 at that index, despite
 /// rounding in the division: also for cells such as 10.24, 0.1 and 1/3.
+#[must_use]
 pub fn split(position: f64, cell: f64) -> (i64, f32) {
     let steps = position / cell;
     // From here on every number is an integer; values beyond i64 saturate.

@@ -68,6 +68,7 @@ const SPELLINGS: [(&str, &str); 4] =
     [("centre", "center"), ("colour", "color"), ("grey", "gray"), ("normalise", "normalize")];
 
 /// A name in its other spelling: "centre" for "center". `None` if it has only one.
+#[must_use]
 pub fn respelled(name: &str) -> Option<String> {
     let other = |(one, other): &(&str, &str)| match (name.contains(one), name.contains(other)) {
         (true, _) => Some(name.replace(one, other)),
@@ -78,6 +79,7 @@ pub fn respelled(name: &str) -> Option<String> {
 }
 
 /// A count with its noun: "1 tile", "3 tiles".
+#[must_use]
 pub fn count(n: usize, thing: &str) -> String {
     match n {
         1 => format!("1 {thing}"),
@@ -86,6 +88,7 @@ pub fn count(n: usize, thing: &str) -> String {
 }
 
 /// A share in per cent, with two decimals: "12.50 %", "less than 0.01 %".
+#[must_use]
 pub fn percent(part: u64, whole: u64) -> String {
     match 100.0 * part as f64 / whole as f64 {
         little if part > 0 && little < 0.01 => "less than 0.01 %".to_string(),
@@ -94,6 +97,7 @@ pub fn percent(part: u64, whole: u64) -> String {
 }
 
 /// A number with up to six digits or to the unit: "2666.67", "0.3125", "1e308".
+#[must_use]
 pub fn number(value: f64) -> String {
     // Formatting rounds to nearest, and parsing it is exact.
     let rounded = match value.abs() {
@@ -114,6 +118,7 @@ const LONGEST_NUMBER: usize = 24;
 
 /// Shortens a message: names between backticks are cut in the middle if they are longer than 80 characters, and numbers
 /// of more than 24 digits are written with an exponent.
+#[must_use]
 pub fn readable(message: String) -> String {
     if message.len() <= LONGEST_NUMBER {
         return message;
@@ -164,6 +169,7 @@ fn short_numbers(text: &str, out: &mut String) {
 }
 
 /// A number of bytes: "1.5 GiB".
+#[must_use]
 pub fn bytes(n: u64) -> String {
     const UNITS: [&str; 6] = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB"];
     let (mut value, mut unit) = (n as f64, 0);

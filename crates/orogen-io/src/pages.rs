@@ -19,21 +19,25 @@ pub const BYTES: usize = SIDE * SIDE * 4;
 const MAX_KEPT: usize = 16;
 
 /// Memory of a grid in a file, in bytes.
+#[must_use]
 pub fn memory(window: &Window) -> u64 {
     (count(window).min(MAX_KEPT) * BYTES + count(window) * size_of::<Option<u32>>()) as u64
 }
 
 /// Size of a grid over a window in a file, in bytes.
+#[must_use]
 pub fn disk(window: &Window) -> u64 {
     (count(window) as u64).saturating_mul(BYTES as u64)
 }
 
 /// Number of pages of a grid over a window.
+#[must_use]
 pub fn count(window: &Window) -> usize {
     window.width.div_ceil(SIDE).saturating_mul(window.height.div_ceil(SIDE))
 }
 
 /// The checksum of a page.
+#[must_use]
 pub fn checksum(bytes: &[u8]) -> u32 {
     crc32fast::hash(bytes)
 }
@@ -61,6 +65,7 @@ impl PageFile {
     }
 
     /// An open file.
+    #[must_use]
     pub fn open(file: File, path: &Path) -> PageFile {
         PageFile { file: Mutex::new(file), path: path.to_path_buf(), _name: None }
     }

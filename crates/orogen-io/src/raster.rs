@@ -22,6 +22,7 @@ enum Kept {
 
 impl Raster {
     /// A raster in memory.
+    #[must_use]
     pub fn in_memory(grid: Grid) -> Raster {
         Raster { kept: Kept::Memory(grid) }
     }
@@ -44,6 +45,7 @@ impl Raster {
     }
 
     /// Memory of a raster on disk, in bytes.
+    #[must_use]
     pub fn memory_on_disk(window: &Window) -> u64 {
         pages::memory(window)
     }

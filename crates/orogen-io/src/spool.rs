@@ -30,12 +30,14 @@ pub struct Spool {
 
 impl Spool {
     /// Keeps everything in memory.
+    #[must_use]
     pub fn in_memory() -> Spool {
         Spool::default()
     }
 
     /// Keeps up to [`IN_MEMORY`] in memory, and more than that in a file on the same disk as `path`. If `path` is a
     /// pipe or a device, the file is in the system's temporary folder.
+    #[must_use]
     pub fn beside(path: &Path) -> Spool {
         Spool { folder: Some(folder_of(path)), most: IN_MEMORY, ..Spool::default() }
     }

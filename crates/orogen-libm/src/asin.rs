@@ -66,6 +66,7 @@ fn comp_r(z: f64) -> f64 {
 /// Computes the inverse sine (arc sine) of the argument `x`.
 /// Arguments to asin must be in the range -1 to 1.
 /// Returns values in radians, in the range of -pi/2 to pi/2.
+#[must_use]
 pub fn asin(mut x: f64) -> f64 {
     let z: f64;
     let r: f64;

@@ -27,6 +27,7 @@ const C4_PIO2: f64 = 4. * FRAC_PI_2; /* 0x401921FB, 0x54442D18 */
 /// The cosine of `x` (f32).
 ///
 /// `x` is specified in radians.
+#[must_use]
 pub fn cosf(x: f32) -> f32 {
     let x64 = x as f64;
 

@@ -28,6 +28,7 @@ const Q5: f64 = -2.01099218183624371326e-07; /* BE8AFDB7 6E09C32D */
 /// system of logarithms, approximately 2.71828).
 /// The result is accurate even for small values of `x`,
 /// where using `exp(x)-1` would lose many significant digits.
+#[must_use]
 pub fn expm1(mut x: f64) -> f64 {
     let hi: f64;
     let lo: f64;

@@ -16,6 +16,7 @@ fn sq(x: f64) -> (f64, f64) {
 }
 
 /// The length of the hypotenuse, `sqrt(x² + y²)` (f64), without overflow on the way.
+#[must_use]
 pub fn hypot(mut x: f64, mut y: f64) -> f64 {
     let x1p700 = f64::from_bits(0x6bb0000000000000); // 0x1p700 === 2 ^ 700
     let x1p_700 = f64::from_bits(0x1430000000000000); // 0x1p-700 === 2 ^ -700

@@ -1,6 +1,7 @@
 /* origin: musl src/math/hypotf.c */
 
 /// The length of the hypotenuse, `sqrt(x² + y²)` (f32), without overflow on the way.
+#[must_use]
 pub fn hypotf(mut x: f32, mut y: f32) -> f32 {
     let x1p90 = f32::from_bits(0x6c800000); // 0x1p90f === 2 ^ 90
     let x1p_90 = f32::from_bits(0x12800000); // 0x1p-90f === 2 ^ -90

@@ -127,6 +127,7 @@ use scalbn::{scalbn, scalbnf};
 
 /// The square root of `x` (f64).
 #[inline]
+#[must_use]
 pub fn sqrt(x: f64) -> f64 {
     x.sqrt()
 }

@@ -26,6 +26,7 @@ const S4PIO2: f64 = 4.0 * PI_2; /* 0x401921FB, 0x54442D18 */
 /// Both the sine and cosine of `x` (f32).
 ///
 /// `x` is specified in radians and the return value is (sin(x), cos(x)).
+#[must_use]
 pub fn sincosf(x: f32) -> (f32, f32) {
     let s: f32;
     let c: f32;

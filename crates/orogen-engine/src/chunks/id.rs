@@ -16,6 +16,7 @@ pub struct ChunkId {
 
 impl ChunkId {
     /// The chunk of the next coarser level that covers this one.
+    #[must_use]
     pub fn parent(self) -> ChunkId {
         ChunkId { level: self.level.saturating_add(1), y: self.y.div_euclid(2), x: self.x.div_euclid(2) }
     }
@@ -29,11 +30,13 @@ impl ChunkId {
     }
 
     /// The chunk of the same level at an offset of columns eastward and rows southward.
+    #[must_use]
     pub fn beside(self, columns: i64, rows: i64) -> ChunkId {
         ChunkId { level: self.level, y: self.y + rows, x: self.x + columns }
     }
 
     /// Whether this chunk contains `other`.
+    #[must_use]
     pub fn covers(self, other: ChunkId) -> bool {
         let Some(levels) = self.level.checked_sub(other.level) else { return false };
         let up = |n: i64| n >> levels.min(63);
@@ -41,6 +44,7 @@ impl ChunkId {
     }
 
     /// Whether the two overlap; one then contains the other.
+    #[must_use]
     pub fn overlaps(self, other: ChunkId) -> bool {
         self.covers(other) || other.covers(self)
     }

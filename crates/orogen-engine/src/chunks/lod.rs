@@ -87,17 +87,20 @@ impl LodConfig {
     }
 
     /// Distance between samples at a level, in metres.
+    #[must_use]
     pub fn cell_of(&self, level: u8) -> f64 {
         // A power of two: exact, so that samples shared by two levels have bit-equal positions.
         self.cell * (1u64 << level.min(63)) as f64
     }
 
     /// Side of a chunk of a level, in metres.
+    #[must_use]
     pub fn side(&self, level: u8) -> f64 {
         self.cells as f64 * self.cell_of(level)
     }
 
     /// The samples of a chunk, including its far edges.
+    #[must_use]
     pub fn window(&self, id: ChunkId) -> Window {
         let samples = self.cells + 1;
         let first = |index: i64| index.saturating_mul(self.cells as i64);
@@ -120,6 +123,7 @@ impl LodConfig {
     }
 
     /// The distance of a viewer from a chunk, in metres; 0 above it.
+    #[must_use]
     pub fn distance(&self, id: ChunkId, [x, y]: [f64; 2]) -> f64 {
         let side = self.side(id.level);
         let along = |at: f64, index: i64| {

@@ -112,16 +112,19 @@ impl Chunks {
     }
 
     /// The configuration.
+    #[must_use]
     pub fn lod(&self) -> &LodConfig {
         &self.lod
     }
 
     /// The samples of a chunk, including its far edges, clipped to a bounded world.
+    #[must_use]
     pub fn window(&self, id: ChunkId) -> Window {
         self.lod.window_within(id, self.size).unwrap_or_else(|| self.lod.window(id))
     }
 
     /// The chunks that cover the terrain around the viewer, whether made or not, sorted.
+    #[must_use]
     pub fn wanted(&self) -> &[ChunkId] {
         &self.wanted
     }
@@ -272,6 +275,7 @@ impl Chunks {
 
     /// The sides of a chunk with a coarser neighbour, for [`stitch`](super::seam::stitch). They change as the viewer
     /// moves.
+    #[must_use]
     pub fn coarser(&self, id: ChunkId) -> Sides {
         let coarser = |columns, rows| {
             let mut beside = id.beside(columns, rows);

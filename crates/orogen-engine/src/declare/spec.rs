@@ -15,6 +15,7 @@ pub enum Locality {
 
 impl Locality {
     /// The name.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Locality::Field => "field",
@@ -47,11 +48,13 @@ pub struct Spec {
 
 impl Spec {
     /// The input with this key or former key.
+    #[must_use]
     pub fn input_named(&self, key: &str) -> Option<usize> {
         self.inputs.iter().position(|input| input.name == key || (!key.is_empty() && input.alias == key))
     }
 
     /// The parameter with this key or former key.
+    #[must_use]
     pub fn param_named(&self, key: &str) -> Option<usize> {
         self.params.iter().position(|param| param.name == key || (!key.is_empty() && param.alias == key))
     }
@@ -125,6 +128,7 @@ fn number(bound: f64) -> String {
 }
 
 /// The first paragraph of a doc, on one line.
+#[must_use]
 pub fn short(doc: &str) -> String {
     let paragraph = doc.trim().split("\n\n").next().unwrap_or_default();
     paragraph.split_whitespace().collect::<Vec<_>>().join(" ")
@@ -132,6 +136,7 @@ pub fn short(doc: &str) -> String {
 
 impl ParamSpec {
     /// The valid values, for messages: "a number from 0 to 1".
+    #[must_use]
     pub fn expected(&self) -> String {
         let unit = match self.unit {
             "" => String::new(),

@@ -53,26 +53,31 @@ impl fmt::Display for Expression {
 
 impl Expression {
     /// The text of the expression.
+    #[must_use]
     pub fn text(&self) -> &str {
         &self.text
     }
 
     /// The names in it, in the order of the text, without duplicates, functions and constants.
+    #[must_use]
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
     /// Its terms; the last one is its value. Empty if it has an error.
+    #[must_use]
     pub fn terms(&self) -> &[Term] {
         &self.terms
     }
 
     /// The error, if there is one.
+    #[must_use]
     pub fn error(&self) -> Option<&ExpressionError> {
         self.error.as_deref()
     }
 
     /// A description of the computation, independent of names, for content keys.
+    #[must_use]
     pub fn key(&self) -> String {
         let mut key = String::new();
         for term in &self.terms {
@@ -86,6 +91,7 @@ impl Expression {
     }
 
     /// The value in f64 for these values of its names.
+    #[must_use]
     pub fn value(&self, names: &[f64]) -> Option<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.terms.len());
         for term in &self.terms {

@@ -32,6 +32,7 @@ op! {
 
 impl Expr {
     /// An expression in which every name is the node or layer of that name.
+    #[must_use]
     pub fn new(expression: &str) -> Expr {
         let expr = Expression::from(expression);
         let inputs = expr.names().iter().map(|name| (name.clone(), Input::from(name))).collect();

@@ -15,6 +15,7 @@ pub struct FrameSpool {
 
 impl FrameSpool {
     /// An empty spool for grids over `window`.
+    #[must_use]
     pub fn new(spool: Spool, window: Window) -> FrameSpool {
         FrameSpool { spool, window, starts: BTreeMap::new() }
     }

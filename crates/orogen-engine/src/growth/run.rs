@@ -103,6 +103,7 @@ impl<'w> Growth<'w> {
     }
 
     /// Total number of steps of all stages.
+    #[must_use]
     pub fn steps(&self) -> u32 {
         self.stages.iter().map(|stage| stage.steps).sum()
     }

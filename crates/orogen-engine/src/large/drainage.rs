@@ -9,6 +9,7 @@ use orogen_io::raster::Raster;
 
 /// Side of a tile, in cells, for a map with this many cells. Larger tiles take more memory each, but have shorter
 /// borders in total.
+#[must_use]
 pub fn side(cells: u64) -> usize {
     match cells {
         0..0x40_0000 => 256,
@@ -18,6 +19,7 @@ pub fn side(cells: u64) -> usize {
 }
 
 /// Memory for the work on one tile and for the borders of all tiles of a map with this many cells, in bytes.
+#[must_use]
 pub fn memory(cells: u64) -> u64 {
     let side = side(cells) as u64;
     let tiles = cells.div_ceil(side * side);

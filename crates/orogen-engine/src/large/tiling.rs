@@ -15,22 +15,26 @@ pub struct Tiling {
 
 impl Tiling {
     /// Tiles of `side` x `side` cells, smaller at the far edges.
+    #[must_use]
     pub fn new(whole: Window, side: usize) -> Tiling {
         let side = side.max(1);
         Tiling { whole, side, columns: whole.width.div_ceil(side), rows: whole.height.div_ceil(side) }
     }
 
     /// Number of tiles.
+    #[must_use]
     pub fn count(&self) -> usize {
         self.columns * self.rows
     }
 
     /// Number of columns of tiles.
+    #[must_use]
     pub fn columns(&self) -> usize {
         self.columns
     }
 
     /// The window of a tile.
+    #[must_use]
     pub fn tile(&self, index: usize) -> Window {
         let (left, top) = (index % self.columns * self.side, index / self.columns * self.side);
         Window {
@@ -43,6 +47,7 @@ impl Tiling {
     }
 
     /// The window of a tile extended by `halo` cells on each side, where the map has them.
+    #[must_use]
     pub fn near(&self, index: usize, halo: usize) -> Window {
         let grown = self.tile(index).grown(halo);
         let (x, y) = (grown.x.max(self.whole.x), grown.y.max(self.whole.y));
@@ -51,22 +56,26 @@ impl Tiling {
     }
 
     /// The number of a cell of the map, in row-major order.
+    #[must_use]
     pub fn cell(&self, x: i64, y: i64) -> u64 {
         (y - self.whole.y) as u64 * self.whole.width as u64 + (x - self.whole.x) as u64
     }
 
     /// The number in the map of the cell with this index in a window.
+    #[must_use]
     pub fn cell_of(&self, window: &Window, index: usize) -> u64 {
         self.cell(window.x + (index % window.width) as i64, window.y + (index / window.width) as i64)
     }
 
     /// The position of a cell.
+    #[must_use]
     pub fn place(&self, cell: u64) -> (i64, i64) {
         let width = self.whole.width as u64;
         (self.whole.x + (cell % width) as i64, self.whole.y + (cell / width) as i64)
     }
 
     /// The tile that contains a cell, and the cell's index in it.
+    #[must_use]
     pub fn locate(&self, cell: u64) -> (usize, usize) {
         let width = self.whole.width as u64;
         let (i, j) = ((cell % width) as usize, (cell / width) as usize);
@@ -75,6 +84,7 @@ impl Tiling {
     }
 
     /// The cell in a direction, if it is on the map.
+    #[must_use]
     pub fn step(&self, cell: u64, (east, south): (isize, isize)) -> Option<u64> {
         let (x, y) = self.place(cell);
         let (x, y) = (x + east as i64, y + south as i64);
@@ -98,6 +108,7 @@ impl<T: Copy> Border<T> {
     }
 
     /// The value of the cell with this index in the tile; `None` if it is not on the border.
+    #[must_use]
     pub fn get(&self, index: usize) -> Option<T> {
         self.slot(index).map(|slot| self.values[slot])
     }
@@ -139,6 +150,7 @@ pub struct Queue {
 
 impl Queue {
     /// An empty queue for `count` tiles.
+    #[must_use]
     pub fn new(count: usize) -> Queue {
         Queue { tiles: VecDeque::new(), waiting: vec![false; count] }
     }

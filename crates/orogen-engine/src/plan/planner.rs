@@ -22,6 +22,7 @@ pub const TILES: [usize; 3] = [1024, 512, 256];
 pub const WORLD_MARGIN: usize = 2;
 
 /// The samples of a world on a lattice, without and with the margin.
+#[must_use]
 pub fn world_windows(size: [f64; 2], cell: f64) -> (Window, Window) {
     // A side that is a whole number of cells up to rounding includes its far edge: 1000 / 0.1 is 10 000 cells.
     let samples = |length: f64| {
@@ -47,6 +48,7 @@ pub struct Planner<'a> {
 
 impl<'a> Planner<'a> {
     /// A planner for a resolved recipe and the content keys of its nodes.
+    #[must_use]
     pub fn new(recipe: &'a Recipe, graph: &'a Graph, keys: &'a [Key]) -> Planner<'a> {
         Planner { recipe, graph, world_params: recipe.world.world_params(), keys, side: TILES[0], threads: 1 }
     }

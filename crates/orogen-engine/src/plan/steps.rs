@@ -66,6 +66,7 @@ pub struct Solve {
 
 impl Solve {
     /// Approximate time on one core, in nanoseconds.
+    #[must_use]
     pub fn work(&self) -> f64 {
         self.source_work + self.own_work
     }
@@ -111,6 +112,7 @@ pub struct GridSlot {
 
 impl Step {
     /// The grids that it reads.
+    #[must_use]
     pub fn reads(&self) -> Vec<usize> {
         match self {
             Step::Fill { program, .. } => program
@@ -126,6 +128,7 @@ impl Step {
     }
 
     /// The grids that it makes.
+    #[must_use]
     pub fn writes(&self) -> Vec<usize> {
         match self {
             Step::Fill { out, .. } => out.clone(),
@@ -134,6 +137,7 @@ impl Step {
     }
 
     /// The window of the result.
+    #[must_use]
     pub fn window(&self) -> &Window {
         match self {
             Step::Fill { window, .. } | Step::Apply { window, .. } => window,
@@ -143,16 +147,19 @@ impl Step {
 
 impl Plan {
     /// The window of the result.
+    #[must_use]
     pub fn window(&self) -> &Window {
         &self.window
     }
 
     /// The solvers that must be solved first, in order.
+    #[must_use]
     pub fn solves(&self) -> &[Solve] {
         &self.solves
     }
 
     /// The steps, in order.
+    #[must_use]
     pub fn steps(&self) -> &[Step] {
         &self.steps
     }
@@ -165,11 +172,13 @@ impl Plan {
     }
 
     /// Whether one program serves all points: no step depends on their positions.
+    #[must_use]
     pub fn is_pointwise(&self) -> bool {
         self.scattered && self.steps.len() == 1 && self.grids.is_empty()
     }
 
     /// The program that a scattered plan evaluates at points, after all other steps.
+    #[must_use]
     pub fn asked(&self) -> Option<&Program> {
         match self.steps.last() {
             Some(Step::Fill { program, out, .. }) if self.scattered && out.is_empty() => Some(program),
@@ -178,6 +187,7 @@ impl Plan {
     }
 
     /// The solvers that its steps read.
+    #[must_use]
     pub fn solvers_read(&self) -> BTreeSet<usize> {
         let mut read = BTreeSet::new();
         for step in &self.steps {
@@ -192,6 +202,7 @@ impl Plan {
     }
 
     /// Number of samples to be made, without solvers' sources.
+    #[must_use]
     pub fn samples(&self) -> u64 {
         self.steps.iter().fold(0u64, |sum, step| sum.saturating_add(step.window().len() as u64))
     }

@@ -54,6 +54,7 @@ impl Default for WorldSpec {
 
 impl WorldSpec {
     /// The parameters of the world for ops.
+    #[must_use]
     pub fn world_params(&self) -> WorldParams {
         WorldParams { seed: self.seed, size: self.size, cell: self.cell, sea_level: self.sea_level }
     }
@@ -129,6 +130,7 @@ impl PartialEq for Recipe {
 
 impl Recipe {
     /// A recipe without nodes.
+    #[must_use]
     pub fn new(world: WorldSpec) -> Recipe {
         Recipe {
             about: String::new(),
@@ -168,11 +170,13 @@ impl Recipe {
     }
 
     /// Its own surfaces, bottom to top.
+    #[must_use]
     pub fn surfaces(&self) -> &[Surface] {
         &self.surfaces
     }
 
     /// Its surfaces with the nodes that compute them, after [`expand`](super::surface::expand::expand).
+    #[must_use]
     pub fn expanded(&self) -> &[Expanded] {
         &self.expanded
     }
@@ -184,6 +188,7 @@ impl Recipe {
 
     /// Its parameters, with their values. [`Recipe::read_with`] and [`Recipe::parse_with`] read a recipe with other
     /// values.
+    #[must_use]
     pub fn parameters(&self) -> &[Parameter] {
         &self.parameters.list
     }
@@ -199,6 +204,7 @@ impl Recipe {
     }
 
     /// The files of the recipes that it uses, directly and indirectly.
+    #[must_use]
     pub fn used(&self) -> &[PathBuf] {
         &self.used
     }
@@ -233,6 +239,7 @@ impl Recipe {
     }
 
     /// The nodes in the order of the text.
+    #[must_use]
     pub fn nodes(&self) -> &[NamedNode] {
         &self.nodes
     }
@@ -309,6 +316,7 @@ impl Recipe {
 
     /// The position of the world on a map: that of the first real place in the recipe, otherwise that of the world's
     /// `crs` and `origin`. A place without a coordinate system is in that of the world. Known after the files are read.
+    #[must_use]
     pub fn georeference(&self) -> Option<Georeference> {
         match (self.place(), self.world.georeference()) {
             (Some(place), _) if place.is_on_map() => Some(place),
@@ -360,6 +368,7 @@ impl Recipe {
     }
 
     /// A recipe that consists of a real place, with its exact samples.
+    #[must_use]
     pub fn from_dem(path: &Path, ground: &Arc<PreparedDem>) -> Recipe {
         let window = *ground.grid.window();
         let size = [window.width, window.height].map(|samples| samples as f64 * window.cell);
@@ -375,6 +384,7 @@ impl Recipe {
     }
 
     /// Memory of its files after they are read, in bytes.
+    #[must_use]
     pub fn held(&self) -> u64 {
         self.held
     }
@@ -385,6 +395,7 @@ impl Recipe {
     }
 
     /// The outputs with their inputs.
+    #[must_use]
     pub fn output_inputs(&self) -> &[(String, Input)] {
         &self.outputs
     }
@@ -392,6 +403,7 @@ impl Recipe {
     /// The recipe as TOML with all defaults written out, so that it makes the same world even if a later version has
     /// other defaults. Recipes that it uses become nodes of it. Parameters keep their current values as defaults, and
     /// formulas are kept.
+    #[must_use]
     pub fn to_toml(&self) -> String {
         let mut text = format!("orogen = {VERSION}\n");
         if !self.about.is_empty() {

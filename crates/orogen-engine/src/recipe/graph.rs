@@ -184,6 +184,7 @@ impl Graph {
     }
 
     /// The error for diagnostics without a text.
+    #[must_use]
     pub fn error(diagnostics: Vec<GraphDiagnostic>) -> Error {
         let diagnostics =
             diagnostics.into_iter().map(|diagnostic| Diagnostic { message: diagnostic.message, place: None }).collect();
@@ -192,6 +193,7 @@ impl Graph {
 
     /// The interpolation of a target. A layer that is interpolated like its source takes the kind of that source, and
     /// so on.
+    #[must_use]
     pub fn layer_kind(&self, recipe: &Recipe, target: LayerRef) -> LayerKind {
         let mut at = target;
         loop {

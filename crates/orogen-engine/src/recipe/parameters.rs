@@ -46,6 +46,7 @@ impl Parameter {
     }
 
     /// The valid values: "a number from 0 to 100 (m)".
+    #[must_use]
     pub fn expected(&self) -> String {
         let range = match self.range {
             [low, high] if low.is_finite() && high.is_finite() => format!(" from {} to {}", number(low), number(high)),
@@ -101,6 +102,7 @@ pub struct Parameters {
 
 impl Parameters {
     /// The value of a parameter.
+    #[must_use]
     pub fn value(&self, name: &str) -> Option<f64> {
         self.list.iter().find(|parameter| parameter.name == name).map(|parameter| parameter.value)
     }
@@ -116,6 +118,7 @@ impl Parameters {
     }
 
     /// The keys of nodes that are bound to the parameter of the same name.
+    #[must_use]
     pub fn bound(&self) -> HashSet<(&str, &str)> {
         let keys = self.formulas.iter().filter_map(|formula| match formula.path.as_slice() {
             [Step::Key(nodes), Step::Key(node), Step::Key(key)] if nodes == "nodes" && formula.text.trim() == key => {

@@ -57,11 +57,13 @@ static PRESETS: &[Preset] = presets![
 pub const DEFAULT: &str = "alpine";
 
 /// All presets, by name.
+#[must_use]
 pub fn all() -> &'static [Preset] {
     PRESETS
 }
 
 /// The preset with this name.
+#[must_use]
 pub fn find(name: &str) -> Option<&'static Preset> {
     PRESETS.iter().find(|preset| preset.name == name)
 }

@@ -8,11 +8,13 @@ use crate::value::Value;
 use std::fmt::Write as _;
 
 /// One line a built-in op: its name, its locality and what it does.
+#[must_use]
 pub fn overview() -> String {
     overview_of(&Registry::new())
 }
 
 /// One line for each of these ops.
+#[must_use]
 pub fn overview_of(registry: &Registry) -> String {
     let nodes = registry.nodes();
     let longest = nodes.iter().map(|node| node.spec().op.len()).max().unwrap_or(0);
@@ -25,6 +27,7 @@ pub fn overview_of(registry: &Registry) -> String {
 }
 
 /// The first sentence of an op's doc.
+#[must_use]
 pub fn first_sentence(spec: &Spec) -> String {
     let doc = short(spec.doc);
     match doc.find(". ") {
@@ -34,6 +37,7 @@ pub fn first_sentence(spec: &Spec) -> String {
 }
 
 /// The complete description of an op, for a terminal.
+#[must_use]
 pub fn describe(node: &Node) -> String {
     let spec = node.spec();
     let mut text = format!("{} ({})\n\n{}\n", spec.op, spec.locality.name(), spec.doc.trim());
@@ -95,6 +99,7 @@ fn between(layer: &Layer) -> String {
 }
 
 /// The reference of all built-in ops as a page of documentation, Markdown.
+#[must_use]
 pub fn markdown() -> String {
     format!(
         "<!-- Written by `cargo xtask codegen` from the declarations in crates/orogen-engine/src. Do not edit. -->\n\n{}",
@@ -103,6 +108,7 @@ pub fn markdown() -> String {
 }
 
 /// The reference of these ops as a page of documentation, Markdown.
+#[must_use]
 pub fn markdown_of(registry: &Registry) -> String {
     let nodes = registry.nodes();
     let mut text = String::from(

@@ -58,6 +58,7 @@ pub static WORLD: &[ParamSpec] = &[
 ];
 
 /// The world's parameter with this name.
+#[must_use]
 pub fn world_param(name: &str) -> Option<&'static ParamSpec> {
     WORLD.iter().find(|spec| spec.name == name)
 }
@@ -84,6 +85,7 @@ pub fn read_world(spec: &ParamSpec, value: &Value, world: &mut WorldSpec) -> Res
 }
 
 /// The world's parameters as values.
+#[must_use]
 pub fn world_values(world: &WorldSpec) -> Vec<(&'static str, Value)> {
     let mut values =
         vec![("seed", world.seed.write()), ("cell", world.cell.write()), ("sea_level", world.sea_level.write())];
@@ -93,11 +95,13 @@ pub fn world_values(world: &WorldSpec) -> Vec<(&'static str, Value)> {
 }
 
 /// The schema (draft 7) that editors check recipes of built-in ops against.
+#[must_use]
 pub fn json_schema() -> Json {
     json_schema_of(&Registry::new())
 }
 
 /// The schema of recipes of these ops.
+#[must_use]
 pub fn json_schema_of(registry: &Registry) -> Json {
     let name = json!({ "type": "string", "pattern": "^[A-Za-z_][A-Za-z0-9_-]{0,63}$" });
     let mut world: Map<String, Json> =

@@ -34,6 +34,7 @@ impl Cache {
 
     /// The system's cache folder for Orogen, if it is known: `$XDG_CACHE_HOME/orogen` or `~/.cache/orogen`,
     /// `~/Library/Caches/orogen` on macOS, `%LOCALAPPDATA%\orogen\cache` on Windows.
+    #[must_use]
     pub fn system_folder() -> Option<PathBuf> {
         let absolute = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
         if cfg!(windows) {

@@ -6,6 +6,7 @@ pub struct Random(u64);
 
 impl Random {
     /// A separate sequence for each pair of `seed` and `stream`.
+    #[must_use]
     pub fn new(seed: u64, stream: u64) -> Random {
         let mut random = Random(seed ^ stream.wrapping_mul(0xD1B5_4A32_D192_ED03));
         random.0 = random.draw().wrapping_add(stream);

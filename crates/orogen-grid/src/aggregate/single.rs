@@ -7,6 +7,7 @@ use super::random::Random;
 ///
 /// Walkers step to one of the four neighbours and stick beside a cell (Witten and Sander 1981). A walker farther away
 /// than twice the aggregate's radius is dropped. The number of cells grows as the radius to the power of 1.71.
+#[must_use]
 pub fn aggregate(side: usize, members: usize, seed: u64) -> Vec<bool> {
     let mut cells = vec![false; side * side];
     let middle = side as i64 / 2;

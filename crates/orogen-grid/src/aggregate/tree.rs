@@ -32,26 +32,31 @@ pub struct Tree {
 
 impl Tree {
     /// An empty tree that grows at most `reach` times half the grid from the centre.
+    #[must_use]
     pub fn new(width: usize, height: usize, reach: f64) -> Tree {
         Tree { width, height, members: vec![FREE; width * height], cells: Vec::new(), parents: Vec::new(), reach }
     }
 
     /// Number of columns.
+    #[must_use]
     pub fn width(&self) -> usize {
         self.width
     }
 
     /// Number of rows.
+    #[must_use]
     pub fn height(&self) -> usize {
         self.height
     }
 
     /// The cells of the members, oldest first.
+    #[must_use]
     pub fn cells(&self) -> &[u32] {
         &self.cells
     }
 
     /// Number of cells within the limit of growth.
+    #[must_use]
     pub fn room(&self) -> usize {
         let rows = (0..self.height).map(|j| (0..self.width).filter(|i| self.holds(*i as i64, j as i64)).count());
         rows.sum()
@@ -190,6 +195,7 @@ impl Tree {
     }
 
     /// The distance of each member to the farthest tip that grew on it, in members.
+    #[must_use]
     pub fn to_tips(&self) -> Vec<u32> {
         let mut steps = vec![0u32; self.cells.len()];
         for (member, parent) in self.parents.iter().enumerate().rev() {

@@ -11,6 +11,7 @@ pub fn aspect(grid: &Grid) -> Grid {
 }
 
 /// The aspect of one gradient, in degrees clockwise from north; NaN on level ground.
+#[must_use]
 pub fn aspect_of(gradient: Gradient) -> f32 {
     if gradient.east == 0.0 && gradient.north == 0.0 {
         return f32::NAN;

@@ -35,6 +35,7 @@ pub struct Facet {
 
 impl Facet {
     /// A facet from its gradient: rise per metre eastward and southward.
+    #[must_use]
     pub fn new(east: f64, south: f64) -> Facet {
         let length = (1.0 + east * east + south * south).sqrt();
         let up = 1.0 / length;
@@ -64,6 +65,7 @@ pub struct Sunlight {
 impl ClearSky {
     /// The irradiance of a sun at `azimuth` (degrees clockwise from north) and `elevation` (degrees, above 0) on day
     /// `day` of the year (from 1), for ground between `lowest` and `highest` metres.
+    #[must_use]
     pub fn sunlight(&self, day: f64, [azimuth, elevation]: [f64; 2], [lowest, highest]: [f64; 2]) -> Sunlight {
         let angle = elevation.to_radians();
         let (sine, cosine) = libm::sincos(angle);
@@ -115,6 +117,7 @@ impl ClearSky {
 
 impl Sunlight {
     /// The irradiance of a facet at `height` metres, in W/m^2. `lit` is false in the shadow of other ground.
+    #[must_use]
     pub fn on(&self, facet: &Facet, height: f64, lit: bool) -> f64 {
         let [east, south, up] = self.towards;
         let at = ((height - self.lowest) / self.step).clamp(0.0, LEVELS as f64);

@@ -26,6 +26,7 @@ pub enum Curvature {
 }
 
 /// The curvature in 1/m at every sample of `grid` except its border; NaN where one of the nine samples is not finite.
+#[must_use]
 pub fn curvature(grid: &Grid, kind: Curvature) -> Grid {
     let window = inner(grid.window());
     let mut out = Grid::filled(window, 0.0f32);
@@ -42,6 +43,7 @@ pub fn curvature(grid: &Grid, kind: Curvature) -> Grid {
 }
 
 /// The curvature at the centre of nine heights `c` metres apart, rows from the north; NaN where one is not finite.
+#[must_use]
 pub fn bend(z: [[f64; 3]; 3], c: f64, kind: Curvature) -> f32 {
     let r = (z[1][0] - 2.0 * z[1][1] + z[1][2]) / (c * c);
     let t = (z[0][1] - 2.0 * z[1][1] + z[2][1]) / (c * c);

@@ -9,11 +9,13 @@ use rayon::prelude::*;
 /// Scans the columns first, then the rows with the lower envelope of parabolas in integers (A. Meijster, J. Roerdink
 /// and W. Hesselink, "A general algorithm for computing distance transforms in linear time", 2000): O(samples) for any
 /// reach.
+#[must_use]
 pub fn nearest(grid: &Grid, threshold: f32, reach: usize) -> Grid {
     nearest_within(grid, threshold, reach, reach)
 }
 
 /// [`nearest`] for every sample of `grid` and without a limit of distance.
+#[must_use]
 pub fn nearest_in_whole(grid: &Grid, threshold: f32) -> Grid {
     nearest_within(grid, threshold, 0, grid.width() + grid.height())
 }

@@ -14,12 +14,14 @@ pub struct FiniteCount {
 
 impl FiniteCount {
     /// Counts these samples.
+    #[must_use]
     pub fn of(samples: &[f32]) -> FiniteCount {
         let finite = samples.iter().filter(|sample| sample.is_finite()).count();
         FiniteCount { samples: samples.len() as u64, finite: finite as u64 }
     }
 
     /// The sum of both counts.
+    #[must_use]
     pub fn and(self, other: FiniteCount) -> FiniteCount {
         FiniteCount { samples: self.samples + other.samples, finite: self.finite + other.finite }
     }

@@ -51,11 +51,13 @@ pub struct Look {
 
 impl Look {
     /// The same number of steps in all directions, with the paper's rule.
+    #[must_use]
     pub fn square(radius: usize, flat: f64) -> Look {
         Look { straight: radius, diagonal: radius, flat, level: Level::ByDifference }
     }
 
     /// The same distance in all directions: `reach` cells.
+    #[must_use]
     pub fn round(reach: f64, flat: f64, level: Level) -> Look {
         let straight = (reach as usize).max(1);
         let diagonal = ((reach * std::f64::consts::FRAC_1_SQRT_2) as usize).clamp(1, straight);
@@ -67,6 +69,7 @@ impl Look {
 /// [`FORMS`]). The code is 0 if the sample or a sample in its lines of sight is not finite.
 ///
 /// Costs O(samples times 8 radius). Rows are computed in parallel.
+#[must_use]
 pub fn geomorphons(grid: &Grid, look: &Look) -> Grid<u8> {
     let radius = look.straight;
     let from = *grid.window();
@@ -133,6 +136,7 @@ pub fn count(forms: &Grid<u8>, counts: &mut [u64; 11]) {
 }
 
 /// The share of each form, in the order of [`FORMS`], among the counted samples that have a form; zeros if none has.
+#[must_use]
 pub fn shares(counts: &[u64; 11]) -> [f64; 10] {
     let total: u64 = counts[1..].iter().sum();
     std::array::from_fn(|k| if total == 0 { 0.0 } else { counts[k + 1] as f64 / total as f64 })

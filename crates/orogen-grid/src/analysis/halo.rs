@@ -17,6 +17,7 @@ pub struct Halo {
 
 impl Halo {
     /// An empty halo of `window`, for the parts of it that lie inside the window `there`.
+    #[must_use]
     pub fn new(window: &Window, there: &Window) -> Halo {
         let row = |is_there: bool| is_there.then(|| vec![f32::NAN; window.width + 2]);
         let column = |is_there: bool| is_there.then(|| vec![f32::NAN; window.height]);

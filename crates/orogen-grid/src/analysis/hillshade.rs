@@ -34,6 +34,7 @@ impl Default for Light {
 impl Light {
     /// Light from `azimuth` degrees (clockwise from north) and `altitude` degrees above the horizon; heights are
     /// multiplied by `z_factor`.
+    #[must_use]
     pub fn new(azimuth: f64, altitude: f64, z_factor: f64) -> Light {
         let (azimuth, altitude) = (azimuth.to_radians(), altitude.to_radians());
         Light {
@@ -46,6 +47,7 @@ impl Light {
 
     /// The illumination of ground with this gradient, 0 to 1; 0 if the gradient is not a number.
     #[inline(always)]
+    #[must_use]
     pub fn on(&self, gradient: Gradient) -> f32 {
         let (p, q) = (self.z_factor * gradient.east, self.z_factor * gradient.north);
         let light = self.toward(p, q) / (1.0 + p * p + q * q).sqrt();
@@ -55,6 +57,7 @@ impl Light {
     }
 
     /// The illumination of level ground.
+    #[must_use]
     pub fn on_level(&self) -> f32 {
         self.up
     }
@@ -66,6 +69,7 @@ impl Light {
 }
 
 /// The hillshade, 0 to 1, of every sample of `grid` except its border.
+#[must_use]
 pub fn hillshade(grid: &Grid, light: &Light) -> Grid {
     let window = inner(grid.window());
     let mut out = Grid::filled(window, 0.0);

@@ -4,6 +4,7 @@ use crate::grid::Grid;
 
 /// The hypsometric curve (Strahler 1952): the share of the area, 0 to 1, at or above each of `steps` + 1 evenly spaced
 /// heights from the lowest to the highest. None if no sample is finite or `steps` is 0.
+#[must_use]
 pub fn curve(grid: &Grid, steps: usize) -> Option<Vec<f64>> {
     let (low, high) = range(grid)?;
     if steps == 0 {
@@ -32,6 +33,7 @@ pub fn curve(grid: &Grid, steps: usize) -> Option<Vec<f64>> {
 }
 
 /// The hypsometric integral, 0 to 1: (mean - lowest) / (highest - lowest). None if there is no relief.
+#[must_use]
 pub fn integral(grid: &Grid) -> Option<f64> {
     let (low, high) = range(grid)?;
     let (mut sum, mut count) = (0.0, 0u64);

@@ -33,6 +33,7 @@ fn half_widths(radius: usize) -> Vec<usize> {
 /// radius, including the sample itself.
 ///
 /// Holds 16 bytes per sample of `grid`. Costs O(samples times radius). Rows are computed in parallel.
+#[must_use]
 pub fn positions(grid: &Grid, radius: usize) -> Grid<Position> {
     let window = grid.window().shrunk(radius);
     let mut out = Grid::filled(window, Position { above_mean: 0.0, deviation: 0.0 });
@@ -80,6 +81,7 @@ fn prefix_sums(row: &[f32]) -> Vec<[i64; 2]> {
 pub const CLASSES: [&str; 6] = ["ridge", "upper slope", "middle slope", "flat", "lower slope", "valley"];
 
 /// The slope position (Weiss 2001) of a deviation and a slope in degrees, as a code from 1 (see [`CLASSES`]).
+#[must_use]
 pub fn class(deviation: f32, slope: f32) -> u8 {
     match deviation {
         d if d > 1.0 => 1,

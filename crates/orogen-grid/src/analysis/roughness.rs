@@ -6,6 +6,7 @@ use crate::grid::Grid;
 
 /// The mean absolute difference, in metres, between a sample and its eight neighbours (Wilson and others 2007, after
 /// Riley 1999). Smaller than `grid` by a border of one sample; NaN where one of the nine samples is not finite.
+#[must_use]
 pub fn ruggedness(grid: &Grid) -> Grid {
     let window = inner(grid.window());
     let mut out = Grid::filled(window, 0.0f32);
@@ -24,6 +25,7 @@ pub fn ruggedness(grid: &Grid) -> Grid {
 /// eight neighbours (Riley, DeGloria and Elliot, "A terrain ruggedness index that quantifies topographic
 /// heterogeneity", 1999). Smaller than `grid` by a border of one sample; NaN where one of the nine samples is not
 /// finite.
+#[must_use]
 pub fn riley(grid: &Grid) -> Grid {
     over_nine(grid, |z| {
         let here = z[1][1];

@@ -12,6 +12,7 @@ pub struct Selection {
 impl Selection {
     /// 1 from `range[0]` to `range[1]`; 0 from `falloff[0]` below and from `falloff[1]` above the range. A fall-off of
     /// 0 is a sharp end.
+    #[must_use]
     pub fn new(range: [f64; 2], falloff: [f64; 2]) -> Selection {
         let [low, high] = range.map(|bound| bound as f32);
         let [below, above] = falloff.map(|width| width as f32);
@@ -19,6 +20,7 @@ impl Selection {
     }
 
     /// The weight of a value, 0 to 1; 0 for NaN.
+    #[must_use]
     pub fn of(&self, value: f32) -> f32 {
         if value >= self.low && value <= self.high {
             1.0

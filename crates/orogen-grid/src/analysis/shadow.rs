@@ -16,6 +16,7 @@ const NOTHING: f32 = -1e30;
 
 impl<'a> Shadows<'a> {
     /// Prepares rows of `columns` heights, `cell` metres apart. Holds 4 bytes per sample.
+    #[must_use]
     pub fn new(heights: &'a [f32], columns: usize, cell: f64) -> Shadows<'a> {
         let rows = heights.len() / columns.max(1);
         Shadows { heights, turned: transposed(heights, columns), columns, rows, cell }
@@ -27,6 +28,7 @@ impl<'a> Shadows<'a> {
     /// to row (or from column to column, whichever is closer to the sun's direction). It is raised to the ground where
     /// that is higher, and falls with the sun's elevation. Heights between samples are linear, and so is the shadow
     /// between two lines. Shadows have unlimited length. Costs O(samples) and 1 byte per sample.
+    #[must_use]
     pub fn lit(&self, towards: [f64; 3]) -> Vec<bool> {
         let [east, south, up] = towards;
         if south.abs() >= east.abs() {

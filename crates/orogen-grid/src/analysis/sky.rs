@@ -48,6 +48,7 @@ fn steps() -> impl Iterator<Item = i64> {
 
 /// The sky-view factor, 0 to 1, at the samples of `window`, with horizons up to `reach` samples away. `heights` covers
 /// the window and its surroundings; beyond it the sky is open. NaN at samples that are not finite; they hide nothing.
+#[must_use]
 pub fn view(heights: &Grid, window: &Window, reach: usize) -> Grid {
     let (looks, shares) = looks(reach, window.cell);
     let all = heights.window();

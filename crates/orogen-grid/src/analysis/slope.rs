@@ -27,11 +27,13 @@ pub struct Gradient {
 
 impl Gradient {
     /// The steepest rise per metre: the tangent of the slope angle.
+    #[must_use]
     pub fn steepness(&self) -> f32 {
         (self.east * self.east + self.north * self.north).sqrt()
     }
 
     /// The upward unit normal: east, north and up.
+    #[must_use]
     pub fn normal(&self) -> [f32; 3] {
         let length = (1.0 + self.east * self.east + self.north * self.north).sqrt();
         [-self.east / length, -self.north / length, 1.0 / length]
@@ -81,16 +83,19 @@ pub fn from_gradients(grid: &Grid, value: impl Fn(Gradient) -> f32) -> Grid {
 }
 
 /// The slope, rise over run, at every sample except the border.
+#[must_use]
 pub fn steepness(grid: &Grid) -> Grid {
     from_gradients(grid, |gradient| gradient.steepness())
 }
 
 /// The slope angle in degrees, 0 to 90.
+#[must_use]
 pub fn degrees(grid: &Grid) -> Grid {
     from_gradients(grid, |gradient| libm::atanf(gradient.steepness()).to_degrees())
 }
 
 /// The window without a border of one sample; possibly empty.
+#[must_use]
 pub fn inner(window: &Window) -> Window {
     let (width, height) = (window.width.saturating_sub(2), window.height.saturating_sub(2));
     match width == 0 || height == 0 {
@@ -101,6 +106,7 @@ pub fn inner(window: &Window) -> Window {
 
 /// The grid extended by one sample on each side with linear extrapolation, for the edges of a world. (With Horn's
 /// weights this gives one-sided slopes at the border.)
+#[must_use]
 pub fn extended(grid: &Grid) -> Grid {
     let mut out = Grid::filled(grid.window().grown(1), f32::NAN);
     let (width, height) = (grid.width(), grid.height());
@@ -131,6 +137,7 @@ pub fn extend_row(row: &[f32], out: &mut [f32]) {
 
 /// Linear extrapolation: the value after `last` on the line from `before`.
 #[doc(hidden)]
+#[must_use]
 pub fn beyond(last: f32, before: f32) -> f32 {
     let next = last + (last - before);
     if next.is_finite() { next } else { last }

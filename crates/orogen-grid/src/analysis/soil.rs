@@ -36,6 +36,7 @@ pub struct Soil {
 
 impl Soil {
     /// The depth, in metres, where `carried` metres per year are removed (negative where soil accumulates).
+    #[must_use]
     pub fn depth(&self, carried: f64) -> f64 {
         if carried.is_nan() {
             return f64::NAN;
@@ -57,6 +58,7 @@ impl Soil {
     /// The depth, in metres, at the centre of 3 x 3 heights `c` metres apart, rows from the north: from the fluxes
     /// through the four sides of its cell. 0 if a side is steeper than the critical slope. NaN if one of the nine
     /// heights is not finite.
+    #[must_use]
     pub fn depth_at(&self, z: [[f64; 3]; 3], c: f64) -> f64 {
         // Downhill flux: by the drop across a side, and the mean drop along it.
         let east = |x: usize| {
@@ -76,6 +78,7 @@ impl Soil {
     }
 
     /// The depth, in metres, at every sample of `grid` except its border. Rows are computed in parallel.
+    #[must_use]
     pub fn depths(&self, grid: &Grid) -> Grid {
         let cell = grid.window().cell;
         over_nine(grid, |z| self.depth_at(z, cell) as f32)

@@ -26,6 +26,7 @@ pub struct Band {
 /// The power spectrum, averaged over all directions, for wavelengths from two cells to half a side. The grid is covered
 /// by squares of 2^n samples, at most 512. Their least-squares planes are subtracted, Hann's window is applied, and
 /// their powers are averaged. Empty if the grid has fewer than 16 samples along a side. NaN counts as the plane.
+#[must_use]
 pub fn spectrum(grid: &Grid) -> Vec<Band> {
     let window = grid.window();
     let rows = |rows: Range<usize>| {
@@ -95,6 +96,7 @@ pub fn spectrum_of_rows(window: &Window, rows: impl Fn(Range<usize>) -> Result<G
 /// The exponent beta of P ~ wavelength^beta (-beta as a power of the frequency), fitted between 4 and 64 cells. Real
 /// terrain has 3.2 to 4.4 at 30 to 90 m. A surface of Hurst exponent H has beta = 2 H + 2. None if there are too few
 /// classes.
+#[must_use]
 pub fn slope(bands: &[Band], cell: f64) -> Option<f64> {
     let points: Vec<(f64, f64)> = bands
         .iter()
@@ -106,6 +108,7 @@ pub fn slope(bands: &[Band], cell: f64) -> Option<f64> {
 
 /// Half the slope of the structure function in logarithms: mean squared height differences at 2 to 16 cells along both
 /// axes. For fractional Brownian surfaces this is the Hurst exponent H. None if there is no relief.
+#[must_use]
 pub fn hurst(grid: &Grid) -> Option<f64> {
     let mut rises = Rises::default();
     rises.add(grid, grid.height());
@@ -143,6 +146,7 @@ impl Rises {
     }
 
     /// The exponent, after all rows of the window were added.
+    #[must_use]
     pub fn hurst(&self, window: &Window) -> Option<f64> {
         if window.width.min(window.height) <= Rises::BELOW {
             return None;

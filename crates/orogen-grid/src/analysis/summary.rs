@@ -38,6 +38,7 @@ pub struct Summary {
 
 impl Gatherer {
     /// An empty summary; samples above `sea_level` count as land.
+    #[must_use]
     pub fn new(sea_level: f64) -> Gatherer {
         Gatherer {
             sea_level: sea_level as f32,
@@ -70,6 +71,7 @@ impl Gatherer {
     }
 
     /// The summary of all samples added.
+    #[must_use]
     pub fn finish(self) -> Summary {
         let count = self.finite as f64;
         let none = self.finite == 0;
@@ -86,6 +88,7 @@ impl Gatherer {
 }
 
 /// The summary of one grid's samples.
+#[must_use]
 pub fn summary(samples: &[f32], sea_level: f64) -> Summary {
     let mut gatherer = Gatherer::new(sea_level);
     gatherer.add(samples);

@@ -18,6 +18,7 @@ impl Moment {
     /// Declination by J. W. Spencer's series ("Fourier series representation of the position of the sun", Search 2(5),
     /// 1971), accurate to 0.04 degrees. Because the time is true solar time, longitude and the equation of time do not
     /// matter. Atmospheric refraction (half a degree at the horizon) is ignored.
+    #[must_use]
     pub fn sun(&self) -> [f64; 2] {
         let turn = (f64::from(self.day) - 1.0 + (self.hour - 12.0) / 24.0) * std::f64::consts::TAU / 365.0;
         let wave = |times: f64| libm::sincos(turn * times);
@@ -35,6 +36,7 @@ impl Moment {
     }
 
     /// The hours of sunrise and sunset on that day: `None` if the sun never rises, 0 to 24 if it never sets.
+    #[must_use]
     pub fn daylight(&self) -> Option<[f64; 2]> {
         let noon = Moment { hour: 12.0, ..*self };
         let midnight = Moment { hour: 0.0, ..*self };

@@ -26,6 +26,7 @@ pub struct Observer {
 const EARTH: f64 = 6_371_008.8;
 
 /// [`Observer::sinking`] for the earth's curvature and a refraction coefficient (usually 0.13 for light).
+#[must_use]
 pub fn sinking(refraction: f64) -> f64 {
     (1.0 - refraction) / (2.0 * EARTH)
 }

@@ -45,6 +45,7 @@ pub struct Levels {
 
 impl Levels {
     /// Prepares levels in ascending order.
+    #[must_use]
     pub fn new(levels: &[f64]) -> Levels {
         let reached = |level: &f64| {
             let near = *level as f32;
@@ -91,6 +92,7 @@ impl<'a> Row<'a> {
 impl Band {
     /// The band of these rows, which must not be the grid's last row alone. Its cells extend to the next row, if there
     /// is one.
+    #[must_use]
     pub fn of(grid: &Grid, rows: Range<usize>, levels: &Levels) -> Band {
         let width = grid.width();
         let mut band = Band::default();

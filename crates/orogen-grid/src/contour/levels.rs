@@ -48,6 +48,7 @@ pub fn given(levels: &[f64]) -> Result<Vec<f64>> {
 
 /// A round interval (1, 2 or 5 times a power of ten) that gives at most `most` levels within `relief` metres; 1 if
 /// there is no relief.
+#[must_use]
 pub fn round_interval(relief: f64, most: usize) -> f64 {
     let least = relief / most.max(1) as f64;
     if !(least > 1e-9 && least < 1e12) {
@@ -58,6 +59,7 @@ pub fn round_interval(relief: f64, most: usize) -> f64 {
 }
 
 /// Whether a level is an index contour: every fifth, counted from 0.
+#[must_use]
 pub fn is_index(level: f64, interval: f64) -> bool {
     let fifth = level / (5.0 * interval);
     (fifth - fifth.round()).abs() < 1e-6

@@ -24,12 +24,14 @@ impl Line {
     }
 
     /// The length, in metres.
+    #[must_use]
     pub fn length(&self) -> f64 {
         let ends = self.path().zip(self.path().skip(1));
         ends.map(|([ax, ay], [bx, by])| ((bx - ax) * (bx - ax) + (by - ay) * (by - ay)).sqrt()).sum()
     }
 
     /// The area within a ring in square metres, positive if it encloses higher ground; 0 for an open line.
+    #[must_use]
     pub fn area(&self) -> f64 {
         match self.closed {
             true => twice_area(&self.points) / 2.0,
@@ -39,6 +41,7 @@ impl Line {
 }
 
 /// Twice the area within a ring of eastings and southings, positive if it is counter-clockwise with north up.
+#[must_use]
 pub fn twice_area(points: &[[f64; 2]]) -> f64 {
     let Some(&[x0, y0]) = points.first() else { return 0.0 };
     // Relative to the first point: far from the origin, products of coordinates would lose the area to rounding.

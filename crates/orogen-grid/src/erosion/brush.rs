@@ -13,6 +13,7 @@ pub struct Brush {
 
 impl Brush {
     /// A brush of this radius in cells; 0 spreads nothing.
+    #[must_use]
     pub fn new(radius: f64) -> Brush {
         let reach = radius.ceil() as i64;
         let bell = |d: i64| if d == 0 { 1.0 } else { libm::exp(-2.0 * (d * d) as f64 / (radius * radius)) };
@@ -21,17 +22,20 @@ impl Brush {
     }
 
     /// The radius, in cells.
+    #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
     /// The number of cells that it reaches to each side.
+    #[must_use]
     pub fn reach(&self) -> usize {
         self.weights.len() / 2
     }
 
     /// Converts sums in units, over rows of `width`, into metres and spreads them. The result has `border` cells less
     /// on each side.
+    #[must_use]
     pub fn over(&self, sums: &[i64], width: usize, border: usize) -> Vec<f32> {
         let (inner, tall) = (width - 2 * border, sums.len() / width - 2 * border);
         let reach = self.reach();

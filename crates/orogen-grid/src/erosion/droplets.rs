@@ -65,6 +65,7 @@ impl Droplets {
     }
 
     /// The halo of all batches, in samples.
+    #[must_use]
     pub fn halo(&self, cell: f64) -> usize {
         self.batches * self.reach(cell)
     }

@@ -55,6 +55,7 @@ const TINY: f32 = 1e-30;
 
 impl Sweep {
     /// The state above the first row of planes of this width.
+    #[must_use]
     pub fn new(width: usize) -> Sweep {
         let rows = || std::array::from_fn(|_| vec![0.0; width]);
         Sweep { limits: rows(), loads: rows(), changes: rows() }

@@ -69,6 +69,7 @@ pub struct Wet {
 
 impl Wet {
     /// Dry ground within walls.
+    #[must_use]
     pub fn new(bed: &Grid) -> Wet {
         let window = *bed.window();
         let mut wet = Wet { planes: Planes::new(window.width + 2, window.height + 2), window };
@@ -79,11 +80,13 @@ impl Wet {
     }
 
     /// The window of the cells.
+    #[must_use]
     pub fn window(&self) -> &Window {
         &self.window
     }
 
     /// The values of one plane.
+    #[must_use]
     pub fn plane(&self, plane: usize) -> Grid {
         let mut out = Grid::filled(self.window, 0.0f32);
         let rows = out.data_mut().par_chunks_mut(self.window.width.max(1)).enumerate();
@@ -112,6 +115,7 @@ impl Wet {
 
     /// The speed of the water, in m/s, computed by `pipes`: discharge over depth; 0 where the depth is less than 0.1
     /// mm.
+    #[must_use]
     pub fn speed(&self, pipes: &Pipes) -> Grid {
         let mut out = Grid::filled(self.window, 0.0f32);
         let scale = (0.5 * self.window.cell / pipes.step(self.window.cell)) as f32;
@@ -132,6 +136,7 @@ impl Wet {
 
 impl Pipes {
     /// Seconds per iteration at this cell: the time step, or the longest stable one.
+    #[must_use]
     pub fn step(&self, cell: f64) -> f64 {
         self.time_step.min(cell * (COURANT / (self.gravity * self.pipe)).sqrt())
     }

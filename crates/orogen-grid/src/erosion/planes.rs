@@ -16,22 +16,26 @@ pub struct Planes<const N: usize> {
 
 impl<const N: usize> Planes<N> {
     /// Planes of zeros.
+    #[must_use]
     pub fn new(width: usize, height: usize) -> Planes<N> {
         Planes { width, height, data: vec![0.0; width * height * N] }
     }
 
     /// Samples per row.
+    #[must_use]
     pub fn width(&self) -> usize {
         self.width
     }
 
     /// Number of rows.
+    #[must_use]
     pub fn height(&self) -> usize {
         self.height
     }
 
     /// Row `j` of every plane.
     #[inline(always)]
+    #[must_use]
     pub fn row(&self, j: usize) -> [&[f32]; N] {
         let row = &self.data[j * N * self.width..(j + 1) * N * self.width];
         std::array::from_fn(|plane| &row[plane * self.width..(plane + 1) * self.width])
@@ -44,6 +48,7 @@ impl<const N: usize> Planes<N> {
     }
 
     /// Plane `plane` as a grid over `window`, which must have as many samples.
+    #[must_use]
     pub fn grid(&self, plane: usize, window: Window) -> Grid {
         let mut grid = Grid::filled(window, 0.0f32);
         let rows = grid.data_mut().par_chunks_mut(window.width.max(1)).enumerate();

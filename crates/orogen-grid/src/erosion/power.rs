@@ -3,6 +3,7 @@
 /// x to the power y, accurate to a few parts in a million, for x from 1e-37 to 1e37. Uses only sums, products and bit
 /// operations, so it gives the same bits on every machine and vectorises.
 #[inline(always)]
+#[must_use]
 pub fn power(x: f32, y: f32) -> f32 {
     exp2(y * log2(x))
 }

@@ -3,18 +3,21 @@
 
 /// The positive part.
 #[inline(always)]
+#[must_use]
 pub fn positive(x: f32) -> f32 {
     if x > 0.0 { x } else { 0.0 }
 }
 
 /// The minimum; the second argument if either is NaN.
 #[inline(always)]
+#[must_use]
 pub fn least(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 /// The maximum; the second argument if either is NaN.
 #[inline(always)]
+#[must_use]
 pub fn most(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }

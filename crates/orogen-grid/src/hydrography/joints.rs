@@ -18,6 +18,7 @@ pub struct Joints<'a> {
 impl<'a> Joints<'a> {
     /// An index over these lines, whose points are columns and rows; `waters` has the number of the water that each
     /// line is the shore of.
+    #[must_use]
     pub fn new(lines: &'a [Path], waters: &'a [u32]) -> Joints<'a> {
         let mut squares: HashMap<[i64; 2], Vec<(u32, u32)>> = HashMap::new();
         for (k, line) in lines.iter().enumerate() {
@@ -69,6 +70,7 @@ impl<'a> Joints<'a> {
     }
 
     /// The nearest point of a water's shore within a few samples.
+    #[must_use]
     pub fn nearest(&self, [x, y]: [f64; 2], water: u32) -> Option<[f64; 2]> {
         let (column, row) = (x.floor() as i64, y.floor() as i64);
         let mut best: Option<(f64, [f64; 2])> = None;
@@ -85,6 +87,7 @@ impl<'a> Joints<'a> {
     }
 
     /// The points to insert into the lines.
+    #[must_use]
     pub fn into_points(self) -> Points {
         Points(self.found)
     }

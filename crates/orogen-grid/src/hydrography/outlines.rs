@@ -18,6 +18,7 @@ const STEPS: [(i64, i64); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 
 /// The polygons of each label from 1 to `count`: its parts, each an outer ring and holes, in columns and rows of the
 /// labels' lattice. Corners are cut `rounds` times.
+#[must_use]
 pub fn outlines(labels: &Grid<u32>, count: usize, rounds: usize) -> Vec<Vec<Vec<Path>>> {
     let squares = Squares { labels, width: labels.width() as i64, height: labels.height() as i64 };
     let mut rings: Vec<Vec<Path>> = vec![Vec::new(); count];

@@ -233,6 +233,7 @@ fn end_at(points: &mut Vec<[f64; 3]>, raw: &[[f64; 3]], joints: &mut Joints, wat
 }
 
 /// Smooths a line by weighted means of three points (1, 2, 1); its ends stay. A descending line stays descending.
+#[must_use]
 pub fn even(points: &[[f64; 3]], rounds: usize) -> Vec<[f64; 3]> {
     let mut points = points.to_vec();
     for _ in 0..rounds {

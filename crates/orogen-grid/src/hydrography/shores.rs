@@ -51,6 +51,7 @@ impl Shores {
     }
 
     /// The lakes as polygons, in the order of their numbers.
+    #[must_use]
     pub fn areas(&self) -> Vec<LakeArea> {
         let mut of_lake: BTreeMap<u32, Vec<&Path>> = BTreeMap::new();
         for (line, lake) in self.lines.iter().zip(&self.waters).filter(|(_, water)| **water > 0) {
@@ -117,6 +118,7 @@ fn wet_beside([x, y]: [f64; 2], labels: &Grid<u32>) -> Option<u32> {
 }
 
 /// Groups rings into parts: each outer ring with its holes, the largest first.
+#[must_use]
 pub fn nested(rings: Vec<&Path>) -> Vec<Vec<Path>> {
     let (outer, holes): (Vec<&Path>, Vec<&Path>) = rings.into_iter().partition(|ring| twice_area(ring) > 0.0);
     let mut parts: Vec<Vec<Path>> = outer.into_iter().map(|ring| vec![ring.clone()]).collect();

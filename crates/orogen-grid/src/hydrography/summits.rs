@@ -29,6 +29,7 @@ const NOT_YET: u32 = u32::MAX;
 /// Samples are processed from the highest down and joined to their processed neighbours. Where two hills meet, the
 /// sample is the key col of the lower summit (union-find, O(n log n)). Of equal heights the first in row order counts
 /// as higher.
+#[must_use]
 pub fn summits(heights: &Grid, frame: &Frame, sea_level: Option<f32>, least: f32) -> Vec<Summit> {
     let (columns, rows) = (&frame.columns, &frame.rows);
     let (width, height) = (columns.len(), rows.len());

@@ -74,11 +74,13 @@ pub struct Frame {
 
 impl Frame {
     /// The frame of the whole grid.
+    #[must_use]
     pub fn whole(water: &Water) -> Frame {
         Frame { columns: 0..water.heights.width(), rows: 0..water.heights.height() }
     }
 
     /// Whether the frame contains a sample.
+    #[must_use]
     pub fn holds(&self, water: &Water, cell: usize) -> bool {
         let width = water.heights.width().max(1);
         self.columns.contains(&(cell % width)) && self.rows.contains(&(cell / width))
@@ -128,6 +130,7 @@ impl Water {
     }
 
     /// The cover of a sample.
+    #[must_use]
     pub fn cover(&self, cell: usize) -> Cover {
         let height = self.heights.data()[cell];
         match self.labels.data()[cell] {
@@ -139,6 +142,7 @@ impl Water {
     }
 
     /// Column and row of a sample.
+    #[must_use]
     pub fn place(&self, cell: usize) -> [f64; 2] {
         let width = self.heights.width().max(1);
         [(cell % width) as f64, (cell / width) as f64]

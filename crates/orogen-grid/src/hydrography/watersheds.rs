@@ -16,6 +16,7 @@ const UNKNOWN: u32 = u32::MAX;
 
 /// The watersheds of all reaches that end in the sea or at the border of a frame, in the order of the reaches; then the
 /// remaining land, one label per part connected by the sides of samples. Costs O(samples).
+#[must_use]
 pub fn watersheds(water: &Water, frame: &Frame, reaches: &[River]) -> Watersheds {
     let width = water.heights.width();
     let mut labels = vec![UNKNOWN; water.heights.data().len()];

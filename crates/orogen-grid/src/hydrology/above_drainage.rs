@@ -20,6 +20,7 @@ pub struct AboveDrainage {
 /// streams and at outlets.
 ///
 /// Holds 12 bytes per cell. Costs O(cells).
+#[must_use]
 pub fn above_drainage(surface: Grid, receivers: &Receivers, drained: &Accumulation, threshold: u32) -> AboveDrainage {
     let window = *surface.window();
     let mut distance = vec![0.0f64; window.len()];

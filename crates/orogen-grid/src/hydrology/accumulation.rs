@@ -61,12 +61,14 @@ impl Band {
 
 impl Accumulation {
     /// Iterates over every cell once, each after its receiver.
+    #[must_use]
     pub fn downstream_first(&self) -> impl DoubleEndedIterator<Item = usize> {
         let bands = self.bands.iter().flat_map(|band| &band.order);
         self.trunk.iter().chain(bands).map(|cell| *cell as usize)
     }
 
     /// Iterates over every cell once, each before its receiver.
+    #[must_use]
     pub fn upstream_first(&self) -> impl DoubleEndedIterator<Item = usize> {
         self.downstream_first().rev()
     }
@@ -82,6 +84,7 @@ impl Accumulation {
 /// Each thread takes bands of rows. The trunk holds the cells that receive water from another band, a few per cent; all
 /// other cells are ordered and counted band by band. `receivers` must have no cycles, because cells on a cycle are
 /// never visited; the functions of this module make none.
+#[must_use]
 pub fn accumulate(receivers: &Receivers) -> Accumulation {
     let threads = rayon::current_num_threads();
     // With one thread, one band; with more, three per thread to balance the load.

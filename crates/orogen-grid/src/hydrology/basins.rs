@@ -172,6 +172,7 @@ impl Hasher for PairHasher {
 
 /// The lowest pass between each pair of adjacent basins, in the order in which the pairs are first met, row by row.
 #[doc(hidden)]
+#[must_use]
 pub fn passes(heights: &Grid, labels: &[u32]) -> Vec<Pass> {
     let width = heights.width();
     let mut found = Found { passes: Vec::new(), known: HashMap::default(), last_key: u64::MAX, last: 0 };
@@ -299,6 +300,7 @@ fn flood(passes: &[Pass], basins: &mut Basins, strides: &[isize; 8]) {
 
 /// An integer key that sorts like the heights.
 #[doc(hidden)]
+#[must_use]
 pub fn ordered(height: f32) -> u32 {
     let bits = height.to_bits();
     if bits >> 31 == 0 { bits | 1 << 31 } else { !bits }

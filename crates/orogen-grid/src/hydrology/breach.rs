@@ -12,6 +12,7 @@ use crate::grid::Grid;
 /// `deepest` = 0 only fills, infinity only cuts.
 ///
 /// In the result no receiver of `drainage` is higher than its donor. Outlets keep their heights. Costs O(cells).
+#[must_use]
 pub fn breach(heights: &Grid, outlets: &Outlets, drainage: &Drainage, deepest: f32) -> Grid {
     let mut out = filled(heights, &drainage.basins);
     for ((level, h), label) in out.data_mut().iter_mut().zip(heights.data()).zip(&drainage.basins.labels) {

@@ -9,6 +9,7 @@ pub const NONE: u8 = 8;
 pub const STEPS: [(isize, isize); 8] = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
 /// The offset of each direction in a row-major grid of this width.
+#[must_use]
 pub fn strides(width: usize) -> [isize; 8] {
     STEPS.map(|(east, south)| south * width as isize + east)
 }
@@ -16,16 +17,19 @@ pub fn strides(width: usize) -> [isize; 8] {
 /// The sample at `stride` from sample `index`. Only for samples that are not on the grid's border and have all
 /// neighbours.
 #[inline(always)]
+#[must_use]
 pub fn neighbour(index: usize, stride: isize) -> usize {
     index.wrapping_add_signed(stride)
 }
 
 /// The opposite direction.
+#[must_use]
 pub fn opposite(code: u8) -> u8 {
     (code + 4) & 7
 }
 
 /// Whether a direction is diagonal, with a distance of sqrt(2) cells.
+#[must_use]
 pub fn is_diagonal(code: u8) -> bool {
     code & 1 == 1
 }
@@ -59,6 +63,7 @@ impl Convention {
     pub const PCRASTER: Convention = Convention([6, 3, 2, 1, 4, 7, 8, 9, 5]);
 
     /// The number of one of our codes; for any other value, that of [`NONE`].
+    #[must_use]
     pub fn of(self, code: u8) -> u8 {
         self.0[usize::from(code.min(NONE))]
     }
@@ -68,6 +73,7 @@ impl Convention {
 /// do not depend on the window. (Multiplication and xor-shifts as in splitmix64's finaliser, Steele, Lea and Flood
 /// 2014.)
 #[inline]
+#[must_use]
 pub fn hashed(x: i64, y: i64) -> u32 {
     let mut z = (x as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ (y as u64).wrapping_mul(0xD1B5_4A32_D192_ED03);
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -77,6 +83,7 @@ pub fn hashed(x: i64, y: i64) -> u32 {
 
 /// Chooses one direction of a set by a hash; bit k of `set` is direction k. [`NONE`] for an empty set.
 #[inline]
+#[must_use]
 pub fn one_of(set: u8, hash: u32) -> u8 {
     if set & set.wrapping_sub(1) == 0 {
         // No choice: at most one direction.

@@ -26,6 +26,7 @@ pub struct Drainage {
 ///
 /// The drainage of a lake's bed therefore follows its valleys; on the *filled* surface it would have to be invented on
 /// level water.
+#[must_use]
 pub fn route_carving(heights: &Grid, outlets: &Outlets, descent: Descent) -> Drainage {
     let Ok(drainage) = route_bed(heights, outlets, descent, || Ok::<(), Infallible>(()));
     drainage
@@ -85,6 +86,7 @@ fn lead_out(way: &Spill, receivers: &mut Receivers) {
 
 /// Drainage of a surface without depressions, such as [`filled`](super::fill::filled) heights: steepest descent, and
 /// [`flats::resolve`] on level ground.
+#[must_use]
 pub fn over_surface(filled: &Grid, outlets: &Outlets, descent: Descent) -> Receivers {
     let mut receivers = steepest::receivers(filled, outlets, descent);
     flats::resolve(filled, outlets, &mut receivers);

@@ -55,6 +55,7 @@ impl Erosion {
     }
 
     /// The work of a whole run, in units of a step.
+    #[must_use]
     pub fn work(&self) -> f64 {
         f64::from(self.steps) + ErosionRun::FINISHING
     }
@@ -96,6 +97,7 @@ impl<'a> ErosionRun<'a> {
     pub const FINISHING: f64 = 2.0;
 
     /// The state before the first step.
+    #[must_use]
     pub fn new(erosion: Erosion, heights: &Grid, ground: &'a Substrate<'a>, sea_level: Option<f32>) -> ErosionRun<'a> {
         let salt = erosion.scattered.unwrap_or_default();
         let points = (erosion.jitter > 0.0).then(|| Points::new(*heights.window(), erosion.jitter, salt));

@@ -12,11 +12,13 @@ use rayon::prelude::*;
 /// filled areas are level.
 ///
 /// Heights that are not finite stay, and their neighbours are outlets. Costs O(cells).
+#[must_use]
 pub fn fill(heights: &Grid, outlets: &Outlets) -> Grid {
     filled(heights, &drainage::route_carving(heights, outlets, Descent::Steepest).basins)
 }
 
 /// [`fill`] with known basins.
+#[must_use]
 pub fn filled(heights: &Grid, basins: &Basins) -> Grid {
     let mut out = heights.clone();
     let width = heights.width().max(1);

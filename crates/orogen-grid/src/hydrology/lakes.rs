@@ -42,6 +42,7 @@ const GENTLEST: f64 = 1e-4;
 /// `drainage` must come from [`route_carving`](super::drainage::route_carving) on the same heights. In the result every
 /// land cell is higher than its receiver up to a lake's shore, the sea or the border, and every lake's outlet drains.
 /// Costs O(cells).
+#[must_use]
 pub fn lakes(heights: &Grid, outlets: &Outlets, drainage: &Drainage, fewest: u32) -> Lakes {
     let mut found = find(heights, drainage, fewest);
     raise(&mut found, outlets, drainage, &accumulate(&drainage.receivers));

@@ -14,6 +14,7 @@ pub struct Outlets {
 
 impl Outlets {
     /// The outlets of a grid of heights. With a sea level, cells at or below it are sea.
+    #[must_use]
     pub fn new(heights: &Grid, sea_level: Option<f32>) -> Outlets {
         let (width, height) = (heights.width(), heights.height());
         let mut mask = Grid::filled(*heights.window(), false);
@@ -52,11 +53,13 @@ impl Outlets {
 
     /// Whether sample `index` of the row-major grid is an outlet.
     #[inline(always)]
+    #[must_use]
     pub fn at(&self, index: usize) -> bool {
         self.mask.data()[index]
     }
 
     /// The outlets as a mask.
+    #[must_use]
     pub fn mask(&self) -> &Grid<bool> {
         &self.mask
     }

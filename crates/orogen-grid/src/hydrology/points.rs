@@ -28,6 +28,7 @@ const FURTHEST: f64 = 0.5;
 impl Points {
     /// Points displaced by up to half of `share` (0 to 1) of a cell along each axis, by a hash of their position and
     /// `salt`. Holds 16 bytes per cell.
+    #[must_use]
     pub fn new(window: Window, share: f64, salt: u32) -> Points {
         let reach = (share.clamp(0.0, 1.0) * FURTHEST) as f32;
         let (width, cells) = (window.width, window.len());

@@ -15,6 +15,7 @@ pub struct Receivers {
 
 impl Receivers {
     /// Receivers of which every cell is [`NONE`].
+    #[must_use]
     pub fn none(window: Window) -> Receivers {
         let mut all = [0; 9];
         all[..8].copy_from_slice(&strides(window.width));
@@ -22,6 +23,7 @@ impl Receivers {
     }
 
     /// The codes, row-major.
+    #[must_use]
     pub fn codes(&self) -> &[u8] {
         self.codes.data()
     }
@@ -32,17 +34,20 @@ impl Receivers {
     }
 
     /// The grid of codes.
+    #[must_use]
     pub fn grid(&self) -> &Grid<u8> {
         &self.codes
     }
 
     /// The window of the cells.
+    #[must_use]
     pub fn window(&self) -> &Window {
         self.codes.window()
     }
 
     /// The receiver of cell `index`; the cell itself if it has none.
     #[inline(always)]
+    #[must_use]
     pub fn of(&self, index: usize) -> usize {
         // The mask does not change a code; it removes the bounds check.
         let code = self.codes.data()[index];
@@ -50,6 +55,7 @@ impl Receivers {
     }
 
     /// The donors of each cell as a set: bit k stands for the neighbour in direction k. Rows are computed in parallel.
+    #[must_use]
     pub fn donors(&self) -> Vec<u8> {
         let (width, height) = (self.window().width, self.window().height);
         let mut donors = vec![0u8; width * height];
@@ -72,6 +78,7 @@ impl Receivers {
 
     /// The code of cell `index`.
     #[inline(always)]
+    #[must_use]
     pub fn code(&self, index: usize) -> u8 {
         self.codes.data()[index]
     }

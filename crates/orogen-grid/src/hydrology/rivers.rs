@@ -32,16 +32,19 @@ const YEAR: f64 = 31_557_600.0;
 
 impl Channel {
     /// The discharge, in m^3/s, of a drainage area in m^2.
+    #[must_use]
     pub fn discharge(&self, area: f64) -> f64 {
         area * self.runoff / YEAR
     }
 
     /// Width between the banks, in metres.
+    #[must_use]
     pub fn width_of(&self, discharge: f64) -> f64 {
         self.width * discharge.max(0.0).sqrt()
     }
 
     /// Depth from bank to bed, in metres.
+    #[must_use]
     pub fn depth_of(&self, discharge: f64) -> f64 {
         self.depth * libm::pow(discharge.max(0.0), 0.4)
     }
@@ -49,6 +52,7 @@ impl Channel {
 
 /// The network of all cells with an order above 0 (see [`orders`](super::strahler::orders)): reaches from source or
 /// confluence to confluence or outlet, in row order of their first cells. Costs O(cells).
+#[must_use]
 pub fn network(receivers: &Receivers, orders: &Grid<u8>) -> Vec<Reach> {
     let mut streams = Streams::default();
     for (cell, order) in orders.data().iter().enumerate().filter(|(_, order)| **order > 0) {
@@ -77,6 +81,7 @@ impl Streams {
     }
 
     /// The reaches, in row order of their first cells.
+    #[must_use]
     pub fn network(mut self) -> Vec<Reach> {
         // Receivers as indices into the list; a cell whose receiver is not in the list ends there.
         for k in 0..self.cells.len() {

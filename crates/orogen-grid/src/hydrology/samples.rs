@@ -4,11 +4,13 @@ use super::direction::hashed;
 use crate::grid::{Grid, Window};
 
 /// Independent heights, 0 to 1000.
+#[must_use]
 pub fn rough(width: usize, height: usize, seed: i64) -> Grid {
     made(width, height, |x, y| (hashed(x, y + 1000 * seed) >> 8) as f32 * (1000.0 / (1 << 24) as f32))
 }
 
 /// Hills several cells wide: bilinear value noise of three octaves.
+#[must_use]
 pub fn hills(width: usize, height: usize, seed: i64) -> Grid {
     made(width, height, |x, y| {
         let octave = |size: i64, weight: f32| {
@@ -24,6 +26,7 @@ pub fn hills(width: usize, height: usize, seed: i64) -> Grid {
 }
 
 /// Hills rounded to whole numbers, with many flats.
+#[must_use]
 pub fn steps(width: usize, height: usize, seed: i64) -> Grid {
     let mut grid = hills(width, height, seed);
     grid.data_mut().iter_mut().for_each(|h| *h = (*h / 60.0).floor());
@@ -31,6 +34,7 @@ pub fn steps(width: usize, height: usize, seed: i64) -> Grid {
 }
 
 /// Hills with samples missing.
+#[must_use]
 pub fn holed(width: usize, height: usize, seed: i64) -> Grid {
     let mut grid = hills(width, height, seed);
     for (k, h) in grid.data_mut().iter_mut().enumerate() {
@@ -42,6 +46,7 @@ pub fn holed(width: usize, height: usize, seed: i64) -> Grid {
 }
 
 /// One of each, and degenerate ones.
+#[must_use]
 pub fn grids() -> Vec<Grid> {
     let mut grids = Vec::new();
     for seed in 0..4 {

@@ -13,6 +13,7 @@ const CLASSES: usize = 12;
 
 /// The exponent t of P(area > a) ~ a^-t (Rodriguez-Iturbe and Rinaldo 1997), fitted from 8 cells to a hundredth of the
 /// map. Real terrain has 0.43 to 0.58.
+#[must_use]
 pub fn area_exponent(drained: &Accumulation) -> Option<f64> {
     let mut counts = AreaCounts::new(drained.area.data().len());
     counts.add(drained.area.data());
@@ -29,6 +30,7 @@ pub struct AreaCounts {
 
 impl AreaCounts {
     /// Empty counts of a map with this many cells.
+    #[must_use]
     pub fn new(cells: usize) -> AreaCounts {
         let bounds = spaced(8.0, cells as f64 / 100.0, 14).unwrap_or_default();
         AreaCounts { cells, above: vec![0; bounds.len()], bounds }
@@ -42,6 +44,7 @@ impl AreaCounts {
     }
 
     /// The exponent, after all cells were counted.
+    #[must_use]
     pub fn exponent(&self) -> Option<f64> {
         let counted = self.bounds.iter().zip(&self.above).filter(|(_, above)| **above > 0);
         let points = counted.map(|(bound, above)| (libm::log(*bound), libm::log(*above as f64 / self.cells as f64)));
@@ -51,6 +54,7 @@ impl AreaCounts {
 
 /// The exponent h of Hack's law, L ~ A^h (Hack 1957), where L is the longest flow path to a cell and A its area, over
 /// cells that drain at least `threshold` cells. Real rivers have 0.5 to 0.6.
+#[must_use]
 pub fn hack_exponent(receivers: &Receivers, drained: &Accumulation, threshold: u32) -> Option<f64> {
     let ways = longest_ways(receivers, drained);
     let areas = drained.area.data();
@@ -61,6 +65,7 @@ pub fn hack_exponent(receivers: &Receivers, drained: &Accumulation, threshold: u
 
 /// The concavity of rivers: theta of S ~ A^-theta (Flint 1974), where S is the slope along the flow path on `filled`.
 /// Rivers in equilibrium with uplift have m / n, 0.4 to 0.6.
+#[must_use]
 pub fn concavity(filled: &Grid, receivers: &Receivers, drained: &Accumulation, threshold: u32) -> Option<f64> {
     let cell = filled.window().cell;
     let areas = drained.area.data();
@@ -75,6 +80,7 @@ pub fn concavity(filled: &Grid, receivers: &Receivers, drained: &Accumulation, t
 }
 
 /// The slope of the water surface from a cell to its receiver in direction `code`, in metres per metre.
+#[must_use]
 pub fn drop_per_metre(height: f32, receiver: f32, code: u8, cell: f64) -> f64 {
     f64::from(height - receiver) / (DISTANCES[usize::from(code & 7)] * cell)
 }
@@ -89,23 +95,27 @@ pub struct Way {
 
 impl Way {
     /// Extended by a step in direction `code`.
+    #[must_use]
     pub fn step(self, code: u8) -> Way {
         let diagonal = u32::from(code & 1);
         Way { straight: self.straight + 1 - diagonal, diagonal: self.diagonal + diagonal }
     }
 
     /// The sum of both.
+    #[must_use]
     pub fn then(self, next: Way) -> Way {
         Way { straight: self.straight + next.straight, diagonal: self.diagonal + next.diagonal }
     }
 
     /// The length, in cells.
+    #[must_use]
     pub fn length(self) -> f64 {
         f64::from(self.straight) + f64::from(self.diagonal) * std::f64::consts::SQRT_2
     }
 
     /// The longer of the two. The lengths of two different paths of fewer than 2^20 steps differ by more than the
     /// rounding.
+    #[must_use]
     pub fn longer(self, other: Way) -> Way {
         if other.length() > self.length() { other } else { self }
     }
@@ -113,6 +123,7 @@ impl Way {
 
 /// The longest flow path to each cell.
 #[doc(hidden)]
+#[must_use]
 pub fn longest_ways(receivers: &Receivers, drained: &Accumulation) -> Vec<Way> {
     let mut ways = vec![Way::default(); drained.area.data().len()];
     for c in drained.upstream_first() {
@@ -154,6 +165,7 @@ struct Class {
 
 impl AreaClasses {
     /// `None` if the range is empty.
+    #[must_use]
     pub fn new(threshold: u32, largest: u32, average: Average) -> Option<AreaClasses> {
         let bounds = spaced(f64::from(threshold.max(1)), f64::from(largest) / 2.0, CLASSES)?;
         Some(AreaClasses { average, bounds, classes: vec![Class::default(); CLASSES - 1] })
@@ -175,6 +187,7 @@ impl AreaClasses {
     }
 
     /// The slope of the line through classes with at least five cells.
+    #[must_use]
     pub fn slope(self) -> Option<f64> {
         let points = self.classes.into_iter().filter(|class| class.count >= 5).filter_map(|mut class| {
             let value = match self.average {

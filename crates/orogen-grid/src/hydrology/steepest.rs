@@ -24,6 +24,7 @@ pub enum Descent<'a> {
 /// cell's position on the lattice.
 ///
 /// Costs O(cells). Rows are computed in parallel.
+#[must_use]
 pub fn receivers(heights: &Grid, outlets: &Outlets, descent: Descent) -> Receivers {
     let mut receivers = Receivers::none(*heights.window());
     let window = *heights.window();

@@ -8,6 +8,7 @@ use crate::grid::Grid;
 /// least two inflows have the highest order. A cell that drains fewer than `threshold` cells is not a stream and has 0.
 ///
 /// Costs O(cells).
+#[must_use]
 pub fn orders(receivers: &Receivers, accumulation: &Accumulation, threshold: u32) -> Grid<u8> {
     let area = accumulation.area.data();
     let mut orders = Grid::filled(*receivers.window(), 0u8);

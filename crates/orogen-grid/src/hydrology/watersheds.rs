@@ -7,6 +7,7 @@ use crate::grid::Grid;
 
 /// The watershed of every cell, numbered from 1 in row order of the outlets; 0 for outlets that only drain themselves,
 /// such as the sea. Costs O(cells).
+#[must_use]
 pub fn watersheds(receivers: &Receivers, outlets: &Outlets, accumulation: &Accumulation) -> Grid<u32> {
     let mut labels = Grid::filled(*receivers.window(), 0u32);
     let mut count = 0;

@@ -19,6 +19,7 @@ impl Default for LevelGround {
 
 impl LevelGround {
     /// The slope, at least the minimum; NaN stays NaN.
+    #[must_use]
     pub fn slope(&self, slope: f32) -> f64 {
         let slope = f64::from(slope);
         if slope < self.least_slope { self.least_slope } else { slope }
@@ -27,17 +28,20 @@ impl LevelGround {
 
 /// The topographic wetness index ln(a / tan b) (Beven and Kirkby 1979) of a specific catchment area in metres and a
 /// slope in rise over run.
+#[must_use]
 pub fn wetness_index(area: f64, slope: f64) -> f64 {
     libm::log(area / slope)
 }
 
 /// The stream power index a tan b (Moore, Grayson and Ladson 1991), in metres.
+#[must_use]
 pub fn stream_power(area: f64, slope: f64) -> f64 {
     area * slope
 }
 
 /// The LS factor 1.4 (a / 22.13)^0.4 (sin b / 0.0896)^1.3 (Moore and Burch, "Physical basis of the length-slope factor
 /// in the universal soil loss equation", 1986): soil loss relative to a slope of 22.13 m and 9 %.
+#[must_use]
 pub fn ls_factor(area: f64, slope: f64) -> f64 {
     let sine = slope / (1.0 + slope * slope).sqrt();
     1.4 * libm::pow(area / 22.13, 0.4) * libm::pow(sine / 0.0896, 1.3)
@@ -45,12 +49,14 @@ pub fn ls_factor(area: f64, slope: f64) -> f64 {
 
 /// The topographic wetness index of a whole map, with slopes by Horn's method (one-sided at the border). High values
 /// mean a large catchment and level ground. Slopes below 0.001 count as 0.001. NaN where a sample is missing.
+#[must_use]
 pub fn wetness(heights: &Grid, drained: &Accumulation) -> Grid {
     wetness_of_rows(heights, &drained.area)
 }
 
 /// [`wetness`] for some rows of a map with known areas, in cells. `around` has one row more on each side where the map
 /// has it.
+#[must_use]
 pub fn wetness_of_rows(around: &Grid, areas: &Grid<u32>) -> Grid {
     let steep = steepness(&extended(around));
     let mut out = steep.crop(areas.window()).unwrap_or(steep);

@@ -48,17 +48,20 @@ impl From<&str> for FileRef {
 
 impl FileRef {
     /// Whether no file is named.
+    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.path.is_empty()
     }
 
     /// Whether the file is read as a picture instead of heights.
+    #[must_use]
     pub fn is_picture(&self) -> bool {
         self.picture
     }
 
     /// The path: a relative one is relative to the folder of the recipe or, if the recipe is not a file, to the working
     /// folder.
+    #[must_use]
     pub fn path(&self) -> PathBuf {
         match &self.folder {
             Some(folder) => folder.join(&self.path),
@@ -67,6 +70,7 @@ impl FileRef {
     }
 
     /// The name in a recipe that may be stored in any folder.
+    #[must_use]
     pub fn text(&self) -> String {
         match &self.folder {
             Some(_) => std::path::absolute(self.path()).unwrap_or_else(|_| self.path()).display().to_string(),
@@ -80,6 +84,7 @@ impl FileRef {
     }
 
     /// The location in the recipe's text that names it, if there is one.
+    #[must_use]
     pub fn location(&self) -> Option<&Location> {
         self.location.as_deref()
     }
@@ -90,6 +95,7 @@ impl FileRef {
     }
 
     /// The content, if it was read.
+    #[must_use]
     pub fn ground(&self) -> Option<&Arc<PreparedDem>> {
         self.ground.as_ref()
     }

@@ -8,6 +8,7 @@ const SQUARED: f64 = 0.006_694_379_990_14;
 
 /// Latitude in degrees north at a position in metres of the lattice, if its map is in degrees or in a UTM zone (WGS 84,
 /// NAD 83 or NAD 27; the datum changes the latitude by less than 0.001 degrees).
+#[must_use]
 pub fn latitude(map: &Georeference, x: f64, y: f64) -> Option<f64> {
     let [east, north] = map.at(x, y);
     if map.is_degrees() {

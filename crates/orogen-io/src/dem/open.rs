@@ -9,6 +9,7 @@ use crate::format::zarr::reader as zarr;
 use orogen_grid::error::Result;
 
 /// Whether a path names heights: by its extension, without a band after a colon, or as a folder of tiles.
+#[must_use]
 pub fn is_dem(path: &Path) -> bool {
     let (path, _) = split(path);
     import::is_dem(&path)
@@ -17,6 +18,7 @@ pub fn is_dem(path: &Path) -> bool {
 }
 
 /// Splits a path from the band after it: `alps.tif:2`. If a file with the whole name exists, there is no band.
+#[must_use]
 pub fn split(path: &Path) -> (PathBuf, Option<u32>) {
     let whole = || (path.to_path_buf(), None);
     let Some(text) = path.to_str() else { return whole() };
@@ -28,6 +30,7 @@ pub fn split(path: &Path) -> (PathBuf, Option<u32>) {
 
 /// All files that a path of heights is read from: itself, the tiles of a folder, the sources of a virtual raster. Empty
 /// if it cannot be read.
+#[must_use]
 pub fn files(path: &Path) -> Vec<PathBuf> {
     let (path, _) = split(path);
     let mut files = match path.is_dir() {

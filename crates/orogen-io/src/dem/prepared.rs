@@ -116,6 +116,7 @@ impl PreparedDem {
     }
 
     /// Memory that it takes, in bytes.
+    #[must_use]
     pub fn memory(&self) -> u64 {
         self.grid.data().len() as u64 * 4
     }

@@ -12,6 +12,7 @@ const SQUARE: f64 = 1e-3;
 
 /// Metres per degree of longitude and of latitude at a latitude in degrees, on the WGS 84 ellipsoid (the common cosine
 /// series, accurate to a centimetre).
+#[must_use]
 pub fn metres_of_degrees(latitude: f64) -> [f64; 2] {
     let phi = latitude.clamp(-89.0, 89.0).to_radians();
     let cos = |n: f64| libm::cos(n * phi);
@@ -21,6 +22,7 @@ pub fn metres_of_degrees(latitude: f64) -> [f64; 2] {
 }
 
 /// Distance between columns and between rows, in metres, at the middle row of `rows`.
+#[must_use]
 pub fn steps(place: &Placement, rows: usize) -> [f64; 2] {
     match place.unit {
         Unit::Metres(unit) => place.step.map(|step| step * unit),
@@ -47,6 +49,7 @@ pub struct Layout {
 impl Layout {
     /// The lattice for `size` samples with these steps in metres. Its cell is the smaller step, so that no detail is
     /// lost; the other axis is interpolated. Steps that differ by less than a thousandth count as equal.
+    #[must_use]
     pub fn new(size: [usize; 2], steps: [f64; 2]) -> Layout {
         let [east, south] = steps;
         if (east - south).abs() <= SQUARE * south {
@@ -59,11 +62,13 @@ impl Layout {
     }
 
     /// Whether samples need no resampling.
+    #[must_use]
     pub fn is_square(&self) -> bool {
         self.ratio == [1.0; 2]
     }
 
     /// The heights of a DEM without holes on this lattice, from its north-west corner.
+    #[must_use]
     pub fn apply(&self, dem: Dem) -> Option<Grid> {
         let [width, height] = self.size;
         let window = Window::new(width, height, self.cell);

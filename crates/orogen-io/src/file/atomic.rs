@@ -104,6 +104,7 @@ impl Staged {
 
 /// The error for `cause`, which occurred while `doing` something ("read", "write") to `path`: the [`Error`] inside it
 /// if it contains one, otherwise a message.
+#[must_use]
 pub fn explain(doing: &str, path: &Path, cause: &io::Error) -> Error {
     match cause.get_ref().and_then(|inner| inner.downcast_ref::<Error>()) {
         Some(error) => error.clone(),
@@ -231,6 +232,7 @@ impl Write for Noting<'_> {
 }
 
 /// The folder that contains `path`.
+#[must_use]
 pub fn folder(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,

@@ -16,6 +16,7 @@ const BEFORE: &str = "# Orogen replaces this file only while it is unchanged: SH
 /// let text = marked("# A comment.\norogen = 1\n");
 /// assert!(is_intact(&text) && !is_intact(&text.replace("orogen = 1", "orogen = 2")));
 /// ```
+#[must_use]
 pub fn marked(text: &str) -> String {
     let first = match text.starts_with('#') {
         true => text.find('\n').map_or(0, |end| end + 1),
@@ -26,6 +27,7 @@ pub fn marked(text: &str) -> String {
 }
 
 /// Whether a text has a mark that matches its content.
+#[must_use]
 pub fn is_intact(text: &str) -> bool {
     let Some(start) = text.find(BEFORE).filter(|start| *start == 0 || text[..*start].ends_with('\n')) else {
         return false;

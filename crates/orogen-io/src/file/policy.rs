@@ -44,6 +44,7 @@ pub struct OutputPolicy {
 
 impl OutputPolicy {
     /// A policy for work that reads no files.
+    #[must_use]
     pub fn new(existing: Existing) -> OutputPolicy {
         OutputPolicy { existing, inputs: Arc::default() }
     }
@@ -56,6 +57,7 @@ impl OutputPolicy {
     }
 
     /// The treatment of existing files.
+    #[must_use]
     pub fn existing(&self) -> Existing {
         self.existing
     }
@@ -71,6 +73,7 @@ impl OutputPolicy {
     }
 
     /// Whether the work reads this file.
+    #[must_use]
     pub fn is_input(&self, path: &Path) -> bool {
         FileId::of(path).is_some_and(|there| self.inputs.iter().any(|input| input.is(&there)))
     }
@@ -85,11 +88,13 @@ pub struct Output {
 
 impl Output {
     /// The path.
+    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
     /// The policy.
+    #[must_use]
     pub fn policy(&self) -> &OutputPolicy {
         &self.policy
     }

@@ -18,11 +18,13 @@ pub struct Lattice {
 impl Affine {
     /// From six numbers in GDAL's order, which refer to pixel corners: west, column step, 0, north, 0, row step
     /// (negative if rows run southward).
+    #[must_use]
     pub fn of_geotransform([c, a, b, f, d, e]: [f64; 6]) -> Affine {
         Affine([a, b, c + 0.5 * (a + b), d, e, f + 0.5 * (d + e)])
     }
 
     /// The six numbers in GDAL's order, which refer to pixel corners.
+    #[must_use]
     pub fn geotransform(&self) -> [f64; 6] {
         let [a, b, c, d, e, f] = self.0;
         [c - 0.5 * (a + b), a, b, f - 0.5 * (d + e), d, e]
@@ -30,6 +32,7 @@ impl Affine {
 
     /// The transform of another raster, whose column is at `scale[0] * column + offset[0]` of this one; likewise for
     /// rows.
+    #[must_use]
     pub fn resampled(&self, scale: [f64; 2], offset: [f64; 2]) -> Affine {
         let [a, b, c, d, e, f] = self.0;
         let ([x, y], [dx, dy]) = (scale, offset);

@@ -42,6 +42,7 @@ pub fn parse(text: &str) -> Result<Notes, String> {
 }
 
 /// Six numbers separated by commas.
+#[must_use]
 pub fn numbers(text: &str) -> Option<[f64; 6]> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|word| word.trim().parse().ok()).collect();
     numbers?.try_into().ok()

@@ -92,16 +92,19 @@ pub struct Georeference {
 
 impl Georeference {
     /// East and north, in map units, of a position in metres of the lattice.
+    #[must_use]
     pub fn at(&self, x: f64, y: f64) -> [f64; 2] {
         [self.origin[0] + x * self.per_metre[0], self.origin[1] - y * self.per_metre[1]]
     }
 
     /// The same map, with the lattice's origin moved to this position of the world.
+    #[must_use]
     pub fn moved(&self, x: f64, y: f64) -> Georeference {
         Georeference { origin: self.at(-x, -y), ..self.clone() }
     }
 
     /// The EPSG code of the coordinate system, if its keys have one.
+    #[must_use]
     pub fn epsg(&self) -> Option<u16> {
         keys::epsg(self.keys.as_ref()?)
     }
@@ -112,11 +115,13 @@ impl Georeference {
     }
 
     /// Whether the units are so long that they can only be degrees, whatever the keys say.
+    #[must_use]
     pub fn counts_degrees(&self) -> bool {
         self.per_metre[0] < 1e-3
     }
 
     /// Whether the units are consistent with a coordinate system.
+    #[must_use]
     pub fn fits(&self, crs: &Crs) -> bool {
         match crs.unit() {
             Unit::Degrees => self.counts_degrees(),
@@ -130,6 +135,7 @@ impl Georeference {
     }
 
     /// The transform from columns and rows of a window to coordinates; rows start in the south if `from_south`.
+    #[must_use]
     pub fn affine(&self, window: &Window, from_south: bool) -> Affine {
         let ([east, north], [across, down]) = self.of(window);
         let south = north - down * (window.height.max(1) - 1) as f64;
@@ -151,6 +157,7 @@ impl Georeference {
     }
 
     /// The coordinates of the first sample of a window, and the distances between its samples, in map units.
+    #[must_use]
     pub fn of(&self, window: &Window) -> ([f64; 2], [f64; 2]) {
         (self.at(window.east(0), window.south(0)), self.per_metre.map(|unit| unit * window.cell))
     }
@@ -181,6 +188,7 @@ impl Dem {
     }
 
     /// Number of samples without a height.
+    #[must_use]
     pub fn missing(&self) -> usize {
         self.heights.iter().filter(|height| height.is_nan()).count()
     }

@@ -14,6 +14,7 @@ impl Encoding {
     pub const ALL: [Encoding; 2] = [Encoding::Terrarium, Encoding::TerrainRgb];
 
     /// The name for users.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Encoding::Terrarium => "terrarium",
@@ -22,6 +23,7 @@ impl Encoding {
     }
 
     /// The name in TileJSON and MapLibre.
+    #[must_use]
     pub fn tilejson(self) -> &'static str {
         match self {
             Encoding::Terrarium => "terrarium",
@@ -39,6 +41,7 @@ impl Encoding {
 
     /// The red, green and blue of a height, to the nearest step. Heights outside the range of the encoding are clamped;
     /// NaN becomes 0, 0, 0.
+    #[must_use]
     pub fn bytes(self, height: f32) -> [u8; 3] {
         const MOST: f64 = ((1 << 24) - 1) as f64;
         if height.is_nan() {
@@ -50,6 +53,7 @@ impl Encoding {
     }
 
     /// The height of three bytes.
+    #[must_use]
     pub fn height(self, bytes: [u8; 3]) -> f64 {
         let (base, steps) = self.scale();
         f64::from(u32::from_be_bytes([0, bytes[0], bytes[1], bytes[2]])) / steps + base

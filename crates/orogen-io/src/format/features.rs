@@ -118,6 +118,7 @@ pub enum Definition {
 
 impl Crs<'_> {
     /// The definition for files.
+    #[must_use]
     pub fn definition(&self) -> Definition {
         let map = match self {
             Crs::Local => return Definition::Wkt(LOCAL_WKT.to_string()),
@@ -133,6 +134,7 @@ impl Crs<'_> {
 
 impl Value {
     /// An optional integer.
+    #[must_use]
     pub fn id(number: Option<u32>) -> Value {
         number.map_or(Value::Null, |number| Value::Integer(i64::from(number)))
     }
@@ -140,6 +142,7 @@ impl Value {
 
 impl GeometryType {
     /// Whether each vertex has a height.
+    #[must_use]
     pub fn has_z(self) -> bool {
         matches!(self, GeometryType::Point | GeometryType::LineZ)
     }
@@ -158,6 +161,7 @@ impl Geometry {
     }
 
     /// The bounds: west, south, east, north. `None` for empty geometries.
+    #[must_use]
     pub fn bounds(&self) -> Option<[f64; 4]> {
         let mut bounds: Option<[f64; 4]> = None;
         let mut add = |x: f64, y: f64| {
@@ -201,11 +205,13 @@ impl FeatureLayer {
 }
 
 /// The length of a line in the plane, without heights.
+#[must_use]
 pub fn length(points: &[[f64; 3]]) -> f64 {
     points.windows(2).map(|pair| libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1])).sum()
 }
 
 /// The bounds of both.
+#[must_use]
 pub fn join(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
     [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])]
 }
@@ -232,6 +238,7 @@ pub mod samples {
     ];
 
     /// `count` features of a type, of different lengths, some of them long.
+    #[must_use]
     pub fn layer(name: &'static str, geometry: GeometryType, count: usize) -> FeatureLayer {
         let feature = |k: usize| {
             let (x, y) = ((k * 37 % 101) as f64 * 10.0, (k * 53 % 97) as f64 * 10.0);

@@ -93,6 +93,7 @@ fn position(text: &mut String, at: &[f64], decimals: usize) {
 }
 
 /// Number of decimals that resolve a thousandth of a step.
+#[must_use]
 pub fn decimals(step: f64) -> usize {
     (3.0 - libm::log10(step).floor()).clamp(0.0, 15.0) as usize
 }

@@ -2,6 +2,7 @@
 //! 2048 m.
 
 /// The nearest half, ties to even. Values of 65520 and more become infinite; NaN stays NaN.
+#[must_use]
 pub fn from_f32(value: f32) -> u16 {
     let bits = value.to_bits();
     let sign = (bits >> 16) as u16 & 0x8000;
@@ -23,6 +24,7 @@ pub fn from_f32(value: f32) -> u16 {
 }
 
 /// The value of a half.
+#[must_use]
 pub fn to_f32(half: u16) -> f32 {
     let sign = if half & 0x8000 != 0 { -1.0f32 } else { 1.0 };
     let (exponent, fraction) = (u32::from(half >> 10) & 31, u32::from(half & 0x3ff));

@@ -86,6 +86,7 @@ fn open(input: &mut dyn Input, name: &str, allowed: u64) -> std::result::Result<
 }
 
 /// Latitude and longitude of the south-west corner, from a name such as N46E007.hgt or s09w077.SRTMGL1.hgt.
+#[must_use]
 pub fn corner(name: &str) -> Option<[f64; 2]> {
     let file = name.rsplit(['/', '\\']).next()?;
     let sign = |at: usize, plus: char, minus: char| match file.chars().nth(at)?.to_ascii_uppercase() {

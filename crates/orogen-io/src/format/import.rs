@@ -16,6 +16,7 @@ pub const EXTENSIONS: [&str; 9] = ["tif", "tiff", "asc", "hgt", "png", "r16", "r
 const SEVERAL_BANDS: [&str; 3] = ["tif", "tiff", "exr"];
 
 /// Whether a file's name has one of these extensions.
+#[must_use]
 pub fn is_dem(path: &Path) -> bool {
     extension(path).is_some_and(|extension| EXTENSIONS.contains(&extension.as_str()))
 }
@@ -25,6 +26,7 @@ fn extension(path: &Path) -> Option<String> {
 }
 
 /// Whether a file's size and position can be read without its heights, as tiles require.
+#[must_use]
 pub fn has_head(path: &Path) -> bool {
     extension(path).is_some_and(|extension| matches!(extension.as_str(), "tif" | "tiff" | "asc" | "hgt"))
 }

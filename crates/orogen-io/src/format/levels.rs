@@ -14,6 +14,7 @@ pub struct Levels {
 
 impl Levels {
     /// The range from `low` to `high`, in the grid's unit. It is flat unless both are finite and in this order.
+    #[must_use]
     pub fn new(low: f32, high: f32) -> Levels {
         match low.is_finite() && high.is_finite() && low < high {
             true => Levels { low, high },
@@ -23,32 +24,38 @@ impl Levels {
     }
 
     /// The range of the finite samples of a grid; flat if there are none.
+    #[must_use]
     pub fn of(grid: &Grid) -> Levels {
         let [low, high] = extremes(NO_SAMPLES, grid.data());
         Levels::new(low, high)
     }
 
     /// The height that becomes 0.
+    #[must_use]
     pub fn low(&self) -> f32 {
         self.low
     }
 
     /// The height that becomes the largest level.
+    #[must_use]
     pub fn high(&self) -> f32 {
         self.high
     }
 
     /// Whether the range is empty, so that every level is 0.
+    #[must_use]
     pub fn is_flat(&self) -> bool {
         self.low == self.high
     }
 
     /// The 16-bit level nearest to `height`: 0 at `low`, 65535 at `high`.
+    #[must_use]
     pub fn to_u16(&self, height: f32) -> u16 {
         self.level(height, f64::from(u16::MAX)) as u16
     }
 
     /// The 8-bit level nearest to `height`: 0 at `low`, 255 at `high`.
+    #[must_use]
     pub fn to_u8(&self, height: f32) -> u8 {
         self.level(height, f64::from(u8::MAX)) as u8
     }
@@ -68,6 +75,7 @@ impl Levels {
 pub const NO_SAMPLES: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
 /// The minimum and maximum of the finite samples and of the range so far.
+#[must_use]
 pub fn extremes(before: [f32; 2], samples: &[f32]) -> [f32; 2] {
     let finite = samples.iter().copied().filter(|sample| sample.is_finite());
     finite.fold(before, |[low, high], sample| [low.min(sample), high.max(sample)])

@@ -33,6 +33,7 @@ pub enum Pixel {
 
 impl Pixel {
     /// Bytes per pixel.
+    #[must_use]
     pub fn bytes(self) -> usize {
         match self {
             Pixel::Grey8 => 1,

@@ -206,6 +206,7 @@ fn text<T>(path: &Path, most: u64, parse: impl Fn(&str) -> std::result::Result<T
 }
 
 /// GDAL's sidecar of a raster: NAME.EXT.aux.xml.
+#[must_use]
 pub fn aux_xml(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(".aux.xml");
@@ -213,6 +214,7 @@ pub fn aux_xml(path: &Path) -> PathBuf {
 }
 
 /// The sidecar that belongs to this file only, not to other files called NAME: NAME.r16.json.
+#[must_use]
 pub fn own(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(".json");
@@ -220,6 +222,7 @@ pub fn own(path: &Path) -> PathBuf {
 }
 
 /// The message for a file without the properties `what`.
+#[must_use]
 pub fn needs(what: &str) -> String {
     format!("it lacks {what}; write them to a file of the same name with the extension .json or .toml")
 }

@@ -30,12 +30,14 @@ pub fn parse(text: &str) -> Result<Affine, String> {
 }
 
 /// The name of the world file that Orogen writes for a raster: the one that programs look for first.
+#[must_use]
 pub fn beside(path: &Path) -> PathBuf {
     let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
     path.with_extension(if is_png { "pgw" } else { "wld" })
 }
 
 /// The possible names of a raster's world file.
+#[must_use]
 pub fn names(path: &Path) -> Vec<PathBuf> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().into_owned();
     let mut names = Vec::new();

@@ -23,29 +23,34 @@ impl Default for Encoder {
 
 impl Encoder {
     /// Computes the table.
+    #[must_use]
     pub fn new() -> Encoder {
         Encoder { table: (0..=LEVELS).map(|level| encode(level as f32 / LEVELS as f32)).collect() }
     }
 
     /// The sRGB bytes of a colour, clamped to the range of a byte.
+    #[must_use]
     pub fn bytes(&self, color: Light) -> [u8; 3] {
         color.map(|c| self.table[(c.clamp(0.0, 1.0) * LEVELS as f32 + 0.5) as usize])
     }
 }
 
 /// The linear light of an sRGB byte (IEC 61966-2-1).
+#[must_use]
 pub fn decode(byte: u8) -> f32 {
     let c = f32::from(byte) / 255.0;
     if c <= 0.04045 { c / 12.92 } else { libm::powf((c + 0.055) / 1.055, 2.4) }
 }
 
 /// The nearest sRGB byte of linear light.
+#[must_use]
 pub fn encode(light: f32) -> u8 {
     let c = if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * libm::powf(light, 1.0 / 2.4) - 0.055 };
     (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
 }
 
 /// Linear light to Oklab: lightness, green to red, blue to yellow.
+#[must_use]
 pub fn oklab([r, g, b]: Light) -> [f32; 3] {
     let l = libm::cbrtf(0.412_221_46 * r + 0.536_332_55 * g + 0.051_445_995 * b);
     let m = libm::cbrtf(0.211_903_5 * r + 0.680_699_5 * g + 0.107_396_96 * b);
@@ -58,6 +63,7 @@ pub fn oklab([r, g, b]: Light) -> [f32; 3] {
 }
 
 /// Oklab to linear light.
+#[must_use]
 pub fn linear([lightness, a, b]: [f32; 3]) -> Light {
     let l = lightness + 0.396_337_78 * a + 0.215_803_76 * b;
     let m = lightness - 0.105_561_346 * a - 0.063_854_17 * b;
@@ -71,11 +77,13 @@ pub fn linear([lightness, a, b]: [f32; 3]) -> Light {
 }
 
 /// The colour of a hexadecimal number 0xrrggbb.
+#[must_use]
 pub const fn rgb(hex: u32) -> Rgb {
     [(hex >> 16) as u8, (hex >> 8) as u8, hex as u8]
 }
 
 /// Linear interpolation of each component.
+#[must_use]
 pub fn mix(from: [f32; 3], to: [f32; 3], share: f32) -> [f32; 3] {
     std::array::from_fn(|i| from[i] + (to[i] - from[i]) * share)
 }

@@ -88,6 +88,7 @@ impl Fitted {
     }
 
     /// The color of a height; the palette's color of missing samples if it is not finite.
+    #[must_use]
     pub fn at(&self, height: f32) -> Light {
         if !height.is_finite() {
             return self.missing;
@@ -173,6 +174,7 @@ fn hsv(color: Rgb) -> [f32; 3] {
 }
 
 /// Red, green and blue, 0 to 1, of hue (degrees), saturation and value.
+#[must_use]
 pub fn of_hsv([hue, saturation, value]: [f32; 3]) -> [f32; 3] {
     let part = |n: f32| {
         let k = (n + hue / 60.0).rem_euclid(6.0);

@@ -460,17 +460,20 @@ const ALL: &[Named] = &[
 ];
 
 /// All built-in palettes.
+#[must_use]
 pub fn all() -> &'static [Named] {
     ALL
 }
 
 /// The palette with this name.
+#[must_use]
 pub fn find(name: &str) -> Option<&'static Named> {
     ALL.iter().find(|named| named.name == name)
 }
 
 impl Named {
     /// The palette, for use.
+    #[must_use]
     pub fn palette(&self) -> Palette {
         let place = match self.span {
             Span::Range => Position::Share,
@@ -482,6 +485,7 @@ impl Named {
     }
 
     /// The ends of the scale of its positions.
+    #[must_use]
     pub fn ends(&self) -> [f64; 2] {
         [self.stops.first(), self.stops.last()].map(|stop| stop.map_or(0.0, |stop| stop.0))
     }

@@ -158,6 +158,7 @@ const NAMES: [(&str, u32); 148] = [
 const OTHERS: [(&str, u32); 1] = [("violetred", 0xd02090)];
 
 /// The colour of a name, ignoring case; `gray0` to `gray100` (or `grey`) are percentages of white.
+#[must_use]
 pub fn named(name: &str) -> Option<Rgb> {
     let name = name.to_ascii_lowercase();
     let known = NAMES.iter().chain(&OTHERS).find(|(known, _)| *known == name).map(|(_, hex)| rgb(*hex));
@@ -168,6 +169,7 @@ pub fn named(name: &str) -> Option<Rgb> {
 }
 
 /// The colour of `#rgb` or `#rrggbb`.
+#[must_use]
 pub fn hexadecimal(text: &str) -> Option<Rgb> {
     let digits = text.strip_prefix('#')?;
     let value = u32::from_str_radix(digits, 16).ok().filter(|_| digits.bytes().all(|byte| byte.is_ascii_hexdigit()))?;

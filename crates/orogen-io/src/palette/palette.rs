@@ -58,11 +58,13 @@ pub struct Palette {
 
 impl Palette {
     /// A palette with these stops, mixed in Oklab.
+    #[must_use]
     pub fn new(name: &str, stops: Vec<Stop>) -> Palette {
         Palette { name: name.to_string(), stops, ..Palette::default() }
     }
 
     /// Whether it distinguishes sea from land: its stops are not all shares of the range.
+    #[must_use]
     pub fn has_sea(&self) -> bool {
         self.follows_relief || self.stops.iter().any(|stop| matches!(stop.at, Position::Sea(_)))
     }

@@ -14,6 +14,7 @@ pub struct Ramp {
 impl Ramp {
     /// A ramp through `stops`: positions in ascending order, with their colours in sRGB bytes. Before the first stop
     /// and after the last it is constant; without stops it is black.
+    #[must_use]
     pub fn new(stops: &[(f32, Rgb)]) -> Ramp {
         Ramp::bent(stops, |at| at)
     }
@@ -27,6 +28,7 @@ impl Ramp {
     }
 
     /// The colour at `at`, clamped to 0 to 1; NaN counts as 0.
+    #[must_use]
     pub fn at(&self, at: f32) -> Light {
         let at = if at > 0.0 { at.min(1.0) * STEPS as f32 } else { 0.0 };
         let index = (at as usize).min(STEPS - 1);

@@ -112,11 +112,13 @@ impl<'a> Build<'a> {
     }
 
     /// Maximum memory, in bytes.
+    #[must_use]
     pub fn memory(&self) -> u64 {
         self.block.memory
     }
 
     /// Maximum disk space, and the number of bytes that exist already.
+    #[must_use]
     pub fn disk(&self) -> (Disk, u64) {
         let there = match JournalState::read(&self.work_dir.journal()) {
             Ok(Some(state)) => {
@@ -134,6 +136,7 @@ impl<'a> Build<'a> {
     }
 
     /// The folder with the journal and, until the build is complete, temporary files.
+    #[must_use]
     pub fn beside(&self) -> &Path {
         self.work_dir.beside()
     }

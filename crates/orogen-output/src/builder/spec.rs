@@ -32,6 +32,7 @@ pub enum Samples {
 
 impl Form {
     /// The name in journals and messages.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Form::Cog => "cog",
@@ -55,11 +56,13 @@ impl Form {
     ];
 
     /// The form with this name.
+    #[must_use]
     pub fn named(name: &str) -> Option<Form> {
         Form::ALL.into_iter().find(|form| form.name() == name)
     }
 
     /// The form for a file name's extension: `.tif`, `.tiff` or `.zarr`.
+    #[must_use]
     pub fn of(out: &Path) -> Option<Form> {
         let extension = out.extension()?.to_string_lossy().to_lowercase();
         match extension.as_str() {
@@ -71,6 +74,7 @@ impl Form {
 
     /// The default side of a tile in samples; `None` if it depends on the window. For tiles that share their edges it
     /// is a power of two plus one, as engines require.
+    #[must_use]
     pub fn usual_tile(self) -> Option<usize> {
         match self {
             Form::Cog => None,
@@ -81,11 +85,13 @@ impl Form {
     }
 
     /// Whether it is a single file instead of a folder.
+    #[must_use]
     pub fn is_file(self) -> bool {
         self == Form::Cog
     }
 
     /// Whether it can hold several layers.
+    #[must_use]
     pub fn holds_many(self) -> bool {
         matches!(self, Form::Zarr | Form::Tiles(_))
     }

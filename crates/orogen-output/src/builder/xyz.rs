@@ -42,6 +42,7 @@ fn pixel(zoom: u32, tile: usize) -> f64 {
 }
 
 /// The cell closest to `cell` with which the map is true to scale.
+#[must_use]
 pub fn cell_near(cell: f64, tile: usize) -> f64 {
     pixel(zoom_near(cell, tile), tile)
 }

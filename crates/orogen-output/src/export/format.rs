@@ -39,6 +39,7 @@ impl Format {
     }
 
     /// Whether it has an option with this name.
+    #[must_use]
     pub fn knows(&self, option: &str) -> bool {
         self.options.iter().any(|spec| spec.name == option)
     }

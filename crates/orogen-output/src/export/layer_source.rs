@@ -110,6 +110,7 @@ impl<'w> LayerSource<'w> {
     }
 
     /// The requested layers of vector features.
+    #[must_use]
     pub fn vectors(&self) -> &[&'static VectorLayer] {
         &self.vectors
     }
@@ -141,16 +142,19 @@ impl<'w> LayerSource<'w> {
     }
 
     /// The world.
+    #[must_use]
     pub fn world(&self) -> &'w World {
         self.world
     }
 
     /// The layer's name.
+    #[must_use]
     pub fn layer(&self) -> &str {
         &self.layer
     }
 
     /// The unit of a sample: "m" for heights, otherwise the unit of the layer, which may be empty.
+    #[must_use]
     pub fn unit(&self) -> &'static str {
         match self.derived {
             Some(derived) => derived.unit,
@@ -159,37 +163,44 @@ impl<'w> LayerSource<'w> {
     }
 
     /// The kind of the layer: heights, labels or amounts.
+    #[must_use]
     pub fn kind(&self) -> LayerKind {
         self.world.kind(&self.layer).unwrap_or(LayerKind::Height)
     }
 
     /// A hash of everything that the layer depends on; for a derived layer, of its heights.
+    #[must_use]
     pub fn key(&self) -> [u8; 32] {
         let layer = if self.derived.is_some() { HEIGHT } else { &self.layer };
         self.world.key(layer).unwrap_or_default()
     }
 
     /// The meaning of the channels.
+    #[must_use]
     pub fn nature(&self) -> Nature {
         self.derived.map_or(Nature::Numbers, |derived| derived.nature)
     }
 
     /// The window.
+    #[must_use]
     pub fn window(&self) -> &Window {
         &self.window
     }
 
     /// The progress of the export.
+    #[must_use]
     pub fn progress(&self) -> &Progress {
         &self.progress
     }
 
     /// Number of grids per band: 1 for plain numbers.
+    #[must_use]
     pub fn channels(&self) -> usize {
         self.derived.map_or(1, |derived| (derived.channels)(self.world.recipe()).len())
     }
 
     /// The names of the channels, for formats that store them.
+    #[must_use]
     pub fn channel_names(&self) -> Vec<String> {
         match self.derived {
             Some(derived) => (derived.channels)(self.world.recipe()),
@@ -198,6 +209,7 @@ impl<'w> LayerSource<'w> {
     }
 
     /// The position of metres on a map, if the recipe contains a real place or a `crs`.
+    #[must_use]
     pub fn map(&self) -> Option<Georeference> {
         self.world.recipe().georeference()
     }
@@ -235,6 +247,7 @@ impl<'w> LayerSource<'w> {
 
     /// Number of the samples that were last computed, and of the finite ones among them (or among the heights that they
     /// are derived from).
+    #[must_use]
     pub fn count(&self) -> FiniteCount {
         self.count
     }
@@ -265,6 +278,7 @@ impl<'w> LayerSource<'w> {
     }
 
     /// The range of the samples that were last computed; flat if there were none.
+    #[must_use]
     pub fn levels(&self) -> Levels {
         Levels::new(self.range[0], self.range[1])
     }

@@ -64,6 +64,7 @@ const WRITING: f64 = 60.0;
 
 /// Memory of a mesh of a window, in bytes, beside that of writing the file: the heights and, for an adaptive mesh, its
 /// triangles and the triangulations in progress, if one sample in five becomes a vertex.
+#[must_use]
 pub fn memory(window: &Window, options: &Options) -> u64 {
     let samples = whole(window);
     match options.has(MAX_ERROR.name) {
@@ -135,6 +136,7 @@ impl Prepared {
     }
 
     /// A level of detail, with vertex colours on request.
+    #[must_use]
     pub fn surface(&self, level: usize, colors: bool) -> Surface<'_> {
         Surface {
             grid: &self.grid,
@@ -147,11 +149,13 @@ impl Prepared {
     }
 
     /// The factor of heights.
+    #[must_use]
     pub fn exaggeration(&self) -> f32 {
         self.exaggeration
     }
 
     /// The error of an adaptive mesh; `None` for a full grid.
+    #[must_use]
     pub fn max_error(&self) -> Option<f64> {
         self.max_error
     }
@@ -173,6 +177,7 @@ impl Prepared {
     }
 
     /// Position and axes, for the comments of a file.
+    #[must_use]
     pub fn comments(&self, axes: &str) -> Vec<String> {
         let window = self.grid.window();
         let place =
@@ -196,6 +201,7 @@ impl Prepared {
     }
 
     /// The position of the origin on the map of a real place, as keys and values.
+    #[must_use]
     pub fn extras(&self) -> Vec<(String, Value)> {
         let Some(map) = &self.map else { return Vec::new() };
         let window = self.grid.window();
@@ -209,6 +215,7 @@ impl Prepared {
     }
 
     /// A summary of the number of triangles.
+    #[must_use]
     pub fn words(&self) -> String {
         let counts: Vec<String> = self.shapes.iter().map(|shape| shape.triangles().to_string()).collect();
         let counts = match counts.as_slice() {
@@ -223,6 +230,7 @@ impl Prepared {
 }
 
 /// The colouring of a mesh: the requested one, otherwise `otherwise`. A stream has no texture file beside it.
+#[must_use]
 pub fn color(options: &Options, otherwise: &'static str, files: &Files, beside: bool) -> &'static str {
     match options.word(COLOR.name).unwrap_or(otherwise) {
         "texture" if beside && files.path().is_none() => "none",

@@ -34,6 +34,7 @@ pub fn prepare(recipe: &mut Recipe, options: &Options) {
 }
 
 /// Memory of the textures beside the mesh, in bytes.
+#[must_use]
 pub fn memory(window: &Window, options: &Options) -> u64 {
     let samples = (window.width as u64).saturating_mul(window.height as u64);
     // Albedo, roughness and occlusion as f32, and two compressed pictures of three bytes per sample; then normals as

@@ -3,6 +3,7 @@
 use orogen_io::format::levels::Levels;
 
 /// The text chunks of a greyscale picture of heights: the software, and the heights of black and white.
+#[must_use]
 pub fn of_heights(cell: f64, levels: &Levels) -> Vec<(&'static str, String)> {
     let heights = match levels.is_flat() {
         true => format!("flat at {}; {cell} metres a sample", levels.low()),

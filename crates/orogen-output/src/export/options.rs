@@ -113,11 +113,13 @@ impl Options {
     }
 
     /// Whether the option was given.
+    #[must_use]
     pub fn has(&self, name: &str) -> bool {
         self.given.contains_key(name)
     }
 
     /// The value of an integer option.
+    #[must_use]
     pub fn whole(&self, name: &str) -> Option<u64> {
         match self.given.get(name)? {
             Value::Whole(n) => Some(*n),
@@ -126,6 +128,7 @@ impl Options {
     }
 
     /// The value of a number option.
+    #[must_use]
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.given.get(name)? {
             Value::Number(n) => Some(*n),
@@ -134,6 +137,7 @@ impl Options {
     }
 
     /// The value of a range option.
+    #[must_use]
     pub fn range(&self, name: &str) -> Option<[f64; 2]> {
         match self.given.get(name)? {
             Value::Range(ends) => Some(*ends),
@@ -142,6 +146,7 @@ impl Options {
     }
 
     /// The value of a position option.
+    #[must_use]
     pub fn point(&self, name: &str) -> Option<[f64; 2]> {
         match self.given.get(name)? {
             Value::Point(place) => Some(*place),
@@ -150,6 +155,7 @@ impl Options {
     }
 
     /// The value of a word option, as declared.
+    #[must_use]
     pub fn word(&self, name: &str) -> Option<&'static str> {
         match self.given.get(name)? {
             Value::Word(word) => Some(word),
@@ -158,6 +164,7 @@ impl Options {
     }
 
     /// The value of a text option.
+    #[must_use]
     pub fn text(&self, name: &str) -> Option<&str> {
         match self.given.get(name)? {
             Value::Text(text) => Some(text),

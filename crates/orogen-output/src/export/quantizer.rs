@@ -36,11 +36,13 @@ pub const BITS: OptionSpec = OptionSpec {
 };
 
 /// The largest level for the given options.
+#[must_use]
 pub fn most(options: &Options) -> u16 {
     if options.word("bits") == Some("8") { 255 } else { 65535 }
 }
 
 /// Whether the rows start in the south.
+#[must_use]
 pub fn from_south(options: &Options) -> bool {
     options.word("first-row") == Some("south")
 }
@@ -86,6 +88,7 @@ impl<'s, 'w> Quantizer<'s, 'w> {
     }
 
     /// The range of the levels.
+    #[must_use]
     pub fn levels(&self) -> Levels {
         self.levels
     }
@@ -158,6 +161,7 @@ pub fn write_levels(out: &mut dyn Write, samples: &[f32], levels: &Levels, most:
 }
 
 /// A description of the range of levels.
+#[must_use]
 pub fn words(levels: &Levels, most: u16) -> String {
     match levels.is_flat() {
         true => format!("flat at {} and so all 0", levels.low()),

@@ -11,11 +11,13 @@ use orogen_grid::words::nearest;
 static ALL: &[&Format] = include!("format_list.rs");
 
 /// All formats, by name.
+#[must_use]
 pub fn all() -> &'static [&'static Format] {
     ALL
 }
 
 /// The format with this name or extension, ignoring case.
+#[must_use]
 pub fn named(name: &str) -> Option<&'static Format> {
     ALL.iter().copied().find(|format| format.extensions().any(|extension| extension.eq_ignore_ascii_case(name)))
 }
@@ -47,6 +49,7 @@ pub fn of_path(path: &Path) -> Result<&'static Format> {
 }
 
 /// All options of all formats, by name, each with the formats that have it.
+#[must_use]
 pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static Format>)> {
     let mut all: Vec<(&OptionSpec, Vec<&Format>)> = Vec::new();
     for format in ALL {

@@ -20,6 +20,7 @@ const MOST: usize = 8;
 const LEAST: f64 = 0.001;
 
 /// Memory of the cover of a window, including its computation, in bytes.
+#[must_use]
 pub fn memory(window: &Window) -> u64 {
     (window.width as u64).saturating_mul(window.height as u64).saturating_mul(24)
 }

@@ -30,6 +30,7 @@ fn compared() -> impl Iterator<Item = &'static Figure> {
 
 impl FeatureVector {
     /// The features of measurements.
+    #[must_use]
     pub fn of(measures: &Measures) -> FeatureVector {
         let value = |figure: &Figure| {
             let value = figure.value(measures)?;
@@ -41,6 +42,7 @@ impl FeatureVector {
     }
 
     /// The median of several, per statistic.
+    #[must_use]
     pub fn middle(of: &[FeatureVector]) -> FeatureVector {
         let count = of.first().map_or(0, |first| first.values.len());
         let middle = |k: usize| {
@@ -58,6 +60,7 @@ impl FeatureVector {
 
     /// The root mean square of the differences, in standard deviations of real terrain: 0 is equal, 1.4 is typical for
     /// two random pieces of real terrain.
+    #[must_use]
     pub fn distance(&self, other: &FeatureVector) -> f64 {
         let differences = self.values.iter().zip(&other.values).map(|pair| match pair {
             (Some(a), Some(b)) => (a - b).clamp(-6.0, 6.0),
@@ -69,6 +72,7 @@ impl FeatureVector {
 }
 
 /// Windows of `side` x `side` samples spread over a grid without overlapping, at most `most`.
+#[must_use]
 pub fn windows(grid: &Window, side: usize, most: usize) -> Vec<Window> {
     let (columns, rows) = (grid.width / side, grid.height / side);
     let all: Vec<Window> = (0..columns * rows)
@@ -85,6 +89,7 @@ pub fn windows(grid: &Window, side: usize, most: usize) -> Vec<Window> {
 }
 
 /// The features of windows of a grid, without those that cannot be measured.
+#[must_use]
 pub fn of_windows(grid: &Grid, side: usize, most: usize) -> Vec<FeatureVector> {
     let crops = windows(grid.window(), side, most).into_iter().filter_map(|window| grid.crop(&window));
     crops.filter_map(|crop| Measures::of(&crop, None)).map(|measures| FeatureVector::of(&measures)).collect()

@@ -108,6 +108,7 @@ pub struct Found {
 
 impl Found {
     /// The recipe, for a world of the size of the place.
+    #[must_use]
     pub fn recipe(&self, target: &FitTarget, seed: u64, about: &str) -> Recipe {
         let mut recipe = recipe(&self.values, &self.stretch, target.size, target.cell, seed);
         recipe.about = about.to_string();

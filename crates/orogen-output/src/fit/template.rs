@@ -37,6 +37,7 @@ pub const PARAMS: [Param; 9] = [
 pub type ParamValues = [f64; PARAMS.len()];
 
 /// The value of a parameter in its own unit.
+#[must_use]
 pub fn value(values: &ParamValues, k: usize) -> f64 {
     let Param { range: [low, high], logarithmic, .. } = PARAMS[k];
     let share = values[k].clamp(0.0, 1.0);
@@ -67,6 +68,7 @@ impl Stretch {
     }
 
     /// The node for it. It extrapolates beyond both ends: a larger world may be lower and higher than the fitted one.
+    #[must_use]
     pub fn curve(&self) -> Curve {
         let ([low, high], [base, top]) = (self.from, self.to);
         let point = |k: i32| {
@@ -137,6 +139,7 @@ impl View {
 
 /// The recipe of these values in a world of this many cells, with rivers up to its edges. Its node `soft` is the
 /// terrain before stretching.
+#[must_use]
 pub fn recipe(values: &ParamValues, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64) -> Recipe {
     written(values, stretch, size, cell, seed, Some(View::new(size, cell, MARGIN)))
 }

@@ -18,32 +18,38 @@ pub struct Canvas {
 
 impl Canvas {
     /// A page of one colour.
+    #[must_use]
     pub fn new(width: usize, height: usize, paper: Ink) -> Canvas {
         Canvas { width, height, pixels: vec![paper; width * height] }
     }
 
     /// A page of these pixels, row-major; missing pixels at the end are white.
+    #[must_use]
     pub fn of(width: usize, height: usize, mut pixels: Vec<Ink>) -> Canvas {
         pixels.resize(width * height, [255; 3]);
         Canvas { width, height, pixels }
     }
 
     /// All pixels, row-major.
+    #[must_use]
     pub fn pixels(&self) -> &[Ink] {
         &self.pixels
     }
 
     /// Pixels per row.
+    #[must_use]
     pub fn width(&self) -> usize {
         self.width
     }
 
     /// Number of rows.
+    #[must_use]
     pub fn height(&self) -> usize {
         self.height
     }
 
     /// The pixel in column `x` and row `y`; `None` outside the page.
+    #[must_use]
     pub fn get(&self, x: i64, y: i64) -> Option<Ink> {
         self.index(x, y).map(|index| self.pixels[index])
     }

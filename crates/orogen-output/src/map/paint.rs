@@ -25,11 +25,13 @@ pub struct Painter {
 
 impl Painter {
     /// A painter with this tint and shading.
+    #[must_use]
     pub fn new(tint: Tint, shade: Shade) -> Painter {
         Painter { tint, shade, encoder: Encoder::new() }
     }
 
     /// The painter fitted to the heights of `grid`, in metres.
+    #[must_use]
     pub fn fit(grid: &Grid, sea_level: f64) -> Painter {
         let sea_level = sea_level as f32;
         Painter::new(Tint::fit(grid, sea_level), Shade::fit(grid, sea_level))

@@ -53,6 +53,7 @@ impl BuiltinFont {
     }
 
     /// The width of a line of text, in pixels.
+    #[must_use]
     pub fn width(&self, text: &str, style: Style) -> f32 {
         self.set(text, style, |_, _| {})
     }
@@ -81,6 +82,7 @@ impl BuiltinFont {
     }
 
     /// Breaks text at spaces into lines of at most `width` pixels. A longer word gets its own line.
+    #[must_use]
     pub fn wrap(&self, text: &str, style: Style, width: f32) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
         for word in text.split_whitespace() {

@@ -128,6 +128,7 @@ impl Shape {
     }
 
     /// Number of vertices.
+    #[must_use]
     pub fn corners(&self) -> usize {
         match &self.kind {
             Kind::Lattice { columns, rows } => columns.len() * rows.len(),
@@ -137,6 +138,7 @@ impl Shape {
     }
 
     /// Number of triangles.
+    #[must_use]
     pub fn triangles(&self) -> usize {
         match &self.kind {
             Kind::Lattice { columns, rows } => 2 * (columns.len() - 1) * (rows.len() - 1),
@@ -146,6 +148,7 @@ impl Shape {
     }
 
     /// The column and row of a vertex.
+    #[must_use]
     pub fn sample(&self, corner: u32) -> [usize; 2] {
         match &self.kind {
             Kind::Lattice { columns, rows } => {

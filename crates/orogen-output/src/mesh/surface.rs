@@ -111,6 +111,7 @@ impl Surface<'_> {
     }
 
     /// The bounds of the vertices: east, height, south.
+    #[must_use]
     pub fn bounds(&self) -> [[f32; 3]; 2] {
         let rows = self.shape.rows();
         let none = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
@@ -129,6 +130,7 @@ impl Surface<'_> {
     }
 
     /// East, height and south of a sample, in metres.
+    #[must_use]
     pub fn place(&self, column: usize, row: usize) -> [f32; 3] {
         let cell = self.grid.window().cell;
         [(column as f64 * cell) as f32, self.grid[(column, row)] * self.exaggeration, (row as f64 * cell) as f32]

@@ -72,6 +72,7 @@ impl Camera {
     /// The camera of a view of the land, whose first sample is at `origin` (metres east and south), for pictures of
     /// `size` pixels with an angle of view of `fov` degrees along the longer side. `frame` is used if the distance is
     /// chosen automatically.
+    #[must_use]
     pub fn new(view: &View, relief: &Relief, origin: [f64; 2], size: [usize; 2], fov: f64, frame: &Frame) -> Camera {
         let half = libm::tan(fov.to_radians() / 2.0);
         let [width, height] = size.map(|side| side as f64);
@@ -134,6 +135,7 @@ impl Camera {
     }
 
     /// The position of a point in the picture, -1 to 1 along each axis; `None` if it is behind the camera.
+    #[must_use]
     pub fn project(&self, place: Vector) -> Option<[f64; 2]> {
         let way = place - self.eye;
         let depth = way.dot(self.ahead);
@@ -199,22 +201,26 @@ impl Camera {
     }
 
     /// The position, in cells.
+    #[must_use]
     pub fn eye(&self) -> Vector {
         self.eye
     }
 
     /// The number of metres by which it was raised above ground and water; `None` if it was not.
+    #[must_use]
     pub fn lifted(&self) -> Option<f64> {
         self.lifted
     }
 
     /// The ray through a point of the picture: (0, 0) is its upper left corner, (1, 1) its lower right corner.
+    #[must_use]
     pub fn ray(&self, across: f64, down: f64) -> Ray {
         let (x, y) = ((2.0 * across - 1.0) * self.wide[0], (2.0 * down - 1.0) * self.wide[1]);
         Ray { from: self.eye, along: (self.ahead + self.right * x + self.down * y).unit() }
     }
 
     /// The width of a pixel at distance 1, in a picture of `width` pixels.
+    #[must_use]
     pub fn pixel(&self, width: usize) -> f64 {
         2.0 * self.wide[0] / width as f64
     }

@@ -120,6 +120,7 @@ impl Walk {
 
 impl Relief {
     /// The first intersection of a ray, at least `nearest` cells from its origin.
+    #[must_use]
     pub fn hit(&self, ray: &Ray, nearest: f64) -> Option<Hit> {
         let (enter, leave, face) = self.clip(ray, nearest)?;
         if let Some(normal) = face {
@@ -223,6 +224,7 @@ impl Relief {
 
     /// The steepest slope (z per cell of distance) from a point to any ground in the horizontal unit direction (dx,
     /// dy), at least `nearest` cells away, if it is more than `at_least`. Values above `enough` are not refined.
+    #[must_use]
     pub fn steepest(&self, place: Vector, [dx, dy]: [f64; 2], nearest: f64, at_least: f64, enough: f64) -> f64 {
         let ray = Ray { from: Vector { z: f64::NEG_INFINITY, ..place }, along: Vector::new(dx, dy, 0.0) };
         let mut most = at_least;

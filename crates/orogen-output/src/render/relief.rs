@@ -161,41 +161,49 @@ impl Relief {
     }
 
     /// Number of columns and rows.
+    #[must_use]
     pub fn samples(&self) -> [usize; 2] {
         [self.columns, self.rows]
     }
 
     /// Extent of the land east and south of its first sample, in cells.
+    #[must_use]
     pub fn reach(&self) -> [f64; 2] {
         [(self.columns - 1) as f64, (self.rows - 1) as f64]
     }
 
     /// Metres per cell.
+    #[must_use]
     pub fn cell(&self) -> f64 {
         self.cell
     }
 
     /// The factor of heights.
+    #[must_use]
     pub fn exaggeration(&self) -> f64 {
         self.exaggeration
     }
 
     /// The z of a height in metres.
+    #[must_use]
     pub fn level_of(&self, height: f64) -> f64 {
         (height - self.datum) * self.exaggeration / self.cell
     }
 
     /// The height in metres of z.
+    #[must_use]
     pub fn height_of(&self, z: f64) -> f64 {
         z * self.cell / self.exaggeration + self.datum
     }
 
     /// The z of the sea level, if there is a sea.
+    #[must_use]
     pub fn sea(&self) -> Option<f64> {
         self.sea
     }
 
     /// The z of the highest ground or water.
+    #[must_use]
     pub fn highest(&self) -> f64 {
         self.tops.last().map_or(0.0, |tops| f64::from(tops.at(0, 0)))
     }
@@ -239,6 +247,7 @@ impl Relief {
     }
 
     /// The z of the ground or the water, whichever is higher.
+    #[must_use]
     pub fn top(&self, x: f64, y: f64) -> f64 {
         let ([i, j], _) = self.patch(x, y);
         self.ground(x, y).max(f64::from(self.water_of(i, j)))

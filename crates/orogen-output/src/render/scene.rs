@@ -193,11 +193,13 @@ impl Scene {
     }
 
     /// The land.
+    #[must_use]
     pub fn relief(&self) -> &Relief {
         &self.relief
     }
 
     /// The box that a picture of the whole scene must show: the block, or the land above the sea.
+    #[must_use]
     pub fn frame(&self) -> Frame {
         let ([east, south], highest) = (self.relief.reach(), self.relief.highest());
         let floor = if let Around::Sea(sea) = self.around { sea } else { self.floor };

@@ -65,16 +65,19 @@ impl FontSet {
     }
 
     /// Characters that neither the built-in font nor the system font has; they are omitted.
+    #[must_use]
     pub fn lacking(&self) -> &[char] {
         &self.lacking
     }
 
     /// The width of a line of text, in millimetres; `size` is the em in millimetres.
+    #[must_use]
     pub fn width(&self, text: &str, face: Face, size: f32) -> f32 {
         self.set(text, face, size, |_, _, _| {})
     }
 
     /// The outlines of a line of text from `at`, along a baseline that rises by `angle` radians (counter-clockwise).
+    #[must_use]
     pub fn write(&self, text: &str, face: Face, size: f32, at: Point, angle: f32) -> Vec<Step> {
         let (sin, cos) = libm::sincosf(angle);
         let mut steps = Vec::new();

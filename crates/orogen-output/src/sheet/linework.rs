@@ -32,6 +32,7 @@ const APART: f64 = 26.0;
 const SUMMITS: usize = 24;
 
 /// Number of samples along the longer side of a map of this many millimetres, for finding lines.
+#[must_use]
 pub fn lines_at(longer: f64) -> usize {
     ((longer / SAMPLE).ceil() as usize).clamp(8, MOST)
 }
@@ -122,6 +123,7 @@ impl Linework {
     }
 
     /// The legend entries of its lines.
+    #[must_use]
     pub fn legend(&self, options: &Options) -> Vec<Entry> {
         let mut entries = Vec::new();
         if let Some(interval) = self.interval.filter(|_| !self.contours.is_empty()) {

@@ -16,6 +16,7 @@ const BAND: usize = 64;
 ///
 /// Edges are antialiased: areas by pixel coverage, lines by distance. Bands of rows are drawn in parallel and
 /// independently, so their number does not affect the result.
+#[must_use]
 pub fn draw(scene: &Scene, dpi: f64) -> Canvas {
     let scale = (dpi / 25.4) as f32;
     let [width, height] = pixels(scene, dpi);
@@ -33,6 +34,7 @@ pub fn draw(scene: &Scene, dpi: f64) -> Canvas {
 }
 
 /// The size of the page in pixels.
+#[must_use]
 pub fn pixels(scene: &Scene, dpi: f64) -> [usize; 2] {
     scene.size.map(|side| ((f64::from(side) * dpi / 25.4).round() as usize).max(1))
 }

@@ -97,6 +97,7 @@ impl Scene {
 }
 
 /// The outline of a polygon.
+#[must_use]
 pub fn polygon(corners: &[Point]) -> Vec<Step> {
     corners.iter().enumerate().map(|(k, place)| if k == 0 { Step::Move(*place) } else { Step::Line(*place) }).collect()
 }

@@ -26,6 +26,7 @@ pub const ROWS: usize = 32;
 
 impl<'a> Land<'a> {
     /// Heights in memory.
+    #[must_use]
     pub fn in_memory(heights: &'a Grid, sea_level: Option<f32>) -> Land<'a> {
         Land { heights: Heights::Memory(heights), sea_level }
     }
@@ -36,6 +37,7 @@ impl<'a> Land<'a> {
     }
 
     /// The window of the heights.
+    #[must_use]
     pub fn window(&self) -> &'a Window {
         match self.heights {
             Heights::Memory(grid) => grid.window(),
@@ -44,11 +46,13 @@ impl<'a> Land<'a> {
     }
 
     /// The sea level.
+    #[must_use]
     pub fn sea_level(&self) -> Option<f32> {
         self.sea_level
     }
 
     /// Whether the heights are on disk.
+    #[must_use]
     pub fn is_on_disk(&self) -> bool {
         matches!(self.heights, Heights::Disk(_))
     }
@@ -100,6 +104,7 @@ impl<'a> Land<'a> {
 }
 
 /// Memory of a band of a window on disk and of the results from it, in bytes.
+#[must_use]
 pub fn band_memory(window: &Window) -> u64 {
     (window.width as u64).saturating_mul((SIDE + ROWS) as u64 * 4 * 4)
 }

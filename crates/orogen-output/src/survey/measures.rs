@@ -93,12 +93,14 @@ pub struct Measures {
 
 impl Measures {
     /// Maximum memory for measuring this many samples, in bytes, including the heights.
+    #[must_use]
     pub fn memory(samples: u64) -> u64 {
         samples.saturating_mul(SAMPLE)
     }
 
     /// Memory for measuring a window with heights on disk, in bytes, without its rivers, whose number is known only
     /// afterwards.
+    #[must_use]
     pub fn memory_on_disk(window: &Window) -> u64 {
         let rows = 4 * 512 * window.width as u64;
         let sorting = 4 * PART as u64 + (2 << 20);
@@ -108,6 +110,7 @@ impl Measures {
 
     /// Measures heights. Samples at or below the sea level, if there is one, are not land and are ignored. `None` if
     /// fewer than 64 x 64 samples or less than 1 % of them are land, or all of it is level.
+    #[must_use]
     pub fn of(heights: &Grid, sea_level: Option<f32>) -> Option<Measures> {
         Measures::of_with(heights, sea_level, &Progress::none()).ok().flatten()
     }

@@ -22,6 +22,7 @@ use orogen_noise::Points;
 pub const MEMORY: u64 = 16 << 20;
 
 /// Memory of the rows read at a time, for a window with heights on disk, in bytes.
+#[must_use]
 pub fn rows_memory(window: &Window) -> u64 {
     (window.width.max(window.height) as u64)
         .div_ceil(PICTURE as u64)

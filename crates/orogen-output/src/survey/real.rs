@@ -63,11 +63,13 @@ pub static FIGURES: &[Figure] = figures![
 
 impl Figure {
     /// The value, if it exists and is finite.
+    #[must_use]
     pub fn value(&self, measures: &Measures) -> Option<f64> {
         (self.of)(measures).filter(|value| value.is_finite())
     }
 
     /// The position of a value in the range of real terrain: 0 is the median, -1 and 1 are the 10 % and 90 % quantiles.
+    #[must_use]
     pub fn place(&self, value: f64) -> f64 {
         let [low, middle, high] = self.real;
         let half = if value < middle { middle - low } else { high - middle };
@@ -75,6 +77,7 @@ impl Figure {
     }
 
     /// An assessment in one word.
+    #[must_use]
     pub fn verdict(&self, value: f64) -> &'static str {
         match self.place(value) {
             place if place < -2.0 => "far below",
@@ -86,12 +89,14 @@ impl Figure {
     }
 
     /// A value with its number of decimals.
+    #[must_use]
     pub fn text(&self, value: f64) -> String {
         format!("{value:.*}", self.digits)
     }
 }
 
 /// The table for a terminal: each statistic with its range in real terrain and an assessment.
+#[must_use]
 pub fn table(measures: &Measures) -> String {
     let mut out = format!("{:<24}{:>10} {:<8} {:>24}\n", "", "here", "", "real: 10 %, half, 90 %");
     for figure in FIGURES {

@@ -90,6 +90,7 @@ pub struct Condition {
 
 impl Condition {
     /// A condition on a range of a quantity, with transitions of these widths below and above.
+    #[must_use]
     pub fn new(of: Quantity, min: Option<f64>, max: Option<f64>, fade: [f64; 2]) -> Condition {
         Condition { of, min, max, fade }
     }
@@ -178,6 +179,7 @@ impl Coloring {
 
 impl Surface {
     /// The picture of its colors.
+    #[must_use]
     pub fn picture(&self) -> Option<&FileRef> {
         match &self.color {
             Coloring::Picture(file, _) => Some(file),
@@ -305,6 +307,7 @@ fn range(condition: &Condition) -> String {
 }
 
 /// A color as `#rrggbb`.
+#[must_use]
 pub fn hex([r, g, b]: Rgb) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }

@@ -36,6 +36,7 @@ const TEXTS: u16 = 34737;
 const DOUBLES: u16 = 34736;
 
 /// The value of a key with a single short.
+#[must_use]
 pub fn short(keys: &GeoKeys, wanted: u16) -> Option<u16> {
     keys.directory.chunks_exact(4).skip(1).find(|key| key[0] == wanted && key[1] == 0).map(|key| key[3])
 }
@@ -54,6 +55,7 @@ fn double(keys: &GeoKeys, wanted: u16) -> Option<f64> {
 }
 
 /// Metres per unit of length, by its EPSG code.
+#[must_use]
 pub fn length_unit(code: u16) -> Option<f64> {
     match code {
         9001 => Some(1.0),
@@ -65,11 +67,13 @@ pub fn length_unit(code: u16) -> Option<f64> {
 }
 
 /// Whether coordinates are degrees of longitude and latitude.
+#[must_use]
 pub fn is_degrees(keys: &GeoKeys) -> bool {
     short(keys, MODEL) == Some(2)
 }
 
 /// Whether the keys describe a coordinate system on Earth: not local metres, and not degrees of an unknown datum.
+#[must_use]
 pub fn is_named(keys: &GeoKeys) -> bool {
     match short(keys, MODEL) {
         Some(1) => true,
@@ -79,6 +83,7 @@ pub fn is_named(keys: &GeoKeys) -> bool {
 }
 
 /// The unit of the coordinates.
+#[must_use]
 pub fn unit(keys: &GeoKeys) -> Unit {
     if is_degrees(keys) { Unit::Degrees } else { Unit::Metres(metres(keys)) }
 }
@@ -90,6 +95,7 @@ pub fn metres(keys: &GeoKeys) -> f64 {
 }
 
 /// The EPSG code of the system, if the keys have one.
+#[must_use]
 pub fn epsg(keys: &GeoKeys) -> Option<u16> {
     let key = |wanted: u16| short(keys, wanted).filter(|code| !matches!(*code, 0 | USER_DEFINED));
     // Model 2 is a geographic system, 1 a projected one.
@@ -97,6 +103,7 @@ pub fn epsg(keys: &GeoKeys) -> Option<u16> {
 }
 
 /// The keys of an EPSG code.
+#[must_use]
 pub fn of_epsg(code: u16, geographic: bool) -> GeoKeys {
     let directory = match geographic {
         true => vec![1, 1, 0, 2, MODEL, 0, 1, 2, GEOGRAPHIC, 0, 1, code],

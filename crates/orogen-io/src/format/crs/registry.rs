@@ -63,26 +63,31 @@ impl Crs {
     }
 
     /// The EPSG code.
+    #[must_use]
     pub fn code(&self) -> u16 {
         self.code
     }
 
     /// The name in the registry.
+    #[must_use]
     pub fn name(&self) -> &'static str {
         name(self.wkt)
     }
 
     /// The definition as OGC well-known text, version 1.
+    #[must_use]
     pub fn wkt(&self) -> &'static str {
         self.wkt
     }
 
     /// The unit of the coordinates.
+    #[must_use]
     pub fn unit(&self) -> Unit {
         self.unit.0
     }
 
     /// GeoTIFF keys of the system, with pixel-is-point.
+    #[must_use]
     pub fn keys(&self) -> GeoKeys {
         let text = format!("{}|", self.name());
         let citation = [1026, 34737, text.len() as u16, 0];

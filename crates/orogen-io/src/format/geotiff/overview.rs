@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 /// Number of samples along a side of an overview, for a side of `n` samples.
+#[must_use]
 pub fn half(n: usize) -> usize {
     n.div_ceil(2)
 }
@@ -19,6 +20,7 @@ pub struct Span {
 
 impl Span {
     /// The samples under sample `i` of the overview of a side of `n` samples.
+    #[must_use]
     pub fn of(i: usize, n: usize) -> Span {
         // In units in which a sample of the overview has the length n and one below it m, all ends are integers.
         let m = half(n);
@@ -33,6 +35,7 @@ impl Span {
     }
 
     /// The index after the last sample that it needs.
+    #[must_use]
     pub fn end(&self) -> usize {
         self.first + self.shares.iter().filter(|share| **share > 0.0).count()
     }
@@ -54,6 +57,7 @@ pub struct Below<'a> {
 
 /// Computes the overview's rows `made..until`, in the columns of the given spans, which `below` must contain. Samples
 /// that are NaN or `missing` are excluded from the means; if none is left, the overview's sample is missing too.
+#[must_use]
 pub fn reduce(below: &Below, columns: &[Span], made: usize, until: usize, missing: Option<f32>) -> Vec<f32> {
     let mut out = vec![0.0; columns.len() * (until - made)];
     out.par_chunks_exact_mut(columns.len()).enumerate().for_each(|(j, row)| {

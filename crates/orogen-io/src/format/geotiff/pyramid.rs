@@ -42,21 +42,25 @@ impl Pyramid {
     }
 
     /// Side of a tile, in samples.
+    #[must_use]
     pub fn tile(&self) -> usize {
         self.description.tile
     }
 
     /// The nodata value.
+    #[must_use]
     pub fn nodata(&self) -> Option<f32> {
         self.description.nodata
     }
 
     /// Width and height of each level.
+    #[must_use]
     pub fn sizes(&self) -> &[[usize; 2]] {
         &self.sizes
     }
 
     /// Number of tiles of a level, across and down.
+    #[must_use]
     pub fn tiles(&self, level: usize) -> [usize; 2] {
         self.sizes[level].map(|side| side.div_ceil(self.tile()))
     }

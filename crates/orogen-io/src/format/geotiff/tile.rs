@@ -4,6 +4,7 @@ use crate::format::deflate;
 
 /// Compresses the tile in `column` of a row of tiles. `rows` are the samples, `width` per row. The part of the tile
 /// beyond the raster repeats the edge: readers do not show it, and it compresses well.
+#[must_use]
 pub fn pack(rows: &[f32], width: usize, column: usize, side: usize) -> Vec<u8> {
     let first = column * side;
     let mut samples = vec![0.0; side];

@@ -21,6 +21,7 @@ const HEADER: usize = 16;
 const BEFORE: usize = HEADER + 4 + 4;
 
 /// Compresses numbers of `size` bytes each; `None` if they are too long for a frame (about 2 GiB).
+#[must_use]
 pub fn pack(bytes: &[u8], size: u8) -> Option<Vec<u8>> {
     let length = i32::try_from(bytes.len() + BEFORE).ok()? as usize - BEFORE;
     let shuffled = shuffle(bytes, usize::from(size));

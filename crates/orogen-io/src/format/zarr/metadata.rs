@@ -15,6 +15,7 @@ pub enum Number {
 
 impl Number {
     /// Bytes per number.
+    #[must_use]
     pub fn size(self) -> u8 {
         match self {
             Number::F32 => 4,
@@ -39,6 +40,7 @@ pub struct Array<'a> {
 }
 
 /// The metadata of an array. Its chunks are at `c/ROW/COLUMN` relative to it.
+#[must_use]
 pub fn array(array: &Array) -> Value {
     let Array { shape, chunk, sides, number, attributes } = array;
     let (name, fill) = match number {
@@ -69,6 +71,7 @@ pub fn array(array: &Array) -> Value {
 
 /// The metadata of a group with these arrays. It includes a copy of the arrays' metadata (consolidated metadata of
 /// zarr-python), so that one file suffices; other readers read the metadata of each array.
+#[must_use]
 pub fn group(arrays: &[(String, Value)], attributes: Value) -> Value {
     let members: Map<String, Value> = arrays.iter().cloned().collect();
     json!({

@@ -37,6 +37,7 @@ pub struct Derived {
 
 impl Derived {
     /// The row layer, if it is computed from rows.
+    #[must_use]
     pub fn rows(&self) -> Option<&RowLayer> {
         match &self.made {
             Made::Rows(rows) => Some(rows),
@@ -95,6 +96,7 @@ pub struct Around<'a> {
 pub fn nothing(_: &mut Recipe) {}
 
 /// The `layers` of a layer that reads only the heights.
+#[must_use]
 pub fn none(_: &Recipe) -> Vec<String> {
     Vec::new()
 }
@@ -102,6 +104,7 @@ pub fn none(_: &Recipe) -> Vec<String> {
 impl Around<'_> {
     /// The heights of a window extended by one sample on each side, with linear extrapolation beyond the edges of the
     /// world.
+    #[must_use]
     pub fn bordered(&self, window: &Window) -> Grid {
         let wide = window.grown(1);
         let there = self.heights.window();

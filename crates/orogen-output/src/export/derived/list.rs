@@ -41,16 +41,19 @@ static ALL: [&Derived; 26] = [
 ];
 
 /// All derived layers.
+#[must_use]
 pub fn all() -> &'static [&'static Derived] {
     &ALL
 }
 
 /// The derived layer with this name.
+#[must_use]
 pub fn named(name: &str) -> Option<&'static Derived> {
     ALL.into_iter().find(|derived| derived.name == name)
 }
 
 /// All options of all layers, by name, each with the layers that have it.
+#[must_use]
 pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
     let mut all: Vec<(&OptionSpec, Vec<&str>)> = Vec::new();
     for derived in ALL {

@@ -114,6 +114,7 @@ impl<'a> FeatureOptions<'a> {
     }
 
     /// Minimum number of samples, at this cell, that drain to a source, and of a lake.
+    #[must_use]
     pub fn fewest(&self, cell: f64) -> [u32; 2] {
         let samples =
             |area: f64, fewest: u32| (area / (cell * cell)).ceil().clamp(f64::from(fewest), f64::from(u32::MAX)) as u32;
@@ -121,6 +122,7 @@ impl<'a> FeatureOptions<'a> {
     }
 
     /// Number of smoothing rounds of rivers, and of the borders of polygons.
+    #[must_use]
     pub fn rounds(&self) -> [usize; 2] {
         self.given.whole(contour_options::SMOOTH.name).map_or(ROUNDS, |rounds| [rounds as usize; 2])
     }

@@ -97,22 +97,26 @@ impl FeatureSource {
     }
 
     /// Distance between samples, in metres.
+    #[must_use]
     pub fn cell(&self) -> f64 {
         self.window.cell
     }
 
     /// Metres east and south of the world's origin of a column and row.
+    #[must_use]
     pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [(self.window.x as f64 + x) * self.window.cell, (self.window.y as f64 + y) * self.window.cell]
     }
 
     /// The parts of a polygon, in metres.
+    #[must_use]
     pub fn parts(&self, parts: &[Vec<Vec<[f64; 2]>>]) -> Vec<Vec<Vec<[f64; 2]>>> {
         let ring = |ring: &Vec<[f64; 2]>| ring.iter().map(|at| self.place(*at)).collect();
         parts.iter().map(|part| part.iter().map(ring).collect()).collect()
     }
 
     /// The heights of the frame.
+    #[must_use]
     pub fn heights(&self) -> Option<Grid> {
         let window = Window {
             x: self.window.x + self.frame.columns.start as i64,
@@ -125,6 +129,7 @@ impl FeatureSource {
     }
 
     /// The number of a lake within the frame, from 1.
+    #[must_use]
     pub fn lake_id(&self, lake: u32) -> Option<u32> {
         self.lakes.binary_search_by_key(&lake, |area| area.lake).ok().map(|k| k as u32 + 1)
     }

@@ -119,6 +119,7 @@ impl Frame {
     }
 
     /// The window of a tile.
+    #[must_use]
     pub fn tile(&self, column: usize, row: usize) -> Window {
         Tiling { overlap: 1, ..Tiling::of(self.side - 1) }.tile(&self.window, column, row)
     }
