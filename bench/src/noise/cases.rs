@@ -26,6 +26,8 @@ pub enum Work {
     PerlinSlice,
     /// Perlin noise at scattered points.
     PerlinScattered,
+    /// The same points in f32, seen from the middle of the picture.
+    PerlinAround,
     /// Fractal sum of Perlin noise.
     Fbm,
     /// Fractal sum of ridged Perlin noise.
@@ -73,6 +75,7 @@ pub const CASES: &[Case] = &[
     case("Perlin 2D", Work::Perlin, "fastnoise-lite", 42.0),
     case("Perlin 3D slice", Work::PerlinSlice, "fastnoise-lite", 65.0),
     case("Perlin 2D scattered", Work::PerlinScattered, "fastnoise-lite", 10.0),
+    case("Perlin 2D scattered around an origin, f32", Work::PerlinAround, "fastnoise-lite", 10.0),
     case("fBm 6 octaves", Work::Fbm, "fastnoise-lite", 125.0),
     Case { wavelength: 50.0, ..case("fBm 6 octaves, wavelength 50", Work::Fbm, "fastnoise-lite", 80.0) },
     case("ridged 6 octaves", Work::Ridged, "fastnoise-lite", 70.0),

@@ -27,6 +27,12 @@ pub fn job(case: &Case) -> Job {
             let (x, y) = scattered();
             job_of(move |out| perlin.fill(&Points::Scattered { x: &x, y: &y }, out))
         }
+        Work::PerlinAround => {
+            let middle = SIZE as f64 / 2.0;
+            let (x, y) = scattered();
+            let [x, y] = [x, y].map(|at| at.iter().map(|at| (at - middle) as f32).collect::<Vec<f32>>());
+            job_of(move |out| perlin.fill_around((middle, middle), &x, &y, out))
+        }
         Work::Fbm => whole(fractal(Kind::Fbm)),
         Work::Ridged => whole(fractal(Kind::Ridged)),
         Work::WeightedFbm => whole(fractal(weighted)),

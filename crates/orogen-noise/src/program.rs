@@ -79,6 +79,7 @@ impl Cellular {
     /// of these over all places bound the nearest and the second nearest, and points in the farthest corners reach them. An edge is at
     /// most sqrt 2 (sqrt 3, 2) minus the nearest distance away, or that far off a place would be without a point, and at most half the
     /// sum of the nearest two: together less than 1 (2 / sqrt 3, 4 / 3).
+    #[inline]
     pub(crate) fn bound(self, dims: usize) -> f32 {
         let pick = |bounds: [f32; 3]| bounds[dims.clamp(2, 4) - 2];
         let second = match self.distance {

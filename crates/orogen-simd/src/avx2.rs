@@ -1,6 +1,7 @@
 //! AVX2 with FMA: 8 lanes in one register, f64 in two.
 
 use crate::avx512::last_index;
+use crate::lanes::FAR;
 use crate::{Body, F32Lanes, F64Lanes, Level, MaskLanes, Simd, Stream, U32Lanes};
 use core::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
@@ -194,6 +195,19 @@ impl Simd for Avx2 {
             let high = _mm256_permutevar8x32_ps(table.1, index.0);
             _mm256_blendv_ps(low, high, half)
         })
+    }
+    #[inline(always)]
+    fn place(self, number: F64x8, from: f64, count: u32) -> (F64x8, U32x8, U32x8) {
+        let whole = number.floor();
+        let sum = whole + self.f64(FAR - from);
+        // SAFETY: see the head of the file.
+        let elsewhere = unsafe {
+            let here = _mm256_castpd_si256(self.f64(FAR).0);
+            let (a, b) = (_mm256_castpd_si256(sum.0), _mm256_castpd_si256(sum.1));
+            let either = _mm256_or_si256(_mm256_xor_si256(a, here), _mm256_xor_si256(b, here));
+            _mm256_and_si256(either, _mm256_set1_epi64x(!i64::from(count - 1)))
+        };
+        (whole, sum.words().0, U32x8(elsewhere))
     }
     #[inline(always)]
     fn gather(self, from: &[f32], index: U32x8) -> F32x8 {

@@ -1,5 +1,6 @@
 //! AVX-512: 16 lanes in one register, f64 in two.
 
+use crate::lanes::FAR;
 use crate::{Body, F32Lanes, F64Lanes, Level, MaskLanes, Simd, Stream, U32Lanes};
 use core::arch::x86_64::*;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
@@ -208,15 +209,23 @@ impl Simd for Avx512 {
     }
     #[inline(always)]
     fn whole(self, number: F64x16) -> (F64x16, U32x16, U32x16) {
-        const DOWN: i32 = _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC;
-        let far = self.f64(6_755_399_441_055_744.0);
-        // Numbers of that size have no fraction: a sum rounded down is the integer, already in the low bits.
-        // SAFETY: see the head of the file.
-        let sum = unsafe {
-            F64x16(_mm512_add_round_pd::<DOWN>(number.0, far.0), _mm512_add_round_pd::<DOWN>(number.1, far.1))
-        };
+        let far = self.f64(FAR);
+        let sum = sum_down(number, far);
         let (low, high) = sum.words();
         (sum - far, low, high)
+    }
+    #[inline(always)]
+    fn place(self, number: F64x16, from: f64, count: u32) -> (F64x16, U32x16, U32x16) {
+        let far = self.f64(FAR - from);
+        let sum = sum_down(number, far);
+        // SAFETY: see the head of the file.
+        let elsewhere = unsafe {
+            let here = _mm512_castpd_si512(self.f64(FAR).0);
+            let (a, b) = (_mm512_castpd_si512(sum.0), _mm512_castpd_si512(sum.1));
+            let either = _mm512_or_si512(_mm512_xor_si512(a, here), _mm512_xor_si512(b, here));
+            _mm512_and_si512(either, _mm512_set1_epi64(!i64::from(count - 1)))
+        };
+        (sum - far, sum.words().0, U32x16(elsewhere))
     }
     #[inline(always)]
     fn gather(self, from: &[f32], index: U32x16) -> F32x16 {
@@ -240,6 +249,14 @@ impl Simd for Avx512 {
             _mm512_i32gather_epi32::<4>(index, from.as_ptr().cast())
         })
     }
+}
+
+/// A sum rounded down. One of a number and [`FAR`] has no fraction, so that this is the greatest whole number not above, already in place.
+#[inline(always)]
+fn sum_down(number: F64x16, far: F64x16) -> F64x16 {
+    const DOWN: i32 = _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC;
+    // SAFETY: see the head of the file.
+    unsafe { F64x16(_mm512_add_round_pd::<DOWN>(number.0, far.0), _mm512_add_round_pd::<DOWN>(number.1, far.1)) }
 }
 
 /// The highest index of a gather: its indices are signed 32-bit, so the rest of a larger slice cannot be reached.

@@ -119,6 +119,12 @@ impl<S: Simd> Simd for Double<S> {
         (Pair(whole, other.0), Pair(low, other.1), Pair(high, other.2))
     }
     #[inline(always)]
+    fn place(self, number: Self::F64, from: f64, count: u32) -> (Self::F64, Self::U32, Self::U32) {
+        let ((whole, place, elsewhere), other) =
+            (self.0.place(number.0, from, count), self.0.place(number.1, from, count));
+        (Pair(whole, other.0), Pair(place, other.1), Pair(elsewhere, other.2))
+    }
+    #[inline(always)]
     fn gather(self, from: &[f32], index: Self::U32) -> Self::F32 {
         Pair(self.0.gather(from, index.0), self.0.gather(from, index.1))
     }

@@ -94,8 +94,19 @@ pub trait Simd: Copy + Send + Sync + 'static {
     fn whole(self, number: Self::F64) -> (Self::F64, Self::U32, Self::U32) {
         // After adding 1.5 * 2^52, an integer is in the low bits of the sum.
         let whole = number.floor();
-        let (low, high) = (whole + self.f64(6_755_399_441_055_744.0)).words();
+        let (low, high) = (whole + self.f64(FAR)).words();
         (whole, low, high)
+    }
+    /// The greatest whole numbers not above, and their places among the `count` numbers from `from` on. The last result is zero in
+    /// all lanes if every one of them is there; else some lane, not of necessity its own, is not zero, and the others mean nothing.
+    /// `from` is whole and of size below 2^50, `count` a power of two up to 2^31; the numbers are any.
+    #[inline(always)]
+    fn place(self, number: Self::F64, from: f64, count: u32) -> (Self::F64, Self::U32, Self::U32) {
+        // A sum of that size is exact, and no other has its high word.
+        let whole = number.floor();
+        let (low, high) = (whole + self.f64(FAR - from)).words();
+        let elsewhere = self.u32((FAR.to_bits() >> 32) as u32) ^ high;
+        (whole, low, elsewhere | (low & self.u32(!(count - 1))))
     }
 
     /// `from[index]` per lane, with unsigned indices; an index beyond the end reads the last entry, an empty slice
@@ -111,6 +122,9 @@ pub trait Simd: Copy + Send + Sync + 'static {
         self.load_u32(&picked(from, index))
     }
 }
+
+/// 1.5 * 2^52: a whole number of size below 2^51 added to it stands in the low bits of the sum.
+pub(crate) const FAR: f64 = 6_755_399_441_055_744.0;
 
 /// `from[index]` per lane, for levels without a gather instruction.
 #[inline(always)]

@@ -349,3 +349,60 @@ fn the_scalar_fma_is_exact() {
     same(f32::INFINITY, 0.0, 1.0);
     same(-0.0, 1.0, 0.0);
 }
+
+/// Asks one number at a time, filled up by numbers that are in place, whether it is among the places.
+struct Placed<'a> {
+    numbers: &'a [f64],
+    from: f64,
+    found: &'a mut Vec<Option<(f64, u32)>>,
+}
+
+impl Body for Placed<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, s: S) {
+        for (i, &number) in self.numbers.iter().enumerate() {
+            let lane = i % S::LANES;
+            let mut lanes = [self.from + 3.5; 32];
+            lanes[lane] = number;
+            let (whole, place, elsewhere) = s.place(s.load_f64(&lanes), self.from, 16);
+            let (mut wholes, mut places) = ([0.0; 32], [0; 32]);
+            whole.store(&mut wholes);
+            place.store(&mut places);
+            let all = !(!elsewhere.eq(s.u32(0))).any();
+            self.found.push(all.then_some((wholes[lane], places[lane])));
+        }
+    }
+}
+
+#[test]
+fn numbers_are_placed_where_they_are_and_nowhere_else() {
+    let mut rng = Rng(5);
+    for from in [0.0, -7.0, 4_294_967_290.0, -4_294_967_301.0, 562_949_953_421_000.0, -562_949_953_421_000.0] {
+        let mut numbers = vec![f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, f64::MIN, -0.0, 5e-324, -5e-324];
+        for size in [1.0, 16.0, 1e3, 4_294_967_296.0, 1e15, 4.5e15, 9e15, 1e19, 1e300] {
+            numbers.extend([from + size, from - size, size, -size]);
+        }
+        // What only the places of low bits would take for one of them.
+        numbers.extend([
+            from + 4_294_967_296.0 * 3.0 + 2.0,
+            from - 2_251_799_813_685_248.0,
+            from - 6_755_399_441_055_744.0,
+        ]);
+        for _ in 0..500 {
+            numbers.push(from + (rng.pattern() % 4000) as f64 / 128.0 - 7.0);
+        }
+        for level in Level::available() {
+            let (mut found, mut twice) = (Vec::new(), Vec::new());
+            dispatch_at(level, Placed { numbers: &numbers, from, found: &mut found }).unwrap();
+            dispatch_at(level, Twice(Placed { numbers: &numbers, from, found: &mut twice })).unwrap();
+            assert_eq!(found, twice, "{level}");
+            for (&number, found) in numbers.iter().zip(found) {
+                let here = number >= from && number < from + 16.0;
+                let expected = here.then(|| (number.floor(), (number.floor() - from) as u32));
+                assert_eq!(found, expected, "{number} from {from} at level {level}");
+            }
+        }
+    }
+}

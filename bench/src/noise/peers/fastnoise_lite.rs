@@ -10,7 +10,9 @@ use crate::noise::cases::{Case, OCTAVES, PLAIN_FBM, SEED, SLICE, Work, scattered
 pub fn job(case: &Case) -> Option<Job> {
     let (noise_type, fractal) = match case.work {
         Work::Value => (NoiseType::Value, FractalType::None),
-        Work::Perlin | Work::PerlinSlice | Work::PerlinScattered => (NoiseType::Perlin, FractalType::None),
+        Work::Perlin | Work::PerlinSlice | Work::PerlinScattered | Work::PerlinAround => {
+            (NoiseType::Perlin, FractalType::None)
+        }
         Work::Fbm | Work::WeightedFbm => (NoiseType::Perlin, FractalType::FBm),
         Work::Ridged => (NoiseType::Perlin, FractalType::Ridged),
         Work::Simplex | Work::SimplexSlice => (NoiseType::OpenSimplex2, FractalType::None),
@@ -32,7 +34,7 @@ pub fn job(case: &Case) -> Option<Job> {
         Work::PerlinSlice | Work::SimplexSlice => Job::new(name, move |out| {
             by_sample(out, |x, y| noise.get_noise_3d(x as f32, y as f32, SLICE as f32));
         }),
-        Work::PerlinScattered => {
+        Work::PerlinScattered | Work::PerlinAround => {
             let (xs, ys) = scattered();
             let points: Vec<(f32, f32)> = xs.iter().zip(&ys).map(|(&x, &y)| (x as f32, y as f32)).collect();
             Job::new(name, move |out| {

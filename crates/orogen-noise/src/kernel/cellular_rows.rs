@@ -7,7 +7,7 @@ use crate::kernel::cell::{Cell, clamp};
 use crate::kernel::families::with_family;
 use crate::kernel::outputs::Outputs;
 use crate::kernel::scattered::Call;
-use crate::kernel::sites::{Field, Site, Sites, evaluate};
+use crate::kernel::sites::{FAR, Field, NEAR, Nearest, Site, Sites, evaluate, search_shells, spread};
 use crate::kernel::source::{Hashed, Lattice};
 use crate::program::{self, Octave, Program};
 use orogen_simd::{Body, F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
@@ -19,6 +19,22 @@ const SPAN: usize = WIDTH + 48;
 /// The most lanes of any level.
 const MAX_LANES: usize = 16;
 
+/// Rows worked on at a time where columns go by runs; they share a line of cells.
+const BAND: usize = 8;
+/// Columns of a run: the shorter, the fewer points matter to it.
+const RUN: usize = 64;
+
+/// Columns that follow each other in one cell.
+#[derive(Clone, Copy)]
+struct Run {
+    start: usize,
+    end: usize,
+    /// The cell, counted from the strip's first.
+    cell: usize,
+    /// The range of their fractions.
+    range: [f32; 2],
+}
+
 /// The points of the cells along three lines of the lattice (times three depths), and the columns over them.
 #[repr(C, align(64))]
 struct Strip {
@@ -27,8 +43,8 @@ struct Strip {
     hashes: [[u32; SPAN]; 9],
     /// The keys of the cells, from the one before the strip's first on.
     keys: [u32; SPAN],
-    /// Fractions of the columns.
-    t: [f32; WIDTH],
+    /// Fractions of the columns; the last run's last register reaches beyond them.
+    t: [f32; WIDTH + MAX_LANES],
     /// Their cells' numbers.
     wholes: [f64; WIDTH],
     /// Their cells, counted from their register's first.
@@ -41,6 +57,10 @@ struct Strip {
     held: [Option<f64>; 3],
     /// How many cells there are.
     cells: usize,
+    /// The number of the first column's cell.
+    origin: f64,
+    /// The columns by runs, where these are long enough to pay.
+    runs: Vec<Run>,
     /// Whether cells follow so closely that those of a register fit one.
     dense: bool,
 }
@@ -58,24 +78,35 @@ pub(crate) fn fill<S: Simd, const DIMS: usize>(
         places: [[[0.0; SPAN]; 3]; 9],
         hashes: [[0; SPAN]; 9],
         keys: [0; SPAN],
-        t: [0.0; WIDTH],
+        t: [0.0; WIDTH + MAX_LANES],
         wholes: [0.0; WIDTH],
         index: [0; WIDTH],
         first: [0; WIDTH / 4],
         alone: [false; WIDTH / 4],
         held: [None; 3],
         cells: 0,
+        origin: 0.0,
+        runs: Vec::new(),
         dense: false,
     });
+    let plain = matches!((cellular.feature, cellular.distance), (Feature::F1, Distance::Euclidean));
     let job = Job { limit: program.limit, octave, cellular, z };
     for (s, columns) in xs.chunks(WIDTH).enumerate() {
         simd.run(Columns { job, strip: &mut strip, xs: columns });
+        if DIMS == 2 && plain && strip.dense && !strip.runs.is_empty() {
+            let (mut r, stride) = (0, xs.len());
+            while r < ys.len() {
+                let to = &mut outputs.value[r * stride + s * WIDTH..];
+                r += simd.run(Band { job, strip: &mut strip, ys: &ys[r..], to, stride, columns: columns.len() });
+            }
+            continue;
+        }
         for (r, y) in ys.iter().enumerate() {
             let start = r * xs.len() + s * WIDTH;
             let target = outputs.part(start, columns.len());
             if strip.dense {
                 let (y, to) = (*y, target.value);
-                if matches!((cellular.feature, cellular.distance), (Feature::F1, Distance::Euclidean)) {
+                if plain {
                     simd.run(Row::<DIMS, true> { job, strip: &mut strip, y, to });
                 } else {
                     simd.run(Row::<DIMS, false> { job, strip: &mut strip, y, to });
@@ -141,6 +172,8 @@ impl Body for Columns<'_> {
         if !strip.dense {
             return;
         }
+        strip.origin = origin;
+        strip.find_runs(xs.len().min(WIDTH), S::LANES);
         // One cell more on either side.
         strip.cells = (farthest as usize + S::LANES + 2).next_multiple_of(S::LANES).min(SPAN);
         const COUNT: [f64; MAX_LANES] =
@@ -150,6 +183,260 @@ impl Body for Columns<'_> {
             let cell = Cell::at(simd, simd.f64(origin - 1.0 + p as f64) + simd.load_f64(&COUNT));
             lattice.keys(simd, 0, &cell)[0].store(&mut strip.keys[p..]);
         }
+    }
+}
+
+impl Strip {
+    /// Makes the list of runs; it stays empty where they are much shorter than a register.
+    fn find_runs(&mut self, columns: usize, lanes: usize) {
+        self.runs.clear();
+        let cell = |column: usize| (self.first[column / lanes] + self.index[column]) as usize;
+        let mut start = 0;
+        while start < columns {
+            let mut end = start + 1;
+            while end < columns && cell(end) == cell(start) {
+                end += 1;
+            }
+            // In pieces of about the same length, each of whole registers but the last.
+            let pieces = (end - start).div_ceil(RUN);
+            let length = (end - start).div_ceil(pieces).next_multiple_of(lanes);
+            for from in (start..end).step_by(length) {
+                let to = (from + length).min(end);
+                let mut range = [f32::MAX, f32::MIN];
+                for t in &self.t[from..to] {
+                    range = [range[0].min(*t), range[1].max(*t)];
+                }
+                self.runs.push(Run { start: from, end: to, cell: cell(start), range });
+            }
+            start = end;
+        }
+        if 2 * columns < self.runs.len() * lanes {
+            self.runs.clear();
+        }
+    }
+}
+
+/// The rows of a strip that share a line of cells, at most [`BAND`], of the usual noise in the plane; returns how many they are.
+///
+/// The samples of a run in these rows are all in one cell, and of its nine neighbours only those are looked at that are nearest
+/// somewhere among them.
+struct Band<'a> {
+    job: Job<'a>,
+    strip: &'a mut Strip,
+    /// y of the rows from the band's first on.
+    ys: &'a [f64],
+    /// From the first row's first column on.
+    to: &'a mut [f32],
+    /// From one row to the next.
+    stride: usize,
+    columns: usize,
+}
+
+/// Points that may be nearest, seen from the sample's own cell.
+struct Candidates {
+    x: [f32; 9],
+    y: [f32; 9],
+    count: usize,
+}
+
+impl Body for Band<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> usize {
+        let Band { job, strip, ys, to, stride, columns } = self;
+        let Some(&first) = ys.first() else { return 0 };
+        let mut cellular = job.cellular;
+        (cellular.feature, cellular.distance) = (Feature::F1, Distance::Euclidean);
+        let field = Field { lattice: Hashed::new(simd, job.octave), cellular };
+        let cell = Cell::split(simd, job.octave, 1, clamp(simd, simd.load_f64_partial(ys, first), job.limit));
+        let (mut wholes, mut t) = ([0.0; MAX_LANES], [0.0; MAX_LANES]);
+        cell.whole.store(&mut wholes);
+        cell.t.store(&mut t);
+        let bound = cellular.bound(2);
+        let mut rows = 1;
+        while rows < ys.len().min(BAND).min(S::LANES) && wholes[rows] == wholes[0] {
+            rows += 1;
+        }
+        let thirds = hold::<S, 2>(simd, &field, strip, simd.f64(wholes[0]), &cell);
+        let mut range = [t[0], t[0]];
+        for row in 1..rows {
+            range = [range[0].min(t[row]), range[1].max(t[row])];
+        }
+        for number in 0..strip.runs.len() {
+            let run = strip.runs[number];
+            let near = candidates(simd, strip, thirds, &run, range);
+            for row in 0..rows {
+                let place = Place {
+                    field: &field,
+                    octave: job.octave,
+                    near: &near,
+                    whole: [strip.origin + run.cell as f64, wholes[0]],
+                    y: t[row],
+                    bound,
+                };
+                let to = &mut to[row * stride..][..columns];
+                let mut at = run.start;
+                while run.end - at >= 4 * S::LANES {
+                    nearest::<S, 4>(simd, &place, &strip.t, to, at, None);
+                    at += 4 * S::LANES;
+                }
+                if run.end - at >= 2 * S::LANES {
+                    nearest::<S, 2>(simd, &place, &strip.t, to, at, None);
+                    at += 2 * S::LANES;
+                }
+                if run.end - at >= S::LANES {
+                    nearest::<S, 1>(simd, &place, &strip.t, to, at, None);
+                    at += S::LANES;
+                }
+                if at == run.end {
+                    continue;
+                }
+                if run.end - run.start >= S::LANES {
+                    // Some columns once more.
+                    nearest::<S, 1>(simd, &place, &strip.t, to, run.end - S::LANES, None);
+                } else {
+                    // Some columns of the next run, which come out wrong and are made again.
+                    nearest::<S, 1>(simd, &place, &strip.t, to, at, Some(run.range));
+                }
+            }
+        }
+        rows
+    }
+}
+
+/// The points that are nearest anywhere in a run, `y` being the range of its rows' fractions.
+#[inline(always)]
+fn candidates<S: Simd>(simd: S, strip: &Strip, thirds: [usize; 3], run: &Run, y: [f32; 2]) -> Candidates {
+    /// What rounding could make of a squared distance stays far below this.
+    const CLEAR: f32 = 1e-4;
+    let (mut xs, mut ys) = ([FAR.sqrt(); MAX_LANES], [0.0; MAX_LANES]);
+    for number in 0..9 {
+        let (x, y) = (number % 3, number / 3);
+        let at = (run.cell + x).min(SPAN - 1);
+        let places = &strip.places[(3 + thirds[y]).min(8)];
+        xs[number] = places[0][at] + (x as f32 - 1.0);
+        ys[number] = places[1][at] + (y as f32 - 1.0);
+    }
+    // Squared distances from the four corners of the samples' box. The difference of two points' squares is a plane over it: a point
+    // that is farther than another in all four corners is farther everywhere.
+    let mut corners = [[0.0; MAX_LANES]; 4];
+    for at in (0..9).step_by(S::LANES) {
+        let (x, height) = (simd.load(&xs[at..]), simd.load(&ys[at..]));
+        for corner in 0..4 {
+            let (x, y) = (x - simd.f32(run.range[corner & 1]), height - simd.f32(y[corner >> 1]));
+            (x * x + y * y).store(&mut corners[corner][at..]);
+        }
+    }
+    let mut left = 0;
+    for at in (0..9).step_by(S::LANES) {
+        let own = [
+            simd.load(&corners[0][at..]) - simd.f32(CLEAR),
+            simd.load(&corners[1][at..]) - simd.f32(CLEAR),
+            simd.load(&corners[2][at..]) - simd.f32(CLEAR),
+            simd.load(&corners[3][at..]) - simd.f32(CLEAR),
+        ];
+        let mut farther = own[0].lt(own[0]);
+        for other in 0..9 {
+            let mut all = simd.f32(corners[0][other]).lt(own[0]);
+            for corner in 1..4 {
+                all = all & simd.f32(corners[corner][other]).lt(own[corner]);
+            }
+            farther = farther | all;
+        }
+        left |= (!farther).to_bits() << at;
+    }
+    left &= 511;
+    let mut near = Candidates { x: [0.0; 9], y: [0.0; 9], count: 0 };
+    while left != 0 {
+        let number = left.trailing_zeros() as usize % MAX_LANES;
+        near.x[near.count % 9] = xs[number];
+        near.y[near.count % 9] = ys[number];
+        near.count += 1;
+        left &= left - 1;
+    }
+    near
+}
+
+/// What the samples of a row and run have in common.
+struct Place<'a, S: Simd> {
+    field: &'a Field<S>,
+    octave: &'a Octave,
+    near: &'a Candidates,
+    /// Their cell.
+    whole: [f64; 2],
+    /// Their fraction of y.
+    y: f32,
+    /// The greatest distance there can be.
+    bound: f32,
+}
+
+/// `N` registers of a row from column `at` on; fractions outside of `range` are moved into it.
+#[inline(always)]
+fn nearest<S: Simd, const N: usize>(
+    simd: S,
+    place: &Place<S>,
+    t: &[f32; WIDTH + MAX_LANES],
+    to: &mut [f32],
+    at: usize,
+    range: Option<[f32; 2]>,
+) {
+    let t = &t[at.min(WIDTH + MAX_LANES - N * S::LANES)..][..N * S::LANES];
+    let (mut x, mut first) = ([simd.f32(0.0); N], [simd.f32(FAR); N]);
+    for n in 0..N {
+        x[n] = simd.load(&t[n * S::LANES..]);
+        if let Some([least, most]) = range {
+            x[n] = x[n].max(simd.f32(least)).min(simd.f32(most));
+        }
+    }
+    for number in 0..place.near.count.min(9) {
+        let (across, along) = (simd.f32(place.near.y[number] - place.y), simd.f32(place.near.x[number]));
+        for n in 0..N {
+            // As [`crate::kernel::sites`] measures.
+            let way = along - x[n];
+            first[n] = first[n].min(across.mul_add(across, way * way));
+        }
+    }
+    for n in 0..N {
+        if (!first[n].lt(simd.f32(NEAR))).any() {
+            let (mut ways, mut found) = ([0.0; MAX_LANES], [0.0; MAX_LANES]);
+            x[n].store(&mut ways);
+            first[n].store(&mut found);
+            let Place { octave, whole, y, .. } = *place;
+            simd.run(Beyond { cellular: place.field.cellular, octave, whole, x: &ways, y, found: &mut found });
+            first[n] = simd.load(&found);
+        }
+        let noise = spread(simd, first[n].sqrt(), place.bound);
+        let scaled = simd.f32(place.octave.amplitude).mul_add(noise, simd.f32(0.0));
+        scaled.store_partial(&mut to[at + n * S::LANES..]);
+    }
+}
+
+/// Looks beyond the neighbouring cells of a register of samples, where the nearest point is as far as that.
+struct Beyond<'a> {
+    cellular: program::Cellular,
+    octave: &'a Octave,
+    /// The samples' cell,
+    whole: [f64; 2],
+    /// and their fractions.
+    x: &'a [f32; MAX_LANES],
+    y: f32,
+    /// Squared distances.
+    found: &'a mut [f32; MAX_LANES],
+}
+
+impl Body for Beyond<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let field = Field { lattice: Hashed::new(simd, self.octave), cellular: self.cellular };
+        let mut x = Cell::at(simd, simd.f64(self.whole[0]));
+        let mut y = Cell::at(simd, simd.f64(self.whole[1]));
+        (x.t, y.t) = (simd.load(self.x), simd.f32(self.y));
+        let mut nearest = Nearest::at(simd, simd.load(self.found));
+        search_shells::<S, 2>(simd, &field, &[x, y, y, y], &mut nearest);
+        nearest.first.store(self.found);
     }
 }
 
@@ -174,19 +461,7 @@ impl<const DIMS: usize, const PLAIN: bool> Body for Row<'_, DIMS, PLAIN> {
         let field = Field { lattice: Hashed::new(simd, job.octave), cellular };
         let y = Cell::split(simd, job.octave, 1, clamp(simd, simd.f64(y), job.limit));
         let z = Cell::split(simd, job.octave, 2, clamp(simd, simd.f64(job.z), job.limit));
-        let mut lanes = [0.0; MAX_LANES];
-        y.whole.store(&mut lanes);
-        let mut thirds = [0; 3];
-        for line in 0..3 {
-            let number = lanes[0] + line as f64 - 1.0;
-            // Lines take turns, so that the next row of cells needs one new one.
-            let third = (number - (number / 3.0).floor() * 3.0) as usize % 3;
-            thirds[line] = third;
-            if strip.held[third] != Some(number) {
-                strip.held[third] = Some(number);
-                build::<S, DIMS>(simd, &field, strip, (third, field.key(simd, 1, &y, line as i32 - 1)), &z);
-            }
-        }
+        let thirds = hold::<S, DIMS>(simd, &field, strip, y.whole, &z);
         let mut at = 0;
         while at < to.len().min(WIDTH) {
             let v = at / S::LANES;
@@ -205,6 +480,32 @@ impl<const DIMS: usize, const PLAIN: bool> Body for Row<'_, DIMS, PLAIN> {
             at += S::LANES;
         }
     }
+}
+
+/// Makes the points of the three lines of cells around the line `y`, as far as they are not there; returns where they are.
+#[inline(always)]
+fn hold<S: Simd, const DIMS: usize>(
+    simd: S,
+    field: &Field<S>,
+    strip: &mut Strip,
+    y: S::F64,
+    z: &Cell<S>,
+) -> [usize; 3] {
+    let y = Cell::at(simd, y);
+    let mut lanes = [0.0; MAX_LANES];
+    y.whole.store(&mut lanes);
+    let mut thirds = [0; 3];
+    for line in 0..3 {
+        let number = lanes[0] + line as f64 - 1.0;
+        // Lines take turns, so that the next row of cells needs one new one.
+        let third = (number - (number / 3.0).floor() * 3.0) as usize % 3;
+        thirds[line] = third;
+        if strip.held[third] != Some(number) {
+            strip.held[third] = Some(number);
+            build::<S, DIMS>(simd, field, strip, (third, field.key(simd, 1, &y, line as i32 - 1)), z);
+        }
+    }
+    thirds
 }
 
 /// Makes the points of one line of cells (at three depths).

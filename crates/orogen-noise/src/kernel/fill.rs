@@ -88,6 +88,12 @@ fn blocks<S: Simd, const DIMS: usize>(
             axis.fill(*depth);
         }
     }
+    if let (Points::Scattered { x, y }, 2) = (*points, DIMS) {
+        // They are where they are.
+        let target = outputs.part(0, points.len());
+        with_family::<_, DIMS>(program.source, Call::<S, DIMS> { simd, program, at: [x, y, &[], &[]], target });
+        return;
+    }
     for start in (0..points.len()).step_by(BLOCK) {
         let count = BLOCK.min(points.len() - start);
         let target = outputs.part(start, count);

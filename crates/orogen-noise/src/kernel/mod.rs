@@ -14,6 +14,7 @@ pub(crate) mod families;
 pub(crate) mod fill;
 pub(crate) mod gradient;
 pub(crate) mod lattice;
+pub(crate) mod near;
 pub(crate) mod open_simplex;
 pub(crate) mod outputs;
 pub(crate) mod phacelle;

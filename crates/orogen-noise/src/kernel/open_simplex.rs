@@ -193,8 +193,8 @@ impl<S: Simd, const DIMS: usize> Pointwise<S> for Wide<S, DIMS> {
 #[derive(Clone, Copy)]
 pub(crate) struct Cubes<S: Simd, const SMOOTH: bool>(OpenSource<S>);
 
-/// What tells the second lattice from the first.
-const SECOND: u32 = 0x5851_F42D;
+/// What tells the keys of the second lattice from those of the first.
+const SECOND: u32 = 0x5851_F42D ^ (0x5851_F42D >> 15);
 const CUBES_SCALE: f32 = 108.291;
 
 // The turn: (x + y) times these, and z times the third.

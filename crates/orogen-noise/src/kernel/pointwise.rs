@@ -2,7 +2,7 @@
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
-use crate::kernel::basis::{Basis, Coefficients, Rows, Weights};
+use crate::kernel::basis::{Basis, Coefficients, Depths, Rows, Weights};
 use crate::kernel::cell::Cell;
 use crate::kernel::combine::Sample;
 use crate::program::{Octave, Source};
@@ -19,6 +19,21 @@ pub(crate) trait Pointwise<S: Simd>: Copy {
     fn split(simd: S, coordinate: S::F64) -> Self::Coordinate;
     /// Adds the octave's value and (with `SLOPES`) slopes, scaled, to a sample.
     fn add<const SLOPES: bool>(self, simd: S, octave: &Octave, at: &[Self::Coordinate; 4], sum: &mut Sample<S>);
+
+    /// Whether a sample in the plane takes of its cell no more than keys along x and y, so that the two methods below are there.
+    const KEYED: bool = false;
+    /// The keys of a cell and of the next along an axis.
+    #[inline(always)]
+    fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2] {
+        let _ = (axis, cell);
+        [simd.u32(0); 2]
+    }
+    /// Adds the value of an octave of amplitude 1 to a sample in the plane: its fractions, and the keys of its cell and the next along x
+    /// and y.
+    #[inline(always)]
+    fn add_keyed(self, simd: S, t: [S::F32; 2], keys: [[S::U32; 2]; 2], sum: &mut Sample<S>) {
+        let _ = (simd, t, keys, sum);
+    }
 }
 
 /// A low-rank basis, sample by sample: the very operations of the lattice, in their order.
@@ -43,24 +58,52 @@ impl<S: Simd, B: Basis<S>> Pointwise<S> for LowRank<B> {
         let basis = self.0;
         let [x, y, z, w] = at;
         let depths = basis.depths(simd, &[*z, *w]);
-        let (columns, lines) = (basis.keys(simd, 0, x), basis.keys(simd, 1, y));
-        let (amplitude, slope) = (simd.f32(octave.amplitude), simd.f32(octave.slope));
-        if B::FLAT {
-            let number = basis.point::<SLOPES>(simd, columns[0], lines[0], &depths)[0];
-            sum[0] = amplitude.mul_add(number, sum[0]);
-            return;
-        }
-        let column = Weights::new(simd, x.t, basis.fade(simd, x.t));
-        let row = Weights::new(simd, y.t, basis.fade(simd, y.t));
-        let mut rows = [[simd.f32(0.0); 8]; 2];
-        for line in 0..2 {
-            let left = basis.point::<SLOPES>(simd, columns[0], lines[line], &depths);
-            let right = basis.point::<SLOPES>(simd, columns[1], lines[line], &depths);
-            rows[line] = basis.rows::<SLOPES>(simd, &left, &right, &column);
-        }
-        let coefficients = basis.coefficients(simd, &row, amplitude, slope);
-        accumulate::<S, B, SLOPES>(&coefficients, &rows, sum);
+        let keys = [basis.keys(simd, 0, x), basis.keys(simd, 1, y)];
+        let factors = [simd.f32(octave.amplitude), simd.f32(octave.slope)];
+        add::<S, B, SLOPES>(simd, basis, factors, [x.t, y.t], keys, &depths, sum);
     }
+
+    const KEYED: bool = B::DIMS == 2 && !B::FLAT;
+
+    #[inline(always)]
+    fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2] {
+        self.0.keys(simd, axis, cell)
+    }
+
+    #[inline(always)]
+    fn add_keyed(self, simd: S, t: [S::F32; 2], keys: [[S::U32; 2]; 2], sum: &mut Sample<S>) {
+        let none = Cell::at(simd, simd.f64(0.0));
+        let depths = self.0.depths(simd, &[none; 2]);
+        add::<S, B, false>(simd, self.0, [simd.f32(1.0); 2], t, keys, &depths, sum);
+    }
+}
+
+/// Adds an octave's value (and slopes), times their factors, to a sample of those fractions, in the cell of those keys.
+#[inline(always)]
+fn add<S: Simd, B: Basis<S>, const SLOPES: bool>(
+    simd: S,
+    basis: B,
+    [amplitude, slope]: [S::F32; 2],
+    t: [S::F32; 2],
+    [columns, lines]: [[S::U32; 2]; 2],
+    depths: &Depths<S>,
+    sum: &mut Sample<S>,
+) {
+    if B::FLAT {
+        let number = basis.point::<SLOPES>(simd, columns[0], lines[0], depths)[0];
+        sum[0] = amplitude.mul_add(number, sum[0]);
+        return;
+    }
+    let column = Weights::new(simd, t[0], basis.fade(simd, t[0]));
+    let row = Weights::new(simd, t[1], basis.fade(simd, t[1]));
+    let mut rows = [[simd.f32(0.0); 8]; 2];
+    for line in 0..2 {
+        let left = basis.point::<SLOPES>(simd, columns[0], lines[line], depths);
+        let right = basis.point::<SLOPES>(simd, columns[1], lines[line], depths);
+        rows[line] = basis.rows::<SLOPES>(simd, &left, &right, &column);
+    }
+    let coefficients = basis.coefficients(simd, &row, amplitude, slope);
+    accumulate::<S, B, SLOPES>(&coefficients, &rows, sum);
 }
 
 /// Adds the octave's value (and slopes) to a sample: the order of these additions is the order of the lattice path.

@@ -5,6 +5,7 @@
 use crate::kernel::cell::{clamp, coordinate, moved};
 use crate::kernel::combine::State;
 use crate::kernel::families::{Family, VisitFamily};
+use crate::kernel::near;
 use crate::kernel::outputs::Outputs;
 use crate::kernel::pointwise::Pointwise;
 use crate::program::{Combine, Octave, Program};
@@ -114,6 +115,10 @@ impl<F: Family, const DIMS: usize> Body for Sums<'_, F, DIMS> {
         if let (true, [octave]) = (F::PAIRED, octaves) {
             // What the one octave needs stays in registers from point to point.
             let noise = F::At::<S>::new(simd, program.source, octave);
+            if F::At::<S>::KEYED && DIMS == 2 && near::covers(octave) {
+                let points = near::Scattered { frequency: octave.frequency, limit: program.limit, at: [at[0], at[1]] };
+                return near::fill(simd, noise, &points, target);
+            }
             while start < target.len() {
                 let position = positions::<S, DIMS>(simd, program, &at, start);
                 let mut sum = [simd.f32(0.0); 5];

@@ -146,6 +146,37 @@ pub(crate) trait Corners: Copy {
 #[derive(Clone, Copy)]
 pub(crate) struct Simplices<S: Simd, C: Corners, const DIMS: usize>(pub C::Lattice<S>);
 
+/// Where the gradients of a simplex's corners come from.
+pub(crate) trait CornerGradients<S: Simd> {
+    /// The gradient of corner `number`, counted from the cube's lower one. `waits` are the axes it has not stepped along; not to be looked
+    /// at for the first and the last corner.
+    fn gradient(&self, simd: S, number: usize, waits: &[S::Mask; 4]) -> [S::F32; 4];
+}
+
+/// Gradients hashed for each sample, from the keys of its cube and the next along each axis.
+struct HashedCorners<'a, S: Simd, G, const DIMS: usize> {
+    lattice: G,
+    keys: &'a [[S::U32; 2]; 4],
+}
+
+impl<S: Simd, G: Gradients<S>, const DIMS: usize> CornerGradients<S> for HashedCorners<'_, S, G, DIMS> {
+    #[inline(always)]
+    fn gradient(&self, simd: S, number: usize, waits: &[S::Mask; 4]) -> [S::F32; 4] {
+        let mut key = [self.keys[0][0]; 4];
+        for axis in 0..DIMS {
+            let [here, next] = self.keys[axis];
+            key[axis] = if number == 0 {
+                here
+            } else if number == DIMS {
+                next
+            } else {
+                here.select(waits[axis], next)
+            };
+        }
+        self.lattice.gradient::<DIMS>(simd, self.lattice.hash::<DIMS>(simd, key))
+    }
+}
+
 /// The square of how far a corner reaches: as far as the opposite face.
 pub(crate) const REACH: f32 = 0.5;
 
@@ -153,36 +184,61 @@ impl<S: Simd, C: Corners, const DIMS: usize> Simplices<S, C, DIMS> {
     /// The raw value and slopes in a place of the skewed lattice, with the keys of its cube and the next along each axis.
     #[inline(always)]
     pub(crate) fn raw<const SLOPES: bool>(self, simd: S, t: &[S::F32; 4], keys: &[[S::U32; 2]; 4]) -> Sample<S> {
-        let (zero, one) = (simd.f32(0.0), simd.f32(1.0));
-        let mut total = t[0];
-        for axis in 1..DIMS {
-            total = total + t[axis];
-        }
-        let unskew = UNSKEW[DIMS - 2];
-        let waiting = waiting::<S, DIMS>(simd, t);
-        let mut from = [zero; 4];
-        for axis in 0..DIMS {
-            from[axis] = total.neg_mul_add(simd.f32(unskew), t[axis]);
-        }
-        let mut raw = [zero; 5];
-        for corner_number in 0..=DIMS {
-            let back = simd.f32(corner_number as f32 * unskew);
-            let (mut way, mut key) = ([zero; 4], [keys[0][0]; 4]);
-            for axis in 0..DIMS {
-                let waits = waiting[corner_number][axis];
-                (way[axis], key[axis]) = if corner_number == 0 {
-                    (from[axis], keys[axis][0])
-                } else if corner_number == DIMS {
-                    (from[axis] + (back - one), keys[axis][1])
-                } else {
-                    (from[axis] + back.select(waits, back - one), keys[axis][0].select(waits, keys[axis][1]))
-                };
-            }
-            let gradient = self.0.gradient::<DIMS>(simd, self.0.hash::<DIMS>(simd, key));
-            corner::<S, DIMS, SLOPES>(simd, REACH, &gradient, &way, &mut raw);
-        }
-        raw
+        raw::<S, _, DIMS, SLOPES>(simd, t, &HashedCorners::<S, _, DIMS> { lattice: self.0, keys })
     }
+}
+
+/// The raw value and slopes in a place of the skewed lattice.
+#[inline(always)]
+pub(crate) fn raw<S: Simd, G: CornerGradients<S>, const DIMS: usize, const SLOPES: bool>(
+    simd: S,
+    t: &[S::F32; 4],
+    gradients: &G,
+) -> Sample<S> {
+    let mut total = t[0];
+    for axis in 1..DIMS {
+        total = total + t[axis];
+    }
+    let waiting = waiting::<S, DIMS>(simd, t);
+    let mut from = [simd.f32(0.0); 4];
+    for axis in 0..DIMS {
+        from[axis] = total.neg_mul_add(simd.f32(UNSKEW[DIMS - 2]), t[axis]);
+    }
+    // Not a loop: the numbers have to be constants.
+    let mut raw = [simd.f32(0.0); 5];
+    add_corner::<S, G, DIMS, SLOPES>(simd, gradients, 0, &from, &waiting, &mut raw);
+    add_corner::<S, G, DIMS, SLOPES>(simd, gradients, 1, &from, &waiting, &mut raw);
+    add_corner::<S, G, DIMS, SLOPES>(simd, gradients, 2, &from, &waiting, &mut raw);
+    if DIMS > 2 {
+        add_corner::<S, G, DIMS, SLOPES>(simd, gradients, 3, &from, &waiting, &mut raw);
+    }
+    if DIMS > 3 {
+        add_corner::<S, G, DIMS, SLOPES>(simd, gradients, 4, &from, &waiting, &mut raw);
+    }
+    raw
+}
+
+/// Adds the contribution of corner `number`; `from` leads from the cube's lower corner to the sample.
+#[inline(always)]
+fn add_corner<S: Simd, G: CornerGradients<S>, const DIMS: usize, const SLOPES: bool>(
+    simd: S,
+    gradients: &G,
+    number: usize,
+    from: &[S::F32; 4],
+    waiting: &[[S::Mask; 4]; 5],
+    raw: &mut Sample<S>,
+) {
+    let (back, one) = (simd.f32(number as f32 * UNSKEW[DIMS - 2]), simd.f32(1.0));
+    let mut way = *from;
+    for axis in 0..DIMS {
+        if number == DIMS {
+            way[axis] = from[axis] + (back - one);
+        } else if number > 0 {
+            way[axis] = from[axis] + back.select(waiting[number][axis], back - one);
+        }
+    }
+    let gradient = gradients.gradient(simd, number, &waiting[number]);
+    corner::<S, DIMS, SLOPES>(simd, REACH, &gradient, &way, raw);
 }
 
 /// Which axes corner k, from the cube's lower one on, has not stepped along: it has along the k greatest fractions. Of the first and the

@@ -21,6 +21,13 @@ const MARGIN: f32 = 1.0 - 1e-6;
 /// The same where distances of edges are compared, which come from differences.
 const EDGE_MARGIN: f32 = 1.0 - 1e-5;
 
+/// Farther than any point is.
+pub(crate) const FAR: f32 = 1e9;
+
+/// Where the nearest point is nearer than this, by its squared distance, no point beyond the neighbouring cells is: wherever in its
+/// cell a sample is, the first shell's reach is at least 1.
+pub(crate) const NEAR: f32 = MARGIN * MARGIN;
+
 /// A point: its place in its cell, and its cell's hash.
 pub(crate) type Site<S> = ([<S as Simd>::F32; 4], <S as Simd>::U32);
 
@@ -94,13 +101,22 @@ impl<S: Simd, const DIMS: usize> Sites<S> for HashedSites<S, DIMS> {
 }
 
 /// The two nearest points so far.
-struct Nearest<S: Simd> {
+pub(crate) struct Nearest<S: Simd> {
     /// Distances; of the euclidean one, the squares.
-    first: S::F32,
+    pub first: S::F32,
     second: S::F32,
     /// From the sample to the nearest point, and the hash of its cell.
     way: [S::F32; 4],
     hash: S::U32,
+}
+
+impl<S: Simd> Nearest<S> {
+    /// No point but one at that distance.
+    #[inline(always)]
+    pub(crate) fn at(simd: S, first: S::F32) -> Nearest<S> {
+        let far = simd.f32(FAR);
+        Nearest { first, second: far, way: [far; 4], hash: simd.u32(0) }
+    }
 }
 
 /// The distance of a vector; of the euclidean one, its square.
@@ -190,16 +206,50 @@ pub(crate) fn evaluate<S: Simd, P: Sites<S>, const DIMS: usize>(
     sites: &P,
     cells: &[Cell<S>; 4],
 ) -> S::F32 {
-    let Cellular { distance, feature, .. } = field.cellular;
-    let squared = distance == Distance::Euclidean;
     let t = [cells[0].t, cells[1].t, cells[2].t, cells[3].t];
-    let far = simd.f32(1e9);
-    let mut nearest = Nearest { first: far, second: far, way: [far; 4], hash: simd.u32(0) };
+    let mut nearest = Nearest::at(simd, simd.f32(FAR));
     for number in 0..3_usize.pow(DIMS as u32) {
         let offset = neighbour::<DIMS>(number);
         let (place, hash) = sites.near(simd, offset);
         keep::<S, DIMS>(field, &mut nearest, way::<S, DIMS>(simd, &place, &t, offset), hash);
     }
+    let side = search_shells::<S, DIMS>(simd, field, cells, &mut nearest);
+    let Cellular { distance, feature, .. } = field.cellular;
+    let squared = distance == Distance::Euclidean;
+    let (mut first, mut second) = (nearest.first, nearest.second);
+    if squared {
+        (first, second) = (first.sqrt(), second.sqrt());
+    }
+    let raw = match feature {
+        Feature::F1 => first,
+        Feature::F2 => second,
+        Feature::Difference => second - first,
+        Feature::Product => first * second,
+        Feature::Value => return value(simd, (nearest.hash ^ nearest.hash.shr(16)) * simd.u32(0xADB4_A92D)),
+        Feature::Edge if squared => edge::<S, P, DIMS>(simd, field, sites, cells, (&nearest, first, side)),
+        Feature::Edge => (second - first) * simd.f32(0.5),
+    };
+    spread(simd, raw, field.cellular.bound(DIMS))
+}
+
+/// A feature's size as a number from -1 to 1.
+#[inline(always)]
+pub(crate) fn spread<S: Simd>(simd: S, raw: S::F32, bound: f32) -> S::F32 {
+    raw.mul_add(simd.f32(2.0 / bound), simd.f32(-1.0)).min(simd.f32(1.0))
+}
+
+/// Looks at the shells beyond the neighbouring cells, as far as they matter. Returns how far the sample is from the nearest side of its
+/// cell.
+#[inline(always)]
+pub(crate) fn search_shells<S: Simd, const DIMS: usize>(
+    simd: S,
+    field: &Field<S>,
+    cells: &[Cell<S>; 4],
+    nearest: &mut Nearest<S>,
+) -> S::F32 {
+    let Cellular { distance, feature, .. } = field.cellular;
+    let squared = distance == Distance::Euclidean;
+    let t = [cells[0].t, cells[1].t, cells[2].t, cells[3].t];
     let side = side::<S, DIMS>(simd, &t);
     let one = match feature {
         Feature::F1 | Feature::Value => true,
@@ -215,23 +265,10 @@ pub(crate) fn evaluate<S: Simd, P: Sites<S>, const DIMS: usize>(
         let mut at = Shell::<DIMS>::new(shell + 1);
         while let Some(offset) = at.advance() {
             let (place, hash) = distant::<S, DIMS>(simd, field, cells, offset);
-            keep::<S, DIMS>(field, &mut nearest, way::<S, DIMS>(simd, &place, &t, offset), hash);
+            keep::<S, DIMS>(field, nearest, way::<S, DIMS>(simd, &place, &t, offset), hash);
         }
     }
-    let (mut first, mut second) = (nearest.first, nearest.second);
-    if squared {
-        (first, second) = (first.sqrt(), second.sqrt());
-    }
-    let raw = match feature {
-        Feature::F1 => first,
-        Feature::F2 => second,
-        Feature::Difference => second - first,
-        Feature::Product => first * second,
-        Feature::Value => return value(simd, (nearest.hash ^ nearest.hash.shr(16)) * simd.u32(0xADB4_A92D)),
-        Feature::Edge if squared => edge::<S, P, DIMS>(simd, field, sites, cells, (&nearest, first, side)),
-        Feature::Edge => (second - first) * simd.f32(0.5),
-    };
-    raw.mul_add(simd.f32(2.0 / field.cellular.bound(DIMS)), simd.f32(-1.0)).min(simd.f32(1.0))
+    side
 }
 
 /// The distance to the nearest edge: to the nearest of the planes midway between the nearest point and each other one.
@@ -244,7 +281,7 @@ fn edge<S: Simd, P: Sites<S>, const DIMS: usize>(
     (nearest, first, side): (&Nearest<S>, S::F32, S::F32),
 ) -> S::F32 {
     let t = [cells[0].t, cells[1].t, cells[2].t, cells[3].t];
-    let mut least = simd.f32(1e9);
+    let mut least = simd.f32(FAR);
     for number in 0..3_usize.pow(DIMS as u32) {
         let offset = neighbour::<DIMS>(number);
         let (place, _) = sites.near(simd, offset);
@@ -277,7 +314,7 @@ fn midway<S: Simd, const DIMS: usize>(simd: S, near: &[S::F32; 4], other: &[S::F
         apart = between.mul_add(between, apart);
     }
     let distance = (along * simd.f32(0.5) / apart.sqrt()).max(simd.f32(0.0));
-    distance.select(simd.f32(1e-12).lt(apart), simd.f32(1e9))
+    distance.select(simd.f32(1e-12).lt(apart), simd.f32(FAR))
 }
 
 /// A point farther than one cell away.

@@ -1,7 +1,9 @@
 //! Lattices of samples of noise on corners of simplices: sums of octaves, row by row.
 //!
 //! Along a row the cubes that samples are in follow each other, so that their keys can be kept in a table and picked by permutes, as
-//! lattice lines are for the low-rank bases. Everything else is small fractions: see [`crate::kernel::simplex`].
+//! lattice lines are for the low-rank bases. Where cubes are wide, most registers of samples are in one line of cubes along x; there the
+//! gradients themselves are kept, those of the lattice lines at the cubes' edges. Everything else is small fractions: see
+//! [`crate::kernel::simplex`].
 
 #![allow(clippy::needless_range_loop)] // see kernel/mod.rs
 
@@ -10,9 +12,9 @@ use crate::kernel::families::with_family;
 use crate::kernel::outputs::Outputs;
 use crate::kernel::pointwise::Pointwise;
 use crate::kernel::scattered::Call;
-use crate::kernel::simplex::{Corners, Simplices, Slanted, beyond_x, scaled, slanted, wrapped};
-use crate::kernel::source::Lattice;
-use crate::program::{Octave, Program};
+use crate::kernel::simplex::{CornerGradients, Corners, Simplices, Slanted, beyond_x, raw, slanted};
+use crate::kernel::source::{Gradients, Lattice};
+use crate::program::{Octave, Program, Source};
 use orogen_simd::{Body, F32Lanes, F64Lanes, MaskLanes, Simd, U32Lanes};
 use std::marker::PhantomData;
 
@@ -22,6 +24,22 @@ const WIDTH: usize = 256;
 const SPAN: usize = WIDTH + 48;
 /// The most lanes of any level.
 const MAX_LANES: usize = 16;
+
+/// Cubes a strip may span along x and still have the gradients of lattice lines kept.
+const LINE: usize = 64;
+/// Rows from which on that pays.
+const ROWS: usize = 16;
+/// Lattice lines that are kept; those at the edges of one line of cubes have places of their own.
+const LINES: usize = 16;
+
+/// The gradients of the points of a lattice line along x.
+#[repr(C, align(64))]
+#[derive(Clone, Copy)]
+struct Line {
+    gradients: [[f32; LINE]; 3],
+    /// The numbers of its first point.
+    of: [f64; 3],
+}
 
 /// One octave over a strip of columns.
 #[repr(C, align(64))]
@@ -42,6 +60,12 @@ struct Strip {
     held: [Option<f64>; 4],
     /// Whether cubes follow so closely that those of a register fit one.
     dense: bool,
+    /// Whether they follow so closely that registers lie in one line of cubes often enough to keep lattice lines.
+    wide: bool,
+    /// Wide: the lanes of each register whose number along the other axes is one more than the first lane's.
+    steps: [u32; WIDTH / 4],
+    /// Lattice lines, each in the place that its number picks.
+    lines: Vec<Line>,
 }
 
 impl Strip {
@@ -56,6 +80,9 @@ impl Strip {
             keys: [[0; SPAN]; 4],
             held: [None; 4],
             dense: false,
+            wide: false,
+            steps: [0; WIDTH / 4],
+            lines: Vec::new(),
         }
     }
 }
@@ -75,7 +102,7 @@ pub(crate) fn fill<S: Simd, C: Corners, const DIMS: usize>(
     for (s, columns) in xs.chunks(WIDTH).enumerate() {
         let mut dense = true;
         for (strip, octave) in strips.iter_mut().zip(octaves) {
-            simd.run(Columns::<DIMS> { octave, limit: program.limit, strip, xs: columns });
+            simd.run(Columns::<DIMS> { octave, limit: program.limit, strip, xs: columns, rows: ys.len() });
             dense &= strip.dense;
         }
         for (r, y) in ys.iter().enumerate() {
@@ -100,6 +127,8 @@ struct Columns<'a, const DIMS: usize> {
     limit: f64,
     strip: &'a mut Strip,
     xs: &'a [f64],
+    /// How many rows there are.
+    rows: usize,
 }
 
 impl<const DIMS: usize> Body for Columns<'_, DIMS> {
@@ -107,11 +136,12 @@ impl<const DIMS: usize> Body for Columns<'_, DIMS> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Columns { octave, limit, strip, xs } = self;
+        let Columns { octave, limit, strip, xs, rows } = self;
         strip.held = [None; 4];
         let Some(&last) = xs.last() else { return };
         let mut lanes = [0.0; MAX_LANES];
         let (mut reach, mut farthest) = ([simd.u32(0); 2], [0; 2]);
+        let mut most = simd.u32(0);
         for v in 0..xs.len().div_ceil(S::LANES).min(WIDTH / S::LANES) {
             let at = v * S::LANES;
             let held = clamp(simd, simd.load_f64_partial(&xs[at..], last), limit);
@@ -133,6 +163,10 @@ impl<const DIMS: usize> Body for Columns<'_, DIMS> {
                 // Fractions that add up to more than one step on by up to two.
                 reach[which] = reach[which] | index | (index + simd.u32(2));
                 farthest[which] = farthest[which].max(places[0]);
+                if which == 1 {
+                    strip.steps[v] = index.eq(simd.u32(1)).to_bits();
+                    most = most | index;
+                }
             }
         }
         strip.dense = true;
@@ -140,6 +174,12 @@ impl<const DIMS: usize> Body for Columns<'_, DIMS> {
             let spread = !reach[which].shr(S::LANES.trailing_zeros()).eq(simd.u32(0));
             strip.dense &= !spread.any() && (farthest[which] as usize) < SPAN - 2 * S::LANES - 1;
             strip.span[which] = (farthest[which] as usize + S::LANES + 1).next_multiple_of(S::LANES).min(SPAN);
+        }
+        // Where a register steps on twice along the other axes, hardly any is in one line of cubes.
+        let narrow = !most.shr(1).eq(simd.u32(0));
+        strip.wide = strip.dense && DIMS < 4 && rows >= ROWS && !narrow.any() && strip.span[0] <= LINE;
+        if strip.wide && strip.lines.is_empty() {
+            strip.lines = vec![Line { gradients: [[0.0; LINE]; 3], of: [f64::NAN; 3] }; LINES];
         }
     }
 }
@@ -171,16 +211,27 @@ impl<C: Corners, const DIMS: usize> Body for Row<'_, C, DIMS> {
             }
             let (rest, skew) = beyond_x::<S, DIMS>(&row);
             hold::<S, C, DIMS>(simd, noise, strip, &row, skew);
+            let mut held = Edges::NONE;
+            let factor = simd.f32(octave.amplitude * C::SCALE[DIMS - 2]);
             let mut start = 0;
             while start < to.len().min(WIDTH) {
-                let (place, keys) = look_up::<S, DIMS>(simd, strip, start, &row, rest);
-                let raw = noise.raw::<false>(simd, &place, &keys);
-                let mut sum = [simd.f32(0.0); 5];
-                if o > 0 {
-                    sum[0] = simd.load_partial(&to[start..], 0.0);
-                }
-                scaled::<S, DIMS, false>(simd, octave, C::SCALE[DIMS - 2], &raw, &mut sum);
-                sum[0].store_partial(&mut to[start..]);
+                let place = look_up::<S, DIMS>(simd, strip, start, &row, rest);
+                let line = if DIMS < 4 && strip.wide { place.line::<DIMS>(strip, start) } else { None };
+                let raw = match line {
+                    Some(line) => {
+                        if held.y != line[0] || held.z != line[1] {
+                            held = Edges::of::<S, C, DIMS>(simd, (program.source, octave), strip, line);
+                        }
+                        let lines = held.lines(&strip.lines);
+                        let first = (strip.first[0][start / S::LANES] as usize).min(LINE - 1 - S::LANES);
+                        let index = place.index(simd, strip, start, 0);
+                        raw::<S, _, DIMS, false>(simd, &place.t, &LineCorners::<S, DIMS> { lines, first, index })
+                    }
+                    None => noise.raw::<false>(simd, &place.t, &place.keys::<DIMS>(simd, strip, start)),
+                };
+                let before = if o > 0 { simd.load_partial(&to[start..], 0.0) } else { simd.f32(0.0) };
+                // As [`crate::kernel::simplex::scaled`] adds it.
+                factor.mul_add(raw[0], before).store_partial(&mut to[start..]);
                 start += S::LANES;
             }
         }
@@ -220,7 +271,17 @@ fn hold<S: Simd, C: Corners, const DIMS: usize>(
     }
 }
 
-/// The fractions of a register of samples and the keys of their cubes: what [`crate::kernel::simplex::place`] makes, by the same steps.
+/// A register of samples in the skewed lattice.
+struct Place<S: Simd> {
+    /// Fractions.
+    t: [S::F32; 4],
+    /// Where the fractions of the skew added up to a step of all axes,
+    shared: S::Mask,
+    /// and where an axis made one of its own.
+    carry: [S::Mask; 4],
+}
+
+/// The fractions of a register of samples: what [`crate::kernel::simplex::place`] makes, by the same steps.
 #[inline(always)]
 fn look_up<S: Simd, const DIMS: usize>(
     simd: S,
@@ -228,19 +289,191 @@ fn look_up<S: Simd, const DIMS: usize>(
     start: usize,
     row: &[Slanted<S>; 4],
     rest: S::F32,
-) -> ([S::F32; 4], [[S::U32; 2]; 4]) {
-    let (v, none) = (start / S::LANES, simd.f32(0.0));
-    let (shared, rest) = wrapped(simd, simd.load(&strip.rest[start..]) + rest);
-    let (mut t, mut keys) = ([none; 4], [[simd.u32(0); 2]; 4]);
+) -> Place<S> {
+    let (rest, shared) = stepped(simd, simd.load(&strip.rest[start..]) + rest);
+    let mut place = Place { t: [rest; 4], shared, carry: [shared; 4] };
     for axis in 0..DIMS {
-        let which = usize::from(axis > 0);
         let own = if axis == 0 { simd.load(&strip.t[start..]) } else { row[axis].t };
-        let (carry, left) = wrapped(simd, own + rest);
-        t[axis] = left;
-        let index = simd.load_u32(&strip.index[which][start..]) + (shared + carry).to_i32();
-        let first = (strip.first[which][v] as usize).min(SPAN - 1 - S::LANES);
-        let table = &strip.keys[axis];
-        keys[axis] = [simd.load_u32(&table[first..]).permute(index), simd.load_u32(&table[first + 1..]).permute(index)];
+        (place.t[axis], place.carry[axis]) = stepped(simd, own + rest);
     }
-    (t, keys)
+    place
+}
+
+/// A number from 0 to 2, less 1 where it is at least that, and where it is.
+#[inline(always)]
+fn stepped<S: Simd>(simd: S, t: S::F32) -> (S::F32, S::Mask) {
+    let one = simd.f32(1.0);
+    let reached = one.le(t);
+    (t - one.select(reached, simd.f32(0.0)), reached)
+}
+
+impl<S: Simd> Place<S> {
+    /// The cubes along an axis, counted from the register's first, for a permute.
+    #[inline(always)]
+    fn index(&self, simd: S, strip: &Strip, start: usize, axis: usize) -> S::U32 {
+        // A permute takes this for 1. It becomes one masked addition, where adding 1 would be two instructions.
+        let (zero, one) = (simd.u32(0), simd.u32(1 + 2 * MAX_LANES as u32));
+        let index = simd.load_u32(&strip.index[usize::from(axis > 0)][start..]);
+        index + one.select(self.shared, zero) + one.select(self.carry[axis], zero)
+    }
+
+    /// The keys of the cubes and of the next.
+    #[inline(always)]
+    fn keys<const DIMS: usize>(&self, simd: S, strip: &Strip, start: usize) -> [[S::U32; 2]; 4] {
+        let mut keys = [[simd.u32(0); 2]; 4];
+        for axis in 0..DIMS {
+            let index = self.index(simd, strip, start, axis);
+            let first = (strip.first[usize::from(axis > 0)][start / S::LANES] as usize).min(SPAN - 1 - S::LANES);
+            let table = &strip.keys[axis];
+            keys[axis] =
+                [simd.load_u32(&table[first..]).permute(index), simd.load_u32(&table[first + 1..]).permute(index)];
+        }
+        keys
+    }
+
+    /// The line of cubes along x that all samples are in, if there is one: their numbers along y and z from the keys' first on.
+    #[inline(always)]
+    fn line<const DIMS: usize>(&self, strip: &Strip, start: usize) -> Option<[usize; 2]> {
+        let v = start / S::LANES;
+        let (steps, shared) = (strip.steps[v], self.shared.to_bits());
+        let (mut line, mut apart) = ([strip.first[1][v] as usize; 2], 0);
+        for axis in 1..DIMS.min(3) {
+            // The sum of three bits in each lane, as its two digits.
+            let carry = self.carry[axis].to_bits();
+            let (ones, twos) = (steps ^ shared ^ carry, (steps & shared) | (carry & (steps | shared)));
+            apart |= (ones ^ 0_u32.wrapping_sub(ones & 1)) | (twos ^ 0_u32.wrapping_sub(twos & 1));
+            line[axis - 1] += ((ones & 1) + 2 * (twos & 1)) as usize;
+        }
+        let lanes = u32::MAX >> (32 - S::LANES);
+        (apart & lanes == 0).then_some(line)
+    }
+}
+
+/// The lattice lines at the edges of a line of cubes.
+#[derive(Clone, Copy)]
+struct Edges {
+    /// The line of cubes: its numbers along y and z from the keys' first on.
+    y: usize,
+    z: usize,
+    /// Where its lattice lines are kept: those at y and y + 1, then the same at z + 1.
+    slots: [usize; 4],
+}
+
+impl Edges {
+    const NONE: Edges = Edges { y: usize::MAX, z: usize::MAX, slots: [0; 4] };
+
+    /// Makes those that are not there.
+    #[inline(always)]
+    fn of<S: Simd, C: Corners, const DIMS: usize>(
+        simd: S,
+        (source, octave): (Source, &Octave),
+        strip: &mut Strip,
+        line: [usize; 2],
+    ) -> Edges {
+        let mut slots = [0; 4];
+        for edge in 0..if DIMS == 2 { 2 } else { 4 } {
+            let at = [(line[0] + (edge & 1)).min(SPAN - 1), (line[1] + (edge >> 1)).min(SPAN - 1)];
+            let mut of = [0.0; 3];
+            for axis in 0..DIMS.min(3) {
+                of[axis] = strip.held[axis].unwrap_or_default() + if axis > 0 { at[axis - 1] as f64 } else { 0.0 };
+            }
+            let slot = if DIMS == 2 { at[0] & 15 } else { (at[0] & 3) + 4 * (at[1] & 3) };
+            slots[edge] = slot;
+            let there = strip.lines[slot].of;
+            if there[0] != of[0] || there[1] != of[1] || there[2] != of[2] {
+                simd.run(Make::<C, DIMS> { source, octave, strip, at, slot, of, corners: PhantomData });
+            }
+        }
+        Edges { y: line[0], z: line[1], slots }
+    }
+
+    #[inline(always)]
+    fn lines<'a>(&self, lines: &'a [Line]) -> [&'a [[f32; LINE]; 3]; 4] {
+        let [a, b, c, d] = self.slots;
+        [&lines[a].gradients, &lines[b].gradients, &lines[c].gradients, &lines[d].gradients]
+    }
+}
+
+/// Makes the gradients of a lattice line.
+struct Make<'a, C, const DIMS: usize> {
+    source: Source,
+    octave: &'a Octave,
+    strip: &'a mut Strip,
+    /// Its place among the keys along y and z.
+    at: [usize; 2],
+    slot: usize,
+    of: [f64; 3],
+    corners: PhantomData<C>,
+}
+
+impl<C: Corners, const DIMS: usize> Body for Make<'_, C, DIMS> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Make { source, octave, strip, at, slot, of, .. } = self;
+        let lattice = C::Lattice::<S>::new(simd, source, octave);
+        let line = &mut strip.lines[slot];
+        line.of = of;
+        let (y, z) = (simd.u32(strip.keys[1][at[0]]), simd.u32(strip.keys[2][at[1]]));
+        for p in (0..strip.span[0].min(LINE)).step_by(S::LANES) {
+            let x = simd.load_u32(&strip.keys[0][p..]);
+            let gradient = lattice.gradient::<DIMS>(simd, lattice.hash::<DIMS>(simd, [x, y, z, z]));
+            for axis in 0..DIMS.min(3) {
+                gradient[axis].store(&mut line.gradients[axis][p..]);
+            }
+        }
+    }
+}
+
+/// Gradients kept by lattice lines.
+struct LineCorners<'a, S: Simd, const DIMS: usize> {
+    /// As in [`Edges`].
+    lines: [&'a [[f32; LINE]; 3]; 4],
+    /// The register's first point,
+    first: usize,
+    /// and the samples' ones counted from it.
+    index: S::U32,
+}
+
+impl<S: Simd, const DIMS: usize> LineCorners<'_, S, DIMS> {
+    /// The gradient so many points on along each axis.
+    #[inline(always)]
+    fn on(&self, simd: S, [x, y, z]: [usize; 3]) -> [S::F32; 4] {
+        let line = self.lines[y + 2 * z];
+        let mut gradient = [simd.f32(0.0); 4];
+        for axis in 0..DIMS.min(3) {
+            gradient[axis] = simd.load(&line[axis][self.first + x..]).permute(self.index);
+        }
+        gradient
+    }
+
+    /// The first where the mask holds, else the second.
+    #[inline(always)]
+    fn either(mask: S::Mask, mut one: [S::F32; 4], other: [S::F32; 4]) -> [S::F32; 4] {
+        for axis in 0..DIMS.min(3) {
+            one[axis] = one[axis].select(mask, other[axis]);
+        }
+        one
+    }
+}
+
+impl<S: Simd, const DIMS: usize> CornerGradients<S> for LineCorners<'_, S, DIMS> {
+    #[inline(always)]
+    fn gradient(&self, simd: S, number: usize, waits: &[S::Mask; 4]) -> [S::F32; 4] {
+        match (DIMS, number) {
+            (_, 0) => self.on(simd, [0, 0, 0]),
+            (2, 1) => Self::either(waits[0], self.on(simd, [0, 1, 0]), self.on(simd, [1, 0, 0])),
+            (2, _) => self.on(simd, [1, 1, 0]),
+            (_, 1) => {
+                let beyond = Self::either(waits[1], self.on(simd, [0, 0, 1]), self.on(simd, [0, 1, 0]));
+                Self::either(waits[0], beyond, self.on(simd, [1, 0, 0]))
+            }
+            (_, 2) => {
+                let along = Self::either(waits[1], self.on(simd, [1, 0, 1]), self.on(simd, [1, 1, 0]));
+                Self::either(waits[0], self.on(simd, [0, 1, 1]), along)
+            }
+            _ => self.on(simd, [1, 1, 1]),
+        }
+    }
 }

@@ -28,7 +28,8 @@ pub(crate) trait Gradients<S: Simd>: Lattice<S> {
 /// The hashed lattice: 64-bit cells and 64 bits of seed per axis go into a 32-bit key, the keys into a 32-bit hash.
 ///
 /// A key is two rounds of xorshift-multiply over the low word, the high word and the second half of the seed entering between them.
-/// Keys are joined by xor and a third round, whose top bits depend on every bit of each. The constants are odd numbers with good
+/// Keys are joined by xor and a third round, whose top bits depend on every bit of each. That round's xorshift distributes over xor, so
+/// keys have it behind them: a key is made once and joined often. The constants are odd numbers with good
 /// spectral behaviour modulo 2^32 (G. Steele and S. Vigna, "Computationally easy, spectrally good multipliers", 2021).
 #[derive(Clone, Copy)]
 pub(crate) struct Hashed<S: Simd> {
@@ -53,7 +54,7 @@ impl<S: Simd> Hashed<S> {
     /// The hash of keys joined by xor.
     #[inline(always)]
     pub(crate) fn finish(simd: S, joined: S::U32) -> S::U32 {
-        (joined ^ joined.shr(15)) * simd.u32(ROUND_3)
+        joined * simd.u32(ROUND_3)
     }
 }
 
@@ -66,16 +67,16 @@ impl<S: Simd> Lattice<S> for Hashed<S> {
             let (here_low, next_low) = (here[0] * simd.u32(ROUND_1) + first, next[0] * simd.u32(ROUND_1) + first);
             let round = simd.u32(ROUND_2);
             return [
-                (here_low ^ here_low.shr(15) ^ (here[1] ^ second)) * round,
-                (next_low ^ next_low.shr(15) ^ (next[1] ^ second)) * round,
+                shifted::<S>((shifted::<S>(here_low) ^ (here[1] ^ second)) * round),
+                shifted::<S>((shifted::<S>(next_low) ^ (next[1] ^ second)) * round),
             ];
         }
         let here = cell.low * simd.u32(ROUND_1) + first;
         let next = here + simd.u32(ROUND_1);
         let round = simd.u32(ROUND_2);
         [
-            (here ^ here.shr(15) ^ (cell.high ^ second)) * round,
-            (next ^ next.shr(15) ^ (cell.next_high(simd) ^ second)) * round,
+            shifted::<S>((shifted::<S>(here) ^ (cell.high ^ second)) * round),
+            shifted::<S>((shifted::<S>(next) ^ (cell.next_high(simd) ^ second)) * round),
         ]
     }
     #[inline(always)]
@@ -86,6 +87,12 @@ impl<S: Simd> Lattice<S> for Hashed<S> {
         }
         Self::finish(simd, joined)
     }
+}
+
+/// The xorshift of a round.
+#[inline(always)]
+fn shifted<S: Simd>(word: S::U32) -> S::U32 {
+    word ^ word.shr(15)
 }
 
 /// A hash as a number in [-1, 1], a millionth short of the ends so that blending cannot round past them.
