@@ -13,7 +13,7 @@ starting with the files in fuzz/corpus/TARGET. New inputs are written to target/
 are written to fuzz/artifacts. Needs a C++ compiler for libFuzzer; cargo-fuzz is optional.
 ";
 
-const TARGETS: [&str; 3] = ["dem", "place", "recipe"];
+const TARGETS: [&str; 4] = ["dem", "palette", "place", "recipe"];
 
 /// Flags for coverage instrumentation (those of cargo-fuzz).
 const FLAGS: &str = "--cfg fuzzing -Zsanitizer=address -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
