@@ -79,6 +79,11 @@ pub(crate) trait Basis<S: Simd>: Copy {
 
     /// The basis as the octave needs it.
     fn new(simd: S, source: Source, octave: &Octave) -> Self;
+    /// The same basis with keys to be kept: see [`crate::kernel::source::Lattice::folded`].
+    #[inline(always)]
+    fn folded(self) -> Self {
+        self
+    }
     /// The keys of a cell and the next along an axis.
     fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2];
     /// The numbers of a lattice point; with `SLOPES`, also their slopes along z and w.

@@ -187,7 +187,7 @@ impl Body for Columns<'_> {
 }
 
 impl Strip {
-    /// Makes the list of runs; it stays empty where they are much shorter than a register.
+    /// Makes the list of runs; it stays empty where they are shorter than two registers on average.
     fn find_runs(&mut self, columns: usize, lanes: usize) {
         self.runs.clear();
         let cell = |column: usize| (self.first[column / lanes] + self.index[column]) as usize;
@@ -210,7 +210,7 @@ impl Strip {
             }
             start = end;
         }
-        if 2 * columns < self.runs.len() * lanes {
+        if columns < 2 * self.runs.len() * lanes {
             self.runs.clear();
         }
     }

@@ -66,6 +66,10 @@ impl<S: Simd, G: Gradients<S>, const DIMS: usize> Basis<S> for Gradient<G, DIMS>
         Self(G::new(simd, source, octave))
     }
     #[inline(always)]
+    fn folded(self) -> Self {
+        Self(self.0.folded())
+    }
+    #[inline(always)]
     fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2] {
         self.0.keys(simd, axis, cell)
     }

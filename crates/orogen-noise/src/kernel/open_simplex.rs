@@ -33,6 +33,10 @@ impl<S: Simd> Lattice<S> for OpenSource<S> {
     fn hash<const DIMS: usize>(self, simd: S, keys: [S::U32; 4]) -> S::U32 {
         self.lattice.hash::<DIMS>(simd, keys)
     }
+    #[inline(always)]
+    fn folded(self) -> Self {
+        OpenSource { lattice: self.lattice.folded(), ..self }
+    }
 }
 
 impl<S: Simd> Gradients<S> for OpenSource<S> {
@@ -193,8 +197,8 @@ impl<S: Simd, const DIMS: usize> Pointwise<S> for Wide<S, DIMS> {
 #[derive(Clone, Copy)]
 pub(crate) struct Cubes<S: Simd, const SMOOTH: bool>(OpenSource<S>);
 
-/// What tells the keys of the second lattice from those of the first.
-const SECOND: u32 = 0x5851_F42D ^ (0x5851_F42D >> 15);
+/// What tells the second lattice from the first.
+const SECOND: u32 = 0x5851_F42D;
 const CUBES_SCALE: f32 = 108.291;
 
 // The turn: (x + y) times these, and z times the third.

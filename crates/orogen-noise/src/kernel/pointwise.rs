@@ -67,14 +67,14 @@ impl<S: Simd, B: Basis<S>> Pointwise<S> for LowRank<B> {
 
     #[inline(always)]
     fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2] {
-        self.0.keys(simd, axis, cell)
+        self.0.folded().keys(simd, axis, cell)
     }
 
     #[inline(always)]
     fn add_keyed(self, simd: S, t: [S::F32; 2], keys: [[S::U32; 2]; 2], sum: &mut Sample<S>) {
         let none = Cell::at(simd, simd.f64(0.0));
         let depths = self.0.depths(simd, &[none; 2]);
-        add::<S, B, false>(simd, self.0, [simd.f32(1.0); 2], t, keys, &depths, sum);
+        add::<S, B, false>(simd, self.0.folded(), [simd.f32(1.0); 2], t, keys, &depths, sum);
     }
 }
 

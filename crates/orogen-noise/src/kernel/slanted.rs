@@ -10,7 +10,6 @@
 use crate::kernel::cell::{Cell, clamp, coordinate};
 use crate::kernel::families::with_family;
 use crate::kernel::outputs::Outputs;
-use crate::kernel::pointwise::Pointwise;
 use crate::kernel::scattered::Call;
 use crate::kernel::simplex::{CornerGradients, Corners, Simplices, Slanted, beyond_x, raw, slanted};
 use crate::kernel::source::{Gradients, Lattice};
@@ -203,7 +202,7 @@ impl<C: Corners, const DIMS: usize> Body for Row<'_, C, DIMS> {
         let octaves = program.octaves();
         for o in 0..octaves.len().min(strips.len()) {
             let (octave, strip) = (&octaves[o], &mut strips[o]);
-            let noise = Simplices::<S, C, DIMS>::new(simd, program.source, octave);
+            let noise = Simplices::<S, C, DIMS>(C::Lattice::<S>::new(simd, program.source, octave).folded());
             let mut row = [slanted::<S, DIMS>(simd, simd.f64(0.0)); 4];
             for axis in 1..DIMS {
                 let held = clamp(simd, simd.f64(at[axis]), program.limit);
@@ -412,7 +411,7 @@ impl<C: Corners, const DIMS: usize> Body for Make<'_, C, DIMS> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Make { source, octave, strip, at, slot, of, .. } = self;
-        let lattice = C::Lattice::<S>::new(simd, source, octave);
+        let lattice = C::Lattice::<S>::new(simd, source, octave).folded();
         let line = &mut strip.lines[slot];
         line.of = of;
         let (y, z) = (simd.u32(strip.keys[1][at[0]]), simd.u32(strip.keys[2][at[1]]));

@@ -15,6 +15,11 @@ pub(crate) trait Lattice<S: Simd>: Copy {
     fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2];
     /// The hash of a point with those keys along its first `DIMS` axes; the top bits are the good ones.
     fn hash<const DIMS: usize>(self, simd: S, keys: [S::U32; 4]) -> S::U32;
+    /// The same lattice with other keys of the same hashes: these take more to make and less to join. For keys that are kept.
+    #[inline(always)]
+    fn folded(self) -> Self {
+        self
+    }
 }
 
 /// A lattice whose points have gradients.
@@ -28,13 +33,14 @@ pub(crate) trait Gradients<S: Simd>: Lattice<S> {
 /// The hashed lattice: 64-bit cells and 64 bits of seed per axis go into a 32-bit key, the keys into a 32-bit hash.
 ///
 /// A key is two rounds of xorshift-multiply over the low word, the high word and the second half of the seed entering between them.
-/// Keys are joined by xor and a third round, whose top bits depend on every bit of each. That round's xorshift distributes over xor, so
-/// keys have it behind them: a key is made once and joined often. The constants are odd numbers with good
+/// Keys are joined by xor and a third round, whose top bits depend on every bit of each. That round's xorshift distributes over xor:
+/// folded keys have it behind them. The constants are odd numbers with good
 /// spectral behaviour modulo 2^32 (G. Steele and S. Vigna, "Computationally easy, spectrally good multipliers", 2021).
 #[derive(Clone, Copy)]
 pub(crate) struct Hashed<S: Simd> {
     words: [[S::U32; 2]; 4],
     period: [f64; 4],
+    folded: bool,
 }
 
 const ROUND_1: u32 = 0x915F_77F5;
@@ -48,13 +54,24 @@ impl<S: Simd> Hashed<S> {
         for axis in 0..4 {
             words[axis] = [simd.u32(octave.words[axis][0]), simd.u32(octave.words[axis][1])];
         }
-        Hashed { words, period: octave.period }
+        Hashed { words, period: octave.period, folded: false }
     }
 
     /// The hash of keys joined by xor.
     #[inline(always)]
-    pub(crate) fn finish(simd: S, joined: S::U32) -> S::U32 {
+    fn finish(simd: S, joined: S::U32) -> S::U32 {
+        Self::finish_folded(simd, joined ^ joined.shr(15))
+    }
+
+    /// The hash of folded keys joined by xor.
+    #[inline(always)]
+    pub(crate) fn finish_folded(simd: S, joined: S::U32) -> S::U32 {
         joined * simd.u32(ROUND_3)
+    }
+
+    #[inline(always)]
+    fn key(self, key: S::U32) -> S::U32 {
+        if self.folded { key ^ key.shr(15) } else { key }
     }
 }
 
@@ -67,16 +84,16 @@ impl<S: Simd> Lattice<S> for Hashed<S> {
             let (here_low, next_low) = (here[0] * simd.u32(ROUND_1) + first, next[0] * simd.u32(ROUND_1) + first);
             let round = simd.u32(ROUND_2);
             return [
-                shifted::<S>((shifted::<S>(here_low) ^ (here[1] ^ second)) * round),
-                shifted::<S>((shifted::<S>(next_low) ^ (next[1] ^ second)) * round),
+                self.key((here_low ^ here_low.shr(15) ^ (here[1] ^ second)) * round),
+                self.key((next_low ^ next_low.shr(15) ^ (next[1] ^ second)) * round),
             ];
         }
         let here = cell.low * simd.u32(ROUND_1) + first;
         let next = here + simd.u32(ROUND_1);
         let round = simd.u32(ROUND_2);
         [
-            shifted::<S>((shifted::<S>(here) ^ (cell.high ^ second)) * round),
-            shifted::<S>((shifted::<S>(next) ^ (cell.next_high(simd) ^ second)) * round),
+            self.key((here ^ here.shr(15) ^ (cell.high ^ second)) * round),
+            self.key((next ^ next.shr(15) ^ (cell.next_high(simd) ^ second)) * round),
         ]
     }
     #[inline(always)]
@@ -85,14 +102,12 @@ impl<S: Simd> Lattice<S> for Hashed<S> {
         for axis in 1..DIMS {
             joined = joined ^ keys[axis];
         }
-        Self::finish(simd, joined)
+        if self.folded { Self::finish_folded(simd, joined) } else { Self::finish(simd, joined) }
     }
-}
-
-/// The xorshift of a round.
-#[inline(always)]
-fn shifted<S: Simd>(word: S::U32) -> S::U32 {
-    word ^ word.shr(15)
+    #[inline(always)]
+    fn folded(self) -> Self {
+        Hashed { folded: true, ..self }
+    }
 }
 
 /// A hash as a number in [-1, 1], a millionth short of the ends so that blending cannot round past them.
@@ -121,6 +136,10 @@ impl<S: Simd> Lattice<S> for PerlinSource<S> {
     #[inline(always)]
     fn hash<const DIMS: usize>(self, simd: S, keys: [S::U32; 4]) -> S::U32 {
         self.lattice.hash::<DIMS>(simd, keys)
+    }
+    #[inline(always)]
+    fn folded(self) -> Self {
+        PerlinSource { lattice: self.lattice.folded(), ..self }
     }
 }
 

@@ -48,6 +48,10 @@ impl<S: Simd, const DIMS: usize> Basis<S> for Blended<S, DIMS> {
         Self(Hashed::new(simd, octave), fade)
     }
     #[inline(always)]
+    fn folded(self) -> Self {
+        Self(self.0.folded(), self.1)
+    }
+    #[inline(always)]
     fn keys(self, simd: S, axis: usize, cell: &Cell<S>) -> [S::U32; 2] {
         self.0.keys(simd, axis, cell)
     }

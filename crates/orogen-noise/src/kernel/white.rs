@@ -68,7 +68,7 @@ impl Body for Keys<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Keys { octave, limit, axis, at, keys } = self;
-        let lattice = Hashed::new(simd, octave);
+        let lattice = Hashed::new(simd, octave).folded();
         let mut start = 0;
         while start < at.len() {
             let held = clamp(simd, simd.load_f64_partial(&at[start..], 0.0), limit);
@@ -114,5 +114,5 @@ impl Body for Row<'_> {
 
 #[inline(always)]
 fn sample<S: Simd>(simd: S, column: S::U32, row: S::U32, amplitude: S::F32) -> S::F32 {
-    value(simd, Hashed::<S>::finish(simd, column ^ row)) * amplitude
+    value(simd, Hashed::<S>::finish_folded(simd, column ^ row)) * amplitude
 }
