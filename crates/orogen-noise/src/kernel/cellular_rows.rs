@@ -267,7 +267,7 @@ impl Body for Band<'_> {
             let run = strip.runs[number];
             let near = candidates(simd, strip, thirds, &run, range);
             for row in 0..rows {
-                let place = Place {
+                let place = RunSamples {
                     field: &field,
                     octave: job.octave,
                     near: &near,
@@ -359,7 +359,7 @@ fn candidates<S: Simd>(simd: S, strip: &Strip, thirds: [usize; 3], run: &Run, y:
 }
 
 /// What the samples of a row and run have in common.
-struct Place<'a, S: Simd> {
+struct RunSamples<'a, S: Simd> {
     field: &'a Field<S>,
     octave: &'a Octave,
     near: &'a Candidates,
@@ -375,7 +375,7 @@ struct Place<'a, S: Simd> {
 #[inline(always)]
 fn nearest<S: Simd, const N: usize>(
     simd: S,
-    place: &Place<S>,
+    place: &RunSamples<S>,
     t: &[f32; WIDTH + MAX_LANES],
     to: &mut [f32],
     at: usize,
@@ -402,7 +402,7 @@ fn nearest<S: Simd, const N: usize>(
             let (mut ways, mut found) = ([0.0; MAX_LANES], [0.0; MAX_LANES]);
             x[n].store(&mut ways);
             first[n].store(&mut found);
-            let Place { octave, whole, y, .. } = *place;
+            let RunSamples { octave, whole, y, .. } = *place;
             simd.run(Beyond { cellular: place.field.cellular, octave, whole, x: &ways, y, found: &mut found });
             first[n] = simd.load(&found);
         }

@@ -271,7 +271,7 @@ fn hold<S: Simd, C: Corners, const DIMS: usize>(
 }
 
 /// A register of samples in the skewed lattice.
-struct Place<S: Simd> {
+struct SkewedPoints<S: Simd> {
     /// Fractions.
     t: [S::F32; 4],
     /// Where the fractions of the skew added up to a step of all axes,
@@ -288,9 +288,9 @@ fn look_up<S: Simd, const DIMS: usize>(
     start: usize,
     row: &[Slanted<S>; 4],
     rest: S::F32,
-) -> Place<S> {
+) -> SkewedPoints<S> {
     let (rest, shared) = stepped(simd, simd.load(&strip.rest[start..]) + rest);
-    let mut place = Place { t: [rest; 4], shared, carry: [shared; 4] };
+    let mut place = SkewedPoints { t: [rest; 4], shared, carry: [shared; 4] };
     for axis in 0..DIMS {
         let own = if axis == 0 { simd.load(&strip.t[start..]) } else { row[axis].t };
         (place.t[axis], place.carry[axis]) = stepped(simd, own + rest);
@@ -306,7 +306,7 @@ fn stepped<S: Simd>(simd: S, t: S::F32) -> (S::F32, S::Mask) {
     (t - one.select(reached, simd.f32(0.0)), reached)
 }
 
-impl<S: Simd> Place<S> {
+impl<S: Simd> SkewedPoints<S> {
     /// The cubes along an axis, counted from the register's first, for a permute.
     #[inline(always)]
     fn index(&self, simd: S, strip: &Strip, start: usize, axis: usize) -> S::U32 {
