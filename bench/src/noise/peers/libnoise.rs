@@ -18,7 +18,7 @@ pub fn job(case: &Case) -> Option<Job> {
         Work::Value => plane(Source::value(seed), frequency),
         Work::Perlin => plane(Source::perlin(seed), frequency),
         Work::PerlinSlice => slice(Source::perlin(seed), frequency),
-        Work::PerlinScattered => points(Source::perlin(seed), frequency),
+        Work::PerlinScattered | Work::PerlinAround => points(Source::perlin(seed), frequency),
         Work::Fbm => plane(Source::perlin(seed).fbm(octaves, 1.0, 2.0, 0.5), frequency),
         Work::Ridged => plane(Source::perlin(seed).ridgedmulti(octaves, 1.0, 2.0, 2.0), frequency),
         Work::Simplex => plane(Source::simplex(seed), frequency),

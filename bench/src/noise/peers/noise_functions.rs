@@ -17,7 +17,7 @@ pub fn job(case: &Case) -> Option<Job> {
         Work::Value => plane(Value.frequency(frequency)),
         Work::Perlin => plane(Perlin.frequency(frequency)),
         Work::PerlinSlice => slice(Perlin.frequency(frequency)),
-        Work::PerlinScattered => points(Perlin.frequency(frequency)),
+        Work::PerlinScattered | Work::PerlinAround => points(Perlin.frequency(frequency)),
         Work::Fbm => plane(Perlin.fbm(octaves, 0.5, 2.0).frequency(frequency)),
         Work::Ridged => plane(Perlin.ridged().fbm(octaves, 0.5, 2.0).frequency(frequency)),
         Work::WarpedFbm => warped(Perlin.fbm(octaves, 0.5, 2.0).frequency(frequency), case.wavelength),

@@ -17,7 +17,7 @@ pub fn job(case: &Case) -> Option<Job> {
         Work::Value => plane(Value::new(seed), frequency),
         Work::Perlin => plane(Perlin::new(seed), frequency),
         Work::PerlinSlice => slice(Perlin::new(seed), frequency),
-        Work::PerlinScattered => points(Perlin::new(seed), frequency),
+        Work::PerlinScattered | Work::PerlinAround => points(Perlin::new(seed), frequency),
         Work::Fbm => {
             let fbm = Fbm::<Perlin>::new(seed).set_octaves(OCTAVES).set_lacunarity(2.0).set_persistence(0.5);
             plane(fbm, frequency)
