@@ -13,12 +13,14 @@ where
 {
     /// The samples as they are, not copied: heights in metres of a `Grid<f32>`, levels of a `Grid<u8>` or `Grid<u16>`. `None` if a side
     /// has more samples than an image can have, 2^32 - 1.
+    #[must_use]
     pub fn into_image(self) -> Option<Gray<T>> {
         let (width, height) = sides(self.window())?;
         ImageBuffer::from_raw(width, height, self.into_data())
     }
 
     /// A grid over the samples of an image, not copied, or `None` if it does not have the width and height of `window`.
+    #[must_use]
     pub fn from_image(window: Window, image: Gray<T>) -> Option<Grid<T>> {
         if sides(&window) != Some(image.dimensions()) {
             return None;
@@ -44,6 +46,7 @@ impl Grid<f32> {
     /// assert_eq!(image.as_raw(), &[0, 0, 32768, 65535]);
     /// # Ok::<(), &str>(())
     /// ```
+    #[must_use]
     pub fn to_image16(&self, low: f32, high: f32) -> Option<Gray<u16>> {
         let (low, span) = line(low, high)?;
         // In f64, where neither the difference of two f32 nor its product with a level overflows.
@@ -58,6 +61,7 @@ impl Grid<f32> {
     /// Heights from 16 bits: level 0 is `low`, level 65535 is `high`. The inverse of [`Grid::to_image16`], up to the rounding to levels.
     ///
     /// `None` if `low` and `high` are not two finite numbers in this order, or the image does not have the width and height of `window`.
+    #[must_use]
     pub fn from_image16(window: Window, image: &Gray<u16>, low: f32, high: f32) -> Option<Grid> {
         if sides(&window) != Some(image.dimensions()) {
             return None;

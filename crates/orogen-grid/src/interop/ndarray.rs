@@ -54,6 +54,7 @@ impl<T: Copy> Grid<T> {
     /// assert_eq!(grid[(2, 1)], 5);
     /// # Ok::<(), &str>(())
     /// ```
+    #[must_use]
     pub fn from_array(window: Window, array: Array2<T>) -> Option<Grid<T>> {
         if array.dim() != (window.height, window.width) {
             return None;
