@@ -60,10 +60,10 @@ const RECIPE: &str = r#"
     orogen = 1
     world = { seed = 7, size = 8000, cell = 20 }
     outputs = { height = "land" }
-    nodes.noise = { op = "ridged", wavelength = 4000 }
+    nodes.noise = { op = "fbm", wavelength = 3000, octaves = 4, gain = 0.35 }
     nodes.hills = { op = "normalise", source = "noise", low = 0, high = 900 }
-    nodes.where = { op = "perlin", wavelength = 3000 }
-    nodes.land  = { op = "mygame.terraces", source = "hills", height = 45, mask = "where" }
+    nodes.where = { op = "ramp", origin = [3500, 0], length = 1000, azimuth = 90 }
+    nodes.land  = { op = "mygame.terraces", source = "hills", height = 75, steep = 1.5, mask = "where" }
 "#;
 
 fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
@@ -77,7 +77,7 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     write_whole(&OutputPolicy::default().output(Path::new("terraces.png"))?, |out| {
         painter.write_png(out, &grid, &[("Title", "Terraces")])
     })?;
-    let level = grid.data().iter().filter(|height| (*height / 45.0).fract() < 0.02).count();
+    let level = grid.data().iter().filter(|height| (*height / 75.0).fract() < 0.02).count();
     println!(
         "terraces.png holds {} x {} samples; {} % lie on a terrace",
         grid.width(),
