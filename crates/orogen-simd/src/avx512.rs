@@ -251,7 +251,7 @@ impl Simd for Avx512 {
     }
 }
 
-/// A sum rounded down. One of a number and [`FAR`] has no fraction, so that this is the greatest whole number not above, already in place.
+/// A sum rounded down. The sum with [`FAR`] has no fraction, so its low bits are the floor of the number.
 #[inline(always)]
 fn sum_down(number: F64x16, far: F64x16) -> F64x16 {
     const DOWN: i32 = _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC;

@@ -97,9 +97,10 @@ pub trait Simd: Copy + Send + Sync + 'static {
         let (low, high) = (whole + self.f64(FAR)).words();
         (whole, low, high)
     }
-    /// The greatest whole numbers not above, and their places among the `count` numbers from `from` on. The last result is zero in
-    /// all lanes if every one of them is there; else some lane, not of necessity its own, is not zero, and the others mean nothing.
-    /// `from` is whole and of size below 2^50, `count` a power of two up to 2^31; the numbers are any.
+    /// The floor of each number, and its index among the `count` integers that start at `from`. The last result is zero in all
+    /// lanes if all floors are in that range. Otherwise at least one of its lanes, not always that of the number outside, is not
+    /// zero, and the indices are unspecified. `from` is an integer below 2^50 in absolute value, `count` a power of two up to
+    /// 2^31; the numbers may have any value.
     #[inline(always)]
     fn place(self, number: Self::F64, from: f64, count: u32) -> (Self::F64, Self::U32, Self::U32) {
         // A sum of that size is exact, and no other has its high word.
@@ -123,7 +124,7 @@ pub trait Simd: Copy + Send + Sync + 'static {
     }
 }
 
-/// 1.5 * 2^52: a whole number of size below 2^51 added to it stands in the low bits of the sum.
+/// 1.5 * 2^52: the sum with an integer below 2^51 in absolute value has that integer in its low bits.
 pub(crate) const FAR: f64 = 6_755_399_441_055_744.0;
 
 /// `from[index]` per lane, for levels without a gather instruction.
