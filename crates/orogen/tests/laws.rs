@@ -55,6 +55,13 @@ fn unbounded_worlds_agree_far_out_and_below_zero() {
 }
 
 #[test]
+fn every_solver_obeys_the_laws_with_a_margin() {
+    let solvers = Node::all().into_iter().filter(|node| node.margin().is_some());
+    let checked = solvers.map(|node| holds(laws_of(&node).margin(10.24))).count();
+    assert_eq!(checked, 12);
+}
+
+#[test]
 fn fields_agree_where_two_resolutions_share_samples() {
     for node in Node::all() {
         for cell in [8.0, 10.24, 0.1, 1.0 / 3.0] {
@@ -132,7 +139,7 @@ fn names_and_order_change_nothing() {
 fn normalise_meets_its_range_over_the_world() {
     let mut recipe = Recipe::new(world_of(7.0));
     recipe.add("noise", Fbm { wavelength: 90.0, ..Default::default() });
-    recipe.add("land", Normalise { source: "noise".into(), low: -250.0, high: 1234.0 });
+    recipe.add("land", Normalise { source: "noise".into(), low: -250.0, high: 1234.0, ..Normalise::default() });
     recipe.output("height", "land");
     let grid = open(&recipe, 2).window("height", &Window::new(97, 81, 7.0)).unwrap();
     let low = grid.data().iter().copied().fold(f32::MAX, f32::min);

@@ -31,7 +31,9 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
                 },
             },
             Op::Filter(filter) => format!("halo of {}", count(filter.halo(cell), "sample")),
-            Op::Solver(solver) => format!("world at {} m", number(solver.cell(recipe.world.cell))),
+            Op::Solver(solver) => {
+                format!("world{} at {} m", beyond(solver.margin()), number(solver.cell(recipe.world.cell)))
+            }
         };
         let _ = writeln!(
             text,
@@ -54,11 +56,12 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
     for solve in &plan.solves {
         let _ = writeln!(
             text,
-            "  solve `{}` over the world, {} x {} samples at {} m; keeps {}{}",
+            "  solve `{}` over the world{}, {} x {} samples at {} m; keeps {}{}",
             name(solve.node),
-            solve.world.width,
-            solve.world.height,
-            number(solve.world.cell),
+            beyond(recipe.nodes().get(solve.node).and_then(|named| named.node.margin())),
+            solve.domain.width,
+            solve.domain.height,
+            number(solve.domain.cell),
             bytes(memory::rasters(solve)),
             if solve.on_disk { ", the rest on disk" } else { "" }
         );
@@ -114,6 +117,14 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
         }
     };
     text
+}
+
+/// The margin of a solver, behind "world".
+fn beyond(margin: Option<f64>) -> String {
+    match margin {
+        Some(margin @ f64::MIN_POSITIVE..) => format!(" and {} m around", number(margin)),
+        _ => String::new(),
+    }
 }
 
 fn extent(window: &Window) -> String {

@@ -2,6 +2,7 @@
 
 mod compile;
 pub(crate) mod cost;
+pub mod domain;
 pub(crate) mod explain;
 mod grid_merge;
 pub(crate) mod key;

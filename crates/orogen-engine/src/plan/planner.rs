@@ -2,6 +2,7 @@
 
 use super::compile::{Compiler, Draft, GridRequest};
 use super::cost;
+use super::domain::Domain;
 use super::grid_merge::clusters;
 use super::key::{Key, identity};
 use super::memory;
@@ -17,22 +18,6 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 /// Sides of solvers' tiles, in order of preference: large enough to keep the cost of halos small, small enough for any
 /// memory.
 pub const TILES: [usize; 3] = [1024, 512, 256];
-
-/// Samples beyond a world's edge that readers may need.
-pub const WORLD_MARGIN: usize = 2;
-
-/// The samples of a world on a lattice, without and with the margin.
-#[must_use]
-pub fn world_windows(size: [f64; 2], cell: f64) -> (Window, Window) {
-    // A side that is a whole number of cells up to rounding includes its far edge: 1000 / 0.1 is 10 000 cells.
-    let samples = |length: f64| {
-        let steps = length / cell;
-        let whole = if (steps - steps.round()).abs() < 1e-6 { steps.round() } else { steps.floor() };
-        whole.max(0.0) as usize + 1
-    };
-    let world = Window::new(samples(size[0]), samples(size[1]), cell);
-    (world, world.grown(WORLD_MARGIN))
-}
 
 /// A planner for one recipe.
 pub struct Planner<'a> {
@@ -119,8 +104,7 @@ impl<'a> Planner<'a> {
         let Op::Solver(solver) = self.recipe.nodes()[node].node.op() else {
             return Err(Error::new(ErrorKind::Internal, "a node that is not a solver was to be solved"));
         };
-        let cell = solver.cell(self.world_params.cell);
-        let (world, padded) = world_windows(self.world_params.size.unwrap_or([cell, cell]), cell);
+        let Domain { window: domain, padded } = Domain::of(solver, &self.world_params);
         let window = Window { width: padded.width.min(self.side), height: padded.height.min(self.side), ..padded };
         let share = padded.width as f64 * padded.height as f64 / window.len().max(1) as f64;
         let (mut tile, mut reads, mut samples) = (0, BTreeSet::new(), 0);
@@ -136,7 +120,7 @@ impl<'a> Planner<'a> {
         Ok(Solve {
             node,
             key: self.keys[node],
-            world,
+            domain,
             padded,
             rasters: solver.rasters(),
             on_disk: false,

@@ -38,9 +38,9 @@ pub struct Solve {
     pub node: usize,
     /// The key of its solution.
     pub key: Key,
-    /// The window of the world on its lattice.
-    pub world: Window,
-    /// The same with the margin for readers.
+    /// Its domain on its lattice: the world and the solver's margin.
+    pub domain: Window,
+    /// The same with the samples beyond the edge that readers may need.
     pub padded: Window,
     /// Number of rasters that it keeps or works in, each over `padded`.
     pub rasters: usize,

@@ -1,7 +1,7 @@
 //! The graph of a recipe's nodes: resolved names, order, keys.
 
 use super::document::{MAX_NODES, Recipe};
-use crate::declare::{Input, Spec};
+use crate::declare::{Input, MARGIN, Spec};
 use crate::layer::{Interpolation, LayerKind};
 use crate::node::Node;
 use crate::op::Op;
@@ -299,6 +299,7 @@ impl<'a> Resolver<'a> {
             self.check_registered(index, named.node.spec());
         }
         self.check_params(index, &named.node);
+        self.check_domain(index, &named.node);
         let needs_bounds = match named.node.op() {
             Op::Solver(_) => Some("looks at the whole world"),
             Op::Field(field) if field.needs_bounds() => Some("needs the edges of the world"),
@@ -338,6 +339,24 @@ impl<'a> Resolver<'a> {
         }
         if sound && let Err((key, message)) = node.consistent() {
             self.diagnostic(At::Node(index, key.to_string()), message);
+        }
+    }
+
+    /// A domain with a margin may have more samples than the world.
+    fn check_domain(&mut self, index: usize, node: &Node) {
+        let (Op::Solver(solver), Some([width, height]), Some(margin)) =
+            (node.op(), self.recipe.world.size, node.margin())
+        else {
+            return;
+        };
+        let cell = solver.cell(self.recipe.world.cell);
+        let most = (width.max(height) + 2.0 * margin) / cell;
+        if margin > 0.0 && most > MAX_SAMPLES {
+            let message = format!(
+                "node `{}`: the world and a `margin` of {margin} m would have {most:.0} samples along a side at a cell of {cell} m; at most {MAX_SAMPLES:.0} are allowed. Lower `margin` or raise `cell`",
+                self.recipe.nodes()[index].name
+            );
+            self.diagnostic(At::Node(index, MARGIN.to_string()), message);
         }
     }
 

@@ -27,6 +27,7 @@ op! {
     /// as necessary (`way = "valley"`) or filled completely (`"least-cost"`). In the result water never runs uphill; channel beds and
     /// filled ground are level. Time and memory grow with the world: 30 bytes per cell for `"valley"`, 60 for `"least-cost"`.
     pub struct Breach = "breach", solver, revision 1;
+    margin;
     inputs {
         /// The heights.
         source: required,

@@ -30,6 +30,7 @@ op! {
     /// cells, so they are exact. Time and memory grow with the world, 54 bytes per cell; with less memory available, flow is routed tile by
     /// tile on disk (Barnes 2016).
     pub struct Drainage = "drainage", solver, revision 1;
+    margin;
     inputs {
         /// The heights.
         source: required,

@@ -17,6 +17,7 @@ op! {
     /// (Cordonnier, Bovy and Braun 2019). Filled ground is level. Time and memory grow with the world, 24 bytes per cell; with less memory
     /// available, filling works tile by tile on disk (Barnes 2016).
     pub struct Fill = "fill", solver, revision 1;
+    margin;
     inputs {
         /// The heights.
         source: required,

@@ -18,6 +18,7 @@ op! {
     /// 2011), so it is never negative. Ground that reaches the sea or the world's border before a stream is measured down to that outlet.
     /// Time and memory grow with the world, 56 bytes per cell.
     pub struct HeightAboveDrainage = "height-above-drainage", solver, revision 1;
+    margin;
     inputs {
         /// The heights.
         source: required,

@@ -15,6 +15,7 @@ op! {
     /// middle of each `step` represents the step. Shadows have no maximum length; the earth's curvature is neglected. Time grows with the
     /// world and the number of sun positions: about 25 per day, 300 for a year. Memory is 28 bytes per cell.
     pub struct Insolation = "insolation", solver, revision 1;
+    margin;
     inputs {
         /// Heights above sea level.
         source: required,

@@ -14,6 +14,7 @@ op! {
     /// small for a lake is raised to a gentle slope of 1 in 10 000 until water runs off. Time and memory grow with the world, 35 bytes per
     /// cell.
     pub struct Lakes = "lakes", solver, revision 1;
+    margin;
     inputs {
         /// The heights.
         source: required,

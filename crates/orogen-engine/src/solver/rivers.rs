@@ -16,6 +16,7 @@ op! {
     /// metres deep (Leopold and Maddock 1953). Its bed is cut by that depth into the cells that it crosses, whatever its width. Time and
     /// memory grow with the world, 40 bytes per cell.
     pub struct Rivers = "rivers", solver, revision 1;
+    margin;
     inputs {
         /// The heights.
         source: required,

@@ -19,6 +19,7 @@ op! {
     /// `uplift_factor` to vary rock and uplift over the world; uniform values look less real. The result depends on the cell size. Time
     /// grows with the world and the number of steps; memory is 45 bytes per cell, and 16 more if `jitter` is above 0.
     pub struct StreamPower = "stream-power", solver, revision 2;
+    margin;
     inputs {
         /// The initial heights.
         source: required,

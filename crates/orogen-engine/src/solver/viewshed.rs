@@ -12,6 +12,7 @@ op! {
     /// columns or rows that a line crosses, whichever are more. Time grows slightly faster than the world; blocks of hidden ground are
     /// skipped. Memory is 24 bytes per cell.
     pub struct Viewshed = "viewshed", solver, revision 1;
+    margin;
     inputs {
         /// The heights.
         source: required,
