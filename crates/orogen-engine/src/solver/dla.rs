@@ -1,5 +1,6 @@
 //! Mountains from diffusion-limited aggregation.
 
+use super::terrain::memory;
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::aggregate::relief::{self, Ridges};
 use orogen_grid::error::Result;
@@ -39,7 +40,7 @@ op! {
 impl Solver for Dla {
     fn scratch(&self, padded: &Window) -> u64 {
         // The grid is up to twice as fine as the world in each direction.
-        padded.len() as u64 * 4 * 30
+        memory(padded, 4 * 30)
     }
 
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {

@@ -1,5 +1,6 @@
 //! Stream power erosion with uplift.
 
+use super::terrain::{layer_of, memory, sea_level};
 use crate::declare::Declared;
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::error::Result;
@@ -76,7 +77,7 @@ impl Solver for StreamPower {
     }
 
     fn scratch(&self, padded: &Window) -> u64 {
-        padded.len() as u64 * if self.jitter > 0.0 { 61 } else { 45 }
+        memory(padded, if self.jitter > 0.0 { 61 } else { 45 })
     }
 
     fn reads_sea_level(&self) -> bool {
@@ -109,7 +110,7 @@ impl Solver for StreamPower {
             points: None,
         };
         let mut heights = source.clone();
-        let sea_level = self.sea.then_some(context.world_params.sea_level as f32);
+        let sea_level = sea_level(self.sea, context);
         let progress = context.progress;
         progress.expect(erosion.work());
         let observe = |done: u32, run: &ErosionRun, mut now: Grid| {
@@ -156,8 +157,7 @@ fn solution(sources: &dyn Sources, heights: Grid, drained: &Accumulation, source
         *change = height - *change;
     }
     let cell_area = window.cell * window.cell;
-    let flow = drained.area.data().iter().map(|cells| (f64::from(*cells) * cell_area) as f32).collect();
-    let flow = Grid::from_data(window, flow).unwrap_or_else(|| Grid::filled(window, 0.0));
+    let flow = layer_of(&drained.area, |cells| (f64::from(cells) * cell_area) as f32);
     let layers = vec![sources.keep(heights)?, sources.keep(flow)?, sources.keep(change)?];
     Ok(Solution { layers, scalars: Vec::new() })
 }
