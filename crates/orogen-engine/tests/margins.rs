@@ -40,7 +40,7 @@ fn recipe_of(node: &Node, world: WorldSpec, shift: usize) -> Recipe {
     set(&mut node, "days", &pair([80.0, 100.0]));
     let mut recipe = Recipe::new(world);
     recipe.add("noise", Fbm { seed: 3, wavelength: 300.0, octaves: 4, ..Fbm::default() });
-    recipe.add("moved", Transform { source: "noise".into(), offset: [metres; 2], ..Transform::default() });
+    recipe.add("moved", Transform { source: "noise".into(), offset: [-metres; 2], ..Transform::default() });
     recipe.add("land", Multiply { a: "moved".into(), b: 200.0.into() });
     if !node.inputs().is_empty() {
         node.set_input(0, "land".into());

@@ -4,6 +4,7 @@
 mod support;
 
 use orogen::field::{add::Add, constant::Constant, fbm::Fbm, perlin::Perlin, warp::Warp};
+use orogen::ids::Id;
 use orogen::laws::{CELLS, Violation};
 use orogen::node::Node;
 use orogen::plan::steps::{Plan, Step};
@@ -162,7 +163,7 @@ fn dear_sources_of_a_filter_are_made_once() {
             Step::Fill { program, .. } => program
                 .instructions
                 .iter()
-                .filter(|i| matches!(i, orogen::plan::program::Instruction::Field { node: 0, .. }))
+                .filter(|i| matches!(i, orogen::plan::program::Instruction::Field { node, .. } if node.index() == 0))
                 .count(),
             Step::Apply { .. } => 0,
         })
@@ -225,6 +226,8 @@ fn a_plan_is_a_value_that_can_be_sent() {
     }
     let version = format!("\"orogen\":\"{}\"", env!("CARGO_PKG_VERSION"));
     assert!(damaged(&version, "\"orogen\":\"0.0.9\"").contains("made by Orogen 0.0.9"));
+    // The format of plans from before they had a number.
+    assert!(damaged("\"format\":2,", "").contains("has format 1, this version reads format 2"));
     // A plan of another recipe, or of this one before it was edited.
     let edited = World::open(Recipe::parse(&text.replace("\"blur\"", "\"blur\"\nradius = 35"), "t").unwrap()).unwrap();
     let error = edited.run(&came, &Progress::none()).unwrap_err();

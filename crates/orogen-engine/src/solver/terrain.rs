@@ -12,78 +12,78 @@ use orogen_grid::progress::Progress;
 use orogen_io::raster::Raster;
 
 /// Input 0 of a solver over its domain: its heights, in memory.
-pub fn heights(sources: &dyn Sources, context: &Context) -> Result<Grid> {
+pub(crate) fn heights(sources: &dyn Sources, context: &Context) -> Result<Grid> {
     let heights = sources.whole(0, sources.padded())?;
     context.progress.check()?;
     Ok(heights)
 }
 
 /// The sea level as a height, if the sea is an outlet.
-pub fn sea_level(sea: bool, context: &Context) -> Option<f32> {
+pub(crate) fn sea_level(sea: bool, context: &Context) -> Option<f32> {
     sea.then_some(context.world_params.sea_level as f32)
 }
 
 /// Memory of a domain with this many bytes per cell.
-pub fn memory(padded: &Window, bytes_per_cell: u64) -> u64 {
+pub(crate) fn memory(padded: &Window, bytes_per_cell: u64) -> u64 {
     (padded.width as u64).saturating_mul(padded.height as u64).saturating_mul(bytes_per_cell)
 }
 
 /// An area in whole cells, at least `fewest` of them.
-pub fn cells_of(area: f64, window: &Window, fewest: u32) -> u32 {
+pub(crate) fn cells_of(area: f64, window: &Window, fewest: u32) -> u32 {
     (area / (window.cell * window.cell)).ceil().clamp(f64::from(fewest), f64::from(u32::MAX)) as u32
 }
 
 /// A layer with a value for each sample of a grid.
-pub fn layer_of<T: Copy>(grid: &Grid<T>, value: impl Fn(T) -> f32) -> Grid {
+pub(crate) fn layer_of<T: Copy>(grid: &Grid<T>, value: impl Fn(T) -> f32) -> Grid {
     layer(*grid.window(), |cell| value(grid.data()[cell]))
 }
 
 /// A layer with a value for each cell of a window.
-pub fn layer(window: Window, value: impl Fn(usize) -> f32) -> Grid {
+pub(crate) fn layer(window: Window, value: impl Fn(usize) -> f32) -> Grid {
     let mut layer = Grid::filled(window, 0.0f32);
     layer.data_mut().iter_mut().enumerate().for_each(|(cell, sample)| *sample = value(cell));
     layer
 }
 
 /// The domain in memory.
-pub struct Terrain {
+pub(crate) struct Terrain {
     /// The heights.
-    pub heights: Grid,
+    pub(crate) heights: Grid,
     /// The cells at which water leaves: the border of the domain, and the sea.
-    pub outlets: Outlets,
+    pub(crate) outlets: Outlets,
 }
 
 impl Terrain {
     /// Reads input 0.
-    pub fn read(sources: &dyn Sources, sea: bool, context: &Context) -> Result<Terrain> {
+    pub(crate) fn read(sources: &dyn Sources, sea: bool, context: &Context) -> Result<Terrain> {
         let heights = heights(sources, context)?;
         let outlets = Outlets::new(&heights, sea_level(sea, context));
         Ok(Terrain { heights, outlets })
     }
 
     /// Routes flow by steepest descent, carving through depressions.
-    pub fn route(&self, progress: &Progress) -> Result<Drainage> {
+    pub(crate) fn route(&self, progress: &Progress) -> Result<Drainage> {
         drainage::route_carving_with(&self.heights, &self.outlets, Descent::Steepest, progress)
     }
 }
 
 /// The domain on disk, to be solved tile by tile.
-pub struct TiledTerrain {
+pub(crate) struct TiledTerrain {
     /// The heights.
-    pub heights: Raster,
+    pub(crate) heights: Raster,
     /// The tiles.
-    pub tiling: Tiling,
+    pub(crate) tiling: Tiling,
     sea: Option<f32>,
 }
 
 impl TiledTerrain {
     /// Memory of solving tile by tile, in bytes.
-    pub fn memory(padded: &Window) -> u64 {
+    pub(crate) fn memory(padded: &Window) -> u64 {
         large::memory(memory(padded, 1))
     }
 
     /// Reads input 0.
-    pub fn read(sources: &dyn Sources, sea: bool, context: &Context) -> Result<TiledTerrain> {
+    pub(crate) fn read(sources: &dyn Sources, sea: bool, context: &Context) -> Result<TiledTerrain> {
         let mut heights = sources.raster()?;
         let padded = sources.padded();
         sources.each_tile(0, padded, &mut |tile| heights.put(tile))?;
@@ -92,7 +92,7 @@ impl TiledTerrain {
     }
 
     /// The water on heights over the domain, such as its own.
-    pub fn water<'a>(&self, heights: &'a Raster, progress: &'a Progress) -> Water<'a> {
+    pub(crate) fn water<'a>(&self, heights: &'a Raster, progress: &'a Progress) -> Water<'a> {
         Water { heights, sea: self.sea, tiling: self.tiling, progress }
     }
 }
