@@ -34,6 +34,8 @@ fn recipe_of(node: &Node, world: WorldSpec, shift: usize) -> Recipe {
     let pair = |at: [f64; 2]| Value::List(at.map(|n| Spanned::unplaced(Value::Number(n))).into());
     set(&mut node, "jitter", &Value::Number(0.0));
     set(&mut node, "random_receivers", &Value::Flag(false));
+    // Water leaves at the border of the domain alone.
+    set(&mut node, "sea", &Value::Flag(false));
     set(&mut node, "smallest", &Value::Number(500.0));
     set(&mut node, "stream", &Value::Number(3000.0));
     set(&mut node, "observer", &pair([400.0 + metres, 300.0 + metres]));
@@ -71,14 +73,17 @@ fn a_world_with_a_margin_is_the_middle_of_a_larger_world() {
         let without = layers_of(recipe_of(&node, world(0), 0), &small);
         set(&mut node, MARGIN, &Value::Number(AROUND as f64 * CELL));
         let with = layers_of(recipe_of(&node, world(0), 0), &small);
+        let mut changed = 0;
         for (layer, ((larger, with), without)) in node.layers().iter().zip(larger.iter().zip(&with).zip(&without)) {
             let bits = |grid: &Grid| grid.data().iter().map(|sample| sample.to_bits()).collect::<Vec<u32>>();
             let differs = bits(larger).iter().zip(bits(with)).filter(|(a, b)| **a != *b).count();
             assert_eq!(differs, 0, "`{op}`, layer `{}`", layer.name);
-            if op != "bake" && op != "viewshed" {
-                assert_ne!(bits(without), bits(with), "`{op}`, layer `{}`: a margin changes nothing", layer.name);
-            }
+            changed += usize::from(bits(without) != bits(with));
             checked += 1;
+        }
+        // Lines of sight do not leave the world, and baked samples are what they were.
+        if op != "viewshed" {
+            assert_eq!(changed == 0, op == "bake", "`{op}`: a margin changes {changed} layers");
         }
     }
     assert!(checked > 25, "{checked}");

@@ -162,8 +162,8 @@ macro_rules! op {
             $(inputs { $($inputs)* })?
             params {
                 $($($params)*)?
-                /// Width of the strip beyond each side of the world that is solved too. The border of the solved domain shows in patterns of drainage,
-                /// shadows and views; with a margin it lies outside the world. Nodes that read beyond the world's sides get solved values up to there.
+                /// Width of the strip beyond each side of the world that is solved too. The border of the solved domain shows in drainage, erosion and
+                /// shadows; with a margin it lies outside the world. Nodes that read beyond the world's sides get solved values up to there.
                 margin: f64 = 0.0, unit "m", range 0.0 to 1e6;
             }
             $(layers { $($layers)* })?
