@@ -2,13 +2,13 @@
 //!
 //! | pass | from | to |
 //! |---|---|---|
-//! | [`schedule`](super::schedule) | layers over a window, nodes that are kept as grids | steps in reverse order, which read requests |
-//! | [`compile`](super::compile), in it | layers over a window | a program, the requests for grids that it reads |
-//! | [`grid_merge`](super::grid_merge), in it | requests | fewer, larger grids |
-//! | [`keep`](super::keep) | what the programs of a schedule evaluate | nodes to be kept as grids |
-//! | [`assemble`](super::assemble) | a schedule | a plan without solvers |
-//! | [`solves`](super::solves) | the solvers that the steps read | solvers in order |
-//! | [`memory`](super::memory) | a plan, the memory allowed | the same plan with solvers on disk |
+//! | `schedule` | layers over a window, nodes that are kept as grids | steps in reverse order, which read requests |
+//! | `compile`, in it | layers over a window | a program, the requests for grids that it reads |
+//! | `grid_merge`, in it | requests | fewer, larger grids |
+//! | `keep` | what the programs of a schedule evaluate | nodes to be kept as grids |
+//! | `assemble` | a schedule | a plan without solvers |
+//! | `solves` | the solvers that the steps read | solvers in order |
+//! | `memory` | a plan, the memory allowed | the same plan with solvers on disk |
 
 use super::assemble::assemble;
 use super::key::{Key, identity};
