@@ -3,10 +3,12 @@
 
 use orogen_engine::declare::{Input, MARGIN};
 use orogen_engine::field::{fbm::Fbm, multiply::Multiply, transform::Transform};
+use orogen_engine::laws::Laws;
 use orogen_engine::node::Node;
+use orogen_engine::op::{Context, Reading, Solution, Solver, Sources};
 use orogen_engine::solver::{drainage::Drainage, fill::Fill, normalise::Normalise};
 use orogen_engine::value::{Spanned, Value};
-use orogen_engine::{Budget, ErrorKind, Grid, Options, Progress, Recipe, Window, World, WorldSpec};
+use orogen_engine::{Budget, ErrorKind, Grid, Options, Progress, Recipe, Result, Window, World, WorldSpec};
 
 /// Cells of 10 m: positions and their offsets are exact, so the land of two worlds has the same bits.
 const CELL: f64 = 10.0;
@@ -152,4 +154,48 @@ fn margins_that_cannot_be_are_named() {
     let mut recipe = recipe_of(&Normalise { margin: f64::NAN, ..Normalise::default() }.into(), world(0), 0);
     recipe.about.clear();
     assert!(World::open(recipe).is_err_and(|error| error.to_string().contains("`margin` must be")));
+}
+
+orogen_engine::op! {
+    /// The lowest sample of the domain, everywhere.
+    pub struct Lowest = "test.lowest", solver, revision 1;
+    margin;
+    inputs {
+        /// The heights.
+        source: required,
+    }
+    params {
+        /// Added to it.
+        raise: f64 = 0.0, unit "m", range -1e4 to 1e4;
+    }
+}
+
+impl Solver for Lowest {
+    fn rasters(&self) -> usize {
+        0
+    }
+
+    fn solve(&self, sources: &dyn Sources, _: &Context) -> Result<Solution> {
+        let mut lowest = f32::INFINITY;
+        sources.each_tile(0, sources.domain(), &mut |tile| {
+            lowest = tile.data().iter().copied().fold(lowest, f32::min);
+            Ok(())
+        })?;
+        Ok(Solution { layers: Vec::new(), scalars: vec![f64::from(lowest) + self.raise] })
+    }
+
+    fn read(&self, solution: &Solution, _: &Reading, out: &mut [f32]) -> Result<()> {
+        out.fill(solution.scalars[0] as f32);
+        Ok(())
+    }
+}
+
+#[test]
+fn a_solver_of_a_program_has_a_margin_by_declaring_it() {
+    Laws::of(|cell| Lowest { raise: cell, ..Lowest::default() }).margin(10.24).unwrap();
+    let lowest = |margin: f64| {
+        let recipe = recipe_of(&Lowest { margin, ..Lowest::default() }.into(), world(0), 0);
+        layers_of(recipe, &Window::new(1, 1, CELL))[0][(0, 0)]
+    };
+    assert!(lowest(AROUND as f64 * CELL) < lowest(0.0));
 }
