@@ -35,7 +35,9 @@ pub(crate) fn cells_of(area: f64, window: &Window, fewest: u32) -> u32 {
 
 /// A layer with a value for each sample of a grid.
 pub(crate) fn layer_of<T: Copy>(grid: &Grid<T>, value: impl Fn(T) -> f32) -> Grid {
-    layer(*grid.window(), |cell| value(grid.data()[cell]))
+    let mut layer = Grid::filled(*grid.window(), 0.0f32);
+    layer.data_mut().iter_mut().zip(grid.data()).for_each(|(sample, of)| *sample = value(*of));
+    layer
 }
 
 /// A layer with a value for each cell of a window.
