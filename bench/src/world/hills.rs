@@ -15,7 +15,7 @@ pub const STRETCHED: &str = "stretched";
 /// The preset with normalised heights.
 pub fn stretched() -> Result<Recipe, String> {
     let mut recipe = fields()?;
-    recipe.add("stretched", Normalise { source: "terrain".into(), low: 40.0, high: 340.0 });
+    recipe.add("stretched", Normalise { source: "terrain".into(), low: 40.0, high: 340.0, ..Normalise::default() });
     recipe.output(STRETCHED, "stretched");
     Ok(recipe)
 }
@@ -25,7 +25,7 @@ pub fn with_halo(cell: f64) -> Result<Recipe, String> {
     let mut recipe = fields()?;
     // The kernel ends at three radii: 31.5 samples.
     recipe.add("soft", Blur { source: "terrain".into(), radius: 10.5 * cell });
-    recipe.add("stretched", Normalise { source: "soft".into(), low: 40.0, high: 340.0 });
+    recipe.add("stretched", Normalise { source: "soft".into(), low: 40.0, high: 340.0, ..Normalise::default() });
     recipe.output(STRETCHED, "stretched");
     Ok(recipe)
 }

@@ -10,6 +10,7 @@
 //! | [`Law::Unbounded`] | far out and below zero a tile still equals the crop |
 //! | [`Law::Resolutions`] | a field has the same bits where the samples of two cells coincide |
 //! | [`Law::ContentKeys`] | what changes the samples changes the content key, so that nothing stored is stale |
+//! | [`Law::Margin`] | a solver's margin obeys tile == crop, also beyond the world, changes no bit on disk, and is part of the content key |
 //! | [`Law::Cancel`] | work stops within [`LONGEST_CANCEL`] of being asked to |
 //!
 //! ```
@@ -20,7 +21,7 @@
 //! assert!(violations.is_empty(), "{violations:#?}");
 //! ```
 
-use crate::declare::Input;
+use crate::declare::{Input, MARGIN};
 use crate::field::{add::Add, fbm::Fbm, perlin::Perlin, transform::Transform, warp::Warp};
 use crate::filter::blur::Blur;
 use crate::node::Node;
@@ -28,6 +29,7 @@ use crate::op::Op;
 use crate::recipe::document::{Recipe, WorldSpec};
 use crate::session::Options;
 use crate::solver::bake::Bake;
+use crate::value::Value;
 use crate::world::World;
 use orogen_grid::error::{ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
@@ -68,6 +70,8 @@ pub enum Law {
     Resolutions,
     /// What changes the samples changes the content key.
     ContentKeys,
+    /// A solver with a margin obeys the laws, too.
+    Margin,
     /// Work stops when it is asked to.
     Cancel,
 }
@@ -131,6 +135,7 @@ impl<'a> Laws<'a> {
             self.warped(30.0),
             self.unbounded(),
             self.content_keys().map(drop),
+            self.margin(CELLS[0]),
             self.cancel(CANCELLED_SIDE).map(drop),
         ];
         at_cells.chain(others).filter_map(|verdict| verdict.err()).collect()
@@ -193,7 +198,7 @@ impl<'a> Laws<'a> {
         let mut recipe = without_outputs(&(self.recipe)(world_of(cell), false));
         // Warps that read filters that read solvers that read the node.
         let noise = Fbm { seed: 8, wavelength: 20.0 * cell, octaves: 2, ..Default::default() };
-        recipe.add("move", noise).add("kept", Bake { source: NODE.into(), cell: 0.7 * cell });
+        recipe.add("move", noise).add("kept", Bake { source: NODE.into(), cell: 0.7 * cell, ..Bake::default() });
         recipe.add("soft2", Blur { source: "kept".into(), radius: 1.1 * cell });
         recipe.add("last", Warp { source: "soft2".into(), x: "move".into(), y: "move".into(), strength: 9.0 * cell });
         recipe.output("height", "last").output("node", NODE);
@@ -356,6 +361,43 @@ impl<'a> Laws<'a> {
         Ok(kept)
     }
 
+    /// [`Law::Margin`], if the op has a margin: for all layers, read inside the world and beyond it.
+    ///
+    /// # Errors
+    /// The first difference.
+    pub fn margin(&self, cell: f64) -> Verdict {
+        if self.node.margin().is_none() {
+            return Ok(());
+        }
+        let case = self.case(Law::Margin);
+        let mut recipe = (self.recipe)(world_of(cell), false);
+        let without = case.of(case.open(&recipe, 1)?.key(NODE))?;
+        // Not a whole number of cells.
+        case.set_margin(&mut recipe, 5.3 * cell)?;
+        if case.of(case.open(&recipe, 1)?.key(NODE))? == without {
+            return case.breaks("the content key does not hold the margin".to_string());
+        }
+        for layer in self.node.layers() {
+            for (side, metres) in [("before", -4.0 * cell), ("behind", 4.5 * cell)] {
+                let name = format!("{side}-{}", layer.name);
+                let source = Input::Node(format!("{NODE}.{}", layer.name));
+                recipe.add(&name, Transform { source, offset: [metres; 2], ..Transform::default() });
+                recipe.output(&name, Input::from(&name));
+            }
+        }
+        tiles_equal_crop(&case, "with a margin, ", &recipe, cell)?;
+        let (window, layers) = (full(cell), recipe.outputs().collect::<Vec<&str>>());
+        let case = case.in_window(window);
+        let in_memory = case.layers(&recipe, &window)?;
+        let world = case.open(&recipe, 2)?;
+        let mut plan = case.of(world.plan(&layers, &window))?;
+        plan.solve_on_disk(33);
+        for ((layer, one), other) in layers.iter().zip(&in_memory).zip(&case.of(world.run(&plan, &Progress::none()))?) {
+            case.same(&format!("with a margin, layer `{layer}`, in memory and on disk"), one, other)?;
+        }
+        Ok(())
+    }
+
     /// [`Law::Cancel`], in a world of `side` x `side` samples: cancels at five moments of the work, and returns the longest time that it went on. A
     /// field is asked by the engine, between blocks.
     ///
@@ -440,6 +482,18 @@ impl Case {
 
     fn open(&self, recipe: &Recipe, threads: usize) -> std::result::Result<World, Violation> {
         self.of(World::with_options(recipe.clone(), Options { threads: Some(threads), ..Options::default() }))
+    }
+
+    /// Sets the margin of the op's nodes.
+    fn set_margin(&self, recipe: &mut Recipe, metres: f64) -> Verdict {
+        let mut refused = None;
+        recipe.change(|node| {
+            let param = node.spec().params.iter().position(|param| param.name == MARGIN);
+            if let (true, Some(param)) = (node.spec().op == self.op, param) {
+                refused = node.set_param(param, &Value::Number(metres)).err();
+            }
+        });
+        refused.map_or(Ok(()), |message| self.breaks(message))
     }
 
     /// All layers, from a fresh world.

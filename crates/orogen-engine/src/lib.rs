@@ -24,6 +24,7 @@ pub mod expression;
 pub mod field;
 pub mod filter;
 pub mod growth;
+pub mod ids;
 #[doc(hidden)]
 pub mod large;
 pub mod laws;

@@ -130,6 +130,12 @@ impl Node {
         self.declared().param_key(i)
     }
 
+    /// The length by which a solver's domain extends beyond each side of the world, in metres; `None` if the op has no such parameter.
+    #[must_use]
+    pub fn margin(&self) -> Option<f64> {
+        self.declared().margin()
+    }
+
     /// The files that its parameters name.
     pub fn files(&mut self) -> Vec<&mut FileRef> {
         self.declared_mut().files()

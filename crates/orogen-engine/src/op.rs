@@ -274,12 +274,13 @@ impl Solution {
     }
 }
 
-/// A solver's inputs over the whole world, computed tile by tile on request, and rasters for its work.
+/// A solver's inputs over its whole domain, computed tile by tile on request, and rasters for its work.
 pub trait Sources {
-    /// The samples of the world: 0 ..= extent / cell on both axes.
-    fn world(&self) -> &Window;
+    /// The samples of the domain: those of the world, 0 ..= extent / cell on both axes, and of the solver's
+    /// [margin](crate::declare::Declared::margin) beyond each side.
+    fn domain(&self) -> &Window;
 
-    /// The world with the margin for readers, which a solution's layers must cover.
+    /// The domain with the two samples beyond its edge that readers may need, which a solution's layers must cover.
     fn padded(&self) -> &Window;
 
     /// Whether input `i` is given.
@@ -323,19 +324,20 @@ pub struct Reading<'a> {
     pub inputs: &'a Inputs<'a>,
 }
 
-/// A solver depends on the whole bounded world, and runs once, at its own cell.
+/// A solver depends on the whole bounded world, or a domain that extends beyond it by the solver's
+/// [margin](crate::declare::Declared::margin), and runs once, at its own cell.
 pub trait Solver: Declared + Send + Sync {
     /// The cell of the solver's lattice, in metres.
     fn cell(&self, world_cell: f64) -> f64 {
         world_cell
     }
 
-    /// Maximum number of rasters of the world that it holds at once: layers of the solution and those for its work.
+    /// Maximum number of rasters of its domain that it holds at once: layers of the solution and those for its work.
     fn rasters(&self) -> usize {
         self.spec().layers.len()
     }
 
-    /// Memory of solving beside those rasters, in bytes, for the world with its margin. 0 for a solver that works tile
+    /// Memory of solving beside those rasters, in bytes, for [`Sources::padded`]. 0 for a solver that works tile
     /// by tile; a solver that needs whole grids counts all that it holds at once, including those that become layers.
     fn scratch(&self, padded: &Window) -> u64 {
         let _ = padded;
@@ -364,7 +366,7 @@ pub trait Solver: Declared + Send + Sync {
         }
     }
 
-    /// Approximate nanoseconds per sample of the world for solving, without its sources.
+    /// Approximate nanoseconds per sample of its domain for solving, without its sources.
     fn cost(&self) -> f64 {
         1.0
     }

@@ -3,13 +3,15 @@
 use crate::budget::{Budget, Reservation};
 use crate::engine::inline::PreparedProgram;
 use crate::engine::run::Engine;
+use crate::ids::{Id, IndexVec, NodeId};
 use crate::layer::LayerKind;
 use crate::op::{Solution, StepObserver, WorldParams};
 use crate::plan::cost;
+use crate::plan::domain::world_windows;
 use crate::plan::explain::explain;
 use crate::plan::key::{Key, identity, keys, link_key};
 use crate::plan::memory;
-use crate::plan::planner::{Planner, world_windows};
+use crate::plan::planner::Planner;
 use crate::plan::steps::Plan;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::{Graph, LayerRef, Link, MAX_SAMPLES};
@@ -51,7 +53,7 @@ pub struct World {
     graph: Graph,
     world_params: WorldParams,
     /// The content keys of the nodes.
-    keys: Vec<Key>,
+    keys: IndexVec<NodeId, Key>,
     /// The identity of the recipe, which plans contain.
     identity: Key,
     session: Session,
@@ -127,7 +129,7 @@ impl World {
     }
 
     /// A plan that only solves nodes and their sources.
-    pub(crate) fn plan_to_solve(&self, nodes: &[usize]) -> Result<Plan> {
+    pub(crate) fn plan_to_solve(&self, nodes: &[NodeId]) -> Result<Plan> {
         let links: Vec<Link> = nodes.iter().map(|&node| Link::Node(LayerRef { node, layer: 0 })).collect();
         self.planned(&links, Window::new(1, 1, self.world_params.cell), false)
     }
@@ -140,7 +142,7 @@ impl World {
         &self,
         plan: &Plan,
         progress: &Progress,
-        node: usize,
+        node: NodeId,
         observer: &(dyn StepObserver + Sync),
     ) -> Result<()> {
         let _running = self.admit(plan, progress)?;
@@ -149,7 +151,7 @@ impl World {
     }
 
     /// The nodes in an order where each comes after those that it reads.
-    pub(crate) fn order(&self) -> &[usize] {
+    pub(crate) fn order(&self) -> &[NodeId] {
         &self.graph.order
     }
 
@@ -311,7 +313,7 @@ impl World {
     pub fn unit(&self, layer: &str) -> Result<&'static str> {
         Ok(match self.target(layer)? {
             _ if layer == HEIGHT => "m",
-            Link::Node(target) => self.recipe.nodes()[target.node].node.layers()[target.layer].unit,
+            Link::Node(target) => self.recipe.nodes()[target.node.index()].node.layers()[target.layer].unit,
             _ => "",
         })
     }
@@ -543,7 +545,7 @@ impl World {
             return Err(Error::new(ErrorKind::Request, message));
         }
         let running = self.session.budget.admit(self.memory_of(plan), progress)?;
-        let keys: Vec<Key> = plan.solves.iter().map(|solve| solve.key).collect();
+        let keys: IndexVec<NodeId, Key> = plan.solves.iter().map(|solve| solve.key).collect();
         self.session.make_room(&keys);
         Ok(running)
     }

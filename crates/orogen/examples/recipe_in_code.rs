@@ -16,7 +16,7 @@ fn main() -> Result<(), orogen::Error> {
         .add("coast", Edge { width: 2500.0, ..Edge::default() })
         .add("island", Multiply { a: "land".into(), b: "coast".into() })
         .add("raised", Add { a: "island".into(), b: (-0.2).into() })
-        .add("height", Normalise { source: "raised".into(), low: -150.0, high: 620.0 })
+        .add("height", Normalise { source: "raised".into(), low: -150.0, high: 620.0, ..Normalise::default() })
         .output("height", "height");
 
     // The same recipe as a TOML document, which `orogen generate` reads.

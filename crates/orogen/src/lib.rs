@@ -28,8 +28,8 @@
 
 #[doc(inline)]
 pub use orogen_engine::{
-    bands, budget, choice, chunks, declare, expression, field, filter, growth, laws, layer, node, op, plan, recipe,
-    registered, registry, sampler, session, solver, store, tiles, value, world,
+    bands, budget, choice, chunks, declare, expression, field, filter, growth, ids, laws, layer, node, op, plan,
+    recipe, registered, registry, sampler, session, solver, store, tiles, value, world,
 };
 #[doc(inline)]
 pub use orogen_grid::{

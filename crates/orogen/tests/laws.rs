@@ -4,6 +4,7 @@
 mod support;
 
 use orogen::field::{add::Add, constant::Constant, fbm::Fbm, perlin::Perlin, warp::Warp};
+use orogen::ids::Id;
 use orogen::laws::{CELLS, Violation};
 use orogen::node::Node;
 use orogen::plan::steps::{Plan, Step};
@@ -52,6 +53,13 @@ fn unbounded_worlds_agree_far_out_and_below_zero() {
     for node in Node::all() {
         holds(laws_of(&node).unbounded());
     }
+}
+
+#[test]
+fn every_solver_obeys_the_laws_with_a_margin() {
+    let solvers = Node::all().into_iter().filter(|node| node.margin().is_some());
+    let checked = solvers.map(|node| holds(laws_of(&node).margin(10.24))).count();
+    assert_eq!(checked, 12);
 }
 
 #[test]
@@ -132,7 +140,7 @@ fn names_and_order_change_nothing() {
 fn normalise_meets_its_range_over_the_world() {
     let mut recipe = Recipe::new(world_of(7.0));
     recipe.add("noise", Fbm { wavelength: 90.0, ..Default::default() });
-    recipe.add("land", Normalise { source: "noise".into(), low: -250.0, high: 1234.0 });
+    recipe.add("land", Normalise { source: "noise".into(), low: -250.0, high: 1234.0, ..Normalise::default() });
     recipe.output("height", "land");
     let grid = open(&recipe, 2).window("height", &Window::new(97, 81, 7.0)).unwrap();
     let low = grid.data().iter().copied().fold(f32::MAX, f32::min);
@@ -155,7 +163,7 @@ fn dear_sources_of_a_filter_are_made_once() {
             Step::Fill { program, .. } => program
                 .instructions
                 .iter()
-                .filter(|i| matches!(i, orogen::plan::program::Instruction::Field { node: 0, .. }))
+                .filter(|i| matches!(i, orogen::plan::program::Instruction::Field { node, .. } if node.index() == 0))
                 .count(),
             Step::Apply { .. } => 0,
         })
@@ -218,6 +226,8 @@ fn a_plan_is_a_value_that_can_be_sent() {
     }
     let version = format!("\"orogen\":\"{}\"", env!("CARGO_PKG_VERSION"));
     assert!(damaged(&version, "\"orogen\":\"0.0.9\"").contains("made by Orogen 0.0.9"));
+    // The format of plans from before they had a number.
+    assert!(damaged("\"format\":2,", "").contains("has format 1, this version reads format 2"));
     // A plan of another recipe, or of this one before it was edited.
     let edited = World::open(Recipe::parse(&text.replace("\"blur\"", "\"blur\"\nradius = 35"), "t").unwrap()).unwrap();
     let error = edited.run(&came, &Progress::none()).unwrap_err();

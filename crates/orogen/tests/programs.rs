@@ -1,6 +1,7 @@
 //! Recipes that compute: parameters, formulas, expressions.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
+use orogen::ids::Id;
 use orogen::plan::program::Instruction;
 use orogen::plan::steps::Step;
 use orogen::{Recipe, Window, World};
@@ -246,7 +247,7 @@ fn instructions(world: &World) -> Vec<String> {
     let mut names: Vec<String> = (program.instructions.iter())
         .map(|instruction| match instruction {
             Instruction::Apply { function, .. } => function.name().to_string(),
-            Instruction::Field { node, .. } => format!("node {node}"),
+            Instruction::Field { node, .. } => format!("node {}", node.index()),
             other => format!("{other:?}"),
         })
         .collect();

@@ -571,7 +571,7 @@ mod lawless {
 
         fn solve(&self, sources: &dyn Sources, _: &Context) -> Result<Solution> {
             let mut tiles = 0.0;
-            sources.each_tile(0, sources.world(), &mut |_| {
+            sources.each_tile(0, sources.domain(), &mut |_| {
                 tiles += 1.0;
                 Ok(())
             })?;

@@ -49,13 +49,13 @@ fn stacked(cell: f64, large: bool) -> Recipe {
     let mut recipe = Recipe::new(spec);
     let noise = |seed, length: f64| Fbm { seed, wavelength: length * cell, octaves: 2, ..Default::default() };
     recipe.add("land", noise(1, 90.0)).add("wx", noise(2, 40.0)).add("wy", noise(3, 40.0));
-    recipe.add("heights", Normalise { source: "land".into(), low: 0.0, high: 900.0 });
-    recipe.add("baked", Bake { source: "heights".into(), cell: 1.7 * cell });
+    recipe.add("heights", Normalise { source: "land".into(), low: 0.0, high: 900.0, ..Normalise::default() });
+    recipe.add("baked", Bake { source: "heights".into(), cell: 1.7 * cell, ..Bake::default() });
     recipe.add("steep", Slope { source: "baked".into(), ..Default::default() });
     recipe.add("soft", Blur { source: "baked".into(), radius: 2.3 * cell });
     let strength = 12.0 * cell;
     recipe.add("warped", Warp { source: "soft".into(), x: "wx".into(), y: "wy".into(), strength });
-    recipe.add("again", Bake { source: "warped".into(), cell: 0.0 });
+    recipe.add("again", Bake { source: "warped".into(), cell: 0.0, ..Bake::default() });
     recipe.add("smooth", Blur { source: "again".into(), radius: 1.5 * cell });
     recipe.add("last", Warp { source: "smooth".into(), x: "wy".into(), y: "steep.east".into(), strength });
     recipe.output("height", "last").output("steep", "steep.south").output("again", "again");
@@ -240,7 +240,7 @@ fn a_chain_of_solvers_is_planned_in_no_time() {
     let mut recipe = Recipe::new(world_of(10.0));
     recipe.add("n0", Fbm::default());
     for i in 1..200 {
-        recipe.add(&format!("n{i}"), Bake { source: (&format!("n{}", i - 1)).into(), cell: 0.0 });
+        recipe.add(&format!("n{i}"), Bake { source: (&format!("n{}", i - 1)).into(), ..Bake::default() });
     }
     recipe.output("height", "n199");
     let world = open(&recipe, Options::default());

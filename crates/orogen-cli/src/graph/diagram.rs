@@ -1,6 +1,7 @@
 //! The boxes and wires of a recipe.
 
 use orogen::declare::Input;
+use orogen::ids::Id;
 use orogen::node::Node;
 use orogen::recipe::graph::Graph;
 use orogen::value::Value;
@@ -86,16 +87,16 @@ impl Diagram {
     pub fn of(recipe: &Recipe) -> Result<Diagram> {
         let graph = Graph::resolve(recipe).map_err(Graph::error)?;
         let mut block_of = vec![0; recipe.nodes().len()];
-        graph.order.iter().enumerate().for_each(|(block, node)| block_of[*node] = block);
+        graph.order.iter().enumerate().for_each(|(block, node)| block_of[node.index()] = block);
         let mut diagram = Diagram::default();
         let wire = |text: &str, to: usize, row: Option<usize>| {
             let target = Graph::find(recipe, text).ok()?;
-            let layers = recipe.nodes()[target.node].node.layers();
+            let layers = recipe.nodes()[target.node.index()].node.layers();
             let layer = (target.layer > 0).then(|| layers[target.layer].name);
-            Some(Wire { from: block_of[target.node], layer, to, row })
+            Some(Wire { from: block_of[target.node.index()], layer, to, row })
         };
         for (to, &index) in graph.order.iter().enumerate() {
-            let named = &recipe.nodes()[index];
+            let named = &recipe.nodes()[index.index()];
             let spec = named.node.spec();
             let mut rows = Vec::new();
             let names = named.node.inputs();

@@ -1,7 +1,7 @@
 //! Levels of detail around a viewer.
 
 use super::id::ChunkId;
-use crate::plan::planner::world_windows;
+use crate::plan::domain::world_windows;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 

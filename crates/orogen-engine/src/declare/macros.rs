@@ -67,7 +67,8 @@ macro_rules! choice {
 /// - `check |op| Ok(());`: what a single parameter cannot see, a key and a message if parameters contradict each other.
 ///
 /// After an input's need, or at the end of a parameter, `alias "former"` names a former key. With `octaves;` after its name the op is a fractal: it
-/// gets the parameters all fractals share, beside its own.
+/// gets the parameters all fractals share, beside its own. With `margin;` after its name the op is a solver with the parameter `margin`: its domain
+/// extends beyond the world by that length on each side, and it need not know it ([`Sources::domain`](crate::op::Sources::domain) is the domain).
 ///
 /// ```
 /// use orogen_engine::op::{Context, Filter};
@@ -147,7 +148,32 @@ macro_rules! op {
     };
     (
         $(#[doc = $doc:literal])+
+        $visibility:vis struct $name:ident = $op:literal, solver, revision $revision:literal;
+        margin;
+        $(inputs { $($inputs:tt)* })?
+        $(params { $($params:tt)* })?
+        $(layers { $($layers:tt)* })?
+        $(check $check:expr;)?
+    ) => {
+        $crate::op! {
+            $(#[doc = $doc])+
+            $visibility struct $name = $op, solver, revision $revision;
+            margin in margin;
+            $(inputs { $($inputs)* })?
+            params {
+                $($($params)*)?
+                /// Width of the strip beyond each side of the world that is solved too. The border of the solved domain shows in drainage, erosion and
+                /// shadows; with a margin it lies outside the world. Nodes that read beyond the world's sides get solved values up to there.
+                margin: f64 = 0.0, unit "m", range 0.0 to 1e6;
+            }
+            $(layers { $($layers)* })?
+            $(check $check;)?
+        }
+    };
+    (
+        $(#[doc = $doc:literal])+
         $visibility:vis struct $name:ident = $op:literal, $locality:ident, revision $revision:literal;
+        $(margin in $margin:ident;)?
         $(inputs of $expression:ident;)?
         $(inputs { $( $(#[doc = $idoc:literal])+ $input:ident: $need:ident $(, alias $ialias:literal)?, )* })?
         $(params { $(
@@ -285,6 +311,12 @@ macro_rules! op {
                     vec![$( $( $crate::declare::Param::file(&mut self.$param), )* )?];
                 files.into_iter().flatten().collect()
             }
+
+            $(
+                fn margin(&self) -> Option<f64> {
+                    Some(self.$margin)
+                }
+            )?
 
             fn consistent(&self) -> std::result::Result<(), (&'static str, String)> {
                 $( let check: fn(&$name) -> std::result::Result<(), (&'static str, String)> = $check; check(self)?; )?

@@ -25,6 +25,9 @@ impl Locality {
     }
 }
 
+/// The name of the parameter by which a solver's domain extends beyond the world.
+pub const MARGIN: &str = "margin";
+
 /// The declaration of an op.
 #[derive(Debug)]
 pub struct Spec {

@@ -3,6 +3,7 @@
 
 use super::interpreter::{Bindings, Buffers, Interpreter};
 use super::run::{Engine, Solutions};
+use crate::ids::{GridId, IndexVec};
 use crate::plan::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use crate::plan::steps::Plan;
 use orogen_grid::error::Result;
@@ -12,7 +13,7 @@ use orogen_grid::grid::{Grid, Window};
 pub struct PreparedProgram {
     program: Program,
     solutions: Solutions,
-    grids: Vec<Option<Grid>>,
+    grids: IndexVec<GridId, Option<Grid>>,
     anywhere: bool,
 }
 

@@ -1,6 +1,7 @@
 //! The interpreter of programs over a block of samples.
 
 use crate::expression::function::{Argument, MAX_ARGUMENTS};
+use crate::ids::{CoordSetId, GridId, IndexVec, NodeId, RegisterId};
 use crate::layer::LayerKind;
 use crate::op::{Field, Inputs, Reading, Solution, Solver, WorldParams};
 use crate::plan::program::{Instruction, Operand, Program};
@@ -13,9 +14,9 @@ use std::sync::Arc;
 /// The data that a program's instructions refer to.
 pub struct Bindings<'a> {
     pub world_params: &'a WorldParams,
-    pub fields: &'a (dyn Fn(usize) -> Option<&'a dyn Field> + Sync),
-    pub solvers: &'a (dyn Fn(usize) -> Option<(&'a dyn Solver, Arc<Solution>)> + Sync),
-    pub grids: &'a [Option<Grid>],
+    pub fields: &'a (dyn Fn(NodeId) -> Option<&'a dyn Field> + Sync),
+    pub solvers: &'a (dyn Fn(NodeId) -> Option<(&'a dyn Solver, Arc<Solution>)> + Sync),
+    pub grids: &'a IndexVec<GridId, Option<Grid>>,
 }
 
 /// The representation of a coordinate set.
@@ -49,15 +50,15 @@ impl CoordSet {
 /// Registers and coordinate sets that can be passed to the next interpreter to avoid allocation.
 #[derive(Default)]
 pub struct Buffers {
-    registers: Vec<Vec<f32>>,
-    coord_sets: Vec<CoordSet>,
+    registers: IndexVec<RegisterId, Vec<f32>>,
+    coord_sets: IndexVec<CoordSetId, CoordSet>,
 }
 
 /// An interpreter, which reuses registers and coordinate sets from block to block.
 pub struct Interpreter<'p> {
     program: &'p Program,
-    registers: Vec<Vec<f32>>,
-    coord_sets: Vec<CoordSet>,
+    registers: IndexVec<RegisterId, Vec<f32>>,
+    coord_sets: IndexVec<CoordSetId, CoordSet>,
 }
 
 impl<'p> Interpreter<'p> {
@@ -81,7 +82,7 @@ impl<'p> Interpreter<'p> {
 
     /// Runs the program over a block of the lattice.
     pub fn run_block(&mut self, block: &Window, bindings: &Bindings) -> Result<()> {
-        let coords = &mut self.coord_sets[0];
+        let coords = &mut self.coord_sets[CoordSetId::BLOCK];
         coords.shape = Shape::Lattice;
         coords.x.clear();
         coords.x.extend((0..block.width).map(|i| block.east(i)));
@@ -92,7 +93,7 @@ impl<'p> Interpreter<'p> {
 
     /// Runs the program at arbitrary points.
     pub fn run_points(&mut self, x: &[f64], y: &[f64], bindings: &Bindings) -> Result<()> {
-        let coords = &mut self.coord_sets[0];
+        let coords = &mut self.coord_sets[CoordSetId::BLOCK];
         coords.shape = Shape::Scattered;
         coords.x.clear();
         coords.x.extend_from_slice(x);
@@ -107,7 +108,7 @@ impl<'p> Interpreter<'p> {
     }
 
     fn run(&mut self, block: Option<&Window>, count: usize, bindings: &Bindings) -> Result<()> {
-        for register in &mut self.registers {
+        for register in self.registers.iter_mut() {
             register.resize(count, 0.0);
         }
         self.program.instructions.iter().try_for_each(|instruction| self.step(instruction, block, count, bindings))
@@ -148,10 +149,10 @@ impl<'p> Interpreter<'p> {
                 })?;
             }
             Instruction::Grid { grid, kind, coords, out } => {
-                let grid = bindings.grids.get(*grid).and_then(Option::as_ref);
+                let grid = bindings.grids.find(*grid).and_then(Option::as_ref);
                 let grid = grid.ok_or_else(|| internal("a grid was read before it was made"))?;
                 // Only the block itself is on the lattice of the grid.
-                let block = block.filter(|_| *coords == 0);
+                let block = block.filter(|_| *coords == CoordSetId::BLOCK);
                 let mut samples = std::mem::take(&mut self.registers[*out]);
                 copy_or_read(grid, *kind, block, &self.coord_sets[*coords].points(), &mut samples);
                 self.registers[*out] = samples;
@@ -213,9 +214,9 @@ impl<'p> Interpreter<'p> {
     /// Lends the inputs and takes the output out during an op, so that both can be borrowed at once.
     fn with_inputs<T>(
         &mut self,
-        coords: usize,
-        inputs: &[Option<usize>],
-        out: usize,
+        coords: CoordSetId,
+        inputs: &[Option<RegisterId>],
+        out: RegisterId,
         work: impl FnOnce(&Points, &Inputs, &mut [f32]) -> T,
     ) -> T {
         let mut samples = std::mem::take(&mut self.registers[out]);

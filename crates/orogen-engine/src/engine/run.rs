@@ -2,6 +2,7 @@
 
 use super::interpreter::{Bindings, Interpreter};
 use crate::budget::Budget;
+use crate::ids::{GridId, Id, IndexVec, NodeId, StepId};
 use crate::op::{Context, Field, Op, Solution, Solver, StepObserver, WorldParams};
 use crate::plan::cost;
 use crate::plan::key::Key;
@@ -26,7 +27,7 @@ pub struct Engine<'a> {
     pub graph: &'a Graph,
     pub world_params: &'a WorldParams,
     /// The content keys of the nodes.
-    pub keys: &'a [Key],
+    pub keys: &'a IndexVec<NodeId, Key>,
     pub store: &'a Store,
     /// The store of expensive filters' grids, if there is one.
     pub grids: Option<&'a GridStore>,
@@ -35,7 +36,7 @@ pub struct Engine<'a> {
     pub pool: &'a Pool,
     pub progress: &'a Progress,
     /// The observer of a solver's steps, with the node. That node is solved even if its solution is stored.
-    pub observer: Option<(usize, &'a (dyn StepObserver + Sync))>,
+    pub observer: Option<(NodeId, &'a (dyn StepObserver + Sync))>,
 }
 
 /// A program to be run over a window.
@@ -46,7 +47,7 @@ struct Filling<'a> {
 }
 
 /// Solutions by node.
-pub type Solutions = HashMap<usize, Arc<Solution>>;
+pub type Solutions = HashMap<NodeId, Arc<Solution>>;
 
 impl<'a> Engine<'a> {
     /// Computes the output grids of a plan.
@@ -63,9 +64,9 @@ impl<'a> Engine<'a> {
     /// Computes the output grids of a plan, with all its solvers solved.
     pub(super) fn steps(&self, plan: &Plan, solutions: &Solutions, progress: &Progress) -> Result<Vec<Grid>> {
         progress.expect(cost::steps(plan, self.recipe));
-        let mut grids: Vec<Option<Grid>> = plan.grids.iter().map(|_| None).collect();
+        let mut grids: IndexVec<GridId, Option<Grid>> = plan.grids.iter().map(|_| None).collect();
         let needed = self.kept_grids(plan, &mut grids);
-        for (at, step) in plan.steps.iter().enumerate() {
+        for (at, step) in plan.steps.entries() {
             progress.check()?;
             if !needed[at] {
                 progress.advance(cost::step(step, plan, self.recipe));
@@ -75,7 +76,7 @@ impl<'a> Engine<'a> {
             self.step(step, solutions, &mut grids, &part)?;
             part.finish();
             for (grid, slot) in grids.iter_mut().zip(&plan.grids) {
-                if slot.last_use <= at {
+                if slot.last_use.is_some_and(|last| last <= at) {
                     *grid = None;
                 }
             }
@@ -86,11 +87,11 @@ impl<'a> Engine<'a> {
 
     /// Takes kept grids of expensive filters from earlier requests. Returns which steps are still needed: those whose
     /// grids are results or are read by needed steps.
-    fn kept_grids(&self, plan: &Plan, grids: &mut [Option<Grid>]) -> Vec<bool> {
-        let mut needed = vec![true; plan.steps.len()];
+    fn kept_grids(&self, plan: &Plan, grids: &mut IndexVec<GridId, Option<Grid>>) -> IndexVec<StepId, bool> {
+        let mut needed: IndexVec<StepId, bool> = vec![true; plan.steps.len()].into();
         let Some(store) = self.grids.filter(|store| store.is_used()) else { return needed };
-        let mut read: Vec<bool> = plan.grids.iter().map(|slot| slot.last_use >= plan.steps.len()).collect();
-        for (at, step) in plan.steps.iter().enumerate().rev() {
+        let mut read: IndexVec<GridId, bool> = plan.grids.iter().map(|slot| slot.last_use.is_none()).collect();
+        for (at, step) in plan.steps.entries().rev() {
             let writes = step.writes();
             // A program for points writes no grid.
             needed[at] = writes.is_empty() || writes.iter().any(|&slot| read[slot]);
@@ -108,7 +109,7 @@ impl<'a> Engine<'a> {
     /// The keys of a step's grids; `None` if they are not worth keeping.
     fn grid_keys(&self, step: &Step) -> Option<Vec<GridKey>> {
         let Step::Apply { node, window, out, .. } = step else { return None };
-        let Op::Filter(filter) = self.recipe.nodes().get(*node)?.node.op() else { return None };
+        let Op::Filter(filter) = self.recipe.nodes().get(node.index())?.node.op() else { return None };
         let layers = out.iter().enumerate().filter_map(|(layer, slot)| slot.map(|_| layer));
         (filter.cost(window.cell) >= EXPENSIVE)
             .then(|| layers.map(|layer| GridKey::new(self.keys[*node], layer, window)).collect())
@@ -122,10 +123,10 @@ impl<'a> Engine<'a> {
     }
 
     /// Computes everything that a scattered plan needs before its points.
-    pub fn before_points(&self, plan: &Plan) -> Result<(Solutions, Vec<Option<Grid>>)> {
+    pub fn before_points(&self, plan: &Plan) -> Result<(Solutions, IndexVec<GridId, Option<Grid>>)> {
         let solutions = self.solve(plan)?;
-        let mut grids: Vec<Option<Grid>> = plan.grids.iter().map(|_| None).collect();
-        for step in &plan.steps {
+        let mut grids: IndexVec<GridId, Option<Grid>> = plan.grids.iter().map(|_| None).collect();
+        for step in plan.steps.iter() {
             match step {
                 Step::Fill { out, .. } if out.is_empty() => {}
                 _ => self.pool.install(|| self.step(step, &solutions, &mut grids, self.progress))?,
@@ -134,7 +135,13 @@ impl<'a> Engine<'a> {
         Ok((solutions, grids))
     }
 
-    fn step(&self, step: &Step, solutions: &Solutions, grids: &mut [Option<Grid>], progress: &Progress) -> Result<()> {
+    fn step(
+        &self,
+        step: &Step,
+        solutions: &Solutions,
+        grids: &mut IndexVec<GridId, Option<Grid>>,
+        progress: &Progress,
+    ) -> Result<()> {
         let made = match step {
             Step::Fill { program, window, out } => {
                 let filling = Filling { program, window, outputs: out.len() };
@@ -161,15 +168,15 @@ impl<'a> Engine<'a> {
         }
     }
 
-    pub(super) fn field(&self, node: usize) -> Option<&'a dyn Field> {
-        match self.recipe.nodes().get(node)?.node.op() {
+    pub(super) fn field(&self, node: NodeId) -> Option<&'a dyn Field> {
+        match self.recipe.nodes().get(node.index())?.node.op() {
             Op::Field(field) => Some(field),
             _ => None,
         }
     }
 
-    pub(super) fn solver(&self, node: usize, solutions: &Solutions) -> Option<(&'a dyn Solver, Arc<Solution>)> {
-        match self.recipe.nodes().get(node)?.node.op() {
+    pub(super) fn solver(&self, node: NodeId, solutions: &Solutions) -> Option<(&'a dyn Solver, Arc<Solution>)> {
+        match self.recipe.nodes().get(node.index())?.node.op() {
             Op::Solver(solver) => Some((solver, Arc::clone(solutions.get(&node)?))),
             _ => None,
         }
@@ -181,7 +188,7 @@ impl<'a> Engine<'a> {
         x: &[f64],
         y: &[f64],
         solutions: &Solutions,
-        grids: &[Option<Grid>],
+        grids: &IndexVec<GridId, Option<Grid>>,
     ) -> Result<Vec<Vec<f32>>> {
         let fields = |node| self.field(node);
         let solvers = |node| self.solver(node, solutions);
@@ -203,7 +210,7 @@ impl<'a> Engine<'a> {
         &self,
         filling: &Filling,
         solutions: &Solutions,
-        grids: &[Option<Grid>],
+        grids: &IndexVec<GridId, Option<Grid>>,
         progress: &Progress,
     ) -> Result<Vec<Grid>> {
         let Filling { program, window, outputs } = *filling;
@@ -252,9 +259,9 @@ impl<'a> Engine<'a> {
         Ok(out)
     }
 
-    fn apply(&self, step: &Step, grids: &[Option<Grid>], progress: &Progress) -> Result<Vec<Grid>> {
+    fn apply(&self, step: &Step, grids: &IndexVec<GridId, Option<Grid>>, progress: &Progress) -> Result<Vec<Grid>> {
         let Step::Apply { node, inputs, window, halo, out } = step else { return Ok(Vec::new()) };
-        let Op::Filter(filter) = self.recipe.nodes()[*node].node.op() else {
+        let Op::Filter(filter) = self.recipe.nodes()[node.index()].node.op() else {
             return Err(Error::new(ErrorKind::Internal, "a node that is not a filter was to be applied"));
         };
         let grown = window.grown(*halo);

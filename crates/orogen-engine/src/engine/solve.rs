@@ -2,6 +2,7 @@
 
 use super::run::{Engine, Solutions};
 use super::tiles::Tiles;
+use crate::ids::{Id, NodeId};
 use crate::op::{Context, Op, Solution};
 use crate::plan::cost;
 use crate::plan::planner::Planner;
@@ -62,7 +63,7 @@ impl Engine<'_> {
     }
 
     /// Whether the steps of a node's solver are observed; it is then solved even if its solution is stored.
-    fn is_observed(&self, node: usize) -> bool {
+    fn is_observed(&self, node: NodeId) -> bool {
         self.observer.is_some_and(|(observed, _)| observed == node)
     }
 
@@ -89,7 +90,7 @@ impl Engine<'_> {
 
     /// Solves one solver; all solutions that its sources read are in `there`.
     fn solved(&self, order: &Solve, there: &Solutions, progress: &Progress) -> Result<Solution> {
-        let Op::Solver(solver) = self.recipe.nodes()[order.node].node.op() else {
+        let Op::Solver(solver) = self.recipe.nodes()[order.node.index()].node.op() else {
             return Err(Error::new(ErrorKind::Internal, "a node that is not a solver was to be solved"));
         };
         let planner = Planner::new(self.recipe, self.graph, self.keys);

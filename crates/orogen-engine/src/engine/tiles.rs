@@ -19,8 +19,8 @@ pub struct Tiles<'a> {
 }
 
 impl Sources for Tiles<'_> {
-    fn world(&self) -> &Window {
-        &self.order.world
+    fn domain(&self) -> &Window {
+        &self.order.domain
     }
 
     fn padded(&self) -> &Window {

@@ -9,6 +9,7 @@
 
 use crate::field::add::Add;
 use crate::field::gullies::Gullies;
+use crate::ids::{Id, NodeId};
 use crate::layer::LayerKind;
 use crate::node::Node;
 use crate::recipe::document::Recipe;
@@ -41,19 +42,19 @@ pub fn window(window: &Window) -> Window {
 
 /// The recipe of a draft of a frame over `window`: solvers use the draft's cell, and the nodes in `later` pass their
 /// source through.
-pub fn recipe(mut recipe: Recipe, later: &BTreeSet<usize>, window: &Window) -> Recipe {
+pub fn recipe(mut recipe: Recipe, later: &BTreeSet<NodeId>, window: &Window) -> Recipe {
     recipe.world.cell = recipe.world.cell.max(window.cell) * COARSER as f64;
     let mut passing = recipe.clone();
-    let mut index = 0;
+    let mut nodes = (0..).map(NodeId::new);
     passing.change(|node| {
+        let is_later = nodes.next().is_some_and(|id| later.contains(&id));
         match node {
-            Node::StreamPower(law) if later.contains(&index) => {
+            Node::StreamPower(law) if is_later => {
                 *node = Node::Add(Add { a: law.source.clone(), b: 0.0.into() });
             }
             Node::Gullies(gullies) => gullies.octaves = octaves(gullies, window.cell * COARSER as f64),
             _ => {}
         }
-        index += 1;
     });
     // If another layer of such a node is read, it must be solved.
     if Graph::resolve(&passing).is_ok() { passing } else { recipe }

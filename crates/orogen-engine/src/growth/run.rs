@@ -7,6 +7,7 @@
 
 use super::draft;
 use super::frame_spool::FrameSpool;
+use crate::ids::{Id, NodeId};
 use crate::layer::LayerKind;
 use crate::node::Node;
 use crate::op::{Solution, StepObserver};
@@ -40,7 +41,7 @@ pub struct Growth<'w> {
 /// A node that runs step by step.
 #[derive(Debug, Clone, Copy)]
 struct Stage {
-    node: usize,
+    node: NodeId,
     years: f64,
     steps: u32,
     /// Number of steps of all earlier stages.
@@ -55,7 +56,7 @@ impl Stage {
 }
 
 /// The solution of a stage.
-type Solved = (usize, Arc<Solution>);
+type Solved = (NodeId, Arc<Solution>);
 
 /// The number of solutions that a run computed (not found in the store).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,10 +77,10 @@ impl<'w> Growth<'w> {
     /// If there are none, or the errors of [`World::plan`].
     pub fn new(world: &'w World, layer: &str, window: Window) -> Result<Growth<'w>> {
         let plan = world.plan(&[layer], &window)?;
-        let solved: BTreeSet<usize> = plan.solves.iter().map(|solve| solve.node).collect();
+        let solved: BTreeSet<NodeId> = plan.solves.iter().map(|solve| solve.node).collect();
         let mut stages: Vec<Stage> = Vec::new();
         for &node in world.order().iter().filter(|node| solved.contains(node)) {
-            if let Node::StreamPower(law) = &world.recipe().nodes()[node].node {
+            if let Node::StreamPower(law) = &world.recipe().nodes()[node.index()].node {
                 let before = stages.last().map_or(0, Stage::end);
                 stages.push(Stage { node, years: law.years, steps: law.steps, before });
             }
@@ -157,10 +158,10 @@ impl<'w> Growth<'w> {
     /// The recipe after this many steps.
     fn recipe(&self, step: u32) -> Recipe {
         let mut recipe = self.world.recipe().clone();
-        let mut node = 0;
+        let mut nodes = (0..).map(NodeId::new);
         recipe.change(|changed| {
-            let stage = self.stages.iter().find(|stage| stage.node == node);
-            node += 1;
+            let node = nodes.next();
+            let stage = self.stages.iter().find(|stage| Some(stage.node) == node);
             let (Some(stage), Node::StreamPower(law)) = (stage, changed) else { return };
             let done = step.saturating_sub(stage.before).min(stage.steps);
             if done < stage.steps {
@@ -173,8 +174,8 @@ impl<'w> Growth<'w> {
     }
 
     /// The solvers that the stages from index `from` affect, including those stages.
-    fn is_changed(&self, from: usize) -> BTreeSet<usize> {
-        let mut changed: BTreeSet<usize> = self.stages[from..].iter().map(|stage| stage.node).collect();
+    fn is_changed(&self, from: usize) -> BTreeSet<NodeId> {
+        let mut changed: BTreeSet<NodeId> = self.stages[from..].iter().map(|stage| stage.node).collect();
         // In a plan, sources come first.
         for solve in &self.plan.solves {
             if solve.reads.iter().any(|read| changed.contains(read)) {
@@ -187,7 +188,7 @@ impl<'w> Growth<'w> {
     /// Solves the nodes that no stage from this index affects, once for all steps.
     fn settle(&self, stage: usize, progress: &Progress) -> Result<()> {
         let changed = self.is_changed(stage);
-        let steady: Vec<usize> =
+        let steady: Vec<NodeId> =
             self.plan.solves.iter().map(|solve| solve.node).filter(|node| !changed.contains(node)).collect();
         if !steady.is_empty() {
             self.world.run(&self.world.plan_to_solve(&steady)?, progress)?;
@@ -198,7 +199,7 @@ impl<'w> Growth<'w> {
     /// The work of the nodes downstream of the stages, including the final work of each stage.
     fn frame_work(&self) -> f64 {
         let changed = self.is_changed(0);
-        let of_stage = |node: usize| self.stages.iter().find(|stage| stage.node == node);
+        let of_stage = |node: NodeId| self.stages.iter().find(|stage| stage.node == node);
         let solves = self.plan.solves.iter().filter(|solve| changed.contains(&solve.node));
         let solving = solves.map(|solve| match of_stage(solve.node) {
             Some(stage) => solve.own_work * 2.0 / f64::from(stage.steps.max(1)),

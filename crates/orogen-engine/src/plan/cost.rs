@@ -8,6 +8,7 @@
 
 use super::program::{Instruction, Program};
 use super::steps::{Plan, Solve, Step};
+use crate::ids::{CoordSetId, Id, IndexVec};
 use crate::op::Op;
 use crate::recipe::document::Recipe;
 
@@ -31,7 +32,7 @@ pub fn steps(plan: &Plan, recipe: &Recipe) -> f64 {
 pub fn step(step: &Step, plan: &Plan, recipe: &Recipe) -> f64 {
     let sample = match step {
         Step::Fill { program, out, .. } => program_cost(program, plan.scattered && out.is_empty(), recipe),
-        Step::Apply { node, window, .. } => match recipe.nodes()[*node].node.op() {
+        Step::Apply { node, window, .. } => match recipe.nodes()[node.index()].node.op() {
             Op::Filter(filter) => filter.cost(window.cell),
             _ => 0.0,
         },
@@ -46,24 +47,24 @@ pub fn needed(plan: &Plan, recipe: &Recipe) -> f64 {
 
 /// Nanoseconds per sample.
 fn program_cost(program: &Program, scattered: bool, recipe: &Recipe) -> f64 {
-    let mut moved = vec![false; program.coord_sets.max(1)];
-    moved[0] = scattered;
+    let mut moved: IndexVec<CoordSetId, bool> = vec![false; program.coord_sets.max(1)].into();
+    moved[CoordSetId::BLOCK] = scattered;
     let mut sum = STORED * program.outputs.len() as f64;
     for instruction in &program.instructions {
         sum += match instruction {
             Instruction::Constant { .. } => 0.05,
             Instruction::Apply { function, .. } => function.cost(),
-            Instruction::Field { node, coords, inputs, .. } => match recipe.nodes()[*node].node.op() {
+            Instruction::Field { node, coords, inputs, .. } => match recipe.nodes()[node.index()].node.op() {
                 Op::Field(field) if inputs.is_empty() && !moved[*coords] => field.cost_in_rows(),
                 Op::Field(field) => field.cost(),
                 _ => 0.0,
             },
-            Instruction::Solved { node, coords, .. } => match recipe.nodes()[*node].node.op() {
+            Instruction::Solved { node, coords, .. } => match recipe.nodes()[node.index()].node.op() {
                 Op::Solver(solver) if solver.rasters() == 0 => COPIED,
                 _ if moved[*coords] => BETWEEN,
                 _ => BETWEEN / 4.0,
             },
-            Instruction::Grid { coords: 0, .. } if !scattered => COPIED,
+            Instruction::Grid { coords: CoordSetId::BLOCK, .. } if !scattered => COPIED,
             Instruction::Grid { .. } => BETWEEN,
             Instruction::Mask { .. } => MASKED,
             Instruction::Displace { to, .. } => {

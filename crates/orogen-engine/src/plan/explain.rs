@@ -3,6 +3,7 @@
 use super::steps::{Plan, Step};
 use super::{cost, memory};
 use crate::declare::short;
+use crate::ids::{Id, NodeId};
 use crate::op::Op;
 use crate::recipe::document::Recipe;
 use crate::recipe::graph::Graph;
@@ -19,7 +20,7 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
     let _ = writeln!(text, "  {:longest$}  {:12}  {:8}  {:18}  what it does", "name", "op", "locality", "looks at");
     const SHOWN: usize = 200;
     for &index in graph.order.iter().take(SHOWN) {
-        let named = &recipe.nodes()[index];
+        let named = &recipe.nodes()[index.index()];
         let spec = named.node.spec();
         let reach = match named.node.op() {
             Op::Field(field) => match field.coord_map() {
@@ -31,7 +32,9 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
                 },
             },
             Op::Filter(filter) => format!("halo of {}", count(filter.halo(cell), "sample")),
-            Op::Solver(solver) => format!("world at {} m", number(solver.cell(recipe.world.cell))),
+            Op::Solver(solver) => {
+                format!("world{} at {} m", beyond(solver.margin()), number(solver.cell(recipe.world.cell)))
+            }
         };
         let _ = writeln!(
             text,
@@ -50,15 +53,17 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
         "\nsteps for {} x {} samples at ({}, {})",
         plan.window.width, plan.window.height, plan.window.x, plan.window.y
     );
-    let name = |node: usize| recipe.nodes().get(node).map_or("a constant", |named| named.name.as_str());
+    let named = |node: NodeId| recipe.nodes().get(node.index());
+    let name = |node: NodeId| named(node).map_or("?", |named| named.name.as_str());
     for solve in &plan.solves {
         let _ = writeln!(
             text,
-            "  solve `{}` over the world, {} x {} samples at {} m; keeps {}{}",
+            "  solve `{}` over the world{}, {} x {} samples at {} m; keeps {}{}",
             name(solve.node),
-            solve.world.width,
-            solve.world.height,
-            number(solve.world.cell),
+            beyond(named(solve.node).and_then(|named| named.node.margin())),
+            solve.domain.width,
+            solve.domain.height,
+            number(solve.domain.cell),
             bytes(memory::rasters(solve)),
             if solve.on_disk { ", the rest on disk" } else { "" }
         );
@@ -67,7 +72,8 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
         let window = step.window();
         let _ = match step {
             Step::Fill { program, out, .. } => {
-                let made: Vec<String> = out.iter().map(|&grid| format!("`{}`", name(plan.grids[grid].node))).collect();
+                let made: Vec<String> =
+                    out.iter().map(|&grid| format!("`{}`", plan.grids[grid].node.map_or("a constant", name))).collect();
                 writeln!(
                     text,
                     "  fill {} with {}: {} over {}",
@@ -78,7 +84,7 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
                 )
             }
             Step::Apply { node, halo, out, .. } => {
-                let layers = recipe.nodes()[*node].node.layers();
+                let layers = recipe.nodes()[node.index()].node.layers();
                 let wanted: Vec<&str> =
                     layers.iter().zip(out).filter(|(_, out)| out.is_some()).map(|(layer, _)| layer.name).collect();
                 let which = if layers.len() > 1 { format!(" ({})", wanted.join(", ")) } else { String::new() };
@@ -114,6 +120,14 @@ pub fn explain(plan: &Plan, recipe: &Recipe, graph: &Graph, threads: usize) -> S
         }
     };
     text
+}
+
+/// The margin of a solver, behind "world".
+fn beyond(margin: Option<f64>) -> String {
+    match margin {
+        Some(margin @ f64::MIN_POSITIVE..) => format!(" and {} m around", number(margin)),
+        _ => String::new(),
+    }
 }
 
 fn extent(window: &Window) -> String {

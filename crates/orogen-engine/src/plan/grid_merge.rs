@@ -1,17 +1,19 @@
 //! Merging of grid requests.
 
-use super::compile::GridRequest;
+use super::request::Requests;
+use crate::ids::RequestId;
 use orogen_grid::grid::Window;
 
 /// A grid to make, and the requests that it serves.
 pub struct Cluster {
     pub window: Window,
-    pub serves: Vec<usize>,
+    pub serves: Vec<RequestId>,
 }
 
 /// Merges nearby windows: two become one if the union has at most a quarter more samples than both together.
-pub fn clusters(requests: &[GridRequest], wanted: impl Iterator<Item = usize>) -> Vec<Cluster> {
-    let mut clusters: Vec<Cluster> = wanted.map(|i| Cluster { window: requests[i].window, serves: vec![i] }).collect();
+pub fn clusters(requests: &Requests, wanted: impl Iterator<Item = RequestId>) -> Vec<Cluster> {
+    let mut clusters: Vec<Cluster> =
+        wanted.map(|id| Cluster { window: requests.get(id).window, serves: vec![id] }).collect();
     let samples = |window: &Window| window.width as f64 * window.height as f64;
     let mut i = 0;
     while i < clusters.len() {
@@ -40,20 +42,29 @@ pub fn clusters(requests: &[GridRequest], wanted: impl Iterator<Item = usize>) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ids::{Id, NodeId};
+    use crate::plan::request::GridRequest;
     use crate::recipe::graph::LayerRef;
 
     #[test]
     fn near_windows_join_and_far_ones_do_not() {
-        let request = |x: i64, side: usize| GridRequest {
-            target: LayerRef { node: 0, layer: 0 },
-            raw: true,
-            window: Window::new(side, side, 1.0).at(x, 0),
-        };
-        let requests = [request(0, 100), request(100_000, 100), request(-5, 110), request(100_050, 100)];
-        let clusters = clusters(&requests, 0..4);
+        let mut requests = Requests::default();
+        let ids = [(0, 100), (100_000, 100), (-5, 110), (100_050, 100)].map(|(x, side)| {
+            let target = LayerRef { node: NodeId::new(0), layer: 0 };
+            requests.add(GridRequest { target, raw: true, window: Window::new(side, side, 1.0).at(x, 0) })
+        });
+        let clusters = clusters(&requests, ids.into_iter());
         assert_eq!(clusters.len(), 2);
         for cluster in &clusters {
-            assert!(cluster.serves.iter().all(|&i| cluster.window.contains(&requests[i].window)));
+            assert!(cluster.serves.iter().all(|id| cluster.window.contains(&requests.get(*id).window)));
         }
+    }
+
+    #[test]
+    fn a_request_that_nothing_serves_is_an_error() {
+        let mut requests = Requests::default();
+        let target = LayerRef { node: NodeId::new(0), layer: 0 };
+        let id = requests.add(GridRequest { target, raw: true, window: Window::new(1, 1, 1.0) });
+        assert!(requests.grid(id).is_err_and(|error| error.to_string().contains("no step makes a grid")));
     }
 }

@@ -1,6 +1,7 @@
 //! Content keys: hashes of everything that a node's result depends on.
 
-use crate::declare::{Shape, Spec};
+use crate::declare::{MARGIN, Shape, Spec};
+use crate::ids::{Id, IndexVec, NodeId};
 use crate::node::Node;
 use crate::op::{Op, WorldParams};
 use crate::recipe::document::Recipe;
@@ -12,11 +13,11 @@ use sha2::{Digest, Sha256};
 pub type Key = [u8; 32];
 
 /// The key of every node, by index.
-pub fn keys(recipe: &Recipe, graph: &Graph) -> Vec<Key> {
+pub fn keys(recipe: &Recipe, graph: &Graph) -> IndexVec<NodeId, Key> {
     let world_params = recipe.world.world_params();
-    let mut keys: Vec<Key> = vec![[0; 32]; recipe.nodes().len()];
+    let mut keys: IndexVec<NodeId, Key> = vec![[0; 32]; recipe.nodes().len()].into();
     for &index in &graph.order {
-        let node = &recipe.nodes()[index].node;
+        let node = &recipe.nodes()[index.index()].node;
         let spec: &Spec = node.spec();
         let mut hash = Sha256::new();
         hash.update(spec.op.as_bytes());
@@ -24,6 +25,10 @@ pub fn keys(recipe: &Recipe, graph: &Graph) -> Vec<Key> {
         hash.update(spec.revision.to_le_bytes());
         put_world(&mut hash, node, &world_params);
         for (i, param) in spec.params.iter().enumerate() {
+            // Solutions that were stored before solvers had margins stay valid.
+            if param.name == MARGIN && node.margin() == Some(0.0) {
+                continue;
+            }
             hash.update(param.name.as_bytes());
             hash.update([0]);
             hash.update(node.param_key(i).to_toml().as_bytes());
@@ -38,13 +43,13 @@ pub fn keys(recipe: &Recipe, graph: &Graph) -> Vec<Key> {
 }
 
 /// The key of a link's target, given the keys of all nodes.
-pub fn link_key(link: &Link, keys: &[Key]) -> Key {
+pub fn link_key(link: &Link, keys: &IndexVec<NodeId, Key>) -> Key {
     let mut hash = Sha256::new();
     put_link(&mut hash, link, keys);
     hash.finalize().into()
 }
 
-fn put_link(hash: &mut Sha256, link: &Link, keys: &[Key]) {
+fn put_link(hash: &mut Sha256, link: &Link, keys: &IndexVec<NodeId, Key>) {
     match link {
         Link::None => hash.update([0]),
         Link::Value(value) => {
@@ -82,7 +87,7 @@ fn put_world(hash: &mut Sha256, node: &Node, world: &WorldParams) {
 
 /// The identity of a recipe for plans: the keys of all nodes, in the order of the recipe. Plans refer to nodes by
 /// index.
-pub fn identity(keys: &[Key]) -> Key {
+pub fn identity(keys: &IndexVec<NodeId, Key>) -> Key {
     let mut hash = Sha256::new();
     keys.iter().for_each(|key| hash.update(key));
     hash.finalize().into()

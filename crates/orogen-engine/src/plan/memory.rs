@@ -2,6 +2,7 @@
 
 use super::program::{BLOCK_HEIGHT, BLOCK_WIDTH, Program};
 use super::steps::{Plan, Solve, Step};
+use crate::ids::{GridId, Id, IndexVec, StepId};
 use crate::op::Op;
 use crate::recipe::document::Recipe;
 use orogen_grid::grid::Window;
@@ -21,20 +22,21 @@ fn block_bytes(program: &Program) -> u64 {
 
 /// Maximum memory of all grids at any step.
 pub fn grids(plan: &Plan) -> u64 {
-    let mut born = vec![usize::MAX; plan.grids.len()];
-    for (at, step) in plan.steps.iter().enumerate() {
+    let mut born: IndexVec<GridId, Option<StepId>> = vec![None; plan.grids.len()].into();
+    for (at, step) in plan.steps.entries() {
         for grid in step.writes() {
-            born[grid] = at;
+            born[grid] = Some(at);
         }
     }
     // Grids are created at a step and dropped after one: sum the changes instead of all grids at all steps.
     let mut change = vec![(0u64, 0u64); plan.steps.len() + 2];
-    for (grid, born) in plan.grids.iter().zip(&born) {
-        if *born != usize::MAX {
+    for (grid, born) in plan.grids.iter().zip(born.iter()) {
+        if let Some(born) = born {
             let bytes = grid_bytes(&grid.window);
-            change[*born].0 = change[*born].0.saturating_add(bytes);
-            let after = &mut change[grid.last_use.min(plan.steps.len()) + 1].1;
-            *after = after.saturating_add(bytes);
+            let more = &mut change[born.index()].0;
+            *more = more.saturating_add(bytes);
+            let less = &mut change[grid.last_use.map_or(plan.steps.len(), StepId::index) + 1].1;
+            *less = less.saturating_add(bytes);
         }
     }
     let (mut now, mut most) = (0u64, 0u64);
@@ -51,9 +53,9 @@ fn beside(plan: &Plan, recipe: &Recipe, threads: usize) -> u64 {
         Step::Fill { program, .. } => block_bytes(program).saturating_mul(threads as u64),
         Step::Apply { node, inputs, window, halo, .. } => {
             // A grid that was made for other steps too is cropped for the filter.
-            let cut = |slot: &usize| plan.grids[*slot].window != window.grown(*halo);
+            let cut = |slot: &GridId| plan.grids[*slot].window != window.grown(*halo);
             let cuts = inputs.iter().flatten().filter(|slot| cut(slot)).count() as u64;
-            let own = match recipe.nodes()[*node].node.op() {
+            let own = match recipe.nodes()[node.index()].node.op() {
                 Op::Filter(filter) => filter.scratch(window),
                 _ => 0,
             };

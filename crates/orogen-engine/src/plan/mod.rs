@@ -1,11 +1,21 @@
 //! Plans: the steps of a computation, their order and their memory, known before any sample is made.
 
+mod allocate;
+mod arithmetic;
+mod assemble;
 mod compile;
+mod coord_sets;
 pub(crate) mod cost;
+pub mod domain;
 pub(crate) mod explain;
 mod grid_merge;
+mod keep;
 pub(crate) mod key;
 pub(crate) mod memory;
 pub mod planner;
 pub mod program;
+mod request;
+mod schedule;
+mod solves;
 pub mod steps;
+mod stored;

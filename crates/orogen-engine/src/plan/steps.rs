@@ -2,11 +2,12 @@
 
 use super::key::Key;
 use super::program::{Instruction, Program};
+use super::stored::StoredPlan;
+use crate::ids::{GridId, IndexVec, NodeId, StepId};
+use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
-use std::fmt::{self, Write};
 
 /// A plan for layers over a window: an owned value, made without computing any sample.
 ///
@@ -24,23 +25,24 @@ pub struct Plan {
     /// The solvers that must be solved first, in order.
     pub(crate) solves: Vec<Solve>,
     /// The steps, in order.
-    pub(crate) steps: Vec<Step>,
+    pub(crate) steps: IndexVec<StepId, Step>,
     /// The grids of the steps.
-    pub(crate) grids: Vec<GridSlot>,
+    pub(crate) grids: IndexVec<GridId, GridSlot>,
     /// The grids with the results (empty if scattered: then the last step's program computes them).
-    pub(crate) outputs: Vec<usize>,
+    pub(crate) outputs: Vec<GridId>,
 }
 
 /// A solver to be solved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Solve {
     /// The node.
-    pub node: usize,
+    pub node: NodeId,
     /// The key of its solution.
     pub key: Key,
-    /// The window of the world on its lattice.
-    pub world: Window,
-    /// The same with the margin for readers.
+    /// Its domain on its lattice: the world and the solver's margin.
+    #[serde(alias = "world")]
+    pub domain: Window,
+    /// The same with the samples beyond the edge that readers may need.
     pub padded: Window,
     /// Number of rasters that it keeps or works in, each over `padded`.
     pub rasters: usize,
@@ -55,7 +57,7 @@ pub struct Solve {
     /// Maximum memory for making a tile of its sources, in bytes.
     pub tile: u64,
     /// The solvers that its sources read.
-    pub reads: Vec<usize>,
+    pub reads: Vec<NodeId>,
     /// Approximate number of samples that are made for its sources.
     pub samples: u64,
     /// Approximate time for making its sources on one core, in nanoseconds.
@@ -72,30 +74,30 @@ impl Solve {
     }
 }
 
-/// A step of a plan.
+/// A step of a plan. While it is planned, it reads requests instead of grids.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Step {
+pub enum Step<G = GridId> {
     /// Runs a program over a window, block by block.
     Fill {
         /// The program.
-        program: Program,
+        program: Program<G>,
         /// The window.
         window: Window,
         /// The grids for its outputs (empty if scattered).
-        out: Vec<usize>,
+        out: Vec<GridId>,
     },
     /// Applies a filter.
     Apply {
         /// The node.
-        node: usize,
+        node: NodeId,
         /// The grids of its inputs, each covering at least the window grown by the halo.
-        inputs: Vec<Option<usize>>,
+        inputs: Vec<Option<G>>,
         /// The window.
         window: Window,
         /// Halo, in samples.
         halo: usize,
         /// The grids for its layers; `None` for a layer that is not read.
-        out: Vec<Option<usize>>,
+        out: Vec<Option<GridId>>,
     },
 }
 
@@ -104,16 +106,29 @@ pub enum Step {
 pub struct GridSlot {
     /// Its window.
     pub window: Window,
-    /// The node it holds.
-    pub node: usize,
-    /// The last step that reads it; the number of steps for an output.
-    pub last_use: usize,
+    /// The node it holds; `None` for a constant.
+    pub node: Option<NodeId>,
+    /// The last step that reads it; `None` for an output, which is kept.
+    pub last_use: Option<StepId>,
+}
+
+impl<G> Step<G> {
+    /// The step with other grids in place of those that it reads.
+    pub(super) fn resolve<H>(self, grid: impl Fn(G) -> Result<H>) -> Result<Step<H>> {
+        Ok(match self {
+            Step::Fill { program, window, out } => Step::Fill { program: program.resolve(grid)?, window, out },
+            Step::Apply { node, inputs, window, halo, out } => {
+                let inputs = inputs.into_iter().map(|input| input.map(&grid).transpose()).collect::<Result<_>>()?;
+                Step::Apply { node, inputs, window, halo, out }
+            }
+        })
+    }
 }
 
 impl Step {
     /// The grids that it reads.
     #[must_use]
-    pub fn reads(&self) -> Vec<usize> {
+    pub fn reads(&self) -> Vec<GridId> {
         match self {
             Step::Fill { program, .. } => program
                 .instructions
@@ -129,7 +144,7 @@ impl Step {
 
     /// The grids that it makes.
     #[must_use]
-    pub fn writes(&self) -> Vec<usize> {
+    pub fn writes(&self) -> Vec<GridId> {
         match self {
             Step::Fill { out, .. } => out.clone(),
             Step::Apply { out, .. } => out.iter().flatten().copied().collect(),
@@ -188,7 +203,7 @@ impl Plan {
 
     /// The solvers that its steps read.
     #[must_use]
-    pub fn solvers_read(&self) -> BTreeSet<usize> {
+    pub fn solvers_read(&self) -> BTreeSet<NodeId> {
         let mut read = BTreeSet::new();
         for step in &self.steps {
             let Step::Fill { program, .. } = step else { continue };
@@ -205,61 +220,5 @@ impl Plan {
     #[must_use]
     pub fn samples(&self) -> u64 {
         self.steps.iter().fold(0u64, |sum, step| sum.saturating_add(step.window().len() as u64))
-    }
-}
-
-/// The serialised form of a plan.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-struct StoredPlan {
-    orogen: String,
-    checksum: Key,
-    recipe: Key,
-    window: Window,
-    scattered: bool,
-    solves: Vec<Solve>,
-    steps: Vec<Step>,
-    grids: Vec<GridSlot>,
-    outputs: Vec<usize>,
-}
-
-/// SHA-256 of a plan's debug text, which distinguishes all bits except those of NaNs.
-fn checksum(plan: &Plan) -> Key {
-    struct Text(Sha256);
-    impl Write for Text {
-        fn write_str(&mut self, text: &str) -> fmt::Result {
-            self.0.update(text.as_bytes());
-            Ok(())
-        }
-    }
-    let mut text = Text(Sha256::new());
-    // Hashing cannot fail.
-    let _ = write!(text, "{plan:?}");
-    text.0.finalize().into()
-}
-
-impl From<Plan> for StoredPlan {
-    fn from(plan: Plan) -> StoredPlan {
-        let checksum = checksum(&plan);
-        let Plan { recipe, window, scattered, solves, steps, grids, outputs } = plan;
-        let orogen = env!("CARGO_PKG_VERSION").to_string();
-        StoredPlan { orogen, checksum, recipe, window, scattered, solves, steps, grids, outputs }
-    }
-}
-
-impl TryFrom<StoredPlan> for Plan {
-    type Error = String;
-
-    fn try_from(stored: StoredPlan) -> Result<Plan, String> {
-        let StoredPlan { orogen, checksum: expected, recipe, window, scattered, solves, steps, grids, outputs } =
-            stored;
-        let own = env!("CARGO_PKG_VERSION");
-        if orogen != own {
-            return Err(format!("the plan was made by Orogen {orogen}, this is {own}: make the plan again"));
-        }
-        let plan = Plan { recipe, window, scattered, solves, steps, grids, outputs };
-        match checksum(&plan) == expected {
-            true => Ok(plan),
-            false => Err("the plan is damaged: its checksum does not match; make the plan again".into()),
-        }
     }
 }

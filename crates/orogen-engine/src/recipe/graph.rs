@@ -1,7 +1,8 @@
 //! The graph of a recipe's nodes: resolved names, order, keys.
 
 use super::document::{MAX_NODES, Recipe};
-use crate::declare::{Input, Spec};
+use crate::declare::{Input, MARGIN, Spec};
+use crate::ids::{Id, IndexVec, NodeId};
 use crate::layer::{Interpolation, LayerKind};
 use crate::node::Node;
 use crate::op::Op;
@@ -33,8 +34,8 @@ pub enum Link {
 /// A layer of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LayerRef {
-    /// Index of the node in the recipe.
-    pub node: usize,
+    /// The node, by its index in the recipe.
+    pub node: NodeId,
     /// Index of the layer among the node's layers.
     pub layer: usize,
 }
@@ -43,11 +44,11 @@ pub struct LayerRef {
 #[derive(Debug, Clone)]
 pub struct Graph {
     /// The inputs of each node, in the order of the declaration.
-    pub links: Vec<Vec<Link>>,
+    pub links: IndexVec<NodeId, Vec<Link>>,
     /// The mask of each node.
-    pub masks: Vec<Link>,
-    /// Node indices in an order where every node comes after those that it reads.
-    pub order: Vec<usize>,
+    pub masks: IndexVec<NodeId, Link>,
+    /// The nodes in an order where every node comes after those that it reads.
+    pub order: Vec<NodeId>,
     /// The targets of the outputs, in the recipe's order.
     pub outputs: Vec<Link>,
 }
@@ -104,14 +105,14 @@ impl Graph {
         if !resolver.diagnostics.is_empty() {
             return Err(resolver.diagnostics);
         }
-        let (links, masks) = linked.into_iter().unzip();
-        let mut graph = Graph { links, masks, order: Vec::new(), outputs };
+        let (links, masks): (Vec<Vec<Link>>, Vec<Link>) = linked.into_iter().unzip();
+        let mut graph = Graph { links: links.into(), masks: masks.into(), order: Vec::new(), outputs };
         graph.order = graph.sort().map_err(|cycle| vec![graph.cycle_fault(&cycle, recipe)])?;
         Ok(graph)
     }
 
     /// The nodes that a node reads, including its mask.
-    pub fn sources(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
+    pub fn sources(&self, node: NodeId) -> impl Iterator<Item = NodeId> + '_ {
         self.links[node].iter().chain([&self.masks[node]]).filter_map(|link| match link {
             Link::Node(target) => Some(target.node),
             _ => None,
@@ -119,16 +120,17 @@ impl Graph {
     }
 
     /// Kahn's algorithm; nodes keep the order of the text where possible. On failure, the nodes of a cycle.
-    fn sort(&self) -> Result<Vec<usize>, Vec<usize>> {
+    fn sort(&self) -> Result<Vec<NodeId>, Vec<NodeId>> {
         let count = self.links.len();
-        let mut waiting: Vec<usize> = (0..count).map(|node| self.sources(node).count()).collect();
-        let mut readers: Vec<Vec<usize>> = vec![Vec::new(); count];
-        for node in 0..count {
+        let nodes = || (0..count).map(NodeId::new);
+        let mut waiting: IndexVec<NodeId, usize> = nodes().map(|node| self.sources(node).count()).collect();
+        let mut readers: IndexVec<NodeId, Vec<NodeId>> = vec![Vec::new(); count].into();
+        for node in nodes() {
             for source in self.sources(node) {
                 readers[source].push(node);
             }
         }
-        let mut ready: BTreeSet<usize> = (0..count).filter(|&node| waiting[node] == 0).collect();
+        let mut ready: BTreeSet<NodeId> = nodes().filter(|&node| waiting[node] == 0).collect();
         let mut order = Vec::with_capacity(count);
         while let Some(node) = ready.pop_first() {
             order.push(node);
@@ -143,10 +145,10 @@ impl Graph {
             return Ok(order);
         }
         // Every remaining node reads another one that remains: going upstream must repeat.
-        let left = |node: &usize| waiting[*node] > 0;
-        let mut path: Vec<usize> = Vec::new();
-        let mut step: HashMap<usize, usize> = HashMap::new();
-        let mut at = (0..count).find(|node| left(node));
+        let left = |node: &NodeId| waiting[*node] > 0;
+        let mut path: Vec<NodeId> = Vec::new();
+        let mut step: HashMap<NodeId, usize> = HashMap::new();
+        let mut at = nodes().find(|node| left(node));
         while let Some(node) = at {
             if let Some(&first) = step.get(&node) {
                 let mut cycle = path.split_off(first);
@@ -160,11 +162,11 @@ impl Graph {
         Err(path)
     }
 
-    fn cycle_fault(&self, cycle: &[usize], recipe: &Recipe) -> GraphDiagnostic {
-        let name = |node: usize| recipe.nodes()[node].name.as_str();
-        let reader = cycle.first().copied().unwrap_or(0);
-        let source = cycle.last().copied().unwrap_or(0);
-        let inputs = recipe.nodes()[reader].node.inputs();
+    fn cycle_fault(&self, cycle: &[NodeId], recipe: &Recipe) -> GraphDiagnostic {
+        let name = |node: NodeId| recipe.nodes()[node.index()].name.as_str();
+        let reader = cycle.first().copied().unwrap_or(NodeId::new(0));
+        let source = cycle.last().copied().unwrap_or(reader);
+        let inputs = recipe.nodes()[reader.index()].node.inputs();
         let key = self.links[reader]
             .iter()
             .position(|link| matches!(link, Link::Node(target) if target.node == source))
@@ -180,7 +182,7 @@ impl Graph {
             names.push(name(reader));
             format!("these nodes form a cycle: {}; one of them must read something else", names.join(" -> "))
         };
-        GraphDiagnostic { at: At::Node(reader, key.to_string()), message }
+        GraphDiagnostic { at: At::Node(reader.index(), key.to_string()), message }
     }
 
     /// The error for diagnostics without a text.
@@ -197,7 +199,7 @@ impl Graph {
     pub fn layer_kind(&self, recipe: &Recipe, target: LayerRef) -> LayerKind {
         let mut at = target;
         loop {
-            match recipe.nodes()[at.node].node.layers().get(at.layer).map(|layer| layer.interpolation) {
+            match recipe.nodes()[at.node.index()].node.layers().get(at.layer).map(|layer| layer.interpolation) {
                 Some(Interpolation::As(kind)) => return kind,
                 Some(Interpolation::AsSource) => match self.links[at.node].first() {
                     Some(Link::Node(source)) => at = *source,
@@ -226,10 +228,10 @@ fn named(recipe: &Recipe, text: &str, find: impl Fn(&str) -> Option<usize>) -> R
         let names = recipe.nodes().iter().map(|node| node.name.as_str());
         return Err(format!("unknown node `{shown}`; {}", suggestion(node, names)));
     };
-    let Some(layer) = layer else { return Ok(LayerRef { node: index, layer: 0 }) };
+    let Some(layer) = layer else { return Ok(LayerRef { node: NodeId::new(index), layer: 0 }) };
     let layers = recipe.nodes()[index].node.layers();
     match layers.iter().position(|known| known.name == layer) {
-        Some(layer) => Ok(LayerRef { node: index, layer }),
+        Some(layer) => Ok(LayerRef { node: NodeId::new(index), layer }),
         None => {
             let shown: String = layer.chars().take(SHOWN).collect();
             let names = layers.iter().map(|layer| layer.name);
@@ -299,6 +301,7 @@ impl<'a> Resolver<'a> {
             self.check_registered(index, named.node.spec());
         }
         self.check_params(index, &named.node);
+        self.check_domain(index, &named.node);
         let needs_bounds = match named.node.op() {
             Op::Solver(_) => Some("looks at the whole world"),
             Op::Field(field) if field.needs_bounds() => Some("needs the edges of the world"),
@@ -338,6 +341,24 @@ impl<'a> Resolver<'a> {
         }
         if sound && let Err((key, message)) = node.consistent() {
             self.diagnostic(At::Node(index, key.to_string()), message);
+        }
+    }
+
+    /// A domain with a margin may have more samples than the world.
+    fn check_domain(&mut self, index: usize, node: &Node) {
+        let (Op::Solver(solver), Some([width, height]), Some(margin)) =
+            (node.op(), self.recipe.world.size, node.margin())
+        else {
+            return;
+        };
+        let cell = solver.cell(self.recipe.world.cell);
+        let most = (width.max(height) + 2.0 * margin) / cell;
+        if margin > 0.0 && most > MAX_SAMPLES {
+            let message = format!(
+                "node `{}`: the world and a `margin` of {margin} m would have {most:.0} samples along a side at a cell of {cell} m; at most {MAX_SAMPLES:.0} are allowed. Lower `margin` or raise `cell`",
+                self.recipe.nodes()[index].name
+            );
+            self.diagnostic(At::Node(index, MARGIN.to_string()), message);
         }
     }
 

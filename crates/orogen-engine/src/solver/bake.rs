@@ -10,6 +10,7 @@ op! {
     /// sizes), or what would need a halo larger than a tile. Values between samples are interpolated as the source's layer is (heights by a
     /// cubic). At the samples themselves readers get the stored values bit for bit. Detail finer than the cell is lost.
     pub struct Bake = "bake", solver, revision 1;
+    margin;
     inputs {
         /// The values to store.
         source: required,

@@ -1,12 +1,11 @@
 //! Depression breaching.
 
+use super::terrain::{Terrain, memory};
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
+use orogen_grid::hydrology::breach;
 use orogen_grid::hydrology::least_cost::{self, Limits};
-use orogen_grid::hydrology::outlets::Outlets;
-use orogen_grid::hydrology::steepest::Descent;
-use orogen_grid::hydrology::{breach, drainage};
 
 choice! {
     /// Route of the breach channels.
@@ -27,6 +26,7 @@ op! {
     /// as necessary (`way = "valley"`) or filled completely (`"least-cost"`). In the result water never runs uphill; channel beds and
     /// filled ground are level. Time and memory grow with the world: 30 bytes per cell for `"valley"`, 60 for `"least-cost"`.
     pub struct Breach = "breach", solver, revision 1;
+    margin;
     inputs {
         /// The heights.
         source: required,
@@ -55,7 +55,7 @@ impl Solver for Breach {
             Way::Valley => 30,
             Way::LeastCost => 60,
         };
-        padded.len() as u64 * each
+        memory(padded, each)
     }
 
     fn reads_sea_level(&self) -> bool {
@@ -63,22 +63,21 @@ impl Solver for Breach {
     }
 
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
-        let mut heights = sources.whole(0, sources.padded())?;
-        context.progress.check()?;
-        let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
+        let land = Terrain::read(sources, self.sea, context)?;
         let deepest = self.deepest as f32;
         let out = match self.way {
             Way::Valley => {
-                let drainage = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, context.progress)?;
-                breach::breach(&heights, &outlets, &drainage, deepest)
+                let drainage = land.route(context.progress)?;
+                breach::breach(&land.heights, &land.outlets, &drainage, deepest)
             }
             Way::LeastCost => {
-                let longest = (self.longest / heights.window().cell).min(f64::from(u32::MAX)) as u32;
-                least_cost::breach(&heights, &outlets, &Limits { deepest, longest }, context.progress)?
+                let longest = (self.longest / land.heights.window().cell).min(f64::from(u32::MAX)) as u32;
+                least_cost::breach(&land.heights, &land.outlets, &Limits { deepest, longest }, context.progress)?
             }
         };
-        heights.data_mut().iter_mut().zip(out.data()).for_each(|(change, new)| *change = new - *change);
-        Ok(Solution { layers: vec![sources.keep(out)?, sources.keep(heights)?], scalars: Vec::new() })
+        let mut change = land.heights;
+        change.data_mut().iter_mut().zip(out.data()).for_each(|(change, new)| *change = new - *change);
+        Ok(Solution { layers: vec![sources.keep(out)?, sources.keep(change)?], scalars: Vec::new() })
     }
 
     fn cost(&self) -> f64 {

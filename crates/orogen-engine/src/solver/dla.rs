@@ -1,5 +1,6 @@
 //! Mountains from diffusion-limited aggregation.
 
+use super::terrain::memory;
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::aggregate::relief::{self, Ridges};
 use orogen_grid::error::Result;
@@ -15,6 +16,7 @@ op! {
     /// cell adds finer spurs and leaves the rest in place. The result has no valleys carved by water: put `stream-power` after it. Time
     /// grows with the world, about 0.3 microseconds per cell; memory is up to 120 bytes per cell.
     pub struct Dla = "dla", solver, revision 1;
+    margin;
     params {
         /// Height of the highest summit.
         height: f64 = 2500.0, unit "m", range 0.0 to 1e6;
@@ -38,11 +40,11 @@ op! {
 impl Solver for Dla {
     fn scratch(&self, padded: &Window) -> u64 {
         // The grid is up to twice as fine as the world in each direction.
-        padded.len() as u64 * 4 * 30
+        memory(padded, 4 * 30)
     }
 
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
-        let (world, padded) = (sources.world(), sources.padded());
+        let (domain, padded) = (sources.domain(), sources.padded());
         let ridges = Ridges {
             seed: context.world_params.seed_of(self.seed),
             reach: self.reach,
@@ -50,11 +52,11 @@ impl Solver for Dla {
             gain: self.gain,
             taper: self.taper,
         };
-        let (across, down, map) = relief::heights(world.width, world.height, &ridges, context.progress)?;
+        let (across, down, map) = relief::heights(domain.width, domain.height, &ridges, context.progress)?;
         context.progress.check()?;
         let summit = map.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
         let factor = self.height as f32 / summit;
-        let longest = world.width.max(world.height).saturating_sub(1).max(1) as f64;
+        let longest = domain.width.max(domain.height).saturating_sub(1).max(1) as f64;
         let fine = across.max(down) as f64;
         let mut out = Grid::filled(*padded, 0.0f32);
         let samples = map.into_iter().map(|h| h * factor).collect();
@@ -62,8 +64,8 @@ impl Solver for Dla {
             .unwrap_or_else(|| Grid::filled(Window::new(1, 1, 1.0), 0.0));
         // Cells of the relief per cell of the world, from centre to centre.
         let along = |i: i64, count: usize| ((i as f64 / longest * fine) - 0.5).clamp(0.0, count as f64 - 1.0);
-        let rows: Vec<f64> = (0..padded.height).map(|j| along(padded.y + j as i64 - world.y, down)).collect();
-        let columns: Vec<f64> = (0..padded.width).map(|i| along(padded.x + i as i64 - world.x, across)).collect();
+        let rows: Vec<f64> = (0..padded.height).map(|j| along(padded.y + j as i64 - domain.y, down)).collect();
+        let columns: Vec<f64> = (0..padded.width).map(|i| along(padded.x + i as i64 - domain.x, across)).collect();
         for (j, y) in rows.iter().enumerate() {
             for (sample, x) in out.row_mut(j).iter_mut().zip(&columns) {
                 *sample = between(&map, *x, *y);

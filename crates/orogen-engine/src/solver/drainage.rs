@@ -1,13 +1,11 @@
 //! Drainage: flow directions, drainage areas, watersheds and stream order.
 
+use super::terrain::{Terrain, TiledTerrain, cells_of, layer_of, memory};
 use crate::large::areas::Layers;
-use crate::large::drainage::{self as large, Water};
-use crate::large::tiling::Tiling;
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::error::Result;
-use orogen_grid::grid::{Grid, Window};
+use orogen_grid::grid::Window;
 use orogen_grid::hydrology::accumulation::accumulate;
-use orogen_grid::hydrology::outlets::Outlets;
 use orogen_grid::hydrology::steepest::Descent;
 use orogen_grid::hydrology::{drainage, fill, strahler, watersheds};
 
@@ -30,6 +28,7 @@ op! {
     /// cells, so they are exact. Time and memory grow with the world, 54 bytes per cell; with less memory available, flow is routed tile by
     /// tile on disk (Barnes 2016).
     pub struct Drainage = "drainage", solver, revision 1;
+    margin;
     inputs {
         /// The heights.
         source: required,
@@ -63,11 +62,11 @@ impl Solver for Drainage {
 
     fn scratch(&self, padded: &Window) -> u64 {
         // In memory there is one raster less than on disk.
-        padded.len() as u64 * 30
+        memory(padded, 30)
     }
 
     fn scratch_on_disk(&self, padded: &Window) -> u64 {
-        large::memory(padded.len() as u64)
+        TiledTerrain::memory(padded)
     }
 
     fn reads_sea_level(&self) -> bool {
@@ -78,11 +77,10 @@ impl Solver for Drainage {
         if sources.on_disk() {
             return self.solve_on_disk(sources, context);
         }
-        let heights = sources.whole(0, sources.padded())?;
-        context.progress.check()?;
-        let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
+        let land = Terrain::read(sources, self.sea, context)?;
         let [bed, surface, counting, naming] = context.progress.parts([3.0, 1.0, 1.0, 2.0]);
-        let drained = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, &bed)?;
+        let drained = land.route(&bed)?;
+        let Terrain { heights, outlets } = land;
         let filled = fill::filled(&heights, &drained.basins);
         drop(heights);
         context.progress.check()?;
@@ -96,17 +94,17 @@ impl Solver for Drainage {
         counting.finish();
         context.progress.check()?;
         let cell_area = receivers.window().cell * receivers.window().cell;
-        let threshold = self.threshold(receivers.window());
-        let flow = as_samples(&accumulation.area, |cells| (f64::from(cells) * cell_area) as f32);
+        let threshold = cells_of(self.stream, receivers.window(), 0);
+        let flow = layer_of(&accumulation.area, |cells| (f64::from(cells) * cell_area) as f32);
         naming.expect(2.0);
         let watersheds = watersheds::watersheds(&receivers, &outlets, &accumulation);
         naming.advance(1.0);
         context.progress.check()?;
         let layers = vec![
             sources.keep(flow)?,
-            sources.keep(as_samples(receivers.grid(), f32::from))?,
-            sources.keep(as_samples(&watersheds, |n| n as f32))?,
-            sources.keep(as_samples(&strahler::orders(&receivers, &accumulation, threshold), f32::from))?,
+            sources.keep(layer_of(receivers.grid(), f32::from))?,
+            sources.keep(layer_of(&watersheds, |n| n as f32))?,
+            sources.keep(layer_of(&strahler::orders(&receivers, &accumulation, threshold), f32::from))?,
             filled,
         ];
         Ok(Solution { layers, scalars: Vec::new() })
@@ -118,34 +116,19 @@ impl Solver for Drainage {
 }
 
 impl Drainage {
-    /// The minimum number of cells that a stream drains.
-    fn threshold(&self, window: &Window) -> u32 {
-        (self.stream / (window.cell * window.cell)).ceil().min(f64::from(u32::MAX)) as u32
-    }
-
     /// Tile by tile.
     fn solve_on_disk(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
-        let mut heights = sources.raster()?;
-        sources.each_tile(0, sources.padded(), &mut |tile| heights.put(tile))?;
+        let land = TiledTerrain::read(sources, self.sea, context)?;
         let (mut codes, mut filled) = (sources.raster()?, sources.raster()?);
-        let padded = *sources.padded();
-        let tiling = Tiling::new(padded, large::side(padded.len() as u64));
-        let sea = self.sea.then_some(context.world_params.sea_level as f32);
-        let water = Water { heights: &heights, sea, tiling, progress: context.progress };
-        water.route_carving(&mut codes, &mut filled)?;
-        let water = Water { heights: &filled, ..water };
+        land.water(&land.heights, context.progress).route_carving(&mut codes, &mut filled)?;
+        let water = land.water(&filled, context.progress);
         if self.over == Over::Surface {
             water.over_surface(&mut codes)?;
         }
-        let threshold = u64::from(self.threshold(sources.padded()));
+        let threshold = u64::from(cells_of(self.stream, sources.padded(), 0));
         let [mut flow, mut watershed, mut strahler] = [sources.raster()?, sources.raster()?, sources.raster()?];
         let layers = Layers { flow: &mut flow, watershed: &mut watershed, strahler: &mut strahler, threshold };
         water.areas(&codes, layers)?;
         Ok(Solution { layers: vec![flow, codes, watershed, strahler, filled], scalars: Vec::new() })
     }
-}
-
-fn as_samples<T: Copy>(grid: &Grid<T>, value: impl Fn(T) -> f32) -> Grid {
-    let data = grid.data().iter().map(|sample| value(*sample)).collect();
-    Grid::from_data(*grid.window(), data).unwrap_or_else(|| Grid::filled(*grid.window(), 0.0))
 }

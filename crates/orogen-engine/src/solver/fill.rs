@@ -1,13 +1,10 @@
 //! Depression filling.
 
-use crate::large::drainage::{self as large, Water};
-use crate::large::tiling::Tiling;
+use super::terrain::{Terrain, TiledTerrain, memory};
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
-use orogen_grid::hydrology::outlets::Outlets;
-use orogen_grid::hydrology::steepest::Descent;
-use orogen_grid::hydrology::{drainage, fill};
+use orogen_grid::hydrology::fill;
 
 op! {
     /// The source with every depression filled to the level of its spill point.
@@ -17,6 +14,7 @@ op! {
     /// (Cordonnier, Bovy and Braun 2019). Filled ground is level. Time and memory grow with the world, 24 bytes per cell; with less memory
     /// available, filling works tile by tile on disk (Barnes 2016).
     pub struct Fill = "fill", solver, revision 1;
+    margin;
     inputs {
         /// The heights.
         source: required,
@@ -40,11 +38,11 @@ impl Solver for Fill {
 
     fn scratch(&self, padded: &Window) -> u64 {
         // In memory there is one raster less than on disk.
-        padded.len() as u64 * 16
+        memory(padded, 16)
     }
 
     fn scratch_on_disk(&self, padded: &Window) -> u64 {
-        large::memory(padded.len() as u64)
+        TiledTerrain::memory(padded)
     }
 
     fn reads_sea_level(&self) -> bool {
@@ -55,13 +53,11 @@ impl Solver for Fill {
         if sources.on_disk() {
             return self.solve_on_disk(sources, context);
         }
-        let heights = sources.whole(0, sources.padded())?;
-        context.progress.check()?;
-        let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
-        let drained = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, context.progress)?;
-        let filled = fill::filled(&heights, &drained.basins);
+        let land = Terrain::read(sources, self.sea, context)?;
+        let drained = land.route(context.progress)?;
+        let filled = fill::filled(&land.heights, &drained.basins);
         drop(drained);
-        let depth = difference(&filled, heights);
+        let depth = difference(&filled, land.heights);
         Ok(Solution { layers: vec![sources.keep(filled)?, sources.keep(depth)?], scalars: Vec::new() })
     }
 
@@ -73,13 +69,10 @@ impl Solver for Fill {
 impl Fill {
     /// Tile by tile.
     fn solve_on_disk(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
-        let [mut heights, mut filled, mut codes] = [sources.raster()?, sources.raster()?, sources.raster()?];
-        sources.each_tile(0, sources.padded(), &mut |tile| heights.put(tile))?;
-        let sea = self.sea.then_some(context.world_params.sea_level as f32);
-        let padded = *sources.padded();
-        let tiling = Tiling::new(padded, large::side(padded.len() as u64));
-        let water = Water { heights: &heights, sea, tiling, progress: context.progress };
-        water.route_carving(&mut codes, &mut filled)?;
+        let land = TiledTerrain::read(sources, self.sea, context)?;
+        let [mut filled, mut codes] = [sources.raster()?, sources.raster()?];
+        land.water(&land.heights, context.progress).route_carving(&mut codes, &mut filled)?;
+        let TiledTerrain { mut heights, tiling, .. } = land;
         for t in 0..tiling.count() {
             heights.put(&difference(&filled.get(&tiling.tile(t))?, heights.get(&tiling.tile(t))?))?;
         }

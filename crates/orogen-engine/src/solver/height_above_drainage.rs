@@ -1,14 +1,13 @@
 //! Height above nearest drainage and distance to streams.
 
+use super::terrain::{Terrain, cells_of, layer_of, memory};
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::analysis::distance::nearest_in_whole;
 use orogen_grid::error::Result;
-use orogen_grid::grid::{Grid, Window};
+use orogen_grid::grid::Window;
 use orogen_grid::hydrology::above_drainage::above_drainage;
 use orogen_grid::hydrology::accumulation::accumulate;
-use orogen_grid::hydrology::outlets::Outlets;
-use orogen_grid::hydrology::steepest::Descent;
-use orogen_grid::hydrology::{drainage, fill};
+use orogen_grid::hydrology::fill;
 
 op! {
     /// Height above nearest drainage (HAND), and the distance to the nearest stream along the flow and in a straight line.
@@ -18,6 +17,7 @@ op! {
     /// 2011), so it is never negative. Ground that reaches the sea or the world's border before a stream is measured down to that outlet.
     /// Time and memory grow with the world, 56 bytes per cell.
     pub struct HeightAboveDrainage = "height-above-drainage", solver, revision 1;
+    margin;
     inputs {
         /// The heights.
         source: required,
@@ -40,7 +40,7 @@ op! {
 
 impl Solver for HeightAboveDrainage {
     fn scratch(&self, padded: &Window) -> u64 {
-        padded.len() as u64 * 56
+        memory(padded, 56)
     }
 
     fn reads_sea_level(&self) -> bool {
@@ -48,28 +48,23 @@ impl Solver for HeightAboveDrainage {
     }
 
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
-        let heights = sources.whole(0, sources.padded())?;
-        context.progress.check()?;
-        let window = *heights.window();
-        let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
+        let land = Terrain::read(sources, self.sea, context)?;
+        let window = *land.heights.window();
         let [routing, counting, following, nearing] = context.progress.parts([4.0, 1.0, 1.0, 2.0]);
-        let drained = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, &routing)?;
-        let filled = fill::filled(&heights, &drained.basins);
-        drop(heights);
+        let drained = land.route(&routing)?;
+        let filled = fill::filled(&land.heights, &drained.basins);
+        drop(land);
         let receivers = drained.receivers;
         context.progress.check()?;
         let areas = accumulate(&receivers);
         counting.finish();
         context.progress.check()?;
-        let threshold = (self.stream / (window.cell * window.cell)).ceil().clamp(1.0, f64::from(u32::MAX)) as u32;
+        let threshold = cells_of(self.stream, &window, 1);
         let found = above_drainage(filled, &receivers, &areas, threshold);
         let layers = [sources.keep(found.height)?, sources.keep(found.distance)?];
         following.finish();
         context.progress.check()?;
-        let mut streams = Grid::filled(window, 0.0f32);
-        for (stream, area) in streams.data_mut().iter_mut().zip(areas.area.data()) {
-            *stream = f32::from(u8::from(*area >= threshold));
-        }
+        let streams = layer_of(&areas.area, |area| f32::from(u8::from(area >= threshold)));
         drop((areas, receivers));
         let mut distance = nearest_in_whole(&streams, 1.0);
         let (across, down) = (window.width as f64, window.height as f64);

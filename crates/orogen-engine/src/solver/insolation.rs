@@ -1,5 +1,6 @@
 //! Solar energy that the ground receives.
 
+use super::terrain::{self, memory};
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::analysis::clear_sky::ClearSky;
 use orogen_grid::analysis::insolation::{Period, insolation};
@@ -15,6 +16,7 @@ op! {
     /// middle of each `step` represents the step. Shadows have no maximum length; the earth's curvature is neglected. Time grows with the
     /// world and the number of sun positions: about 25 per day, 300 for a year. Memory is 28 bytes per cell.
     pub struct Insolation = "insolation", solver, revision 1;
+    margin;
     inputs {
         /// Heights above sea level.
         source: required,
@@ -39,11 +41,11 @@ op! {
 
 impl Solver for Insolation {
     fn scratch(&self, padded: &Window) -> u64 {
-        padded.len() as u64 * 28
+        memory(padded, 28)
     }
 
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
-        let heights = sources.whole(0, sources.padded())?;
+        let heights = terrain::heights(sources, context)?;
         let period = Period { latitude: self.latitude, days: self.days.map(|day| day.round() as u16), step: self.step };
         let sky = ClearSky { turbidity: self.turbidity, albedo: self.albedo };
         let energy = insolation(&heights, &period, &sky, context.progress)?;

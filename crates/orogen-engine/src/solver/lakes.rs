@@ -1,11 +1,10 @@
 //! Lakes in depressions.
 
+use super::terrain::{Terrain, cells_of, layer_of, memory};
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::error::Result;
-use orogen_grid::grid::{Grid, Window};
-use orogen_grid::hydrology::outlets::Outlets;
-use orogen_grid::hydrology::steepest::Descent;
-use orogen_grid::hydrology::{drainage, lakes};
+use orogen_grid::grid::Window;
+use orogen_grid::hydrology::lakes;
 
 op! {
     /// Depressions of the source filled with water up to their spill point. Small depressions are filled with ground instead.
@@ -14,6 +13,7 @@ op! {
     /// small for a lake is raised to a gentle slope of 1 in 10 000 until water runs off. Time and memory grow with the world, 35 bytes per
     /// cell.
     pub struct Lakes = "lakes", solver, revision 1;
+    margin;
     inputs {
         /// The heights.
         source: required,
@@ -38,7 +38,7 @@ op! {
 
 impl Solver for Lakes {
     fn scratch(&self, padded: &Window) -> u64 {
-        padded.len() as u64 * 35
+        memory(padded, 35)
     }
 
     fn reads_sea_level(&self) -> bool {
@@ -46,22 +46,18 @@ impl Solver for Lakes {
     }
 
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
-        let heights = sources.whole(0, sources.padded())?;
-        context.progress.check()?;
-        let window = *heights.window();
-        let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
+        let land = Terrain::read(sources, self.sea, context)?;
         let [routing, filling] = context.progress.parts([1.0, 3.0]);
-        let drainage = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, &routing)?;
-        let fewest = (self.smallest / (window.cell * window.cell)).ceil().clamp(4.0, f64::from(u32::MAX)) as u32;
-        let found = lakes::lakes_with(&heights, &outlets, &drainage, fewest, &filling)?;
-        let mut depth = heights;
+        let drainage = land.route(&routing)?;
+        let fewest = cells_of(self.smallest, land.heights.window(), 4);
+        let found = lakes::lakes_with(&land.heights, &land.outlets, &drainage, fewest, &filling)?;
+        let mut depth = land.heights;
         for (depth, (surface, bed)) in
             depth.data_mut().iter_mut().zip(found.surface.data().iter().zip(found.bed.data()))
         {
             *depth = surface - bed;
         }
-        let labels = found.labels.data().iter().map(|label| *label as f32).collect();
-        let labels = Grid::from_data(window, labels).unwrap_or_else(|| Grid::filled(window, 0.0));
+        let labels = layer_of(&found.labels, |label| label as f32);
         let layers = [found.bed, depth, found.surface, labels];
         let layers = layers.into_iter().map(|grid| sources.keep(grid)).collect::<Result<Vec<_>>>()?;
         Ok(Solution { layers, scalars: Vec::new() })

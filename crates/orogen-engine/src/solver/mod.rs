@@ -12,4 +12,5 @@ pub mod lakes;
 pub mod normalise;
 pub mod rivers;
 pub mod stream_power;
+pub mod terrain;
 pub mod viewshed;

@@ -11,6 +11,7 @@ op! {
     /// Minimum and maximum are computed once, on the world's own lattice; all tiles at all resolutions are scaled by the same two values. A
     /// source without relief becomes `low`. Samples that are not finite are ignored.
     pub struct Normalise = "normalise", solver, revision 1;
+    margin;
     inputs {
         /// The values to scale.
         source: required,
@@ -34,7 +35,7 @@ impl Solver for Normalise {
 
     fn solve(&self, sources: &dyn Sources, _: &Context) -> Result<Solution> {
         let mut range = NOTHING;
-        sources.each_tile(0, sources.world(), &mut |tile| {
+        sources.each_tile(0, sources.domain(), &mut |tile| {
             range = join(range, range_of(tile));
             Ok(())
         })?;

@@ -1,13 +1,12 @@
 //! Rivers and their beds.
 
+use super::terrain::{Terrain, cells_of, layer, layer_of, memory};
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::error::Result;
-use orogen_grid::grid::{Grid, Window};
+use orogen_grid::grid::Window;
 use orogen_grid::hydrology::accumulation::accumulate;
-use orogen_grid::hydrology::outlets::Outlets;
 use orogen_grid::hydrology::rivers::{Channel, carve};
-use orogen_grid::hydrology::steepest::Descent;
-use orogen_grid::hydrology::{breach, drainage, strahler};
+use orogen_grid::hydrology::{breach, strahler};
 
 op! {
     /// Rivers where the drainage area is large enough, with beds cut into the source that descend all the way downstream.
@@ -16,6 +15,7 @@ op! {
     /// metres deep (Leopold and Maddock 1953). Its bed is cut by that depth into the cells that it crosses, whatever its width. Time and
     /// memory grow with the world, 40 bytes per cell.
     pub struct Rivers = "rivers", solver, revision 1;
+    margin;
     inputs {
         /// The heights.
         source: required,
@@ -48,7 +48,7 @@ op! {
 
 impl Solver for Rivers {
     fn scratch(&self, padded: &Window) -> u64 {
-        padded.len() as u64 * 40
+        memory(padded, 40)
     }
 
     fn reads_sea_level(&self) -> bool {
@@ -56,21 +56,19 @@ impl Solver for Rivers {
     }
 
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
-        let heights = sources.whole(0, sources.padded())?;
-        context.progress.check()?;
-        let window = *heights.window();
-        let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
+        let land = Terrain::read(sources, self.sea, context)?;
+        let window = *land.heights.window();
         let [routing, breaching, counting, carving] = context.progress.parts([2.0, 1.0, 1.0, 2.0]);
-        let drainage = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, &routing)?;
-        let mut ground = breach::breach(&heights, &outlets, &drainage, self.deepest as f32);
-        drop(heights);
+        let drainage = land.route(&routing)?;
+        let mut ground = breach::breach(&land.heights, &land.outlets, &drainage, self.deepest as f32);
+        drop(land);
         breaching.finish();
         context.progress.check()?;
         let drained = accumulate(&drainage.receivers);
         counting.finish();
         context.progress.check()?;
         let cell_area = window.cell * window.cell;
-        let threshold = (self.stream / cell_area).ceil().clamp(1.0, f64::from(u32::MAX)) as u32;
+        let threshold = cells_of(self.stream, &window, 1);
         let orders = strahler::orders(&drainage.receivers, &drained, threshold);
         let channel = Channel { runoff: self.runoff, width: self.width, depth: self.depth };
         context.progress.check()?;
@@ -81,9 +79,9 @@ impl Solver for Rivers {
         let wide = |c: usize| if orders.data()[c] > 0 { channel.width_of(channel.discharge(area(c))) } else { 0.0 };
         let layers = vec![
             sources.keep(ground)?,
-            sources.keep(made(window, area))?,
-            sources.keep(made(window, wide))?,
-            sources.keep(made(window, |c| f64::from(orders.data()[c])))?,
+            sources.keep(layer(window, |c| area(c) as f32))?,
+            sources.keep(layer(window, |c| wide(c) as f32))?,
+            sources.keep(layer_of(&orders, f32::from))?,
         ];
         Ok(Solution { layers, scalars: Vec::new() })
     }
@@ -91,9 +89,4 @@ impl Solver for Rivers {
     fn cost(&self) -> f64 {
         100.0
     }
-}
-
-fn made(window: Window, value: impl Fn(usize) -> f64) -> Grid {
-    let data = (0..window.len()).map(|c| value(c) as f32).collect();
-    Grid::from_data(window, data).unwrap_or_else(|| Grid::filled(window, 0.0))
 }

@@ -1,5 +1,6 @@
 //! Stream power erosion with uplift.
 
+use super::terrain::{layer_of, memory, sea_level};
 use crate::declare::Declared;
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::error::Result;
@@ -19,6 +20,7 @@ op! {
     /// `uplift_factor` to vary rock and uplift over the world; uniform values look less real. The result depends on the cell size. Time
     /// grows with the world and the number of steps; memory is 45 bytes per cell, and 16 more if `jitter` is above 0.
     pub struct StreamPower = "stream-power", solver, revision 2;
+    margin;
     inputs {
         /// The initial heights.
         source: required,
@@ -75,7 +77,7 @@ impl Solver for StreamPower {
     }
 
     fn scratch(&self, padded: &Window) -> u64 {
-        padded.len() as u64 * if self.jitter > 0.0 { 61 } else { 45 }
+        memory(padded, if self.jitter > 0.0 { 61 } else { 45 })
     }
 
     fn reads_sea_level(&self) -> bool {
@@ -108,7 +110,7 @@ impl Solver for StreamPower {
             points: None,
         };
         let mut heights = source.clone();
-        let sea_level = self.sea.then_some(context.world_params.sea_level as f32);
+        let sea_level = sea_level(self.sea, context);
         let progress = context.progress;
         progress.expect(erosion.work());
         let observe = |done: u32, run: &ErosionRun, mut now: Grid| {
@@ -155,8 +157,7 @@ fn solution(sources: &dyn Sources, heights: Grid, drained: &Accumulation, source
         *change = height - *change;
     }
     let cell_area = window.cell * window.cell;
-    let flow = drained.area.data().iter().map(|cells| (f64::from(*cells) * cell_area) as f32).collect();
-    let flow = Grid::from_data(window, flow).unwrap_or_else(|| Grid::filled(window, 0.0));
+    let flow = layer_of(&drained.area, |cells| (f64::from(cells) * cell_area) as f32);
     let layers = vec![sources.keep(heights)?, sources.keep(flow)?, sources.keep(change)?];
     Ok(Solution { layers, scalars: Vec::new() })
 }

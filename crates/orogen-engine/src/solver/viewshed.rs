@@ -1,5 +1,6 @@
 //! Viewshed of an observer.
 
+use super::terrain::{self, memory};
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::analysis::viewshed::{BEYOND, Observer, hidden, sinking};
 use orogen_grid::error::Result;
@@ -12,6 +13,7 @@ op! {
     /// columns or rows that a line crosses, whichever are more. Time grows slightly faster than the world; blocks of hidden ground are
     /// skipped. Memory is 24 bytes per cell.
     pub struct Viewshed = "viewshed", solver, revision 1;
+    margin;
     inputs {
         /// The heights.
         source: required,
@@ -40,12 +42,11 @@ op! {
 
 impl Solver for Viewshed {
     fn scratch(&self, padded: &Window) -> u64 {
-        padded.len() as u64 * 24
+        memory(padded, 24)
     }
 
     fn solve(&self, sources: &dyn Sources, context: &Context) -> Result<Solution> {
-        let heights = sources.whole(0, sources.padded())?;
-        context.progress.check()?;
+        let heights = terrain::heights(sources, context)?;
         let window = *heights.window();
         let [east, south] = self.observer;
         let observer = Observer {

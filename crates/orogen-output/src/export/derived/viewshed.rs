@@ -80,6 +80,7 @@ pub static LAYER: Derived = Derived {
                 radius: number(&RADIUS, defaults.radius),
                 curvature: options.has(REFRACTION.name),
                 refraction: number(&REFRACTION, defaults.refraction),
+                ..defaults
             };
             Ok(to.add(node).layer("visible"))
         },

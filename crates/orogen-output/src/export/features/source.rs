@@ -1,7 +1,7 @@
 //! The terrain that features are made of: the heights of a window, and the water of the world around it.
 
 use super::options::FeatureOptions;
-use orogen_engine::plan::planner::world_windows;
+use orogen_engine::plan::domain::world_windows;
 use orogen_engine::world::{HEIGHT, World};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};

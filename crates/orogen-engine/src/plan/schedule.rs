@@ -1,0 +1,179 @@
+//! Ordering: from what is asked to steps, last step first, so that all requests for a node are known before the steps that serve them.
+
+use super::compile::{Scope, compile};
+use super::grid_merge::{Cluster, clusters};
+use super::keep::Evaluations;
+use super::request::{GridRequest, Requests};
+use super::steps::Step;
+use crate::ids::{GridId, Id, IndexVec, NodeId, RequestId};
+use crate::op::{Filter, Op};
+use crate::recipe::document::Recipe;
+use crate::recipe::graph::{Graph, LayerRef, Link};
+use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_grid::grid::Window;
+use std::collections::HashSet;
+
+/// What a plan is made for.
+#[derive(Clone, Copy)]
+pub struct Asked<'a> {
+    /// The layers.
+    pub targets: &'a [Link],
+    /// The window.
+    pub window: Window,
+    /// Whether they are evaluated at arbitrary points within the window instead of its lattice.
+    pub scattered: bool,
+}
+
+/// A grid to make.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DraftGrid {
+    /// Its window.
+    pub window: Window,
+    /// The node it holds; `None` for a constant.
+    pub node: Option<NodeId>,
+}
+
+/// The steps of a plan, last step first, which still read requests instead of grids.
+#[derive(Default)]
+pub struct Schedule {
+    pub steps: Vec<Step<RequestId>>,
+    pub requests: Requests,
+    pub grids: IndexVec<GridId, DraftGrid>,
+    pub outputs: Vec<GridId>,
+    pub evaluations: Evaluations,
+}
+
+/// Finds the steps for what is asked, with the results of `kept` read from grids.
+///
+/// # Errors
+/// If nested warps lead to more evaluations than can be planned.
+pub fn schedule(recipe: &Recipe, graph: &Graph, kept: &HashSet<NodeId>, asked: &Asked) -> Result<Schedule> {
+    let nothing_kept = HashSet::new();
+    // Scattered points are not on a lattice: nothing is kept for them, and filters are interpolated.
+    let first = Scope { recipe, graph, kept: if asked.scattered { &nothing_kept } else { kept }, own: None };
+    let mut scheduler = Scheduler { recipe, graph, kept, schedule: Schedule::default() };
+    scheduler.answer(first, asked)?;
+    // In reverse order: all readers of a node have been planned before the node.
+    for &node in graph.order.iter().rev() {
+        scheduler.make_results(node)?;
+        scheduler.make_raw(node)?;
+    }
+    Ok(scheduler.schedule)
+}
+
+struct Scheduler<'a> {
+    recipe: &'a Recipe,
+    graph: &'a Graph,
+    kept: &'a HashSet<NodeId>,
+    schedule: Schedule,
+}
+
+impl Scheduler<'_> {
+    /// The last step: a program for what is asked.
+    fn answer(&mut self, scope: Scope, asked: &Asked) -> Result<()> {
+        if !asked.scattered {
+            let node = |link: &Link| match link {
+                Link::Node(target) => Some(target.node),
+                Link::Value(_) | Link::None => None,
+            };
+            self.schedule.outputs = asked
+                .targets
+                .iter()
+                .map(|link| self.schedule.grids.push(DraftGrid { window: asked.window, node: node(link) }))
+                .collect();
+        }
+        self.fill(scope, asked.targets, asked.window, self.schedule.outputs.clone())
+    }
+
+    fn grid(&mut self, window: Window, node: NodeId) -> GridId {
+        self.schedule.grids.push(DraftGrid { window, node: Some(node) })
+    }
+
+    /// A step that fills grids with layers.
+    fn fill(&mut self, scope: Scope, targets: &[Link], window: Window, out: Vec<GridId>) -> Result<()> {
+        let draft = compile(scope, targets, window, &mut self.schedule.requests)?;
+        self.schedule.evaluations.add(&draft.evaluated);
+        self.schedule.steps.push(Step::Fill { program: draft.program, window, out });
+        Ok(())
+    }
+
+    /// Serves the requests for a node's result: one program per layer.
+    fn make_results(&mut self, node: NodeId) -> Result<()> {
+        let requests = &self.schedule.requests;
+        let mut layers: Vec<usize> = requests.of(node, false).map(|id| requests.get(id).target.layer).collect();
+        layers.sort_unstable();
+        layers.dedup();
+        for layer in layers {
+            let requests = &self.schedule.requests;
+            let wanted = requests.of(node, false).filter(|id| requests.get(*id).target.layer == layer);
+            for cluster in clusters(requests, wanted) {
+                let grid = self.grid(cluster.window, node);
+                cluster.serves.iter().for_each(|id| self.schedule.requests.serve(*id, grid));
+                self.schedule.evaluations.fill(node);
+                let scope = Scope { recipe: self.recipe, graph: self.graph, kept: self.kept, own: Some(node) };
+                self.fill(scope, &[Link::Node(LayerRef { node, layer })], cluster.window, vec![grid])?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Serves the requests for a filter's own layers: one application for all of them.
+    fn make_raw(&mut self, node: NodeId) -> Result<()> {
+        let Op::Filter(filter) = self.recipe.nodes()[node.index()].node.op() else { return Ok(()) };
+        let requests = &self.schedule.requests;
+        for cluster in clusters(requests, requests.of(node, true)) {
+            self.apply(node, filter, &cluster)?;
+        }
+        Ok(())
+    }
+
+    fn apply(&mut self, node: NodeId, filter: &dyn Filter, cluster: &Cluster) -> Result<()> {
+        let window = cluster.window;
+        let mut out: Vec<Option<GridId>> = vec![None; self.recipe.nodes()[node.index()].node.layers().len()];
+        for &id in &cluster.serves {
+            let layer = self.schedule.requests.get(id).target.layer;
+            let Some(slot) = out.get_mut(layer) else {
+                return Err(Error::new(ErrorKind::Internal, format!("a filter has no layer {layer}")));
+            };
+            let grid = match *slot {
+                Some(grid) => grid,
+                None => *slot.insert(self.schedule.grids.push(DraftGrid { window, node: Some(node) })),
+            };
+            self.schedule.requests.serve(id, grid);
+        }
+        let halo = filter.halo(window.cell);
+        let grown = window.grown(halo);
+        let graph = self.graph;
+        let mut inputs: Vec<Option<RequestId>> = Vec::new();
+        let mut constants = Vec::new();
+        for link in &graph.links[node] {
+            inputs.push(match link {
+                Link::None => None,
+                Link::Value(_) => {
+                    constants.push((inputs.len(), *link));
+                    None
+                }
+                Link::Node(target) => {
+                    let source = &self.recipe.nodes()[target.node.index()].node;
+                    let raw = matches!(source.op(), Op::Filter(_)) && graph.masks[target.node] == Link::None;
+                    Some(self.schedule.requests.add(GridRequest { target: *target, raw, window: grown }))
+                }
+            });
+        }
+        // A constant input becomes a grid with that value, filled by a step right before.
+        let mut fills = Vec::new();
+        for (input, link) in constants {
+            let grid = self.grid(grown, node);
+            let request = GridRequest { target: LayerRef { node, layer: 0 }, raw: false, window: grown };
+            inputs[input] = Some(self.schedule.requests.add_served(request, grid));
+            fills.push((link, grid));
+        }
+        self.schedule.steps.push(Step::Apply { node, inputs, window, halo, out });
+        let none = HashSet::new();
+        for (link, grid) in fills {
+            let scope = Scope { recipe: self.recipe, graph, kept: &none, own: None };
+            self.fill(scope, &[link], grown, vec![grid])?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,100 @@
+//! What the solvers of water begin with: the heights of their domain, and the cells at which water leaves it.
+
+use crate::large::drainage::{self as large, Water};
+use crate::large::tiling::Tiling;
+use crate::op::{Context, Sources};
+use orogen_grid::error::Result;
+use orogen_grid::grid::{Grid, Window};
+use orogen_grid::hydrology::drainage::{self, Drainage};
+use orogen_grid::hydrology::outlets::Outlets;
+use orogen_grid::hydrology::steepest::Descent;
+use orogen_grid::progress::Progress;
+use orogen_io::raster::Raster;
+
+/// Input 0 of a solver over its domain: its heights, in memory.
+pub(crate) fn heights(sources: &dyn Sources, context: &Context) -> Result<Grid> {
+    let heights = sources.whole(0, sources.padded())?;
+    context.progress.check()?;
+    Ok(heights)
+}
+
+/// The sea level as a height, if the sea is an outlet.
+pub(crate) fn sea_level(sea: bool, context: &Context) -> Option<f32> {
+    sea.then_some(context.world_params.sea_level as f32)
+}
+
+/// Memory of a domain with this many bytes per cell.
+pub(crate) fn memory(padded: &Window, bytes_per_cell: u64) -> u64 {
+    (padded.width as u64).saturating_mul(padded.height as u64).saturating_mul(bytes_per_cell)
+}
+
+/// An area in whole cells, at least `fewest` of them.
+pub(crate) fn cells_of(area: f64, window: &Window, fewest: u32) -> u32 {
+    (area / (window.cell * window.cell)).ceil().clamp(f64::from(fewest), f64::from(u32::MAX)) as u32
+}
+
+/// A layer with a value for each sample of a grid.
+pub(crate) fn layer_of<T: Copy>(grid: &Grid<T>, value: impl Fn(T) -> f32) -> Grid {
+    let mut layer = Grid::filled(*grid.window(), 0.0f32);
+    layer.data_mut().iter_mut().zip(grid.data()).for_each(|(sample, of)| *sample = value(*of));
+    layer
+}
+
+/// A layer with a value for each cell of a window.
+pub(crate) fn layer(window: Window, value: impl Fn(usize) -> f32) -> Grid {
+    let mut layer = Grid::filled(window, 0.0f32);
+    layer.data_mut().iter_mut().enumerate().for_each(|(cell, sample)| *sample = value(cell));
+    layer
+}
+
+/// The domain in memory.
+pub(crate) struct Terrain {
+    /// The heights.
+    pub(crate) heights: Grid,
+    /// The cells at which water leaves: the border of the domain, and the sea.
+    pub(crate) outlets: Outlets,
+}
+
+impl Terrain {
+    /// Reads input 0.
+    pub(crate) fn read(sources: &dyn Sources, sea: bool, context: &Context) -> Result<Terrain> {
+        let heights = heights(sources, context)?;
+        let outlets = Outlets::new(&heights, sea_level(sea, context));
+        Ok(Terrain { heights, outlets })
+    }
+
+    /// Routes flow by steepest descent, carving through depressions.
+    pub(crate) fn route(&self, progress: &Progress) -> Result<Drainage> {
+        drainage::route_carving_with(&self.heights, &self.outlets, Descent::Steepest, progress)
+    }
+}
+
+/// The domain on disk, to be solved tile by tile.
+pub(crate) struct TiledTerrain {
+    /// The heights.
+    pub(crate) heights: Raster,
+    /// The tiles.
+    pub(crate) tiling: Tiling,
+    sea: Option<f32>,
+}
+
+impl TiledTerrain {
+    /// Memory of solving tile by tile, in bytes.
+    pub(crate) fn memory(padded: &Window) -> u64 {
+        large::memory(memory(padded, 1))
+    }
+
+    /// Reads input 0.
+    pub(crate) fn read(sources: &dyn Sources, sea: bool, context: &Context) -> Result<TiledTerrain> {
+        let mut heights = sources.raster()?;
+        let padded = sources.padded();
+        sources.each_tile(0, padded, &mut |tile| heights.put(tile))?;
+        let tiling = Tiling::new(*padded, large::side(memory(padded, 1)));
+        Ok(TiledTerrain { heights, tiling, sea: sea_level(sea, context) })
+    }
+
+    /// The water on heights over the domain, such as its own.
+    pub(crate) fn water<'a>(&self, heights: &'a Raster, progress: &'a Progress) -> Water<'a> {
+        Water { heights, sea: self.sea, tiling: self.tiling, progress }
+    }
+}
