@@ -31,12 +31,19 @@ macro_rules! nodes {
         impl<T: OpType> From<T> for Node {
             /// A built-in op becomes its own variant, any other [`Node::Registered`].
             fn from(op: T) -> Node {
-                let any: &dyn Any = &op;
-                $( if let Some(op) = any.downcast_ref::<field::$field_mod::$field>() { return Node::$field(op.clone()); } )*
-                $( if let Some(op) = any.downcast_ref::<filter::$filter_mod::$filter>() { return Node::$filter(op.clone()); } )*
-                $( if let Some(op) = any.downcast_ref::<solver::$solver_mod::$solver>() { return Node::$solver(op.clone()); } )*
-                Node::Registered(RegisteredOp::new(op))
+                match built_in(&op) {
+                    Some(node) => node,
+                    None => Node::Registered(RegisteredOp::new(op)),
+                }
             }
+        }
+
+        /// A function of its own, because `From` is compiled once per op and crate.
+        fn built_in(op: &dyn Any) -> Option<Node> {
+            $( if let Some(op) = op.downcast_ref::<field::$field_mod::$field>() { return Some(Node::$field(op.clone())); } )*
+            $( if let Some(op) = op.downcast_ref::<filter::$filter_mod::$filter>() { return Some(Node::$filter(op.clone())); } )*
+            $( if let Some(op) = op.downcast_ref::<solver::$solver_mod::$solver>() { return Some(Node::$solver(op.clone())); } )*
+            None
         }
 
         impl Node {
