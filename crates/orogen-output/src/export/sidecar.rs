@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::files::Files;
 use super::layer_source::LayerSource;
 use super::options::{OptionSpec, Options, ValueKind};
+use orogen_grid::hex;
 use orogen_io::format::dem::Georeference;
 use orogen_io::format::levels::Levels;
 use orogen_io::format::sidecar::own;
@@ -133,7 +134,7 @@ pub fn write(files: &mut Files, source: &LayerSource, options: &Options, held: &
         crs: map.as_ref().and_then(Georeference::epsg).map(|code| format!("EPSG:{code}")),
         wkt: wkt.clone().and_then(Result::ok),
         crs_missing: wkt.and_then(Result::err),
-        layer_sha256: source.key().iter().map(|byte| format!("{byte:02x}")).collect(),
+        layer_sha256: hex::encode(&source.key()),
         about: &world.about,
     };
     let json = serde_json::to_string_pretty(&text).map_err(io::Error::other)?;

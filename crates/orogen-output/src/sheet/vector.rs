@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use super::scene::{Item, Point, Scene, Step};
 use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::format::svg::{self, MAX_PATH};
-use orogen_io::palette::color::Rgb;
+use orogen_io::palette::color::hex;
 
 /// Side of a picture tile in pixels: even an incompressible tile takes less than 1 MiB in base64.
 const TILE: usize = 432;
@@ -168,10 +168,6 @@ fn thousandths(text: &mut String, number: i64, follows: bool) {
 /// A position with three decimals.
 fn spot(text: &mut String, [x, y]: Point) {
     let _ = write!(text, "{} {}", (x * 1000.0).round() / 1000.0, (y * 1000.0).round() / 1000.0);
-}
-
-fn hex([red, green, blue]: Rgb) -> String {
-    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 fn escaped(text: &str) -> String {
