@@ -7,9 +7,9 @@ use std::io::{self, Write};
 use std::sync::{Arc, LazyLock, Mutex};
 
 use orogen::analysis::halo::Halo;
-use orogen::export::layer_source::LayerSource;
+use orogen::export::job::ExportJob;
 use orogen::export::options::Options;
-use orogen::export::{registry, run};
+use orogen::export::registry;
 use orogen::file::OutputPolicy;
 use orogen::map::paint::Painter;
 use orogen::mesh::adaptive::adaptive;
@@ -501,9 +501,9 @@ fn export_with(
         let spec = format.options.iter().find(|spec| spec.name == *name).unwrap();
         options.give(spec, text).map_err(|error| error.to_string())?;
     }
-    let source = LayerSource::new(world, "height", window, progress).map_err(|error| error.to_string())?;
+    let job = ExportJob::new(format).with_window(window).with_options(options);
     let output = OutputPolicy::default().output(path).map_err(|error| error.to_string())?;
-    run::to_file(format, source, &options, &output).map(|written| written.words).map_err(|error| error.to_string())
+    job.to_file(world, &output, progress).map(|written| written.words).map_err(|error| error.to_string())
 }
 
 #[test]

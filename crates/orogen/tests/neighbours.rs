@@ -5,13 +5,14 @@
 
 use std::path::{Path, PathBuf};
 
-use orogen::export::derived::list;
+use orogen::export::job::ExportJob;
 use orogen::export::layer_source::LayerSource;
 use orogen::export::mesh_cover::{self, SURFACES};
 use orogen::export::mesh_tint::COLOR_RANGE;
 use orogen::export::options::Options;
-use orogen::export::targets::frame::{Asked, Frame};
-use orogen::export::{registry, run, targets};
+use orogen::export::targets::frame::FrameSpec;
+use orogen::export::targets::job::EngineJob;
+use orogen::export::{registry, targets};
 use orogen::file::OutputPolicy;
 use orogen::{Progress, Recipe, Window, World};
 
@@ -77,10 +78,11 @@ fn colors_of_meshes() {
         range.iter().for_each(|range| options.give(&COLOR_RANGE, range).unwrap());
         let colors = [0, 60].map(|x| {
             let path = folder.join(format!("{x}.ply"));
-            let progress = Progress::none();
-            let source = LayerSource::new(&world, "height", Window::new(61, 40, 10.0).at(x, 20), &progress).unwrap();
+            let job = ExportJob::new(registry::named("ply").unwrap())
+                .with_window(Window::new(61, 40, 10.0).at(x, 20))
+                .with_options(options.clone());
             let output = OutputPolicy::default().output(&path).unwrap();
-            run::to_file(registry::named("ply").unwrap(), source, &options, &output).unwrap();
+            job.to_file(&world, &output, &Progress::none()).unwrap();
             ply_colors(&path)
         });
         let sides = [(&colors[0], 60), (&colors[1], 0)]
@@ -119,14 +121,14 @@ fn layers_of_engine_tiles() {
     let folder = folder("tiles");
     for layer in ["normal", "splat", "albedo", "roughness", "occlusion", "slope", "curvature"] {
         let mut recipe = recipe("size = [2400, 2400]");
-        list::prepare(&mut recipe, layer, &Options::default()).unwrap();
-        let world = World::open(recipe).unwrap();
         let target = targets::list::named("unity").unwrap();
-        let asked = Asked { side: Some(65), tiles: Some([2, 2]), ..Asked::default() };
-        let frame = Frame::new(target, &world, &asked).unwrap();
+        let job = EngineJob::new(target, registry::named("png").unwrap())
+            .with_layer(layer)
+            .with_samples(FrameSpec::default().with_side(65).with_tiles([2, 2]));
+        job.prepare(&mut recipe).unwrap();
+        let world = World::open(recipe).unwrap();
         let output = OutputPolicy::default().output(folder.join(format!("{layer}.png"))).unwrap();
-        let png_format = registry::named("png").unwrap();
-        let made = targets::run::export(target, png_format, &frame, &world, layer, &Progress::none(), &output).unwrap();
+        let made = job.run(&world, &output, &Progress::none()).unwrap();
         assert_eq!(made.files.len(), 4, "{layer}");
         // Unity numbers rows from the south, and its pictures start in the north.
         let tile = |column: usize, south: usize| {

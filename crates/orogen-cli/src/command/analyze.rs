@@ -6,6 +6,7 @@ use orogen::budget::Reservation;
 use orogen::map::canvas::Canvas;
 use orogen::plan::steps::Plan;
 use orogen::raster::Raster;
+use orogen::survey::job::SurveyJob;
 use orogen::survey::land::Land;
 use orogen::survey::measures::Measures;
 use orogen::survey::page::{self, Title};
@@ -87,8 +88,9 @@ fn measure(args: &Args) -> Result<(), Failure> {
             let mut grids = world.run(&plan, &making).map_err(stopped)?;
             let Some(heights) = grids.pop() else { return Ok(()) };
             finite::check(&args.layer, &heights)?;
-            let measures = Measures::of_with(&heights, sea_level, &measuring).map_err(stopped)?;
-            shown(args, &world, &Land::in_memory(&heights, sea_level), measures, &drawing)?
+            let land = Land::in_memory(&heights, sea_level);
+            let measures = SurveyJob::new(land).measure(&measuring).map_err(stopped)?;
+            shown(args, &world, &land, measures, &drawing)?
         }
         Held::OnDisk(working) => {
             let _raster = world.budget().reserve(Raster::memory_on_disk(&window))?;
@@ -100,8 +102,10 @@ fn measure(args: &Args) -> Result<(), Failure> {
             let (heights, count) = world.raster(&args.layer, &window, &making).map_err(stopped)?;
             finite::tell(&args.layer, count)?;
             let _working = world.budget().reserve(working)?;
-            let measures = Measures::of_raster(&heights, sea_level, world.scratch(), world.budget(), &measuring);
-            shown(args, &world, &Land::on_disk(&heights, sea_level), measures.map_err(stopped)?, &drawing)?
+            let land = Land::on_disk(&heights, sea_level);
+            let survey = SurveyJob::new(land).with_scratch(world.scratch()).with_budget(world.budget().clone());
+            let measures = survey.measure(&measuring).map_err(stopped)?;
+            shown(args, &world, &land, measures, &drawing)?
         }
     };
     if let Some((sink, page)) = sink.as_ref().zip(page) {

@@ -89,8 +89,8 @@ fn build(args: &Args) -> Result<(), Failure> {
     args.samples.view.apply(&mut recipe);
     let output = args.replace.policy(source.inputs(&recipe)).output(&args.out)?;
     let world = args.limits.open(recipe, &budget)?;
-    let tile = args.tile.map(|tile| tile as usize);
-    let spec = BuildSpec { form, window: window(args, &world, form)?, tile, layers: args.layers.clone() };
+    let mut spec = BuildSpec::new(form, window(args, &world, form)?).with_layers(&args.layers);
+    spec.tile = args.tile.map(|tile| tile as usize);
     let build = Build::new(&world, &spec, &output)?;
     let start = match (args.resume, args.replace.force) {
         (true, _) => Start::Resume,

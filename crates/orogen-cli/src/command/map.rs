@@ -13,7 +13,7 @@ use orogen::palette::named;
 use orogen::palette::palette::Palette;
 use orogen::sheet::draw::{Sheet, draw};
 use orogen::sheet::linework::lines_at;
-use orogen::sheet::options::{Coloring, Layer, Options, Page, Parts, Resolution, Scale, Shading};
+use orogen::sheet::options::{Coloring, Layer, Page, Parts, Resolution, Scale, Shading, SheetOptions};
 use orogen::sheet::{pdf, raster, vector};
 use orogen::words::number;
 use orogen::world::HEIGHT;
@@ -244,8 +244,8 @@ fn map(args: &Args) -> Result<(), Failure> {
     let world = args.limits.open(recipe, &budget)?;
     let window = args.view.window(&world)?;
     let is_place = matches!(source, Source::Dem(_));
-    let mut options =
-        Options { range: range.filter(|_| args.layer == HEIGHT), ..options(args, kind, palette, &world, is_place) };
+    let mut options = options(args, kind, palette, &world, is_place);
+    options.range = range.filter(|_| args.layer == HEIGHT);
     let _drawing = world.budget().reserve(drawing(&options, &window, args)?)?;
     let (bar, progress) = Bar::new(args.quiet);
     let stopped = |error: orogen::Error| interrupt::explain(error.into(), "nothing was written");
@@ -365,14 +365,14 @@ fn layer(
         (Some(Ramp::Labels), _) | (None, LayerKind::Label) => Scale::Labels,
         (None, _) => Scale::Linear,
     };
-    let (name, unit) = (args.layer.clone(), source.unit());
+    let unit = source.unit();
     let made = source.whole().map_err(|cause| file::explain("make the layer of", &args.out, &cause))?;
     let values = made.into_iter().next().unwrap_or_else(|| Grid::filled(*window, f32::NAN));
     finite::check(&args.layer, &values)?;
-    Ok(Layer { values, name, unit, scale, range })
+    Ok(Layer::new(&args.layer, values).with_unit(unit).with_scale(scale).with_range(range))
 }
 
-fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: bool) -> Options {
+fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: bool) -> SheetOptions {
     let recipe = world.recipe();
     let page = match args.paper {
         Some(paper) => Page::Paper(paper.sides(args.landscape)),
@@ -381,22 +381,21 @@ fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: b
     let without = &args.without;
     // Lines and water would hide the other layer.
     let is_height = args.layer == HEIGHT;
-    let parts = Parts {
-        title: !without.no_title,
-        axes: !without.no_axes,
-        contours: !without.no_contours && (is_height || args.contours.is_some()),
-        labels: !without.no_labels,
-        summits: !without.no_summits && is_height,
-        rivers: !without.no_rivers && is_height,
-        // Most depressions of a real place are gorges dammed by coarse samples, and its lakes are level in the data
-        // already.
-        lakes: !without.no_lakes && !is_place && is_height,
-        legend: !without.no_legend,
-        colors: !without.no_color,
-        scale: !without.no_scale,
-        north: !without.no_north,
-        profile: !without.no_profile,
-    };
+    let mut parts = Parts::default();
+    parts.title = !without.no_title;
+    parts.axes = !without.no_axes;
+    parts.contours = !without.no_contours && (is_height || args.contours.is_some());
+    parts.labels = !without.no_labels;
+    parts.summits = !without.no_summits && is_height;
+    parts.rivers = !without.no_rivers && is_height;
+    // Most depressions of a real place are gorges dammed by coarse samples, and its lakes are level in the data
+    // already.
+    parts.lakes = !without.no_lakes && !is_place && is_height;
+    parts.legend = !without.no_legend;
+    parts.colors = !without.no_color;
+    parts.scale = !without.no_scale;
+    parts.north = !without.no_north;
+    parts.profile = !without.no_profile;
     let usual = if kind == Kind::Png && args.paper.is_none() { SCREEN } else { PRINT };
     let resolution = match (args.dpi, args.size) {
         (Some(dpi), _) => Resolution::Inch(f64::from(dpi)),
@@ -408,27 +407,24 @@ fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: b
         "" => format!("Seed {}", recipe.world.seed),
         about => format!("{}; seed {}", about.trim_end_matches('.'), recipe.world.seed),
     };
-    Options {
-        title: args.title.clone().unwrap_or_else(|| title(&args.recipe)),
-        about,
-        palette,
-        shading: match args.shade {
-            _ if without.no_shade => Shading::None,
-            Shade::Single => Shading::Single,
-            Shade::Multi => Shading::Multi,
-            Shade::Swiss => Shading::Swiss,
-            Shade::None => Shading::None,
-        },
-        interval: args.contours,
-        parts,
-        page,
-        resolution,
-        // A file of heights has no sea level: all of it is land.
-        sea_level: (!is_place).then_some(recipe.world.sea_level),
-        coloring: Coloring::Heights,
-        range: None,
-        map: recipe.georeference(),
-    }
+    let mut options = SheetOptions::new(palette);
+    options.title = args.title.clone().unwrap_or_else(|| title(&args.recipe));
+    options.about = about;
+    options.shading = match args.shade {
+        _ if without.no_shade => Shading::None,
+        Shade::Single => Shading::Single,
+        Shade::Multi => Shading::Multi,
+        Shade::Swiss => Shading::Swiss,
+        Shade::None => Shading::None,
+    };
+    options.interval = args.contours;
+    options.parts = parts;
+    options.page = page;
+    options.resolution = resolution;
+    // A file of heights has no sea level: all of it is land.
+    options.sea_level = (!is_place).then_some(recipe.world.sea_level);
+    options.map = recipe.georeference();
+    options
 }
 
 /// Approximate longer side of a page, in millimetres.
@@ -440,7 +436,7 @@ fn longer(page: Page) -> f64 {
 }
 
 /// Pixels of a square that contains the page.
-fn pixels(options: &Options) -> f64 {
+fn pixels(options: &SheetOptions) -> f64 {
     let side = match options.resolution {
         Resolution::Inch(dpi) => longer(options.page) * dpi / 25.4,
         Resolution::Longer(pixels) => f64::from(pixels),
@@ -449,7 +445,7 @@ fn pixels(options: &Options) -> f64 {
 }
 
 /// Memory of drawing beside the heights, in bytes, or an error if the page is too large.
-fn drawing(options: &Options, window: &Window, args: &Args) -> Result<u64, Failure> {
+fn drawing(options: &SheetOptions, window: &Window, args: &Args) -> Result<u64, Failure> {
     let side = pixels(options).sqrt();
     if side * side > MOST {
         return Err(Failure::Usage(format!(

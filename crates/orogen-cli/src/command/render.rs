@@ -11,7 +11,7 @@ use orogen::export::options::Options;
 use orogen::file;
 use orogen::format::png::{self, Animation, Picture, Pixel};
 use orogen::palette::palette::Palette;
-use orogen::render::camera::{Camera, View as Shot};
+use orogen::render::camera::{CameraSpec, View as Shot};
 use orogen::render::relief::Land;
 use orogen::render::scene::{Colors, Edge, Scene, Style};
 use orogen::words::{count, number};
@@ -219,26 +219,25 @@ fn style<'a>(args: &Args, palette: Option<&'a Palette>) -> Result<Style<'a>, Fai
     if args.snow_line.is_some_and(|line| !line.is_finite()) {
         return usage("--snow-line must be a height in metres, such as 2400".into());
     }
-    Ok(Style {
-        exaggeration: args.exaggeration,
-        sun: sun(args)?,
-        haze: args.haze,
-        edge: args.edge.map(|edge| match edge {
-            Ends::Cut => Edge::Cut,
-            Ends::Haze => Edge::Haze,
-        }),
-        colors: match args.color {
-            Dress::Natural => Colors::Natural,
-            Dress::Desert => Colors::Desert,
-            Dress::Surfaces => Colors::Surfaces,
-            Dress::Map => Colors::Map,
-            Dress::Clay => Colors::Clay,
-        },
-        palette,
-        cover: None,
-        snow_line: args.snow_line,
-        samples: args.samples,
-    })
+    let mut style = Style::default();
+    style.exaggeration = args.exaggeration;
+    style.sun = sun(args)?;
+    style.haze = args.haze;
+    style.edge = args.edge.map(|edge| match edge {
+        Ends::Cut => Edge::Cut,
+        Ends::Haze => Edge::Haze,
+    });
+    style.colors = match args.color {
+        Dress::Natural => Colors::Natural,
+        Dress::Desert => Colors::Desert,
+        Dress::Surfaces => Colors::Surfaces,
+        Dress::Map => Colors::Map,
+        Dress::Clay => Colors::Clay,
+    };
+    style.palette = palette;
+    style.snow_line = args.snow_line;
+    style.samples = args.samples;
+    Ok(style)
 }
 
 /// The position of the sun.
@@ -390,10 +389,11 @@ fn draw(
         [red, green, blue, roughness] => Some([red, green, blue, roughness]),
         _ => None,
     };
-    let scene = Scene::new(&land, &Style { cover, ..*style }, &preparing)?;
+    let mut style = *style;
+    style.cover = cover;
+    let scene = Scene::new(&land, &style, &preparing)?;
     preparing.finish();
-    let origin = [window.east(0), window.south(0)];
-    let camera = |shot: &Shot| Camera::new(shot, scene.relief(), origin, size, args.fov, &scene.frame());
+    let spec = CameraSpec::new(*shot, size).with_fov(args.fov);
     let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
     let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", &software)] };
     let file = args.out.display();
@@ -402,9 +402,9 @@ fn draw(
         let turn = |frame: u32| azimuth + 360.0 * f64::from(frame) / f64::from(frames);
         let sides = (0..frames).map(|frame| [turn(frame), elevation]);
         // The closest distance at which all frames fit: a changing distance would make the land pulsate.
-        let distance =
-            distance.unwrap_or_else(|| Camera::distance(sides, scene.relief(), size, args.fov, &scene.frame()));
-        let side = |frame: u32| camera(&Shot::Around { azimuth: turn(frame), elevation, distance: Some(distance) });
+        let distance = distance.unwrap_or_else(|| scene.distance(sides, &spec));
+        let view = |frame: u32| Shot::Around { azimuth: turn(frame), elevation, distance: Some(distance) };
+        let side = |frame: u32| scene.camera(&spec.with_view(view(frame)));
         // Four small views suffice for the colours.
         let sample = || {
             let small = size.map(|side| side.div_ceil(4));
@@ -424,7 +424,7 @@ fn draw(
         moving.write(|frame, bytes| Ok(scene.paint(&side(frame), size, 0..height, bytes, &painting.part(1.0))?))?;
         return Ok(format!("{file}: {} of {width} x {height} pixels, of {samples}\n", count(frames as usize, "frame")));
     }
-    let camera = camera(shot);
+    let camera = scene.camera(&spec);
     if let (Some(metres), false) = (camera.lifted(), args.quiet) {
         say::error(&format!("note: the camera was below the ground and was raised by {metres:.0} m"));
     }

@@ -9,6 +9,7 @@ use orogen_grid::error::{Error, ErrorKind};
 use orogen_grid::grid::Window;
 
 /// A file format, declared in its own file in `formats/`.
+#[derive(Debug)]
 pub struct Format {
     /// The name, which is also the first extension.
     pub name: &'static str,

@@ -4,7 +4,7 @@ use super::font_set::FontSet;
 use super::furniture::{COLORS, Desk, Entry, LEGEND_ROWS, Sign, colors_block, legend_block, north_block, scale_block};
 use super::layout::{Block, Layout};
 use super::linework::Linework;
-use super::options::{Coloring, Options, Page, SurfaceEntry};
+use super::options::{Coloring, Page, SheetOptions, SurfaceEntry};
 use super::overlay::Below;
 use super::profile::{Direction, Profile};
 use super::ramp::Ramp;
@@ -36,7 +36,7 @@ pub struct Sheet {
 ///
 /// # Errors
 /// If there are fewer than 2 x 2 heights or none is finite, there would be too many contours, or the work is cancelled.
-pub fn draw(heights: &Grid, options: &Options, progress: &Progress) -> Result<Sheet> {
+pub fn draw(heights: &Grid, options: &SheetOptions, progress: &Progress) -> Result<Sheet> {
     let window = heights.window();
     if window.width < 2 || window.height < 2 || heights.data().iter().all(|height| !height.is_finite()) {
         let message = format!(
@@ -146,7 +146,7 @@ enum Part {
 }
 
 /// The colors of a sheet's heights. Without a sea level, everything is land.
-fn tint(heights: &Grid, options: &Options) -> Tint {
+fn tint(heights: &Grid, options: &SheetOptions) -> Tint {
     // With a given range, the colors must not depend on the window's own heights.
     let below_all = || options.range.map_or_else(|| Levels::of(heights).low() - 1.0, |_| f32::NEG_INFINITY);
     let sea = options.sea_level.map_or_else(below_all, |sea| sea as f32);
@@ -166,7 +166,7 @@ fn surface_entry(surface: &SurfaceEntry) -> Entry {
 }
 
 /// The coordinates at the left and the right, and at the top and the bottom, with their units.
-fn spans(heights: &Grid, options: &Options) -> ([[f64; 2]; 2], [Count; 2]) {
+fn spans(heights: &Grid, options: &SheetOptions) -> ([[f64; 2]; 2], [Count; 2]) {
     let window = heights.window();
     let (west, east) = (window.east(0), window.east(window.width - 1));
     let (north, south) = (window.south(0), window.south(window.height - 1));
@@ -183,7 +183,7 @@ fn spans(heights: &Grid, options: &Options) -> ([[f64; 2]; 2], [Count; 2]) {
 }
 
 /// The line of facts under the title.
-fn facts(metres: [f64; 2], [low, high]: [f64; 2], scale: f64, options: &Options) -> String {
+fn facts(metres: [f64; 2], [low, high]: [f64; 2], scale: f64, options: &SheetOptions) -> String {
     let size = match metres[0].max(metres[1]) >= 2000.0 {
         true => format!("{} × {} km", short(metres[0] / 1000.0), short(metres[1] / 1000.0)),
         false => format!("{} × {} m", short(metres[0]), short(metres[1])),

@@ -1,6 +1,6 @@
 //! The layout of a sheet, in millimetres.
 
-use super::options::{Options, Page, Resolution};
+use super::options::{Page, Resolution, SheetOptions};
 
 /// Margin of the page.
 pub const MARGIN: f32 = 9.0;
@@ -63,7 +63,7 @@ impl Layout {
     /// in a column beside it. Remaining space on paper is used for profiles of the land.
     ///
     /// The map's sides are on whole pixels, so that its picture needs no resampling.
-    pub fn new(aspect: f64, blocks: &[Block], options: &Options) -> Layout {
+    pub fn new(aspect: f64, blocks: &[Block], options: &SheetOptions) -> Layout {
         let aspect = aspect.clamp(1e-3, 1e3) as f32;
         let head = if options.parts.title { HEADING } else { 0.0 };
         let [left, right, top, bottom] = if options.parts.axes { AXES } else { [0.0; 4] };
@@ -184,25 +184,14 @@ fn stack(blocks: &[Block]) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::options::Shading;
-    use super::super::options::{Coloring, Parts};
+    use super::super::options::Parts;
     use super::*;
     use orogen_io::palette::named;
 
-    fn on(page: [f64; 2], profile: bool) -> Options {
-        Options {
-            title: String::new(),
-            about: String::new(),
-            palette: named::all()[0].palette(),
-            shading: Shading::Multi,
-            interval: None,
+    fn on(page: [f64; 2], profile: bool) -> SheetOptions {
+        SheetOptions {
             parts: Parts { profile, ..Parts::default() },
-            page: Page::Paper(page),
-            resolution: Resolution::Inch(150.0),
-            sea_level: None,
-            coloring: Coloring::Heights,
-            range: None,
-            map: None,
+            ..SheetOptions::new(named::all()[0].palette()).with_page(Page::Paper(page))
         }
     }
 

@@ -7,7 +7,7 @@ use super::labels::{Label, LabelStyle, Taken, gaps, place};
 use super::lines::is_thick;
 use super::linework::Linework;
 use super::marks;
-use super::options::Options;
+use super::options::SheetOptions;
 use super::scene::{Point, Scene, Step};
 use super::ticks::grouped;
 use crate::map::text::Face;
@@ -50,7 +50,7 @@ impl Below<'_> {
 
 impl Linework {
     /// Draws all lines on the map.
-    pub fn draw(&self, desk: &mut Desk, map: [f32; 4], options: &Options, below: &Below) {
+    pub fn draw(&self, desk: &mut Desk, map: [f32; 4], options: &SheetOptions, below: &Below) {
         let [left, top, width, height] = map;
         let across = width / (self.grid.width() - 1) as f32;
         let down = height / (self.grid.height() - 1) as f32;

@@ -2,7 +2,7 @@
 //! sheet.
 
 use super::furniture::{Align, Desk, SMALL, SOFT};
-use super::options::Options;
+use super::options::SheetOptions;
 use super::scene::{INK, Item, Point, polygon};
 use super::ticks::{Count, grouped, ticks};
 use crate::map::text::Face;
@@ -95,7 +95,7 @@ impl Profile {
     /// useful profile.
     pub fn new(
         heights: &Grid,
-        options: &Options,
+        options: &SheetOptions,
         direction: Direction,
         [left, top, width, height]: [f32; 4],
     ) -> Option<Profile> {

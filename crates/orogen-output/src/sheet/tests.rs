@@ -3,7 +3,7 @@
 
 use super::draw::{self, Sheet};
 use super::options::Shading;
-use super::options::{Coloring, Options, Page, Parts, Resolution, SurfaceCover, SurfaceEntry};
+use super::options::{Coloring, Page, Parts, Resolution, SheetOptions, SurfaceCover, SurfaceEntry};
 use super::scene::{Item, Point, Scene, Step};
 use super::{pdf, raster, vector};
 use orogen_grid::error::Result;
@@ -11,24 +11,18 @@ use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_io::palette::named;
 
-fn draw(heights: &Grid, options: &Options) -> Result<Sheet> {
+fn draw(heights: &Grid, options: &SheetOptions) -> Result<Sheet> {
     draw::draw(heights, options, &Progress::none())
 }
 
-fn options() -> Options {
-    Options {
-        title: "A test".into(),
+fn options() -> SheetOptions {
+    SheetOptions {
         about: "Of hills".into(),
-        palette: named::all()[0].palette(),
-        shading: Shading::Multi,
-        interval: None,
-        parts: Parts::default(),
-        page: Page::Fitted(100.0),
-        resolution: Resolution::Inch(60.0),
-        sea_level: Some(0.0),
-        coloring: Coloring::Heights,
-        range: None,
-        map: None,
+        ..SheetOptions::new(named::all()[0].palette())
+            .with_title("A test")
+            .with_page(Page::Fitted(100.0))
+            .with_resolution(Resolution::Inch(60.0))
+            .with_sea_level(0.0)
     }
 }
 
@@ -69,7 +63,7 @@ fn all_is_on_the_page_whatever_the_world() {
     let worlds = [hills(90, 70), holed, flat, deep.unwrap(), hills(2, 2), hills(400, 8), hills(8, 400)];
     for (k, heights) in worlds.iter().enumerate() {
         for page in [Page::Fitted(100.0), Page::Paper([210.0, 148.0]), Page::Paper([60.0, 60.0])] {
-            let sheet = draw(heights, &Options { page, ..options() }).unwrap();
+            let sheet = draw(heights, &SheetOptions { page, ..options() }).unwrap();
             let [width, height] = sheet.scene.size;
             let small = page == Page::Paper([60.0; 2]);
             for [x, y] in places(&sheet.scene) {
@@ -90,7 +84,7 @@ fn parts_are_left_out_one_by_one() {
     let all = draw(&heights, &options()).unwrap();
     assert!(all.interval.is_some_and(|interval| interval > 0.0));
     // Paper with space for a profile.
-    let paper = || Options { page: Page::Paper([150.0, 270.0]), ..options() };
+    let paper = || SheetOptions { page: Page::Paper([150.0, 270.0]), ..options() };
     let all = draw(&heights, &paper()).unwrap();
     let count = |change: fn(&mut Parts)| {
         let mut options = paper();
@@ -136,7 +130,7 @@ fn every_kind_of_file_has_the_same_on_any_number_of_threads() {
 
 #[test]
 fn pixels_are_as_many_as_asked() {
-    let wide = Options { resolution: Resolution::Longer(700), ..options() };
+    let wide = SheetOptions { resolution: Resolution::Longer(700), ..options() };
     let sheet = draw(&hills(120, 40), &wide).unwrap();
     let [width, height] = raster::pixels(&sheet.scene, sheet.dpi);
     assert!(width.max(height) == 700, "{width} x {height}");
@@ -149,7 +143,7 @@ fn surfaces_color_the_map_and_stand_in_the_legend() {
     let entry =
         |name: &str, colors: &[[u8; 3]]| SurfaceEntry { name: name.into(), colors: colors.to_vec(), share: 0.5 };
     let entries = vec![entry("grass", &[[76, 92, 46], [143, 134, 104]]), entry("rock", &[[109, 103, 95]])];
-    let covered = Options {
+    let covered = SheetOptions {
         coloring: Coloring::Surfaces(SurfaceCover { albedo, entries }),
         sea_level: None,
         shading: Shading::None,
@@ -177,7 +171,7 @@ fn sheets_with_one_range_agree_along_their_common_edge() {
     let whole = Grid::from_data(window, (0..window.len()).map(|at| 10.0 * (at % 160) as f32).collect()).unwrap();
     let halves = [0, 79].map(|x| whole.crop(&Window::new(81, 60, 50.0).at(x, 0)).unwrap());
     let edge = |half: &Grid, column: usize, range: Option<[f32; 2]>| {
-        let options = Options { range, shading: Shading::None, sea_level: None, ..options() };
+        let options = SheetOptions { range, shading: Shading::None, sea_level: None, ..options() };
         let sheet = draw(half, &options).unwrap();
         let picture = sheet.scene.items.iter().find_map(|item| match item {
             Item::Picture { width, pixels, .. } => Some((*width, pixels.clone())),
