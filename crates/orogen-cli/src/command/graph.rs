@@ -89,7 +89,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             Kind::Pdf => sink.write(|out| pdf::write(out, &scene))?,
             _ => {
                 let dpi = f32::from(args.dpi) / 25.4;
-                if scene.size[0] * scene.size[1] * dpi * dpi > MAX_PIXELS {
+                if scene.size.width * scene.size.height * dpi * dpi > MAX_PIXELS {
                     return Err(Failure::Usage(
                         "the picture would be too large; use a lower --dpi, or write a .svg".into(),
                     ));

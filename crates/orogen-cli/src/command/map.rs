@@ -12,6 +12,7 @@ use orogen::layer::LayerKind;
 use orogen::palette::named;
 use orogen::palette::palette::Palette;
 use orogen::sheet::draw::{Sheet, draw};
+use orogen::sheet::geometry::{Rect, Size};
 use orogen::sheet::linework::lines_at;
 use orogen::sheet::options::{Coloring, Layer, Page, Parts, Resolution, Scale, Shading, SheetOptions};
 use orogen::sheet::{pdf, raster, vector};
@@ -300,7 +301,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     if args.quiet {
         return Ok(());
     }
-    let [width, height] = sheet.scene.size;
+    let Size { width, height } = sheet.scene.size;
     let size = match kind {
         Kind::Png => {
             let [width, height] = raster::pixels(&sheet.scene, sheet.dpi);
@@ -326,7 +327,9 @@ fn map(args: &Args) -> Result<(), Failure> {
 
 /// The transform from pixels of a page to map coordinates, from that of the ground on it.
 fn on_page(samples: &Affine, window: &Window, sheet: &Sheet) -> Affine {
-    let [left, top, width, height] = sheet.ground.map(|millimetres| f64::from(millimetres) * sheet.dpi / 25.4);
+    let Rect { left, top, width, height } = sheet.ground;
+    let [left, top, width, height] =
+        [left, top, width, height].map(|millimetres| f64::from(millimetres) * sheet.dpi / 25.4);
     let scale = [(window.width - 1) as f64 / width, (window.height - 1) as f64 / height];
     samples.resampled(scale, [(0.5 - left) * scale[0], (0.5 - top) * scale[1]])
 }

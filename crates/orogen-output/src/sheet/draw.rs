@@ -2,6 +2,7 @@
 
 use super::font_set::FontSet;
 use super::furniture::{COLORS, Desk, Entry, LEGEND_ROWS, Sign, colors_block, legend_block, north_block, scale_block};
+use super::geometry::Rect;
 use super::layout::{Block, Layout};
 use super::linework::Linework;
 use super::options::{Coloring, Page, SheetOptions, SurfaceEntry};
@@ -27,9 +28,8 @@ pub struct Sheet {
     pub interval: Option<f64>,
     /// Resolution in pixels per inch, for [`raster::draw`](super::raster::draw).
     pub dpi: f64,
-    /// Left, top, width and height of the ground on the page, in millimetres, between the centres of its first and its
-    /// last samples.
-    pub ground: [f32; 4],
+    /// The rectangle of the ground on the page, between the centres of its first and its last samples.
+    pub ground: Rect,
 }
 
 /// Draws a sheet of heights in metres. Samples that are not finite have the palette's color of missing samples.
@@ -82,7 +82,7 @@ pub fn draw(heights: &Grid, options: &SheetOptions, progress: &Progress) -> Resu
     let is_tint = matches!(colors, Paint::Tint);
     let tint = tint(heights, options);
     let map = layout.map;
-    let size = [map[2], map[3]].map(|side| ((f64::from(side) * layout.dpi / 25.4).round() as usize).max(1));
+    let size = map.size().pixels(layout.dpi);
     let pixels = paint(heights, colors, size, &tint, options.shading, sea);
     painting.finish();
     progress.check()?;
@@ -93,7 +93,7 @@ pub fn draw(heights: &Grid, options: &SheetOptions, progress: &Progress) -> Resu
     progress.check()?;
     desk.scene.frame(map, 0.3, INK);
     let metres = [window.width, window.height].map(|samples| (samples - 1) as f64 * window.cell);
-    let scale = metres[0] / f64::from(map[2]);
+    let scale = metres[0] / f64::from(map.width);
     if options.parts.axes {
         let (spans, counts) = spans(heights, options);
         desk.axes(map, spans, counts);

@@ -2,9 +2,10 @@
 //! threads.
 
 use super::draw::{self, Sheet};
+use super::geometry::{Point, Rect, Size};
 use super::options::Shading;
 use super::options::{Coloring, Page, Parts, Resolution, SheetOptions, SurfaceCover, SurfaceEntry};
-use super::scene::{Item, Point, Scene, Step};
+use super::scene::{Item, Scene, Step};
 use super::{pdf, raster, vector};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -40,7 +41,7 @@ fn hills(width: usize, height: usize) -> Grid {
 
 fn places(scene: &Scene) -> Vec<Point> {
     let of = |item: &Item| match item {
-        Item::Picture { area, .. } => vec![[area[0], area[1]], [area[0] + area[2], area[1] + area[3]]],
+        Item::Picture { area, .. } => vec![area.corner(), Point::new(area.right(), area.bottom())],
         Item::Lines { lines, .. } => lines.concat(),
         Item::Area { outline, .. } => outline
             .iter()
@@ -64,9 +65,9 @@ fn all_is_on_the_page_whatever_the_world() {
     for (k, heights) in worlds.iter().enumerate() {
         for page in [Page::Fitted(100.0), Page::Paper([210.0, 148.0]), Page::Paper([60.0, 60.0])] {
             let sheet = draw(heights, &SheetOptions { page, ..options() }).unwrap();
-            let [width, height] = sheet.scene.size;
+            let Size { width, height } = sheet.scene.size;
             let small = page == Page::Paper([60.0; 2]);
-            for [x, y] in places(&sheet.scene) {
+            for Point { x, y } in places(&sheet.scene) {
                 // The content below the map may be more than this small paper can hold.
                 let inside = (0.0..=width).contains(&x) && (0.0..=height).contains(&y) || small;
                 assert!(x.is_finite() && y.is_finite() && inside, "{k} {page:?}: {x} {y} of {width} x {height}");
@@ -151,7 +152,7 @@ fn surfaces_color_the_map_and_stand_in_the_legend() {
         ..options()
     };
     let sheet = draw(&heights, &covered).unwrap();
-    let pictures: Vec<(&[f32; 4], &Vec<u8>)> = (sheet.scene.items.iter())
+    let pictures: Vec<(&Rect, &Vec<u8>)> = (sheet.scene.items.iter())
         .filter_map(|item| match item {
             Item::Picture { area, pixels, .. } => Some((area, pixels)),
             _ => None,
@@ -159,7 +160,8 @@ fn surfaces_color_the_map_and_stand_in_the_legend() {
         .collect();
     // The map first, then a swatch for each surface; the profile shows rock.
     assert!(pictures[0].1.chunks_exact(3).all(|pixel| pixel[1] > pixel[0] && pixel[1] > pixel[2]));
-    let swatches: Vec<&Vec<u8>> = pictures.iter().filter(|(area, _)| area[3] == 3.0).map(|picture| picture.1).collect();
+    let swatches: Vec<&Vec<u8>> =
+        pictures.iter().filter(|(area, _)| area.height == 3.0).map(|picture| picture.1).collect();
     assert_eq!(swatches.len(), 2);
     assert_eq!((&swatches[0][..3], &swatches[0][189..]), (&[76, 92, 46][..], &[143, 134, 104][..]));
     assert!(swatches[1].chunks_exact(3).all(|pixel| *pixel == [109, 103, 95]));
