@@ -20,10 +20,9 @@ use crate::failure::Failure;
 use crate::format::Format;
 use crate::options::Limits;
 use crate::replace::Replace;
-use crate::seeds::Seeds;
 use crate::sink::{Sink, is_stdout};
 use crate::source::{Source, title};
-use crate::view::{SizedView, View};
+use crate::view::SizedView;
 use crate::{finite, interrupt, say};
 
 /// Arguments of the command.
@@ -53,10 +52,7 @@ pub struct Args {
 
 /// Measures the terrain and prints the result.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    Seeds::each(args.samples.view.seed.as_ref(), args.out.as_deref(), |seed, out| {
-        let view = View { seed, ..args.samples.view.clone() };
-        measure(&Args { samples: SizedView { view, ..args.samples }, out, ..args.clone() })
-    })
+    args.samples.each_seed(args.out.as_deref(), |samples, out| measure(&Args { samples, out, ..args.clone() }))
 }
 
 fn measure(args: &Args) -> Result<(), Failure> {
@@ -68,8 +64,7 @@ fn measure(args: &Args) -> Result<(), Failure> {
     }
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();
-    let mut recipe = source.read(&budget, &args.samples.view.arguments)?;
-    args.samples.view.apply(&mut recipe);
+    let recipe = args.samples.recipe(&source, &budget)?;
     let policy = args.replace.policy(source.inputs(&recipe));
     let sink = args.out.as_ref().map(|out| Sink::new(out, &policy)).transpose()?;
     let world = args.limits.open(recipe, &budget)?;

@@ -10,7 +10,8 @@ use crate::memory;
 use crate::replace::Replace;
 use crate::sheet::{page, row};
 use crate::sink::{Sink, is_stdout};
-use crate::size::{Bytes, seed};
+use crate::values::bytes::Bytes;
+use crate::values::number::seed;
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]

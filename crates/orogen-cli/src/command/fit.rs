@@ -19,8 +19,8 @@ use crate::failure::Failure;
 use crate::options::Limits;
 use crate::replace::Replace;
 use crate::sink::{Sink, is_stdout};
-use crate::size::seed;
 use crate::source::preset;
+use crate::values::number::seed;
 use crate::{finite, interrupt, say};
 
 /// Arguments of the command.

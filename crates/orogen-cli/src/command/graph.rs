@@ -7,15 +7,15 @@ use clap::ValueEnum;
 use orogen::sheet::{pdf, raster, vector};
 use orogen::words::count;
 
-use crate::arguments::Arguments;
 use crate::failure::Failure;
 use crate::graph::diagram::Diagram;
 use crate::graph::{dot, draw};
 use crate::memory;
 use crate::replace::Replace;
 use crate::sink::{Sink, kind};
-use crate::size::Bytes;
 use crate::source::{Source, title};
+use crate::values::arguments::Arguments;
+use crate::values::bytes::Bytes;
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]

@@ -24,12 +24,11 @@ use crate::bar::Bar;
 use crate::export_options::LayerOptions;
 use crate::failure::Failure;
 use crate::options::Limits;
-use crate::paper::Paper;
 use crate::replace::Replace;
-use crate::seeds::Seeds;
 use crate::sink::{Sink, kind};
-use crate::size::{Numbers, positive};
 use crate::source::{Source, title};
+use crate::values::number::{Numbers, positive};
+use crate::values::paper::Paper;
 use crate::view::View;
 use crate::{finite, interrupt, palette, say};
 
@@ -211,10 +210,7 @@ const WRITING: f64 = 60.0;
 
 /// Draws the sheet.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    Seeds::each(args.view.seed.as_ref(), Some(&args.out), |seed, out| {
-        let view = View { seed, ..args.view.clone() };
-        map(&Args { view, out: out.unwrap_or_default(), ..args.clone() })
-    })
+    args.view.each_output(&args.out, |view, out| map(&Args { view, out, ..args.clone() }))
 }
 
 fn map(args: &Args) -> Result<(), Failure> {
@@ -235,8 +231,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     }
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();
-    let mut recipe = source.read(&budget, &args.view.arguments)?;
-    args.view.apply(&mut recipe);
+    let mut recipe = args.view.recipe(&source, &budget)?;
     let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)).protecting(&args.palette))?;
     list::prepare(&mut recipe, &args.layer, &args.layer_options.read()?)?;
     if is_covered {

@@ -21,7 +21,9 @@ use crate::format::Format;
 use crate::moving::{AnimationTarget, Moving};
 use crate::replace::Replace;
 use crate::sink::{Sink, is_stdout};
-use crate::size::{Bytes, MOST, Size, finite, positive, seed, wavelength};
+use crate::values::bytes::Bytes;
+use crate::values::number::{MOST, finite, positive, seed, wavelength};
+use crate::values::size::Size;
 use crate::{disk, interrupt, memory, say};
 
 /// Duration of a frame, in milliseconds.

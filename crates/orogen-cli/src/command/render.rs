@@ -21,12 +21,12 @@ use orogen::{Grid, Progress, Window, World};
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::moving::{AnimationTarget, Moving};
-use crate::options::Limits;
-use crate::replace::Replace;
-use crate::seeds::Seeds;
+use crate::options::RunOptions;
 use crate::sink::{Sink, is_stdout};
-use crate::size::{Numbers, Size, clock, not_negative, positive};
 use crate::source::Source;
+use crate::values::number::{Numbers, not_negative, positive};
+use crate::values::size::Size;
+use crate::values::time::clock;
 use crate::view::View;
 use crate::{finite, interrupt, palette, say};
 
@@ -100,12 +100,7 @@ pub struct Args {
     #[command(flatten)]
     view: View,
     #[command(flatten)]
-    replace: Replace,
-    #[command(flatten)]
-    limits: Limits,
-    /// Print no progress and no summary
-    #[arg(short, long, help_heading = "Output")]
-    quiet: bool,
+    run: RunOptions,
 }
 
 /// `--edge`.
@@ -140,10 +135,7 @@ const LAND: u64 = 116;
 
 /// Renders the picture.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    Seeds::each(args.view.seed.as_ref(), Some(&args.out), |seed, out| {
-        let view = View { seed, ..args.view.clone() };
-        render(&Args { view, out: out.unwrap_or_default(), ..args.clone() })
-    })
+    args.view.each_output(&args.out, |view, out| render(&Args { view, out, ..args.clone() }))
 }
 
 fn render(args: &Args) -> Result<(), Failure> {
@@ -165,15 +157,14 @@ fn render(args: &Args) -> Result<(), Failure> {
     }
     let (style, shot) = (style(args, palette.as_ref())?, shot(args)?);
     let source = Source::find(&args.recipe)?;
-    let budget = args.limits.budget();
-    let mut recipe = source.read(&budget, &args.view.arguments)?;
-    args.view.apply(&mut recipe);
-    let policy = args.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
+    let budget = args.run.limits.budget();
+    let mut recipe = args.view.recipe(&source, &budget)?;
+    let policy = args.run.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
     let outputs = target.outputs(&args.out, args.turntable.unwrap_or(1), &policy)?;
     if matches!(args.color, Dress::Surfaces) {
         COVER.iter().try_for_each(|layer| list::prepare(&mut recipe, layer.name, &Options::default()))?;
     }
-    let world = args.limits.open(recipe, &budget)?;
+    let world = args.run.limits.open(recipe, &budget)?;
     let window = args.view.window(&world)?;
     let pixels = (width * height) as u64;
     // Memory per sample of the land: the pyramid, slopes, and light twice while it is computed.
@@ -182,12 +173,12 @@ fn render(args: &Args) -> Result<(), Failure> {
     let _drawing = budget.reserve(needed)?;
     let folder = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     file::check_folder(folder)?;
-    let (bar, progress) = Bar::new(args.quiet);
+    let (bar, progress) = Bar::new(args.run.quiet);
     let shooting = Shooting { target, outputs, style, shot };
     let made = draw(args, &world, &window, &shooting, &progress);
     drop(bar);
     let words = made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
-    shooting.outputs[0].tell(args.quiet, &words)
+    shooting.outputs[0].tell(args.run.quiet, &words)
 }
 
 /// The size of the picture.
@@ -425,7 +416,7 @@ fn draw(
         return Ok(format!("{file}: {} of {width} x {height} pixels, of {samples}\n", count(frames as usize, "frame")));
     }
     let camera = scene.camera(&spec);
-    if let (Some(metres), false) = (camera.lifted(), args.quiet) {
+    if let (Some(metres), false) = (camera.lifted(), args.run.quiet) {
         say::error(&format!("note: the camera was below the ground and was raised by {metres:.0} m"));
     }
     painting.expect(height as f64);
