@@ -18,6 +18,7 @@ use orogen::mesh::shape::Shape;
 use orogen::mesh::stl::{self, Print};
 use orogen::mesh::surface::Surface;
 use orogen::mesh::{obj, ply};
+use orogen::test_folder::TestFolder;
 use orogen::{Grid, Progress, Recipe, Window, World};
 use serde_json::Value;
 
@@ -508,9 +509,7 @@ fn export_with(
 
 #[test]
 fn exports_are_whole_and_the_same_on_any_number_of_threads() {
-    let folder = std::env::temp_dir().join(format!("orogen-meshes-{}", std::process::id()));
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = TestFolder::new("meshes").unwrap();
     let (world, window) = (world(), Window::new(150, 90, 20.0).at(100, 100));
     type Given<'a> = &'a [(&'a str, &'a str)];
     let cases: [(&str, Given, &str); 6] = [
@@ -560,14 +559,14 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
         let why = export(&world, window, &folder.join(name), given).unwrap_err();
         assert!(why.contains(expect), "{why}");
     }
-    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 8);
-    std::fs::remove_dir_all(&folder).unwrap();
+    assert_eq!(folder.names().len(), 8);
 }
 
 #[test]
 fn triangles_have_their_share_of_the_progress() {
     let world = world();
-    let path = std::env::temp_dir().join(format!("orogen-mesh-progress-{}.glb", std::process::id()));
+    let folder = TestFolder::new("mesh-progress").unwrap();
+    let path = folder.join("a.glb");
     for given in [&[][..], &[("max-error", "0.5")]] {
         let shares = Arc::new(Mutex::new(Vec::new()));
         let heard = Arc::clone(&shares);
@@ -578,7 +577,6 @@ fn triangles_have_their_share_of_the_progress() {
         // Computing the heights of one fractal is only a small share of the work.
         assert!(shares.iter().any(|share| (0.3..0.99).contains(share)), "{shares:?}");
     }
-    std::fs::remove_file(&path).unwrap();
 }
 
 #[test]

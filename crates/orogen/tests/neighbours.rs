@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use orogen::export::job::ExportJob;
 use orogen::export::layer_source::LayerSource;
@@ -14,13 +14,8 @@ use orogen::export::targets::frame::FrameSpec;
 use orogen::export::targets::job::EngineJob;
 use orogen::export::{registry, targets};
 use orogen::file::OutputPolicy;
+use orogen::test_folder::TestFolder;
 use orogen::{Progress, Recipe, Window, World};
-
-fn folder(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("orogen-neighbours-{name}-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    folder
-}
 
 fn recipe(size: &str) -> Recipe {
     let text = format!(
@@ -71,7 +66,7 @@ fn ply_colors(path: &Path) -> Vec<[u8; 3]> {
 
 #[test]
 fn colors_of_meshes() {
-    let folder = folder("colors");
+    let folder = TestFolder::new("neighbours-colors").unwrap();
     for (size, range) in [("size = [2400, 1600]", None), ("", None), ("size = [2400, 1600]", Some("0,900"))] {
         let world = World::open(recipe(size)).unwrap();
         let mut options = Options::default();
@@ -91,7 +86,6 @@ fn colors_of_meshes() {
         assert_eq!(sides[0], sides[1], "{size} {range:?}");
         assert!(colors[0].iter().any(|color| *color != colors[0][0]), "{size} {range:?}");
     }
-    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]
@@ -118,7 +112,7 @@ fn textures_of_surfaces() {
 
 #[test]
 fn layers_of_engine_tiles() {
-    let folder = folder("tiles");
+    let folder = TestFolder::new("neighbours-tiles").unwrap();
     for layer in ["normal", "splat", "albedo", "roughness", "occlusion", "slope", "curvature"] {
         let mut recipe = recipe("size = [2400, 2400]");
         let target = targets::list::named("unity").unwrap();
@@ -148,5 +142,4 @@ fn layers_of_engine_tiles() {
         assert_ne!(column(&north_west, 63), column(&north_east, 0), "{layer}");
         assert_eq!(row(&north_west, 64), row(&south_west, 0), "{layer}");
     }
-    std::fs::remove_dir_all(&folder).unwrap();
 }

@@ -6,6 +6,7 @@ mod support;
 use orogen::field::{fbm::Fbm, warp::Warp};
 use orogen::filter::{blur::Blur, slope::Slope};
 use orogen::solver::{bake::Bake, normalise::Normalise};
+use orogen::test_folder::TestFolder;
 use orogen::{Budget, Cache, Grid, Options, Progress, Recipe, Window, World};
 use std::fs;
 use std::path::PathBuf;
@@ -14,15 +15,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use support::world_of;
 
-/// A temporary folder, removed when dropped.
-struct Folder(PathBuf);
+/// A temporary folder.
+struct Folder(TestFolder);
 
 impl Folder {
     fn new(name: &str) -> Folder {
-        let path = std::env::temp_dir().join(format!("orogen-stores-{}-{name}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        Folder(path)
+        Folder(TestFolder::new(&format!("stores-{name}")).unwrap())
     }
 
     fn names(&self) -> Vec<PathBuf> {
@@ -32,13 +30,7 @@ impl Folder {
     }
 
     fn cache(&self) -> Cache {
-        Cache { slower_than: Duration::ZERO, ..Cache::new(&self.0) }
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
+        Cache { slower_than: Duration::ZERO, ..Cache::new(&*self.0) }
     }
 }
 
@@ -104,7 +96,7 @@ fn memory_disk_and_folder_make_the_same_bits() {
                     threads: Some(threads),
                     memory: Budget::of(memory),
                     cache,
-                    scratch: Some(folder.0.clone()),
+                    scratch: Some(folder.0.to_path_buf()),
                     ..Options::default()
                 },
             );

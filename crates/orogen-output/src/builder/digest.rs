@@ -84,10 +84,12 @@ impl<W: Write> Write for Measured<W> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use orogen_io::test_folder::TestFolder;
 
     #[test]
     fn any_change_of_a_file_is_noticed() {
-        let path = std::env::temp_dir().join(format!("orogen-piece-{}", std::process::id()));
+        let folder = TestFolder::new("digest").unwrap();
+        let path = folder.join("piece");
         let bytes: Vec<u8> = (0..3_000_000u32).map(|n| n.wrapping_mul(n) as u8).collect();
         let digest = FileDigest::of(&bytes);
         assert!(!digest.is_at(&path), "it is not there");
@@ -103,7 +105,6 @@ mod tests {
         }
         std::fs::write(&path, &bytes[1..]).unwrap();
         assert!(!digest.is_at(&path), "cut");
-        std::fs::remove_file(&path).unwrap();
         assert_eq!(
             FileDigest::of(b"abc").sha256,
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad",

@@ -143,6 +143,7 @@ mod tests {
     use orogen_grid::progress::Progress;
     use orogen_io::file::OutputPolicy;
     use orogen_io::full_disk::Full;
+    use orogen_io::test_folder::TestFolder;
 
     #[test]
     fn every_format_is_written_whole_or_fails_with_its_writer() {
@@ -172,8 +173,7 @@ mod tests {
     fn a_stopped_export_leaves_nothing() {
         let text = "orogen = 1\n[nodes.a]\nop = \"constant\"\n[outputs]\nheight = \"a\"\n";
         let world = World::open(Recipe::parse(text, "test").unwrap()).unwrap();
-        let folder = std::env::temp_dir().join(format!("orogen-export-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
+        let folder = TestFolder::new("export").unwrap();
         for name in ["png", "r16", "tif", "exr"] {
             let progress = Progress::none();
             progress.cancel();
@@ -183,7 +183,6 @@ mod tests {
             let error = to_file(registry::named(name).unwrap(), source, &Options::default(), &output).unwrap_err();
             assert_eq!(error.kind(), ErrorKind::Cancelled, "{name}");
         }
-        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
-        std::fs::remove_dir_all(&folder).unwrap();
+        assert!(folder.names().is_empty());
     }
 }
