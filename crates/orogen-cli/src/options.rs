@@ -43,6 +43,23 @@ pub struct RunOptions {
     pub quiet: bool,
 }
 
+/// What a command without a world of its own may replace and use.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct DrawOptions {
+    /// Memory limit of the program, such as 512MiB or 2GiB [default: half of the free memory]
+    #[arg(long, value_name = "BYTES")]
+    pub memory: Option<Bytes>,
+    #[command(flatten)]
+    pub replace: Replace,
+}
+
+impl DrawOptions {
+    /// The part of `--memory` that is available for the work on all cores.
+    pub fn budget(self) -> Budget {
+        memory::budget(self.memory, memory::cores())
+    }
+}
+
 /// The folder of the cache; an empty value disables it.
 const CACHE_VARIABLE: &str = "OROGEN_CACHE";
 

@@ -372,7 +372,7 @@ fn a_solid_is_closed_and_faces_outwards() {
         for shape in shapes(&grid) {
             let exaggerated = Surface { exaggeration: 2.0, ..surface(&grid, &shape) };
             let mut bytes = Vec::new();
-            let print = Print { size: 150.0, base: 3.0 };
+            let print = Print::new(150.0).with_base(3.0);
             let high = stl::write(&mut bytes, &exaggerated, &print).unwrap();
             let count = u32::from_le_bytes(bytes[80..84].try_into().unwrap()) as usize;
             assert_eq!(bytes.len(), 84 + 50 * count);
@@ -424,7 +424,7 @@ fn holes_are_left_out_or_refused() {
     assert!(mesh.places.iter().chain(&mesh.normals).flatten().all(|number| number.is_finite()));
     let glb = Glb::read(&glb_bytes(&[surface(&grid, &shape)], None));
     assert_eq!(glb.mesh(0).triangles, mesh.triangles);
-    let print = Print { size: 100.0, base: 1.0 };
+    let print = Print::new(100.0).with_base(1.0);
     let error = stl::write(&mut Vec::new(), &surface(&grid, &shape), &print).unwrap_err().to_string();
     assert!(error.contains("1 of 400 samples are nodata"), "{error}");
 }
@@ -469,7 +469,7 @@ fn a_writer_that_fails_is_an_error_wherever_it_fails() {
         },
         &|out| ply::write(out, &surface, &[]),
         &|out| obj::write(out, &surface, &[], Some("a.mtl")),
-        &|out| stl::write(out, &surface, &Print { size: 10.0, base: 1.0 }).map(|_| ()),
+        &|out| stl::write(out, &surface, &Print::new(10.0).with_base(1.0)).map(|_| ()),
     ];
     for write in writers {
         let mut bytes = Vec::new();

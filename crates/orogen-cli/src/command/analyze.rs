@@ -104,8 +104,8 @@ fn measure(args: &Args) -> Result<(), Failure> {
         }
     };
     if let Some((sink, page)) = sink.as_ref().zip(page) {
-        let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-        sink.write(|out| page.write_png(out, &[("Software", &software)]))?;
+        let software = say::SOFTWARE;
+        sink.write(|out| page.write_png(out, &[("Software", software)]))?;
     }
     progress.finish();
     drop(bar);
@@ -181,7 +181,7 @@ fn shown(
         let message = "there is too little land to measure: at least 64 x 64 samples are needed, 1 % of them above sea level, and some relief";
         Error::new(ErrorKind::Request, message)
     })?;
-    let title = Title { name: title(&args.recipe), about: about(args, world) };
+    let title = Title::new(title(&args.recipe)).with_about(about(args, world));
     let page = args.out.is_some().then(|| page::draw(&title, land, &measures)).transpose()?;
     progress.finish();
     Ok((measures, page))

@@ -23,7 +23,7 @@ use crate::options::RunOptions;
 use crate::sink::Sink;
 use crate::source::Source;
 use crate::view::SizedView;
-use crate::{finite, interrupt};
+use crate::{finite, interrupt, say};
 
 /// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
@@ -122,8 +122,8 @@ fn write(
         land.at(growth.steps()).map_err(|cause| Error::file("read back the spilled data of", &args.out, &cause))?;
     finite::check(HEIGHT, &last)?;
     let painter = Painter::fit(&last, sea_level);
-    let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", &software)] };
+    let software = say::SOFTWARE;
+    let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", software)] };
     let animation = Animation { frames: u32::from(args.frames), delay: args.delay };
     let painted = |ground: &Grid, bytes: &mut [u8]| painter.paint(ground, 0..height, bytes);
     // The start is smooth and the end is rough: colours and shades are fitted to both.

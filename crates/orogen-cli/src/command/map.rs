@@ -27,7 +27,7 @@ use crate::options::Limits;
 use crate::replace::Replace;
 use crate::sink::{Sink, kind};
 use crate::source::{Source, title};
-use crate::values::number::{Numbers, positive};
+use crate::values::number::{Numbers, dpi, positive};
 use crate::values::paper::Paper;
 use crate::view::View;
 use crate::{finite, interrupt, palette, say};
@@ -75,7 +75,7 @@ pub struct Args {
     #[arg(long, requires = "paper")]
     landscape: bool,
     /// Pixels per inch of a .png, and of the relief in a .svg or .pdf [default: 220; 150 for a .png without --paper]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=1200), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = dpi(), allow_negative_numbers = true)]
     dpi: Option<u16>,
     /// Pixels along the longer side of the page, instead of --dpi
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..=30000), conflicts_with = "dpi",
@@ -270,11 +270,11 @@ fn map(args: &Args) -> Result<(), Failure> {
             "note: no installed font has the letters {letters}; they are left out (install a font that has them, such as Noto)"
         ));
     }
-    let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+    let software = say::SOFTWARE;
     match kind {
         Kind::Png => {
             let page = raster::draw(&sheet.scene, sheet.dpi);
-            let mut notes = vec![("Software", software.as_str())];
+            let mut notes = vec![("Software", software)];
             // PNG text chunks contain Latin-1 only.
             if options.title.chars().all(|letter| letter <= '\u{ff}' && !letter.is_control()) {
                 notes.push(("Title", &options.title));

@@ -385,8 +385,8 @@ fn draw(
     let scene = Scene::new(&land, &style, &preparing)?;
     preparing.finish();
     let spec = CameraSpec::new(*shot, size).with_fov(args.fov);
-    let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", &software)] };
+    let software = say::SOFTWARE;
+    let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", software)] };
     let file = args.out.display();
     let samples = format!("{} x {} samples of {} m", window.width, window.height, number(window.cell));
     if let (Some(frames), Shot::Around { azimuth, elevation, distance }) = (args.turntable, *shot) {

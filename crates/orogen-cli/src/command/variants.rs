@@ -16,7 +16,7 @@ use crate::source::{Source, title};
 use crate::values::arguments::Arguments;
 use crate::values::number::seed;
 use crate::values::sweep::Sweep;
-use crate::{finite, interrupt};
+use crate::{finite, interrupt, say};
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
@@ -98,8 +98,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let [width, height] = contact::size(&variants, columns);
     let page = budget.reserve((3 * width * height) as u64)?;
     let canvas = contact::draw(&sheet, &variants, columns)?;
-    let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    sink.write(|out| canvas.write_png(out, &[("Software", &software)]))?;
+    let software = say::SOFTWARE;
+    sink.write(|out| canvas.write_png(out, &[("Software", software)]))?;
     writing.finish();
     drop((bar, page, held));
     sink.tell(

@@ -2,6 +2,8 @@
 
 use std::str::FromStr;
 
+use clap::builder::TypedValueParser;
+
 /// Maximum number of samples per side: far beyond any memory, and small enough to avoid overflow.
 pub const MOST: u64 = 1_000_000_000;
 
@@ -37,6 +39,11 @@ fn length(text: &str, what: &str, [zero, of]: [&str; 2]) -> Result<f64, String> 
         Ok(_) => Err(format!("{what} must be greater than {zero}")),
         Err(_) => Err(format!("{what} must be a number of {of}")),
     }
+}
+
+/// `--dpi`: pixels per inch of a page.
+pub fn dpi() -> impl TypedValueParser<Value = u16> {
+    clap::value_parser!(u16).range(20..=1200)
 }
 
 /// A finite number.
