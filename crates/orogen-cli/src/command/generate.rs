@@ -82,7 +82,7 @@ const WRITING: f64 = 150.0;
 fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Failure> {
     let begun = Instant::now();
     let budget = args.run.limits.budget();
-    let recipe = args.samples.recipe(&source, &budget)?;
+    let recipe = args.samples.recipe(source, &budget)?;
     let policy = args.run.replace.policy(source.inputs(&recipe));
     let world = args.run.limits.open(recipe, &budget)?;
     let window = args.samples.window(&world)?;

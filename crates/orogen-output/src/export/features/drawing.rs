@@ -112,7 +112,7 @@ impl Drawing {
 
 /// Checks that each given option belongs to one of the layers.
 fn check(layers: &[&VectorLayer], options: &Options) -> Result<()> {
-    let all = || super::options::OPTIONS.iter().map(|spec| spec.name);
+    let all = || OPTIONS.iter().map(|spec| spec.name);
     for name in options.names().filter(|name| all().any(|known| known == *name)) {
         if !layers.iter().any(|layer| layer.options.contains(&name)) {
             let knows: Vec<&str> = super::list::all()
