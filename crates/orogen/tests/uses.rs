@@ -4,7 +4,6 @@
 use orogen::test_folder::TestFolder;
 use orogen::{Recipe, Window, World};
 use std::fs;
-use std::path::PathBuf;
 
 /// A temporary folder.
 struct Folder(TestFolder);
