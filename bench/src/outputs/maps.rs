@@ -7,7 +7,7 @@ use orogen::Grid;
 use orogen::map::paint::Painter;
 use orogen::palette::named;
 use orogen::sheet::draw::draw;
-use orogen::sheet::options::{Coloring, Options as Sheet, Page, Parts, Resolution, Shading};
+use orogen::sheet::options::SheetOptions;
 use orogen::sheet::raster;
 
 use super::ground::ground;
@@ -52,21 +52,8 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     ])
 }
 
-fn sheet() -> Sheet {
-    Sheet {
-        title: "PreparedDem".into(),
-        about: String::new(),
-        palette: named::all()[0].palette(),
-        shading: Shading::Multi,
-        interval: None,
-        parts: Parts::default(),
-        page: Page::Fitted(240.0),
-        resolution: Resolution::Inch(150.0),
-        sea_level: Some(0.0),
-        coloring: Coloring::Heights,
-        range: None,
-        map: None,
-    }
+fn sheet() -> SheetOptions {
+    SheetOptions::new(named::all()[0].palette()).with_title("PreparedDem").with_sea_level(0.0)
 }
 
 /// Counts bytes.

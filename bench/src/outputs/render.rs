@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use orogen::render::camera::{Camera, View};
+use orogen::render::camera::{CameraSpec, View};
 use orogen::render::relief::Land;
 use orogen::render::scene::{Scene, Style};
 use orogen::{Progress, World, presets};
@@ -36,7 +36,7 @@ pub fn measure(options: &Options) -> Result<Vec<Figure>, String> {
     for _ in 0..options.repetitions {
         let start = Instant::now();
         let scene = Scene::new(&land, &Style::default(), &progress).map_err(told)?;
-        let camera = Camera::new(&view, scene.relief(), [0.0; 2], SIZE, 40.0, &scene.frame());
+        let camera = scene.camera(&CameraSpec::new(view, SIZE));
         let mut bytes = vec![0; SIZE[0] * SIZE[1] * 3];
         scene.paint(&camera, SIZE, 0..SIZE[1], &mut bytes, &progress).map_err(told)?;
         black_box(bytes);

@@ -31,15 +31,14 @@ fn free_in(folder: &Path) -> Option<u64> {
 /// Fails if the disk of `path` does not have `needed` bytes, before the work starts.
 pub fn afford(path: &Path, needed: u64, free: Option<u64>) -> Result<(), Error> {
     match free {
-        Some(free) if needed > free => Err(Error::new(
-            ErrorKind::File,
-            format!(
-                "not enough disk space for {1}: up to {0} needed, {2} free; free some space, or write to another disk",
-                words::bytes(needed),
-                path.display(),
-                words::bytes(free)
-            ),
-        )),
+        Some(free) if needed > free => {
+            let [needed, free] = words::bytes_apart(needed, free);
+            let path = path.display();
+            let message = format!(
+                "not enough disk space for {path}: up to {needed} needed, {free} free; free some space, or write to another disk"
+            );
+            Err(Error::new(ErrorKind::File, message))
+        }
         _ => Ok(()),
     }
 }

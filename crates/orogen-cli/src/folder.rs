@@ -44,10 +44,12 @@ impl Drop for Folder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use orogen::test_folder::TestFolder;
 
     #[test]
     fn what_was_made_goes_unless_kept_or_filled() {
-        let root = std::env::temp_dir().join(format!("orogen-folder-{}", std::process::id()));
+        let parent = TestFolder::new("folder").unwrap();
+        let root = parent.join("root");
         let deep = root.join("a/b");
         drop(Folder::ready(&deep).unwrap());
         assert!(!root.exists());
@@ -58,6 +60,5 @@ mod tests {
         Folder::ready(&deep).unwrap().keep();
         drop(Folder::ready(&deep).unwrap());
         assert!(deep.exists());
-        std::fs::remove_dir_all(&root).unwrap();
     }
 }

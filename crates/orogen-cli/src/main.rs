@@ -3,7 +3,6 @@
 // These macros panic if the other end of a pipe is closed; `say` does not.
 #![deny(clippy::print_stdout, clippy::print_stderr)]
 
-mod arguments;
 mod bar;
 mod cli;
 mod command;
@@ -21,17 +20,14 @@ mod memory;
 mod moving;
 mod options;
 mod palette;
-mod paper;
 mod pictures;
-mod region;
 mod replace;
 mod report;
 mod say;
-mod seeds;
 mod sheet;
 mod sink;
-mod size;
 mod source;
+mod values;
 mod view;
 mod watch;
 

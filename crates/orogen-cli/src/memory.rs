@@ -3,7 +3,7 @@
 use orogen::Budget;
 use sysinfo::{Pid, ProcessRefreshKind, ProcessesToUpdate, System};
 
-use crate::size::Bytes;
+use crate::values::bytes::Bytes;
 
 /// Half of the free memory of the machine or of the container, whichever is less; `None` if the system does not tell.
 pub fn share_of_free() -> Option<u64> {

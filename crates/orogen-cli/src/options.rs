@@ -7,7 +7,8 @@ use orogen::{Budget, Cache, Options, Recipe, World};
 
 use crate::failure::Failure;
 use crate::memory;
-use crate::size::Bytes;
+use crate::replace::Replace;
+use crate::values::bytes::Bytes;
 
 /// Limits of threads and memory, and the cache.
 #[derive(Debug, Clone, Args)]
@@ -28,6 +29,35 @@ pub struct Limits {
     /// Do not read or write the cache
     #[arg(long, conflicts_with_all = ["cache", "cache_limit"])]
     pub no_cache: bool,
+}
+
+/// How a command runs: which files it may replace, what it may use, and whether it tells.
+#[derive(Debug, Clone, Args)]
+pub struct RunOptions {
+    #[command(flatten)]
+    pub replace: Replace,
+    #[command(flatten)]
+    pub limits: Limits,
+    /// Print no progress and no summary
+    #[arg(short, long, help_heading = "Output")]
+    pub quiet: bool,
+}
+
+/// What a command without a world of its own may replace and use.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct DrawOptions {
+    /// Memory limit of the program, such as 512MiB or 2GiB [default: half of the free memory]
+    #[arg(long, value_name = "BYTES")]
+    pub memory: Option<Bytes>,
+    #[command(flatten)]
+    pub replace: Replace,
+}
+
+impl DrawOptions {
+    /// The part of `--memory` that is available for the work on all cores.
+    pub fn budget(self) -> Budget {
+        memory::budget(self.memory, memory::cores())
+    }
 }
 
 /// The folder of the cache; an empty value disables it.

@@ -14,6 +14,7 @@ use orogen::{Grid, Recipe, Result, Window};
 use serde::Serialize;
 
 use crate::interrupt::Stoppable;
+use crate::say;
 
 /// `summary.json`. Keys have the order of the fields.
 #[derive(Debug, Clone, Serialize)]
@@ -130,7 +131,7 @@ fn again(recipe: &Recipe, grid: &Grid) -> String {
 fn report(recipe: &Recipe, grid: &Grid, summary: Summary, seconds: f64) -> Report {
     let map = recipe.georeference();
     Report {
-        made_by: format!("Orogen {}", env!("CARGO_PKG_VERSION")),
+        made_by: say::SOFTWARE.into(),
         seed: recipe.world.seed,
         width: grid.width(),
         height: grid.height(),

@@ -2,6 +2,9 @@
 
 use std::io::{self, Write};
 
+/// The program and its version, for the metadata of files.
+pub const SOFTWARE: &str = concat!("Orogen ", env!("CARGO_PKG_VERSION"));
+
 use crate::failure::Failure;
 
 /// Writes text to standard output.

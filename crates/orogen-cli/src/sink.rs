@@ -93,9 +93,9 @@ impl Write for Piped {
 /// The kind of file for `--format`, otherwise for the extension of `out`, otherwise (on standard output) the first of
 /// `kinds`.
 ///
+/// # Errors
 /// If neither matches one of `kinds`, or they contradict each other; `what` names the output in messages, such as "a
 /// map".
-/// If neither tells one of `kinds`, or they contradict each other; `what` says what is written, such as "a map".
 pub fn kind<K: Copy + PartialEq>(
     out: &Path,
     asked: Option<K>,

@@ -10,10 +10,10 @@ use orogen::recipe::document::LONGEST_TEXT;
 use orogen::recipe::presets::{self, Preset};
 use orogen::{Budget, Error, ErrorKind, Recipe, nearest};
 
-use crate::arguments::Arguments;
 use crate::failure::Failure;
 use crate::say;
 use crate::sink::DASH;
+use crate::values::arguments::Arguments;
 
 /// The source of a recipe.
 #[derive(Debug, Clone)]

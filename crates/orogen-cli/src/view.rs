@@ -1,17 +1,21 @@
 //! Which samples of which world: the options for seed, size, cell, window and georeference shared by all commands, and the window that they
 //! define. Apart from the seed, they only change which samples are taken; the world stays the same.
 
+use std::path::{Path, PathBuf};
+
 use clap::Args;
 use orogen::format::crs::registry::Crs;
 use orogen::format::dem::Georeference;
 use orogen::words::number;
-use orogen::{Recipe, Window, World};
+use orogen::{Budget, Recipe, Window, World};
 
-use crate::arguments::Arguments;
 use crate::failure::Failure;
-use crate::region::{Bounds, Rectangle, place};
-use crate::seeds::Seeds;
-use crate::size::{Size, cell};
+use crate::source::Source;
+use crate::values::arguments::Arguments;
+use crate::values::number::cell;
+use crate::values::region::{Bounds, Rectangle, place};
+use crate::values::seeds::Seeds;
+use crate::values::size::Size;
 
 /// Which samples of which world.
 #[derive(Debug, Clone, Default, Args)]
@@ -67,15 +71,58 @@ impl SizedView {
     pub fn window(&self, world: &World) -> Result<Window, Failure> {
         self.view.sized(world, self.size)
     }
+
+    /// See [`View::each_seed`].
+    pub fn each_seed(
+        &self,
+        out: Option<&Path>,
+        mut work: impl FnMut(SizedView, Option<PathBuf>) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        self.view.each_seed(out, |view, out| work(SizedView { view, size: self.size }, out))
+    }
+
+    /// See [`View::each_output`].
+    pub fn each_output(
+        &self,
+        out: &Path,
+        mut work: impl FnMut(SizedView, PathBuf) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        self.view.each_output(out, |view, out| work(SizedView { view, size: self.size }, out))
+    }
+
+    /// See [`View::recipe`].
+    pub fn recipe(&self, source: &Source, budget: &Budget) -> Result<Recipe, Failure> {
+        self.view.recipe(source, budget)
+    }
 }
 
 impl View {
-    /// Applies the options to the world of a recipe.
-    pub fn apply(&self, recipe: &mut Recipe) {
+    /// Calls a function for each seed, with the view of that seed and the name of its output: see [`Seeds::each`].
+    pub fn each_seed(
+        &self,
+        out: Option<&Path>,
+        mut work: impl FnMut(View, Option<PathBuf>) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        Seeds::each(self.seed.as_ref(), out, |seed, out| work(View { seed, ..self.clone() }, out))
+    }
+
+    /// [`View::each_seed`] of a command that always has an output.
+    pub fn each_output(
+        &self,
+        out: &Path,
+        mut work: impl FnMut(View, PathBuf) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        self.each_seed(Some(out), |view, out| work(view, out.unwrap_or_default()))
+    }
+
+    /// Reads a recipe with these options for its parameters and its world. Its memory counts in `budget`.
+    pub fn recipe(&self, source: &Source, budget: &Budget) -> Result<Recipe, Failure> {
+        let mut recipe = source.read(budget, &self.arguments)?;
         let world = &mut recipe.world;
         world.seed = self.seed.as_ref().map_or(world.seed, Seeds::first);
         world.crs = self.crs.or(world.crs);
         world.origin = self.origin.or(world.origin);
+        Ok(recipe)
     }
 
     /// The requested window: a part, or the whole world. A world of length L has round(L / cell) samples. For an

@@ -153,11 +153,11 @@ impl SeenFile {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use orogen::test_folder::TestFolder;
 
     #[test]
     fn recipes_that_are_used_are_watched() {
-        let folder = std::env::temp_dir().join(format!("orogen-watch-used-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
+        let folder = TestFolder::new("watch-used").unwrap();
         let part = |octaves: u32| {
             let text = format!("orogen = 1\n[nodes.n]\nop = \"fbm\"\noctaves = {octaves}\n[outputs]\nheight = \"n\"\n");
             std::fs::write(folder.join("part.toml"), text).unwrap();
@@ -175,12 +175,12 @@ mod tests {
         assert!(!seen.changed());
         part(4);
         assert!(seen.changed() && !seen.changed());
-        std::fs::remove_dir_all(&folder).unwrap();
     }
 
     #[test]
     fn only_other_content_is_a_change() {
-        let path = std::env::temp_dir().join(format!("orogen-watch-{}.toml", std::process::id()));
+        let folder = TestFolder::new("watch").unwrap();
+        let path = folder.join("a.toml");
         std::fs::write(&path, "a").unwrap();
         let mut seen = Seen::look(&path);
         assert!(!seen.changed());

@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::pool::HAS_THREADS;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::progress::Progress;
-use orogen_grid::words::bytes;
+use orogen_grid::words::bytes_apart;
 
 /// A memory limit in bytes. Clones share one limit.
 ///
@@ -163,8 +163,8 @@ impl Budget {
     pub fn refusal(&self, what: &str, needed: u64, instead: &str) -> Error {
         let all = needed.saturating_add(self.shared.lock().held);
         let limit = self.limit.unwrap_or(u64::MAX);
-        let message =
-            format!("{what} needs up to {} of memory, and {} is allowed; {instead}", bytes(all), bytes(limit));
+        let [all, limit] = bytes_apart(all, limit);
+        let message = format!("{what} needs up to {all} of memory, and {limit} is allowed; {instead}");
         Error::new(ErrorKind::Memory, message)
     }
 }

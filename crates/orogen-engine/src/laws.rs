@@ -34,6 +34,7 @@ use crate::world::World;
 use orogen_grid::error::{ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
+use orogen_grid::random::Random;
 use orogen_noise::Level;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
@@ -529,11 +530,11 @@ fn tiles_equal_crop(case: &Case, what: &str, recipe: &Recipe, cell: f64) -> Verd
     let layers: Vec<&str> = recipe.outputs().collect();
     let wholes = case.in_window(whole).layers(recipe, &whole)?;
     let warm = case.open(recipe, 1)?;
-    let mut random = Random(case.op.len() as u64);
+    let mut random = Random::of_state(case.op.len() as u64);
     let mut tiles = vec![(Window::new(31, 17, cell).at(13, 44), true), (whole, true), (whole, false)];
     for size in [1usize, 2, 7, 33, 64] {
         for _ in 0..2 {
-            let [x, y] = SIDES.map(|side| random.below((side - size) as u64 + 1) as i64);
+            let [x, y] = SIDES.map(|side| (random.draw() % ((side - size) as u64 + 1)) as i64);
             tiles.push((Window::new(size, size, cell).at(x, y), false));
         }
     }
@@ -548,7 +549,7 @@ fn tiles_equal_crop(case: &Case, what: &str, recipe: &Recipe, cell: f64) -> Verd
         }
     }
     // A point on the lattice is the sample there.
-    let [i, j] = SIDES.map(|side| random.below(side as u64) as usize);
+    let [i, j] = SIDES.map(|side| (random.draw() % side as u64) as usize);
     let case = case.in_window(Window::new(1, 1, cell).at(i as i64, j as i64));
     for (layer, grid) in layers.iter().zip(&wholes) {
         let points = case.of(warm.points(layer, &[whole.east(i)], &[whole.south(j)]))?;
@@ -624,17 +625,4 @@ pub fn recipe_of(node: &Node, world: WorldSpec, masked: bool) -> Recipe {
         recipe.output(layer.name, Input::Node(format!("{NODE}.{}", layer.name)));
     }
     recipe
-}
-
-/// A small deterministic generator (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        (z ^ (z >> 31)) % n
-    }
 }

@@ -6,6 +6,7 @@ use crate::layer::LayerKind;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
+use orogen_grid::random::{STEP, mix64};
 use orogen_io::format::dem::Georeference;
 use orogen_io::raster::Raster;
 use orogen_noise::Points;
@@ -30,13 +31,8 @@ impl WorldParams {
     /// results (splitmix64's finaliser, Steele, Lea and Flood 2014, over both).
     #[must_use]
     pub fn seed_of(&self, node_seed: u64) -> u64 {
-        let mix = |mut z: u64| {
-            z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-            z ^ (z >> 31)
-        };
-        let world = mix(self.seed.wrapping_add(0x9E37_79B9_7F4A_7C15));
-        mix(world ^ node_seed.wrapping_mul(0xD1B5_4A32_D192_ED03))
+        let world = mix64(self.seed.wrapping_add(STEP));
+        mix64(world ^ node_seed.wrapping_mul(0xD1B5_4A32_D192_ED03))
     }
 }
 

@@ -50,10 +50,14 @@ pub mod contour;
 pub mod erosion;
 pub mod error;
 pub mod grid;
+#[doc(hidden)]
+pub mod hex;
 pub mod hydrography;
 pub mod hydrology;
 mod interop;
 pub mod progress;
+#[doc(hidden)]
+pub mod random;
 pub mod resample;
 pub mod words;
 

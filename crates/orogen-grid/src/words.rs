@@ -171,17 +171,40 @@ fn short_numbers(text: &str, out: &mut String) {
 /// A number of bytes: "1.5 GiB".
 #[must_use]
 pub fn bytes(n: u64) -> String {
+    bytes_with(n, 0).0
+}
+
+/// Two numbers of bytes, with enough digits that both texts differ if the numbers do: "1.003 GiB" and "1.000 GiB". For
+/// messages about a need that exceeds a limit.
+#[must_use]
+pub fn bytes_apart(a: u64, b: u64) -> [String; 2] {
+    // More digits would be harder to read than the number itself.
+    const MOST: usize = 3;
+    for more in 0..=MOST {
+        let [(one, one_rounded), (other, other_rounded)] = [a, b].map(|n| bytes_with(n, more));
+        if a == b || one_rounded != other_rounded {
+            return [one, other];
+        }
+    }
+    [a, b].map(|n| format!("{n} bytes"))
+}
+
+/// A number of bytes with this many decimals beyond the usual ones, and the number that the text shows.
+fn bytes_with(n: u64, more: usize) -> (String, f64) {
     const UNITS: [&str; 6] = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB"];
-    let (mut value, mut unit) = (n as f64, 0);
+    let (mut value, mut unit, mut scale) = (n as f64, 0, 1.0);
     while value >= 1024.0 && unit + 1 < UNITS.len() {
         value /= 1024.0;
+        scale *= 1024.0;
         unit += 1;
     }
-    match unit {
-        0 => count(n as usize, "byte"),
-        _ if value < 10.0 => format!("{value:.1} {}", UNITS[unit]),
-        _ => format!("{value:.0} {}", UNITS[unit]),
+    if unit == 0 {
+        return (count(n as usize, "byte"), value);
     }
+    let decimals = more + usize::from(value < 10.0);
+    let text = format!("{value:.decimals$}");
+    let shown = text.parse().unwrap_or(value) * scale;
+    (format!("{text} {}", UNITS[unit]), shown)
 }
 
 /// Maximum number of characters of a text in one line.
@@ -281,6 +304,26 @@ mod tests {
         assert_eq!(bytes(3 << 30), "3.0 GiB");
         assert_eq!(bytes(200 << 20), "200 MiB");
         assert_eq!(bytes(1), "1 byte");
+    }
+
+    #[test]
+    fn a_need_and_its_limit_differ_in_their_texts() {
+        const GIB: u64 = 1 << 30;
+        for (needed, limit, expect) in [
+            (2 * GIB, GIB, ["2.0 GiB", "1.0 GiB"]),
+            (GIB + (GIB >> 8), GIB, ["1.004 GiB", "1.000 GiB"]),
+            (GIB + (GIB >> 5), GIB, ["1.03 GiB", "1.00 GiB"]),
+            ((200 << 20) + (300 << 10), 200 << 20, ["200.3 MiB", "200.0 MiB"]),
+            (GIB + 1, GIB, ["1073741825 bytes", "1073741824 bytes"]),
+            // The same figure in two units.
+            (GIB, GIB - (100 << 10), ["1.00 GiB", "1023.9 MiB"]),
+            (1025, 1024, ["1.001 KiB", "1.000 KiB"]),
+            (1001, 1000, ["1001 bytes", "1000 bytes"]),
+            (GIB, GIB, ["1.0 GiB", "1.0 GiB"]),
+            (u64::MAX, 3 * GIB, ["16384 PiB", "3.0 GiB"]),
+        ] {
+            assert_eq!(bytes_apart(needed, limit), expect, "{needed} {limit}");
+        }
     }
 
     #[test]

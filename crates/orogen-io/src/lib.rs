@@ -19,3 +19,5 @@ pub mod pages;
 pub mod palette;
 pub mod raster;
 pub mod spool;
+#[doc(hidden)]
+pub mod test_folder;

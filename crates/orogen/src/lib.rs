@@ -35,6 +35,8 @@ pub use orogen_engine::{
 pub use orogen_grid::{
     aggregate, analysis, contour, erosion, error, grid, hydrography, hydrology, progress, resample, words,
 };
+#[doc(hidden)]
+pub use orogen_io::test_folder;
 #[doc(inline)]
 pub use orogen_io::{dem, file, format, open, palette, raster, spool};
 #[doc(inline)]

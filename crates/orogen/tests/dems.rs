@@ -14,6 +14,7 @@ use orogen::format::geotiff::{reader, writer};
 use orogen::format::import;
 use orogen::format::sidecar::Sidecar;
 use orogen::spool::Spool;
+use orogen::test_folder::TestFolder;
 use orogen::{Budget, Options, Recipe, Window, World, WorldSpec};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -126,8 +127,7 @@ fn what_stands_beside_a_file_tells_its_place() {
         assert!(dem.notes.is_empty());
     }
     // Without a coordinate system the same numbers are metres; an unknown system is reported in a note.
-    let folder = std::env::temp_dir().join(format!("orogen-dems-beside-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = TestFolder::new("dems-beside").unwrap();
     std::fs::copy(corpus().join("arc.asc"), folder.join("a.asc")).unwrap();
     std::fs::write(folder.join("a.prj"), "LOCAL_CS[\"mine\"]").unwrap();
     let dem = import::read(&folder.join("a.asc"), 1 << 20).unwrap();
@@ -137,7 +137,6 @@ fn what_stands_beside_a_file_tells_its_place() {
         "{:?}",
         dem.notes
     );
-    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]
@@ -162,9 +161,7 @@ fn tiles_are_one_place() {
         assert!(why.contains("37 x 23 samples"), "{name}: {why}");
         assert!(open::is_dem(&corpus().join(name)));
     }
-    let folder = std::env::temp_dir().join(format!("orogen-dems-tiles-{}", std::process::id()));
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = TestFolder::new("dems-tiles").unwrap();
     assert!(!open::is_dem(&folder));
     let with = |name: &str| {
         std::fs::copy(corpus().join(name), folder.join(name)).unwrap();
@@ -177,7 +174,6 @@ fn tiles_are_one_place() {
     assert!(with("oblong.tif").contains("have different cell sizes, 30 x 30 and 20 x 30"));
     std::fs::copy(corpus().join("array.npy"), folder.join("b.tif")).unwrap();
     assert!(with("sparse.tif").contains("b.tif: it is not a TIFF"));
-    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]
@@ -251,8 +247,7 @@ fn a_dem_is_a_field() {
 
 #[test]
 fn what_is_in_the_file_is_the_key_and_not_its_name() {
-    let folder = std::env::temp_dir().join(format!("orogen-dems-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = TestFolder::new("dems").unwrap();
     let (a, b) = (folder.join("a.tif"), folder.join("b.tif"));
     std::fs::copy(corpus().join("f32-strips.tif"), &a).unwrap();
     std::fs::copy(corpus().join("f32-tiles-deflate-p3.tif"), &b).unwrap();
@@ -277,7 +272,6 @@ fn what_is_in_the_file_is_the_key_and_not_its_name() {
     assert!(error.contains("node `a`: cannot read gone.tif: no such file"), "{error}");
     let error = Recipe::parse(&text(""), "t").unwrap_err().to_string();
     assert!(error.contains("`path` is empty"), "{error}");
-    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use orogen::fit::features::{FeatureVector, of_windows};
 use orogen::fit::search::{Effort, FitTarget, search};
-use orogen::fit::template::{PARAMS, ParamValues, Stretch, recipe};
+use orogen::fit::template::{FittedWorld, PARAMS, ParamValues, Stretch, recipe};
 use orogen::{Grid, Options, Progress, Window, World};
 
 fn options() -> Options {
@@ -11,7 +11,9 @@ fn options() -> Options {
 }
 
 fn land(values: &ParamValues, stretch: &Stretch, seed: u64) -> Grid {
-    let world = World::with_options(recipe(values, stretch, [80, 80], 60.0, seed), options()).unwrap();
+    let world =
+        World::with_options(recipe(values, stretch, &FittedWorld { size: [80, 80], cell: 60.0, seed }), options())
+            .unwrap();
     world.window("height", &Window::new(80, 80, 60.0)).unwrap()
 }
 
@@ -20,7 +22,7 @@ fn every_setting_is_a_valid_recipe() {
     let stretch = Stretch { from: [-300.0, 700.0], to: [120.0, 900.0], bend: -1.5 };
     for share in [0.0, 0.3, 1.0] {
         let values = [share; PARAMS.len()];
-        let recipe = recipe(&values, &stretch, [96, 80], 30.0, 7);
+        let recipe = recipe(&values, &stretch, &FittedWorld { size: [96, 80], cell: 30.0, seed: 7 });
         let again = orogen::Recipe::parse(&recipe.to_toml(), "fitted").unwrap();
         assert_eq!(recipe, again);
         let land = World::with_options(again, options()).unwrap().window("height", &Window::new(96, 80, 30.0)).unwrap();
@@ -36,7 +38,7 @@ fn the_search_comes_nearer_and_meets_slope_and_hypsometry() {
     let place = land(&hidden, &stretch, 99);
     let target = FitTarget::of(&place).unwrap();
     let at = |random: usize, improving: usize| {
-        search(&target, &Effort { random, improving, seed: 5 }, &options(), &Progress::none()).unwrap()
+        search(&target, &Effort::new(random, improving).with_seed(5), &options(), &Progress::none()).unwrap()
     };
     let (first, better) = (at(1, 0), at(12, 6));
     assert!(better.distance <= first.distance, "{} {}", better.distance, first.distance);
@@ -65,7 +67,9 @@ fn a_world_of_a_fitted_recipe_has_no_rim() {
     for size in [[150, 150], [120, 190]] {
         let mut borders = Vec::new();
         for seed in 1..=6 {
-            let world = World::with_options(recipe(&values, &stretch, size, 60.0, seed), options()).unwrap();
+            let world =
+                World::with_options(recipe(&values, &stretch, &FittedWorld { size, cell: 60.0, seed }), options())
+                    .unwrap();
             let grid = world.window("height", &Window::new(size[0], size[1], 60.0)).unwrap();
             let step = |i: usize, j: usize| {
                 let here = grid[(i, j)];

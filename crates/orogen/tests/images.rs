@@ -3,43 +3,27 @@
 
 use orogen::format::levels::Levels;
 use orogen::format::png;
+use orogen::test_folder::TestFolder;
 use orogen::{Grid, Recipe, Window, World};
-use std::path::PathBuf;
-
-/// A temporary folder, removed when dropped.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Folder {
-        let folder = std::env::temp_dir().join(format!("orogen-images-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
-        Folder(folder)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
+use std::path::Path;
 
 /// 0, 1, 2 ... 19 over 19, row after row.
 fn greys() -> Grid {
     Grid::from_data(Window::new(5, 4, 1.0), (0..20).map(|k| k as f32).collect()).unwrap()
 }
 
-fn opened(folder: &Folder, more: &str) -> orogen::Result<World> {
+fn opened(folder: &Path, more: &str) -> orogen::Result<World> {
     let text = format!(
         "orogen = 1\n[nodes.mask]\nop = \"image\"\npath = \"mask.png\"\n{more}\n[outputs]\nheight = \"mask\"\n"
     );
     let mut recipe = Recipe::parse(&text, "r.toml")?;
-    recipe.set_base_dir(&folder.0);
+    recipe.set_base_dir(folder);
     World::open(recipe)
 }
 
 #[test]
 fn pixels_stand_where_they_are_laid() {
-    let folder = Folder::new("laid");
+    let folder = TestFolder::new("images-laid").unwrap();
     let grid = greys();
     for bits in [8, 16] {
         let mut bytes = Vec::new();
@@ -48,7 +32,7 @@ fn pixels_stand_where_they_are_laid() {
             8 => png::write_grey8(&mut bytes, &grid, &levels, &[]).unwrap(),
             _ => png::write_grey16(&mut bytes, &grid, &levels, &[]).unwrap(),
         }
-        std::fs::write(folder.0.join("mask.png"), &bytes).unwrap();
+        std::fs::write(folder.join("mask.png"), &bytes).unwrap();
         // 25 m from pixel to pixel, the first at (100, -50).
         let world = opened(&folder, "at = [100, -50]\nwidth = 100\noutside = 0.25").unwrap();
         for j in 0..4 {
@@ -68,13 +52,13 @@ fn pixels_stand_where_they_are_laid() {
 
 #[test]
 fn what_is_no_picture_is_named() {
-    let folder = Folder::new("named");
+    let folder = TestFolder::new("images-named").unwrap();
     let said = |why: &str| {
         let error = opened(&folder, "").err().unwrap().to_string();
         assert!(error.contains(why) && error.contains("mask"), "{error}");
     };
     said("mask.png");
-    std::fs::write(folder.0.join("mask.png"), b"GIF89a no picture of ours").unwrap();
+    std::fs::write(folder.join("mask.png"), b"GIF89a no picture of ours").unwrap();
     said("not a valid PNG");
     let text = "orogen = 1\n[nodes.mask]\nop = \"image\"\npath = \"mask.tif\"\n[outputs]\nheight = \"mask\"\n";
     let error = Recipe::parse(text, "r.toml").and_then(World::open).err().unwrap().to_string();

@@ -7,9 +7,9 @@ use std::io::{self, Write};
 use std::sync::{Arc, LazyLock, Mutex};
 
 use orogen::analysis::halo::Halo;
-use orogen::export::layer_source::LayerSource;
+use orogen::export::job::ExportJob;
 use orogen::export::options::Options;
-use orogen::export::{registry, run};
+use orogen::export::registry;
 use orogen::file::OutputPolicy;
 use orogen::map::paint::Painter;
 use orogen::mesh::adaptive::adaptive;
@@ -18,6 +18,7 @@ use orogen::mesh::shape::Shape;
 use orogen::mesh::stl::{self, Print};
 use orogen::mesh::surface::Surface;
 use orogen::mesh::{obj, ply};
+use orogen::test_folder::TestFolder;
 use orogen::{Grid, Progress, Recipe, Window, World};
 use serde_json::Value;
 
@@ -371,7 +372,7 @@ fn a_solid_is_closed_and_faces_outwards() {
         for shape in shapes(&grid) {
             let exaggerated = Surface { exaggeration: 2.0, ..surface(&grid, &shape) };
             let mut bytes = Vec::new();
-            let print = Print { size: 150.0, base: 3.0 };
+            let print = Print::new(150.0).with_base(3.0);
             let high = stl::write(&mut bytes, &exaggerated, &print).unwrap();
             let count = u32::from_le_bytes(bytes[80..84].try_into().unwrap()) as usize;
             assert_eq!(bytes.len(), 84 + 50 * count);
@@ -423,7 +424,7 @@ fn holes_are_left_out_or_refused() {
     assert!(mesh.places.iter().chain(&mesh.normals).flatten().all(|number| number.is_finite()));
     let glb = Glb::read(&glb_bytes(&[surface(&grid, &shape)], None));
     assert_eq!(glb.mesh(0).triangles, mesh.triangles);
-    let print = Print { size: 100.0, base: 1.0 };
+    let print = Print::new(100.0).with_base(1.0);
     let error = stl::write(&mut Vec::new(), &surface(&grid, &shape), &print).unwrap_err().to_string();
     assert!(error.contains("1 of 400 samples are nodata"), "{error}");
 }
@@ -468,7 +469,7 @@ fn a_writer_that_fails_is_an_error_wherever_it_fails() {
         },
         &|out| ply::write(out, &surface, &[]),
         &|out| obj::write(out, &surface, &[], Some("a.mtl")),
-        &|out| stl::write(out, &surface, &Print { size: 10.0, base: 1.0 }).map(|_| ()),
+        &|out| stl::write(out, &surface, &Print::new(10.0).with_base(1.0)).map(|_| ()),
     ];
     for write in writers {
         let mut bytes = Vec::new();
@@ -501,16 +502,14 @@ fn export_with(
         let spec = format.options.iter().find(|spec| spec.name == *name).unwrap();
         options.give(spec, text).map_err(|error| error.to_string())?;
     }
-    let source = LayerSource::new(world, "height", window, progress).map_err(|error| error.to_string())?;
+    let job = ExportJob::new(format).with_window(window).with_options(options);
     let output = OutputPolicy::default().output(path).map_err(|error| error.to_string())?;
-    run::to_file(format, source, &options, &output).map(|written| written.words).map_err(|error| error.to_string())
+    job.to_file(world, &output, progress).map(|written| written.words).map_err(|error| error.to_string())
 }
 
 #[test]
 fn exports_are_whole_and_the_same_on_any_number_of_threads() {
-    let folder = std::env::temp_dir().join(format!("orogen-meshes-{}", std::process::id()));
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = TestFolder::new("meshes").unwrap();
     let (world, window) = (world(), Window::new(150, 90, 20.0).at(100, 100));
     type Given<'a> = &'a [(&'a str, &'a str)];
     let cases: [(&str, Given, &str); 6] = [
@@ -560,14 +559,14 @@ fn exports_are_whole_and_the_same_on_any_number_of_threads() {
         let why = export(&world, window, &folder.join(name), given).unwrap_err();
         assert!(why.contains(expect), "{why}");
     }
-    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 8);
-    std::fs::remove_dir_all(&folder).unwrap();
+    assert_eq!(folder.names().len(), 8);
 }
 
 #[test]
 fn triangles_have_their_share_of_the_progress() {
     let world = world();
-    let path = std::env::temp_dir().join(format!("orogen-mesh-progress-{}.glb", std::process::id()));
+    let folder = TestFolder::new("mesh-progress").unwrap();
+    let path = folder.join("a.glb");
     for given in [&[][..], &[("max-error", "0.5")]] {
         let shares = Arc::new(Mutex::new(Vec::new()));
         let heard = Arc::clone(&shares);
@@ -578,7 +577,6 @@ fn triangles_have_their_share_of_the_progress() {
         // Computing the heights of one fractal is only a small share of the work.
         assert!(shares.iter().any(|share| (0.3..0.99).contains(share)), "{shares:?}");
     }
-    std::fs::remove_file(&path).unwrap();
 }
 
 #[test]

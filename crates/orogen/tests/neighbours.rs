@@ -3,23 +3,19 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use orogen::export::derived::list;
+use orogen::export::job::ExportJob;
 use orogen::export::layer_source::LayerSource;
 use orogen::export::mesh_cover::{self, SURFACES};
 use orogen::export::mesh_tint::COLOR_RANGE;
 use orogen::export::options::Options;
-use orogen::export::targets::frame::{Asked, Frame};
-use orogen::export::{registry, run, targets};
+use orogen::export::targets::frame::FrameSpec;
+use orogen::export::targets::job::EngineJob;
+use orogen::export::{registry, targets};
 use orogen::file::OutputPolicy;
+use orogen::test_folder::TestFolder;
 use orogen::{Progress, Recipe, Window, World};
-
-fn folder(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("orogen-neighbours-{name}-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    folder
-}
 
 fn recipe(size: &str) -> Recipe {
     let text = format!(
@@ -70,17 +66,18 @@ fn ply_colors(path: &Path) -> Vec<[u8; 3]> {
 
 #[test]
 fn colors_of_meshes() {
-    let folder = folder("colors");
+    let folder = TestFolder::new("neighbours-colors").unwrap();
     for (size, range) in [("size = [2400, 1600]", None), ("", None), ("size = [2400, 1600]", Some("0,900"))] {
         let world = World::open(recipe(size)).unwrap();
         let mut options = Options::default();
         range.iter().for_each(|range| options.give(&COLOR_RANGE, range).unwrap());
         let colors = [0, 60].map(|x| {
             let path = folder.join(format!("{x}.ply"));
-            let progress = Progress::none();
-            let source = LayerSource::new(&world, "height", Window::new(61, 40, 10.0).at(x, 20), &progress).unwrap();
+            let job = ExportJob::new(registry::named("ply").unwrap())
+                .with_window(Window::new(61, 40, 10.0).at(x, 20))
+                .with_options(options.clone());
             let output = OutputPolicy::default().output(&path).unwrap();
-            run::to_file(registry::named("ply").unwrap(), source, &options, &output).unwrap();
+            job.to_file(&world, &output, &Progress::none()).unwrap();
             ply_colors(&path)
         });
         let sides = [(&colors[0], 60), (&colors[1], 0)]
@@ -89,7 +86,6 @@ fn colors_of_meshes() {
         assert_eq!(sides[0], sides[1], "{size} {range:?}");
         assert!(colors[0].iter().any(|color| *color != colors[0][0]), "{size} {range:?}");
     }
-    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]
@@ -116,17 +112,17 @@ fn textures_of_surfaces() {
 
 #[test]
 fn layers_of_engine_tiles() {
-    let folder = folder("tiles");
+    let folder = TestFolder::new("neighbours-tiles").unwrap();
     for layer in ["normal", "splat", "albedo", "roughness", "occlusion", "slope", "curvature"] {
         let mut recipe = recipe("size = [2400, 2400]");
-        list::prepare(&mut recipe, layer, &Options::default()).unwrap();
-        let world = World::open(recipe).unwrap();
         let target = targets::list::named("unity").unwrap();
-        let asked = Asked { side: Some(65), tiles: Some([2, 2]), ..Asked::default() };
-        let frame = Frame::new(target, &world, &asked).unwrap();
+        let job = EngineJob::new(target, registry::named("png").unwrap())
+            .with_layer(layer)
+            .with_samples(FrameSpec::default().with_side(65).with_tiles([2, 2]));
+        job.prepare(&mut recipe).unwrap();
+        let world = World::open(recipe).unwrap();
         let output = OutputPolicy::default().output(folder.join(format!("{layer}.png"))).unwrap();
-        let png_format = registry::named("png").unwrap();
-        let made = targets::run::export(target, png_format, &frame, &world, layer, &Progress::none(), &output).unwrap();
+        let made = job.run(&world, &output, &Progress::none()).unwrap();
         assert_eq!(made.files.len(), 4, "{layer}");
         // Unity numbers rows from the south, and its pictures start in the north.
         let tile = |column: usize, south: usize| {
@@ -146,5 +142,4 @@ fn layers_of_engine_tiles() {
         assert_ne!(column(&north_west, 63), column(&north_east, 0), "{layer}");
         assert_eq!(row(&north_west, 64), row(&south_west, 0), "{layer}");
     }
-    std::fs::remove_dir_all(&folder).unwrap();
 }

@@ -6,6 +6,7 @@ use orogen::node::Node;
 use orogen::op::{Context, Field, Filter, Inputs, Reading, Solution, Solver, Sources, WorldParams};
 use orogen::plan::steps::Plan;
 use orogen::recipe::{reference, schema};
+use orogen::test_folder::TestFolder;
 use orogen::{
     Error, ErrorKind, Grid, Level, Options, Points, Progress, Recipe, Registry, Result, Session, Window, World,
     WorldSpec,
@@ -335,8 +336,7 @@ fn recipes_of_them_are_written_and_read_again() {
 
 #[test]
 fn used_recipes_may_have_them() {
-    let folder = std::env::temp_dir().join(format!("orogen-registered-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = TestFolder::new("registered").unwrap();
     let part = "orogen = 1\n[nodes.low]\nop = \"input\"\n[nodes.r]\nop = \"mygame.ripples\"\nsource = \"low\"\n[outputs]\nheight = \"r\"\n";
     std::fs::write(folder.join("part.toml"), part).unwrap();
     let whole = "orogen = 1\n[nodes.n]\nop = \"fbm\"\n[use.part]\nrecipe = \"part.toml\"\nseed = 4\n[use.part.inputs]\nlow = \"n\"\n\
@@ -354,7 +354,6 @@ fn used_recipes_may_have_them() {
     assert_ne!(made, by_hand(0), "the seed of the use is hashed with the node's");
     let error = read(&Registry::new()).unwrap_err().to_string();
     assert!(error.contains("part.toml:5:6") && error.contains("namespace `mygame`"), "{error}");
-    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]

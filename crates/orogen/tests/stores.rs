@@ -6,6 +6,7 @@ mod support;
 use orogen::field::{fbm::Fbm, warp::Warp};
 use orogen::filter::{blur::Blur, slope::Slope};
 use orogen::solver::{bake::Bake, normalise::Normalise};
+use orogen::test_folder::TestFolder;
 use orogen::{Budget, Cache, Grid, Options, Progress, Recipe, Window, World};
 use std::fs;
 use std::path::PathBuf;
@@ -14,15 +15,12 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use support::world_of;
 
-/// A temporary folder, removed when dropped.
-struct Folder(PathBuf);
+/// A temporary folder.
+struct Folder(TestFolder);
 
 impl Folder {
     fn new(name: &str) -> Folder {
-        let path = std::env::temp_dir().join(format!("orogen-stores-{}-{name}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        Folder(path)
+        Folder(TestFolder::new(&format!("stores-{name}")).unwrap())
     }
 
     fn names(&self) -> Vec<PathBuf> {
@@ -32,13 +30,7 @@ impl Folder {
     }
 
     fn cache(&self) -> Cache {
-        Cache { slower_than: Duration::ZERO, ..Cache::new(&self.0) }
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
+        Cache { slower_than: Duration::ZERO, ..Cache::new(&*self.0) }
     }
 }
 
@@ -104,7 +96,7 @@ fn memory_disk_and_folder_make_the_same_bits() {
                     threads: Some(threads),
                     memory: Budget::of(memory),
                     cache,
-                    scratch: Some(folder.0.clone()),
+                    scratch: Some(folder.0.to_path_buf()),
                     ..Options::default()
                 },
             );
@@ -213,7 +205,8 @@ fn what_cannot_fit_is_refused_with_the_figure() {
     let world = open(&recipe, Options { threads: Some(2), memory: Budget::of(2 << 20), ..Options::default() });
     let error = world.window("height", &Window::new(10, 10, 10.0)).unwrap_err();
     assert_eq!(error.kind(), orogen::ErrorKind::Memory);
-    assert!(error.to_string().contains("2.0 MiB is allowed"), "{error}");
+    let text = error.to_string();
+    assert!(text.contains(", and 2.0") && text.contains(" MiB is allowed"), "{text}");
     let recipe = stacked(10.0, true);
     let none = Options { memory: Budget::of(8 << 20), scratch: Some("/dev/null/nowhere".into()), ..Options::default() };
     let error = open(&recipe, none).window("height", &Window::new(10, 10, 10.0)).unwrap_err();

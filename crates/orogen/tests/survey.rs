@@ -68,8 +68,7 @@ fn real_ranges_are_in_order_and_every_figure_can_be_had() {
         [heights, grid(64, 1e-3, |x, y| x * y), grid(700, 5000.0, |x, y| libm::sin(x / 9000.0) * 500.0 + y / 1e4)]
     {
         let measures = Measures::of(&heights, None).unwrap();
-        let page =
-            draw(&Title { name: "A".into(), about: "b".into() }, &Land::in_memory(&heights, None), &measures).unwrap();
+        let page = draw(&Title::new("A").with_about("b"), &Land::in_memory(&heights, None), &measures).unwrap();
         assert_eq!(page.width(), 1500);
     }
 }

@@ -1,18 +1,18 @@
 //! Recipes that use other recipes.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test that fails panics")]
 
+use orogen::test_folder::TestFolder;
 use orogen::{Recipe, Window, World};
 use std::fs;
-use std::path::PathBuf;
 
-/// A temporary folder, removed when dropped.
-struct Folder(PathBuf);
+/// A temporary folder.
+struct Folder(TestFolder);
 
 impl Folder {
     fn new(name: &str) -> Folder {
-        let path = std::env::temp_dir().join(format!("orogen-uses-{name}-{}", std::process::id()));
-        fs::create_dir_all(path.join("parts")).unwrap();
-        Folder(path)
+        let folder = TestFolder::new(&format!("uses-{name}")).unwrap();
+        fs::create_dir(folder.join("parts")).unwrap();
+        Folder(folder)
     }
 
     fn write(&self, name: &str, text: &str) {
@@ -21,12 +21,6 @@ impl Folder {
 
     fn read(&self, name: &str) -> Result<Recipe, String> {
         Recipe::read(&self.0.join(name)).map_err(|error| error.to_string())
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
     }
 }
 

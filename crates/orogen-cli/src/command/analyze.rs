@@ -6,6 +6,7 @@ use orogen::budget::Reservation;
 use orogen::map::canvas::Canvas;
 use orogen::plan::steps::Plan;
 use orogen::raster::Raster;
+use orogen::survey::job::SurveyJob;
 use orogen::survey::land::Land;
 use orogen::survey::measures::Measures;
 use orogen::survey::page::{self, Title};
@@ -19,10 +20,9 @@ use crate::failure::Failure;
 use crate::format::Format;
 use crate::options::Limits;
 use crate::replace::Replace;
-use crate::seeds::Seeds;
 use crate::sink::{Sink, is_stdout};
 use crate::source::{Source, title};
-use crate::view::{SizedView, View};
+use crate::view::SizedView;
 use crate::{finite, interrupt, say};
 
 /// Arguments of the command.
@@ -52,10 +52,7 @@ pub struct Args {
 
 /// Measures the terrain and prints the result.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    Seeds::each(args.samples.view.seed.as_ref(), args.out.as_deref(), |seed, out| {
-        let view = View { seed, ..args.samples.view.clone() };
-        measure(&Args { samples: SizedView { view, ..args.samples }, out, ..args.clone() })
-    })
+    args.samples.each_seed(args.out.as_deref(), |samples, out| measure(&Args { samples, out, ..args.clone() }))
 }
 
 fn measure(args: &Args) -> Result<(), Failure> {
@@ -67,8 +64,7 @@ fn measure(args: &Args) -> Result<(), Failure> {
     }
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();
-    let mut recipe = source.read(&budget, &args.samples.view.arguments)?;
-    args.samples.view.apply(&mut recipe);
+    let recipe = args.samples.recipe(&source, &budget)?;
     let policy = args.replace.policy(source.inputs(&recipe));
     let sink = args.out.as_ref().map(|out| Sink::new(out, &policy)).transpose()?;
     let world = args.limits.open(recipe, &budget)?;
@@ -87,8 +83,9 @@ fn measure(args: &Args) -> Result<(), Failure> {
             let mut grids = world.run(&plan, &making).map_err(stopped)?;
             let Some(heights) = grids.pop() else { return Ok(()) };
             finite::check(&args.layer, &heights)?;
-            let measures = Measures::of_with(&heights, sea_level, &measuring).map_err(stopped)?;
-            shown(args, &world, &Land::in_memory(&heights, sea_level), measures, &drawing)?
+            let land = Land::in_memory(&heights, sea_level);
+            let measures = SurveyJob::new(land).measure(&measuring).map_err(stopped)?;
+            shown(args, &world, &land, measures, &drawing)?
         }
         Held::OnDisk(working) => {
             let _raster = world.budget().reserve(Raster::memory_on_disk(&window))?;
@@ -100,13 +97,15 @@ fn measure(args: &Args) -> Result<(), Failure> {
             let (heights, count) = world.raster(&args.layer, &window, &making).map_err(stopped)?;
             finite::tell(&args.layer, count)?;
             let _working = world.budget().reserve(working)?;
-            let measures = Measures::of_raster(&heights, sea_level, world.scratch(), world.budget(), &measuring);
-            shown(args, &world, &Land::on_disk(&heights, sea_level), measures.map_err(stopped)?, &drawing)?
+            let land = Land::on_disk(&heights, sea_level);
+            let survey = SurveyJob::new(land).with_scratch(world.scratch()).with_budget(world.budget().clone());
+            let measures = survey.measure(&measuring).map_err(stopped)?;
+            shown(args, &world, &land, measures, &drawing)?
         }
     };
     if let Some((sink, page)) = sink.as_ref().zip(page) {
-        let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-        sink.write(|out| page.write_png(out, &[("Software", &software)]))?;
+        let software = say::SOFTWARE;
+        sink.write(|out| page.write_png(out, &[("Software", software)]))?;
     }
     progress.finish();
     drop(bar);
@@ -182,7 +181,7 @@ fn shown(
         let message = "there is too little land to measure: at least 64 x 64 samples are needed, 1 % of them above sea level, and some relief";
         Error::new(ErrorKind::Request, message)
     })?;
-    let title = Title { name: title(&args.recipe), about: about(args, world) };
+    let title = Title::new(title(&args.recipe)).with_about(about(args, world));
     let page = args.out.is_some().then(|| page::draw(&title, land, &measures)).transpose()?;
     progress.finish();
     Ok((measures, page))

@@ -15,10 +15,9 @@ use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::options::Limits;
 use crate::replace::Replace;
-use crate::seeds::Seeds;
 use crate::sink::is_stdout;
 use crate::source::Source;
-use crate::view::{SizedView, View};
+use crate::view::SizedView;
 use crate::{disk, finite, interrupt, say};
 
 /// Arguments of the command.
@@ -69,11 +68,7 @@ enum Tiles {
 
 /// Runs the build.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    Seeds::each(args.samples.view.seed.as_ref(), Some(&args.out), |seed, out| {
-        let view = View { seed, ..args.samples.view.clone() };
-        let out = out.unwrap_or_default();
-        build(&Args { samples: SizedView { view, ..args.samples }, out, ..args.clone() })
-    })
+    args.samples.each_output(&args.out, |samples, out| build(&Args { samples, out, ..args.clone() }))
 }
 
 fn build(args: &Args) -> Result<(), Failure> {
@@ -85,12 +80,11 @@ fn build(args: &Args) -> Result<(), Failure> {
     let form = form(args)?;
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();
-    let mut recipe = source.read(&budget, &args.samples.view.arguments)?;
-    args.samples.view.apply(&mut recipe);
+    let recipe = args.samples.recipe(&source, &budget)?;
     let output = args.replace.policy(source.inputs(&recipe)).output(&args.out)?;
     let world = args.limits.open(recipe, &budget)?;
-    let tile = args.tile.map(|tile| tile as usize);
-    let spec = BuildSpec { form, window: window(args, &world, form)?, tile, layers: args.layers.clone() };
+    let mut spec = BuildSpec::new(form, window(args, &world, form)?).with_layers(&args.layers);
+    spec.tile = args.tile.map(|tile| tile as usize);
     let build = Build::new(&world, &spec, &output)?;
     let start = match (args.resume, args.replace.force) {
         (true, _) => Start::Resume,

@@ -7,11 +7,11 @@ use orogen::words::count;
 use orogen::{Options, World};
 use serde_json::{Value, json};
 
-use crate::arguments::Arguments;
 use crate::failure::Failure;
 use crate::report::report;
-use crate::size::Bytes;
 use crate::source::Source;
+use crate::values::arguments::Arguments;
+use crate::values::bytes::Bytes;
 use crate::{memory, say};
 
 /// Arguments of the command.

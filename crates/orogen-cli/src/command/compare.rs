@@ -6,11 +6,11 @@ use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::format::Format;
 use crate::interrupt;
-use crate::memory;
-use crate::replace::Replace;
+use crate::options::DrawOptions;
+use crate::say;
 use crate::sheet::{page, row};
 use crate::sink::{Sink, is_stdout};
-use crate::size::{Bytes, seed};
+use crate::values::number::seed;
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
@@ -25,11 +25,8 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(120..=4000), default_value = "200",
           allow_negative_numbers = true)]
     size: u16,
-    /// Memory limit of the program, such as 512MiB or 2GiB [default: half of the free memory]
-    #[arg(long, value_name = "BYTES")]
-    memory: Option<Bytes>,
     #[command(flatten)]
-    replace: Replace,
+    options: DrawOptions,
     /// Print no summary
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
@@ -40,18 +37,18 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if !is_stdout(&args.out) && Format::of(&args.out, Format::ALL).map_err(Failure::Usage)? != Format::Png {
         return Err(Failure::Usage("the page is written as PNG; use the extension .png".into()));
     }
-    let sink = Sink::new(&args.out, &args.replace.anywhere())?;
+    let sink = Sink::new(&args.out, &args.options.replace.anywhere())?;
     let (rows, side) = (row::rows(args.seed), usize::from(args.size));
     let [width, height] = page::size(rows.len(), side);
     // The page, and for each noise its pictures, its heights twice and their inputs.
     let noises: usize = rows.iter().map(|row| row.noises.len()).sum();
-    memory::budget(args.memory, memory::cores()).afford((3 * width * height + noises * side * side * 24) as u64)?;
+    args.options.budget().afford((3 * width * height + noises * side * side * 24) as u64)?;
     let (bar, progress) = Bar::new(args.quiet);
     let stopped = |error: orogen::Error| interrupt::explain(error.into(), "nothing was written");
     let [drawing, writing] = progress.parts([4.0, 1.0]);
     let page = page::draw(&rows, side, args.seed, &drawing).map_err(stopped)?;
-    let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    sink.write(|out| page.write_png(out, &[("Software", &software)]))?;
+    let software = say::SOFTWARE;
+    sink.write(|out| page.write_png(out, &[("Software", software)]))?;
     writing.finish();
     drop(bar);
     let words = format!(

@@ -7,9 +7,8 @@ use orogen::Recipe;
 use crate::failure::Failure;
 use crate::options::Limits;
 use crate::say;
-use crate::seeds::Seeds;
 use crate::source::Source;
-use crate::view::{SizedView, View};
+use crate::view::SizedView;
 
 /// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
@@ -28,10 +27,7 @@ pub struct Args {
 
 /// Prints the plan.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    Seeds::each(args.samples.view.seed.as_ref(), None, |seed, _| {
-        let view = View { seed, ..args.samples.view.clone() };
-        tell(&Args { samples: SizedView { view, ..args.samples }, ..args.clone() })
-    })
+    args.samples.each_seed(None, |samples, _| tell(&Args { samples, ..args.clone() }))
 }
 
 /// The recipe's parameters, one per line: name, value, unit and range, description.
@@ -60,8 +56,7 @@ fn parameters(recipe: &Recipe) -> String {
 
 fn tell(args: &Args) -> Result<(), Failure> {
     let budget = args.limits.budget();
-    let mut recipe = Source::find(&args.recipe)?.read(&budget, &args.samples.view.arguments)?;
-    args.samples.view.apply(&mut recipe);
+    let recipe = args.samples.recipe(&Source::find(&args.recipe)?, &budget)?;
     let layers: Vec<String> = match &args.layer {
         Some(layer) => vec![layer.clone()],
         None => recipe.outputs().map(String::from).collect(),

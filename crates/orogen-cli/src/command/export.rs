@@ -2,27 +2,26 @@
 
 use std::path::PathBuf;
 
-use clap::builder::PossibleValue;
 use orogen::World;
 use orogen::export::derived::list;
 use orogen::export::format::Format;
-use orogen::export::run::Written;
-use orogen::export::targets::frame::{Asked, Frame};
+use orogen::export::job::{ExportJob, Written};
+use orogen::export::targets::frame::FrameSpec;
+use orogen::export::targets::job::EngineJob;
 use orogen::export::targets::target::EngineTarget;
-use orogen::export::{mesh_cover, registry, run as exporting, targets};
+use orogen::export::{registry, targets};
 use orogen::file::OutputPolicy;
 use orogen::words::{count, number};
 
 use crate::bar::Bar;
 use crate::export_options::{FormatOptions, LayerOptions};
 use crate::failure::Failure;
-use crate::options::Limits;
-use crate::replace::Replace;
-use crate::seeds::Seeds;
+use crate::options::RunOptions;
 use crate::sink::{Sink, is_stdout};
-use crate::size::Size;
 use crate::source::Source;
-use crate::view::{SizedView, View};
+use crate::values::name_of::NameOf;
+use crate::values::size::Size;
+use crate::view::SizedView;
 use crate::{finite, interrupt, say};
 
 /// Arguments of the command.
@@ -50,12 +49,7 @@ pub struct Args {
     #[arg(long, help_heading = "Engines", value_name = "NxM", requires = "target")]
     tiles: Option<Size>,
     #[command(flatten)]
-    replace: Replace,
-    #[command(flatten)]
-    limits: Limits,
-    /// Print no progress and no summary
-    #[arg(short, long, help_heading = "Output")]
-    quiet: bool,
+    run: RunOptions,
     #[command(flatten)]
     options: FormatOptions,
     #[command(flatten)]
@@ -91,110 +85,60 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// The parser of a value that is one of several names, with a line of help for each.
-#[derive(Clone)]
-struct NameOf {
-    all: Vec<PossibleValue>,
-    /// The declared name, for a name or an alternative spelling.
-    declared: fn(&str) -> Option<&'static str>,
-}
-
-impl NameOf {
-    /// The formats.
-    fn format() -> NameOf {
-        let value = |format: &&Format| PossibleValue::new(format.name).help(format.about).aliases(format.aliases);
-        NameOf {
-            all: registry::all().iter().map(value).collect(),
-            declared: |name| registry::named(name).map(|format| format.name),
-        }
-    }
-
-    /// The engines.
-    fn engine() -> NameOf {
-        let value = |target: &&EngineTarget| PossibleValue::new(target.name).help(target.about);
-        NameOf {
-            all: targets::list::all().iter().map(value).collect(),
-            declared: |name| targets::list::named(name).map(|target| target.name),
-        }
-    }
-}
-
-impl clap::builder::TypedValueParser for NameOf {
-    type Value = &'static str;
-
-    fn parse_ref(
-        &self,
-        command: &clap::Command,
-        arg: Option<&clap::Arg>,
-        value: &std::ffi::OsStr,
-    ) -> Result<&'static str, clap::Error> {
-        let known = clap::builder::PossibleValuesParser::new(self.all.clone());
-        let name = known.parse_ref(command, arg, value)?;
-        (self.declared)(&name).ok_or_else(|| clap::Error::new(clap::error::ErrorKind::InvalidValue).with_cmd(command))
-    }
-
-    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
-        Some(Box::new(self.all.iter().cloned()))
-    }
-}
-
 /// Writes the layer.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    Seeds::each(args.samples.view.seed.as_ref(), Some(&args.out), |seed, out| {
-        let view = View { seed, ..args.samples.view.clone() };
-        let out = out.unwrap_or_default();
-        export(&Args { samples: SizedView { view, ..args.samples }, out, ..args.clone() })
-    })
+    args.samples.each_output(&args.out, |samples, out| export(&Args { samples, out, ..args.clone() }))
 }
 
 fn export(args: &Args) -> Result<(), Failure> {
-    let format = format(args)?;
-    let options = args.options.read()?;
-    registry::check(format, &options)?;
+    let job = ExportJob::new(format(args)?)
+        .with_layer(&args.layer)
+        .with_options(args.options.read()?)
+        .with_layer_options(args.layer_options.read()?);
+    job.check()?;
     let source = Source::find(&args.recipe)?;
-    let budget = args.limits.budget();
-    let mut recipe = source.read(&budget, &args.samples.view.arguments)?;
-    args.samples.view.apply(&mut recipe);
-    let policy = args.replace.policy(source.inputs(&recipe));
-    list::prepare(&mut recipe, &args.layer, &args.layer_options.read()?)?;
-    mesh_cover::prepare(&mut recipe, &options);
-    let world = args.limits.open(recipe, &budget)?;
+    let budget = args.run.limits.budget();
+    let mut recipe = args.samples.recipe(&source, &budget)?;
+    let policy = args.run.replace.policy(source.inputs(&recipe));
+    job.prepare(&mut recipe)?;
+    let world = args.run.limits.open(recipe, &budget)?;
     if let Some(target) = args.target.and_then(targets::list::named) {
-        return for_engine(args, target, format, &world, &policy);
+        return for_engine(args, &engine_job(args, target, &job, &world)?, &world, &policy);
     }
     let window = args.samples.window(&world)?;
+    let job = job.with_window(window);
     let sink = Sink::new(&args.out, &policy)?;
-    let (bar, progress) = Bar::new(args.quiet);
-    let source = exporting::source(format, &world, &args.layer, window, &progress)?;
-    let Written { words, count } = match &sink {
-        Sink::Stdout => sink.write(|out| exporting::to_stream(format, source, &options, out))?,
+    let (bar, progress) = Bar::new(args.run.quiet);
+    let Written { words, count, .. } = match &sink {
+        Sink::Stdout => sink.write(|out| job.to_stream(&world, out, &progress))?,
         // Including sidecars.
-        Sink::File(output) => exporting::to_file(format, source, &options, output)
+        Sink::File(output) => job
+            .to_file(&world, output, &progress)
             .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?,
     };
     progress.finish();
     drop(bar);
     finite::tell(&args.layer, count)?;
     let size = format!("{} x {} samples of {} m", window.width, window.height, number(window.cell));
-    sink.tell(args.quiet, &format!("{}: {}, {size}, {words}\n", args.out.display(), args.layer))
+    sink.tell(args.run.quiet, &format!("{}: {}, {size}, {words}\n", args.out.display(), args.layer))
 }
 
-/// Writes the layer for an engine.
-fn for_engine(
+/// The same layer for an engine.
+fn engine_job(
     args: &Args,
-    target: &EngineTarget,
-    format: &Format,
+    target: &'static EngineTarget,
+    job: &ExportJob,
     world: &World,
-    policy: &OutputPolicy,
-) -> Result<(), Failure> {
+) -> Result<EngineJob, Failure> {
     if is_stdout(&args.out) {
         return Err(Failure::Usage("--target cannot write to standard output; name a file with -o".into()));
     }
-    if let Some(option) = args.options.read()?.names().next() {
+    if let Some(option) = job.options.names().next() {
         return Err(Failure::Usage(format!("--target {} sets --{option}; leave it out", target.name)));
     }
     let SizedView { view, size } = &args.samples;
-    let side = match size {
+    let mut samples = FrameSpec::default();
+    samples.side = match size {
         None => None,
         Some(Size::Longer(side)) => Some(*side),
         Some(Size::Both(width, height)) if width == height => Some(*width),
@@ -205,22 +149,27 @@ fn for_engine(
             )));
         }
     };
-    let cell = view.cell.unwrap_or(world.recipe().world.cell);
-    let tiles = args.tiles.map(|tiles| match tiles {
+    samples.cell = view.cell;
+    samples.window = view.part(world, None, view.cell.unwrap_or(world.recipe().world.cell))?;
+    samples.tiles = args.tiles.map(|tiles| match tiles {
         Size::Longer(count) => [count, count],
         Size::Both(across, down) => [across, down],
     });
-    let asked = Asked { side, cell: view.cell, window: view.part(world, None, cell)?, tiles };
-    let frame = Frame::new(target, world, &asked)?;
-    let (bar, progress) = Bar::new(args.quiet);
-    let made = targets::run::export(target, format, &frame, world, &args.layer, &progress, &policy.output(&args.out)?)
+    Ok(EngineJob::new(target, job.format).with_layer(&job.layer).with_samples(samples))
+}
+
+/// Writes the layer for an engine.
+fn for_engine(args: &Args, job: &EngineJob, world: &World, policy: &OutputPolicy) -> Result<(), Failure> {
+    let (bar, progress) = Bar::new(args.run.quiet);
+    let made = job
+        .run(world, &policy.output(&args.out)?, &progress)
         .map_err(|error| interrupt::explain(error.into(), "nothing was written"))?;
     drop(bar);
     finite::tell(&args.layer, made.count)?;
-    if args.quiet {
+    if args.run.quiet {
         return Ok(());
     }
-    let ([width, height], cell) = (made.samples, frame.window.cell);
+    let ([width, height], cell) = (made.samples, made.frame.window.cell);
     let files = match made.files.as_slice() {
         [one] => one.display().to_string(),
         [first, .., last] => format!("{} to {}, {}", first.display(), last.display(), count(made.files.len(), "tile")),
@@ -228,7 +177,7 @@ fn for_engine(
     };
     let mut text =
         format!("{files}: {}, {width} x {height} samples of {} m, {}\n", args.layer, number(cell), made.words);
-    let notes = frame.note.iter().map(|note| format!("note: {note}"));
+    let notes = made.frame.note.iter().map(|note| format!("note: {note}"));
     for line in notes.chain(made.import.into_iter().map(|line| format!("  {line}"))) {
         text.push_str(&line);
         text.push('\n');

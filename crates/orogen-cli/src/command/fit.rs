@@ -19,8 +19,8 @@ use crate::failure::Failure;
 use crate::options::Limits;
 use crate::replace::Replace;
 use crate::sink::{Sink, is_stdout};
-use crate::size::seed;
 use crate::source::preset;
+use crate::values::number::seed;
 use crate::{finite, interrupt, say};
 
 /// Arguments of the command.
@@ -77,7 +77,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     finite::check("place", &place.grid)?;
     let target = FitTarget::of(&place.grid)?;
     let random = args.tries as usize / 2;
-    let effort = Effort { random, improving: args.tries as usize - random, seed: args.seed };
+    let effort = Effort::new(random, args.tries as usize - random).with_seed(args.seed);
     let stopped = |error: Error| interrupt::explain(error.into(), "no recipe was written");
     let options = args.limits.options(&budget);
     let (bar, progress) = Bar::new(args.quiet);

@@ -9,13 +9,11 @@ use orogen::words::number;
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::folder::Folder;
-use crate::options::Limits;
+use crate::options::RunOptions;
 use crate::pictures::{self, FILES, Report};
-use crate::replace::Replace;
-use crate::seeds::Seeds;
 use crate::sink::is_stdout;
 use crate::source::Source;
-use crate::view::{SizedView, View};
+use crate::view::SizedView;
 use crate::{finite, interrupt, say, watch};
 
 /// Arguments of the command.
@@ -30,12 +28,7 @@ pub struct Args {
     #[arg(short, long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     #[command(flatten)]
-    replace: Replace,
-    #[command(flatten)]
-    limits: Limits,
-    /// Print no progress and no summary
-    #[arg(short, long, help_heading = "Output")]
-    quiet: bool,
+    run: RunOptions,
     /// Print the summary as JSON instead of text
     #[arg(long)]
     json: bool,
@@ -49,11 +42,7 @@ const ENCODERS: u64 = 2 << 20;
 
 /// Makes the terrain.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    Seeds::each(args.samples.view.seed.as_ref(), Some(&args.out), |seed, out| {
-        let view = View { seed, ..args.samples.view.clone() };
-        let out = out.unwrap_or_default();
-        generate(&Args { samples: SizedView { view, ..args.samples }, out, ..args.clone() })
-    })
+    args.samples.each_output(&args.out, |samples, out| generate(&Args { samples, out, ..args.clone() }))
 }
 
 fn generate(args: &Args) -> Result<(), Failure> {
@@ -65,7 +54,7 @@ fn generate(args: &Args) -> Result<(), Failure> {
     let source = Source::find(&args.recipe)?;
     let again = |progress: &Progress| make(&source, args, progress);
     match (&source, args.watch) {
-        (Source::File(path), true) => watch::watch(path, args.quiet, again),
+        (Source::File(path), true) => watch::watch(path, args.run.quiet, again),
         (Source::Dem(path), true) => Err(Failure::Usage(format!(
             "--watch needs a recipe, and {} is a file of heights; use it in a recipe, in a node with op = \"dem\"",
             path.display()
@@ -78,7 +67,7 @@ fn generate(args: &Args) -> Result<(), Failure> {
             preset.name
         ))),
         (_, false) => {
-            let (bar, progress) = Bar::new(args.quiet);
+            let (bar, progress) = Bar::new(args.run.quiet);
             let made = make(&source, args, &progress);
             drop(bar);
             made.and_then(|text| say::out(&text)).map_err(|failure| interrupt::explain(failure, "nothing was written"))
@@ -92,11 +81,10 @@ const WRITING: f64 = 150.0;
 /// Makes the terrain once, and returns the text for standard output.
 fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Failure> {
     let begun = Instant::now();
-    let budget = args.limits.budget();
-    let mut recipe = source.read(&budget, &args.samples.view.arguments)?;
-    args.samples.view.apply(&mut recipe);
-    let policy = args.replace.policy(source.inputs(&recipe));
-    let world = args.limits.open(recipe, &budget)?;
+    let budget = args.run.limits.budget();
+    let recipe = args.samples.recipe(source, &budget)?;
+    let policy = args.run.replace.policy(source.inputs(&recipe));
+    let world = args.run.limits.open(recipe, &budget)?;
     let window = args.samples.window(&world)?;
     let outputs = pictures::outputs(&args.out, &policy)?;
     let plan = world.plan(&[orogen::world::HEIGHT], &window)?;
@@ -112,7 +100,7 @@ fn make(source: &Source, args: &Args, progress: &Progress) -> Result<String, Fai
     let report = pictures::write(&outputs, world.recipe(), &grid, || begun.elapsed().as_secs_f64())?;
     writing.finish();
     folder.keep();
-    Ok(match (args.json, args.quiet) {
+    Ok(match (args.json, args.run.quiet) {
         (true, _) => report.json(),
         (false, true) => String::new(),
         (false, false) => words(&report, &args.out),

@@ -7,15 +7,15 @@ use clap::ValueEnum;
 use orogen::sheet::{pdf, raster, vector};
 use orogen::words::count;
 
-use crate::arguments::Arguments;
 use crate::failure::Failure;
 use crate::graph::diagram::Diagram;
 use crate::graph::{dot, draw};
-use crate::memory;
-use crate::replace::Replace;
+use crate::options::DrawOptions;
+use crate::say;
 use crate::sink::{Sink, kind};
-use crate::size::Bytes;
 use crate::source::{Source, title};
+use crate::values::arguments::Arguments;
+use crate::values::number::dpi;
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
@@ -30,15 +30,12 @@ pub struct Args {
     #[arg(long)]
     format: Option<Kind>,
     /// Resolution of a .png, in pixels per inch
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=1200), default_value = "150")]
+    #[arg(long, value_name = "N", value_parser = dpi(), default_value = "150")]
     dpi: u16,
     #[command(flatten)]
     arguments: Arguments,
-    /// Memory limit of the program, such as 512MiB or 2GiB [default: half of the free memory]
-    #[arg(long, value_name = "BYTES")]
-    memory: Option<Bytes>,
     #[command(flatten)]
-    replace: Replace,
+    options: DrawOptions,
     /// Print no summary
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
@@ -70,8 +67,8 @@ const MAX_PIXELS: f32 = 4e8;
 pub fn run(args: &Args) -> Result<(), Failure> {
     let kind = kind(&args.out, args.format, &KINDS, "a graph")?;
     let source = Source::find(&args.recipe)?;
-    let recipe = source.read(&memory::budget(args.memory, memory::cores()), &args.arguments)?;
-    let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)))?;
+    let recipe = source.read(&args.options.budget(), &args.arguments)?;
+    let sink = Sink::new(&args.out, &args.options.replace.policy(source.inputs(&recipe)))?;
     let diagram = Diagram::of(&recipe)?;
     let title = title(&args.recipe);
     let blocks = diagram.blocks.len();
@@ -89,14 +86,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             Kind::Pdf => sink.write(|out| pdf::write(out, &scene))?,
             _ => {
                 let dpi = f32::from(args.dpi) / 25.4;
-                if scene.size[0] * scene.size[1] * dpi * dpi > MAX_PIXELS {
+                if scene.size.width * scene.size.height * dpi * dpi > MAX_PIXELS {
                     return Err(Failure::Usage(
                         "the picture would be too large; use a lower --dpi, or write a .svg".into(),
                     ));
                 }
                 let page = raster::draw(&scene, f64::from(args.dpi));
-                let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-                sink.write(|out| page.write_png(out, &[("Software", &software)]))?;
+                let software = say::SOFTWARE;
+                sink.write(|out| page.write_png(out, &[("Software", software)]))?;
             }
         }
     }

@@ -19,13 +19,11 @@ use orogen::{Budget, Error, Grid, Progress, Recipe};
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::moving::{AnimationTarget, Moving};
-use crate::options::Limits;
-use crate::replace::Replace;
-use crate::seeds::Seeds;
+use crate::options::RunOptions;
 use crate::sink::Sink;
 use crate::source::Source;
-use crate::view::{SizedView, View};
-use crate::{finite, interrupt};
+use crate::view::SizedView;
+use crate::{finite, interrupt, say};
 
 /// Arguments of the command.
 #[derive(Debug, Clone, clap::Args)]
@@ -53,21 +51,12 @@ pub struct Args {
     #[arg(long, value_name = "MS", default_value = "120")]
     delay: u16,
     #[command(flatten)]
-    replace: Replace,
-    #[command(flatten)]
-    limits: Limits,
-    /// Print no progress and no summary
-    #[arg(short, long, help_heading = "Output")]
-    quiet: bool,
+    run: RunOptions,
 }
 
 /// Makes the frames.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    Seeds::each(args.samples.view.seed.as_ref(), Some(&args.out), |seed, out| {
-        let view = View { seed, ..args.samples.view.clone() };
-        let out = out.unwrap_or_default();
-        grow(&Args { samples: SizedView { view, ..args.samples }, out, ..args.clone() })
-    })
+    args.samples.each_output(&args.out, |samples, out| grow(&Args { samples, out, ..args.clone() }))
 }
 
 fn grow(args: &Args) -> Result<(), Failure> {
@@ -76,9 +65,8 @@ fn grow(args: &Args) -> Result<(), Failure> {
         return Err(Failure::Usage(format!("--years must be from 0 to 1e9, not {years}")));
     }
     let source = Source::find(&args.recipe)?;
-    let budget = args.limits.budget();
-    let mut recipe = source.read(&budget, &args.samples.view.arguments)?;
-    args.samples.view.apply(&mut recipe);
+    let budget = args.run.limits.budget();
+    let mut recipe = args.samples.recipe(&source, &budget)?;
     if let Some(years) = args.years {
         recipe.change(|node| {
             if let Node::StreamPower(rivers) = node {
@@ -92,13 +80,13 @@ fn grow(args: &Args) -> Result<(), Failure> {
             args.recipe.display()
         )));
     }
-    let policy = args.replace.policy(source.inputs(&recipe));
+    let policy = args.run.replace.policy(source.inputs(&recipe));
     let outputs = target.outputs(&args.out, u32::from(args.frames), &policy)?;
-    let (bar, progress) = Bar::new(args.quiet);
+    let (bar, progress) = Bar::new(args.run.quiet);
     let made = write(recipe, args, &target, &outputs, &budget, &progress);
     drop(bar);
     let words = made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
-    outputs[0].tell(args.quiet, &words)
+    outputs[0].tell(args.run.quiet, &words)
 }
 
 fn write(
@@ -110,7 +98,7 @@ fn write(
     progress: &Progress,
 ) -> Result<String, Failure> {
     let sea_level = recipe.world.sea_level;
-    let world = args.limits.open(recipe, budget)?;
+    let world = args.run.limits.open(recipe, budget)?;
     let window = args.samples.window(&world)?;
     let (width, height) = (window.width, window.height);
     let pixels = (width * height) as u64;
@@ -134,8 +122,8 @@ fn write(
         land.at(growth.steps()).map_err(|cause| Error::file("read back the spilled data of", &args.out, &cause))?;
     finite::check(HEIGHT, &last)?;
     let painter = Painter::fit(&last, sea_level);
-    let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", &software)] };
+    let software = say::SOFTWARE;
+    let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", software)] };
     let animation = Animation { frames: u32::from(args.frames), delay: args.delay };
     let painted = |ground: &Grid, bytes: &mut [u8]| painter.paint(ground, 0..height, bytes);
     // The start is smooth and the end is rough: colours and shades are fitted to both.

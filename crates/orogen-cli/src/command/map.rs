@@ -12,8 +12,9 @@ use orogen::layer::LayerKind;
 use orogen::palette::named;
 use orogen::palette::palette::Palette;
 use orogen::sheet::draw::{Sheet, draw};
+use orogen::sheet::geometry::{Rect, Size};
 use orogen::sheet::linework::lines_at;
-use orogen::sheet::options::{Coloring, Layer, Options, Page, Parts, Resolution, Scale, Shading};
+use orogen::sheet::options::{Coloring, Layer, Page, Parts, Resolution, Scale, Shading, SheetOptions};
 use orogen::sheet::{pdf, raster, vector};
 use orogen::words::number;
 use orogen::world::HEIGHT;
@@ -23,12 +24,11 @@ use crate::bar::Bar;
 use crate::export_options::LayerOptions;
 use crate::failure::Failure;
 use crate::options::Limits;
-use crate::paper::Paper;
 use crate::replace::Replace;
-use crate::seeds::Seeds;
 use crate::sink::{Sink, kind};
-use crate::size::{Numbers, positive};
 use crate::source::{Source, title};
+use crate::values::number::{Numbers, dpi, positive};
+use crate::values::paper::Paper;
 use crate::view::View;
 use crate::{finite, interrupt, palette, say};
 
@@ -75,7 +75,7 @@ pub struct Args {
     #[arg(long, requires = "paper")]
     landscape: bool,
     /// Pixels per inch of a .png, and of the relief in a .svg or .pdf [default: 220; 150 for a .png without --paper]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(20..=1200), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = dpi(), allow_negative_numbers = true)]
     dpi: Option<u16>,
     /// Pixels along the longer side of the page, instead of --dpi
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..=30000), conflicts_with = "dpi",
@@ -210,10 +210,7 @@ const WRITING: f64 = 60.0;
 
 /// Draws the sheet.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    Seeds::each(args.view.seed.as_ref(), Some(&args.out), |seed, out| {
-        let view = View { seed, ..args.view.clone() };
-        map(&Args { view, out: out.unwrap_or_default(), ..args.clone() })
-    })
+    args.view.each_output(&args.out, |view, out| map(&Args { view, out, ..args.clone() }))
 }
 
 fn map(args: &Args) -> Result<(), Failure> {
@@ -234,8 +231,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     }
     let source = Source::find(&args.recipe)?;
     let budget = args.limits.budget();
-    let mut recipe = source.read(&budget, &args.view.arguments)?;
-    args.view.apply(&mut recipe);
+    let mut recipe = args.view.recipe(&source, &budget)?;
     let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)).protecting(&args.palette))?;
     list::prepare(&mut recipe, &args.layer, &args.layer_options.read()?)?;
     if is_covered {
@@ -244,8 +240,8 @@ fn map(args: &Args) -> Result<(), Failure> {
     let world = args.limits.open(recipe, &budget)?;
     let window = args.view.window(&world)?;
     let is_place = matches!(source, Source::Dem(_));
-    let mut options =
-        Options { range: range.filter(|_| args.layer == HEIGHT), ..options(args, kind, palette, &world, is_place) };
+    let mut options = options(args, kind, palette, &world, is_place);
+    options.range = range.filter(|_| args.layer == HEIGHT);
     let _drawing = world.budget().reserve(drawing(&options, &window, args)?)?;
     let (bar, progress) = Bar::new(args.quiet);
     let stopped = |error: orogen::Error| interrupt::explain(error.into(), "nothing was written");
@@ -274,11 +270,11 @@ fn map(args: &Args) -> Result<(), Failure> {
             "note: no installed font has the letters {letters}; they are left out (install a font that has them, such as Noto)"
         ));
     }
-    let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
+    let software = say::SOFTWARE;
     match kind {
         Kind::Png => {
             let page = raster::draw(&sheet.scene, sheet.dpi);
-            let mut notes = vec![("Software", software.as_str())];
+            let mut notes = vec![("Software", software)];
             // PNG text chunks contain Latin-1 only.
             if options.title.chars().all(|letter| letter <= '\u{ff}' && !letter.is_control()) {
                 notes.push(("Title", &options.title));
@@ -300,7 +296,7 @@ fn map(args: &Args) -> Result<(), Failure> {
     if args.quiet {
         return Ok(());
     }
-    let [width, height] = sheet.scene.size;
+    let Size { width, height } = sheet.scene.size;
     let size = match kind {
         Kind::Png => {
             let [width, height] = raster::pixels(&sheet.scene, sheet.dpi);
@@ -326,7 +322,9 @@ fn map(args: &Args) -> Result<(), Failure> {
 
 /// The transform from pixels of a page to map coordinates, from that of the ground on it.
 fn on_page(samples: &Affine, window: &Window, sheet: &Sheet) -> Affine {
-    let [left, top, width, height] = sheet.ground.map(|millimetres| f64::from(millimetres) * sheet.dpi / 25.4);
+    let Rect { left, top, width, height } = sheet.ground;
+    let [left, top, width, height] =
+        [left, top, width, height].map(|millimetres| f64::from(millimetres) * sheet.dpi / 25.4);
     let scale = [(window.width - 1) as f64 / width, (window.height - 1) as f64 / height];
     samples.resampled(scale, [(0.5 - left) * scale[0], (0.5 - top) * scale[1]])
 }
@@ -365,14 +363,14 @@ fn layer(
         (Some(Ramp::Labels), _) | (None, LayerKind::Label) => Scale::Labels,
         (None, _) => Scale::Linear,
     };
-    let (name, unit) = (args.layer.clone(), source.unit());
+    let unit = source.unit();
     let made = source.whole().map_err(|cause| file::explain("make the layer of", &args.out, &cause))?;
     let values = made.into_iter().next().unwrap_or_else(|| Grid::filled(*window, f32::NAN));
     finite::check(&args.layer, &values)?;
-    Ok(Layer { values, name, unit, scale, range })
+    Ok(Layer::new(&args.layer, values).with_unit(unit).with_scale(scale).with_range(range))
 }
 
-fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: bool) -> Options {
+fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: bool) -> SheetOptions {
     let recipe = world.recipe();
     let page = match args.paper {
         Some(paper) => Page::Paper(paper.sides(args.landscape)),
@@ -381,22 +379,21 @@ fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: b
     let without = &args.without;
     // Lines and water would hide the other layer.
     let is_height = args.layer == HEIGHT;
-    let parts = Parts {
-        title: !without.no_title,
-        axes: !without.no_axes,
-        contours: !without.no_contours && (is_height || args.contours.is_some()),
-        labels: !without.no_labels,
-        summits: !without.no_summits && is_height,
-        rivers: !without.no_rivers && is_height,
-        // Most depressions of a real place are gorges dammed by coarse samples, and its lakes are level in the data
-        // already.
-        lakes: !without.no_lakes && !is_place && is_height,
-        legend: !without.no_legend,
-        colors: !without.no_color,
-        scale: !without.no_scale,
-        north: !without.no_north,
-        profile: !without.no_profile,
-    };
+    let mut parts = Parts::default();
+    parts.title = !without.no_title;
+    parts.axes = !without.no_axes;
+    parts.contours = !without.no_contours && (is_height || args.contours.is_some());
+    parts.labels = !without.no_labels;
+    parts.summits = !without.no_summits && is_height;
+    parts.rivers = !without.no_rivers && is_height;
+    // Most depressions of a real place are gorges dammed by coarse samples, and its lakes are level in the data
+    // already.
+    parts.lakes = !without.no_lakes && !is_place && is_height;
+    parts.legend = !without.no_legend;
+    parts.colors = !without.no_color;
+    parts.scale = !without.no_scale;
+    parts.north = !without.no_north;
+    parts.profile = !without.no_profile;
     let usual = if kind == Kind::Png && args.paper.is_none() { SCREEN } else { PRINT };
     let resolution = match (args.dpi, args.size) {
         (Some(dpi), _) => Resolution::Inch(f64::from(dpi)),
@@ -408,27 +405,24 @@ fn options(args: &Args, kind: Kind, palette: Palette, world: &World, is_place: b
         "" => format!("Seed {}", recipe.world.seed),
         about => format!("{}; seed {}", about.trim_end_matches('.'), recipe.world.seed),
     };
-    Options {
-        title: args.title.clone().unwrap_or_else(|| title(&args.recipe)),
-        about,
-        palette,
-        shading: match args.shade {
-            _ if without.no_shade => Shading::None,
-            Shade::Single => Shading::Single,
-            Shade::Multi => Shading::Multi,
-            Shade::Swiss => Shading::Swiss,
-            Shade::None => Shading::None,
-        },
-        interval: args.contours,
-        parts,
-        page,
-        resolution,
-        // A file of heights has no sea level: all of it is land.
-        sea_level: (!is_place).then_some(recipe.world.sea_level),
-        coloring: Coloring::Heights,
-        range: None,
-        map: recipe.georeference(),
-    }
+    let mut options = SheetOptions::new(palette);
+    options.title = args.title.clone().unwrap_or_else(|| title(&args.recipe));
+    options.about = about;
+    options.shading = match args.shade {
+        _ if without.no_shade => Shading::None,
+        Shade::Single => Shading::Single,
+        Shade::Multi => Shading::Multi,
+        Shade::Swiss => Shading::Swiss,
+        Shade::None => Shading::None,
+    };
+    options.interval = args.contours;
+    options.parts = parts;
+    options.page = page;
+    options.resolution = resolution;
+    // A file of heights has no sea level: all of it is land.
+    options.sea_level = (!is_place).then_some(recipe.world.sea_level);
+    options.map = recipe.georeference();
+    options
 }
 
 /// Approximate longer side of a page, in millimetres.
@@ -440,7 +434,7 @@ fn longer(page: Page) -> f64 {
 }
 
 /// Pixels of a square that contains the page.
-fn pixels(options: &Options) -> f64 {
+fn pixels(options: &SheetOptions) -> f64 {
     let side = match options.resolution {
         Resolution::Inch(dpi) => longer(options.page) * dpi / 25.4,
         Resolution::Longer(pixels) => f64::from(pixels),
@@ -449,7 +443,7 @@ fn pixels(options: &Options) -> f64 {
 }
 
 /// Memory of drawing beside the heights, in bytes, or an error if the page is too large.
-fn drawing(options: &Options, window: &Window, args: &Args) -> Result<u64, Failure> {
+fn drawing(options: &SheetOptions, window: &Window, args: &Args) -> Result<u64, Failure> {
     let side = pixels(options).sqrt();
     if side * side > MOST {
         return Err(Failure::Usage(format!(

@@ -19,10 +19,11 @@ use crate::draw::texture::Texture;
 use crate::failure::Failure;
 use crate::format::Format;
 use crate::moving::{AnimationTarget, Moving};
-use crate::replace::Replace;
+use crate::options::DrawOptions;
 use crate::sink::{Sink, is_stdout};
-use crate::size::{Bytes, MOST, Size, finite, positive, seed, wavelength};
-use crate::{disk, interrupt, memory, say};
+use crate::values::number::{MOST, finite, positive, seed, wavelength};
+use crate::values::size::Size;
+use crate::{disk, interrupt, say};
 
 /// Duration of a frame, in milliseconds.
 const DELAY: u16 = 40;
@@ -95,11 +96,8 @@ pub struct Args {
     /// Write a volume of N slices, one sample apart, starting at --z, as .npy of shape (N, H, W)
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MOST), allow_negative_numbers = true)]
     volume: Option<u64>,
-    /// Memory limit of the program, such as 512MiB or 2GiB [default: half of the free memory]
-    #[arg(long, value_name = "BYTES")]
-    memory: Option<Bytes>,
     #[command(flatten)]
-    replace: Replace,
+    options: DrawOptions,
     /// Print no progress and no summary
     #[arg(short, long, help_heading = "Output")]
     quiet: bool,
@@ -155,8 +153,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let task = Task { args, out, format, noise: noise(args)?, look, width, height, progress: Progress::none() };
     task.check()?;
     let outputs = match (&target, args.frames) {
-        (Some(target), Some(frames)) => target.outputs(out, frames, &args.replace.anywhere())?,
-        _ => vec![Sink::new(out, &args.replace.anywhere())?],
+        (Some(target), Some(frames)) => target.outputs(out, frames, &args.options.replace.anywhere())?,
+        _ => vec![Sink::new(out, &args.options.replace.anywhere())?],
     };
     task.afford()?;
     if let (false, Some(note)) = (args.quiet, task.note()) {
@@ -237,7 +235,7 @@ impl Task<'_> {
             None => 0,
         };
         let needed = band.saturating_add(frame);
-        memory::budget(self.args.memory, memory::cores()).afford(needed)?;
+        self.args.options.budget().afford(needed)?;
         // The size of a picture is known only after compression.
         let array = |grids: u64| {
             let samples = (self.width as u64).saturating_mul(self.height as u64).saturating_mul(grids);
@@ -282,8 +280,8 @@ impl Task<'_> {
 
     fn write_picture(&self, out: &mut dyn Write) -> io::Result<()> {
         let drawing = self.drawing();
-        let (software, description) = (format!("Orogen {}", env!("CARGO_PKG_VERSION")), self.description());
-        let notes = [("Software", software.as_str()), ("Description", description.as_str())];
+        let (software, description) = (say::SOFTWARE, self.description());
+        let notes = [("Software", software), ("Description", description.as_str())];
         let picture = Picture { width: self.width, height: self.height, pixel: drawing.pixel(), notes: &notes };
         self.progress.expect(self.height as f64);
         png::write(out, &picture, |rows, bytes| {
@@ -300,8 +298,8 @@ impl Task<'_> {
         if *target == AnimationTarget::Gif && self.deep() {
             return Err(Failure::Usage("a GIF has 8 bits; leave out --bits 16, or write a .png".into()));
         }
-        let (software, description) = (format!("Orogen {}", env!("CARGO_PKG_VERSION")), self.description());
-        let notes = [("Software", software.as_str()), ("Description", description.as_str())];
+        let (software, description) = (say::SOFTWARE, self.description());
+        let notes = [("Software", software), ("Description", description.as_str())];
         let picture = Picture { width: self.width, height: self.height, pixel: drawing.pixel(), notes: &notes };
         let frame = |k: u32, bytes: &mut [u8]| drawing.paint(Some(self.depth(k, frames)), 0..self.height, bytes);
         let bytes = self.width * self.height * drawing.pixel().bytes();

@@ -45,8 +45,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     if let Some(sink) = &sink {
         let page = swatches::draw(&shown)?;
-        let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-        sink.write(|out| page.write_png(out, &[("Software", &software)]))?;
+        let software = say::SOFTWARE;
+        sink.write(|out| page.write_png(out, &[("Software", software)]))?;
     }
     if args.quiet || matches!(sink, Some(Sink::Stdout)) {
         return Ok(());

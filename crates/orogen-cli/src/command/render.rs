@@ -11,7 +11,7 @@ use orogen::export::options::Options;
 use orogen::file;
 use orogen::format::png::{self, Animation, Picture, Pixel};
 use orogen::palette::palette::Palette;
-use orogen::render::camera::{Camera, View as Shot};
+use orogen::render::camera::{CameraSpec, View as Shot};
 use orogen::render::relief::Land;
 use orogen::render::scene::{Colors, Edge, Scene, Style};
 use orogen::words::{count, number};
@@ -21,12 +21,12 @@ use orogen::{Grid, Progress, Window, World};
 use crate::bar::Bar;
 use crate::failure::Failure;
 use crate::moving::{AnimationTarget, Moving};
-use crate::options::Limits;
-use crate::replace::Replace;
-use crate::seeds::Seeds;
+use crate::options::RunOptions;
 use crate::sink::{Sink, is_stdout};
-use crate::size::{Numbers, Size, clock, not_negative, positive};
 use crate::source::Source;
+use crate::values::number::{Numbers, not_negative, positive};
+use crate::values::size::Size;
+use crate::values::time::clock;
 use crate::view::View;
 use crate::{finite, interrupt, palette, say};
 
@@ -100,12 +100,7 @@ pub struct Args {
     #[command(flatten)]
     view: View,
     #[command(flatten)]
-    replace: Replace,
-    #[command(flatten)]
-    limits: Limits,
-    /// Print no progress and no summary
-    #[arg(short, long, help_heading = "Output")]
-    quiet: bool,
+    run: RunOptions,
 }
 
 /// `--edge`.
@@ -140,10 +135,7 @@ const LAND: u64 = 116;
 
 /// Renders the picture.
 pub fn run(args: &Args) -> Result<(), Failure> {
-    Seeds::each(args.view.seed.as_ref(), Some(&args.out), |seed, out| {
-        let view = View { seed, ..args.view.clone() };
-        render(&Args { view, out: out.unwrap_or_default(), ..args.clone() })
-    })
+    args.view.each_output(&args.out, |view, out| render(&Args { view, out, ..args.clone() }))
 }
 
 fn render(args: &Args) -> Result<(), Failure> {
@@ -165,15 +157,14 @@ fn render(args: &Args) -> Result<(), Failure> {
     }
     let (style, shot) = (style(args, palette.as_ref())?, shot(args)?);
     let source = Source::find(&args.recipe)?;
-    let budget = args.limits.budget();
-    let mut recipe = source.read(&budget, &args.view.arguments)?;
-    args.view.apply(&mut recipe);
-    let policy = args.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
+    let budget = args.run.limits.budget();
+    let mut recipe = args.view.recipe(&source, &budget)?;
+    let policy = args.run.replace.policy(source.inputs(&recipe)).protecting(&args.palette);
     let outputs = target.outputs(&args.out, args.turntable.unwrap_or(1), &policy)?;
     if matches!(args.color, Dress::Surfaces) {
         COVER.iter().try_for_each(|layer| list::prepare(&mut recipe, layer.name, &Options::default()))?;
     }
-    let world = args.limits.open(recipe, &budget)?;
+    let world = args.run.limits.open(recipe, &budget)?;
     let window = args.view.window(&world)?;
     let pixels = (width * height) as u64;
     // Memory per sample of the land: the pyramid, slopes, and light twice while it is computed.
@@ -182,12 +173,12 @@ fn render(args: &Args) -> Result<(), Failure> {
     let _drawing = budget.reserve(needed)?;
     let folder = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     file::check_folder(folder)?;
-    let (bar, progress) = Bar::new(args.quiet);
+    let (bar, progress) = Bar::new(args.run.quiet);
     let shooting = Shooting { target, outputs, style, shot };
     let made = draw(args, &world, &window, &shooting, &progress);
     drop(bar);
     let words = made.map_err(|failure| interrupt::explain(failure, "nothing was written"))?;
-    shooting.outputs[0].tell(args.quiet, &words)
+    shooting.outputs[0].tell(args.run.quiet, &words)
 }
 
 /// The size of the picture.
@@ -219,26 +210,25 @@ fn style<'a>(args: &Args, palette: Option<&'a Palette>) -> Result<Style<'a>, Fai
     if args.snow_line.is_some_and(|line| !line.is_finite()) {
         return usage("--snow-line must be a height in metres, such as 2400".into());
     }
-    Ok(Style {
-        exaggeration: args.exaggeration,
-        sun: sun(args)?,
-        haze: args.haze,
-        edge: args.edge.map(|edge| match edge {
-            Ends::Cut => Edge::Cut,
-            Ends::Haze => Edge::Haze,
-        }),
-        colors: match args.color {
-            Dress::Natural => Colors::Natural,
-            Dress::Desert => Colors::Desert,
-            Dress::Surfaces => Colors::Surfaces,
-            Dress::Map => Colors::Map,
-            Dress::Clay => Colors::Clay,
-        },
-        palette,
-        cover: None,
-        snow_line: args.snow_line,
-        samples: args.samples,
-    })
+    let mut style = Style::default();
+    style.exaggeration = args.exaggeration;
+    style.sun = sun(args)?;
+    style.haze = args.haze;
+    style.edge = args.edge.map(|edge| match edge {
+        Ends::Cut => Edge::Cut,
+        Ends::Haze => Edge::Haze,
+    });
+    style.colors = match args.color {
+        Dress::Natural => Colors::Natural,
+        Dress::Desert => Colors::Desert,
+        Dress::Surfaces => Colors::Surfaces,
+        Dress::Map => Colors::Map,
+        Dress::Clay => Colors::Clay,
+    };
+    style.palette = palette;
+    style.snow_line = args.snow_line;
+    style.samples = args.samples;
+    Ok(style)
 }
 
 /// The position of the sun.
@@ -390,21 +380,22 @@ fn draw(
         [red, green, blue, roughness] => Some([red, green, blue, roughness]),
         _ => None,
     };
-    let scene = Scene::new(&land, &Style { cover, ..*style }, &preparing)?;
+    let mut style = *style;
+    style.cover = cover;
+    let scene = Scene::new(&land, &style, &preparing)?;
     preparing.finish();
-    let origin = [window.east(0), window.south(0)];
-    let camera = |shot: &Shot| Camera::new(shot, scene.relief(), origin, size, args.fov, &scene.frame());
-    let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", &software)] };
+    let spec = CameraSpec::new(*shot, size).with_fov(args.fov);
+    let software = say::SOFTWARE;
+    let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", software)] };
     let file = args.out.display();
     let samples = format!("{} x {} samples of {} m", window.width, window.height, number(window.cell));
     if let (Some(frames), Shot::Around { azimuth, elevation, distance }) = (args.turntable, *shot) {
         let turn = |frame: u32| azimuth + 360.0 * f64::from(frame) / f64::from(frames);
         let sides = (0..frames).map(|frame| [turn(frame), elevation]);
         // The closest distance at which all frames fit: a changing distance would make the land pulsate.
-        let distance =
-            distance.unwrap_or_else(|| Camera::distance(sides, scene.relief(), size, args.fov, &scene.frame()));
-        let side = |frame: u32| camera(&Shot::Around { azimuth: turn(frame), elevation, distance: Some(distance) });
+        let distance = distance.unwrap_or_else(|| scene.distance(sides, &spec));
+        let view = |frame: u32| Shot::Around { azimuth: turn(frame), elevation, distance: Some(distance) };
+        let side = |frame: u32| scene.camera(&spec.with_view(view(frame)));
         // Four small views suffice for the colours.
         let sample = || {
             let small = size.map(|side| side.div_ceil(4));
@@ -424,8 +415,8 @@ fn draw(
         moving.write(|frame, bytes| Ok(scene.paint(&side(frame), size, 0..height, bytes, &painting.part(1.0))?))?;
         return Ok(format!("{file}: {} of {width} x {height} pixels, of {samples}\n", count(frames as usize, "frame")));
     }
-    let camera = camera(shot);
-    if let (Some(metres), false) = (camera.lifted(), args.quiet) {
+    let camera = scene.camera(&spec);
+    if let (Some(metres), false) = (camera.lifted(), args.run.quiet) {
         say::error(&format!("note: the camera was below the ground and was raised by {metres:.0} m"));
     }
     painting.expect(height as f64);

@@ -1,23 +1,22 @@
 //! `orogen variants`.
 
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 use orogen::budget::Reservation;
 use orogen::world::HEIGHT;
 use orogen::{Budget, Grid, Progress, Recipe, Window, World};
 
-use crate::arguments::Arguments;
 use crate::bar::Bar;
 use crate::contact::{self, Sheet, Variant};
 use crate::failure::Failure;
 use crate::format::Format;
-use crate::options::Limits;
-use crate::replace::Replace;
+use crate::options::RunOptions;
 use crate::sink::{Sink, is_stdout};
-use crate::size::seed;
 use crate::source::{Source, title};
-use crate::{finite, interrupt};
+use crate::values::arguments::Arguments;
+use crate::values::number::seed;
+use crate::values::sweep::Sweep;
+use crate::{finite, interrupt, say};
 
 /// Arguments of the command.
 #[derive(Debug, clap::Args)]
@@ -46,12 +45,7 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
     columns: Option<u8>,
     #[command(flatten)]
-    replace: Replace,
-    #[command(flatten)]
-    limits: Limits,
-    /// Print no progress and no summary
-    #[arg(short, long, help_heading = "Output")]
-    quiet: bool,
+    run: RunOptions,
 }
 
 /// Default number of pictures.
@@ -59,42 +53,6 @@ const DEFAULT_SEEDS: u8 = 9;
 
 /// Samples shown along a side of an unbounded world, at its own cell.
 const UNBOUNDED: f64 = 1024.0;
-
-/// Values of a parameter, evenly spaced.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sweep {
-    name: String,
-    ends: [f64; 2],
-    count: u8,
-}
-
-impl FromStr for Sweep {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Sweep, String> {
-        let parts = || {
-            let (name, rest) = text.split_once('=')?;
-            let (range, count) = rest.rsplit_once(':')?;
-            let (first, last) = range.split_once("..")?;
-            let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-            Some((name.trim().to_string(), [number(first)?, number(last)?], count.trim().parse::<u8>().ok()?))
-        };
-        match parts() {
-            Some((name, ends, count)) if !name.is_empty() && (2..=64).contains(&count) => Ok(Sweep { name, ends, count }),
-            _ => Err("a sweep must be a parameter with its first and last value and a number of values from 2 to 64, such as relief=200..2000:9".into()),
-        }
-    }
-}
-
-impl Sweep {
-    fn values(&self) -> impl Iterator<Item = f64> + '_ {
-        let [first, last] = self.ends;
-        let steps = f64::from(self.count - 1);
-        // The last value is exactly the given one, without summation errors.
-        (0..self.count)
-            .map(move |k| if k + 1 == self.count { last } else { first + (last - first) * f64::from(k) / steps })
-    }
-}
 
 /// A picture to make.
 struct Asked {
@@ -115,11 +73,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             path.display()
         )));
     }
-    let budget = args.limits.budget();
+    let budget = args.run.limits.budget();
     let recipe = source.read(&budget, &args.arguments)?;
-    let sink = Sink::new(&args.out, &args.replace.policy(source.inputs(&recipe)))?;
+    let sink = Sink::new(&args.out, &args.run.replace.policy(source.inputs(&recipe)))?;
     let asked = asked(args, &recipe)?;
-    let (bar, progress) = Bar::new(args.quiet);
+    let (bar, progress) = Bar::new(args.run.quiet);
     let stopped = |failure: Failure| interrupt::explain(failure, "nothing was written");
     let [making, writing] = progress.parts([19.0, 1.0]);
     making.expect(asked.len() as f64);
@@ -140,11 +98,14 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let [width, height] = contact::size(&variants, columns);
     let page = budget.reserve((3 * width * height) as u64)?;
     let canvas = contact::draw(&sheet, &variants, columns)?;
-    let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    sink.write(|out| canvas.write_png(out, &[("Software", &software)]))?;
+    let software = say::SOFTWARE;
+    sink.write(|out| canvas.write_png(out, &[("Software", software)]))?;
     writing.finish();
     drop((bar, page, held));
-    sink.tell(args.quiet, &format!("{}: {} pictures, {width} x {height} pixels\n", args.out.display(), variants.len()))
+    sink.tell(
+        args.run.quiet,
+        &format!("{}: {} pictures, {width} x {height} pixels\n", args.out.display(), variants.len()),
+    )
 }
 
 /// The pictures to make.
@@ -179,7 +140,7 @@ fn make(
 ) -> Result<(Variant, Reservation), Failure> {
     let mut recipe = source.read(budget, &args.arguments.with(asked.set))?;
     recipe.world.seed = asked.seed.unwrap_or(recipe.world.seed);
-    let world = args.limits.open(recipe, budget)?;
+    let world = args.run.limits.open(recipe, budget)?;
     let window = window(&world, usize::from(args.size))?;
     let plan = world.plan(&[HEIGHT], &window)?;
     let grid = world.run(&plan, progress)?.pop().unwrap_or_else(|| Grid::filled(window, 0.0));
@@ -210,29 +171,4 @@ fn words(args: &Args, recipe: &Recipe) -> String {
     };
     let set: String = args.arguments.values().iter().map(|(name, value)| format!(" --set {name}={value}")).collect();
     format!("Orogen {}: orogen variants {} {what}{set} --size {}", env!("CARGO_PKG_VERSION"), name.display(), args.size)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sweeps() {
-        let sweep: Sweep = "relief=200..2000:3".parse().unwrap();
-        assert_eq!(sweep.values().collect::<Vec<f64>>(), [200.0, 1100.0, 2000.0]);
-        let sweep: Sweep = "a = 1 .. -0.7 : 2".parse().unwrap();
-        assert_eq!((sweep.name.as_str(), sweep.values().last()), ("a", Some(-0.7)));
-        for text in [
-            "relief",
-            "relief=1",
-            "relief=1..2",
-            "relief=1..2:1",
-            "relief=1..2:65",
-            "relief=1..x:3",
-            "=1..2:3",
-            "a=1..inf:3",
-        ] {
-            assert!(text.parse::<Sweep>().is_err(), "{text}");
-        }
-    }
 }

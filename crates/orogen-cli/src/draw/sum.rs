@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use orogen_noise::Kind;
 
-use crate::size::{finite, not_negative};
+use crate::values::number::{finite, not_negative};
 
 /// The kind of fractal, and the parameters of some kinds.
 #[derive(Debug, clap::Args)]

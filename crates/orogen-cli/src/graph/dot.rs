@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::diagram::{Block, Diagram};
 use super::draw::color;
+use orogen::palette::color::hex;
 
 /// The source: boxes with their lines, coloured by kind, and wires labelled with layers.
 pub fn text(diagram: &Diagram, title: &str) -> String {
@@ -14,10 +15,8 @@ pub fn text(diagram: &Diagram, title: &str) -> String {
     );
     // Writing to a string does not fail.
     for (k, block) in diagram.blocks.iter().enumerate() {
-        let [red, green, blue] = color(block.kind);
-        let fill = if block.used { "" } else { "60" };
-        let _ =
-            writeln!(text, "  b{k} [label = {}, fillcolor = \"#{red:02x}{green:02x}{blue:02x}{fill}\"];", label(block));
+        let fill = hex(color(block.kind)) + if block.used { "" } else { "60" };
+        let _ = writeln!(text, "  b{k} [label = {}, fillcolor = \"{fill}\"];", label(block));
     }
     for wire in &diagram.wires {
         let reader = &diagram.blocks[wire.to];

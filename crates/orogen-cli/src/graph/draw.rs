@@ -4,10 +4,11 @@ use orogen::Result;
 use orogen::map::text::Face;
 use orogen::palette::color::Rgb;
 use orogen::sheet::font_set::FontSet;
-use orogen::sheet::scene::{INK, Point, Scene, Step, polygon};
+use orogen::sheet::geometry::{Point, Rect, Size};
+use orogen::sheet::scene::{INK, Scene, Step, polygon};
 
 use super::diagram::{Block, Diagram, Kind};
-use super::layout::{Layout, Link, Size};
+use super::layout::{Layout, Link};
 
 /// Margin of the page, and the room of heading and legend.
 const MARGIN: f32 = 8.0;
@@ -56,36 +57,37 @@ pub fn draw(diagram: &Diagram, title: &str) -> Result<Scene> {
     let layout = Layout::new(&sizes, &links);
     let key: f32 = Kind::ALL.iter().map(|kind| letters.width(kind.name(), Face::Regular, SMALL) + 12.0).sum();
     let heading = letters.width(title, Face::Bold, TITLE);
-    let width = layout.size[0].max(key).max(heading) + 2.0 * MARGIN;
-    let height = layout.size[1] + 2.0 * MARGIN + HEADING + FOOT;
-    let scene = Scene { size: [width, height], title: title.to_string(), items: Vec::new() };
+    let width = layout.size.width.max(key).max(heading) + 2.0 * MARGIN;
+    let height = layout.size.height + 2.0 * MARGIN + HEADING + FOOT;
+    let scene = Scene { size: Size::new(width, height), title: title.to_string(), items: Vec::new() };
     let mut page = Page { scene, letters: &letters };
-    page.scene.block([0.0, 0.0, width, height], PAPER);
-    page.words(title, Face::Bold, TITLE, INK, [MARGIN, MARGIN + TITLE * 0.8], 1.0);
-    let origin = [MARGIN, MARGIN + HEADING];
+    page.scene.block(Rect::new(0.0, 0.0, width, height), PAPER);
+    page.words(title, Face::Bold, TITLE, INK, Point::new(MARGIN, MARGIN + TITLE * 0.8), 1.0);
+    let origin = Point::new(MARGIN, MARGIN + HEADING);
     for (wire, way) in diagram.wires.iter().zip(&layout.ways) {
         let used = diagram.blocks[wire.to].used;
         let ink = color(diagram.blocks[wire.from].kind);
         page.scene.lines(vec![curve(way, origin)], 0.45, ink, if used { 0.9 } else { FAINT });
     }
-    for ((block, size), [left, top]) in diagram.blocks.iter().zip(&sizes).zip(&layout.places) {
-        page.block(block, *size, [left + origin[0], top + origin[1]]);
+    for ((block, size), place) in diagram.blocks.iter().zip(&sizes).zip(&layout.places) {
+        page.block(block, *size, place.moved(origin.x, origin.y));
     }
     for (wire, way) in diagram.wires.iter().zip(&layout.ways) {
         let ink = color(diagram.blocks[wire.from].kind);
         if let ([first, ..], Some(layer)) = (way.as_slice(), wire.layer) {
-            let at = [first[0] + origin[0] + 1.8, first[2] + origin[1] - 0.9 - page.lift(diagram, wire.from, layer)];
+            let lift = page.lift(diagram, wire.from, layer);
+            let at = Point::new(first[0] + origin.x + 1.8, first[2] + origin.y - 0.9 - lift);
             page.words(layer, Face::Italic, SMALL * 0.85, ink, at, 1.0);
         }
         if let [.., last] = way.as_slice() {
-            page.dot([last[0] + origin[0], last[2] + origin[1]], ink);
+            page.dot(Point::new(last[0] + origin.x, last[2] + origin.y), ink);
         }
     }
     let mut x = MARGIN;
     for kind in Kind::ALL {
         let y = height - MARGIN;
-        page.scene.block([x, y - 2.6, 5.0, 3.0], color(kind));
-        x += 6.4 + page.words(kind.name(), Face::Regular, SMALL, SOFT, [x + 6.4, y], 1.0) + 5.6;
+        page.scene.block(Rect::new(x, y - 2.6, 5.0, 3.0), color(kind));
+        x += 6.4 + page.words(kind.name(), Face::Regular, SMALL, SOFT, Point::new(x + 6.4, y), 1.0) + 5.6;
     }
     Ok(page.scene)
 }
@@ -103,18 +105,18 @@ fn size(block: &Block, letters: &FontSet) -> Size {
 }
 
 /// A wire: horizontal past boxes, and between columns a curve with horizontal ends.
-fn curve(way: &[[f32; 3]], [x, y]: [f32; 2]) -> Vec<Point> {
+fn curve(way: &[[f32; 3]], Point { x, y }: Point) -> Vec<Point> {
     const STEPS: usize = 24;
     let mut line = Vec::new();
     for pair in way.windows(2) {
         let ([left, from, above], [to, _, below]) = (pair[0], pair[1]);
-        line.push([left + x, above + y]);
+        line.push(Point::new(left + x, above + y));
         line.extend((0..=STEPS).map(|k| {
             // A cubic Bezier curve with horizontal handles, half of the distance long.
             let t = k as f32 / STEPS as f32;
             let across = 1.5 * t * (1.0 - t) + t * t * t;
             let down = t * t * (3.0 - 2.0 * t);
-            [from + (to - from) * across + x, above + (below - above) * down + y]
+            Point::new(from + (to - from) * across + x, above + (below - above) * down + y)
         }));
     }
     line
@@ -142,11 +144,11 @@ impl Page<'_> {
         names.iter().position(|name| *name == layer).unwrap_or(0) as f32 * 2.4
     }
 
-    fn block(&mut self, block: &Block, size: Size, [left, top]: Point) {
+    fn block(&mut self, block: &Block, size: Size, Point { x: left, y: top }: Point) {
         let cover = if block.used { 1.0 } else { FAINT };
-        let area = [left, top, size.width, size.height];
+        let area = Rect::new(left, top, size.width, size.height);
         self.scene.area(rounded(area), BODY, 1.0);
-        self.scene.area(rounded([left, top, size.width, HEAD]), color(block.kind), cover);
+        self.scene.area(rounded(Rect { height: HEAD, ..area }), color(block.kind), cover);
         if !block.rows.is_empty() {
             let square = [
                 [left, top + HEAD - 1.2],
@@ -154,15 +156,15 @@ impl Page<'_> {
                 [left + size.width, top + HEAD],
                 [left, top + HEAD],
             ];
-            self.scene.area(polygon(&square), color(block.kind), cover);
+            self.scene.area(polygon(square), color(block.kind), cover);
         }
         let [white, pale] = [[255; 3], [238, 238, 234]];
-        self.words(&block.name, Face::Bold, NAME, white, [left + PAD, top + HEAD / 2.0 + NAME * 0.36], 1.0);
+        self.words(&block.name, Face::Bold, NAME, white, Point::new(left + PAD, top + HEAD / 2.0 + NAME * 0.36), 1.0);
         let width = self.letters.width(block.op, Face::Italic, SMALL);
-        let at = [left + size.width - PAD - width, top + HEAD / 2.0 + SMALL * 0.36];
+        let at = Point::new(left + size.width - PAD - width, top + HEAD / 2.0 + SMALL * 0.36);
         self.words(block.op, Face::Italic, SMALL, pale, at, 1.0);
         for (k, row) in block.rows.iter().enumerate() {
-            let at = [left + PAD, top + row_middle(k) + SMALL * 0.36];
+            let at = Point::new(left + PAD, top + row_middle(k) + SMALL * 0.36);
             self.words(row, Face::Regular, SMALL, SOFT, at, cover);
         }
         let outline = rounded(area).into_iter().filter_map(|step| match step {
@@ -175,33 +177,28 @@ impl Page<'_> {
     }
 
     /// The dot at the end of a wire.
-    fn dot(&mut self, [x, y]: Point, ink: Rgb) {
-        let corners: Vec<Point> = (0..16)
+    fn dot(&mut self, at: Point, ink: Rgb) {
+        let corners = (0..16)
             .map(|k| std::f32::consts::TAU * k as f32 / 16.0)
-            .map(|angle| [x + 0.9 * libm::cosf(angle), y + 0.9 * libm::sinf(angle)])
-            .collect();
-        self.scene.area(polygon(&corners), ink, 1.0);
+            .map(|angle| at.moved(0.9 * libm::cosf(angle), 0.9 * libm::sinf(angle)));
+        self.scene.area(polygon(corners), ink, 1.0);
     }
 }
 
 /// The outline of a rectangle with rounded corners, made of straight lines.
-fn rounded([left, top, width, height]: [f32; 4]) -> Vec<Step> {
+fn rounded(area: Rect) -> Vec<Step> {
     const RADIUS: f32 = 1.4;
     const STEPS: usize = 5;
     let corners = [
-        ([left + width - RADIUS, top + RADIUS], -0.25),
-        ([left + width - RADIUS, top + height - RADIUS], 0.0),
-        ([left + RADIUS, top + height - RADIUS], 0.25),
-        ([left + RADIUS, top + RADIUS], 0.5),
+        (Point::new(area.right() - RADIUS, area.top + RADIUS), -0.25),
+        (Point::new(area.right() - RADIUS, area.bottom() - RADIUS), 0.0),
+        (Point::new(area.left + RADIUS, area.bottom() - RADIUS), 0.25),
+        (Point::new(area.left + RADIUS, area.top + RADIUS), 0.5),
     ];
-    let places: Vec<Point> = corners
-        .iter()
-        .flat_map(|([x, y], turn)| {
-            (0..=STEPS).map(move |k| {
-                let angle = std::f32::consts::TAU * (turn + 0.25 * k as f32 / STEPS as f32);
-                [x + RADIUS * libm::cosf(angle), y + RADIUS * libm::sinf(angle)]
-            })
+    polygon(corners.iter().flat_map(|(middle, turn)| {
+        (0..=STEPS).map(move |k| {
+            let angle = std::f32::consts::TAU * (turn + 0.25 * k as f32 / STEPS as f32);
+            middle.moved(RADIUS * libm::cosf(angle), RADIUS * libm::sinf(angle))
         })
-        .collect();
-    polygon(&places)
+    }))
 }

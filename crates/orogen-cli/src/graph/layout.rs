@@ -1,15 +1,8 @@
 //! The positions of boxes and wires, in millimetres.
 
-use super::order::{Columns, Slot};
+use orogen::sheet::geometry::{Point, Size};
 
-/// A box to place.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Size {
-    /// Its width.
-    pub width: f32,
-    /// Its height.
-    pub height: f32,
-}
+use super::order::{Columns, Slot};
 
 /// A wire to route.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,10 +16,10 @@ pub struct Link {
 /// The result.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Layout {
-    /// Width and height of the drawing.
-    pub size: [f32; 2],
-    /// Left and top of each box.
-    pub places: Vec<[f32; 2]>,
+    /// The size of the drawing.
+    pub size: Size,
+    /// The upper left corner of each box.
+    pub places: Vec<Point>,
     /// For each wire its horizontal parts, [left, right, height]: from its first box, past others, to its last box.
     pub ways: Vec<Vec<[f32; 3]>>,
 }
@@ -111,7 +104,8 @@ impl Layout {
         for (k, column) in columns.columns.iter().enumerate() {
             column.iter().for_each(|slot| column_of[*slot] = k);
         }
-        let places: Vec<[f32; 2]> = (0..sizes.len()).map(|block| [lefts[column_of[block]], tops[block]]).collect();
+        let places: Vec<Point> =
+            (0..sizes.len()).map(|block| Point::new(lefts[column_of[block]], tops[block])).collect();
         let ways = (columns.ways.iter().zip(links))
             .map(|(way, link)| {
                 way.iter()
@@ -129,7 +123,8 @@ impl Layout {
             })
             .collect();
         let bottom = (0..sizes.len()).map(|block| tops[block] + sizes[block].height).chain(tops.iter().copied());
-        Layout { size: [(at - ALLEY).max(0.0), bottom.fold(0.0, f32::max)], places, ways }
+        let size = Size::new((at - ALLEY).max(0.0), bottom.fold(0.0, f32::max));
+        Layout { size, places, ways }
     }
 }
 
@@ -202,16 +197,16 @@ mod tests {
             let (sizes, links) = random(3 + 4 * seed as usize, seed);
             let layout = Layout::new(&sizes, &links);
             let area = |k: usize| {
-                let [left, top] = layout.places[k];
-                [left, top, left + sizes[k].width, top + sizes[k].height]
+                let Point { x, y } = layout.places[k];
+                [x, y, x + sizes[k].width, y + sizes[k].height]
             };
             for a in 0..sizes.len() {
                 let one = area(a);
                 assert!(
                     one[0] >= 0.0
                         && one[1] >= -1e-3
-                        && one[2] <= layout.size[0] + 1e-3
-                        && one[3] <= layout.size[1] + 1e-3
+                        && one[2] <= layout.size.width + 1e-3
+                        && one[3] <= layout.size.height + 1e-3
                 );
                 for b in 0..a {
                     let other = area(b);
@@ -236,6 +231,6 @@ mod tests {
         let sizes = [Size { width: 20.0, height: 10.0 }; 4];
         let links: Vec<Link> = (0..3).map(|k| Link { from: (k, 4.0), to: (k + 1, 4.0) }).collect();
         let layout = Layout::new(&sizes, &links);
-        assert!(layout.places.iter().all(|[_, top]| *top == 0.0), "{:?}", layout.places);
+        assert!(layout.places.iter().all(|place| place.y == 0.0), "{:?}", layout.places);
     }
 }

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::sync::atomic::{AtomicU32, Ordering};
+
+use orogen::test_folder::TestFolder;
 
 /// A world of 64 x 48 samples that takes almost no time.
 pub const SMALL: &str = r#"
@@ -28,16 +29,11 @@ noise = "noise"
 "#;
 
 /// A new, empty folder, removed when dropped.
-pub struct Folder(pub PathBuf);
+pub struct Folder(pub TestFolder);
 
 impl Folder {
     pub fn new() -> Folder {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let count = COUNT.fetch_add(1, Ordering::Relaxed);
-        let path = std::env::temp_dir().join(format!("orogen-cli-test-{}-{count}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        Folder(path)
+        Folder(TestFolder::new("cli-test").unwrap())
     }
 
     /// A folder with [`SMALL`] as `small.toml`.
@@ -106,12 +102,6 @@ impl Folder {
         assert!(outcome.err.starts_with("error: "), "{arguments:?}: {}", outcome.err);
         assert_eq!((outcome.code, outcome.out.len()), (code, 0), "{arguments:?}: {}", outcome.err);
         outcome
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
     }
 }
 

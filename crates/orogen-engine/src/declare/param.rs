@@ -3,6 +3,7 @@
 use super::spec::{ParamSpec, Shape};
 use crate::expression::text::Expression;
 use crate::value::{Spanned, Value};
+use orogen_grid::hex;
 use orogen_io::dem::file_ref::{FileRef, Picture};
 
 /// A type of parameters.
@@ -57,7 +58,7 @@ impl Param for FileRef {
     }
     fn key(&self) -> Value {
         match self.ground() {
-            Some(ground) => Value::Text(ground.hash.iter().map(|byte| format!("{byte:02x}")).collect()),
+            Some(ground) => Value::Text(hex::encode(&ground.hash)),
             None => self.write(),
         }
     }

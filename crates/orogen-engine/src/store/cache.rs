@@ -8,9 +8,9 @@
 use super::entry;
 use crate::op::Solution;
 use crate::plan::key::Key;
+use orogen_grid::hex;
 use orogen_io::file;
 use sha2::{Digest, Sha256};
-use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
@@ -87,21 +87,12 @@ impl Cache {
         hash.update(key);
         hash.update(env!("CARGO_PKG_VERSION"));
         let name: Key = hash.finalize().into();
-        let mut text = String::new();
-        for byte in name {
-            let _ = write!(text, "{byte:02x}");
-        }
-        (name, self.folder.join(text + EXTENSION))
+        (name, self.folder.join(hex::encode(&name) + EXTENSION))
     }
 
     /// The key in the name of an entry; `None` for other names.
     pub(super) fn key_of(name: &str) -> Option<Key> {
-        let digits = name.strip_suffix(EXTENSION).filter(|digits| digits.len() == 64)?;
-        let mut key = [0; 32];
-        for (byte, pair) in key.iter_mut().zip(digits.as_bytes().chunks_exact(2)) {
-            *byte = u8::from_str_radix(std::str::from_utf8(pair).ok()?, 16).ok()?;
-        }
-        Some(key)
+        hex::decode(name.strip_suffix(EXTENSION)?)
     }
 
     /// Removes the oldest entries beyond the limit, but not `newest`, and incomplete files of killed processes.

@@ -1,9 +1,9 @@
 //! Mountains made of aggregates: coarse branches become ranges, finer ones become their spurs.
 
-use super::random::Random;
 use super::tree::Tree;
 use crate::error::Result;
 use crate::progress::Progress;
+use crate::random::Random;
 use rayon::prelude::*;
 
 /// Parameters of a relief.

@@ -1,6 +1,6 @@
 //! A single aggregate, grown as by Witten and Sander.
 
-use super::random::Random;
+use crate::random::Random;
 
 /// Grows an aggregate of `members` cells from the centre of a square of `side` cells, with walkers that start far away.
 /// Returns whether each cell belongs to it. Growth ends early if it comes near the edge.

@@ -1,8 +1,8 @@
 //! An aggregate on a grid, as a tree of cells: each cell except the first is attached to a neighbour.
 
-use super::random::Random;
 use crate::error::Result;
 use crate::progress::Progress;
+use crate::random::Random;
 
 /// Columns east and rows south to the eight neighbours, axial ones first.
 const AROUND: [(i64, i64); 8] = [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)];

@@ -1,5 +1,6 @@
 //! Summary statistics of a grid.
 
+use crate::hex;
 use sha2::{Digest, Sha256};
 
 /// Accumulates a [`Summary`] from samples in row-major order, in chunks of any size. The mean is summed in that order
@@ -82,7 +83,7 @@ impl Gatherer {
             max: if none { f32::NAN } else { self.max },
             mean: self.sum / count,
             land_share: if none { 0.0 } else { self.land as f64 / count },
-            sha256: self.hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect(),
+            sha256: hex::encode(&self.hash.finalize()),
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::progress::Progress;
+use crate::random::{STEP, mix64};
 use orogen_simd::{Body, Simd, dispatch};
 use std::ops::Range;
 
@@ -83,14 +84,14 @@ impl Body for Batch<'_> {
                 self.progress.check()?;
                 for i in left..right {
                     let (x, y) = ((window.x + i as i64) as u64, (window.y + j as i64) as u64);
-                    let chance = mix(self.step.seed ^ x.wrapping_mul(0x9E37_79B9_7F4A_7C15));
-                    let chance = mix(chance ^ y.wrapping_mul(0xD1B5_4A32_D192_ED03));
+                    let chance = mix64(self.step.seed ^ x.wrapping_mul(STEP));
+                    let chance = mix64(chance ^ y.wrapping_mul(0xD1B5_4A32_D192_ED03));
                     let count = self.step.expected + (chance >> 11) as f64 / (1u64 << 53) as f64;
                     for drop in 0..count as u64 {
                         if drop % UNCHECKED == UNCHECKED - 1 {
                             self.progress.check()?;
                         }
-                        let place = mix(chance ^ (drop + 1).wrapping_mul(0xE703_7ED1_A0B4_28DB));
+                        let place = mix64(chance ^ (drop + 1).wrapping_mul(0xE703_7ED1_A0B4_28DB));
                         let start = [place >> 40, place << 24 >> 40].map(|share| share as f32 / (1u32 << 24) as f32);
                         go(self.heights, self.step, [i, j], start, &mut self.sums);
                     }
@@ -100,14 +101,6 @@ impl Body for Batch<'_> {
         }
         Ok(())
     }
-}
-
-/// splitmix64's finaliser (Steele, Lea and Flood 2014).
-#[inline(always)]
-fn mix(mut z: u64) -> u64 {
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
 }
 
 /// The four corners around a position in a cell.

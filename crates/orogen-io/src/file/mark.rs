@@ -3,6 +3,7 @@
 //! Recipes are texts that people edit. A recipe written by Orogen contains a comment with the SHA-256 of all its other
 //! lines. After any change the hash no longer matches, and the file counts as written by hand.
 
+use orogen_grid::hex;
 use sha2::{Digest, Sha256};
 
 /// The text before the digits, and after them.
@@ -40,7 +41,7 @@ pub fn is_intact(text: &str) -> bool {
 fn digest(parts: [&str; 2]) -> String {
     let mut hash = Sha256::new();
     parts.iter().for_each(|part| hash.update(part.as_bytes()));
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hex::encode(&hash.finalize())
 }
 
 #[cfg(test)]

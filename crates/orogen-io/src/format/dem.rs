@@ -8,7 +8,7 @@ use super::crs::registry::Crs;
 use super::crs::unit::Unit;
 use orogen_grid::error::{Error, ErrorKind};
 use orogen_grid::grid::Window;
-use orogen_grid::words::bytes;
+use orogen_grid::words::bytes_apart;
 use serde::{Deserialize, Serialize};
 
 /// The source of a reader: a file, or bytes in memory.
@@ -209,11 +209,12 @@ pub fn afford(width: u64, height: u64, allowed: u64) -> Result<usize, String> {
     }
     let needed = width.saturating_mul(height).saturating_mul(4);
     match needed > allowed || needed > isize::MAX as u64 {
-        true => Err(format!(
-            "its {width} x {height} samples need {} of memory, and {} is allowed; cut out a part of it, or raise the memory limit",
-            bytes(needed),
-            bytes(allowed)
-        )),
+        true => {
+            let [needed, allowed] = bytes_apart(needed, allowed);
+            Err(format!(
+                "its {width} x {height} samples need {needed} of memory, and {allowed} is allowed; cut out a part of it, or raise the memory limit"
+            ))
+        }
         false => Ok((width * height) as usize),
     }
 }
@@ -229,11 +230,12 @@ const BUFFER: u64 = 4 << 20;
 pub fn afford_beside(count: usize, beside: u64, allowed: u64) -> Result<(), String> {
     let needed = (count as u64).saturating_mul(4).saturating_add(beside);
     match beside > BUFFER && needed > allowed {
-        true => Err(format!(
-            "reading it needs {} of memory for its heights and one decompressed block, and {} is allowed; save it with smaller blocks, or raise the memory limit",
-            bytes(needed),
-            bytes(allowed)
-        )),
+        true => {
+            let [needed, allowed] = bytes_apart(needed, allowed);
+            Err(format!(
+                "reading it needs {needed} of memory for its heights and one decompressed block, and {allowed} is allowed; save it with smaller blocks, or raise the memory limit"
+            ))
+        }
         false => Ok(()),
     }
 }

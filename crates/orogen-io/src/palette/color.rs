@@ -82,6 +82,12 @@ pub const fn rgb(hex: u32) -> Rgb {
     [(hex >> 16) as u8, (hex >> 8) as u8, hex as u8]
 }
 
+/// A colour as `#rrggbb`, for SVG, TOML and DOT.
+#[must_use]
+pub fn hex([red, green, blue]: Rgb) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
 /// Linear interpolation of each component.
 #[must_use]
 pub fn mix(from: [f32; 3], to: [f32; 3], share: f32) -> [f32; 3] {

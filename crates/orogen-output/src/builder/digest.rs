@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
 
+use orogen_grid::hex;
 use sha2::{Digest, Sha256};
 
 /// Bytes of a file that are read at a time.
@@ -21,7 +22,7 @@ pub struct FileDigest {
 impl FileDigest {
     /// The digest of these bytes.
     pub fn of(bytes: &[u8]) -> FileDigest {
-        FileDigest { length: bytes.len() as u64, sha256: digits(&Sha256::digest(bytes)) }
+        FileDigest { length: bytes.len() as u64, sha256: hex::encode(&Sha256::digest(bytes)) }
     }
 
     /// The digest of the file at `path`.
@@ -31,7 +32,7 @@ impl FileDigest {
         let mut buffer = vec![0; BUFFER];
         loop {
             let count = match file.read(&mut buffer) {
-                Ok(0) => return Ok(FileDigest { length, sha256: digits(&hash.finalize()) }),
+                Ok(0) => return Ok(FileDigest { length, sha256: hex::encode(&hash.finalize()) }),
                 Ok(count) => count,
                 Err(cause) if cause.kind() == io::ErrorKind::Interrupted => continue,
                 Err(cause) => return Err(cause),
@@ -63,7 +64,7 @@ impl<W: Write> Measured<W> {
 
     /// The writer, and the digest.
     pub fn end(self) -> (W, FileDigest) {
-        (self.inner, FileDigest { length: self.length, sha256: digits(&self.hash.finalize()) })
+        (self.inner, FileDigest { length: self.length, sha256: hex::encode(&self.hash.finalize()) })
     }
 }
 
@@ -80,22 +81,15 @@ impl<W: Write> Write for Measured<W> {
     }
 }
 
-/// Bytes as hexadecimal digits.
-pub fn digits(bytes: &[u8]) -> String {
-    use std::fmt::Write as _;
-    bytes.iter().fold(String::with_capacity(2 * bytes.len()), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use orogen_io::test_folder::TestFolder;
 
     #[test]
     fn any_change_of_a_file_is_noticed() {
-        let path = std::env::temp_dir().join(format!("orogen-piece-{}", std::process::id()));
+        let folder = TestFolder::new("digest").unwrap();
+        let path = folder.join("piece");
         let bytes: Vec<u8> = (0..3_000_000u32).map(|n| n.wrapping_mul(n) as u8).collect();
         let digest = FileDigest::of(&bytes);
         assert!(!digest.is_at(&path), "it is not there");
@@ -111,7 +105,6 @@ mod tests {
         }
         std::fs::write(&path, &bytes[1..]).unwrap();
         assert!(!digest.is_at(&path), "cut");
-        std::fs::remove_file(&path).unwrap();
         assert_eq!(
             FileDigest::of(b"abc").sha256,
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad",

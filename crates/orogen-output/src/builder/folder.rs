@@ -204,9 +204,7 @@ impl BuildTarget for Folder {
             "layers": layers,
             "tiles": tiles,
         });
-        let path = PathBuf::from(MANIFEST);
-        let digest = store.file(&JobFile::Result(path.clone()), format!("{manifest:#}\n").as_bytes())?;
-        Ok(vec![(path, digest)])
+        Ok(vec![store.json(MANIFEST, &manifest)?])
     }
 
     fn extras(&self) -> Vec<PathBuf> {

@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::digest::digits;
 use super::spec::BuildSpec;
 use orogen_engine::world::World;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
+use orogen_grid::hex;
 use orogen_grid::words;
 use orogen_io::format::dem::Georeference;
 use sha2::{Digest, Sha256};
@@ -48,7 +48,7 @@ impl Identity {
         Ok(Identity {
             version: env!("CARGO_PKG_VERSION").to_string(),
             form: spec.form.name().to_string(),
-            recipe: digits(&hash.finalize()),
+            recipe: hex::encode(&hash.finalize()),
             layers: spec.layers.clone(),
             units,
             window: spec.window,

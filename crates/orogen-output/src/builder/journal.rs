@@ -159,6 +159,7 @@ impl Journal {
 mod tests {
     use super::*;
     use orogen_grid::grid::Window;
+    use orogen_io::test_folder::TestFolder;
 
     fn state() -> JournalState {
         let identity = Identity {
@@ -182,8 +183,7 @@ mod tests {
 
     #[test]
     fn a_story_comes_back_and_ends_where_it_was_cut() {
-        let folder = std::env::temp_dir().join(format!("orogen-journal-{}", std::process::id()));
-        fs::create_dir_all(&folder).unwrap();
+        let folder = TestFolder::new("journal").unwrap();
         let (path, temporary) = (folder.join("journal"), folder.join("tmp"));
         assert_eq!(JournalState::read(&path).unwrap(), None);
         let mut state = state();
@@ -218,6 +218,5 @@ mod tests {
             let read = JournalState::read(&path).unwrap().unwrap();
             assert!(read.records.iter().all(|(job, record)| state.records.get(job) == Some(record)), "{at}");
         }
-        fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -70,6 +70,16 @@ impl<'a> OutputStore<'a> {
         Ok(FileDigest::of(bytes))
     }
 
+    /// Writes a file of the result that is JSON, indented.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn json(&self, path: &str, value: &serde_json::Value) -> Result<(PathBuf, FileDigest)> {
+        let path = PathBuf::from(path);
+        let digest = self.file(&JobFile::Result(path.clone()), format!("{value:#}\n").as_bytes())?;
+        Ok((path, digest))
+    }
+
     /// Assembles a result that is a single file: `body` writes it; it is synced and then put in place.
     ///
     /// # Errors

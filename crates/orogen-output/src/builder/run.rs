@@ -67,9 +67,8 @@ pub struct Report {
 ///
 /// let world = World::open(orogen_engine::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
 /// let out = std::env::temp_dir().join(format!("orogen-doc-{}.zarr", std::process::id()));
-/// let order =
-///     BuildSpec { form: Form::Zarr, window: Window::new(300, 200, 30.0), tile: Some(128), layers: vec!["height".into()] };
-/// let build = Build::new(&world, &order, &OutputPolicy::default().output(&out)?)?;
+/// let spec = BuildSpec::new(Form::Zarr, Window::new(300, 200, 30.0)).with_tile(128);
+/// let build = Build::new(&world, &spec, &OutputPolicy::default().output(&out)?)?;
 /// let report = build.run(Start::Fresh, &Progress::none())?;
 /// assert_eq!((report.made, report.kept), (6, 0));
 /// assert_eq!(build.run(Start::Resume, &Progress::none())?.made, 0);

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use orogen_engine::world::HEIGHT;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_io::format::encoding::Encoding;
@@ -99,14 +100,15 @@ impl Form {
 
 /// The specification of a build: samples of layers, in a form.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct BuildSpec {
     /// The form of the result.
     pub form: Form,
     /// The window.
     pub window: Window,
-    /// Side of a tile in samples; `None` for [`Form::usual_tile`].
+    /// Side of a tile in samples; `None`, the default, for [`Form::usual_tile`].
     pub tile: Option<usize>,
-    /// The layers, without duplicates.
+    /// The layers, without duplicates; `height` by default.
     pub layers: Vec<String>,
 }
 
@@ -114,6 +116,24 @@ pub struct BuildSpec {
 const LONGEST_NAME: usize = 100;
 
 impl BuildSpec {
+    /// The heights of a window.
+    #[must_use]
+    pub fn new(form: Form, window: Window) -> BuildSpec {
+        BuildSpec { form, window, tile: None, layers: vec![HEIGHT.into()] }
+    }
+
+    /// The same in tiles of this many samples per side.
+    #[must_use]
+    pub fn with_tile(self, tile: usize) -> BuildSpec {
+        BuildSpec { tile: Some(tile), ..self }
+    }
+
+    /// The same of these layers.
+    #[must_use]
+    pub fn with_layers(self, layers: impl IntoIterator<Item = impl Into<String>>) -> BuildSpec {
+        BuildSpec { layers: layers.into_iter().map(Into::into).collect(), ..self }
+    }
+
     /// Rejects specifications that no form can satisfy.
     ///
     /// # Errors

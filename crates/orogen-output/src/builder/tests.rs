@@ -20,6 +20,7 @@ use orogen_io::file::{Existing, Output, OutputPolicy};
 use orogen_io::format::encoding::Encoding;
 use orogen_io::format::geotiff::{options, writer};
 use orogen_io::spool::Spool;
+use orogen_io::test_folder::TestFolder;
 
 /// A bounded world with a filter and a solver, and an unbounded one.
 const BOUNDED: &str = r#"
@@ -70,26 +71,16 @@ fn spec(form: Form) -> BuildSpec {
     BuildSpec { form, window, tile: Some(tile), layers }
 }
 
-struct Folder(PathBuf);
+/// A folder for the result of a build.
+struct Folder(TestFolder);
 
 impl Folder {
     fn new() -> Folder {
-        static COUNT: AtomicUsize = AtomicUsize::new(0);
-        let name = format!("orogen-build-{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
-        let path = std::env::temp_dir().join(name);
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        Folder(path)
+        Folder(TestFolder::new("build").unwrap())
     }
 
     fn out(&self) -> PathBuf {
         self.0.join("out")
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
     }
 }
 

@@ -281,9 +281,7 @@ impl BuildTarget for Tree {
                 "width": self.identity.window.width, "height": self.identity.window.height,
             },
         });
-        let path = PathBuf::from(TILEJSON);
-        let digest = store.file(&JobFile::Result(path.clone()), format!("{tiles:#}\n").as_bytes())?;
-        Ok(vec![(path, digest)])
+        Ok(vec![store.json(TILEJSON, &tiles)?])
     }
 
     fn extras(&self) -> Vec<PathBuf> {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::files::Files;
 use super::format::refuse;
 use super::layer_source::LayerSource;
+use super::notes::SOFTWARE;
 use super::options::{OptionSpec, Options, ValueKind};
 use super::place;
 use super::quantizer;
@@ -39,10 +40,9 @@ pub const WEIGHTS: OptionSpec = OptionSpec {
 pub fn write_normals(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     let (window, most) = (*source.window(), if options.word("bits") == Some("16") { 65535 } else { 255 });
     let directx = options.word(NORMAL.name) == Some("directx");
-    let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
     let green = if directx { "south (DirectX)" } else { "north (OpenGL)" };
     let about = format!("normals: red east, green {green}, blue up; {} metres a sample", window.cell);
-    let notes = [("Software", made_by.as_str()), ("Description", about.as_str())];
+    let notes = [("Software", SOFTWARE), ("Description", about.as_str())];
     let pixel = if most == 255 { Pixel::Data8 } else { Pixel::Data16 };
     let picture = Picture { width: window.width, height: window.height, pixel, notes: &notes };
     let levels = Levels::new(-1.0, 1.0);
@@ -70,9 +70,8 @@ pub fn write_normals(source: &mut LayerSource, options: &Options, files: &mut Fi
 /// Fails if the source or the files fail.
 pub fn write_color(source: &mut LayerSource, files: &mut Files) -> io::Result<String> {
     let window = *source.window();
-    let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
     let about = format!("{}: unlit color, sRGB; {} metres a sample", source.layer(), window.cell);
-    let notes = [("Software", made_by.as_str()), ("Description", about.as_str())];
+    let notes = [("Software", SOFTWARE), ("Description", about.as_str())];
     let picture = Picture { width: window.width, height: window.height, pixel: Pixel::Rgb8, notes: &notes };
     let encoder = Encoder::new();
     files.write(|out| {
@@ -115,9 +114,8 @@ pub fn write_weights(source: &mut LayerSource, options: &Options, files: &mut Fi
         let to = suffixed(&path, &suffix);
         let pixel = if layers { Pixel::Grey8 } else { Pixel::Weights8 };
         let channels: Vec<String> = group.iter().map(|k| names[*k].clone()).collect();
-        let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
         let about = format!("weights of {}; {} metres a sample", channels.join(", "), window.cell);
-        let notes = [("Software", made_by.as_str()), ("Description", about.as_str())];
+        let notes = [("Software", SOFTWARE), ("Description", about.as_str())];
         let picture = Picture { width: window.width, height: window.height, pixel, notes: &notes };
         let from_south = held.from_south;
         let body = |out: &mut dyn Write| {

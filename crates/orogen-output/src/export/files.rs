@@ -114,24 +114,11 @@ impl Write for Stopping<'_> {
 mod tests {
     use super::*;
     use orogen_io::file::OutputPolicy;
-
-    fn folder(name: &str) -> PathBuf {
-        let folder = std::env::temp_dir().join(format!("orogen-files-{}-{name}", std::process::id()));
-        let _ = std::fs::remove_dir_all(&folder);
-        std::fs::create_dir_all(&folder).unwrap();
-        folder
-    }
-
-    fn names(folder: &Path) -> Vec<String> {
-        let entries = std::fs::read_dir(folder).unwrap();
-        let mut names: Vec<String> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
+    use orogen_io::test_folder::TestFolder;
 
     #[test]
     fn all_files_appear_or_none() {
-        let folder = folder("all");
+        let folder = TestFolder::new("files").unwrap();
         let path = folder.join("a.png");
         let progress = Progress::none();
         let both = |fail: bool| -> io::Result<()> {
@@ -149,15 +136,14 @@ mod tests {
             files.commit()
         };
         assert!(both(true).unwrap_err().to_string().contains("a.json"));
-        assert!(names(&folder).is_empty());
+        assert!(folder.names().is_empty());
         both(false).unwrap();
-        assert_eq!(names(&folder), ["a.json", "a.png"]);
-        std::fs::remove_dir_all(&folder).unwrap();
+        assert_eq!(folder.names(), ["a.json", "a.png"]);
     }
 
     #[test]
     fn what_is_not_wanted_any_more_leaves_nothing() {
-        let folder = folder("stopped");
+        let folder = TestFolder::new("files").unwrap();
         let progress = Progress::none();
         let output = OutputPolicy::default().output(folder.join("a.png")).unwrap();
         let mut files = Files::at(&output, &progress);
@@ -165,8 +151,7 @@ mod tests {
         progress.cancel();
         assert!(files.write_beside(|path| path.with_extension("json"), |out| out.write_all(b"two")).is_err());
         assert!(files.commit().is_err());
-        assert!(names(&folder).is_empty());
-        std::fs::remove_dir_all(&folder).unwrap();
+        assert!(folder.names().is_empty());
     }
 
     #[test]

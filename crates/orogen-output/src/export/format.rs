@@ -8,7 +8,11 @@ use super::options::{OptionSpec, Options};
 use orogen_grid::error::{Error, ErrorKind};
 use orogen_grid::grid::Window;
 
+/// Writes a source with the options of a format, and returns the end of the message about it.
+pub type Writer = fn(&mut LayerSource, &Options, &mut Files) -> io::Result<String>;
+
 /// A file format, declared in its own file in `formats/`.
+#[derive(Debug)]
 pub struct Format {
     /// The name, which is also the first extension.
     pub name: &'static str,
@@ -29,7 +33,7 @@ pub struct Format {
     /// x 48 samples of 10 m, ...".
     ///
     /// Fails if the source or the files fail.
-    pub write: fn(&mut LayerSource, &Options, &mut Files) -> io::Result<String>,
+    pub write: Writer,
 }
 
 impl Format {

@@ -3,18 +3,17 @@
 //! A [`format::Format`] declares its name, extensions, options and memory, and a function that writes it from a
 //! [`layer_source::LayerSource`]: a layer over a window, in bands of rows from the north, or as a whole. Output goes
 //! through `Files`, which puts all files of an export in place at the end, or none. [`registry`] lists the
-//! formats, and [`run`] exports.
+//! formats, and a [`job::ExportJob`] exports; a [`targets::job::EngineJob`] exports for an engine.
 //!
 //! ```
 //! use orogen_io::file::OutputPolicy;
-//! use orogen_output::export::{layer_source::LayerSource, options::Options, registry, run};
+//! use orogen_output::export::{job::ExportJob, registry};
 //! use orogen_engine::{Progress, Window, World};
 //!
 //! let world = World::open(orogen_engine::presets::find("hills").ok_or("no such preset")?.recipe()?)?;
 //! let path = std::env::temp_dir().join(format!("orogen-doc-{}.npy", std::process::id()));
-//! let progress = Progress::none();
-//! let source = LayerSource::new(&world, "height", Window::new(100, 80, 20.0), &progress)?;
-//! run::to_file(registry::of_path(&path)?, source, &Options::default(), &OutputPolicy::default().output(&path)?)?;
+//! let job = ExportJob::new(registry::of_path(&path)?).with_layer("slope").with_window(Window::new(100, 80, 20.0));
+//! job.to_file(&world, &OutputPolicy::default().output(&path)?, &Progress::none())?;
 //! # std::fs::remove_file(&path).ok();
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -27,6 +26,7 @@ pub mod features;
 pub(crate) mod files;
 pub mod format;
 pub(crate) mod formats;
+pub mod job;
 pub mod layer_source;
 pub(crate) mod memory;
 pub mod mesh;
@@ -38,7 +38,7 @@ pub mod options;
 pub mod place;
 pub mod quantizer;
 pub mod registry;
-pub mod run;
+pub(crate) mod run;
 pub mod sheet_cover;
 pub(crate) mod sidecar;
 pub mod targets;

@@ -2,6 +2,9 @@
 
 use orogen_io::format::levels::Levels;
 
+/// The program and its version.
+pub const SOFTWARE: &str = concat!("Orogen ", env!("CARGO_PKG_VERSION"));
+
 /// The text chunks of a greyscale picture of heights: the software, and the heights of black and white.
 #[must_use]
 pub fn of_heights(cell: f64, levels: &Levels) -> Vec<(&'static str, String)> {
@@ -9,5 +12,5 @@ pub fn of_heights(cell: f64, levels: &Levels) -> Vec<(&'static str, String)> {
         true => format!("flat at {}; {cell} metres a sample", levels.low()),
         false => format!("black is {}, white is {}; {cell} metres a sample", levels.low(), levels.high()),
     };
-    vec![("Software", format!("Orogen {}", env!("CARGO_PKG_VERSION"))), ("Description", heights)]
+    vec![("Software", SOFTWARE.to_string()), ("Description", heights)]
 }

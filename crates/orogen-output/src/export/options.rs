@@ -79,6 +79,23 @@ impl OptionSpec {
     }
 }
 
+/// All options of several declarations, by name, each with those that have it.
+pub(super) fn by_name<T: Copy>(
+    declared: impl IntoIterator<Item = (T, &'static [OptionSpec])>,
+) -> Vec<(&'static OptionSpec, Vec<T>)> {
+    let mut all: Vec<(&OptionSpec, Vec<T>)> = Vec::new();
+    for (owner, specs) in declared {
+        for spec in specs {
+            match all.iter_mut().find(|(known, _)| known.name == spec.name) {
+                Some((_, owners)) => owners.push(owner),
+                None => all.push((spec, vec![owner])),
+            }
+        }
+    }
+    all.sort_by_key(|(spec, _)| spec.name);
+    all
+}
+
 /// "a, b or c".
 fn one_of(words: &[&str]) -> String {
     match words {

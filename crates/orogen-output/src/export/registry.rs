@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::format::Format;
 use super::formats;
-use super::options::{OptionSpec, Options};
+use super::options::{OptionSpec, Options, by_name};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::nearest;
 
@@ -51,17 +51,7 @@ pub fn of_path(path: &Path) -> Result<&'static Format> {
 /// All options of all formats, by name, each with the formats that have it.
 #[must_use]
 pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static Format>)> {
-    let mut all: Vec<(&OptionSpec, Vec<&Format>)> = Vec::new();
-    for format in ALL {
-        for spec in format.options {
-            match all.iter_mut().find(|(known, _)| known.name == spec.name) {
-                Some((_, formats)) => formats.push(format),
-                None => all.push((spec, vec![format])),
-            }
-        }
-    }
-    all.sort_by_key(|(spec, _)| spec.name);
-    all
+    by_name(ALL.iter().map(|format| (*format, format.options)))
 }
 
 /// Checks that a format has all given options.

@@ -1,35 +1,26 @@
-//! Exports.
+//! The steps of an export.
 
 use std::io::{self, Write};
 
 use super::features;
 use super::files::Files;
 use super::format::Format;
+use super::job::Written;
 use super::layer_source::LayerSource;
 use super::options::Options;
 use super::registry;
 use orogen_engine::world::World;
-use orogen_grid::analysis::finite::FiniteCount;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_io::file::{self, Output};
-
-/// The result of an export.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Written {
-    /// A description of the samples.
-    pub words: String,
-    /// The count of samples.
-    pub count: FiniteCount,
-}
 
 /// The source for a format: layers of vector features, if the format holds them and all `layers` (comma-separated
 /// names) are such layers; otherwise the layer with that name, as in [`LayerSource::new`].
 ///
 /// # Errors
 /// The errors of [`LayerSource::new`]; or the layers are vector features and the format does not hold them.
-pub fn source<'w>(
+pub(super) fn source<'w>(
     format: &Format,
     world: &'w World,
     layers: &str,
@@ -60,7 +51,7 @@ pub fn source<'w>(
 /// # Errors
 /// If the format does not have an option or cannot hold the layer, no sample is finite, memory does not suffice (then
 /// nothing was started), the work was cancelled, or a file cannot be written.
-pub fn to_file(format: &Format, source: LayerSource, options: &Options, output: &Output) -> Result<Written> {
+pub(super) fn to_file(format: &Format, source: LayerSource, options: &Options, output: &Output) -> Result<Written> {
     let (files, written) = staged(format, source, options, output)?;
     files.commit().map_err(|cause| file::explain("write", output.path(), &cause))?;
     Ok(written)
@@ -86,7 +77,12 @@ pub(super) fn staged<'w>(
 ///
 /// # Errors
 /// The errors of [`to_file`]; errors of the stream itself are returned unchanged.
-pub fn to_stream(format: &Format, source: LayerSource, options: &Options, out: &mut dyn Write) -> io::Result<Written> {
+pub(super) fn to_stream(
+    format: &Format,
+    source: LayerSource,
+    options: &Options,
+    out: &mut dyn Write,
+) -> io::Result<Written> {
     let mut source = source;
     prepare(format, &mut source, options)?;
     let mut files = Files::stream(out, source.progress());
@@ -147,6 +143,7 @@ mod tests {
     use orogen_grid::progress::Progress;
     use orogen_io::file::OutputPolicy;
     use orogen_io::full_disk::Full;
+    use orogen_io::test_folder::TestFolder;
 
     #[test]
     fn every_format_is_written_whole_or_fails_with_its_writer() {
@@ -176,8 +173,7 @@ mod tests {
     fn a_stopped_export_leaves_nothing() {
         let text = "orogen = 1\n[nodes.a]\nop = \"constant\"\n[outputs]\nheight = \"a\"\n";
         let world = World::open(Recipe::parse(text, "test").unwrap()).unwrap();
-        let folder = std::env::temp_dir().join(format!("orogen-export-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).unwrap();
+        let folder = TestFolder::new("export").unwrap();
         for name in ["png", "r16", "tif", "exr"] {
             let progress = Progress::none();
             progress.cancel();
@@ -187,7 +183,6 @@ mod tests {
             let error = to_file(registry::named(name).unwrap(), source, &Options::default(), &output).unwrap_err();
             assert_eq!(error.kind(), ErrorKind::Cancelled, "{name}");
         }
-        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 0);
-        std::fs::remove_dir_all(&folder).unwrap();
+        assert!(folder.names().is_empty());
     }
 }

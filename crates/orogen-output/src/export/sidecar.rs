@@ -9,7 +9,9 @@ use serde::Serialize;
 
 use super::files::Files;
 use super::layer_source::LayerSource;
+use super::notes::SOFTWARE;
 use super::options::{OptionSpec, Options, ValueKind};
+use orogen_grid::hex;
 use orogen_io::format::dem::Georeference;
 use orogen_io::format::levels::Levels;
 use orogen_io::format::sidecar::own;
@@ -55,7 +57,7 @@ struct Channels<'a> {
 /// The text. Keys are in this order; keys that our reader knows have its names.
 #[derive(Debug, Serialize)]
 struct Text<'a> {
-    made_by: String,
+    made_by: &'static str,
     file: String,
     layer: &'a str,
     #[serde(skip_serializing_if = "str::is_empty")]
@@ -110,7 +112,7 @@ pub fn write(files: &mut Files, source: &LayerSource, options: &Options, held: &
     let map = source.map();
     let wkt = map.as_ref().map(Georeference::wkt);
     let text = Text {
-        made_by: format!("Orogen {}", env!("CARGO_PKG_VERSION")),
+        made_by: SOFTWARE,
         file: name(&path),
         layer: source.layer(),
         unit: source.unit(),
@@ -133,7 +135,7 @@ pub fn write(files: &mut Files, source: &LayerSource, options: &Options, held: &
         crs: map.as_ref().and_then(Georeference::epsg).map(|code| format!("EPSG:{code}")),
         wkt: wkt.clone().and_then(Result::ok),
         crs_missing: wkt.and_then(Result::err),
-        layer_sha256: source.key().iter().map(|byte| format!("{byte:02x}")).collect(),
+        layer_sha256: hex::encode(&source.key()),
         about: &world.about,
     };
     let json = serde_json::to_string_pretty(&text).map_err(io::Error::other)?;

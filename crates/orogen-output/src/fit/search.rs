@@ -1,7 +1,7 @@
 //! Search for the parameters of the template whose terrain is closest to a place.
 
 use super::features::{FeatureVector, of_windows};
-use super::template::{MARGIN, PARAMS, ParamValues, Stretch, recipe, trial};
+use super::template::{FittedWorld, MARGIN, PARAMS, ParamValues, Stretch, recipe, trial};
 use crate::survey::measures::Measures;
 use orogen_engine::op::{self, Field, Inputs};
 use orogen_engine::recipe::document::Recipe;
@@ -11,6 +11,7 @@ use orogen_grid::analysis::slope::steepness;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
+use orogen_grid::random::Random;
 use orogen_noise::Points;
 
 /// Side of the compared windows in samples, if the place is large enough.
@@ -84,6 +85,7 @@ impl FitTarget {
 
 /// The effort of a search, and its seed.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Effort {
     /// Number of random candidates before the best are improved.
     pub random: usize,
@@ -110,7 +112,8 @@ impl Found {
     /// The recipe, for a world of the size of the place.
     #[must_use]
     pub fn recipe(&self, target: &FitTarget, seed: u64, about: &str) -> Recipe {
-        let mut recipe = recipe(&self.values, &self.stretch, target.size, target.cell, seed);
+        let ground = FittedWorld { size: target.size, cell: target.cell, seed };
+        let mut recipe = recipe(&self.values, &self.stretch, &ground);
         recipe.about = about.to_string();
         recipe
     }
@@ -135,7 +138,7 @@ const FARTHEST: f64 = 100.0;
 pub fn search(target: &FitTarget, effort: &Effort, options: &Options, progress: &Progress) -> Result<Found> {
     progress.expect(effort.windows(target));
     let mut trial = Trial { target, effort, options, progress, tried: 0, nearest: Vec::new() };
-    let mut chance = Chance(effort.seed);
+    let mut chance = Random::of_state(effort.seed);
     let mut tried: Vec<(f64, ParamValues)> = Vec::new();
     for k in 0..effort.random.max(1) {
         // The first is the centre of all ranges.
@@ -306,13 +309,25 @@ fn trial_world(
 ) -> Result<(World, Window)> {
     let inner = target.side * across;
     let plain = Stretch { from: [0.0, 1.0], to: [0.0, 1.0], bend: 0.0 };
-    let recipe = trial(values, &plain, [inner + 2 * MARGIN; 2], target.cell, seed);
+    let recipe = trial(values, &plain, &FittedWorld { size: [inner + 2 * MARGIN; 2], cell: target.cell, seed });
     let world = World::with_options(recipe, Options { cache: None, ..options.clone() })?;
     let inside = Window::new(inner, inner, target.cell).at(MARGIN as i64, MARGIN as i64);
     Ok((world, inside))
 }
 
 impl Effort {
+    /// A search of this many random candidates and as many steps of improvement, with seed 1.
+    #[must_use]
+    pub fn new(random: usize, improving: usize) -> Effort {
+        Effort { random, improving, seed: 1 }
+    }
+
+    /// The same with this seed.
+    #[must_use]
+    pub fn with_seed(self, seed: u64) -> Effort {
+        Effort { seed, ..self }
+    }
+
     /// Approximate number of windows in a search.
     fn windows(&self, target: &FitTarget) -> f64 {
         let first = self.random.max(1) + PARAMS.len() + self.improving;
@@ -366,17 +381,4 @@ fn bisect([mut low, mut high]: [f64; 2], above: impl Fn(f64) -> bool) -> f64 {
         if above(middle) { low = middle } else { high = middle }
     }
     0.5 * (low + high)
-}
-
-/// Random numbers that are the same on every machine (splitmix64).
-struct Chance(u64);
-
-impl Chance {
-    fn share(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
 }

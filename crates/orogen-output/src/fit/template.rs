@@ -137,30 +137,35 @@ impl View {
     }
 }
 
-/// The recipe of these values in a world of this many cells, with rivers up to its edges. Its node `soft` is the
+/// The world of a fitted recipe.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FittedWorld {
+    /// Number of cells east and south.
+    pub size: [usize; 2],
+    /// Distance between samples, in metres.
+    pub cell: f64,
+    /// The seed.
+    pub seed: u64,
+}
+
+/// The recipe of these values in a world, with rivers up to its edges. Its node `soft` is the
 /// terrain before stretching.
 #[must_use]
-pub fn recipe(values: &ParamValues, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64) -> Recipe {
-    written(values, stretch, size, cell, seed, Some(View::new(size, cell, MARGIN)))
+pub fn recipe(values: &ParamValues, stretch: &Stretch, world: &FittedWorld) -> Recipe {
+    written(values, stretch, world, Some(View::new(world.size, world.cell, MARGIN)))
 }
 
 /// The same solved over the world only, which is faster: its terrain is like that of [`recipe`] at least [`MARGIN`]
 /// samples from the border.
-pub(super) fn trial(values: &ParamValues, stretch: &Stretch, size: [usize; 2], cell: f64, seed: u64) -> Recipe {
-    written(values, stretch, size, cell, seed, None)
+pub(super) fn trial(values: &ParamValues, stretch: &Stretch, world: &FittedWorld) -> Recipe {
+    written(values, stretch, world, None)
 }
 
 /// Width of the border of a solved world that is affected by its edge, in samples.
 pub(super) const MARGIN: usize = 48;
 
-fn written(
-    values: &ParamValues,
-    stretch: &Stretch,
-    size: [usize; 2],
-    cell: f64,
-    seed: u64,
-    view: Option<View>,
-) -> Recipe {
+fn written(values: &ParamValues, stretch: &Stretch, world: &FittedWorld, view: Option<View>) -> Recipe {
+    let FittedWorld { size, cell, seed } = *world;
     let value = |k: usize| round(value(values, k));
     let wavelength = round(value(0) * cell);
     let size = size.map(|samples| samples as f64 * cell);

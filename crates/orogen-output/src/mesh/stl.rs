@@ -13,11 +13,26 @@ use orogen_grid::error::{Error, ErrorKind};
 
 /// Dimensions of a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Print {
     /// Length of the longer side in millimetres, between the centres of its first and last sample.
     pub size: f64,
-    /// Thickness of the base below the lowest sample, in millimetres.
+    /// Thickness of the base below the lowest sample, in millimetres; 3 by default.
     pub base: f64,
+}
+
+impl Print {
+    /// A solid with a longer side of this many millimetres.
+    #[must_use]
+    pub fn new(size: f64) -> Print {
+        Print { size, base: 3.0 }
+    }
+
+    /// The same with a base of this thickness, in millimetres.
+    #[must_use]
+    pub fn with_base(self, base: f64) -> Print {
+        Print { base, ..self }
+    }
 }
 
 /// Writes the solid of a surface, and returns its height in millimetres.

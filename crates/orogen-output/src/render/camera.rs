@@ -25,6 +25,38 @@ pub enum View {
     },
 }
 
+/// A picture's camera: its view, its size and its angle of view.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct CameraSpec {
+    /// Position and direction.
+    pub view: View,
+    /// Width and height of the picture, in pixels. The camera depends on their ratio only.
+    pub size: [usize; 2],
+    /// Angle of view along the longer side, in degrees; 40 by default.
+    pub fov: f64,
+}
+
+impl CameraSpec {
+    /// A view in a picture of this size.
+    #[must_use]
+    pub fn new(view: View, size: [usize; 2]) -> CameraSpec {
+        CameraSpec { view, size, fov: 40.0 }
+    }
+
+    /// The same with this angle of view along the longer side, in degrees.
+    #[must_use]
+    pub fn with_fov(self, fov: f64) -> CameraSpec {
+        CameraSpec { fov, ..self }
+    }
+
+    /// The same picture from another view.
+    #[must_use]
+    pub fn with_view(self, view: View) -> CameraSpec {
+        CameraSpec { view, ..self }
+    }
+}
+
 /// The box that must be in the picture when a camera's distance is chosen automatically, in cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
@@ -69,17 +101,16 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The camera of a view of the land, whose first sample is at `origin` (metres east and south), for pictures of
-    /// `size` pixels with an angle of view of `fov` degrees along the longer side. `frame` is used if the distance is
-    /// chosen automatically.
+    /// A camera over the land. `frame` is used if the distance is chosen automatically.
     #[must_use]
-    pub fn new(view: &View, relief: &Relief, origin: [f64; 2], size: [usize; 2], fov: f64, frame: &Frame) -> Camera {
-        let half = libm::tan(fov.to_radians() / 2.0);
-        let [width, height] = size.map(|side| side as f64);
+    pub fn new(spec: &CameraSpec, relief: &Relief, frame: &Frame) -> Camera {
+        let half = libm::tan(spec.fov.to_radians() / 2.0);
+        let origin = relief.origin();
+        let [width, height] = spec.size.map(|side| side as f64);
         let longer = width.max(height);
         let wide = [half * width / longer, half * height / longer];
         let cells = |[x, y]: [f64; 2]| [(x - origin[0]) / relief.cell(), (y - origin[1]) / relief.cell()];
-        let mut camera = match *view {
+        let mut camera = match spec.view {
             View::Around { azimuth, elevation, distance } => {
                 let middle = frame.middle();
                 let out = Vector::towards(azimuth, elevation);
@@ -107,18 +138,12 @@ impl Camera {
     }
 
     /// The distance, in metres, from which all of `frame` is visible from each of these directions: for pictures that
-    /// turn around the land at a constant distance.
-    pub fn distance(
-        sides: impl Iterator<Item = [f64; 2]>,
-        relief: &Relief,
-        size: [usize; 2],
-        fov: f64,
-        frame: &Frame,
-    ) -> f64 {
+    /// turn around the land at a constant distance. Size and angle of view are those of `spec`.
+    pub fn distance(sides: impl Iterator<Item = [f64; 2]>, spec: &CameraSpec, relief: &Relief, frame: &Frame) -> f64 {
         let middle = frame.middle();
         let away = sides.map(|[azimuth, elevation]| {
             let view = View::Around { azimuth, elevation, distance: None };
-            let camera = Camera::new(&view, relief, [0.0; 2], size, fov, frame);
+            let camera = Camera::new(&spec.with_view(view), relief, frame);
             (middle - camera.eye).dot(camera.ahead)
         });
         away.fold(0.0, f64::max) * relief.cell()
@@ -254,7 +279,7 @@ mod tests {
         let relief = relief();
         for elevation in [0.0, 20.0, 89.0, 90.0] {
             let view = View::Around { azimuth: 180.0, elevation, distance: Some(900.0) };
-            let camera = Camera::new(&view, &relief, [0.0; 2], [640, 360], 45.0, &frame(&relief));
+            let camera = Camera::new(&CameraSpec::new(view, [640, 360]).with_fov(45.0), &relief, &frame(&relief));
             let middle = Vector::new(10.0, 5.0, 2.5);
             let east = camera.project(middle + Vector::new(1.0, 0.0, 0.0)).unwrap();
             let north = camera.project(middle + Vector::new(0.0, -1.0, 0.0)).unwrap();
@@ -269,7 +294,7 @@ mod tests {
     fn rays_and_places_agree() {
         let relief = relief();
         let view = View::At { eye: [-50.0, 180.0, 300.0], look: [120.0, 40.0] };
-        let camera = Camera::new(&view, &relief, [0.0; 2], [300, 400], 50.0, &frame(&relief));
+        let camera = Camera::new(&CameraSpec::new(view, [300, 400]).with_fov(50.0), &relief, &frame(&relief));
         for (across, down) in [(0.5, 0.5), (0.1, 0.9), (0.8, 0.25)] {
             let place = camera.ray(across, down).at(17.0);
             let at = camera.project(place).unwrap();
@@ -288,7 +313,7 @@ mod tests {
             [(0.0, 30.0, [1920, 1080]), (137.0, 10.0, [400, 900]), (200.0, 70.0, [500, 500])]
         {
             let view = View::Around { azimuth, elevation, distance: None };
-            let camera = Camera::new(&view, &relief, [0.0; 2], size, 40.0, &frame(&relief));
+            let camera = Camera::new(&CameraSpec::new(view, size), &relief, &frame(&relief));
             let mut most = [0.0f64; 2];
             for corner in frame(&relief).corners() {
                 let at = camera.project(corner).unwrap();
@@ -302,19 +327,25 @@ mod tests {
     fn underground_it_is_lifted_and_says_so() {
         let relief = relief();
         let view = View::At { eye: [55.0, 50.0, -80.0], look: [120.0, 40.0] };
-        let camera = Camera::new(&view, &relief, [0.0; 2], [300, 200], 50.0, &frame(&relief));
+        let camera = Camera::new(&CameraSpec::new(view, [300, 200]).with_fov(50.0), &relief, &frame(&relief));
         assert!(camera.lifted().unwrap() > 80.0 && camera.eye().z > relief.ground(5.5, 5.0));
         // Outside a bounded terrain the camera may be as low as its base; not if the terrain continues there.
         let view = View::At { eye: [-45.0, 50.0, -5.0], look: [120.0, 40.0] };
-        assert_eq!(Camera::new(&view, &relief, [0.0; 2], [300, 200], 50.0, &frame(&relief)).lifted(), None);
+        assert_eq!(
+            Camera::new(&CameraSpec::new(view, [300, 200]).with_fov(50.0), &relief, &frame(&relief)).lifted(),
+            None
+        );
         let mirrored = Frame { mirrored: true, ..frame(&relief) };
-        let camera = Camera::new(&view, &relief, [0.0; 2], [300, 200], 50.0, &mirrored);
+        let camera = Camera::new(&CameraSpec::new(view, [300, 200]).with_fov(50.0), &relief, &mirrored);
         assert!(camera.lifted().is_some() && camera.eye().z > relief.ground(4.5, 5.0));
         assert_eq!(
             [-3.0, 5.0, 12.0, 25.0].map(|x| folded(x, 10.0)),
             [(3.0, -1.0), (5.0, 1.0), (8.0, -1.0), (5.0, 1.0)]
         );
         let view = View::At { eye: [55.0, 50.0, 200.0], look: [120.0, 40.0] };
-        assert_eq!(Camera::new(&view, &relief, [0.0; 2], [300, 200], 50.0, &frame(&relief)).lifted(), None);
+        assert_eq!(
+            Camera::new(&CameraSpec::new(view, [300, 200]).with_fov(50.0), &relief, &frame(&relief)).lifted(),
+            None
+        );
     }
 }

@@ -31,6 +31,7 @@ pub struct Relief {
     tops: Vec<Tops>,
     datum: f64,
     cell: f64,
+    origin: [f64; 2],
     exaggeration: f64,
     sea: Option<f64>,
 }
@@ -83,6 +84,7 @@ impl Relief {
             tops: Vec::new(),
             datum,
             cell: window.cell,
+            origin: [window.east(0), window.south(0)],
             exaggeration,
             sea: None,
         };
@@ -170,6 +172,12 @@ impl Relief {
     #[must_use]
     pub fn reach(&self) -> [f64; 2] {
         [(self.columns - 1) as f64, (self.rows - 1) as f64]
+    }
+
+    /// The position of the first sample: metres east and south of the world's origin.
+    #[must_use]
+    pub fn origin(&self) -> [f64; 2] {
+        self.origin
     }
 
     /// Metres per cell.

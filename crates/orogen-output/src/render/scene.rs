@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::camera::{Camera, Frame, folded};
+use super::camera::{Camera, CameraSpec, Frame, folded};
 pub use super::ground::Colors;
 use super::ground::{Dress, GroundCover};
 use super::march::{Hit, Ray, Surface};
@@ -30,6 +30,7 @@ pub enum Edge {
 
 /// The style of a scene.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Style<'a> {
     /// The factor of heights.
     pub exaggeration: f64,
@@ -216,6 +217,18 @@ impl Scene {
             frame.high = Vector::new(frame.high.x.max(x), frame.high.y.max(y), highest);
         }
         if frame.low.x < frame.high.x && frame.low.y < frame.high.y { frame } else { whole }
+    }
+
+    /// A camera in this scene. A distance that is chosen automatically shows all of the scene.
+    #[must_use]
+    pub fn camera(&self, spec: &CameraSpec) -> Camera {
+        Camera::new(spec, &self.relief, &self.frame())
+    }
+
+    /// The distance, in metres, from which all of the scene is visible from each of these directions (azimuth and
+    /// elevation in degrees): for pictures that turn around it at a constant distance.
+    pub fn distance(&self, sides: impl Iterator<Item = [f64; 2]>, spec: &CameraSpec) -> f64 {
+        Camera::distance(sides, spec, &self.relief, &self.frame())
     }
 
     /// Renders some rows of a picture of `size` pixels as sRGB bytes, three per pixel, on all threads of the pool.

@@ -1,6 +1,6 @@
 //! Pictures of terrain with known results.
 
-use super::camera::{Camera, View};
+use super::camera::{CameraSpec, View};
 use super::relief::Land;
 use super::scene::{Colors, Edge, Scene, Style};
 use orogen_grid::grid::{Grid, Window};
@@ -20,7 +20,7 @@ fn land(heights: &Grid, sea_level: f64) -> Land<'_> {
 
 fn paint(land: &Land, style: &Style, view: &View, fov: f64) -> Vec<u8> {
     let scene = Scene::new(land, style, &Progress::none()).unwrap();
-    let camera = Camera::new(view, scene.relief(), [0.0; 2], SIZE, fov, &scene.frame());
+    let camera = scene.camera(&CameraSpec::new(*view, SIZE).with_fov(fov));
     let mut bytes = vec![0; SIZE[0] * SIZE[1] * 3];
     scene.paint(&camera, SIZE, 0..SIZE[1], &mut bytes, &Progress::none()).unwrap();
     bytes
@@ -49,7 +49,7 @@ fn threads_and_bands_change_nothing() {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     assert!(one.install(|| paint(&land, &style, &AROUND, 40.0)) == whole);
     let scene = Scene::new(&land, &style, &Progress::none()).unwrap();
-    let camera = Camera::new(&AROUND, scene.relief(), [0.0; 2], SIZE, 40.0, &scene.frame());
+    let camera = scene.camera(&CameraSpec::new(AROUND, SIZE));
     let mut rows = vec![0; 3 * SIZE[0] * 7];
     scene.paint(&camera, SIZE, 11..18, &mut rows, &Progress::none()).unwrap();
     assert!(rows == whole[3 * SIZE[0] * 11..3 * SIZE[0] * 18]);
@@ -92,7 +92,7 @@ fn senseless_lands_have_a_picture() {
                 let style = Style { samples: 1, edge, sun, exaggeration: 3.0, ..Style::default() };
                 let scene = Scene::new(&land(heights, 0.0), &style, &Progress::none()).unwrap();
                 for view in [AROUND, View::Around { azimuth: 0.0, elevation: 90.0, distance: Some(1.0) }] {
-                    let camera = Camera::new(&view, scene.relief(), [0.0; 2], [16, 9], 60.0, &scene.frame());
+                    let camera = scene.camera(&CameraSpec::new(view, [16, 9]).with_fov(60.0));
                     let mut bytes = vec![0; 16 * 9 * 3];
                     scene.paint(&camera, [16, 9], 0..9, &mut bytes, &Progress::none()).unwrap();
                     assert!(sun[1] < 40.0 || bytes.iter().any(|byte| *byte > 20));
@@ -133,7 +133,7 @@ fn a_wall_throws_its_shadow_away_from_the_sun() {
     };
     let scene = Scene::new(&land(&heights, -10.0), &style, &Progress::none()).unwrap();
     let view = View::Around { azimuth: 180.0, elevation: 90.0, distance: Some(4000.0) };
-    let camera = Camera::new(&view, scene.relief(), [0.0; 2], SIZE, 14.0, &scene.frame());
+    let camera = scene.camera(&CameraSpec::new(view, SIZE).with_fov(14.0));
     let bytes = paint(&land(&heights, -10.0), &style, &view, 14.0);
     let light = |x: f64| {
         let at = camera.project(super::vector::Vector::new(x, 20.0, 0.0)).unwrap();
@@ -175,7 +175,7 @@ fn the_camera_sees_the_land_from_where_it_stands() {
     let scene = Scene::new(&land(&heights, -10.0), &style, &Progress::none()).unwrap();
     for (azimuth, right) in [(180.0, true), (0.0, false)] {
         let view = View::Around { azimuth, elevation: 35.0, distance: None };
-        let camera = Camera::new(&view, scene.relief(), [0.0; 2], SIZE, 40.0, &scene.frame());
+        let camera = scene.camera(&CameraSpec::new(view, SIZE));
         let peak = camera.project(super::vector::Vector::new(35.0, 4.0, 30.0)).unwrap();
         assert_eq!(peak[0] > 0.0, right);
         let hit = scene.relief().hit(&camera.ray(0.5 * (peak[0] + 1.0), 0.5 * (peak[1] + 1.0)), 0.0).unwrap();
@@ -189,7 +189,7 @@ fn work_that_is_cancelled_stops() {
     let progress = Progress::none();
     let scene = Scene::new(&land(&heights, 0.0), &Style::default(), &progress).unwrap();
     progress.cancel();
-    let camera = Camera::new(&AROUND, scene.relief(), [0.0; 2], SIZE, 40.0, &scene.frame());
+    let camera = scene.camera(&CameraSpec::new(AROUND, SIZE));
     let mut bytes = vec![0; SIZE[0] * SIZE[1] * 3];
     assert!(scene.paint(&camera, SIZE, 0..SIZE[1], &mut bytes, &progress).is_err());
     assert!(Scene::new(&land(&heights, 0.0), &Style::default(), &progress).is_err());

@@ -2,9 +2,10 @@
 
 use super::font_set::FontSet;
 use super::furniture::{COLORS, Desk, Entry, LEGEND_ROWS, Sign, colors_block, legend_block, north_block, scale_block};
+use super::geometry::Rect;
 use super::layout::{Block, Layout};
 use super::linework::Linework;
-use super::options::{Coloring, Options, Page, SurfaceEntry};
+use super::options::{Coloring, Page, SheetOptions, SurfaceEntry};
 use super::overlay::Below;
 use super::profile::{Direction, Profile};
 use super::ramp::Ramp;
@@ -27,16 +28,15 @@ pub struct Sheet {
     pub interval: Option<f64>,
     /// Resolution in pixels per inch, for [`raster::draw`](super::raster::draw).
     pub dpi: f64,
-    /// Left, top, width and height of the ground on the page, in millimetres, between the centres of its first and its
-    /// last samples.
-    pub ground: [f32; 4],
+    /// The rectangle of the ground on the page, between the centres of its first and its last samples.
+    pub ground: Rect,
 }
 
 /// Draws a sheet of heights in metres. Samples that are not finite have the palette's color of missing samples.
 ///
 /// # Errors
 /// If there are fewer than 2 x 2 heights or none is finite, there would be too many contours, or the work is cancelled.
-pub fn draw(heights: &Grid, options: &Options, progress: &Progress) -> Result<Sheet> {
+pub fn draw(heights: &Grid, options: &SheetOptions, progress: &Progress) -> Result<Sheet> {
     let window = heights.window();
     if window.width < 2 || window.height < 2 || heights.data().iter().all(|height| !height.is_finite()) {
         let message = format!(
@@ -82,7 +82,7 @@ pub fn draw(heights: &Grid, options: &Options, progress: &Progress) -> Result<Sh
     let is_tint = matches!(colors, Paint::Tint);
     let tint = tint(heights, options);
     let map = layout.map;
-    let size = [map[2], map[3]].map(|side| ((f64::from(side) * layout.dpi / 25.4).round() as usize).max(1));
+    let size = map.size().pixels(layout.dpi);
     let pixels = paint(heights, colors, size, &tint, options.shading, sea);
     painting.finish();
     progress.check()?;
@@ -93,7 +93,7 @@ pub fn draw(heights: &Grid, options: &Options, progress: &Progress) -> Result<Sh
     progress.check()?;
     desk.scene.frame(map, 0.3, INK);
     let metres = [window.width, window.height].map(|samples| (samples - 1) as f64 * window.cell);
-    let scale = metres[0] / f64::from(map[2]);
+    let scale = metres[0] / f64::from(map.width);
     if options.parts.axes {
         let (spans, counts) = spans(heights, options);
         desk.axes(map, spans, counts);
@@ -146,7 +146,7 @@ enum Part {
 }
 
 /// The colors of a sheet's heights. Without a sea level, everything is land.
-fn tint(heights: &Grid, options: &Options) -> Tint {
+fn tint(heights: &Grid, options: &SheetOptions) -> Tint {
     // With a given range, the colors must not depend on the window's own heights.
     let below_all = || options.range.map_or_else(|| Levels::of(heights).low() - 1.0, |_| f32::NEG_INFINITY);
     let sea = options.sea_level.map_or_else(below_all, |sea| sea as f32);
@@ -166,7 +166,7 @@ fn surface_entry(surface: &SurfaceEntry) -> Entry {
 }
 
 /// The coordinates at the left and the right, and at the top and the bottom, with their units.
-fn spans(heights: &Grid, options: &Options) -> ([[f64; 2]; 2], [Count; 2]) {
+fn spans(heights: &Grid, options: &SheetOptions) -> ([[f64; 2]; 2], [Count; 2]) {
     let window = heights.window();
     let (west, east) = (window.east(0), window.east(window.width - 1));
     let (north, south) = (window.south(0), window.south(window.height - 1));
@@ -183,7 +183,7 @@ fn spans(heights: &Grid, options: &Options) -> ([[f64; 2]; 2], [Count; 2]) {
 }
 
 /// The line of facts under the title.
-fn facts(metres: [f64; 2], [low, high]: [f64; 2], scale: f64, options: &Options) -> String {
+fn facts(metres: [f64; 2], [low, high]: [f64; 2], scale: f64, options: &SheetOptions) -> String {
     let size = match metres[0].max(metres[1]) >= 2000.0 {
         true => format!("{} × {} km", short(metres[0] / 1000.0), short(metres[1] / 1000.0)),
         false => format!("{} × {} m", short(metres[0]), short(metres[1])),

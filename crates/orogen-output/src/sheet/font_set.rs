@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use ab_glyph::{Font, FontRef, FontVec, GlyphId, OutlineCurve};
 
-use super::scene::{Point, Step};
+use super::geometry::{Affine, Point};
+use super::scene::Step;
 use crate::map::text::Face;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
@@ -79,19 +80,10 @@ impl FontSet {
     /// The outlines of a line of text from `at`, along a baseline that rises by `angle` radians (counter-clockwise).
     #[must_use]
     pub fn write(&self, text: &str, face: Face, size: f32, at: Point, angle: f32) -> Vec<Step> {
-        let (sin, cos) = libm::sincosf(angle);
+        let on_page = Affine::turning(at, angle);
         let mut steps = Vec::new();
         self.set(text, face, size, |font, id, along| {
-            outline(
-                font,
-                id,
-                size,
-                |[x, y]| {
-                    let x = x + along;
-                    [at[0] + x * cos - y * sin, at[1] - x * sin - y * cos]
-                },
-                &mut steps,
-            );
+            outline(font, id, size, |spot| on_page.apply(spot.moved(along, 0.0)), &mut steps);
         });
         steps
     }
@@ -103,17 +95,8 @@ impl FontSet {
         self.set(text, face, size, |font, id, along| {
             let half = font.advance(id, size) / 2.0;
             let (at, angle) = place(along + half);
-            let (sin, cos) = libm::sincosf(angle);
-            outline(
-                font,
-                id,
-                size,
-                |[x, y]| {
-                    let x = x - half;
-                    [at[0] + x * cos - y * sin, at[1] - x * sin - y * cos]
-                },
-                &mut steps,
-            );
+            let on_page = Affine::turning(at, angle);
+            outline(font, id, size, |spot| on_page.apply(spot.moved(-half, 0.0)), &mut steps);
         });
         steps
     }
@@ -167,9 +150,9 @@ impl<F: Font> Glyphs for F {
     }
 }
 
-fn outline(font: &dyn Glyphs, id: GlyphId, size: f32, place: impl Fn([f32; 2]) -> Point, steps: &mut Vec<Step>) {
+fn outline(font: &dyn Glyphs, id: GlyphId, size: f32, place: impl Fn(Point) -> Point, steps: &mut Vec<Step>) {
     let (curves, em) = font.curves(id);
-    let at = |x: f32, y: f32| place([x * size / em, y * size / em]);
+    let at = |x: f32, y: f32| place(Point::new(x * size / em, y * size / em));
     let mut last = None;
     for curve in curves {
         let (start, end) = match curve {
@@ -247,16 +230,18 @@ mod tests {
         let width = letters.width("HIH", Face::Regular, 10.0);
         let ends = |steps: &[Step]| {
             steps.iter().fold([f32::MAX, f32::MIN, f32::MAX, f32::MIN], |[l, r, t, b], step| {
-                let (Step::Move([x, y]) | Step::Line([x, y]) | Step::Curve(_, _, [x, y])) = *step;
+                let (Step::Move(Point { x, y }) | Step::Line(Point { x, y }) | Step::Curve(_, _, Point { x, y })) =
+                    *step;
                 [l.min(x), r.max(x), t.min(y), b.max(y)]
             })
         };
-        let [left, right, top, bottom] = ends(&letters.write("HIH", Face::Regular, 10.0, [5.0, 20.0], 0.0));
+        let [left, right, top, bottom] = ends(&letters.write("HIH", Face::Regular, 10.0, Point::new(5.0, 20.0), 0.0));
         assert!(left > 5.0 && right < 5.0 + width && right > 3.0 + width && (bottom - 20.0).abs() < 0.01);
         assert!((20.0 - top - 7.0).abs() < 0.6, "capitals are seven tenths of an em: {top}");
         // Rotated upwards: an offset to the right becomes an offset upwards.
         let quarter = std::f32::consts::FRAC_PI_2;
-        let [left, right, top, bottom] = ends(&letters.write("HIH", Face::Regular, 10.0, [5.0, 20.0], quarter));
+        let [left, right, top, bottom] =
+            ends(&letters.write("HIH", Face::Regular, 10.0, Point::new(5.0, 20.0), quarter));
         assert!((right - 5.0).abs() < 0.01 && left < -1.0 && top < 21.0 - width && bottom < 20.0);
     }
 

@@ -1,8 +1,9 @@
 //! Elements around a map: heading, coordinates along the sides, colour bar, scale, north arrow, legend.
 
 use super::font_set::FontSet;
+use super::geometry::{Point, Rect};
 use super::layout::{BLOCK_GAP, Block, MARGIN, ROW};
-use super::scene::{INK, Item, Point, Scene, polygon};
+use super::scene::{INK, Item, Scene, line, polygon};
 use super::ticks::{Count, grouped, step, ticks};
 use crate::map::text::Face;
 use orogen_grid::words;
@@ -43,7 +44,7 @@ impl Desk<'_> {
             Align::Middle => width / 2.0,
             Align::End => width,
         };
-        let outline = self.letters.write(text, face, size, [at[0] - shift, at[1]], 0.0);
+        let outline = self.letters.write(text, face, size, at.moved(-shift, 0.0), 0.0);
         self.scene.area(outline, ink, 1.0);
         width
     }
@@ -60,23 +61,23 @@ impl Desk<'_> {
 
     /// The heading and two lines under it.
     pub fn heading(&mut self, title: &str, lines: [&str; 2]) {
-        let width = self.scene.size[0] - 2.0 * MARGIN;
+        let width = self.scene.size.width - 2.0 * MARGIN;
         // A long title is set smaller, and shortened only if that is not enough.
         let natural = self.letters.width(title, Face::Bold, HEADING).max(1e-3);
         let size = HEADING * (width / natural).clamp(0.55, 1.0);
         let title = self.shortened(title, Face::Bold, size, width);
-        self.text(&title, Face::Bold, size, INK, [MARGIN, MARGIN + 5.2], Align::Start);
+        self.text(&title, Face::Bold, size, INK, Point::new(MARGIN, MARGIN + 5.2), Align::Start);
         for (k, line) in lines.iter().enumerate() {
             let line = self.shortened(line, Face::Regular, SMALL, width);
-            self.small(&line, [MARGIN, MARGIN + 9.9 + 3.7 * k as f32], Align::Start);
+            self.small(&line, Point::new(MARGIN, MARGIN + 9.9 + 3.7 * k as f32), Align::Start);
         }
     }
 
     /// Coordinates along the left and the bottom of the map, ticks along all four sides. `spans` are the values at the
     /// map's left and right, top and bottom.
-    pub fn axes(&mut self, map: [f32; 4], spans: [[f64; 2]; 2], counts: [Count; 2]) {
-        let [left, top, width, height] = map;
-        let (right, bottom) = (left + width, top + height);
+    pub fn axes(&mut self, map: Rect, spans: [[f64; 2]; 2], counts: [Count; 2]) {
+        let Rect { left, top, width, height } = map;
+        let (right, bottom) = (map.right(), map.bottom());
         let mark = 1.3;
         let mut marks: Vec<Vec<Point>> = Vec::new();
         let at = |span: [f64; 2], value: f64| ((value - span[0]) / (span[1] - span[0])) as f32;
@@ -84,25 +85,25 @@ impl Desk<'_> {
         let mut free = f32::MIN;
         for (value, name) in across {
             let x = left + width * at(spans[0], value);
-            marks.push(vec![[x, bottom], [x, bottom + mark]]);
-            marks.push(vec![[x, top], [x, top - mark]]);
+            marks.push(line([[x, bottom], [x, bottom + mark]]));
+            marks.push(line([[x, top], [x, top - mark]]));
             let half = self.letters.width(&name, Face::Regular, SMALL) / 2.0;
-            if x - half > free && x + half < self.scene.size[0] - 1.0 {
-                self.small(&name, [x, bottom + mark + 2.9], Align::Middle);
+            if x - half > free && x + half < self.scene.size.width - 1.0 {
+                self.small(&name, Point::new(x, bottom + mark + 2.9), Align::Middle);
                 free = x + half + 1.5;
             }
         }
         for (value, name) in ticks(spans[1], (height / 18.0).max(1.0) as usize, counts[1]) {
             let y = top + height * at(spans[1], value);
-            marks.push(vec![[left, y], [left - mark, y]]);
-            marks.push(vec![[right, y], [right + mark, y]]);
-            self.small(&name, [left - mark - 0.9, y + 0.95], Align::End);
+            marks.push(line([[left, y], [left - mark, y]]));
+            marks.push(line([[right, y], [right + mark, y]]));
+            self.small(&name, Point::new(left - mark - 0.9, y + 0.95), Align::End);
         }
         self.scene.lines(marks, 0.2, INK, 1.0);
     }
 
     /// A colour bar with heights; `width` includes its unit.
-    pub fn colors(&mut self, [left, top]: Point, width: f32, tint: &Tint, [low, high]: [f64; 2]) {
+    pub fn colors(&mut self, at: Point, width: f32, tint: &Tint, [low, high]: [f64; 2]) {
         const STEPS: usize = 600;
         let encoder = Encoder::new();
         let flat = high <= low;
@@ -111,29 +112,29 @@ impl Desk<'_> {
             let height = low + (high - low) * (k as f64 + 0.5) / STEPS as f64;
             encoder.bytes(tint.at(height as f32))
         });
-        let area = [left, top, width - 10.0, 3.6];
+        let area = Rect::new(at.x, at.y, width - 10.0, 3.6);
         self.scene.items.push(Item::Picture { area, width: STEPS, height: 1, pixels: pixels.collect() });
         self.scene.frame(area, 0.15, INK);
         let mut marks: Vec<Vec<Point>> = Vec::new();
         let mut free = f32::MIN;
         let step = step(high - low, 6);
         for (value, _) in ticks([low, high], 6, Count::Latitude) {
-            let x = left + area[2] * ((value - low) / (high - low)) as f32;
-            marks.push(vec![[x, top + 3.6], [x, top + 4.5]]);
+            let x = at.x + area.width * ((value - low) / (high - low)) as f32;
+            marks.push(line([[x, at.y + 3.6], [x, at.y + 4.5]]));
             let decimals = (-libm::log10(step * 1.000_001).floor()).clamp(0.0, 6.0) as usize;
             let name = grouped(value, decimals);
             let half = self.letters.width(&name, Face::Regular, SMALL) / 2.0;
             if x - half > free {
-                self.small(&name, [x, top + 7.4], Align::Middle);
+                self.small(&name, Point::new(x, at.y + 7.4), Align::Middle);
                 free = x + half + 1.0;
             }
         }
         self.scene.lines(marks, 0.2, INK, 1.0);
-        self.small("m", [left + area[2] + 2.0, top + 2.8], Align::Start);
+        self.small("m", Point::new(at.x + area.width + 2.0, at.y + 2.8), Align::Start);
     }
 
     /// A scale bar of a round length.
-    pub fn scale(&mut self, [left, top]: Point, metres_a_millimetre: f64) {
+    pub fn scale(&mut self, Point { x: left, y: top }: Point, metres_a_millimetre: f64) {
         let most = f64::from(SCALE - 14.0);
         let length = {
             let rough = most * metres_a_millimetre;
@@ -143,10 +144,10 @@ impl Desk<'_> {
         let width = (length / metres_a_millimetre) as f32;
         let (kilometres, unit) = if length >= 1000.0 { (1000.0, "km") } else { (1.0, "m") };
         for k in 0..4 {
-            let part = [left + width * k as f32 / 4.0, top + 1.0, width / 4.0, 1.4];
+            let part = Rect::new(left + width * k as f32 / 4.0, top + 1.0, width / 4.0, 1.4);
             self.scene.block(part, if k % 2 == 0 { INK } else { [255; 3] });
         }
-        self.scene.frame([left, top + 1.0, width, 1.4], 0.18, INK);
+        self.scene.frame(Rect::new(left, top + 1.0, width, 1.4), 0.18, INK);
         for share in [0.0, 0.5, 1.0] {
             let value = length / kilometres * share;
             let decimals =
@@ -158,53 +159,53 @@ impl Desk<'_> {
             let name = if share == 1.0 { format!("{text} {unit}") } else { text };
             let x = left + width * share as f32;
             let align = if share == 0.0 { Align::Start } else { Align::Middle };
-            self.small(&name, [x, top + 5.9], align);
+            self.small(&name, Point::new(x, top + 5.9), align);
         }
     }
 
     /// A north arrow, which points to the top of the page.
-    pub fn north(&mut self, [left, top]: Point) {
+    pub fn north(&mut self, Point { x: left, y: top }: Point) {
         let (x, foot) = (left + NORTH / 2.0, top + 8.2);
-        self.scene.area(polygon(&[[x, top + 0.2], [x + 2.1, foot], [x, foot - 1.5]]), INK, 1.0);
+        self.scene.area(polygon([[x, top + 0.2], [x + 2.1, foot], [x, foot - 1.5]]), INK, 1.0);
         let light = [[x, top + 0.2], [x - 2.1, foot], [x, foot - 1.5], [x, top + 0.2]];
-        self.scene.area(polygon(&light), [255; 3], 1.0);
-        self.scene.lines(vec![light.to_vec()], 0.18, INK, 1.0);
-        self.text("N", Face::Bold, 2.9, INK, [x + 2.8, top + 2.6], Align::Start);
+        self.scene.area(polygon(light), [255; 3], 1.0);
+        self.scene.lines(vec![line(light)], 0.18, INK, 1.0);
+        self.text("N", Face::Bold, 2.9, INK, Point::new(x + 2.8, top + 2.6), Align::Start);
     }
 
     /// The legend, in `rows` rows.
-    pub fn legend(&mut self, [left, top]: Point, entries: &[Entry], rows: usize) {
+    pub fn legend(&mut self, at: Point, entries: &[Entry], rows: usize) {
         let widths = columns(entries, self.letters, rows);
         for (k, entry) in entries.iter().enumerate() {
             let (column, row) = (k / rows, k % rows);
-            let x = left + widths[..column].iter().sum::<f32>();
-            let y = top + 1.6 + LINE * row as f32;
+            let x = at.x + widths[..column].iter().sum::<f32>();
+            let y = at.y + 1.6 + LINE * row as f32;
             match entry.sign {
                 Sign::Line(width, ink) => {
                     let wave = (0..=16).map(|k| k as f32 / 16.0);
                     let wave = wave.map(|t| [x + SIGN * t, y - 0.7 * libm::sinf(6.0 * t)]);
-                    self.scene.lines(vec![wave.collect()], width, ink, 1.0);
+                    self.scene.lines(vec![line(wave)], width, ink, 1.0);
                 }
                 Sign::Water(fill, shore) => {
                     let ring: Vec<Point> = (0..=32)
                         .map(|k| k as f32 / 32.0 * std::f32::consts::TAU)
                         .map(|a| {
                             let r = 1.0 + 0.18 * libm::cosf(2.0 * a + 0.6) + 0.1 * libm::sinf(3.0 * a);
-                            [x + SIGN / 2.0 + 2.9 * r * libm::cosf(a), y + 1.35 * r * libm::sinf(a)]
+                            Point::new(x + SIGN / 2.0 + 2.9 * r * libm::cosf(a), y + 1.35 * r * libm::sinf(a))
                         })
                         .collect();
-                    self.scene.area(polygon(&ring), fill, 1.0);
+                    self.scene.area(polygon(ring.iter().copied()), fill, 1.0);
                     self.scene.lines(vec![ring], 0.2, shore, 1.0);
                 }
                 Sign::Swatch(ref colors) => {
-                    let area = [x, y - 1.5, SIGN, 3.0];
+                    let area = Rect::new(x, y - 1.5, SIGN, 3.0);
                     let pixels = swatch(colors);
                     self.scene.items.push(Item::Picture { area, width: pixels.len() / 3, height: 1, pixels });
                     self.scene.frame(area, 0.15, INK);
                 }
-                Sign::Summit => self.scene.area(super::marks::triangle([x + SIGN / 2.0, y]), INK, 1.0),
+                Sign::Summit => self.scene.area(super::marks::triangle(Point::new(x + SIGN / 2.0, y)), INK, 1.0),
             }
-            self.small(&entry.text, [x + SIGN + 1.8, y + 0.95], Align::Start);
+            self.small(&entry.text, Point::new(x + SIGN + 1.8, y + 0.95), Align::Start);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Labels along contour lines, each in a gap of its line.
 
-use super::scene::Point;
+use super::geometry::{Point, Rect};
 
 /// The occupied parts of a sheet, where no label may be placed.
 #[derive(Debug, Clone)]
@@ -16,14 +16,15 @@ pub struct Taken {
 const SQUARE: f32 = 0.4;
 
 impl Taken {
-    /// Nothing occupied in a rectangle: left, top, width, height. Everything outside counts as occupied.
-    pub fn none([left, top, width, height]: [f32; 4]) -> Taken {
-        let [columns, rows] = [width, height].map(|side| (side / SQUARE).floor().max(0.0) as usize);
-        Taken { columns, rows, squares: vec![false; columns * rows], origin: [left, top] }
+    /// Nothing occupied in a rectangle. Everything outside counts as occupied.
+    pub fn none(area: Rect) -> Taken {
+        let [columns, rows] = [area.width, area.height].map(|side| (side / SQUARE).floor().max(0.0) as usize);
+        Taken { columns, rows, squares: vec![false; columns * rows], origin: area.corner() }
     }
 
     fn square(&self, place: Point) -> Option<usize> {
-        let [i, j] = [0, 1].map(|c| ((place[c] - self.origin[c]) / SQUARE).floor());
+        let way = self.origin.to(place);
+        let [i, j] = [way.x, way.y].map(|side| (side / SQUARE).floor());
         let inside = (0.0..self.columns as f32).contains(&i) && (0.0..self.rows as f32).contains(&j);
         inside.then(|| j as usize * self.columns + i as usize)
     }
@@ -33,7 +34,7 @@ impl Taken {
         (-steps..=steps)
             .flat_map(move |v| (-steps..=steps).map(move |u| [u as f32 * SQUARE, v as f32 * SQUARE]))
             .filter(move |[u, v]| u * u + v * v <= reach * reach)
-            .map(move |[u, v]| self.square([place[0] + u, place[1] + v]))
+            .map(move |[u, v]| self.square(place.moved(u, v)))
     }
 
     /// Marks all within `reach` of a point as occupied.
@@ -45,11 +46,10 @@ impl Taken {
     /// Marks a line as occupied.
     pub fn take_line(&mut self, line: &[Point], reach: f32) {
         for pair in line.windows(2) {
-            let [dx, dy] = [0, 1].map(|c| pair[1][c] - pair[0][c]);
-            let steps = ((dx * dx + dy * dy).sqrt() / SQUARE).ceil().clamp(1.0, 1e4) as usize;
+            let steps = (pair[0].distance(pair[1]) / SQUARE).ceil().clamp(1.0, 1e4) as usize;
             for k in 0..=steps {
                 let share = k as f32 / steps as f32;
-                self.take([pair[0][0] + dx * share, pair[0][1] + dy * share], reach);
+                self.take(pair[0].toward(pair[1], share), reach);
             }
         }
     }
@@ -75,15 +75,15 @@ impl Label {
         let mut left = along;
         let last = self.path.len().saturating_sub(2);
         for (k, pair) in self.path.windows(2).enumerate() {
-            let [dx, dy] = [0, 1].map(|c| pair[1][c] - pair[0][c]);
-            let length = (dx * dx + dy * dy).sqrt();
+            let way = pair[0].to(pair[1]);
+            let length = way.length();
             if left <= length || k == last {
                 let share = if length > 0.0 { left / length } else { 0.0 };
-                return ([pair[0][0] + dx * share, pair[0][1] + dy * share], libm::atan2f(-dy, dx));
+                return (pair[0].toward(pair[1], share), libm::atan2f(-way.y, way.x));
             }
             left -= length;
         }
-        (self.path.first().copied().unwrap_or([0.0; 2]), 0.0)
+        (self.path.first().copied().unwrap_or_default(), 0.0)
     }
 }
 
@@ -129,7 +129,7 @@ pub fn place(line: &[Point], text: &str, width: f32, style: LabelStyle, taken: &
         if !path.iter().all(|place| taken.is_free(*place, reach)) {
             continue;
         }
-        if path.last().zip(path.first()).is_some_and(|(last, first)| last[0] < first[0]) {
+        if path.last().zip(path.first()).is_some_and(|(last, first)| last.x < first.x) {
             path.reverse();
         }
         path.iter().for_each(|place| taken.take(*place, reach + style.apart / 2.0));
@@ -151,8 +151,7 @@ impl<'a> Along<'a> {
         let mut sum = 0.0;
         let mut distances = vec![0.0];
         for pair in line.windows(2) {
-            let [dx, dy] = [0, 1].map(|c| pair[1][c] - pair[0][c]);
-            sum += (dx * dx + dy * dy).sqrt();
+            sum += pair[0].distance(pair[1]);
             distances.push(sum);
         }
         Along { line, distances }
@@ -166,8 +165,7 @@ impl<'a> Along<'a> {
         let after = self.distances.partition_point(|d| *d < distance).clamp(1, self.line.len() - 1);
         let (from, to) = (self.distances[after - 1], self.distances[after]);
         let share = if to > from { ((distance - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
-        let (a, b) = (self.line[after - 1], self.line[after]);
-        [0, 1].map(|c| a[c] + (b[c] - a[c]) * share)
+        self.line[after - 1].toward(self.line[after], share)
     }
 
     fn part(&self, from: f32, to: f32, step: f32) -> Vec<Point> {
@@ -178,7 +176,8 @@ impl<'a> Along<'a> {
         (0..=count)
             .map(|k| {
                 let near = &places[k.saturating_sub(reach)..(k + reach + 1).min(count + 1)];
-                [0, 1].map(|c| near.iter().map(|place| place[c]).sum::<f32>() / near.len() as f32)
+                let mean = |side: fn(&Point) -> f32| near.iter().map(side).sum::<f32>() / near.len() as f32;
+                Point::new(mean(|place| place.x), mean(|place| place.y))
             })
             .collect()
     }
@@ -187,10 +186,10 @@ impl<'a> Along<'a> {
     /// be legible.
     fn score(&self, start: f32, need: f32) -> Option<f32> {
         let places = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| self.at(start + need * share));
-        let [dx, dy] = [0, 1].map(|c| places[4][c] - places[0][c]);
-        let straight = (dx * dx + dy * dy).sqrt() / need;
+        let way = places[0].to(places[4]);
+        let straight = way.length() / need;
         let turns = places.windows(3).map(|three| {
-            let [a, b] = [0, 1].map(|k| libm::atan2f(three[k + 1][1] - three[k][1], three[k + 1][0] - three[k][0]));
+            let [a, b] = [0, 1].map(|k| three[k].to(three[k + 1]).direction());
             let turn = (b - a).abs();
             turn.min(2.0 * std::f32::consts::PI - turn)
         });
@@ -198,8 +197,8 @@ impl<'a> Along<'a> {
         if straight < 0.9 || turn > 0.5 {
             return None;
         }
-        let tilt = (dy / need).abs();
-        let overhead = if dx < 0.0 { 0.5 } else { 0.0 };
+        let tilt = (way.y / need).abs();
+        let overhead = if way.x < 0.0 { 0.5 } else { 0.0 };
         Some((1.0 - straight) * 4.0 + turn + tilt * 0.35 + overhead)
     }
 }
@@ -211,7 +210,7 @@ pub fn gaps(lines: &[Vec<Point>], labels: &[Label], reach: f32, margin: f32) -> 
     }
     // Labels indexed by squares, so that each point tests only a few.
     let near = 12.0f32;
-    let key = |place: Point| ((place[0] / near).floor() as i32, (place[1] / near).floor() as i32);
+    let key = |place: Point| ((place.x / near).floor() as i32, (place.y / near).floor() as i32);
     let mut known: std::collections::BTreeMap<(i32, i32), Vec<Point>> = std::collections::BTreeMap::new();
     for place in labels.iter().flat_map(|label| &label.path) {
         known.entry(key(*place)).or_default().push(*place);
@@ -220,10 +219,7 @@ pub fn gaps(lines: &[Vec<Point>], labels: &[Label], reach: f32, margin: f32) -> 
         let (i, j) = key(place);
         (j - 1..=j + 1).flat_map(|j| (i - 1..=i + 1).map(move |i| (i, j))).any(|square| {
             known.get(&square).is_some_and(|places| {
-                places.iter().any(|p| {
-                    let [dx, dy] = [0, 1].map(|c| p[c] - place[c]);
-                    dx * dx + dy * dy < (reach + margin) * (reach + margin)
-                })
+                places.iter().any(|p| place.to(*p).square() < (reach + margin) * (reach + margin))
             })
         })
     };
@@ -245,12 +241,13 @@ pub fn gaps(lines: &[Vec<Point>], labels: &[Label], reach: f32, margin: f32) -> 
 
 #[cfg(test)]
 mod tests {
+    use super::super::scene::line;
     use super::*;
 
     const SETTING: LabelStyle = LabelStyle { size: 2.0, apart: 8.0, every: 60.0 };
 
     fn wave() -> Vec<Point> {
-        (0..=400).map(|k| k as f32 * 0.25).map(|x| [x, 50.0 + 10.0 * libm::sinf(x / 12.0)]).collect()
+        (0..=400).map(|k| k as f32 * 0.25).map(|x| Point::new(x, 50.0 + 10.0 * libm::sinf(x / 12.0))).collect()
     }
 
     #[test]
@@ -260,18 +257,18 @@ mod tests {
             if backwards {
                 line.reverse();
             }
-            let mut taken = Taken::none([0.0, 0.0, 100.0, 100.0]);
+            let mut taken = Taken::none(Rect::new(0.0, 0.0, 100.0, 100.0));
             let labels = place(&line, "1200", 5.0, SETTING, &mut taken);
             assert_eq!(labels.len(), 2);
             for label in &labels {
                 let (start, angle) = label.at(0.5);
                 assert!(angle.abs() < 1.5, "{angle}");
-                assert!((start[1] - 50.0 - 10.0 * libm::sinf(start[0] / 12.0)).abs() < 0.5, "{start:?}");
-                assert!(label.path.last().unwrap()[0] > label.path[0][0]);
+                assert!((start.y - 50.0 - 10.0 * libm::sinf(start.x / 12.0)).abs() < 0.5, "{start:?}");
+                assert!(label.path.last().unwrap().x > label.path[0].x);
             }
             // The area of the label and the area outside the page are occupied now.
-            assert!(!taken.is_free(labels[0].at(2.0).0, 0.5) && !taken.is_free([99.9, 5.0], 0.5));
-            assert!(taken.is_free([50.0, 5.0], 0.5));
+            assert!(!taken.is_free(labels[0].at(2.0).0, 0.5) && !taken.is_free(Point::new(99.9, 5.0), 0.5));
+            assert!(taken.is_free(Point::new(50.0, 5.0), 0.5));
             let left = gaps(&[line.clone()], &labels, 1.2, 0.3);
             assert_eq!(left.len(), 3);
             let length = |lines: &[Vec<Point>]| lines.iter().map(|line| Along::new(line).length()).sum::<f32>();
@@ -282,15 +279,15 @@ mod tests {
 
     #[test]
     fn no_label_where_there_is_no_room() {
-        let mut taken = Taken::none([0.0, 0.0, 100.0, 100.0]);
-        taken.take_line(&[[0.0, 50.0], [100.0, 50.0]], 12.0);
+        let mut taken = Taken::none(Rect::new(0.0, 0.0, 100.0, 100.0));
+        taken.take_line(&line([[0.0, 50.0], [100.0, 50.0]]), 12.0);
         assert!(place(&wave(), "1200", 5.0, SETTING, &mut taken).is_empty());
-        let mut taken = Taken::none([0.0, 0.0, 100.0, 100.0]);
-        assert!(place(&[[5.0, 5.0], [7.0, 5.0]], "1200", 5.0, SETTING, &mut taken).is_empty());
+        let mut taken = Taken::none(Rect::new(0.0, 0.0, 100.0, 100.0));
+        assert!(place(&line([[5.0, 5.0], [7.0, 5.0]]), "1200", 5.0, SETTING, &mut taken).is_empty());
         // A tight coil has no straight part.
         let coil: Vec<Point> = (0..400)
             .map(|k| k as f32 * 0.1)
-            .map(|a| [50.0 + 1.5 * libm::cosf(a), 50.0 + 1.5 * libm::sinf(a)])
+            .map(|a| Point::new(50.0 + 1.5 * libm::cosf(a), 50.0 + 1.5 * libm::sinf(a)))
             .collect();
         assert!(place(&coil, "1200", 5.0, SETTING, &mut taken).is_empty());
         assert!(place(&[], "1", 1.0, SETTING, &mut taken).is_empty());

@@ -1,6 +1,7 @@
 //! The layout of a sheet, in millimetres.
 
-use super::options::{Options, Page, Resolution};
+use super::geometry::{Point, Rect, Size};
+use super::options::{Page, Resolution, SheetOptions};
 
 /// Margin of the page.
 pub const MARGIN: f32 = 9.0;
@@ -36,25 +37,24 @@ pub struct Block {
 /// The positions of all elements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
-    /// Width and height of the page.
-    pub page: [f32; 2],
+    /// The size of the page.
+    pub page: Size,
     /// Pixels per inch.
     pub dpi: f64,
-    /// Left, top, width and height of the map.
-    pub map: [f32; 4],
-    /// Left and top of each block.
-    pub blocks: Vec<[f32; 2]>,
+    /// The rectangle of the map.
+    pub map: Rect,
+    /// The upper left corner of each block.
+    pub blocks: Vec<Point>,
     /// Width of the column of blocks; `None` if they are in rows below the map.
     pub column: Option<f32>,
-    /// Left, top, width and height of the space for profiles, including their labels; two if one would be badly
-    /// proportioned.
-    pub profiles: Vec<[f32; 4]>,
+    /// The space for profiles, including their labels; two if one would be badly proportioned.
+    pub profiles: Vec<Rect>,
 }
 
 /// A map with its blocks, before it is positioned.
 struct Draft {
-    /// Width and height of the map.
-    size: [f32; 2],
+    /// The size of the map.
+    size: Size,
     column: Option<f32>,
 }
 
@@ -63,7 +63,7 @@ impl Layout {
     /// in a column beside it. Remaining space on paper is used for profiles of the land.
     ///
     /// The map's sides are on whole pixels, so that its picture needs no resampling.
-    pub fn new(aspect: f64, blocks: &[Block], options: &Options) -> Layout {
+    pub fn new(aspect: f64, blocks: &[Block], options: &SheetOptions) -> Layout {
         let aspect = aspect.clamp(1e-3, 1e3) as f32;
         let head = if options.parts.title { HEADING } else { 0.0 };
         let [left, right, top, bottom] = if options.parts.axes { AXES } else { [0.0; 4] };
@@ -71,28 +71,29 @@ impl Layout {
         let (page, draft) = match options.page {
             Page::Fitted(longer) => {
                 let longer = longer as f32;
-                let size = if aspect >= 1.0 { [longer, longer / aspect] } else { [longer * aspect, longer] };
-                let width = (size[0] + beside).max(NARROWEST);
+                let size =
+                    if aspect >= 1.0 { Size::new(longer, longer / aspect) } else { Size::new(longer * aspect, longer) };
+                let width = (size.width + beside).max(NARROWEST);
                 let foot = foot(blocks, width - 2.0 * MARGIN);
-                let page = [width, 2.0 * MARGIN + head + top + size[1] + bottom + foot];
+                let page = Size::new(width, 2.0 * MARGIN + head + top + size.height + bottom + foot);
                 (page, Draft { size, column: None })
             }
-            Page::Paper(page) => {
-                let page = page.map(|side| side as f32);
-                let room = [page[0] - beside, page[1] - 2.0 * MARGIN - head - top - bottom];
-                let within = |room: [f32; 2]| {
+            Page::Paper([width, height]) => {
+                let page = Size::new(width as f32, height as f32);
+                let room = Size::new(page.width - beside, page.height - 2.0 * MARGIN - head - top - bottom);
+                let within = |room: Size| {
                     let room = room.map(|side| side.max(5.0));
-                    let width = room[0].min(room[1] * aspect);
-                    [width, width / aspect]
+                    let width = room.width.min(room.height * aspect);
+                    Size::new(width, width / aspect)
                 };
-                let below = within([room[0], room[1] - foot(blocks, page[0] - 2.0 * MARGIN)]);
+                let below = within(Size { height: room.height - foot(blocks, page.width - 2.0 * MARGIN), ..room });
                 let column = blocks.iter().map(|block| block.widths[1]).fold(COLUMN[0], f32::max);
-                let aside = within([room[0] - column - FOOT_GAP, room[1]]);
-                let stacked = stack(blocks) <= page[1] - 2.0 * MARGIN - head;
-                let is_aside = !blocks.is_empty() && stacked && aside[0] > below[0];
+                let aside = within(Size { width: room.width - column - FOOT_GAP, ..room });
+                let stacked = stack(blocks) <= page.height - 2.0 * MARGIN - head;
+                let is_aside = !blocks.is_empty() && stacked && aside.width > below.width;
                 // The space beside the map, at most the width of the map with its coordinates.
-                let widest = column.max(COLUMN[1]).max(aside[0] + left + right);
-                let column = column.max(room[0] - FOOT_GAP - aside[0]).min(widest);
+                let widest = column.max(COLUMN[1]).max(aside.width + left + right);
+                let column = column.max(room.width - FOOT_GAP - aside.width).min(widest);
                 let draft = match is_aside {
                     true => Draft { size: aside, column: Some(column) },
                     false => Draft { size: below, column: None },
@@ -103,61 +104,61 @@ impl Layout {
         let Draft { size, column } = draft;
         let dpi = match options.resolution {
             Resolution::Inch(dpi) => dpi,
-            Resolution::Longer(pixels) => f64::from(pixels) / f64::from(page[0].max(page[1])) * 25.4,
+            Resolution::Longer(pixels) => f64::from(pixels) / f64::from(page.width.max(page.height)) * 25.4,
         };
         let pixel = (25.4 / dpi) as f32;
         let snapped = |at: f32| (at / pixel).round() * pixel;
         let taken = column.map_or(0.0, |column| column + FOOT_GAP);
-        let x = MARGIN + left + (page[0] - beside - taken - size[0]).max(0.0) / 2.0;
+        let x = MARGIN + left + (page.width - beside - taken - size.width).max(0.0) / 2.0;
         let size = size.map(|side| snapped(side).max(pixel));
-        let map = [snapped(x), snapped(MARGIN + head + top), size[0], size[1]];
+        let map = Rect::new(snapped(x), snapped(MARGIN + head + top), size.width, size.height);
         let mut layout = Layout { page, dpi, map, blocks: Vec::new(), column, profiles: Vec::new() };
-        let under = map[1] + map[3] + bottom;
+        let under = map.bottom() + bottom;
         let wanted = options.parts.profile && matches!(options.page, Page::Paper(_));
-        let fits = |[x, y, width, height]: [f32; 4]| {
-            let height = height.min(width * PROFILE_ASPECT[usize::from(column.is_some())]);
-            Some([x, y, width, height]).filter(|_| wanted && width >= PROFILE[0] && height >= PROFILE[1])
+        let fits = |room: Rect| {
+            let height = room.height.min(room.width * PROFILE_ASPECT[usize::from(column.is_some())]);
+            Some(Rect { height, ..room }).filter(|_| wanted && room.width >= PROFILE[0] && height >= PROFILE[1])
         };
         match column {
             Some(column) => {
-                let x = page[0] - MARGIN - column;
-                let mut y = map[1];
+                let x = page.width - MARGIN - column;
+                let mut y = map.top;
                 for block in blocks {
-                    layout.blocks.push([x, y]);
+                    layout.blocks.push(Point::new(x, y));
                     y += block.height + COLUMN_GAP;
                 }
                 let free = under - y - FOOT_GAP;
                 let half = (free - FOOT_GAP) / 2.0;
-                let areas = match fits([x, y, column, half]) {
-                    Some(_) => vec![fits([x, y + FOOT_GAP, column, half]); 2],
-                    None => vec![fits([x, y + FOOT_GAP, column, free])],
+                let areas = match fits(Rect::new(x, y, column, half)) {
+                    Some(_) => vec![fits(Rect::new(x, y + FOOT_GAP, column, half)); 2],
+                    None => vec![fits(Rect::new(x, y + FOOT_GAP, column, free))],
                 };
                 // The foot of the last profile is aligned with the map's.
                 let mut foot = under;
-                for [x, _, width, height] in areas.into_iter().flatten() {
-                    foot -= height;
-                    layout.profiles.insert(0, [x, foot, width, height]);
+                for area in areas.into_iter().flatten() {
+                    foot -= area.height;
+                    layout.profiles.insert(0, Rect { top: foot, ..area });
                     foot -= FOOT_GAP;
                 }
             }
             None => {
-                let free = page[1] - MARGIN - foot(blocks, page[0] - 2.0 * MARGIN) - under - FOOT_GAP;
-                let mut at = [MARGIN, under + FOOT_GAP];
-                match fits([map[0] - left, under + FOOT_GAP, map[2] + left + right, free]) {
-                    None => at[1] += free.clamp(0.0, 2.0 * FOOT_GAP),
-                    Some([x, y, width, height]) => {
+                let free = page.height - MARGIN - foot(blocks, page.width - 2.0 * MARGIN) - under - FOOT_GAP;
+                let mut at = Point::new(MARGIN, under + FOOT_GAP);
+                match fits(Rect::new(map.left - left, under + FOOT_GAP, map.width + left + right, free)) {
+                    None => at.y += free.clamp(0.0, 2.0 * FOOT_GAP),
+                    Some(area) => {
                         // Any remaining space widens the gaps.
-                        let apart = ((free - height) / 2.0).min(2.0 * FOOT_GAP);
-                        layout.profiles.push([x, y + apart, width, height]);
-                        at[1] += height + 2.0 * apart + FOOT_GAP;
+                        let apart = ((free - area.height) / 2.0).min(2.0 * FOOT_GAP);
+                        layout.profiles.push(Rect { top: area.top + apart, ..area });
+                        at.y += area.height + 2.0 * apart + FOOT_GAP;
                     }
                 }
                 for block in blocks {
-                    if at[0] > MARGIN && at[0] + block.widths[0] > page[0] - MARGIN {
-                        at = [MARGIN, at[1] + ROW];
+                    if at.x > MARGIN && at.x + block.widths[0] > page.width - MARGIN {
+                        at = Point::new(MARGIN, at.y + ROW);
                     }
                     layout.blocks.push(at);
-                    at[0] += block.widths[0] + BLOCK_GAP;
+                    at.x += block.widths[0] + BLOCK_GAP;
                 }
             }
         }
@@ -184,25 +185,14 @@ fn stack(blocks: &[Block]) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::options::Shading;
-    use super::super::options::{Coloring, Parts};
+    use super::super::options::Parts;
     use super::*;
     use orogen_io::palette::named;
 
-    fn on(page: [f64; 2], profile: bool) -> Options {
-        Options {
-            title: String::new(),
-            about: String::new(),
-            palette: named::all()[0].palette(),
-            shading: Shading::Multi,
-            interval: None,
+    fn on(page: [f64; 2], profile: bool) -> SheetOptions {
+        SheetOptions {
             parts: Parts { profile, ..Parts::default() },
-            page: Page::Paper(page),
-            resolution: Resolution::Inch(150.0),
-            sea_level: None,
-            coloring: Coloring::Heights,
-            range: None,
-            map: None,
+            ..SheetOptions::new(named::all()[0].palette()).with_page(Page::Paper(page))
         }
     }
 
@@ -214,16 +204,16 @@ mod tests {
 
     /// Left, top, right and bottom of every item on a page.
     fn boxes(layout: &Layout) -> Vec<[f32; 4]> {
-        let [x, y, w, h] = layout.map;
-        let mut boxes = vec![[x - AXES[0], y - AXES[2], x + w + AXES[1], y + h + AXES[3]]];
-        for (block, [x, y]) in blocks().iter().zip(&layout.blocks) {
+        let map = layout.map;
+        let mut boxes = vec![[map.left - AXES[0], map.top - AXES[2], map.right() + AXES[1], map.bottom() + AXES[3]]];
+        for (block, Point { x, y }) in blocks().iter().zip(&layout.blocks) {
             let (width, height) = match layout.column {
                 Some(column) => (block.widths[1].max(10.0).min(column), block.height),
                 None => (block.widths[0], 11.0),
             };
             boxes.push([*x, *y, x + width, y + height]);
         }
-        boxes.extend(layout.profiles.iter().map(|[x, y, w, h]| [*x, *y, x + w, y + h]));
+        boxes.extend(layout.profiles.iter().map(|area| [area.left, area.top, area.right(), area.bottom()]));
         boxes
     }
 

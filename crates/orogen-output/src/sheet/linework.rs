@@ -4,7 +4,7 @@ use super::furniture::{Entry, Sign};
 use super::ground::laid;
 use super::inks::{BLUE, LAKES, SHORE, THICK, THIN, of_contours};
 use super::lines::{Summit, interval, lines, summits, thick_interval};
-use super::options::{Options, Page};
+use super::options::{Page, SheetOptions};
 use super::ticks::grouped;
 use super::water::{Least, Water, find};
 use orogen_grid::contour::chaikin::smooth;
@@ -62,7 +62,7 @@ impl Linework {
     ///
     /// # Errors
     /// If there would be too many contours or shores.
-    pub fn of(heights: &Grid, options: &Options) -> Result<Linework> {
+    pub fn of(heights: &Grid, options: &SheetOptions) -> Result<Linework> {
         let window = heights.window();
         let sides = [window.width - 1, window.height - 1].map(|side| side as f64);
         let aspect = sides[0] / sides[1];
@@ -124,7 +124,7 @@ impl Linework {
 
     /// The legend entries of its lines.
     #[must_use]
-    pub fn legend(&self, options: &Options) -> Vec<Entry> {
+    pub fn legend(&self, options: &SheetOptions) -> Vec<Entry> {
         let mut entries = Vec::new();
         if let Some(interval) = self.interval.filter(|_| !self.contours.is_empty()) {
             let metres = |value: f64| format!("{} m", grouped(value, if value.fract() == 0.0 { 0 } else { 1 }));

@@ -4,6 +4,7 @@
 pub mod draw;
 pub mod font_set;
 pub(crate) mod furniture;
+pub mod geometry;
 pub(crate) mod ground;
 pub(crate) mod inks;
 pub(crate) mod labels;

@@ -38,8 +38,9 @@ pub enum Resolution {
     Longer(u32),
 }
 
-/// The parts of a sheet; each can be switched off.
+/// The parts of a sheet; each can be switched off. All are on by default.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Parts {
     /// The heading, and the lines under it.
     pub title: bool,
@@ -100,6 +101,7 @@ pub enum Scale {
 
 /// A layer that colours the sheet in place of the heights.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Layer {
     /// Its values, over the window of the heights.
     pub values: Grid,
@@ -111,6 +113,32 @@ pub struct Layer {
     pub scale: Scale,
     /// The values at the ends of the palette; by default the minimum and maximum.
     pub range: Option<[f32; 2]>,
+}
+
+impl Layer {
+    /// A layer on a linear scale between its minimum and maximum, without a unit.
+    #[must_use]
+    pub fn new(name: impl Into<String>, values: Grid) -> Layer {
+        Layer { values, name: name.into(), unit: "", scale: Scale::Linear, range: None }
+    }
+
+    /// The same in this unit.
+    #[must_use]
+    pub fn with_unit(self, unit: &'static str) -> Layer {
+        Layer { unit, ..self }
+    }
+
+    /// The same on this scale.
+    #[must_use]
+    pub fn with_scale(self, scale: Scale) -> Layer {
+        Layer { scale, ..self }
+    }
+
+    /// The same with these values at the ends of the palette, or with the minimum and maximum.
+    #[must_use]
+    pub fn with_range(self, range: Option<[f32; 2]>) -> Layer {
+        Layer { range, ..self }
+    }
 }
 
 /// A surface in the legend of a sheet.
@@ -146,31 +174,85 @@ pub enum Coloring {
 }
 
 /// Options of a sheet.
+///
+/// ```
+/// use orogen_output::sheet::options::{Page, SheetOptions};
+///
+/// let palette = orogen_io::palette::named::all()[0].palette();
+/// let mut options = SheetOptions::new(palette).with_title("Hills").with_page(Page::Paper([210.0, 297.0]));
+/// options.parts.legend = false;
+/// ```
 #[derive(Debug, Clone)]
-pub struct Options {
-    /// The heading.
+#[non_exhaustive]
+pub struct SheetOptions {
+    /// The heading; empty by default.
     pub title: String,
-    /// The line under the heading, before the facts of the sheet.
+    /// The line under the heading, before the facts of the sheet; empty by default.
     pub about: String,
     /// The palette.
     pub palette: Palette,
-    /// The relief shading.
+    /// The relief shading; three lights by default.
     pub shading: Shading,
     /// Contour interval in metres; by default chosen by relief and scale.
     pub interval: Option<f64>,
-    /// The parts that are drawn.
+    /// The parts that are drawn; all by default.
     pub parts: Parts,
-    /// The page.
+    /// The page; by default fitted to a map with a longer side of 240 mm.
     pub page: Page,
-    /// The resolution of the relief picture, and of the page if it is written as pixels.
+    /// The resolution of the relief picture, and of the page if it is written as pixels; 150 pixels per inch by default.
     pub resolution: Resolution,
-    /// Sea level in metres; without it, everything is land.
+    /// Sea level in metres; without it, the default, everything is land.
     pub sea_level: Option<f64>,
-    /// What the colors represent. The heights shade the relief in any case.
+    /// What the colors represent: the heights by default. The heights shade the relief in any case.
     pub coloring: Coloring,
     /// The heights at the ends of the palette, which make several sheets comparable; by default the minimum and maximum
     /// of this one.
     pub range: Option<[f32; 2]>,
     /// The position of the ground on a map of the Earth, if it has one.
     pub map: Option<Georeference>,
+}
+
+impl SheetOptions {
+    /// A sheet of all parts in this palette, without a title.
+    #[must_use]
+    pub fn new(palette: Palette) -> SheetOptions {
+        SheetOptions {
+            title: String::new(),
+            about: String::new(),
+            palette,
+            shading: Shading::default(),
+            interval: None,
+            parts: Parts::default(),
+            page: Page::Fitted(240.0),
+            resolution: Resolution::Inch(150.0),
+            sea_level: None,
+            coloring: Coloring::default(),
+            range: None,
+            map: None,
+        }
+    }
+
+    /// The same with this heading.
+    #[must_use]
+    pub fn with_title(self, title: impl Into<String>) -> SheetOptions {
+        SheetOptions { title: title.into(), ..self }
+    }
+
+    /// The same on this page.
+    #[must_use]
+    pub fn with_page(self, page: Page) -> SheetOptions {
+        SheetOptions { page, ..self }
+    }
+
+    /// The same in this resolution.
+    #[must_use]
+    pub fn with_resolution(self, resolution: Resolution) -> SheetOptions {
+        SheetOptions { resolution, ..self }
+    }
+
+    /// The same with a sea up to this height in metres.
+    #[must_use]
+    pub fn with_sea_level(self, sea_level: f64) -> SheetOptions {
+        SheetOptions { sea_level: Some(sea_level), ..self }
+    }
 }

@@ -2,13 +2,14 @@
 
 use super::font_set::FontSet;
 use super::furniture::Desk;
+use super::geometry::{Affine, Point, Rect};
 use super::inks::{BLUE, Inks, LAKES, SHORE, THICK, THIN};
 use super::labels::{Label, LabelStyle, Taken, gaps, place};
 use super::lines::is_thick;
 use super::linework::Linework;
 use super::marks;
-use super::options::Options;
-use super::scene::{Point, Scene, Step};
+use super::options::SheetOptions;
+use super::scene::{Scene, Step};
 use super::ticks::grouped;
 use crate::map::text::Face;
 use orogen_grid::contour::line::Line;
@@ -31,15 +32,16 @@ pub enum Below<'a> {
 
 impl Below<'_> {
     /// The mean color under a contour line, in linear light.
-    fn color(&self, [left, top, width, height]: [f32; 4], elevation: f64, line: &[Point]) -> Light {
+    fn color(&self, map: Rect, elevation: f64, line: &[Point]) -> Light {
         match self {
             Below::Tint(tint) => tint.at(elevation as f32),
             Below::Picture(columns, pixels) => {
                 let rows = (pixels.len() / 3 / columns).max(1);
                 let at = |share: f32, count: usize| ((share * count as f32).max(0.0) as usize).min(count - 1);
                 let mut sum: Light = [0.0; 3];
-                for [x, y] in line {
-                    let first = 3 * (at((y - top) / height, rows) * columns + at((x - left) / width, *columns));
+                for place in line {
+                    let [across, down] = [(place.x - map.left) / map.width, (place.y - map.top) / map.height];
+                    let first = 3 * (at(down, rows) * columns + at(across, *columns));
                     sum.iter_mut().zip(&pixels[first..first + 3]).for_each(|(sum, byte)| *sum += decode(*byte));
                 }
                 sum.map(|part| part / line.len().max(1) as f32)
@@ -50,14 +52,14 @@ impl Below<'_> {
 
 impl Linework {
     /// Draws all lines on the map.
-    pub fn draw(&self, desk: &mut Desk, map: [f32; 4], options: &Options, below: &Below) {
-        let [left, top, width, height] = map;
-        let across = width / (self.grid.width() - 1) as f32;
-        let down = height / (self.grid.height() - 1) as f32;
-        let spot = |[x, y]: [f64; 2]| [left + x as f32 * across, top + y as f32 * down];
+    pub fn draw(&self, desk: &mut Desk, map: Rect, options: &SheetOptions, below: &Below) {
+        let across = map.width / (self.grid.width() - 1) as f32;
+        let down = map.height / (self.grid.height() - 1) as f32;
+        let on_map = Affine::scaling(map.corner(), across, down);
+        let spot = |[x, y]: [f64; 2]| on_map.apply(Point::new(x as f32, y as f32));
         let cell = self.grid.window().cell;
         let path = |line: &Line| line.path().map(|[x, y]| spot([x / cell, y / cell])).collect::<Vec<Point>>();
-        let mut taken = Taken::none(inset(map, 1.0));
+        let mut taken = Taken::none(map.inset(1.0));
         let rivers: Vec<(f32, Vec<Point>)> = match options.parts.rivers {
             true => self
                 .water
@@ -81,8 +83,7 @@ impl Linework {
         };
         for summit in &self.summits {
             let share = |at: usize, samples: usize| at as f32 / (samples - 1) as f32;
-            let place =
-                [left + width * share(summit.x, self.samples[0]), top + height * share(summit.y, self.samples[1])];
+            let place = map.at(share(summit.x, self.samples[0]), share(summit.y, self.samples[1]));
             let text = grouped(f64::from(summit.height), 0);
             marks::summit(&mut over.scene, desk.letters, &mut taken, place, &text);
         }
@@ -121,19 +122,19 @@ impl Linework {
             let same = rivers.iter().filter(|river| river.0 == width).map(|river| river.1.clone());
             desk.scene.lines(same.collect(), width, BLUE, 0.95);
         }
-        let outline = lakes.iter().flat_map(|ring| super::scene::polygon(ring)).collect::<Vec<Step>>();
+        let outline = lakes.iter().flat_map(|ring| super::scene::polygon(ring.iter().copied())).collect::<Vec<Step>>();
         desk.scene.area(outline, LAKES, 1.0);
         desk.scene.lines(lakes, 0.18, SHORE, 1.0);
         desk.scene.lines(shore, 0.22, SHORE, 0.9);
         for (inks, label) in &labels {
             let width = desk.letters.width(&label.text, Face::Bold, LABEL.size);
-            let length: f32 = label.path.windows(2).map(|pair| distance(pair[0], pair[1])).sum();
+            let length: f32 = label.path.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
             let start = (length - width) / 2.0;
             let outline = desk.letters.each(&label.text, Face::Bold, LABEL.size, |along| {
                 let (at, angle) = label.at(start + along);
                 // The line runs through the middle of the letters instead of their baseline.
                 let sink = LABEL.size * 0.34;
-                ([at[0] + sink * libm::sinf(angle), at[1] + sink * libm::cosf(angle)], angle)
+                (at.moved(sink * libm::sinf(angle), sink * libm::cosf(angle)), angle)
             });
             desk.scene.area(outline, inks.words, 1.0);
         }
@@ -167,13 +168,4 @@ impl Linework {
         let width = RIVERS[0] + (RIVERS[1] - RIVERS[0]) * (share * 1.3).min(1.0);
         (width / 0.06).round() * 0.06
     }
-}
-
-fn inset([left, top, width, height]: [f32; 4], by: f32) -> [f32; 4] {
-    [left + by, top + by, width - 2.0 * by, height - 2.0 * by]
-}
-
-fn distance(a: Point, b: Point) -> f32 {
-    let [dx, dy] = [0, 1].map(|c| b[c] - a[c]);
-    (dx * dx + dy * dy).sqrt()
 }

@@ -6,7 +6,8 @@ use std::io::{self, Write};
 
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
-use super::scene::{Item, Point, Scene, Step};
+use super::geometry::{Point, Size};
+use super::scene::{Item, Scene, Step};
 
 /// Points per millimetre.
 const POINT: f32 = 72.0 / 25.4;
@@ -20,9 +21,9 @@ const EFFORT: u8 = 6;
 /// Errors of `out`.
 pub fn write(out: &mut dyn Write, scene: &Scene) -> io::Result<()> {
     let mut file = File { bytes: b"%PDF-1.4\n%\xe2\xe3\xcf\xd3\n".to_vec(), starts: Vec::new() };
-    let mut page = Drawn { text: String::new(), height: scene.size[1], pictures: Vec::new(), covers: Vec::new() };
+    let mut page = Drawn { text: String::new(), height: scene.size.height, pictures: Vec::new(), covers: Vec::new() };
     scene.items.iter().for_each(|item| page.draw(item));
-    let [width, height] = scene.size.map(|side| side * POINT);
+    let Size { width, height } = scene.size.map(|side| side * POINT);
     // Objects: 1 catalogue, 2 pages, 3 the page, 4 its content, 5 information, then pictures.
     let pictures: String = (0..page.pictures.len()).fold(String::new(), |mut text, k| {
         let _ = write!(text, "/P{k} {} 0 R ", 6 + k);
@@ -111,10 +112,10 @@ struct Drawn<'a> {
 impl<'a> Drawn<'a> {
     fn draw(&mut self, item: &'a Item) {
         match item {
-            Item::Picture { area: [left, top, wide, high], width, height, pixels } => {
-                let (x, y) = (left * POINT, (self.height - top - high) * POINT);
+            Item::Picture { area, width, height, pixels } => {
+                let (x, y) = (area.left * POINT, (self.height - area.top - area.height) * POINT);
                 let number = self.pictures.len();
-                let (w, h) = (wide * POINT, high * POINT);
+                let (w, h) = (area.width * POINT, area.height * POINT);
                 let _ = writeln!(self.text, "q {w:.3} 0 0 {h:.3} {x:.3} {y:.3} cm /P{number} Do Q");
                 self.pictures.push((*width, *height, pixels));
             }
@@ -164,7 +165,7 @@ impl<'a> Drawn<'a> {
         let _ = writeln!(self.text, "q /C{number} gs {red:.3} {green:.3} {blue:.3} {operator}");
     }
 
-    fn spot(&mut self, [x, y]: Point) {
+    fn spot(&mut self, Point { x, y }: Point) {
         let _ = write!(self.text, "{:.2} {:.2} ", x * POINT, (self.height - y) * POINT);
     }
 }
@@ -179,22 +180,20 @@ fn utf16(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::geometry::Rect;
+    use super::super::scene::{line, polygon};
     use super::*;
     use miniz_oxide::inflate::decompress_to_vec_zlib;
 
     #[test]
     fn objects_are_where_the_table_says() {
         let items = vec![
-            Item::Picture { area: [10.0, 20.0, 30.0, 40.0], width: 2, height: 2, pixels: (0..12).collect() },
-            Item::Lines { lines: vec![vec![[0.0, 0.0], [25.4, 0.0]]], width: 0.25, ink: [255, 0, 0], cover: 0.5 },
-            Item::Area {
-                outline: vec![Step::Move([0.0; 2]), Step::Line([1.0, 0.0]), Step::Line([1.0; 2])],
-                ink: [0; 3],
-                cover: 1.0,
-            },
+            Item::Picture { area: Rect::new(10.0, 20.0, 30.0, 40.0), width: 2, height: 2, pixels: (0..12).collect() },
+            Item::Lines { lines: vec![line([[0.0, 0.0], [25.4, 0.0]])], width: 0.25, ink: [255, 0, 0], cover: 0.5 },
+            Item::Area { outline: polygon([[0.0; 2], [1.0, 0.0], [1.0; 2]]), ink: [0; 3], cover: 1.0 },
         ];
         let mut out = Vec::new();
-        write(&mut out, &Scene { size: [100.0, 50.0], title: "Höhe".into(), items }).unwrap();
+        write(&mut out, &Scene { size: Size::new(100.0, 50.0), title: "Höhe".into(), items }).unwrap();
         let find = |wanted: &[u8]| out.windows(wanted.len()).position(|window| window == wanted);
         let text = String::from_utf8_lossy(&out).to_string();
         let table: usize = text.rsplit("startxref\n").next().unwrap().lines().next().unwrap().parse().unwrap();

@@ -2,8 +2,9 @@
 //! sheet.
 
 use super::furniture::{Align, Desk, SMALL, SOFT};
-use super::options::Options;
-use super::scene::{INK, Item, Point, polygon};
+use super::geometry::{Point, Rect};
+use super::options::SheetOptions;
+use super::scene::{INK, Item, line, polygon};
 use super::ticks::{Count, grouped, ticks};
 use crate::map::text::Face;
 use orogen_grid::grid::Grid;
@@ -55,7 +56,7 @@ impl Direction {
 pub struct Profile {
     direction: Direction,
     /// The area of the drawing, without labels.
-    area: [f32; 4],
+    area: Rect,
     /// Position of its line on the map, down or across, 0 to 1.
     at: f32,
     /// The lowest height on the line.
@@ -93,12 +94,7 @@ fn along(row: &[f32], count: usize) -> Vec<f32> {
 impl Profile {
     /// The profile through the highest sample. `None` if no height is known, or the land is too flat or too steep for a
     /// useful profile.
-    pub fn new(
-        heights: &Grid,
-        options: &Options,
-        direction: Direction,
-        [left, top, width, height]: [f32; 4],
-    ) -> Option<Profile> {
+    pub fn new(heights: &Grid, options: &SheetOptions, direction: Direction, room: Rect) -> Option<Profile> {
         let window = heights.window();
         let finite = heights.data().iter().enumerate().filter(|(_, height)| height.is_finite());
         let (at, highest) = finite.fold(None, |best: Option<(usize, f32)>, (at, height)| match best {
@@ -110,8 +106,13 @@ impl Profile {
             Direction::Eastward => (heights.row(j).to_vec(), j, window.height),
             Direction::Southward => ((0..window.height).map(|j| heights[(i, j)]).collect(), i, window.width),
         };
-        let area = [left + LEFT, top + HEADING, width - LEFT - RIGHT, height - HEADING - BELOW];
-        let count = ((area[2] / STEP) as usize).clamp(2, 10_000);
+        let area = Rect {
+            left: room.left + LEFT,
+            top: room.top + HEADING,
+            width: room.width - LEFT - RIGHT,
+            height: room.height - HEADING - BELOW,
+        };
+        let count = ((area.width / STEP) as usize).clamp(2, 10_000);
         let length = (line.len() - 1) as f64 * window.cell;
         let heights = along(&line, count);
         let sea_level = options.sea_level.filter(|_| options.palette.has_sea());
@@ -122,13 +123,13 @@ impl Profile {
         let low = f64::from(lowest);
         let highest = f64::from(highest);
         // Metres per millimetre across, and the size of the heights at that scale.
-        let scale = length / f64::from(area[2]);
+        let scale = length / f64::from(area.width);
         let natural = (highest - low) / scale;
-        let exaggeration = (f64::from(area[3]) * LAND / natural).min(MOST);
+        let exaggeration = (f64::from(area.height) * LAND / natural).min(MOST);
         // Two digits, rounded down, so that the land fits.
         let digits = libm::pow(10.0, 1.0 - libm::log10(exaggeration).floor());
         let exaggeration = (exaggeration * digits).floor() / digits;
-        let rise = f64::from(area[3]) * scale / exaggeration;
+        let rise = f64::from(area.height) * scale / exaggeration;
         if !(natural * exaggeration > 1.0 && rise.is_finite()) {
             return None;
         }
@@ -139,9 +140,9 @@ impl Profile {
     }
 
     /// Draws the profile, and its line on the map. Without a tint, the land is grey.
-    pub fn draw(&self, desk: &mut Desk, map: [f32; 4], tint: Option<&Tint>, dpi: f64) {
-        let [left, top, width, height] = self.area;
-        let (right, bottom) = (left + width, top + height);
+    pub fn draw(&self, desk: &mut Desk, map: Rect, tint: Option<&Tint>, dpi: f64) {
+        let Rect { left, top, width, height } = self.area;
+        let (right, bottom) = (self.area.right(), self.area.bottom());
         let up = |metres: f64| bottom - height * ((metres - self.span[0]) / (self.span[1] - self.span[0])) as f32;
         self.ground(desk, tint, dpi);
         let mut marks: Vec<Vec<Point>> = Vec::new();
@@ -150,72 +151,73 @@ impl Profile {
         // Heights are labelled in metres, whatever their size.
         for (value, _) in ticks(self.span, (height / 6.5).max(2.0) as usize, Count::Latitude) {
             let (y, name) = (up(value), format!("{} m", grouped(value, decimals)));
-            marks.push(vec![[left, y], [left - 1.3, y]]);
-            lines.push(vec![[left, y], [right, y]]);
-            desk.small(&name, [left - 2.2, y + 0.95], Align::End);
+            marks.push(line([[left, y], [left - 1.3, y]]));
+            lines.push(line([[left, y], [right, y]]));
+            desk.small(&name, Point::new(left - 2.2, y + 0.95), Align::End);
         }
         desk.scene.lines(lines, 0.1, INK, 0.25);
         for (value, name) in ticks([0.0, self.length], (width / 16.0).max(1.0) as usize, Count::Metres) {
             let x = left + width * (value / self.length) as f32;
-            marks.push(vec![[x, bottom], [x, bottom + 1.3]]);
+            marks.push(line([[x, bottom], [x, bottom + 1.3]]));
             let half = desk.letters.width(&name, Face::Regular, SMALL) / 2.0;
-            if x + half < desk.scene.size[0] - 1.0 {
-                desk.small(&name, [x, bottom + 4.2], Align::Middle);
+            if x + half < desk.scene.size.width - 1.0 {
+                desk.small(&name, Point::new(x, bottom + 4.2), Align::Middle);
             }
         }
         desk.scene.lines(marks, 0.2, INK, 1.0);
         let place = |(k, height): (usize, &f32)| {
             let x = left + width * k as f32 / (self.heights.len() - 1) as f32;
-            height.is_finite().then(|| [x, up(f64::from(*height))])
+            height.is_finite().then(|| Point::new(x, up(f64::from(*height))))
         };
         // One line for each part without holes.
         let places: Vec<Option<Point>> = self.heights.iter().enumerate().map(place).collect();
         let stretches = places.split(Option::is_none).map(|stretch| stretch.iter().copied().flatten().collect());
         desk.scene.lines(stretches.collect(), 0.22, INK, 1.0);
-        desk.scene.lines(vec![vec![[left, top], [left, bottom], [right, bottom]]], 0.2, INK, 1.0);
+        desk.scene.lines(vec![line([[left, top], [left, bottom], [right, bottom]])], 0.2, INK, 1.0);
         let [start, end] = self.direction.names();
         let words = format!(
             "Profile {start}–{end}, vertical exaggeration {} ×",
             grouped(self.exaggeration, if self.exaggeration.fract() == 0.0 { 0 } else { 1 })
         );
-        desk.small(&words, [left, top - 2.4], Align::Start);
+        desk.small(&words, Point::new(left, top - 2.4), Align::Start);
         for (name, x, align) in [(start, left, Align::Start), (end, right, Align::End)] {
             let x = if align == Align::Start { x + 0.8 } else { x - 0.8 };
-            desk.text(name, Face::Bold, SMALL, SOFT, [x, top + 2.6], align);
+            desk.text(name, Face::Bold, SMALL, SOFT, Point::new(x, top + 2.6), align);
         }
         self.mark(desk, map);
     }
 
     /// Marks its ends on the map: arrows inside the map's frame, with the labels of the ends.
-    fn mark(&self, desk: &mut Desk, map: [f32; 4]) {
+    fn mark(&self, desk: &mut Desk, map: Rect) {
         let [start, end] = self.direction.names();
         for (name, end, inward) in [(start, 0.0, 1.0), (end, 1.0, -1.0)] {
             let wide = desk.letters.width(name, Face::Bold, SMALL);
             // The arrow's tip, both ends of its base, and the centre of the label.
             let (tip, feet, middle) = match self.direction {
                 Direction::Eastward => {
-                    let [x, y] = [map[0] + map[2] * end, map[1] + map[3] * self.at];
-                    let middle = [x + (2.6 + wide / 2.0) * inward, y];
-                    ([x + 2.0 * inward, y], [[x, y - 1.2], [x, y + 1.2]], middle)
+                    let at = map.at(end, self.at);
+                    let middle = at.moved((2.6 + wide / 2.0) * inward, 0.0);
+                    (at.moved(2.0 * inward, 0.0), [at.moved(0.0, -1.2), at.moved(0.0, 1.2)], middle)
                 }
                 Direction::Southward => {
-                    let [x, y] = [map[0] + map[2] * self.at, map[1] + map[3] * end];
-                    ([x, y + 2.0 * inward], [[x - 1.2, y], [x + 1.2, y]], [x, y + 4.0 * inward])
+                    let at = map.at(self.at, end);
+                    let feet = [at.moved(-1.2, 0.0), at.moved(1.2, 0.0)];
+                    (at.moved(0.0, 2.0 * inward), feet, at.moved(0.0, 4.0 * inward))
                 }
             };
             // A bright patch for visibility on dark ground.
             let (across, down) = (wide / 2.0 + 0.3, 1.5);
             let corners = [[-across, -down], [across, -down], [across, down], [-across, down]];
-            let patch = corners.map(|[dx, dy]| [middle[0] + dx, middle[1] + dy]);
-            desk.scene.area(polygon(&patch), [255; 3], 0.6);
-            desk.scene.area(polygon(&[feet[0], tip, feet[1]]), INK, 1.0);
-            desk.text(name, Face::Bold, SMALL, INK, [middle[0], middle[1] + 0.95], Align::Middle);
+            let patch = corners.map(|[dx, dy]| middle.moved(dx, dy));
+            desk.scene.area(polygon(patch), [255; 3], 0.6);
+            desk.scene.area(polygon([feet[0], tip, feet[1]]), INK, 1.0);
+            desk.text(name, Face::Bold, SMALL, INK, middle.moved(0.0, 0.95), Align::Middle);
         }
     }
 
     /// The land under the line in the map's colours or in grey, and the sea above it.
     fn ground(&self, desk: &mut Desk, tint: Option<&Tint>, dpi: f64) {
-        let [_, _, width, height] = self.area;
+        let Rect { width, height, .. } = self.area;
         let side = |millimetres: f32| ((f64::from(millimetres) * dpi / 25.4).round() as usize).clamp(2, 8000);
         let [columns, rows] = [side(width), side(height)];
         let encoder = Encoder::new();

@@ -4,9 +4,10 @@ use orogen_noise::Points;
 use rayon::prelude::*;
 
 use super::furniture::{Align, Desk, SMALL};
+use super::geometry::{Point, Rect};
 use super::ground::at_pixels;
 use super::options::{Layer, Scale};
-use super::scene::{INK, Item, Point};
+use super::scene::{INK, Item, line};
 use super::ticks::{Count, grouped, step, ticks};
 use crate::map::text::Face;
 use orogen_engine::layer::LayerKind;
@@ -170,22 +171,22 @@ fn label(value: f32) -> Light {
 
 impl Desk<'_> {
     /// A bar of the ramp's colours with its values and its name; `width` is the total width.
-    pub fn ramp(&mut self, [left, top]: Point, width: f32, ramp: &Ramp) {
+    pub fn ramp(&mut self, Point { x: left, y: top }: Point, width: f32, ramp: &Ramp) {
         const STEPS: usize = 600;
         let encoder = Encoder::new();
         let (named, unit) = (ramp.name.clone(), ramp.unit);
         let beside = 2.0 + self.letters.width(unit, Face::Regular, SMALL).max(8.0);
-        let area = [left, top, width - beside, 3.6];
+        let area = Rect::new(left, top, width - beside, 3.6);
         let [low, high] = ramp.ends;
         if ramp.scale == Scale::Labels {
             let sample = 6.0;
             for k in 0..5u8 {
                 let color = encoder.bytes(label(f32::from(k) + 1.0));
-                let part = [left + sample * f32::from(k), top, sample, 3.6];
+                let part = Rect::new(left + sample * f32::from(k), top, sample, 3.6);
                 self.scene.block(part, color);
                 self.scene.frame(part, 0.15, INK);
             }
-            self.small(&format!("{named}, one colour each"), [left, top + 7.4], Align::Start);
+            self.small(&format!("{named}, one colour each"), Point::new(left, top + 7.4), Align::Start);
             return;
         }
         let pixels = (0..STEPS).flat_map(|k| {
@@ -201,17 +202,17 @@ impl Desk<'_> {
         let mut lines: Vec<Vec<Point>> = Vec::new();
         let mut free = f32::MIN;
         for (share, name) in ramp.marks() {
-            let x = left + area[2] * share as f32;
-            lines.push(vec![[x, top + 3.6], [x, top + 4.5]]);
+            let x = left + area.width * share as f32;
+            lines.push(line([[x, top + 3.6], [x, top + 4.5]]));
             let half = self.letters.width(&name, Face::Regular, SMALL) / 2.0;
             if x - half > free {
-                self.small(&name, [x, top + 7.4], Align::Middle);
+                self.small(&name, Point::new(x, top + 7.4), Align::Middle);
                 free = x + half + 1.0;
             }
         }
         self.scene.lines(lines, 0.2, INK, 1.0);
-        self.small(unit, [left + area[2] + 2.0, top + 2.8], Align::Start);
-        self.small(&named, [left, top + 11.0], Align::Start);
+        self.small(unit, Point::new(left + area.width + 2.0, top + 2.8), Align::Start);
+        self.small(&named, Point::new(left, top + 11.0), Align::Start);
     }
 }
 

@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::scene::{Item, Point, Scene, Step};
+use super::geometry::{Point, Rect};
+use super::scene::{Item, Scene, Step};
 use crate::map::canvas::Canvas;
 use orogen_io::palette::color::Rgb;
 
@@ -36,12 +37,12 @@ pub fn draw(scene: &Scene, dpi: f64) -> Canvas {
 /// The size of the page in pixels.
 #[must_use]
 pub fn pixels(scene: &Scene, dpi: f64) -> [usize; 2] {
-    scene.size.map(|side| ((f64::from(side) * dpi / 25.4).round() as usize).max(1))
+    scene.size.pixels(dpi)
 }
 
 /// An item in pixels.
 enum Shape<'a> {
-    Picture { area: [f32; 4], width: usize, height: usize, pixels: &'a [u8] },
+    Picture { area: Rect, width: usize, height: usize, pixels: &'a [u8] },
     Lines { lines: Vec<Line>, half: f32, ink: Rgb, cover: f32 },
     Area { edges: Vec<[Point; 2]>, top: f32, bottom: f32, ink: Rgb, cover: f32 },
 }
@@ -54,22 +55,21 @@ struct Line {
 
 impl<'a> Shape<'a> {
     fn of(item: &'a Item, scale: f32) -> Shape<'a> {
-        let at = |place: &Point| place.map(|side| side * scale);
         match item {
             Item::Picture { area, width, height, pixels } => {
-                Shape::Picture { area: area.map(|side| side * scale), width: *width, height: *height, pixels }
+                Shape::Picture { area: area.scaled(scale), width: *width, height: *height, pixels }
             }
             Item::Lines { lines, width, ink, cover } => {
                 let lines = lines.iter().map(|line| {
-                    let places: Vec<Point> = line.iter().map(at).collect();
-                    let (top, bottom) = span(places.iter().map(|place| place[1]));
+                    let places: Vec<Point> = line.iter().map(|place| place.scaled(scale)).collect();
+                    let (top, bottom) = span(places.iter().map(|place| place.y));
                     Line { places, top, bottom }
                 });
                 Shape::Lines { lines: lines.collect(), half: width * scale / 2.0, ink: *ink, cover: *cover }
             }
             Item::Area { outline, ink, cover } => {
                 let edges = edges(outline, scale);
-                let (top, bottom) = span(edges.iter().flatten().map(|place| place[1]));
+                let (top, bottom) = span(edges.iter().flatten().map(|place| place.y));
                 Shape::Area { edges, top, bottom, ink: *ink, cover: *cover }
             }
         }
@@ -82,28 +82,28 @@ fn span(values: impl Iterator<Item = f32>) -> (f32, f32) {
 
 /// An outline as straight edges, with every part closed.
 fn edges(outline: &[Step], scale: f32) -> Vec<[Point; 2]> {
-    let at = |place: Point| place.map(|side| side * scale);
     let mut edges = Vec::new();
-    let (mut first, mut here) = ([0.0; 2], [0.0; 2]);
+    let (mut first, mut here) = (Point::default(), Point::default());
     for step in outline {
         match *step {
             Step::Move(place) => {
                 edges.push([here, first]);
-                (first, here) = (at(place), at(place));
+                (first, here) = (place.scaled(scale), place.scaled(scale));
             }
             Step::Line(place) => {
-                edges.push([here, at(place)]);
-                here = at(place);
+                edges.push([here, place.scaled(scale)]);
+                here = place.scaled(scale);
             }
             Step::Curve(a, b, end) => {
-                let [a, b, end] = [a, b, end].map(at);
+                let [a, b, end] = [a, b, end].map(|place| place.scaled(scale));
                 let start = here;
                 for k in 1..=PIECES {
                     let t = k as f32 / PIECES as f32;
                     let u = 1.0 - t;
-                    let next = [0, 1].map(|c| {
-                        u * u * u * start[c] + 3.0 * u * u * t * a[c] + 3.0 * u * t * t * b[c] + t * t * t * end[c]
-                    });
+                    let along = |start: f32, a: f32, b: f32, end: f32| {
+                        u * u * u * start + 3.0 * u * u * t * a + 3.0 * u * t * t * b + t * t * t * end
+                    };
+                    let next = Point::new(along(start.x, a.x, b.x, end.x), along(start.y, a.y, b.y, end.y));
                     edges.push([here, next]);
                     here = next;
                 }
@@ -111,7 +111,7 @@ fn edges(outline: &[Step], scale: f32) -> Vec<[Point; 2]> {
         }
     }
     edges.push([here, first]);
-    edges.retain(|[a, b]| a[1] != b[1] && a.iter().chain(b).all(|side| side.is_finite()));
+    edges.retain(|[a, b]| a.y != b.y && a.is_finite() && b.is_finite());
     edges
 }
 
@@ -162,15 +162,15 @@ impl Band {
     }
 
     /// A picture, with nearest-neighbour sampling.
-    fn picture(&mut self, [left, top, width, height]: [f32; 4], size: [usize; 2], pixels: &[u8]) {
+    fn picture(&mut self, area: Rect, size: [usize; 2], pixels: &[u8]) {
         let columns: Vec<Option<usize>> = (0..self.width)
             .map(|i| {
-                let at = (i as f32 + 0.5 - left) / width;
+                let at = (i as f32 + 0.5 - area.left) / area.width;
                 (0.0..1.0).contains(&at).then(|| ((at * size[0] as f32) as usize).min(size[0] - 1))
             })
             .collect();
         for j in 0..self.height() {
-            let at = ((self.top + j) as f32 + 0.5 - top) / height;
+            let at = ((self.top + j) as f32 + 0.5 - area.top) / area.height;
             if !(0.0..1.0).contains(&at) {
                 continue;
             }
@@ -185,21 +185,21 @@ impl Band {
     }
 
     /// A segment of a line: coverage by the distance to each pixel's centre.
-    fn stretch(&mut self, [ax, ay]: Point, [bx, by]: Point, half: f32, rows: &mut [usize; 2]) {
+    fn stretch(&mut self, a: Point, b: Point, half: f32, rows: &mut [usize; 2]) {
         let reach = half + 1.0;
-        let (dx, dy) = (bx - ax, by - ay);
-        let length = (dx * dx + dy * dy).max(1e-12);
+        let way = a.to(b);
+        let length = way.square().max(1e-12);
         // A line thinner than a pixel covers at most its width.
         let most = (2.0 * half).min(1.0);
-        let (from, to) = within(ay.min(by) - reach, ay.max(by) + reach, self.top, self.height());
-        let (left, right) = within(ax.min(bx) - reach, ax.max(bx) + reach, 0, self.width);
+        let (from, to) = within(a.y.min(b.y) - reach, a.y.max(b.y) + reach, self.top, self.height());
+        let (left, right) = within(a.x.min(b.x) - reach, a.x.max(b.x) + reach, 0, self.width);
         for j in from..to {
-            let py = (self.top + j) as f32 + 0.5 - ay;
+            let py = (self.top + j) as f32 + 0.5 - a.y;
             let row = &mut self.cover[j * self.width..(j + 1) * self.width];
             for (i, cover) in row.iter_mut().enumerate().take(right).skip(left) {
-                let px = i as f32 + 0.5 - ax;
-                let along = ((px * dx + py * dy) / length).clamp(0.0, 1.0);
-                let (ex, ey) = (px - along * dx, py - along * dy);
+                let px = i as f32 + 0.5 - a.x;
+                let along = ((px * way.x + py * way.y) / length).clamp(0.0, 1.0);
+                let (ex, ey) = (px - along * way.x, py - along * way.y);
                 let share = (half + 0.5 - (ex * ex + ey * ey).sqrt()).min(most);
                 if share > *cover {
                     *cover = share;
@@ -215,9 +215,9 @@ impl Band {
     fn area(&mut self, edges: &[[Point; 2]], ink: Rgb, cover: f32) {
         // An extra column takes coverage beyond the page.
         let stride = self.width + 2;
-        let (left, right) = span(edges.iter().flatten().map(|place| place[0]));
+        let (left, right) = span(edges.iter().flatten().map(|place| place.x));
         let (from, to) = within(left - 1.0, right + 2.0, 0, self.width);
-        let (top, bottom) = span(edges.iter().flatten().map(|place| place[1]));
+        let (top, bottom) = span(edges.iter().flatten().map(|place| place.y));
         let (first, last) = within(top - 1.0, bottom + 1.0, self.top, self.height());
         if from >= to || first >= last {
             return;
@@ -225,14 +225,14 @@ impl Band {
         let mut change = vec![0.0f32; stride * (last - first)];
         let origin = (self.top + first) as f32;
         for [a, b] in edges {
-            let (sign, a, b) = if a[1] < b[1] { (1.0, a, b) } else { (-1.0, b, a) };
-            let slope = (b[0] - a[0]) / (b[1] - a[1]);
-            let (y0, y1) = ((a[1] - origin).max(0.0), (b[1] - origin).min((last - first) as f32));
+            let (sign, a, b) = if a.y < b.y { (1.0, a, b) } else { (-1.0, b, a) };
+            let slope = (b.x - a.x) / (b.y - a.y);
+            let (y0, y1) = ((a.y - origin).max(0.0), (b.y - origin).min((last - first) as f32));
             let mut y = y0;
             while y < y1 {
                 let row = y as usize;
                 let end = y1.min((row + 1) as f32);
-                let x_at = |y: f32| (a[0] + (y + origin - a[1]) * slope).clamp(0.0, self.width as f32);
+                let x_at = |y: f32| (a.x + (y + origin - a.y) * slope).clamp(0.0, self.width as f32);
                 let (x0, x1) = (x_at(y), x_at(end));
                 accumulate(&mut change[row * stride..(row + 1) * stride], sign * (end - y), x0.min(x1), x0.max(x1));
                 y = if end > y { end } else { (row + 1) as f32 };
@@ -300,12 +300,13 @@ fn over(pixel: &mut Rgb, ink: Rgb, share: f32) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::scene::polygon;
+    use super::super::geometry::Size;
+    use super::super::scene::{line, polygon};
     use super::*;
 
     fn drawn(items: Vec<Item>) -> Canvas {
         // 100 x 100 pixels of one millimetre each.
-        draw(&Scene { size: [100.0, 100.0], title: String::new(), items }, 25.4)
+        draw(&Scene { size: Size::new(100.0, 100.0), title: String::new(), items }, 25.4)
     }
 
     fn dark(canvas: &Canvas) -> f64 {
@@ -320,7 +321,7 @@ mod tests {
     #[test]
     fn an_area_covers_what_it_is() {
         // Across the borders of bands, at fractions of pixels.
-        let square = polygon(&[[10.25, 20.5], [70.75, 20.5], [70.75, 80.25], [10.25, 80.25]]);
+        let square = polygon([[10.25, 20.5], [70.75, 20.5], [70.75, 80.25], [10.25, 80.25]]);
         let canvas = drawn(vec![area(square.clone())]);
         assert!((dark(&canvas) - 60.5 * 59.75).abs() < 1.0, "{}", dark(&canvas));
         assert_eq!([canvas.get(40, 50), canvas.get(5, 50)], [Some([0; 3]), Some([255; 3])]);
@@ -328,54 +329,58 @@ mod tests {
         assert!((i32::from(edge) - 64).abs() <= 1, "{edge}");
         // The orientation of a single ring makes no difference; an inner ring with the opposite orientation is a hole.
         let mut holed: Vec<Step> = square;
-        holed.extend(polygon(&[[30.0, 40.0], [30.0, 60.0], [50.0, 60.0], [50.0, 40.0]]));
+        holed.extend(polygon([[30.0, 40.0], [30.0, 60.0], [50.0, 60.0], [50.0, 40.0]]));
         assert!((dark(&drawn(vec![area(holed)])) - (60.5 * 59.75 - 400.0)).abs() < 1.0);
         // A disc of four curves.
         let k = 0.552_284_8 * 30.0;
         let disc = vec![
-            Step::Move([80.0, 50.0]),
-            Step::Curve([80.0, 50.0 + k], [50.0 + k, 80.0], [50.0, 80.0]),
-            Step::Curve([50.0 - k, 80.0], [20.0, 50.0 + k], [20.0, 50.0]),
-            Step::Curve([20.0, 50.0 - k], [50.0 - k, 20.0], [50.0, 20.0]),
-            Step::Curve([50.0 + k, 20.0], [80.0, 50.0 - k], [80.0, 50.0]),
+            Step::Move(Point::new(80.0, 50.0)),
+            Step::Curve(Point::new(80.0, 50.0 + k), Point::new(50.0 + k, 80.0), Point::new(50.0, 80.0)),
+            Step::Curve(Point::new(50.0 - k, 80.0), Point::new(20.0, 50.0 + k), Point::new(20.0, 50.0)),
+            Step::Curve(Point::new(20.0, 50.0 - k), Point::new(50.0 - k, 20.0), Point::new(50.0, 20.0)),
+            Step::Curve(Point::new(50.0 + k, 20.0), Point::new(80.0, 50.0 - k), Point::new(80.0, 50.0)),
         ];
         assert!((dark(&drawn(vec![area(disc)])) / (900.0 * std::f64::consts::PI) - 1.0).abs() < 0.01);
     }
 
     #[test]
     fn what_leaves_the_page_is_cut() {
-        let large = polygon(&[[-50.0, -50.0], [150.0, -50.0], [150.0, 150.0], [-50.0, 150.0]]);
+        let large = polygon([[-50.0, -50.0], [150.0, -50.0], [150.0, 150.0], [-50.0, 150.0]]);
         assert_eq!(dark(&drawn(vec![area(large)])), 1e4);
-        let right = polygon(&[[90.0, 10.0], [1e6, 10.0], [1e6, 20.0], [90.0, 20.0]]);
+        let right = polygon([[90.0, 10.0], [1e6, 10.0], [1e6, 20.0], [90.0, 20.0]]);
         assert_eq!(dark(&drawn(vec![area(right)])), 100.0);
-        let none = polygon(&[[f32::NAN, 1.0], [5.0, f32::INFINITY], [5.0, 5.0]]);
+        let none = polygon([[f32::NAN, 1.0], [5.0, f32::INFINITY], [5.0, 5.0]]);
         drawn(vec![
             area(none),
-            Item::Lines { lines: vec![vec![[1e9, 0.0], [-1e9, 5.0]]], width: 1.0, ink: [0; 3], cover: 1.0 },
+            Item::Lines { lines: vec![line([[1e9, 0.0], [-1e9, 5.0]])], width: 1.0, ink: [0; 3], cover: 1.0 },
         ]);
     }
 
     #[test]
     fn a_line_is_as_wide_as_asked_and_crosses_itself_unseen() {
-        let line =
-            |places: &[Point], width, cover| Item::Lines { lines: vec![places.to_vec()], width, ink: [0; 3], cover };
+        let item = |places: &[[f32; 2]], width, cover| Item::Lines {
+            lines: vec![line(places.iter().copied())],
+            width,
+            ink: [0; 3],
+            cover,
+        };
         let across = [[10.0, 50.3], [90.0, 50.3]];
         for width in [0.3f32, 1.0, 4.0] {
             let column: f64 = {
-                let canvas = drawn(vec![line(&across, width, 1.0)]);
+                let canvas = drawn(vec![item(&across, width, 1.0)]);
                 (0..100).map(|y| f64::from(255 - canvas.get(50, y).unwrap()[0]) / 255.0).sum()
             };
             assert!((column - f64::from(width)).abs() < 0.25, "{width}: {column}");
         }
         let twice = [[10.0, 50.0], [90.0, 50.0], [50.0, 50.0], [50.0, 10.0], [50.0, 90.0]];
-        let canvas = drawn(vec![line(&twice, 6.0, 0.5)]);
+        let canvas = drawn(vec![item(&twice, 6.0, 0.5)]);
         assert_eq!([canvas.get(50, 50), canvas.get(30, 50)], [Some([128; 3]); 2]);
     }
 
     #[test]
     fn a_picture_fills_its_rectangle() {
         let pixels: Vec<u8> = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [9, 9, 9]].concat();
-        let item = Item::Picture { area: [10.0, 20.0, 40.0, 60.0], width: 2, height: 2, pixels };
+        let item = Item::Picture { area: Rect::new(10.0, 20.0, 40.0, 60.0), width: 2, height: 2, pixels };
         let canvas = drawn(vec![item]);
         let at = |x, y| canvas.get(x, y).unwrap();
         assert_eq!(

@@ -1,12 +1,10 @@
 //! The display list of a sheet, from bottom to top: the same for every output format.
 
+use super::geometry::{Point, Rect, Size};
 use orogen_io::palette::color::Rgb;
 
 /// Ink of text and frames.
 pub const INK: Rgb = [38, 36, 34];
-
-/// A position on the page in millimetres from the left and from the top.
-pub type Point = [f32; 2];
 
 /// A part of an outline, continuing from the end of the previous one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,8 +22,8 @@ pub enum Step {
 pub enum Item {
     /// A picture over a rectangle, rows from the top.
     Picture {
-        /// Left, top, width and height in millimetres.
-        area: [f32; 4],
+        /// The rectangle.
+        area: Rect,
         /// Pixels per row.
         width: usize,
         /// Number of rows.
@@ -58,8 +56,8 @@ pub enum Item {
 /// A page.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// Width and height in millimetres.
-    pub size: [f32; 2],
+    /// Its size.
+    pub size: Size,
     /// The title in the metadata of files.
     pub title: String,
     /// The items, from bottom to top.
@@ -83,21 +81,26 @@ impl Scene {
     }
 
     /// Adds a filled rectangle.
-    pub fn block(&mut self, [left, top, width, height]: [f32; 4], ink: Rgb) {
-        let corners = [[left, top], [left + width, top], [left + width, top + height], [left, top + height]];
-        self.area(polygon(&corners), ink, 1.0);
+    pub fn block(&mut self, area: Rect, ink: Rgb) {
+        self.area(polygon(area.corners()), ink, 1.0);
     }
 
     /// Adds the frame of a rectangle: a line around it.
-    pub fn frame(&mut self, [left, top, width, height]: [f32; 4], line: f32, ink: Rgb) {
-        let (right, bottom) = (left + width, top + height);
-        let ring = vec![[left, top], [right, top], [right, bottom], [left, bottom], [left, top]];
+    pub fn frame(&mut self, area: Rect, line: f32, ink: Rgb) {
+        let ring = area.corners().into_iter().chain([area.corner()]).collect();
         self.lines(vec![ring], line, ink, 1.0);
     }
 }
 
 /// The outline of a polygon.
 #[must_use]
-pub fn polygon(corners: &[Point]) -> Vec<Step> {
-    corners.iter().enumerate().map(|(k, place)| if k == 0 { Step::Move(*place) } else { Step::Line(*place) }).collect()
+pub fn polygon(corners: impl IntoIterator<Item = impl Into<Point>>) -> Vec<Step> {
+    let step = |(k, place): (usize, _)| if k == 0 { Step::Move(place) } else { Step::Line(place) };
+    corners.into_iter().map(Into::into).enumerate().map(step).collect()
+}
+
+/// A line through points.
+#[must_use]
+pub fn line(places: impl IntoIterator<Item = impl Into<Point>>) -> Vec<Point> {
+    places.into_iter().map(Into::into).collect()
 }

@@ -2,33 +2,28 @@
 //! threads.
 
 use super::draw::{self, Sheet};
+use super::geometry::{Point, Rect, Size};
 use super::options::Shading;
-use super::options::{Coloring, Options, Page, Parts, Resolution, SurfaceCover, SurfaceEntry};
-use super::scene::{Item, Point, Scene, Step};
+use super::options::{Coloring, Page, Parts, Resolution, SheetOptions, SurfaceCover, SurfaceEntry};
+use super::scene::{Item, Scene, Step};
 use super::{pdf, raster, vector};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
 use orogen_io::palette::named;
 
-fn draw(heights: &Grid, options: &Options) -> Result<Sheet> {
+fn draw(heights: &Grid, options: &SheetOptions) -> Result<Sheet> {
     draw::draw(heights, options, &Progress::none())
 }
 
-fn options() -> Options {
-    Options {
-        title: "A test".into(),
+fn options() -> SheetOptions {
+    SheetOptions {
         about: "Of hills".into(),
-        palette: named::all()[0].palette(),
-        shading: Shading::Multi,
-        interval: None,
-        parts: Parts::default(),
-        page: Page::Fitted(100.0),
-        resolution: Resolution::Inch(60.0),
-        sea_level: Some(0.0),
-        coloring: Coloring::Heights,
-        range: None,
-        map: None,
+        ..SheetOptions::new(named::all()[0].palette())
+            .with_title("A test")
+            .with_page(Page::Fitted(100.0))
+            .with_resolution(Resolution::Inch(60.0))
+            .with_sea_level(0.0)
     }
 }
 
@@ -46,7 +41,7 @@ fn hills(width: usize, height: usize) -> Grid {
 
 fn places(scene: &Scene) -> Vec<Point> {
     let of = |item: &Item| match item {
-        Item::Picture { area, .. } => vec![[area[0], area[1]], [area[0] + area[2], area[1] + area[3]]],
+        Item::Picture { area, .. } => vec![area.corner(), Point::new(area.right(), area.bottom())],
         Item::Lines { lines, .. } => lines.concat(),
         Item::Area { outline, .. } => outline
             .iter()
@@ -69,10 +64,10 @@ fn all_is_on_the_page_whatever_the_world() {
     let worlds = [hills(90, 70), holed, flat, deep.unwrap(), hills(2, 2), hills(400, 8), hills(8, 400)];
     for (k, heights) in worlds.iter().enumerate() {
         for page in [Page::Fitted(100.0), Page::Paper([210.0, 148.0]), Page::Paper([60.0, 60.0])] {
-            let sheet = draw(heights, &Options { page, ..options() }).unwrap();
-            let [width, height] = sheet.scene.size;
+            let sheet = draw(heights, &SheetOptions { page, ..options() }).unwrap();
+            let Size { width, height } = sheet.scene.size;
             let small = page == Page::Paper([60.0; 2]);
-            for [x, y] in places(&sheet.scene) {
+            for Point { x, y } in places(&sheet.scene) {
                 // The content below the map may be more than this small paper can hold.
                 let inside = (0.0..=width).contains(&x) && (0.0..=height).contains(&y) || small;
                 assert!(x.is_finite() && y.is_finite() && inside, "{k} {page:?}: {x} {y} of {width} x {height}");
@@ -90,7 +85,7 @@ fn parts_are_left_out_one_by_one() {
     let all = draw(&heights, &options()).unwrap();
     assert!(all.interval.is_some_and(|interval| interval > 0.0));
     // Paper with space for a profile.
-    let paper = || Options { page: Page::Paper([150.0, 270.0]), ..options() };
+    let paper = || SheetOptions { page: Page::Paper([150.0, 270.0]), ..options() };
     let all = draw(&heights, &paper()).unwrap();
     let count = |change: fn(&mut Parts)| {
         let mut options = paper();
@@ -136,7 +131,7 @@ fn every_kind_of_file_has_the_same_on_any_number_of_threads() {
 
 #[test]
 fn pixels_are_as_many_as_asked() {
-    let wide = Options { resolution: Resolution::Longer(700), ..options() };
+    let wide = SheetOptions { resolution: Resolution::Longer(700), ..options() };
     let sheet = draw(&hills(120, 40), &wide).unwrap();
     let [width, height] = raster::pixels(&sheet.scene, sheet.dpi);
     assert!(width.max(height) == 700, "{width} x {height}");
@@ -149,7 +144,7 @@ fn surfaces_color_the_map_and_stand_in_the_legend() {
     let entry =
         |name: &str, colors: &[[u8; 3]]| SurfaceEntry { name: name.into(), colors: colors.to_vec(), share: 0.5 };
     let entries = vec![entry("grass", &[[76, 92, 46], [143, 134, 104]]), entry("rock", &[[109, 103, 95]])];
-    let covered = Options {
+    let covered = SheetOptions {
         coloring: Coloring::Surfaces(SurfaceCover { albedo, entries }),
         sea_level: None,
         shading: Shading::None,
@@ -157,7 +152,7 @@ fn surfaces_color_the_map_and_stand_in_the_legend() {
         ..options()
     };
     let sheet = draw(&heights, &covered).unwrap();
-    let pictures: Vec<(&[f32; 4], &Vec<u8>)> = (sheet.scene.items.iter())
+    let pictures: Vec<(&Rect, &Vec<u8>)> = (sheet.scene.items.iter())
         .filter_map(|item| match item {
             Item::Picture { area, pixels, .. } => Some((area, pixels)),
             _ => None,
@@ -165,7 +160,8 @@ fn surfaces_color_the_map_and_stand_in_the_legend() {
         .collect();
     // The map first, then a swatch for each surface; the profile shows rock.
     assert!(pictures[0].1.chunks_exact(3).all(|pixel| pixel[1] > pixel[0] && pixel[1] > pixel[2]));
-    let swatches: Vec<&Vec<u8>> = pictures.iter().filter(|(area, _)| area[3] == 3.0).map(|picture| picture.1).collect();
+    let swatches: Vec<&Vec<u8>> =
+        pictures.iter().filter(|(area, _)| area.height == 3.0).map(|picture| picture.1).collect();
     assert_eq!(swatches.len(), 2);
     assert_eq!((&swatches[0][..3], &swatches[0][189..]), (&[76, 92, 46][..], &[143, 134, 104][..]));
     assert!(swatches[1].chunks_exact(3).all(|pixel| *pixel == [109, 103, 95]));
@@ -177,7 +173,7 @@ fn sheets_with_one_range_agree_along_their_common_edge() {
     let whole = Grid::from_data(window, (0..window.len()).map(|at| 10.0 * (at % 160) as f32).collect()).unwrap();
     let halves = [0, 79].map(|x| whole.crop(&Window::new(81, 60, 50.0).at(x, 0)).unwrap());
     let edge = |half: &Grid, column: usize, range: Option<[f32; 2]>| {
-        let options = Options { range, shading: Shading::None, sea_level: None, ..options() };
+        let options = SheetOptions { range, shading: Shading::None, sea_level: None, ..options() };
         let sheet = draw(half, &options).unwrap();
         let picture = sheet.scene.items.iter().find_map(|item| match item {
             Item::Picture { width, pixels, .. } => Some((*width, pixels.clone())),

@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use super::scene::{Item, Point, Scene, Step};
+use super::geometry::{Point, Rect, Size};
+use super::scene::{Item, Scene, Step};
 use orogen_io::format::png::{self, Picture, Pixel};
 use orogen_io::format::svg::{self, MAX_PATH};
-use orogen_io::palette::color::Rgb;
+use orogen_io::palette::color::hex;
 
 /// Side of a picture tile in pixels: even an incompressible tile takes less than 1 MiB in base64.
 const TILE: usize = 432;
@@ -21,7 +22,7 @@ const OVERLAP: usize = 16;
 /// # Errors
 /// Errors of `out`.
 pub fn write(out: &mut dyn Write, scene: &Scene) -> io::Result<()> {
-    let [width, height] = scene.size;
+    let Size { width, height } = scene.size;
     writeln!(
         out,
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.3}mm\" height=\"{height:.3}mm\" viewBox=\"0 0 {width:.3} {height:.3}\">"
@@ -83,8 +84,8 @@ pub fn write(out: &mut dyn Write, scene: &Scene) -> io::Result<()> {
 }
 
 /// Embeds a picture as overlapping tiles.
-fn embed(out: &mut dyn Write, area: [f32; 4], size: [usize; 2], pixels: &[u8]) -> io::Result<()> {
-    let [x, y, w, h] = area.map(f64::from);
+fn embed(out: &mut dyn Write, area: Rect, size: [usize; 2], pixels: &[u8]) -> io::Result<()> {
+    let [x, y, w, h] = [area.left, area.top, area.width, area.height].map(f64::from);
     let (across, down) = (w / size[0] as f64, h / size[1] as f64);
     for top in (0..size[1]).step_by(TILE) {
         for left in (0..size[0]).step_by(TILE) {
@@ -127,7 +128,7 @@ fn paths(lines: &[Vec<Point>]) -> Vec<String> {
         let mut last = [0, 0];
         for (k, place) in line.iter().enumerate() {
             // Relative to the rounded previous point, so that rounding errors do not accumulate.
-            let here = place.map(|part| (f64::from(part) * 1000.0).round() as i64);
+            let here = [place.x, place.y].map(|part| (f64::from(part) * 1000.0).round() as i64);
             match k {
                 0 => text.push('M'),
                 1 => text.push('l'),
@@ -166,12 +167,8 @@ fn thousandths(text: &mut String, number: i64, follows: bool) {
 }
 
 /// A position with three decimals.
-fn spot(text: &mut String, [x, y]: Point) {
+fn spot(text: &mut String, Point { x, y }: Point) {
     let _ = write!(text, "{} {}", (x * 1000.0).round() / 1000.0, (y * 1000.0).round() / 1000.0);
-}
-
-fn hex([red, green, blue]: Rgb) -> String {
-    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 fn escaped(text: &str) -> String {
@@ -200,6 +197,7 @@ fn base64(out: &mut dyn Write, bytes: &[u8]) -> io::Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::scene::line;
     use super::*;
 
     #[test]
@@ -214,21 +212,24 @@ mod tests {
     #[test]
     fn lines_stay_lines() {
         let items = vec![
-            Item::Picture { area: [1.0, 2.0, 3.0, 4.0], width: 1, height: 1, pixels: vec![1, 2, 3] },
+            Item::Picture { area: Rect::new(1.0, 2.0, 3.0, 4.0), width: 1, height: 1, pixels: vec![1, 2, 3] },
             Item::Lines {
-                lines: vec![vec![[0.0, 0.0], [1.0, 0.5]], vec![[0.0; 2], [1.0; 2], [2.0, 0.0], [0.0; 2]]],
+                lines: vec![line([[0.0, 0.0], [1.0, 0.5]]), line([[0.0; 2], [1.0; 2], [2.0, 0.0], [0.0; 2]])],
                 width: 0.25,
                 ink: [255, 0, 16],
                 cover: 0.5,
             },
             Item::Area {
-                outline: vec![Step::Move([0.0; 2]), Step::Curve([1.0, 0.0], [2.0, 1.0], [2.0, 2.0])],
+                outline: vec![
+                    Step::Move(Point::default()),
+                    Step::Curve(Point::new(1.0, 0.0), Point::new(2.0, 1.0), Point::new(2.0, 2.0)),
+                ],
                 ink: [0; 3],
                 cover: 1.0,
             },
         ];
         let mut out = Vec::new();
-        write(&mut out, &Scene { size: [210.0, 297.0], title: "A & <B>".into(), items }).unwrap();
+        write(&mut out, &Scene { size: Size::new(210.0, 297.0), title: "A & <B>".into(), items }).unwrap();
         let text = String::from_utf8(out).unwrap();
         for expect in [
             "width=\"210.000mm\"",
@@ -244,7 +245,7 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        let line = vec![[1.5, -2.0], [1.562, -2.104], [1.562, -2.1], [0.0, 0.0], [12.0004, 0.0006]];
+        let line = line([[1.5, -2.0], [1.562, -2.104], [1.562, -2.1], [0.0, 0.0], [12.0004, 0.0006]]);
         assert_eq!(paths(&[line]), ["M1.5-2l.062-.104 0 .004-1.562 2.1 12 .001"]);
     }
 
@@ -253,11 +254,12 @@ mod tests {
         // Noise does not compress.
         let [width, height] = [1100, 700];
         let pixels = (0..3 * width * height).map(|k: u32| (k.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
-        let picture = Item::Picture { area: [0.0, 0.0, 110.0, 70.0], width: 1100, height: 700, pixels };
-        let wave = |k: usize| (0..400).map(|i| [i as f32 * 0.37, (k * i % 97) as f32 * 0.123]).collect();
+        let picture = Item::Picture { area: Rect::new(0.0, 0.0, 110.0, 70.0), width: 1100, height: 700, pixels };
+        let wave = |k: usize| line((0..400).map(|i| [i as f32 * 0.37, (k * i % 97) as f32 * 0.123]));
         let lines = Item::Lines { lines: (0..90).map(wave).collect(), width: 0.1, ink: [0; 3], cover: 0.5 };
         let mut out = Vec::new();
-        write(&mut out, &Scene { size: [110.0, 70.0], title: String::new(), items: vec![picture, lines] }).unwrap();
+        write(&mut out, &Scene { size: Size::new(110.0, 70.0), title: String::new(), items: vec![picture, lines] })
+            .unwrap();
         let text = String::from_utf8(out).unwrap();
         let longest = |tag: &str| {
             let lengths = text.lines().filter(|line| line.starts_with(tag)).map(str::len);

@@ -1,12 +1,10 @@
 //! Statistics of a terrain.
 
-use std::path::Path;
-
+use super::job::SurveyJob;
 use super::land::{self, Land, ROWS};
 use super::mean::Mean;
 use super::sorted::{Samples, Sorted};
 use super::water::{self, Water};
-use orogen_engine::budget::Budget;
 use orogen_grid::analysis::aspect::aspect_of;
 use orogen_grid::analysis::curvature::{Curvature, curvature};
 use orogen_grid::analysis::geomorphons::{Look, count, geomorphons, shares};
@@ -16,7 +14,6 @@ use orogen_grid::analysis::spectrum::{self, Band, Rises};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
-use orogen_io::raster::Raster;
 
 /// Width of a class of slopes, in degrees.
 pub const SLOPE_CLASS: f64 = 2.0;
@@ -108,42 +105,14 @@ impl Measures {
         counting.max(water::memory_on_disk(window))
     }
 
-    /// Measures heights. Samples at or below the sea level, if there is one, are not land and are ignored. `None` if
-    /// fewer than 64 x 64 samples or less than 1 % of them are land, or all of it is level.
+    /// Measures heights in memory; see [`SurveyJob::measure`], which also has progress and cancellation.
     #[must_use]
     pub fn of(heights: &Grid, sea_level: Option<f32>) -> Option<Measures> {
-        Measures::of_with(heights, sea_level, &Progress::none()).ok().flatten()
+        SurveyJob::new(Land::in_memory(heights, sea_level)).measure(&Progress::none()).ok().flatten()
     }
 
-    /// [`Measures::of`] with progress and cancellation.
-    ///
-    /// # Errors
-    /// If the work is cancelled.
-    pub fn of_with(heights: &Grid, sea_level: Option<f32>, progress: &Progress) -> Result<Option<Measures>> {
-        let land = Land::in_memory(heights, sea_level);
-        Measures::made(&land, progress, &|land, progress| {
-            let land = land.rows(0..land.window().height)?;
-            water::measure(&land, progress)
-        })
-    }
-
-    /// [`Measures::of`] for heights on disk, with the same bits and little memory. Temporary rasters are made in
-    /// `folder`; the memory of rivers is reserved from `budget`.
-    ///
-    /// # Errors
-    /// If the disk fails, the rivers do not fit, or the work is cancelled.
-    pub fn of_raster(
-        heights: &Raster,
-        sea_level: Option<f32>,
-        folder: &Path,
-        budget: &Budget,
-        progress: &Progress,
-    ) -> Result<Option<Measures>> {
-        let land = Land::on_disk(heights, sea_level);
-        Measures::made(&land, progress, &|land, progress| water::measure_on_disk(land, folder, budget, progress))
-    }
-
-    fn made(
+    /// Measures land whose water `water` measures.
+    pub(super) fn made(
         land: &Land,
         progress: &Progress,
         water: &dyn Fn(&Land, &Progress) -> Result<Water>,
@@ -432,6 +401,7 @@ mod tests {
     use super::*;
     use orogen_grid::hydrology::samples;
     use orogen_io::pages::Pages;
+    use orogen_io::raster::Raster;
 
     #[test]
     fn heights_on_disk_have_the_numbers_of_heights_in_memory() {
@@ -452,7 +422,8 @@ mod tests {
             for sea_level in [None, Some(heights[heights.len() / 3])] {
                 let mut raster = Raster::on_disk(Pages::scratch(&folder, *grid.window()).unwrap());
                 raster.put(&grid).unwrap();
-                let made = Measures::of_raster(&raster, sea_level, &folder, &Budget::of(None), &Progress::none());
+                let made =
+                    SurveyJob::new(Land::on_disk(&raster, sea_level)).with_scratch(&folder).measure(&Progress::none());
                 let expect = Measures::of(&grid, sea_level).unwrap();
                 assert!(expect.water.order > 1 && expect.water.area_exponent.is_some(), "{:?}", expect.water.order);
                 // The digits of a number identify its bits.
@@ -461,7 +432,7 @@ mod tests {
         }
         let level = Grid::filled(Window::new(80, 80, 10.0), 5.0);
         let raster = Raster::in_memory(level);
-        let none = Measures::of_raster(&raster, None, &folder, &Budget::of(None), &Progress::none());
+        let none = SurveyJob::new(Land::on_disk(&raster, None)).with_scratch(&folder).measure(&Progress::none());
         assert!(none.unwrap().is_none());
     }
 }

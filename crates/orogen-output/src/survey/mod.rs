@@ -1,6 +1,7 @@
 //! Terrain statistics: measured, compared with real terrain, and drawn on a page.
 
 pub(crate) mod chart;
+pub mod job;
 pub mod land;
 pub(crate) mod mean;
 pub mod measures;

@@ -39,11 +39,26 @@ const GAP: f64 = 34.0;
 
 /// The title of the page.
 #[derive(Debug, Clone, Default)]
+#[non_exhaustive]
 pub struct Title {
     /// Its name.
     pub name: String,
-    /// A line of small print: source and processing.
+    /// A line of small print: source and processing; empty by default.
     pub about: String,
+}
+
+impl Title {
+    /// A name without small print.
+    #[must_use]
+    pub fn new(name: impl Into<String>) -> Title {
+        Title { name: name.into(), about: String::new() }
+    }
+
+    /// The same with this line of small print.
+    #[must_use]
+    pub fn with_about(self, about: impl Into<String>) -> Title {
+        Title { about: about.into(), ..self }
+    }
 }
 
 /// Draws the page of a terrain.

@@ -3,7 +3,7 @@
 use crate::declare::Input;
 use crate::value::{toml_key, toml_string};
 use orogen_io::dem::file_ref::FileRef;
-use orogen_io::palette::color::{Light, Rgb, decode, linear, mix, oklab};
+use orogen_io::palette::color::{Light, Rgb, decode, hex, linear, mix, oklab};
 use std::fmt::Write as _;
 
 /// Number of colors of a gradient or a picture, including the first and the last.
@@ -304,10 +304,4 @@ fn range(condition: &Condition) -> String {
         bounds.iter().filter_map(|(key, bound)| bound.map(|bound| format!("{key} = {bound:?}"))).collect();
     parts.push(format!("fade = {:?}", condition.fade));
     parts.join(", ")
-}
-
-/// A color as `#rrggbb`.
-#[must_use]
-pub fn hex([r, g, b]: Rgb) -> String {
-    format!("#{r:02x}{g:02x}{b:02x}")
 }

@@ -6,7 +6,7 @@ use super::{
     albedo, aspect, curvature, drainage, geomorphons, height_above_drainage, hillshade, insolation, normal, occlusion,
     position, roughness, ruggedness, slope, soil_depth, splat, viewshed, wetness,
 };
-use crate::export::options::{OptionSpec, Options};
+use crate::export::options::{OptionSpec, Options, by_name};
 use orogen_engine::recipe::document::Recipe;
 use orogen_engine::world::HEIGHT;
 use orogen_grid::error::{Error, ErrorKind, Result};
@@ -55,17 +55,7 @@ pub fn named(name: &str) -> Option<&'static Derived> {
 /// All options of all layers, by name, each with the layers that have it.
 #[must_use]
 pub fn options() -> Vec<(&'static OptionSpec, Vec<&'static str>)> {
-    let mut all: Vec<(&OptionSpec, Vec<&str>)> = Vec::new();
-    for derived in ALL {
-        for spec in derived.options {
-            match all.iter_mut().find(|(known, _)| known.name == spec.name) {
-                Some((_, layers)) => layers.push(derived.name),
-                None => all.push((spec, vec![derived.name])),
-            }
-        }
-    }
-    all.sort_by_key(|(spec, _)| spec.name);
-    all
+    by_name(ALL.iter().map(|derived| (derived.name, derived.options)))
 }
 
 /// Appends to a recipe the nodes that a derived layer needs; call it before the world is opened. A layer made by nodes

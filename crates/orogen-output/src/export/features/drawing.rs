@@ -3,10 +3,11 @@
 use std::io;
 
 use super::layer::{Style, VectorLayer};
-use super::options::FeatureOptions;
+use super::options::{FeatureOptions, OPTIONS};
 use super::source::FeatureSource;
 use crate::export::contour_options;
 use crate::export::contours::{self, Contours};
+use crate::export::format::{Format, Writer};
 use crate::export::layer_source::LayerSource;
 use crate::export::options::Options;
 use crate::export::vectors;
@@ -23,6 +24,11 @@ pub struct Drawing {
     cell: f64,
     /// The summary of the contours of a layer of samples.
     contours: Option<String>,
+}
+
+/// A format of vector features, and of the contours of layers of samples.
+pub const fn format(name: &'static str, about: &'static str, write: Writer) -> Format {
+    Format { name, aliases: &[], about, options: OPTIONS, channels: 1, features: true, memory: contours::memory, write }
 }
 
 /// The contours of a source's samples.
@@ -106,7 +112,7 @@ impl Drawing {
 
 /// Checks that each given option belongs to one of the layers.
 fn check(layers: &[&VectorLayer], options: &Options) -> Result<()> {
-    let all = || super::options::OPTIONS.iter().map(|spec| spec.name);
+    let all = || OPTIONS.iter().map(|spec| spec.name);
     for name in options.names().filter(|name| all().any(|known| known == *name)) {
         if !layers.iter().any(|layer| layer.options.contains(&name)) {
             let knows: Vec<&str> = super::list::all()

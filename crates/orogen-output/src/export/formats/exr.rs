@@ -6,6 +6,7 @@ use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::layer_source::LayerSource;
 use crate::export::memory::{aside, whole};
+use crate::export::notes::SOFTWARE;
 use crate::export::options::{OptionSpec, Options, ValueKind};
 use crate::export::place;
 use crate::export::sidecar::NO_SIDECAR;
@@ -56,8 +57,7 @@ fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::
     };
     let sample = if options.has("half") { Sample::Half } else { Sample::Float };
     let unit = if source.unit().is_empty() { "plain numbers" } else { source.unit() };
-    let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    let comments = format!("{made_by}: {} in {unit}; {} metres a sample", source.layer(), window.cell);
+    let comments = format!("{SOFTWARE}: {} in {unit}; {} metres a sample", source.layer(), window.cell);
     let picture = Picture { width: window.width, height: window.height, channels, sample, comments };
     let mut writer = Writer::new(picture, files.spool())?;
     files.write(|out| {

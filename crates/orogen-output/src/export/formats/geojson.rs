@@ -2,9 +2,7 @@
 
 use std::io;
 
-use crate::export::contours;
-use crate::export::features::drawing::Drawing;
-use crate::export::features::options::OPTIONS;
+use crate::export::features::drawing::{self, Drawing};
 use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::layer_source::LayerSource;
@@ -12,16 +10,8 @@ use crate::export::options::Options;
 use orogen_io::format::geojson;
 
 /// The format.
-pub static FORMAT: Format = Format {
-    name: "geojson",
-    aliases: &[],
-    about: "GeoJSON: contour lines or vector features, in local metres or georeferenced",
-    options: OPTIONS,
-    channels: 1,
-    features: true,
-    memory: contours::memory,
-    write,
-};
+pub static FORMAT: Format =
+    drawing::format("geojson", "GeoJSON: contour lines or vector features, in local metres or georeferenced", write);
 
 fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     let mut drawing = Drawing::of(source, options)?;

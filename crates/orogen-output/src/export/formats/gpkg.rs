@@ -2,9 +2,7 @@
 
 use std::io;
 
-use crate::export::contours;
-use crate::export::features::drawing::Drawing;
-use crate::export::features::options::OPTIONS;
+use crate::export::features::drawing::{self, Drawing};
 use crate::export::files::Files;
 use crate::export::format::Format;
 use crate::export::layer_source::LayerSource;
@@ -12,16 +10,11 @@ use crate::export::options::Options;
 use orogen_io::format::gpkg;
 
 /// The format.
-pub static FORMAT: Format = Format {
-    name: "gpkg",
-    aliases: &[],
-    about: "GeoPackage: contour lines or vector features, any number of layers with spatial indexes",
-    options: OPTIONS,
-    channels: 1,
-    features: true,
-    memory: contours::memory,
+pub static FORMAT: Format = drawing::format(
+    "gpkg",
+    "GeoPackage: contour lines or vector features, any number of layers with spatial indexes",
     write,
-};
+);
 
 fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     let mut drawing = Drawing::of(source, options)?;

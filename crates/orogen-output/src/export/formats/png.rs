@@ -9,6 +9,7 @@ use crate::export::format::{Format, refuse};
 use crate::export::layer_source::LayerSource;
 use crate::export::memory::{aside, whole};
 use crate::export::notes;
+use crate::export::notes::SOFTWARE;
 use crate::export::options::{OptionSpec, Options, ValueKind};
 use crate::export::place;
 use crate::export::quantizer::{self, BITS, FIRST_ROW, Quantizer, RANGE};
@@ -92,8 +93,7 @@ fn write_encoded(
     }
     let window = *source.window();
     let about = format!("heights in metres as {} colours; {} metres a sample", encoding.name(), window.cell);
-    let made_by = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    let notes = [("Software", made_by.as_str()), ("Description", about.as_str())];
+    let notes = [("Software", SOFTWARE), ("Description", about.as_str())];
     let picture = Picture { width: window.width, height: window.height, pixel: Pixel::Data8, notes: &notes };
     let mut quantized = Quantizer::plain(source, options, files)?;
     files.write(|out| {

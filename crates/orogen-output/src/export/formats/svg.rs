@@ -2,9 +2,7 @@
 
 use std::io;
 
-use crate::export::contours;
 use crate::export::features::drawing::{self, Drawing};
-use crate::export::features::options::OPTIONS;
 use crate::export::features::svg as drawn;
 use crate::export::files::Files;
 use crate::export::format::Format;
@@ -13,16 +11,7 @@ use crate::export::options::Options;
 use orogen_io::format::contour_svg;
 
 /// The format.
-pub static FORMAT: Format = Format {
-    name: "svg",
-    aliases: &[],
-    about: "SVG drawing of contour lines or vector features, in metres",
-    options: OPTIONS,
-    channels: 1,
-    features: true,
-    memory: contours::memory,
-    write,
-};
+pub static FORMAT: Format = drawing::format("svg", "SVG drawing of contour lines or vector features, in metres", write);
 
 fn write(source: &mut LayerSource, options: &Options, files: &mut Files) -> io::Result<String> {
     let window = *source.window();

@@ -7,9 +7,10 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Window;
 use orogen_grid::words::number;
 
-/// The requested values; missing ones are chosen by the target.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Asked {
+/// The requested samples; missing values are chosen by the target.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[non_exhaustive]
+pub struct FrameSpec {
     /// Samples along a side; of a tile, if there are several.
     pub side: Option<usize>,
     /// Distance between samples, in metres.
@@ -20,8 +21,35 @@ pub struct Asked {
     pub tiles: Option<[usize; 2]>,
 }
 
+impl FrameSpec {
+    /// The same with this many samples along a side.
+    #[must_use]
+    pub fn with_side(self, side: usize) -> FrameSpec {
+        FrameSpec { side: Some(side), ..self }
+    }
+
+    /// The same with this distance between samples, in metres.
+    #[must_use]
+    pub fn with_cell(self, cell: f64) -> FrameSpec {
+        FrameSpec { cell: Some(cell), ..self }
+    }
+
+    /// The same over this window.
+    #[must_use]
+    pub fn with_window(self, window: Window) -> FrameSpec {
+        FrameSpec { window: Some(window), ..self }
+    }
+
+    /// The same in this many tiles, east and south.
+    #[must_use]
+    pub fn with_tiles(self, tiles: [usize; 2]) -> FrameSpec {
+        FrameSpec { tiles: Some(tiles), ..self }
+    }
+}
+
 /// The samples of an export.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Frame {
     /// The window of all samples.
     pub window: Window,
@@ -42,7 +70,7 @@ impl Frame {
     ///
     /// # Errors
     /// If the target does not support a size or tiles; the message names the closest.
-    pub fn new(target: &EngineTarget, world: &World, asked: &Asked) -> Result<Frame> {
+    pub fn new(target: &EngineTarget, world: &World, asked: &FrameSpec) -> Result<Frame> {
         let tiles = asked.tiles.unwrap_or([1, 1]);
         if asked.tiles.is_some() && target.tile.is_none() {
             return refuse(format!("{} imports a single file and splits it itself; leave out --tiles", target.name));
@@ -154,7 +182,7 @@ mod tests {
     use crate::export::targets::list;
     use orogen_engine::recipe::document::Recipe;
 
-    fn frame(target: &str, size: &str, asked: Asked) -> std::result::Result<Frame, String> {
+    fn frame(target: &str, size: &str, asked: FrameSpec) -> std::result::Result<Frame, String> {
         let text = format!(
             "orogen = 1\n[world]\n{size}\ncell = 10\n[nodes.a]\nop = \"constant\"\n[outputs]\nheight = \"a\"\n"
         );
@@ -173,20 +201,20 @@ mod tests {
             ("hterrain", 1025, 10.0),
             ("terrain3d", 1024, 10240.0 / 1023.0),
         ] {
-            let frame = frame(target, square, Asked::default()).unwrap();
+            let frame = frame(target, square, FrameSpec::default()).unwrap();
             assert_eq!((frame.side, frame.window.cell, frame.window.width), (side, cell, side), "{target}");
             assert_eq!(frame.note.is_some(), cell != 10.0);
         }
-        let wide = frame("unity", "size = [10240, 5120]", Asked::default()).unwrap();
+        let wide = frame("unity", "size = [10240, 5120]", FrameSpec::default()).unwrap();
         assert_eq!((wide.side, wide.window.cell), (513, 10.0));
         assert!(wide.note.unwrap().contains("the first 5120 x 5120 m"));
-        assert_eq!(frame("unreal", "size = [300, 300]", Asked::default()).unwrap().side, 127);
-        assert_eq!(frame("unity", "", Asked::default()).unwrap().side, 1025);
+        assert_eq!(frame("unreal", "size = [300, 300]", FrameSpec::default()).unwrap().side, 127);
+        assert_eq!(frame("unity", "", FrameSpec::default()).unwrap().side, 1025);
     }
 
     #[test]
     fn tiles_share_their_edges() {
-        let asked = Asked { tiles: Some([2, 2]), ..Asked::default() };
+        let asked = FrameSpec { tiles: Some([2, 2]), ..FrameSpec::default() };
         let frame = frame("unity", "size = [10240, 10240]", asked).unwrap();
         assert_eq!((frame.side, frame.window.width), (513, 1025));
         assert_eq!(frame.tile(1, 0), Window::new(513, 513, 10.0).at(512, 0));
@@ -195,21 +223,25 @@ mod tests {
     #[test]
     fn what_is_asked_for_is_kept_or_refused() {
         let square = "size = [10240, 10240]";
-        let asked = Asked { side: Some(505), cell: Some(5.0), ..Asked::default() };
+        let asked = FrameSpec { side: Some(505), cell: Some(5.0), ..FrameSpec::default() };
         assert_eq!(frame("unreal", square, asked).unwrap().window, Window::new(505, 505, 5.0));
         let window = Window::new(513, 513, 10.0).at(7, 9);
-        let asked = Asked { window: Some(window), ..Asked::default() };
+        let asked = FrameSpec { window: Some(window), ..FrameSpec::default() };
         assert_eq!(frame("unity", square, asked).unwrap().window, window);
         for (target, asked, expect) in [
-            ("unreal", Asked { side: Some(1024), ..Asked::default() }, "the nearest is 1009"),
-            ("unity", Asked { side: Some(512), ..Asked::default() }, "the nearest is 513"),
-            ("unity", Asked { window: Some(Window::new(512, 512, 10.0)), ..Asked::default() }, "the nearest is 513"),
-            ("unity", Asked { window: Some(Window::new(513, 257, 10.0)), ..Asked::default() }, "squares"),
-            ("hterrain", Asked { tiles: Some([2, 2]), ..Asked::default() }, "leave out --tiles"),
-            ("unreal", Asked { tiles: Some([0, 2]), ..Asked::default() }, "1 to 100 tiles"),
+            ("unreal", FrameSpec { side: Some(1024), ..FrameSpec::default() }, "the nearest is 1009"),
+            ("unity", FrameSpec { side: Some(512), ..FrameSpec::default() }, "the nearest is 513"),
             (
                 "unity",
-                Asked { window: Some(Window::new(512, 512, 10.0)), tiles: Some([2, 2]), ..Asked::default() },
+                FrameSpec { window: Some(Window::new(512, 512, 10.0)), ..FrameSpec::default() },
+                "the nearest is 513",
+            ),
+            ("unity", FrameSpec { window: Some(Window::new(513, 257, 10.0)), ..FrameSpec::default() }, "squares"),
+            ("hterrain", FrameSpec { tiles: Some([2, 2]), ..FrameSpec::default() }, "leave out --tiles"),
+            ("unreal", FrameSpec { tiles: Some([0, 2]), ..FrameSpec::default() }, "1 to 100 tiles"),
+            (
+                "unity",
+                FrameSpec { window: Some(Window::new(512, 512, 10.0)), tiles: Some([2, 2]), ..FrameSpec::default() },
                 "share their edges; use 513",
             ),
         ] {

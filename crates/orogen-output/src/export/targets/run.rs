@@ -1,13 +1,10 @@
-//! Exports for an engine.
-
-use std::path::PathBuf;
+//! The steps of an export for an engine.
 
 use super::frame::Frame;
-use super::target::EngineTarget;
+use super::job::{EngineJob, Exported};
 use crate::export::channels::{NORMAL, WEIGHTS, suffixed};
 use crate::export::derived::layer::Nature;
 use crate::export::files::Files;
-use crate::export::format::Format;
 use crate::export::layer_source::LayerSource;
 use crate::export::options::Options;
 use crate::export::quantizer::{self, BITS, RANGE};
@@ -19,34 +16,18 @@ use orogen_grid::grid::Window;
 use orogen_grid::progress::Progress;
 use orogen_io::file::{self, Output};
 
-/// The result of an export.
-pub struct Exported {
-    /// The main files.
-    pub files: Vec<PathBuf>,
-    /// Number of samples east and south, with each shared edge counted once.
-    pub samples: [usize; 2],
-    /// A description of the samples.
-    pub words: String,
-    /// The count of samples; shared edges count in each tile.
-    pub count: FiniteCount,
-    /// Values for the engine's import dialogue, one line each; empty for layers other than the heights.
-    pub import: Vec<String>,
-}
-
-/// Exports a layer over a frame, all tiles or none. Heights use the target's format and scale, weights and normals its
-/// conventions; other layers are 8-bit greyscale pictures.
+/// Exports the layer of a job over a frame, all tiles or none.
 ///
 /// # Errors
 /// If the target does not support the format, or the errors of [`run::to_file`].
-pub fn export(
-    target: &EngineTarget,
-    format: &Format,
-    frame: &Frame,
+pub(super) fn export(
+    job: &EngineJob,
+    frame: Frame,
     world: &World,
-    layer: &str,
-    progress: &Progress,
     output: &Output,
+    progress: &Progress,
 ) -> Result<Exported> {
+    let EngineJob { target, format, ref layer, .. } = *job;
     let path = output.path();
     let mut options = Options::default();
     // Plain numbers are computed twice: for their range, and tile by tile.
@@ -115,5 +96,5 @@ pub fn export(
     written.into_iter().try_for_each(Files::commit).map_err(|cause| file::explain("write", path, &cause))?;
     let files = outputs.iter().map(|output| output.path().to_path_buf()).collect();
     let samples = [frame.window.width - less, frame.window.height - less];
-    Ok(Exported { files, samples, words, count, import })
+    Ok(Exported { frame, files, samples, words, count, import })
 }

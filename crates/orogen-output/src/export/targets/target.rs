@@ -6,6 +6,7 @@ use orogen_io::format::levels::Levels;
 use orogen_grid::error::Result;
 
 /// The requirements of an engine's terrain import.
+#[derive(Debug)]
 pub struct EngineTarget {
     /// The name for `--target`.
     pub name: &'static str,

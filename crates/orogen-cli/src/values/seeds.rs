@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use super::number::seed;
 use crate::failure::Failure;
-use crate::size::seed;
 
 /// Maximum number of seeds of a command.
 const MAX_SEEDS: u64 = 10_000;

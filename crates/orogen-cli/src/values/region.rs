@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::size::{finite, samples};
+use super::number::{finite, samples};
 
 /// `--window`: a rectangle, relative to the world's north-west corner.
 #[derive(Debug, Clone, Copy, PartialEq)]

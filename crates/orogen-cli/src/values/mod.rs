@@ -1,0 +1,12 @@
+//! Values on the command line: each is parsed in one place, with its range and its message.
+
+pub mod arguments;
+pub mod bytes;
+pub mod name_of;
+pub mod number;
+pub mod paper;
+pub mod region;
+pub mod seeds;
+pub mod size;
+pub mod sweep;
+pub mod time;

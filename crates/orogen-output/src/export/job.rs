@@ -1,0 +1,133 @@
+//! An export as one job: what is exported, how, and where to.
+
+use std::io::{self, Write};
+
+use super::derived::list;
+use super::format::Format;
+use super::layer_source::LayerSource;
+use super::mesh_cover;
+use super::options::Options;
+use super::registry;
+use super::run;
+use orogen_engine::recipe::document::Recipe;
+use orogen_engine::world::{HEIGHT, World};
+use orogen_grid::analysis::finite::FiniteCount;
+use orogen_grid::error::Result;
+use orogen_grid::grid::Window;
+use orogen_grid::progress::Progress;
+use orogen_io::file::Output;
+
+/// The export of a layer over a window in a format.
+///
+/// [`prepare`](ExportJob::prepare) a recipe, open its world, then write [to a file](ExportJob::to_file) or [to a
+/// stream](ExportJob::to_stream).
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct ExportJob {
+    /// The file format.
+    pub format: &'static Format,
+    /// The layer: an output of the recipe, `node.layer`, a layer [derived](super::derived) from the heights, or the
+    /// names of layers of vector features, separated by commas. `height` by default.
+    pub layer: String,
+    /// The window; by default the whole world at its own cell, which must then be bounded.
+    pub window: Option<Window>,
+    /// Options of the format; none by default.
+    pub options: Options,
+    /// Options of the derived layer; none by default.
+    pub layer_options: Options,
+}
+
+impl ExportJob {
+    /// The heights of the whole world, without options.
+    #[must_use]
+    pub fn new(format: &'static Format) -> ExportJob {
+        ExportJob {
+            format,
+            layer: HEIGHT.into(),
+            window: None,
+            options: Options::default(),
+            layer_options: Options::default(),
+        }
+    }
+
+    /// The same for this layer.
+    #[must_use]
+    pub fn with_layer(self, layer: impl Into<String>) -> ExportJob {
+        ExportJob { layer: layer.into(), ..self }
+    }
+
+    /// The same over this window.
+    #[must_use]
+    pub fn with_window(self, window: Window) -> ExportJob {
+        ExportJob { window: Some(window), ..self }
+    }
+
+    /// The same with these options of the format.
+    #[must_use]
+    pub fn with_options(self, options: Options) -> ExportJob {
+        ExportJob { options, ..self }
+    }
+
+    /// The same with these options of the derived layer.
+    #[must_use]
+    pub fn with_layer_options(self, layer_options: Options) -> ExportJob {
+        ExportJob { layer_options, ..self }
+    }
+
+    /// Checks that the format has all options that are given for it.
+    ///
+    /// # Errors
+    /// If it has not: the message names the formats that do.
+    pub fn check(&self) -> Result<()> {
+        registry::check(self.format, &self.options)
+    }
+
+    /// Appends to a recipe the nodes that the job needs; call it before the world is opened. Layers of the recipe need
+    /// none.
+    ///
+    /// # Errors
+    /// The errors of [`check`](ExportJob::check) and of [`list::prepare`].
+    pub fn prepare(&self, recipe: &mut Recipe) -> Result<()> {
+        self.check()?;
+        list::prepare(recipe, &self.layer, &self.layer_options)?;
+        mesh_cover::prepare(recipe, &self.options);
+        Ok(())
+    }
+
+    /// Exports to a file and its sidecars, atomically.
+    ///
+    /// # Errors
+    /// If the world has no such layer or cannot make the window, the format does not have an option or cannot hold the
+    /// layer, no sample is finite, memory does not suffice (then nothing was started), the work was cancelled, or a
+    /// file cannot be written.
+    pub fn to_file(&self, world: &World, output: &Output, progress: &Progress) -> Result<Written> {
+        run::to_file(self.format, self.source(world, progress)?, &self.options, output)
+    }
+
+    /// Exports to a stream, without sidecars.
+    ///
+    /// # Errors
+    /// The errors of [`to_file`](ExportJob::to_file); errors of the stream itself are returned unchanged.
+    pub fn to_stream(&self, world: &World, out: &mut dyn Write, progress: &Progress) -> io::Result<Written> {
+        run::to_stream(self.format, self.source(world, progress)?, &self.options, out)
+    }
+
+    /// What is exported.
+    fn source<'w>(&self, world: &'w World, progress: &Progress) -> Result<LayerSource<'w>> {
+        let window = match self.window {
+            Some(window) => window,
+            None => world.full_window(world.recipe().world.cell)?,
+        };
+        run::source(self.format, world, &self.layer, window, progress)
+    }
+}
+
+/// The result of an export.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Written {
+    /// A description of the samples.
+    pub words: String,
+    /// The count of samples.
+    pub count: FiniteCount,
+}

@@ -1,0 +1,103 @@
+//! An export for an engine as one job.
+
+use std::path::PathBuf;
+
+use super::frame::{Frame, FrameSpec};
+use super::run;
+use super::target::EngineTarget;
+use crate::export::derived::list;
+use crate::export::format::Format;
+use crate::export::options::Options;
+use orogen_engine::recipe::document::Recipe;
+use orogen_engine::world::{HEIGHT, World};
+use orogen_grid::analysis::finite::FiniteCount;
+use orogen_grid::error::Result;
+use orogen_grid::progress::Progress;
+use orogen_io::file::Output;
+
+/// The export of a layer for an engine, in one file or in tiles. The engine sets the options of the format.
+///
+/// [`prepare`](EngineJob::prepare) a recipe, open its world, then [`run`](EngineJob::run).
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct EngineJob {
+    /// The engine.
+    pub target: &'static EngineTarget,
+    /// The file format, which the engine must support for the layer.
+    pub format: &'static Format,
+    /// The layer: an output of the recipe, `node.layer`, or a layer [derived](crate::export::derived) from the heights.
+    /// `height` by default.
+    pub layer: String,
+    /// Options of the derived layer; none by default.
+    pub layer_options: Options,
+    /// The requested samples; by default the engine chooses them.
+    pub samples: FrameSpec,
+}
+
+impl EngineJob {
+    /// The heights of the whole world.
+    #[must_use]
+    pub fn new(target: &'static EngineTarget, format: &'static Format) -> EngineJob {
+        EngineJob {
+            target,
+            format,
+            layer: HEIGHT.into(),
+            layer_options: Options::default(),
+            samples: FrameSpec::default(),
+        }
+    }
+
+    /// The same for this layer.
+    #[must_use]
+    pub fn with_layer(self, layer: impl Into<String>) -> EngineJob {
+        EngineJob { layer: layer.into(), ..self }
+    }
+
+    /// The same with these options of the derived layer.
+    #[must_use]
+    pub fn with_layer_options(self, layer_options: Options) -> EngineJob {
+        EngineJob { layer_options, ..self }
+    }
+
+    /// The same with these samples.
+    #[must_use]
+    pub fn with_samples(self, samples: FrameSpec) -> EngineJob {
+        EngineJob { samples, ..self }
+    }
+
+    /// Appends to a recipe the nodes that the layer needs; call it before the world is opened.
+    ///
+    /// # Errors
+    /// The errors of [`list::prepare`].
+    pub fn prepare(&self, recipe: &mut Recipe) -> Result<()> {
+        list::prepare(recipe, &self.layer, &self.layer_options)
+    }
+
+    /// Exports all tiles, or none. Heights use the engine's format and scale, weights and normals its conventions; other
+    /// layers are 8-bit greyscale pictures.
+    ///
+    /// # Errors
+    /// The errors of [`Frame::new`]; if the engine does not support the format; or those of
+    /// [`ExportJob::to_file`](crate::export::job::ExportJob::to_file).
+    pub fn run(&self, world: &World, output: &Output, progress: &Progress) -> Result<Exported> {
+        run::export(self, Frame::new(self.target, world, &self.samples)?, world, output, progress)
+    }
+}
+
+/// The result of an export for an engine.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Exported {
+    /// The samples of the export.
+    pub frame: Frame,
+    /// The main files.
+    pub files: Vec<PathBuf>,
+    /// Number of samples east and south, with each shared edge counted once.
+    pub samples: [usize; 2],
+    /// A description of the samples.
+    pub words: String,
+    /// The count of samples; shared edges count in each tile.
+    pub count: FiniteCount,
+    /// Values for the engine's import dialogue, one line each; empty for layers other than the heights.
+    pub import: Vec<String>,
+}
