@@ -7,6 +7,8 @@ use std::error::Error;
 use std::sync::Arc;
 
 const RECIPE: &str = r#"
+    orogen = 1
+
     [world]
     size = [4000.0, 4000.0]
     cell = 20.0
@@ -25,6 +27,8 @@ const RECIPE: &str = r#"
 "#;
 
 const WITH_A_FILE: &str = r#"
+    orogen = 1
+
     [nodes.land]
     op = "dem"
     path = "land.tif"

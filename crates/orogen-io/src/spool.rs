@@ -90,7 +90,7 @@ impl Write for Spool {
 /// The folder for a temporary file that will be copied to `path`.
 fn folder_of(path: &Path) -> PathBuf {
     match fs::canonicalize(path) {
-        Ok(real) if real.is_file() => file::folder(&real).to_path_buf(),
+        Ok(real) if fs::is_file(&real) => file::folder(&real).to_path_buf(),
         Ok(_) => fs::temporary_folder(),
         Err(_) => file::folder(path).to_path_buf(),
     }

@@ -287,7 +287,7 @@ fn several_worlds_share_a_folder_at_once() {
 
 /// What the [`Objects`] do wrong.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Fault {
+enum Flaw {
     None,
     /// Nothing can be read.
     Get,
@@ -307,7 +307,7 @@ enum Fault {
 #[derive(Debug)]
 struct Objects {
     held: Mutex<BTreeMap<EntryKey, Arc<Vec<u8>>>>,
-    fault: Mutex<Fault>,
+    fault: Mutex<Flaw>,
     /// Reads until the fault.
     left: Arc<AtomicI64>,
     removed: AtomicU64,
@@ -316,24 +316,24 @@ struct Objects {
 #[derive(Debug)]
 struct Object {
     bytes: Arc<Vec<u8>>,
-    fault: Fault,
+    fault: Flaw,
     left: Arc<AtomicI64>,
 }
 
 impl Objects {
     fn new() -> Arc<Objects> {
-        let (held, fault) = (Mutex::default(), Mutex::new(Fault::None));
+        let (held, fault) = (Mutex::default(), Mutex::new(Flaw::None));
         Arc::new(Objects { held, fault, left: Arc::default(), removed: AtomicU64::new(0) })
     }
 
-    fn set(&self, fault: Fault) {
+    fn set(&self, fault: Flaw) {
         *self.fault.lock().unwrap() = fault;
-        if let Fault::Read(left) | Fault::Flipped(left) = fault {
+        if let Flaw::Read(left) | Flaw::Flipped(left) = fault {
             self.left.store(left, Ordering::Relaxed);
         }
     }
 
-    fn fault(&self) -> Fault {
+    fn fault(&self) -> Flaw {
         *self.fault.lock().unwrap()
     }
 }
@@ -342,8 +342,8 @@ impl SolutionStore for Objects {
     fn get(&self, key: &EntryKey) -> io::Result<Option<Box<dyn ReadAt>>> {
         let (held, fault) = (self.held.lock().unwrap(), self.fault());
         let bytes = match fault {
-            Fault::Get => return Err(io::Error::other("the network is gone")),
-            Fault::Swapped => held.iter().find(|(other, _)| *other != key).map(|(_, bytes)| bytes),
+            Flaw::Get => return Err(io::Error::other("the network is gone")),
+            Flaw::Swapped => held.iter().find(|(other, _)| *other != key).map(|(_, bytes)| bytes),
             _ => held.get(key),
         };
         let object = |bytes: &Arc<Vec<u8>>| Object { bytes: Arc::clone(bytes), fault, left: Arc::clone(&self.left) };
@@ -351,7 +351,7 @@ impl SolutionStore for Objects {
     }
 
     fn put(&self, key: &EntryKey, entry: &Entry) -> io::Result<()> {
-        if self.fault() == Fault::Put {
+        if self.fault() == Flaw::Put {
             return Err(io::Error::other("no more credit"));
         }
         let bytes = entry.to_bytes()?;
@@ -373,16 +373,16 @@ impl SolutionStore for Objects {
 
 impl ReadAt for Object {
     fn length(&self) -> io::Result<u64> {
-        Ok(self.bytes.len() as u64 - u64::from(self.fault == Fault::Short))
+        Ok(self.bytes.len() as u64 - u64::from(self.fault == Flaw::Short))
     }
 
     fn read_exact_at(&self, at: u64, bytes: &mut [u8]) -> io::Result<()> {
         self.bytes.read_exact_at(at, bytes)?;
         match self.fault {
-            Fault::Read(_) if self.left.fetch_sub(1, Ordering::Relaxed) <= 0 => {
+            Flaw::Read(_) if self.left.fetch_sub(1, Ordering::Relaxed) <= 0 => {
                 Err(io::Error::other("the connection was reset"))
             }
-            Fault::Flipped(_) if self.left.fetch_sub(1, Ordering::Relaxed) == 0 => {
+            Flaw::Flipped(_) if self.left.fetch_sub(1, Ordering::Relaxed) == 0 => {
                 let middle = bytes.len() / 2;
                 bytes[middle] ^= 4;
                 Ok(())
@@ -417,32 +417,32 @@ fn a_store_of_a_program_may_fail_but_never_changes_a_bit() {
         objects.set(fault);
         let (layers, made, failure) = run(None);
         same(&format!("{fault:?}"), &expect, &layers.unwrap());
-        objects.set(Fault::None);
+        objects.set(Flaw::None);
         (made, failure.unwrap_or_default())
     };
-    let (made, told) = failure(Fault::Put);
+    let (made, told) = failure(Flaw::Put);
     assert_eq!(made, 3);
     assert!(told.starts_with("cannot store the solution ") && told.ends_with(": no more credit"), "{told}");
-    assert_eq!(failure(Fault::None), (3, String::new()));
-    assert_eq!(failure(Fault::None), (0, String::new()), "found");
-    let (made, told) = failure(Fault::Get);
+    assert_eq!(failure(Flaw::None), (3, String::new()));
+    assert_eq!(failure(Flaw::None), (0, String::new()), "found");
+    let (made, told) = failure(Flaw::Get);
     assert_eq!(made, 3);
     assert!(told.starts_with("cannot read the stored solution ") && told.ends_with(": the network is gone"), "{told}");
     // Damaged entries are removed, solved again and stored again.
     for (fault, expected) in [
-        (Fault::Swapped, "is not a stored solution: "),
-        (Fault::Short, "is not a stored solution: "),
-        (Fault::Read(0), "the connection was reset"),
-        (Fault::Read(4), "the connection was reset"),
-        (Fault::Flipped(0), "is not a stored solution: "),
-        (Fault::Flipped(1), "is not a stored solution: "),
-        (Fault::Flipped(4), "are damaged"),
+        (Flaw::Swapped, "is not a stored solution: "),
+        (Flaw::Short, "is not a stored solution: "),
+        (Flaw::Read(0), "the connection was reset"),
+        (Flaw::Read(4), "the connection was reset"),
+        (Flaw::Flipped(0), "is not a stored solution: "),
+        (Flaw::Flipped(1), "is not a stored solution: "),
+        (Flaw::Flipped(4), "are damaged"),
     ] {
         let removed = objects.removed.load(Ordering::Relaxed);
         let (made, told) = failure(fault);
         assert!(made > 0 && told.contains(expected), "{fault:?}: {made} made, {told}");
         assert!(objects.removed.load(Ordering::Relaxed) > removed, "{fault:?}");
-        assert_eq!(failure(Fault::None), (0, String::new()), "{fault:?}: stored again");
+        assert_eq!(failure(Flaw::None), (0, String::new()), "{fault:?}: stored again");
     }
 }
 
@@ -469,11 +469,11 @@ fn entries_that_stay_in_a_store_are_the_same_bits_or_an_error() {
             }
         }
     };
-    run(Fault::None, None);
+    run(Flaw::None, None);
     for reads in [1, 20, 60, 80, 100, 1_000_000] {
-        for fault in [Fault::Read(reads), Fault::Flipped(reads)] {
+        for fault in [Flaw::Read(reads), Flaw::Flipped(reads)] {
             run(fault, Some(11 << 20));
-            run(Fault::None, None);
+            run(Flaw::None, None);
         }
     }
     assert!(errors > 0 && solved > 1 && fine > 0, "{errors} errors, {solved} solved, {fine} found");

@@ -69,8 +69,9 @@ impl Solver for Breach {
         let deepest = self.deepest as f32;
         let out = match self.way {
             Way::Valley => {
-                let drainage = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, context.progress)?;
-                breach::breach(&heights, &outlets, &drainage, deepest)
+                let [routing, cutting] = context.progress.parts([2.0, 1.0]);
+                let drainage = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, &routing)?;
+                breach::breach_with(&heights, &outlets, &drainage, deepest, &cutting)?
             }
             Way::LeastCost => {
                 let longest = (self.longest / heights.window().cell).min(f64::from(u32::MAX)) as u32;

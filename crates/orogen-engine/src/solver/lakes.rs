@@ -54,6 +54,7 @@ impl Solver for Lakes {
         let drainage = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, &routing)?;
         let fewest = (self.smallest / (window.cell * window.cell)).ceil().clamp(4.0, f64::from(u32::MAX)) as u32;
         let found = lakes::lakes_with(&heights, &outlets, &drainage, fewest, &filling)?;
+        context.progress.check()?;
         let mut depth = heights;
         for (depth, (surface, bed)) in
             depth.data_mut().iter_mut().zip(found.surface.data().iter().zip(found.bed.data()))

@@ -3,9 +3,9 @@
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
-use orogen_grid::hydrology::accumulation::accumulate;
+use orogen_grid::hydrology::accumulation::accumulate_with;
 use orogen_grid::hydrology::outlets::Outlets;
-use orogen_grid::hydrology::rivers::{Channel, carve};
+use orogen_grid::hydrology::rivers::{Channel, carve_with};
 use orogen_grid::hydrology::steepest::Descent;
 use orogen_grid::hydrology::{breach, drainage, strahler};
 
@@ -62,29 +62,31 @@ impl Solver for Rivers {
         let outlets = Outlets::new(&heights, self.sea.then_some(context.world_params.sea_level as f32));
         let [routing, breaching, counting, carving] = context.progress.parts([2.0, 1.0, 1.0, 2.0]);
         let drainage = drainage::route_carving_with(&heights, &outlets, Descent::Steepest, &routing)?;
-        let mut ground = breach::breach(&heights, &outlets, &drainage, self.deepest as f32);
+        let mut ground = breach::breach_with(&heights, &outlets, &drainage, self.deepest as f32, &breaching)?;
         drop(heights);
         breaching.finish();
         context.progress.check()?;
-        let drained = accumulate(&drainage.receivers);
+        let drained = accumulate_with(&drainage.receivers, &counting)?;
         counting.finish();
         context.progress.check()?;
         let cell_area = window.cell * window.cell;
         let threshold = (self.stream / cell_area).ceil().clamp(1.0, f64::from(u32::MAX)) as u32;
-        let orders = strahler::orders(&drainage.receivers, &drained, threshold);
+        let [ordering, carving] = carving.parts([1.0, 1.0]);
+        let orders = strahler::orders_with(&drainage.receivers, &drained, threshold, &ordering)?;
+        ordering.finish();
         let channel = Channel { runoff: self.runoff, width: self.width, depth: self.depth };
         context.progress.check()?;
-        carve(&mut ground, &drainage.receivers, &drained, &orders, &channel);
+        carve_with(&mut ground, &drainage.receivers, &drained, &orders, &channel, &carving)?;
         carving.finish();
         context.progress.check()?;
         let area = |c: usize| f64::from(drained.area.data()[c]) * cell_area;
         let wide = |c: usize| if orders.data()[c] > 0 { channel.width_of(channel.discharge(area(c))) } else { 0.0 };
-        let layers = vec![
-            sources.keep(ground)?,
-            sources.keep(made(window, area))?,
-            sources.keep(made(window, wide))?,
-            sources.keep(made(window, |c| f64::from(orders.data()[c])))?,
-        ];
+        let mut layers = vec![sources.keep(ground)?];
+        layers.push(sources.keep(made(window, area))?);
+        context.progress.check()?;
+        layers.push(sources.keep(made(window, wide))?);
+        context.progress.check()?;
+        layers.push(sources.keep(made(window, |c| f64::from(orders.data()[c])))?);
         Ok(Solution { layers, scalars: Vec::new() })
     }
 

@@ -24,7 +24,7 @@ pub fn split(path: &Path) -> (PathBuf, Option<u32>) {
     let whole = || (path.to_path_buf(), None);
     let Some(text) = path.to_str() else { return whole() };
     match text.rsplit_once(':').map(|(file, band)| (Path::new(file), band.parse())) {
-        Some((file, Ok(band))) if file.extension().is_some() && !fs::is_present(&path) => {
+        Some((file, Ok(band))) if file.extension().is_some() && !fs::is_present(path) => {
             (file.to_path_buf(), Some(band))
         }
         _ => whole(),
