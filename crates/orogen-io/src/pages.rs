@@ -125,6 +125,7 @@ impl Pages {
     }
 
     /// A grid whose pages are in a file from offset `base`, with their checksums.
+    #[must_use]
     pub fn within(file: Arc<PageFile>, base: u64, sums: Vec<Option<u32>>, window: Window) -> Pages {
         Pages { window, file, base, sums, kept: Mutex::default() }
     }
