@@ -17,7 +17,7 @@ Runs the steps in this order, or only those named, and stops at the first failur
   words     names and texts use the field's terms
   clippy    no warning in any target
   tests     unit tests, integration tests, doctests, examples build
-  features  what is off by default: no warning, unit tests and doctests
+  features  what is off by default: no warning, unit tests and doctests; the libraries without files and threads
   schema    crates/orogen-engine/recipes/orogen.schema.json is what `orogen schema` prints
   docs      the libraries' documentation builds without a warning
   licences  every dependency has a licence we accept
@@ -36,7 +36,11 @@ const STEPS: &[&Step] = &[
         run: || sh(&mut cargo("clippy --quiet --workspace --all-targets --features orogen-bench/peers -- -D warnings")),
     },
     &Step { name: "tests", about: "cargo test --workspace", run: || sh(&mut cargo("test --workspace")) },
-    &Step { name: "features", about: "orogen-grid with ndarray and image", run: features },
+    &Step {
+        name: "features",
+        about: "orogen-grid with ndarray and image; orogen without files and threads",
+        run: features,
+    },
     &Step {
         name: "schema",
         about: "crates/orogen-engine/recipes/orogen.schema.json is what `orogen schema` prints",
@@ -57,7 +61,17 @@ fn features() -> Result {
     let grid = "--package orogen-grid --all-features";
     sh(&mut cargo(&format!("clippy --quiet {grid} --all-targets -- -D warnings")))?;
     sh(&mut cargo(&format!("test --quiet {grid} --lib interop")))?;
-    sh(&mut cargo(&format!("test --quiet {grid} --doc")))
+    sh(&mut cargo(&format!("test --quiet {grid} --doc")))?;
+    without_files()
+}
+
+/// Builds the libraries without files and threads. No code of theirs, tests aside, may then name anything of the standard library's file
+/// system: `xtask/no_fs/clippy.toml` lists it. A program checks that what needs no file works, and what names one is an error.
+fn without_files() -> Result {
+    let mut clippy = cargo("clippy --quiet --package orogen --lib --no-default-features -- -D warnings");
+    clippy.arg("-D").arg("clippy::disallowed_types");
+    sh(clippy.env("CLIPPY_CONF_DIR", shell::root().join("xtask/no_fs")))?;
+    sh(&mut cargo("run --quiet --package orogen-engine --example without_files --no-default-features"))
 }
 
 /// Without the binary `orogen`, whose pages would overwrite those of the library of the same name.

@@ -1,9 +1,10 @@
 //! Options shared by several commands.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::Args;
-use orogen::{Budget, Cache, Options, Recipe, World};
+use orogen::{Budget, FolderStore, Options, Recipe, SolutionStore, World};
 
 use crate::failure::Failure;
 use crate::memory;
@@ -83,7 +84,7 @@ impl Limits {
         Options {
             threads: Some(threads),
             memory: budget.clone(),
-            cache: self.cache(),
+            store: self.cache().map(|cache| Arc::new(cache) as Arc<dyn SolutionStore>),
             scratch: None,
             kept_grids: Some(0),
         }
@@ -96,11 +97,11 @@ impl Limits {
     }
 
     /// The cache, unless it is disabled.
-    fn cache(&self) -> Option<Cache> {
+    fn cache(&self) -> Option<FolderStore> {
         if self.no_cache {
             return None;
         }
-        let mut cache = Cache::new(cache_folder(self.cache.as_ref())?);
+        let mut cache = FolderStore::new(cache_folder(self.cache.as_ref())?);
         cache.limit = self.cache_limit.map_or(cache.limit, |bytes| bytes.0);
         Some(cache)
     }
@@ -112,6 +113,6 @@ pub fn cache_folder(asked: Option<&PathBuf>) -> Option<PathBuf> {
         (Some(folder), _) => Some(folder.clone()),
         (None, Some(folder)) if folder.is_empty() => None,
         (None, Some(folder)) => Some(PathBuf::from(folder)),
-        (None, None) => Cache::system_folder(),
+        (None, None) => FolderStore::system_folder(),
     }
 }

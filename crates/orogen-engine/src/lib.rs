@@ -56,5 +56,7 @@ pub use recipe::presets;
 pub use registry::Registry;
 pub use sampler::Sampler;
 pub use session::{Options, Session};
-pub use store::cache::Cache;
+pub use store::folder::FolderStore;
+pub use store::memory::MemoryStore;
+pub use store::solution_store::SolutionStore;
 pub use world::World;

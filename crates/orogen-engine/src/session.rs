@@ -4,10 +4,10 @@ use crate::budget::Budget;
 use crate::op::Solution;
 use crate::plan::key::Key;
 use crate::pool::Pool;
-use crate::store::cache::Cache;
 use crate::store::grids::GridStore;
+use crate::store::solution_store::SolutionStore;
 use crate::store::solutions::Store;
-use orogen_grid::error::Result;
+use orogen_grid::error::{Error, Result};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -19,9 +19,10 @@ pub struct Options {
     /// Memory limit, in bytes, for all concurrent requests and reservations of callers. Larger solutions are kept on
     /// disk.
     pub memory: Budget,
-    /// The cache of solutions for later runs; `None` disables it.
-    pub cache: Option<Cache>,
-    /// The folder for data that does not fit in memory; `None` uses that of the cache, otherwise the system's temporary
+    /// Where solutions are kept for later runs: a [`FolderStore`](crate::FolderStore), a
+    /// [`MemoryStore`](crate::MemoryStore), or a [store of your own](SolutionStore). `None` keeps them for this session only.
+    pub store: Option<Arc<dyn SolutionStore>>,
+    /// The folder for data that does not fit in memory; `None` uses that of the store, otherwise the system's temporary
     /// folder. No files remain in it, even after a kill.
     pub scratch: Option<PathBuf>,
     /// Memory limit, in bytes, for grids of expensive filters that are kept for later requests. `None` means 256 MiB,
@@ -70,7 +71,7 @@ impl Session {
         let most = options.memory.limit().map_or(KEPT_GRIDS, |limit| KEPT_GRIDS.min(limit / 4));
         Ok(Session {
             pool: Arc::new(pool),
-            store: Arc::new(Store::new(options.cache, options.scratch)),
+            store: Arc::new(Store::new(options.store, options.scratch)),
             grids: Arc::new(GridStore::new(options.kept_grids.unwrap_or(most))),
             budget: options.memory,
         })
@@ -94,6 +95,13 @@ impl Session {
         self.store.made()
     }
 
+    /// The latest failure of the [store](Options::store), or a damaged entry that it had. It stops no work: what cannot be
+    /// read is solved again, and what cannot be stored stays in memory.
+    #[must_use]
+    pub fn store_failure(&self) -> Option<Error> {
+        self.store.failure()
+    }
+
     /// Number of filters that were not applied because their grids were kept from an earlier request.
     #[must_use]
     pub fn filters_found(&self) -> u64 {
@@ -106,13 +114,13 @@ impl Session {
         self.store.memory().saturating_add(self.grids.memory())
     }
 
-    /// The same threads and memory with an empty store and without a cache.
+    /// The same threads and memory without any solutions and without a store for later runs.
     #[must_use]
     pub fn with_empty_store(&self) -> Session {
         self.with_solutions(Vec::new())
     }
 
-    /// The same threads and memory with the given solutions and without a cache.
+    /// The same threads and memory with the given solutions and without a store for later runs.
     pub(crate) fn with_solutions(&self, solved: Vec<(Key, Arc<Solution>)>) -> Session {
         Session {
             store: Arc::new(Store::holding(solved, self.store.scratch().clone())),

@@ -46,6 +46,7 @@
 
 pub mod aggregate;
 pub mod analysis;
+mod checks;
 pub mod contour;
 pub mod erosion;
 pub mod error;

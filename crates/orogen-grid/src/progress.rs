@@ -121,6 +121,15 @@ impl Progress {
         }
     }
 
+    /// [`Progress::advance`] and [`Progress::check`] in one, for loops.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Cancelled`] after cancellation.
+    pub fn step(&self, work: f64) -> Result<()> {
+        self.advance(work);
+        self.check()
+    }
+
     /// Counts the whole piece as done.
     pub fn finish(&self) {
         if self.is_heard() {

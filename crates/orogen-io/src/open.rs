@@ -1,9 +1,9 @@
 //! Opening files of others. Named pipes and devices may block or never end, so they are rejected.
 
-use std::fs::{self, File};
 use std::io::Read;
 use std::path::Path;
 
+use crate::fs::{self, File};
 use orogen_grid::error::{Error, ErrorKind, Result};
 
 /// Paths of descriptors that the parent process has opened, such as a shell's `<(command)`: opening them does not

@@ -1,11 +1,12 @@
 //! A grid in a file, in square pages with checksums; the pages read last are kept in memory.
 
 use crate::file::Temporary;
+use crate::fs;
+use crate::read_at::{PositionedFile, ReadAt};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use std::collections::HashMap;
-use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -42,14 +43,20 @@ pub fn checksum(bytes: &[u8]) -> u32 {
     crc32fast::hash(bytes)
 }
 
-/// A file with pages, which several grids may share.
+/// Bytes with pages, which several grids may share. Any number of threads read at the same time.
 #[derive(Debug)]
 pub struct PageFile {
-    file: Mutex<File>,
+    bytes: Bytes,
     /// The name in messages.
     path: PathBuf,
     /// Its temporary name, if it could not be removed at once.
     _name: Option<Temporary>,
+}
+
+#[derive(Debug)]
+enum Bytes {
+    Scratch(PositionedFile),
+    Stored(Box<dyn ReadAt>),
 }
 
 impl PageFile {
@@ -59,28 +66,31 @@ impl PageFile {
     /// # Errors
     /// If it cannot be created.
     pub fn scratch(folder: &Path) -> Result<PageFile> {
-        let made = std::fs::create_dir_all(folder).and_then(|()| Temporary::create(folder));
+        let made = fs::create_dir_all(folder).and_then(|()| Temporary::create(folder));
         let (name, file) = made.map_err(|cause| Error::file("work in", folder, &cause))?;
-        Ok(PageFile { file: Mutex::new(file), path: folder.to_path_buf(), _name: name.unlink() })
+        let bytes = Bytes::Scratch(PositionedFile::new(file));
+        Ok(PageFile { bytes, path: folder.to_path_buf(), _name: name.unlink() })
     }
 
-    /// An open file.
+    /// Stored bytes, with the name for messages. Nothing can be written to them.
     #[must_use]
-    pub fn open(file: File, path: &Path) -> PageFile {
-        PageFile { file: Mutex::new(file), path: path.to_path_buf(), _name: None }
+    pub fn stored(bytes: Box<dyn ReadAt>, name: &Path) -> PageFile {
+        PageFile { bytes: Bytes::Stored(bytes), path: name.to_path_buf(), _name: None }
     }
 
     /// Reads bytes at an offset.
     pub fn read(&self, at: u64, bytes: &mut [u8]) -> io::Result<()> {
-        let mut file = lock(&self.file);
-        file.seek(SeekFrom::Start(at))?;
-        file.read_exact(bytes)
+        match &self.bytes {
+            Bytes::Scratch(file) => file.read_exact_at(at, bytes),
+            Bytes::Stored(stored) => stored.read_exact_at(at, bytes),
+        }
     }
 
     fn write(&self, at: u64, bytes: &[u8]) -> io::Result<()> {
-        let mut file = lock(&self.file);
-        file.seek(SeekFrom::Start(at))?;
-        file.write_all(bytes)
+        match &self.bytes {
+            Bytes::Scratch(file) => file.write_all_at(at, bytes),
+            Bytes::Stored(_) => Err(io::ErrorKind::ReadOnlyFilesystem.into()),
+        }
     }
 }
 
@@ -115,6 +125,7 @@ impl Pages {
     }
 
     /// A grid whose pages are in a file from offset `base`, with their checksums.
+    #[must_use]
     pub fn within(file: Arc<PageFile>, base: u64, sums: Vec<Option<u32>>, window: Window) -> Pages {
         Pages { window, file, base, sums, kept: Mutex::default() }
     }

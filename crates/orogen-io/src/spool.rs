@@ -1,10 +1,10 @@
 //! Temporary storage for bytes whose position in a file is not known yet: in memory if they are few, otherwise on disk.
 
-use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use crate::file::{self, Temporary};
+use crate::fs::{self, File};
 
 /// Bytes that stay in memory: little compared with any `--memory`, and enough for small files.
 pub const IN_MEMORY: usize = 8 << 20;
@@ -90,8 +90,8 @@ impl Write for Spool {
 /// The folder for a temporary file that will be copied to `path`.
 fn folder_of(path: &Path) -> PathBuf {
     match fs::canonicalize(path) {
-        Ok(real) if real.is_file() => file::folder(&real).to_path_buf(),
-        Ok(_) => std::env::temp_dir(),
+        Ok(real) if fs::is_file(&real) => file::folder(&real).to_path_buf(),
+        Ok(_) => fs::temporary_folder(),
         Err(_) => file::folder(path).to_path_buf(),
     }
 }

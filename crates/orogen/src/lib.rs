@@ -38,7 +38,7 @@ pub use orogen_grid::{
 #[doc(hidden)]
 pub use orogen_io::test_folder;
 #[doc(inline)]
-pub use orogen_io::{dem, file, format, open, palette, raster, spool};
+pub use orogen_io::{dem, file, format, open, palette, raster, read_at, spool};
 #[doc(inline)]
 pub use orogen_output::{builder, export, fit, map, mesh, render, sheet, survey};
 
@@ -58,6 +58,8 @@ pub use recipe::presets;
 pub use registry::Registry;
 pub use sampler::Sampler;
 pub use session::{Options, Session};
-pub use store::cache::Cache;
+pub use store::folder::FolderStore;
+pub use store::memory::MemoryStore;
+pub use store::solution_store::SolutionStore;
 pub use words::nearest;
 pub use world::World;

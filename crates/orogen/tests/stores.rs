@@ -5,13 +5,19 @@ mod support;
 
 use orogen::field::{fbm::Fbm, warp::Warp};
 use orogen::filter::{blur::Blur, slope::Slope};
+use orogen::read_at::ReadAt;
 use orogen::solver::{bake::Bake, normalise::Normalise};
+use orogen::store::solution_store::{Entry, EntryKey};
 use orogen::test_folder::TestFolder;
-use orogen::{Budget, Cache, Grid, Options, Progress, Recipe, Window, World};
+use orogen::{
+    Budget, ErrorKind, FolderStore, Grid, MemoryStore, Options, Progress, Recipe, Session, SolutionStore, Window, World,
+};
+use std::collections::BTreeMap;
 use std::fs;
+use std::io;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use support::world_of;
 
@@ -29,8 +35,8 @@ impl Folder {
         names
     }
 
-    fn cache(&self) -> Cache {
-        Cache { slower_than: Duration::ZERO, ..Cache::new(&*self.0) }
+    fn cache(&self) -> FolderStore {
+        FolderStore { slower_than: Duration::ZERO, ..FolderStore::new(&*self.0) }
     }
 }
 
@@ -89,13 +95,13 @@ fn memory_disk_and_folder_make_the_same_bits() {
         for (threads, memory, cached) in
             [(1, None, true), (2, None, true), (2, short, false), (1, short, true), (2, short, true)]
         {
-            let cache = cached.then(|| folder.cache());
+            let store = cached.then(|| Arc::new(folder.cache()) as Arc<dyn SolutionStore>);
             let world = open(
                 &recipe,
                 Options {
                     threads: Some(threads),
                     memory: Budget::of(memory),
-                    cache,
+                    store,
                     scratch: Some(folder.0.to_path_buf()),
                     ..Options::default()
                 },
@@ -144,8 +150,8 @@ fn tiles_of_any_size_solve_the_same() {
 }
 
 /// Returns the work to make a window, the number of progress reports, and the grid.
-fn made(recipe: &Recipe, cache: Cache, window: &Window) -> (f64, u64, Grid) {
-    let world = open(recipe, Options { cache: Some(cache), ..Options::default() });
+fn made(recipe: &Recipe, cache: FolderStore, window: &Window) -> (f64, u64, Grid) {
+    let world = open(recipe, Options { store: Some(Arc::new(cache)), ..Options::default() });
     let plan = world.plan(&["height"], window).unwrap();
     let work = world.work(&plan);
     let reports = Arc::new(AtomicU64::new(0));
@@ -191,11 +197,11 @@ fn a_later_run_finds_what_was_solved_and_makes_again_what_is_damaged() {
 fn what_was_quick_is_not_kept_and_no_folder_is_no_error() {
     let folder = Folder::new("quick");
     let window = Window::new(20, 20, 10.0);
-    let slow = Cache { slower_than: Duration::from_secs(3600), ..folder.cache() };
+    let slow = FolderStore { slower_than: Duration::from_secs(3600), ..folder.cache() };
     let (_, _, expect) = made(&stacked(10.0, false), slow, &window);
     assert!(folder.names().is_empty());
     fs::write(folder.0.join("file"), "in the way").unwrap();
-    let (_, _, again) = made(&stacked(10.0, false), Cache::new(folder.0.join("file")), &window);
+    let (_, _, again) = made(&stacked(10.0, false), FolderStore::new(folder.0.join("file")), &window);
     assert_eq!(again, expect);
 }
 
@@ -204,13 +210,13 @@ fn what_cannot_fit_is_refused_with_the_figure() {
     let recipe = stacked(10.0, false);
     let world = open(&recipe, Options { threads: Some(2), memory: Budget::of(2 << 20), ..Options::default() });
     let error = world.window("height", &Window::new(10, 10, 10.0)).unwrap_err();
-    assert_eq!(error.kind(), orogen::ErrorKind::Memory);
+    assert_eq!(error.kind(), ErrorKind::Memory);
     let text = error.to_string();
     assert!(text.contains(", and 2.0") && text.contains(" MiB is allowed"), "{text}");
     let recipe = stacked(10.0, true);
     let none = Options { memory: Budget::of(8 << 20), scratch: Some("/dev/null/nowhere".into()), ..Options::default() };
     let error = open(&recipe, none).window("height", &Window::new(10, 10, 10.0)).unwrap_err();
-    assert_eq!(error.kind(), orogen::ErrorKind::File, "{error}");
+    assert_eq!(error.kind(), ErrorKind::File, "{error}");
     assert!(error.to_string().contains("cannot work in /dev/null/nowhere"), "{error}");
 }
 
@@ -259,10 +265,223 @@ fn several_worlds_share_a_folder_at_once() {
             scope.spawn(move || {
                 let world = open(
                     recipe,
-                    Options { threads: Some(1), memory: Budget::of(memory), cache: Some(cache), ..Options::default() },
+                    Options {
+                        threads: Some(1),
+                        memory: Budget::of(memory),
+                        store: Some(Arc::new(cache)),
+                        ..Options::default()
+                    },
                 );
                 same("shared", expect, &layers(&world, &window));
             });
         }
     });
+}
+
+/// What the [`Objects`] do wrong.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Flaw {
+    None,
+    /// Nothing can be read.
+    Get,
+    /// Nothing can be stored.
+    Put,
+    /// Another entry's bytes.
+    Swapped,
+    /// The given read from now on, and all after it, fail.
+    Read(i64),
+    /// The given read from now on gets a flipped bit, in the middle.
+    Flipped(i64),
+    /// Bytes are missing at the end.
+    Short,
+}
+
+/// A program's own store: bytes in a map, with faults.
+#[derive(Debug)]
+struct Objects {
+    held: Mutex<BTreeMap<EntryKey, Arc<Vec<u8>>>>,
+    fault: Mutex<Flaw>,
+    /// Reads until the fault.
+    left: Arc<AtomicI64>,
+    removed: AtomicU64,
+}
+
+#[derive(Debug)]
+struct Object {
+    bytes: Arc<Vec<u8>>,
+    fault: Flaw,
+    left: Arc<AtomicI64>,
+}
+
+impl Objects {
+    fn new() -> Arc<Objects> {
+        let (held, fault) = (Mutex::default(), Mutex::new(Flaw::None));
+        Arc::new(Objects { held, fault, left: Arc::default(), removed: AtomicU64::new(0) })
+    }
+
+    fn set(&self, fault: Flaw) {
+        *self.fault.lock().unwrap() = fault;
+        if let Flaw::Read(left) | Flaw::Flipped(left) = fault {
+            self.left.store(left, Ordering::Relaxed);
+        }
+    }
+
+    fn fault(&self) -> Flaw {
+        *self.fault.lock().unwrap()
+    }
+}
+
+impl SolutionStore for Objects {
+    fn get(&self, key: &EntryKey) -> io::Result<Option<Box<dyn ReadAt>>> {
+        let (held, fault) = (self.held.lock().unwrap(), self.fault());
+        let bytes = match fault {
+            Flaw::Get => return Err(io::Error::other("the network is gone")),
+            Flaw::Swapped => held.iter().find(|(other, _)| *other != key).map(|(_, bytes)| bytes),
+            _ => held.get(key),
+        };
+        let object = |bytes: &Arc<Vec<u8>>| Object { bytes: Arc::clone(bytes), fault, left: Arc::clone(&self.left) };
+        Ok(bytes.map(|bytes| Box::new(object(bytes)) as Box<dyn ReadAt>))
+    }
+
+    fn put(&self, key: &EntryKey, entry: &Entry) -> io::Result<()> {
+        if self.fault() == Flaw::Put {
+            return Err(io::Error::other("no more credit"));
+        }
+        let bytes = entry.to_bytes()?;
+        assert_eq!(bytes.len() as u64, entry.length());
+        self.held.lock().unwrap().insert(*key, Arc::new(bytes));
+        Ok(())
+    }
+
+    fn contains(&self, key: &EntryKey) -> bool {
+        self.held.lock().unwrap().contains_key(key)
+    }
+
+    fn remove(&self, key: &EntryKey) -> io::Result<()> {
+        self.removed.fetch_add(1, Ordering::Relaxed);
+        self.held.lock().unwrap().remove(key);
+        Ok(())
+    }
+}
+
+impl ReadAt for Object {
+    fn length(&self) -> io::Result<u64> {
+        Ok(self.bytes.len() as u64 - u64::from(self.fault == Flaw::Short))
+    }
+
+    fn read_exact_at(&self, at: u64, bytes: &mut [u8]) -> io::Result<()> {
+        self.bytes.read_exact_at(at, bytes)?;
+        match self.fault {
+            Flaw::Read(_) if self.left.fetch_sub(1, Ordering::Relaxed) <= 0 => {
+                Err(io::Error::other("the connection was reset"))
+            }
+            Flaw::Flipped(_) if self.left.fetch_sub(1, Ordering::Relaxed) == 0 => {
+                let middle = bytes.len() / 2;
+                bytes[middle] ^= 4;
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A session with a store: the layers, how many solutions it made, and the store's failure.
+fn through(
+    recipe: &Recipe,
+    store: Arc<dyn SolutionStore>,
+    memory: Option<u64>,
+    window: &Window,
+) -> (orogen::Result<Vec<Grid>>, u64, Option<String>) {
+    let options = Options { threads: Some(2), memory: Budget::of(memory), store: Some(store), ..Options::default() };
+    let session = Session::new(options).unwrap();
+    let world = session.open(recipe.clone()).unwrap();
+    let made = world.grids(&["height", "steep", "again"], window, &Progress::none());
+    (made, session.solutions_made(), session.store_failure().map(|error| error.to_string()))
+}
+
+#[test]
+fn a_store_of_a_program_may_fail_but_never_changes_a_bit() {
+    let recipe = stacked(10.0, false);
+    let window = Window::new(90, 80, 10.0).at(300, 200);
+    let expect = layers(&open(&recipe, Options::default()), &window);
+    let objects = Objects::new();
+    let run = |memory| through(&recipe, objects.clone(), memory, &window);
+    let failure = |fault| {
+        objects.set(fault);
+        let (layers, made, failure) = run(None);
+        same(&format!("{fault:?}"), &expect, &layers.unwrap());
+        objects.set(Flaw::None);
+        (made, failure.unwrap_or_default())
+    };
+    let (made, told) = failure(Flaw::Put);
+    assert_eq!(made, 3);
+    assert!(told.starts_with("cannot store the solution ") && told.ends_with(": no more credit"), "{told}");
+    assert_eq!(failure(Flaw::None), (3, String::new()));
+    assert_eq!(failure(Flaw::None), (0, String::new()), "found");
+    let (made, told) = failure(Flaw::Get);
+    assert_eq!(made, 3);
+    assert!(told.starts_with("cannot read the stored solution ") && told.ends_with(": the network is gone"), "{told}");
+    // Damaged entries are removed, solved again and stored again.
+    for (fault, expected) in [
+        (Flaw::Swapped, "is not a stored solution: "),
+        (Flaw::Short, "is not a stored solution: "),
+        (Flaw::Read(0), "the connection was reset"),
+        (Flaw::Read(4), "the connection was reset"),
+        (Flaw::Flipped(0), "is not a stored solution: "),
+        (Flaw::Flipped(1), "is not a stored solution: "),
+        (Flaw::Flipped(4), "are damaged"),
+    ] {
+        let removed = objects.removed.load(Ordering::Relaxed);
+        let (made, told) = failure(fault);
+        assert!(made > 0 && told.contains(expected), "{fault:?}: {made} made, {told}");
+        assert!(objects.removed.load(Ordering::Relaxed) > removed, "{fault:?}");
+        assert_eq!(failure(Flaw::None), (0, String::new()), "{fault:?}: stored again");
+    }
+}
+
+#[test]
+fn entries_that_stay_in_a_store_are_the_same_bits_or_an_error() {
+    // More pages than are kept in memory, so that they are read again after they were verified.
+    let recipe = stacked(10.0, true);
+    let window = Window::new(250, 240, 10.0).at(20, 20);
+    let expect = layers(&open(&recipe, Options::default()), &window);
+    let objects = Objects::new();
+    let (mut errors, mut solved, mut fine) = (0, 0, 0);
+    let mut run = |fault, memory| {
+        objects.set(fault);
+        let (layers, made, _) = through(&recipe, objects.clone(), memory, &window);
+        match layers {
+            Ok(layers) => {
+                same(&format!("{fault:?}"), &expect, &layers);
+                *(if made > 0 { &mut solved } else { &mut fine }) += 1;
+            }
+            Err(error) => {
+                assert_eq!(error.kind(), ErrorKind::File, "{fault:?}: {error}");
+                assert!(error.to_string().contains("the spilled data in"), "{error}");
+                errors += 1;
+            }
+        }
+    };
+    run(Flaw::None, None);
+    for reads in [1, 20, 40, 50, 53, 55, 1_000_000] {
+        for fault in [Flaw::Read(reads), Flaw::Flipped(reads)] {
+            run(fault, Some(10 << 20));
+            run(Flaw::None, None);
+        }
+    }
+    assert!(errors > 0 && solved > 1 && fine > 0, "{errors} errors, {solved} solved, {fine} found");
+}
+
+#[test]
+fn sessions_share_a_store_in_memory() {
+    let recipe = stacked(10.0, false);
+    let window = Window::new(90, 80, 10.0).at(300, 200);
+    let expect = layers(&open(&recipe, Options::default()), &window);
+    let store = Arc::new(MemoryStore::new(1 << 30));
+    for (memory, solved) in [(None, 3), (None, 0), (Some(6 << 20), 0)] {
+        let (layers, made, failure) = through(&recipe, store.clone(), memory, &window);
+        same(&format!("{memory:?}"), &expect, &layers.unwrap());
+        assert_eq!((made, failure), (solved, None), "{memory:?}");
+    }
+    assert_eq!(store.entries(), 3);
 }

@@ -23,7 +23,7 @@ pub fn install() -> Result {
     })
 }
 
-/// Builds without threads, with 128-bit vectors, and makes every preset.
+/// Builds without threads and without the feature `fs`, with 128-bit vectors, and makes every preset.
 pub fn check() -> Result {
     let folder = super::folder().join("wasm");
     let mut build =

@@ -5,7 +5,7 @@ use std::time::{Duration, SystemTime};
 
 use orogen::store::listing::Stored;
 use orogen::words::{bytes, count, number};
-use orogen::{Cache, Window};
+use orogen::{FolderStore, Window};
 use serde_json::json;
 
 use crate::failure::Failure;
@@ -65,10 +65,10 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-fn cache(asked: Option<&PathBuf>) -> Result<Cache, Failure> {
+fn cache(asked: Option<&PathBuf>) -> Result<FolderStore, Failure> {
     let folder =
         cache_folder(asked).ok_or_else(|| Failure::Usage("no cache folder is known; name one with --cache".into()))?;
-    Ok(Cache::new(folder))
+    Ok(FolderStore::new(folder))
 }
 
 fn list(args: &List) -> Result<(), Failure> {

@@ -62,13 +62,14 @@ impl Filter for Blur {
         }
         let weights = self.weights(window.cell);
         let band = band(reach);
+        context.progress.expect(window.len() as f64);
         out.data_mut().par_chunks_mut(band * window.width).enumerate().try_for_each_init(
             || vec![0.0f32; TILE * (band + 2 * reach)],
             |rows, (b, out)| {
-                context.progress.check()?;
                 let (top, height) = (b * band, out.len() / window.width);
                 for left in (0..window.width).step_by(TILE) {
                     let width = TILE.min(window.width - left);
+                    context.progress.step((width * height) as f64)?;
                     // Along x into rows that stay in cache, then along y out of them.
                     for (j, row) in rows.chunks_mut(TILE).take(height + 2 * reach).enumerate() {
                         let source = &source.row(top + j)[left..];

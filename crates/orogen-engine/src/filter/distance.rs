@@ -1,7 +1,7 @@
 //! Distance to the nearest sample above a threshold.
 
 use crate::op::{Context, Filter};
-use orogen_grid::analysis::distance::nearest;
+use orogen_grid::analysis::distance::nearest_with;
 use orogen_grid::analysis::selection::Selection;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
@@ -52,14 +52,17 @@ impl Filter for Distance {
         context: &Context,
     ) -> Result<()> {
         let ([Some(source)], [distance, near]) = (inputs, out) else { return Ok(()) };
-        context.progress.check()?;
-        let samples = nearest(source, self.threshold as f32, self.halo(window.cell));
+        let samples = nearest_with(source, self.threshold as f32, self.halo(window.cell), context.progress)?;
         let fade = Selection::new([-1.0, 0.0], [0.0, self.reach]);
         let metres = |steps: f32| (f64::from(steps) * window.cell).min(self.reach) as f32;
         for (layer, near) in [(distance, false), (near, true)] {
             let Some(layer) = layer else { continue };
-            for (out, steps) in layer.data_mut().iter_mut().zip(samples.data()) {
-                *out = if near { fade.of(metres(*steps)) } else { metres(*steps) };
+            let width = window.width.max(1);
+            for (row, samples) in layer.data_mut().chunks_mut(width).zip(samples.data().chunks(width)) {
+                context.progress.check()?;
+                for (out, steps) in row.iter_mut().zip(samples) {
+                    *out = if near { fade.of(metres(*steps)) } else { metres(*steps) };
+                }
             }
         }
         Ok(())

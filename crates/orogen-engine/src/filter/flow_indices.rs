@@ -51,8 +51,9 @@ impl Filter for FlowIndices {
         let level = LevelGround { least_slope: self.least_slope };
         for (layer, index) in out.iter_mut().zip(indices) {
             let Some(layer) = layer.as_mut().filter(|_| !window.is_empty()) else { continue };
+            context.progress.expect(window.height as f64);
             layer.data_mut().par_chunks_mut(window.width).enumerate().try_for_each(|(j, row)| {
-                context.progress.check()?;
+                context.progress.step(1.0)?;
                 let rows = [source.row(j), source.row(j + 1), source.row(j + 2)];
                 let areas = &flow.row(j + 1)[1..];
                 gradients_between(rows, window.cell, |i, gradient| {

@@ -1,7 +1,7 @@
 //! Landforms by geomorphons.
 
 use crate::op::{Context, Filter};
-use orogen_grid::analysis::geomorphons::{Level, Look, geomorphons};
+use orogen_grid::analysis::geomorphons::{Level, Look, geomorphons_with};
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
@@ -61,12 +61,12 @@ impl Filter for Geomorphons {
         context: &Context,
     ) -> Result<()> {
         let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
-        context.progress.check()?;
         let level = match self.comparison {
             Comparison::Steepest => Level::BySteepest,
             Comparison::Difference => Level::ByDifference,
         };
-        let forms = geomorphons(source, &Look::round((self.reach / window.cell).min(FARTHEST), self.flat, level));
+        let look = Look::round((self.reach / window.cell).min(FARTHEST), self.flat, level);
+        let forms = geomorphons_with(source, &look, context.progress)?;
         out.data_mut().iter_mut().zip(forms.data()).for_each(|(out, form)| *out = f32::from(*form));
         Ok(())
     }

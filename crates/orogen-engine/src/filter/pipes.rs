@@ -85,6 +85,7 @@ impl Filter for Pipes {
         let planes: [&dyn Fn() -> Grid; 4] =
             [&|| wet.plane(BED), &|| wet.plane(DEPTH), &|| carried(&wet), &|| wet.speed(&law)];
         for (layer, plane) in out.iter_mut().zip(planes) {
+            context.progress.check()?;
             if let Some(layer) = layer {
                 layer.paste(&plane());
             }

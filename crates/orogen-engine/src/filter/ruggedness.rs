@@ -1,7 +1,7 @@
 //! Terrain ruggedness index.
 
 use crate::op::{Context, Filter};
-use orogen_grid::analysis::roughness::riley;
+use orogen_grid::analysis::roughness::riley_with;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
 
@@ -28,8 +28,7 @@ impl Filter for Ruggedness {
 
     fn apply(&self, inputs: &[Option<&Grid>], _: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
-        context.progress.check()?;
-        *out = riley(source);
+        *out = riley_with(source, context.progress)?;
         Ok(())
     }
 }

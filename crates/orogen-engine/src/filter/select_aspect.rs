@@ -46,8 +46,9 @@ impl Filter for SelectAspect {
         let directions = Selection::new([-1.0, self.width], [0.0, self.falloff]);
         let slopes = Selection::new([self.least_slope, 90.0], [self.least_slope, 0.0]);
         let direction = self.direction as f32;
+        context.progress.expect(window.height as f64);
         out.data_mut().par_chunks_mut(window.width.max(1)).enumerate().try_for_each(|(j, row)| {
-            context.progress.check()?;
+            context.progress.step(1.0)?;
             gradients_between([source.row(j), source.row(j + 1), source.row(j + 2)], window.cell, |i, gradient| {
                 let off = (aspect_of(gradient) - direction).abs() % 360.0;
                 // The smaller of the two angles. Level ground, whose aspect is not a number, is not selected.

@@ -70,8 +70,9 @@ impl Filter for SelectCurvature {
             Bend::Profile => Curvature::Profile,
             Bend::Plan => Curvature::Plan,
         };
+        context.progress.expect(window.height as f64);
         out.data_mut().par_chunks_mut(window.width.max(1)).enumerate().try_for_each(|(j, row)| {
-            context.progress.check()?;
+            context.progress.step(1.0)?;
             let rows = [0, 1, 2].map(|k| source.row(j + k * apart));
             for (i, out) in row.iter_mut().enumerate() {
                 let heights = rows.map(|row| [0, 1, 2].map(|k| f64::from(row[i + k * apart])));

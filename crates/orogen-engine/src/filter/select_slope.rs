@@ -42,8 +42,9 @@ impl Filter for SelectSlope {
     ) -> Result<()> {
         let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
         let selection = Selection::new(self.range, self.falloff);
+        context.progress.expect(window.height as f64);
         out.data_mut().par_chunks_mut(window.width.max(1)).enumerate().try_for_each(|(j, row)| {
-            context.progress.check()?;
+            context.progress.step(1.0)?;
             gradients_between([source.row(j), source.row(j + 1), source.row(j + 2)], window.cell, |i, gradient| {
                 row[i] = selection.of(libm::atanf(gradient.steepness()).to_degrees());
             });

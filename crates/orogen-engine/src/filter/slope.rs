@@ -61,8 +61,9 @@ impl Filter for Slope {
             [&angle, &|gradient| gradient.east, &|gradient| -gradient.north];
         for (layer, value) in out.iter_mut().zip(values) {
             let Some(layer) = layer.as_mut().filter(|_| !window.is_empty()) else { continue };
+            context.progress.expect(window.height as f64);
             layer.data_mut().par_chunks_mut(window.width).enumerate().try_for_each(|(j, row)| {
-                context.progress.check()?;
+                context.progress.step(1.0)?;
                 let rows = [source.row(j), source.row(j + 1), source.row(j + 2)];
                 gradients_between(rows, window.cell, |i, gradient| row[i] = value(gradient));
                 Ok(())

@@ -46,7 +46,6 @@ impl Filter for SoilDepth {
 
     fn apply(&self, inputs: &[Option<&Grid>], _: &Window, out: &mut [Option<Grid>], context: &Context) -> Result<()> {
         let ([Some(source)], [Some(out)]) = (inputs, out) else { return Ok(()) };
-        context.progress.check()?;
         let soil = Soil {
             production: self.production,
             decay: self.decay,
@@ -55,7 +54,7 @@ impl Filter for SoilDepth {
             density_ratio: self.density_ratio,
             deepest: self.deepest,
         };
-        *out = soil.depths(source);
+        *out = soil.depths_with(source, context.progress)?;
         Ok(())
     }
 

@@ -1,10 +1,11 @@
 //! Topographic position index.
 
 use crate::op::{Context, Filter};
-use orogen_grid::analysis::position::{class, positions};
+use orogen_grid::analysis::position::{class, positions_with};
 use orogen_grid::analysis::slope::degrees;
 use orogen_grid::error::Result;
 use orogen_grid::grid::{Grid, Window};
+use rayon::prelude::*;
 
 op! {
     /// Topographic position index (TPI): the height above the mean of a surrounding disc, and the slope position derived from it (Weiss
@@ -37,6 +38,9 @@ op! {
 /// Maximum radius in samples.
 const FARTHEST: f64 = 1024.0;
 
+/// Rows whose slopes are computed together.
+const BAND: usize = 64;
+
 impl Filter for TopographicPosition {
     fn halo(&self, cell: f64) -> usize {
         (self.radius / cell).floor().clamp(1.0, FARTHEST) as usize
@@ -55,20 +59,32 @@ impl Filter for TopographicPosition {
         context: &Context,
     ) -> Result<()> {
         let ([Some(source)], [position, deviation, classes]) = (inputs, out) else { return Ok(()) };
-        context.progress.check()?;
-        let found = positions(source, self.halo(window.cell));
+        let found = positions_with(source, self.halo(window.cell), context.progress)?;
+        let width = window.width.max(1);
         for (layer, value) in [(position, 0), (deviation, 1)] {
             let Some(layer) = layer else { continue };
-            for (out, found) in layer.data_mut().iter_mut().zip(found.data()) {
-                *out = if value == 0 { found.above_mean } else { found.deviation };
+            for (row, found) in layer.data_mut().chunks_mut(width).zip(found.data().chunks(width)) {
+                context.progress.check()?;
+                for (out, found) in row.iter_mut().zip(found) {
+                    *out = if value == 0 { found.above_mean } else { found.deviation };
+                }
             }
         }
         if let Some(classes) = classes {
-            let slopes = source.crop(&window.grown(1)).map(|around| degrees(&around));
-            let slopes = slopes.as_ref().map_or(&[][..], Grid::data);
-            for ((out, found), slope) in classes.data_mut().iter_mut().zip(found.data()).zip(slopes) {
-                *out = f32::from(class(found.deviation, *slope));
-            }
+            // Slopes of a few rows at a time.
+            let found = found.data().par_chunks(BAND * width);
+            classes.data_mut().par_chunks_mut(BAND * width).zip(found).enumerate().try_for_each(
+                |(b, (out, found))| {
+                    context.progress.check()?;
+                    let band = Window { y: window.y + (b * BAND) as i64, height: out.len() / width, ..*window };
+                    let slopes = source.crop(&band.grown(1)).map(|around| degrees(&around));
+                    let slopes = slopes.as_ref().map_or(&[][..], Grid::data);
+                    for ((out, found), slope) in out.iter_mut().zip(found).zip(slopes) {
+                        *out = f32::from(class(found.deviation, *slope));
+                    }
+                    Ok(())
+                },
+            )?;
         }
         Ok(())
     }

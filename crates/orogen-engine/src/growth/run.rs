@@ -19,6 +19,7 @@ use crate::world::World;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_grid::progress::Progress;
+use orogen_io::fs;
 use orogen_io::spool::Spool;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
@@ -211,7 +212,7 @@ impl<'w> Growth<'w> {
     /// The spool for frames that wait for the end of their stage.
     fn spool(&self) -> Result<FrameSpool> {
         let folder = self.world.scratch();
-        std::fs::create_dir_all(folder).map_err(|cause| Error::file("work in", folder, &cause))?;
+        fs::create_dir_all(folder).map_err(|cause| Error::file("work in", folder, &cause))?;
         Ok(FrameSpool::new(Spool::beside(&folder.join("drafts")), draft::window(&self.window)))
     }
 

@@ -13,6 +13,7 @@ use crate::registry::Registry;
 use crate::value::{Span, Spanned, Value};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::words::{bytes, suggestion};
+use orogen_io::fs;
 use orogen_io::open;
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashSet};
@@ -126,7 +127,7 @@ fn folder_of(path: &Path) -> PathBuf {
 
 /// The identity of a file, independent of its name.
 fn known_as(path: &Path) -> String {
-    path.canonicalize().unwrap_or_else(|_| path.to_path_buf()).display().to_string()
+    fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf()).display().to_string()
 }
 
 fn looks_like_a_path(name: &str) -> bool {

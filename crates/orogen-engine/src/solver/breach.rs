@@ -67,8 +67,9 @@ impl Solver for Breach {
         let deepest = self.deepest as f32;
         let out = match self.way {
             Way::Valley => {
-                let drainage = land.route(context.progress)?;
-                breach::breach(&land.heights, &land.outlets, &drainage, deepest)
+                let [routing, cutting] = context.progress.parts([2.0, 1.0]);
+                let drainage = land.route(&routing)?;
+                breach::breach_with(&land.heights, &land.outlets, &drainage, deepest, &cutting)?
             }
             Way::LeastCost => {
                 let longest = (self.longest / land.heights.window().cell).min(f64::from(u32::MAX)) as u32;

@@ -5,7 +5,7 @@ use crate::large::areas::Layers;
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
-use orogen_grid::hydrology::accumulation::accumulate;
+use orogen_grid::hydrology::accumulation::accumulate_with;
 use orogen_grid::hydrology::steepest::Descent;
 use orogen_grid::hydrology::{drainage, fill, strahler, watersheds};
 
@@ -90,21 +90,24 @@ impl Solver for Drainage {
         };
         let filled = sources.keep(filled)?;
         surface.finish();
-        let accumulation = accumulate(&receivers);
+        let accumulation = accumulate_with(&receivers, &counting)?;
         counting.finish();
         context.progress.check()?;
         let cell_area = receivers.window().cell * receivers.window().cell;
         let threshold = cells_of(self.stream, receivers.window(), 0);
         let flow = layer_of(&accumulation.area, |cells| (f64::from(cells) * cell_area) as f32);
-        naming.expect(2.0);
-        let watersheds = watersheds::watersheds(&receivers, &outlets, &accumulation);
-        naming.advance(1.0);
+        let [labelling, ordering] = naming.parts([1.0, 1.0]);
+        let watersheds = watersheds::watersheds_with(&receivers, &outlets, &accumulation, &labelling)?;
+        labelling.finish();
+        let orders = strahler::orders_with(&receivers, &accumulation, threshold, &ordering)?;
+        ordering.finish();
+        drop(accumulation);
         context.progress.check()?;
         let layers = vec![
             sources.keep(flow)?,
             sources.keep(layer_of(receivers.grid(), f32::from))?,
             sources.keep(layer_of(&watersheds, |n| n as f32))?,
-            sources.keep(layer_of(&strahler::orders(&receivers, &accumulation, threshold), f32::from))?,
+            sources.keep(layer_of(&orders, f32::from))?,
             filled,
         ];
         Ok(Solution { layers, scalars: Vec::new() })

@@ -2,11 +2,11 @@
 
 use super::terrain::{Terrain, cells_of, layer_of, memory};
 use crate::op::{Context, Solution, Solver, Sources};
-use orogen_grid::analysis::distance::nearest_in_whole;
+use orogen_grid::analysis::distance::nearest_in_whole_with;
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
-use orogen_grid::hydrology::above_drainage::above_drainage;
-use orogen_grid::hydrology::accumulation::accumulate;
+use orogen_grid::hydrology::above_drainage::above_drainage_with;
+use orogen_grid::hydrology::accumulation::accumulate_with;
 use orogen_grid::hydrology::fill;
 
 op! {
@@ -56,17 +56,18 @@ impl Solver for HeightAboveDrainage {
         drop(land);
         let receivers = drained.receivers;
         context.progress.check()?;
-        let areas = accumulate(&receivers);
+        let areas = accumulate_with(&receivers, &counting)?;
         counting.finish();
         context.progress.check()?;
         let threshold = cells_of(self.stream, &window, 1);
-        let found = above_drainage(filled, &receivers, &areas, threshold);
+        let found = above_drainage_with(filled, &receivers, &areas, threshold, &following)?;
         let layers = [sources.keep(found.height)?, sources.keep(found.distance)?];
         following.finish();
         context.progress.check()?;
         let streams = layer_of(&areas.area, |area| f32::from(u8::from(area >= threshold)));
         drop((areas, receivers));
-        let mut distance = nearest_in_whole(&streams, 1.0);
+        let mut distance = nearest_in_whole_with(&streams, 1.0, &nearing)?;
+        context.progress.check()?;
         let (across, down) = (window.width as f64, window.height as f64);
         let diagonal = (across * across + down * down).sqrt();
         for samples in distance.data_mut() {

@@ -51,6 +51,7 @@ impl Solver for Lakes {
         let drainage = land.route(&routing)?;
         let fewest = cells_of(self.smallest, land.heights.window(), 4);
         let found = lakes::lakes_with(&land.heights, &land.outlets, &drainage, fewest, &filling)?;
+        context.progress.check()?;
         let mut depth = land.heights;
         for (depth, (surface, bed)) in
             depth.data_mut().iter_mut().zip(found.surface.data().iter().zip(found.bed.data()))

@@ -4,8 +4,8 @@ use super::terrain::{Terrain, cells_of, layer, layer_of, memory};
 use crate::op::{Context, Solution, Solver, Sources};
 use orogen_grid::error::Result;
 use orogen_grid::grid::Window;
-use orogen_grid::hydrology::accumulation::accumulate;
-use orogen_grid::hydrology::rivers::{Channel, carve};
+use orogen_grid::hydrology::accumulation::accumulate_with;
+use orogen_grid::hydrology::rivers::{Channel, carve_with};
 use orogen_grid::hydrology::{breach, strahler};
 
 op! {
@@ -60,29 +60,32 @@ impl Solver for Rivers {
         let window = *land.heights.window();
         let [routing, breaching, counting, carving] = context.progress.parts([2.0, 1.0, 1.0, 2.0]);
         let drainage = land.route(&routing)?;
-        let mut ground = breach::breach(&land.heights, &land.outlets, &drainage, self.deepest as f32);
+        let mut ground =
+            breach::breach_with(&land.heights, &land.outlets, &drainage, self.deepest as f32, &breaching)?;
         drop(land);
         breaching.finish();
         context.progress.check()?;
-        let drained = accumulate(&drainage.receivers);
+        let drained = accumulate_with(&drainage.receivers, &counting)?;
         counting.finish();
         context.progress.check()?;
         let cell_area = window.cell * window.cell;
         let threshold = cells_of(self.stream, &window, 1);
-        let orders = strahler::orders(&drainage.receivers, &drained, threshold);
+        let [ordering, carving] = carving.parts([1.0, 1.0]);
+        let orders = strahler::orders_with(&drainage.receivers, &drained, threshold, &ordering)?;
+        ordering.finish();
         let channel = Channel { runoff: self.runoff, width: self.width, depth: self.depth };
         context.progress.check()?;
-        carve(&mut ground, &drainage.receivers, &drained, &orders, &channel);
+        carve_with(&mut ground, &drainage.receivers, &drained, &orders, &channel, &carving)?;
         carving.finish();
         context.progress.check()?;
         let area = |c: usize| f64::from(drained.area.data()[c]) * cell_area;
         let wide = |c: usize| if orders.data()[c] > 0 { channel.width_of(channel.discharge(area(c))) } else { 0.0 };
-        let layers = vec![
-            sources.keep(ground)?,
-            sources.keep(layer(window, |c| area(c) as f32))?,
-            sources.keep(layer(window, |c| wide(c) as f32))?,
-            sources.keep(layer_of(&orders, f32::from))?,
-        ];
+        let mut layers = vec![sources.keep(ground)?];
+        layers.push(sources.keep(layer(window, |c| area(c) as f32))?);
+        context.progress.check()?;
+        layers.push(sources.keep(layer(window, |c| wide(c) as f32))?);
+        context.progress.check()?;
+        layers.push(sources.keep(layer_of(&orders, f32::from))?);
         Ok(Solution { layers, scalars: Vec::new() })
     }
 

@@ -9,7 +9,7 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
 use orogen_io::pages::{self, BYTES, PageFile, Pages, SIDE, checksum};
 use orogen_io::raster::Raster;
-use std::fs::File;
+use orogen_io::read_at::ReadAt;
 use std::io::{self, Write};
 use std::path::Path;
 use std::sync::Arc;
@@ -20,9 +20,11 @@ const MAGIC: &[u8; 16] = b"orogen solved 1\n";
 /// More layers or numbers than any solver makes; a larger count means damage.
 const MOST: usize = 1 << 16;
 
-/// Approximate size of a solution's file, in bytes.
+/// Size of a stored solution, in bytes.
 pub fn length(solution: &Solution) -> u64 {
-    solution.layers.iter().fold(4096, |sum, layer| sum + pages::disk(layer.window()))
+    let head = 64 + 8 * solution.scalars.len() + 40 * solution.layers.len() + 4;
+    let pages: u64 = solution.layers.iter().map(|layer| pages::count(layer.window()) as u64).sum();
+    head as u64 + pages * (BYTES as u64 + 4) + 4
 }
 
 /// Writes a solution.
@@ -66,13 +68,13 @@ pub fn write(out: &mut dyn Write, key: &[u8; 32], solution: &Solution) -> io::Re
     out.write_all(&checksum(&sums).to_le_bytes())
 }
 
-/// Reads a file of [`write`], into memory or left on disk. All bytes are verified first.
+/// Reads the bytes of [`write`], into memory or left in the store. All bytes are verified first.
 ///
 /// # Errors
-/// If the file cannot be read, is incomplete or damaged, or contains another solution.
-pub fn read(file: File, path: &Path, key: &[u8; 32], on_disk: bool) -> Result<Solution> {
-    let length = file.metadata().map_err(|cause| Error::file("read", path, &cause))?.len();
-    let mut reader = Reader { file: Arc::new(PageFile::open(file, path)), path, at: 0 };
+/// If the bytes cannot be read, are incomplete or damaged, or contain another solution.
+pub fn read(bytes: Box<dyn ReadAt>, path: &Path, key: &[u8; 32], on_disk: bool) -> Result<Solution> {
+    let length = bytes.length().map_err(|cause| Error::file("read", path, &cause))?;
+    let mut reader = Reader { file: Arc::new(PageFile::stored(bytes, path)), path, at: 0 };
     let head = reader.head(key, length)?;
     let mut base = reader.at;
     let pages: usize = head.windows.iter().map(pages::count).sum();
@@ -100,9 +102,9 @@ pub fn read(file: File, path: &Path, key: &[u8; 32], on_disk: bool) -> Result<So
 ///
 /// # Errors
 /// If the header cannot be read, is damaged, or belongs to another solution.
-pub fn windows(file: File, path: &Path, key: &[u8; 32]) -> Result<Vec<Window>> {
-    let length = file.metadata().map_err(|cause| Error::file("read", path, &cause))?.len();
-    let mut reader = Reader { file: Arc::new(PageFile::open(file, path)), path, at: 0 };
+pub fn windows(bytes: Box<dyn ReadAt>, path: &Path, key: &[u8; 32]) -> Result<Vec<Window>> {
+    let length = bytes.length().map_err(|cause| Error::file("read", path, &cause))?;
+    let mut reader = Reader { file: Arc::new(PageFile::stored(bytes, path)), path, at: 0 };
     Ok(reader.head(key, length)?.windows)
 }
 

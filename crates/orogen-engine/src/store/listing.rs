@@ -1,14 +1,15 @@
-//! The content of a cache, for listing and removing entries.
+//! The content of a folder of solutions, for listing and removing entries.
 
-use std::fs::{self, File};
+use orogen_io::read_at::PositionedFile;
 use std::io;
 use std::path::PathBuf;
 use std::time::SystemTime;
 
-use super::cache::Cache;
 use super::entry;
+use super::folder::FolderStore;
 use orogen_grid::error::{Error, Result};
 use orogen_grid::grid::Window;
+use orogen_io::fs::{self, File};
 
 /// A stored solution.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +24,7 @@ pub struct Stored {
     pub layers: Option<Vec<Window>>,
 }
 
-impl Cache {
+impl FolderStore {
     /// The stored solutions, the least recently used first. Other files in the folder are ignored.
     ///
     /// # Errors
@@ -37,12 +38,14 @@ impl Cache {
         let mut stored = Vec::new();
         for file in there {
             let file = file.map_err(failed)?;
-            let Some(key) = file.file_name().to_str().and_then(Cache::key_of) else { continue };
+            let Some(key) = file.file_name().to_str().and_then(FolderStore::key_of) else { continue };
             // Another process may have removed it.
             let Ok(meta) = file.metadata() else { continue };
             if meta.is_file() {
                 let path = file.path();
-                let layers = File::open(&path).ok().and_then(|file| entry::windows(file, &path, &key).ok());
+                let layers = File::open(&path)
+                    .ok()
+                    .and_then(|file| entry::windows(Box::new(PositionedFile::new(file)), &path, &key.0).ok());
                 let used = meta.modified().unwrap_or(SystemTime::UNIX_EPOCH);
                 stored.push(Stored { path, bytes: meta.len(), used, layers });
             }

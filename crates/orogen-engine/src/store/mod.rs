@@ -1,7 +1,9 @@
-//! Solutions in memory, and in a folder for later runs.
+//! Solutions in memory, and in a store for later runs.
 
-pub mod cache;
 mod entry;
+pub mod folder;
 pub(crate) mod grids;
 pub mod listing;
+pub mod memory;
+pub mod solution_store;
 pub(crate) mod solutions;

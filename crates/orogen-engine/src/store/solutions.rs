@@ -1,16 +1,18 @@
 //! Solutions by content key.
 
-use super::cache::Cache;
+use super::entry;
+use super::solution_store::{Entry, EntryKey, SolutionStore};
 use crate::op::Solution;
 use crate::plan::key::Key;
-use orogen_grid::error::Result;
+use orogen_grid::error::{Error, Result};
 use orogen_grid::progress::Progress;
+use orogen_io::{file, fs};
 use std::collections::{HashMap, HashSet};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Solutions in memory, backed by a cache.
+/// Solutions in memory, backed by a store for later runs.
 ///
 /// No lock is held while a solution is computed, but its key is marked: other threads that need it wait
 /// ([`Store::begin`]) instead of computing it again.
@@ -18,7 +20,7 @@ pub struct Store {
     held: Mutex<Entries>,
     /// Notified when the computation of a solution ends.
     ended: Condvar,
-    cache: Option<Cache>,
+    backing: Option<Arc<dyn SolutionStore>>,
     /// The folder for rasters that do not fit in memory.
     scratch: PathBuf,
 }
@@ -31,6 +33,8 @@ struct Entries {
     turn: u64,
     /// Number of solutions computed so far.
     made: u64,
+    /// The latest failure of the store behind this one.
+    failure: Option<Error>,
 }
 
 /// The result of [`Store::begin`].
@@ -48,17 +52,18 @@ pub struct Making<'a> {
     key: Key,
     /// Whether the key is marked: not if the same solution is being computed by a thread that cannot be waited for.
     marked: bool,
-    /// The start time, if a cache needs it; some hosts have no clock.
+    /// The start time, if a store needs it; some hosts have no clock.
     begun: Option<Instant>,
 }
 
 impl Making<'_> {
-    /// Stores the solution, also in the cache if it took long.
+    /// Stores the solution, also for later runs if it took long.
     pub fn finish(self, made: Solution) -> Arc<Solution> {
-        if let Some(cache) = self.store.cache.as_ref()
-            && self.begun.is_none_or(|begun| begun.elapsed() >= cache.slower_than)
+        if let Some(backing) = self.store.backing.as_deref()
+            && self.begun.is_none_or(|begun| begun.elapsed() >= backing.slower_than())
+            && let Err(error) = store(backing, &self.key, &made)
         {
-            cache.keep(&self.key, &made);
+            self.store.lock().failure = Some(error);
         }
         self.store.lock().made += 1;
         self.store.hold(self.key, Arc::new(made), false)
@@ -78,23 +83,19 @@ impl Drop for Making<'_> {
 const PATIENCE: Duration = Duration::from_millis(20);
 
 impl Store {
-    /// A store backed by `cache`, with `scratch` for data that does not fit in memory: by default the cache's folder,
-    /// otherwise the system's temporary folder.
-    pub fn new(cache: Option<Cache>, scratch: Option<PathBuf>) -> Store {
-        let scratch = scratch.or_else(|| cache.as_ref().map(|cache| cache.folder.clone()));
-        Store {
-            held: Mutex::default(),
-            ended: Condvar::new(),
-            cache,
-            scratch: scratch.unwrap_or_else(temporary_folder),
-        }
+    /// A store backed by another, with `scratch` for data that does not fit in memory: by default that of the store behind
+    /// it, otherwise the system's temporary folder.
+    pub fn new(backing: Option<Arc<dyn SolutionStore>>, scratch: Option<PathBuf>) -> Store {
+        let behind = || backing.as_deref().and_then(SolutionStore::scratch_folder).map(Path::to_path_buf);
+        let scratch = scratch.or_else(behind).unwrap_or_else(fs::temporary_folder);
+        Store { held: Mutex::default(), ended: Condvar::new(), backing, scratch }
     }
 
-    /// A store with these solutions and without a cache.
+    /// A store with these solutions and no other behind it.
     pub fn holding(solutions: Vec<(Key, Arc<Solution>)>, scratch: PathBuf) -> Store {
         let solutions = solutions.into_iter().map(|(key, solution)| (key, (0, solution))).collect();
         let held = Mutex::new(Entries { solutions, ..Entries::default() });
-        Store { held, ended: Condvar::new(), cache: None, scratch }
+        Store { held, ended: Condvar::new(), backing: None, scratch }
     }
 
     /// The folder for data that does not fit in memory.
@@ -126,7 +127,12 @@ impl Store {
             }
             Some(solution) => Ok(Some(solution)),
             None => {
-                let found = self.cache.as_ref().and_then(|cache| cache.find(key, on_disk));
+                let found = self.backing.as_deref().map_or(Ok(None), |backing| look_up(backing, key, on_disk));
+                // The solution is computed instead.
+                let found = found.unwrap_or_else(|error| {
+                    self.lock().failure = Some(error);
+                    None
+                });
                 Ok(found.map(|solution| self.hold(*key, Arc::new(solution), false)))
             }
         }
@@ -134,7 +140,8 @@ impl Store {
 
     /// Whether a solution is stored under `key`; its file may still turn out to be damaged.
     pub fn has(&self, key: &Key) -> bool {
-        self.lock().solutions.contains_key(key) || self.cache.as_ref().is_some_and(|cache| cache.has(key))
+        self.lock().solutions.contains_key(key)
+            || self.backing.as_deref().is_some_and(|backing| backing.contains(&EntryKey::of(key)))
     }
 
     /// Starts the computation of a solution. If another thread is computing it, waits for it if `may_wait`, otherwise
@@ -159,7 +166,7 @@ impl Store {
     }
 
     fn making(&self, key: Key, marked: bool) -> Making<'_> {
-        Making { store: self, key, marked, begun: self.cache.is_some().then(Instant::now) }
+        Making { store: self, key, marked, begun: if self.backing.is_some() { now() } else { None } }
     }
 
     /// Starts the computation of a solution, whether it is stored or not.
@@ -170,6 +177,11 @@ impl Store {
     /// Number of solutions computed, without reused ones.
     pub fn made(&self) -> u64 {
         self.lock().made
+    }
+
+    /// The latest failure of the store behind this one.
+    pub fn failure(&self) -> Option<Error> {
+        self.lock().failure.clone()
     }
 
     /// Memory of the solutions, in bytes.
@@ -215,10 +227,35 @@ impl Store {
     }
 }
 
-/// The system's temporary folder. A host without files has none, and never needs it.
-fn temporary_folder() -> PathBuf {
-    match cfg!(all(target_family = "wasm", not(target_os = "wasi"))) {
-        true => PathBuf::new(),
-        false => std::env::temp_dir(),
-    }
+/// The time, where the host has a clock.
+fn now() -> Option<Instant> {
+    (!cfg!(all(target_family = "wasm", not(target_os = "wasi")))).then(Instant::now)
+}
+
+/// The solution that `store` has for a content key, verified; `None` if it has none. A damaged entry is removed.
+///
+/// # Errors
+/// If the store fails or its entry is damaged.
+pub(super) fn look_up(store: &dyn SolutionStore, key: &Key, on_disk: bool) -> Result<Option<Solution>> {
+    let key = EntryKey::of(key);
+    let name = store.name(&key);
+    let bytes = match store.get(&key) {
+        Ok(Some(bytes)) => bytes,
+        Ok(None) => return Ok(None),
+        Err(cause) => return Err(Error::file("read the stored solution", &name, &cause)),
+    };
+    entry::read(bytes, &name, &key.0, on_disk).map(Some).inspect_err(|_| {
+        // If it stays, it is found to be damaged again.
+        let _ = store.remove(&key);
+    })
+}
+
+/// Puts a solution into `store`.
+///
+/// # Errors
+/// If the store fails.
+pub(super) fn store(store: &dyn SolutionStore, key: &Key, solution: &Solution) -> Result<()> {
+    let key = EntryKey::of(key);
+    let put = store.put(&key, &Entry::new(&key, solution));
+    put.map_err(|cause| file::explain("store the solution", &store.name(&key), &cause))
 }

@@ -58,11 +58,12 @@ pub fn heights(width: usize, height: usize, ridges: &Ridges, progress: &Progress
         let mut random = Random::new(ridges.seed, u64::from(scale) + 1);
         if scale > 0 {
             let (finer_across, finer_down) = at(scale);
-            tree = tree.refined(finer_across, finer_down, &mut random);
+            tree = tree.refined_checked(finer_across, finer_down, &mut random, &|| progress.check())?;
             progress.check()?;
             map = doubled(&map, across, finer_across, finer_down);
             for _ in 0..3 {
                 map = blurred(&map, finer_across);
+                progress.check()?;
             }
             progress.check()?;
             (across, down) = (finer_across, finer_down);
@@ -71,6 +72,7 @@ pub fn heights(width: usize, height: usize, ridges: &Ridges, progress: &Progress
         let share = if scale == 0 { ridges.density.max(0.3) } else { ridges.density };
         refining.finish();
         tree.grow((tree.room() as f64 * share) as usize, &mut random, &growing)?;
+        progress.check()?;
         let taper = ridges.taper.max(1e-3);
         for (cell, steps) in tree.cells().iter().zip(tree.to_tips()) {
             let high = 1.0 - 1.0 / (1.0 + (f64::from(steps) + 0.5) / taper);

@@ -1,5 +1,6 @@
 //! An aggregate on a grid, as a tree of cells: each cell except the first is attached to a neighbour.
 
+use crate::checks::{never, now_and_then};
 use crate::error::Result;
 use crate::progress::Progress;
 use crate::random::Random;
@@ -153,11 +154,24 @@ impl Tree {
     /// to a random one of its four subcells, and the branches between them bend. The first member, which must be the
     /// central one, stays at the centre.
     pub fn refined(&self, width: usize, height: usize, random: &mut Random) -> Tree {
+        let Ok(fine) = self.refined_checked(width, height, random, &never);
+        fine
+    }
+
+    /// [`Tree::refined`]; `check` is called now and then, and its error ends the work.
+    pub(super) fn refined_checked<E>(
+        &self,
+        width: usize,
+        height: usize,
+        random: &mut Random,
+        check: &impl Fn() -> std::result::Result<(), E>,
+    ) -> std::result::Result<Tree, E> {
         let mut fine = Tree::new(width, height, self.reach);
         let mut places: Vec<(i64, i64)> = Vec::with_capacity(self.cells.len());
         let mut became: Vec<u32> = Vec::with_capacity(self.cells.len());
         for (cell, parent) in self.cells.iter().zip(&self.parents) {
             let (i, j) = ((*cell as usize % self.width) as i64, (*cell as usize / self.width) as i64);
+            now_and_then(places.len(), check)?;
             let chance = random.draw();
             let end = (2 * i + (chance & 1) as i64, 2 * j + (chance >> 1 & 1) as i64);
             let end = (end.0.min(width as i64 - 1), end.1.min(height as i64 - 1));
@@ -179,7 +193,7 @@ impl Tree {
             let cell = fine.cells[member as usize] as usize;
             places.push(((cell % width) as i64, (cell / width) as i64));
         }
-        fine
+        Ok(fine)
     }
 
     /// Adds members along a line from a member to a cell; if it meets another member, the line continues from that one.

@@ -1,6 +1,9 @@
 //! Distance to the nearest marked sample.
 
+use crate::checks::{never, steps};
+use crate::error;
 use crate::grid::Grid;
+use crate::progress::Progress;
 use rayon::prelude::*;
 
 /// The exact Euclidean distance, in samples, to the nearest sample whose value is at least `threshold`; infinite if
@@ -11,39 +14,75 @@ use rayon::prelude::*;
 /// reach.
 #[must_use]
 pub fn nearest(grid: &Grid, threshold: f32, reach: usize) -> Grid {
-    nearest_within(grid, threshold, reach, reach)
+    let Ok(out) = nearest_within(grid, threshold, reach, reach, &never);
+    out
+}
+
+/// [`nearest`] with progress and cancellation.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn nearest_with(grid: &Grid, threshold: f32, reach: usize, progress: &Progress) -> error::Result<Grid> {
+    nearest_within(grid, threshold, reach, reach, &steps(progress, 3 * grid.height()))
 }
 
 /// [`nearest`] for every sample of `grid` and without a limit of distance.
 #[must_use]
 pub fn nearest_in_whole(grid: &Grid, threshold: f32) -> Grid {
-    nearest_within(grid, threshold, 0, grid.width() + grid.height())
+    let Ok(out) = nearest_within(grid, threshold, 0, grid.width() + grid.height(), &never);
+    out
 }
 
-/// The distance of each sample inside a border of `border`, up to `reach`.
-fn nearest_within(grid: &Grid, threshold: f32, border: usize, reach: usize) -> Grid {
+/// [`nearest_in_whole`] with progress and cancellation.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn nearest_in_whole_with(grid: &Grid, threshold: f32, progress: &Progress) -> error::Result<Grid> {
+    nearest_within(grid, threshold, 0, grid.width() + grid.height(), &steps(progress, 3 * grid.height()))
+}
+
+/// The distance of each sample inside a border of `border`, up to `reach`. `row` is called for each of the rows of all
+/// three scans.
+fn nearest_within<E: Send>(
+    grid: &Grid,
+    threshold: f32,
+    border: usize,
+    reach: usize,
+    row: &(impl Fn() -> Result<(), E> + Sync),
+) -> Result<Grid, E> {
     let window = grid.window().shrunk(border);
     let mut out = Grid::filled(window, f32::INFINITY);
     if window.is_empty() {
-        return out;
+        return Ok(out);
     }
-    let columns = down_columns(grid, threshold, border, window.height);
+    let columns = down_columns(grid, threshold, border, window.height, row)?;
     let rows = out.data_mut().par_chunks_mut(window.width).zip(columns.par_chunks(grid.width()));
-    rows.for_each_init(Vec::new, |hull, (out, down)| along_row(down, border, reach, hull, out));
-    out
+    rows.try_for_each_init(Vec::new, |hull, (out, down)| {
+        row()?;
+        along_row(down, border, reach, hull, out);
+        Ok(())
+    })?;
+    Ok(out)
 }
 
 /// Larger than every distance that counts.
 const NONE: u32 = u32::MAX / 2;
 
 /// Distance to the nearest marked sample of the same column, row by row of the inner ones.
-fn down_columns(grid: &Grid, threshold: f32, border: usize, height: usize) -> Vec<u32> {
+fn down_columns<E>(
+    grid: &Grid,
+    threshold: f32,
+    border: usize,
+    height: usize,
+    check: &impl Fn() -> Result<(), E>,
+) -> Result<Vec<u32>, E> {
     let width = grid.width();
     let mut out = vec![NONE; width * height];
     let rows: [Box<dyn Iterator<Item = usize>>; 2] = [Box::new(0..grid.height()), Box::new((0..grid.height()).rev())];
     for rows in rows {
         let mut steps = vec![NONE; width];
         for j in rows {
+            check()?;
             for (step, value) in steps.iter_mut().zip(grid.row(j)) {
                 *step = if *value >= threshold { 0 } else { (*step + 1).min(NONE) };
             }
@@ -53,7 +92,7 @@ fn down_columns(grid: &Grid, threshold: f32, border: usize, height: usize) -> Ve
             }
         }
     }
-    out
+    Ok(out)
 }
 
 /// A column whose parabola is the lowest from `from` on.

@@ -4,7 +4,10 @@
 //! (2013). In each of eight directions the ground within a search radius is higher, lower or level, by the zenith and
 //! nadir angles of its horizon. The numbers of higher and of lower directions determine the form.
 
+use crate::checks::{never, steps};
+use crate::error;
 use crate::grid::{Grid, Window};
+use crate::progress::Progress;
 use rayon::prelude::*;
 
 /// The ten landforms, in the order of their codes from 1.
@@ -71,6 +74,24 @@ impl Look {
 /// Costs O(samples times 8 radius). Rows are computed in parallel.
 #[must_use]
 pub fn geomorphons(grid: &Grid, look: &Look) -> Grid<u8> {
+    let Ok(out) = geomorphons_by_rows(grid, look, &never);
+    out
+}
+
+/// [`geomorphons`] with progress and cancellation.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn geomorphons_with(grid: &Grid, look: &Look, progress: &Progress) -> error::Result<Grid<u8>> {
+    geomorphons_by_rows(grid, look, &steps(progress, grid.height().saturating_sub(2 * look.straight)))
+}
+
+/// [`geomorphons`]; `row` is called for each row.
+fn geomorphons_by_rows<E: Send>(
+    grid: &Grid,
+    look: &Look,
+    row: &(impl Fn() -> Result<(), E> + Sync),
+) -> Result<Grid<u8>, E> {
     let radius = look.straight;
     let from = *grid.window();
     let window = Window {
@@ -82,15 +103,17 @@ pub fn geomorphons(grid: &Grid, look: &Look) -> Grid<u8> {
     };
     let mut out = Grid::filled(window, 0u8);
     if window.is_empty() {
-        return out;
+        return Ok(out);
     }
     let limit = libm::tan(look.flat.to_radians());
-    out.data_mut().par_chunks_mut(window.width).enumerate().for_each(|(j, row)| {
-        for (i, form) in row.iter_mut().enumerate() {
+    out.data_mut().par_chunks_mut(window.width).enumerate().try_for_each(|(j, forms)| {
+        row()?;
+        for (i, form) in forms.iter_mut().enumerate() {
             *form = form_at(grid, [i + radius, j + radius], look, limit).unwrap_or(0);
         }
-    });
-    out
+        Ok(())
+    })?;
+    Ok(out)
 }
 
 /// The form of one sample; `limit` is the tangent of the angle limit of level ground.

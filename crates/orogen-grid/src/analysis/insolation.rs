@@ -7,7 +7,7 @@ use super::halo::Halo;
 use super::shadow::Shadows;
 use super::slope::gradients_between;
 use super::sun::Moment;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::progress::Progress;
 
@@ -84,14 +84,15 @@ pub fn insolation(heights: &Grid, period: &Period, sky: &ClearSky, progress: &Pr
     progress.expect(2.0 * suns.len() as f64);
     for suns in suns.chunks(AT_ONCE) {
         let lit = suns.par_iter().map(|(sun, _)| {
-            progress.check()?;
-            let lit = shadows.lit(sun.towards);
+            let lit = shadows.lit_by_rows(sun.towards, &|| progress.check())?;
             progress.advance(1.0);
             Ok(lit)
         });
         let lit: Vec<Vec<bool>> = lit.collect::<Result<_>>()?;
         progress.check()?;
-        out.data_mut().par_chunks_mut(window.width).enumerate().for_each_init(Vec::new, |wide, (j, row)| {
+        let work = suns.len() as f64 / window.height as f64;
+        out.data_mut().par_chunks_mut(window.width).enumerate().try_for_each_init(Vec::new, |wide, (j, row)| {
+            progress.step(work)?;
             gradients_between(beyond.rows(heights, j, wide), window.cell, |i, gradient| {
                 let facet = Facet::new(f64::from(gradient.east), -f64::from(gradient.north));
                 let at = j * window.width + i;
@@ -99,8 +100,8 @@ pub fn insolation(heights: &Grid, period: &Period, sky: &ClearSky, progress: &Pr
                 let of = |((sun, hours), lit): (&(Sunlight, f64), &Vec<bool>)| sun.on(&facet, height, lit[at]) * hours;
                 row[i] += (suns.iter().zip(&lit).map(of).sum::<f64>() * 1e-3) as f32;
             });
-        });
-        progress.advance(suns.len() as f64);
+            Ok::<(), Error>(())
+        })?;
     }
     Ok(out)
 }

@@ -6,7 +6,10 @@
 
 use rayon::prelude::*;
 
+use crate::checks::{never, steps};
+use crate::error;
 use crate::grid::Grid;
+use crate::progress::Progress;
 
 /// Units per metre.
 const COUNTS: f64 = 256.0;
@@ -35,16 +38,36 @@ fn half_widths(radius: usize) -> Vec<usize> {
 /// Holds 16 bytes per sample of `grid`. Costs O(samples times radius). Rows are computed in parallel.
 #[must_use]
 pub fn positions(grid: &Grid, radius: usize) -> Grid<Position> {
+    let Ok(out) = positions_by_rows(grid, radius, &never);
+    out
+}
+
+/// [`positions`] with progress and cancellation.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn positions_with(grid: &Grid, radius: usize, progress: &Progress) -> error::Result<Grid<Position>> {
+    positions_by_rows(grid, radius, &steps(progress, 2 * grid.height()))
+}
+
+/// [`positions`]; `row` is called for each row that is summed and each that is compared.
+fn positions_by_rows<E: Send>(
+    grid: &Grid,
+    radius: usize,
+    row: &(impl Fn() -> Result<(), E> + Sync),
+) -> Result<Grid<Position>, E> {
     let window = grid.window().shrunk(radius);
     let mut out = Grid::filled(window, Position { above_mean: 0.0, deviation: 0.0 });
     if window.is_empty() {
-        return out;
+        return Ok(out);
     }
-    let sums: Vec<Vec<[i64; 2]>> = (0..grid.height()).into_par_iter().map(|j| prefix_sums(grid.row(j))).collect();
+    let sum = |j: usize| row().map(|()| prefix_sums(grid.row(j)));
+    let sums = (0..grid.height()).into_par_iter().map(sum).collect::<Result<Vec<Vec<[i64; 2]>>, E>>()?;
     let disc = half_widths(radius);
     let count = disc.iter().map(|half| 2 * half + 1).sum::<usize>() as f64;
-    out.data_mut().par_chunks_mut(window.width).enumerate().for_each(|(j, row)| {
-        for (i, position) in row.iter_mut().enumerate() {
+    out.data_mut().par_chunks_mut(window.width).enumerate().try_for_each(|(j, positions)| {
+        row()?;
+        for (i, position) in positions.iter_mut().enumerate() {
             let middle = i + radius;
             let (mut sum, mut squares) = (0i64, 0i128);
             for (row, half) in sums[j..].iter().zip(&disc) {
@@ -60,8 +83,9 @@ pub fn positions(grid: &Grid, radius: usize) -> Grid<Position> {
             let deviation = if variance < 1.0 { 0.0 } else { above * COUNTS / variance.sqrt() };
             *position = Position { above_mean: above as f32, deviation: deviation as f32 };
         }
-    });
-    out
+        Ok(())
+    })?;
+    Ok(out)
 }
 
 /// Sums of heights and of their squares before each sample of a row, and after the last.

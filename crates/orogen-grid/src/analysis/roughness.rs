@@ -1,8 +1,10 @@
 //! Ruggedness of the ground.
 
-use super::nine::over_nine;
+use super::nine::{over_nine, over_nine_with};
 use super::slope::inner;
+use crate::error::Result;
 use crate::grid::Grid;
+use crate::progress::Progress;
 
 /// The mean absolute difference, in metres, between a sample and its eight neighbours (Wilson and others 2007, after
 /// Riley 1999). Smaller than `grid` by a border of one sample; NaN where one of the nine samples is not finite.
@@ -27,10 +29,20 @@ pub fn ruggedness(grid: &Grid) -> Grid {
 /// finite.
 #[must_use]
 pub fn riley(grid: &Grid) -> Grid {
-    over_nine(grid, |z| {
-        let here = z[1][1];
-        z.iter().flatten().map(|there| (there - here) * (there - here)).sum::<f64>().sqrt() as f32
-    })
+    over_nine(grid, riley_at)
+}
+
+/// [`riley`] with progress and cancellation.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn riley_with(grid: &Grid, progress: &Progress) -> Result<Grid> {
+    over_nine_with(grid, progress, riley_at)
+}
+
+fn riley_at(z: [[f64; 3]; 3]) -> f32 {
+    let here = z[1][1];
+    z.iter().flatten().map(|there| (there - here) * (there - here)).sum::<f64>().sqrt() as f32
 }
 
 #[cfg(test)]

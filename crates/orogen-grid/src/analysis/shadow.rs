@@ -1,5 +1,6 @@
 //! Cast shadows.
 
+use crate::checks::never;
 use crate::grid::transposed;
 
 /// Heights that cast shadows, also with rows and columns exchanged.
@@ -30,22 +31,38 @@ impl<'a> Shadows<'a> {
     /// between two lines. Shadows have unlimited length. Costs O(samples) and 1 byte per sample.
     #[must_use]
     pub fn lit(&self, towards: [f64; 3]) -> Vec<bool> {
+        let Ok(lit) = self.lit_by_rows(towards, &never);
+        lit
+    }
+
+    /// [`Shadows::lit`]; `row` is called before each row (or column), and its error ends the work.
+    ///
+    /// # Errors
+    /// The error of `row`.
+    pub fn lit_by_rows<E>(&self, towards: [f64; 3], row: &impl Fn() -> Result<(), E>) -> Result<Vec<bool>, E> {
         let [east, south, up] = towards;
-        if south.abs() >= east.abs() {
-            self.sweep(self.heights, self.columns, [east, south], up)
+        Ok(if south.abs() >= east.abs() {
+            self.sweep(self.heights, self.columns, [east, south], up, row)?
         } else {
-            transposed(&self.sweep(&self.turned, self.rows, [south, east], up), self.rows)
-        }
+            transposed(&self.sweep(&self.turned, self.rows, [south, east], up, row)?, self.rows)
+        })
     }
 
     /// [`Shadows::lit`] over rows of `width`. `along` is the sun's direction: its part across the rows, then its larger
     /// part, from row to row.
-    fn sweep(&self, heights: &[f32], width: usize, along: [f64; 2], up: f64) -> Vec<bool> {
+    fn sweep<E>(
+        &self,
+        heights: &[f32],
+        width: usize,
+        along: [f64; 2],
+        up: f64,
+        check: &impl Fn() -> Result<(), E>,
+    ) -> Result<Vec<bool>, E> {
         let count = heights.len() / width.max(1);
         let mut lit = vec![true; heights.len()];
         if width == 0 || along[1] == 0.0 {
             // The sun is at the zenith.
-            return lit;
+            return Ok(lit);
         }
         // From one row to the next, away from the sun: the columns that a line moves, and the metres that the shadow
         // falls.
@@ -57,6 +74,7 @@ impl<'a> Shadows<'a> {
         let last = (width - 1) as i64 + (-drift.min(0.0)).ceil() as i64 + 1;
         let mut ceilings = vec![NOTHING; (last - first + 1) as usize];
         for k in 0..count {
+            check()?;
             // Start with the rows closest to the sun.
             let j = if along[1] > 0.0 { count - 1 - k } else { k };
             let row = &heights[j * width..(j + 1) * width];
@@ -80,7 +98,7 @@ impl<'a> Shadows<'a> {
             }
             ceilings.iter_mut().for_each(|ceiling| *ceiling -= drop);
         }
-        lit
+        Ok(lit)
     }
 }
 

@@ -14,8 +14,10 @@
 //! where `ratio` is the density of rock divided by that of soil. There is no soil where more is removed than bare rock
 //! produces. Where soil accumulates (hollows, foot slopes) the balance has no solution, and the depth is `deepest`.
 
-use super::nine::over_nine;
+use super::nine::{over_nine, over_nine_with};
+use crate::error::Result;
 use crate::grid::Grid;
+use crate::progress::Progress;
 
 /// Parameters of the soil balance.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,6 +84,15 @@ impl Soil {
     pub fn depths(&self, grid: &Grid) -> Grid {
         let cell = grid.window().cell;
         over_nine(grid, |z| self.depth_at(z, cell) as f32)
+    }
+
+    /// [`Soil::depths`] with progress and cancellation.
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    pub fn depths_with(&self, grid: &Grid, progress: &Progress) -> Result<Grid> {
+        let cell = grid.window().cell;
+        over_nine_with(grid, progress, |z| self.depth_at(z, cell) as f32)
     }
 }
 

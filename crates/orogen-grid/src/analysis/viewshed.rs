@@ -51,7 +51,9 @@ pub fn hidden(heights: &Grid, observer: &Observer, check: Check) -> Result<Grid>
         return Ok(out);
     }
     let ground = MaxPyramid::new(heights.data().to_vec(), window.width);
+    check()?;
     let turned = MaxPyramid::new(transposed(heights.data(), window.width), window.height);
+    check()?;
     let eye = ground.at(x, y) + observer.height;
     out.data_mut().par_chunks_mut(window.width).enumerate().try_for_each(|(j, row)| {
         check()?;

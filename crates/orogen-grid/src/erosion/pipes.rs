@@ -227,8 +227,10 @@ fn advance(
         let (first, last) = (top.saturating_sub(reach), window.height.min(bottom + reach));
         // The cells from first to last, and a row of walls on each side.
         planes.copy_rows(&from.planes, first, last + 2);
+        progress.check()?;
         dispatch(Down { planes, iterations: stride.iterations, constants, progress })?;
         for (j, out) in out.iter_mut().enumerate() {
+            progress.check()?;
             for (out, row) in out.iter_mut().zip(planes.row(top - first + j + 1)) {
                 out[1..=width].copy_from_slice(&row[1 + lost..=width + lost]);
             }

@@ -3,7 +3,10 @@
 use super::accumulation::Accumulation;
 use super::direction::DISTANCES;
 use super::receivers::Receivers;
+use crate::checks::{checks, never, now_and_then, steps};
+use crate::error;
 use crate::grid::Grid;
+use crate::progress::Progress;
 
 /// Position of each cell relative to the stream that it drains to.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,21 +25,49 @@ pub struct AboveDrainage {
 /// Holds 12 bytes per cell. Costs O(cells).
 #[must_use]
 pub fn above_drainage(surface: Grid, receivers: &Receivers, drained: &Accumulation, threshold: u32) -> AboveDrainage {
+    let Ok(found) = walked(surface, receivers, drained, threshold, &never);
+    found
+}
+
+/// [`above_drainage`] with progress and cancellation.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn above_drainage_with(
+    surface: Grid,
+    receivers: &Receivers,
+    drained: &Accumulation,
+    threshold: u32,
+    progress: &Progress,
+) -> error::Result<AboveDrainage> {
+    walked(surface, receivers, drained, threshold, &steps(progress, checks(receivers.window().len())))
+}
+
+fn walked<E>(
+    surface: Grid,
+    receivers: &Receivers,
+    drained: &Accumulation,
+    threshold: u32,
+    check: &impl Fn() -> Result<(), E>,
+) -> Result<AboveDrainage, E> {
     let window = *surface.window();
     let mut distance = vec![0.0f64; window.len()];
     // Heights of the streams first, then the difference.
     let mut base = surface.data().to_vec();
-    for cell in drained.downstream_first() {
+    for (k, cell) in drained.downstream_first().enumerate() {
+        now_and_then(k, check)?;
         let receiver = receivers.of(cell);
         if receiver != cell && drained.area.data()[cell] < threshold {
             base[cell] = base[receiver];
             distance[cell] = distance[receiver] + DISTANCES[usize::from(receivers.code(cell) & 7)] * window.cell;
         }
     }
+    check()?;
     let mut height = surface;
     height.data_mut().iter_mut().zip(&base).for_each(|(height, base)| *height -= base);
     let metres = distance.into_iter().map(|metres| metres as f32).collect();
-    AboveDrainage { height, distance: Grid::from_data(window, metres).unwrap_or_else(|| Grid::filled(window, 0.0)) }
+    let distance = Grid::from_data(window, metres).unwrap_or_else(|| Grid::filled(window, 0.0));
+    Ok(AboveDrainage { height, distance })
 }
 
 #[cfg(test)]

@@ -2,7 +2,10 @@
 
 use super::direction::{neighbour, strides};
 use super::receivers::Receivers;
+use crate::checks::{checks, never, now_and_then, steps};
+use crate::error;
 use crate::grid::Grid;
+use crate::progress::Progress;
 use rayon::prelude::*;
 
 /// The drainage area of each cell, and orders for walking the cells.
@@ -30,7 +33,14 @@ impl Band {
     ///
     /// Each walk starts at a cell without inflow and continues downstream until it reaches a cell that waits for
     /// another inflow. Every cell is visited once, and the order keeps nearby cells together.
-    fn new(receivers: &Receivers, trunk: &[u32], start: usize, donors: &[u8], area: &mut [u32]) -> Band {
+    fn new<E>(
+        receivers: &Receivers,
+        trunk: &[u32],
+        start: usize,
+        donors: &[u8],
+        area: &mut [u32],
+        check: &impl Fn() -> Result<(), E>,
+    ) -> Result<Band, E> {
         let cells = start..start + area.len();
         let mut waiting: Vec<u8> = donors.iter().map(|set| set.count_ones() as u8).collect();
         // A cell that is done never becomes ready again, and neither does the trunk: no walk starts or continues there.
@@ -40,6 +50,7 @@ impl Band {
         }
         let mut order = Vec::with_capacity(area.len());
         for first in 0..area.len() {
+            now_and_then(first, check)?;
             let mut cell = first;
             while waiting[cell] == 0 {
                 waiting[cell] = DONE;
@@ -55,7 +66,7 @@ impl Band {
             }
         }
         order.reverse();
-        Band { cells, order }
+        Ok(Band { cells, order })
     }
 }
 
@@ -86,38 +97,57 @@ impl Accumulation {
 /// never visited; the functions of this module make none.
 #[must_use]
 pub fn accumulate(receivers: &Receivers) -> Accumulation {
+    let Ok(accumulation) = accumulate_in(receivers, band_rows(receivers), &never);
+    accumulation
+}
+
+/// [`accumulate`] with progress and cancellation.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn accumulate_with(receivers: &Receivers, progress: &Progress) -> error::Result<Accumulation> {
+    accumulate_in(receivers, band_rows(receivers), &steps(progress, checks(receivers.window().len())))
+}
+
+/// Rows of a band.
+fn band_rows(receivers: &Receivers) -> usize {
     let threads = rayon::current_num_threads();
     // With one thread, one band; with more, three per thread to balance the load.
     let bands = if threads == 1 { 1 } else { 3 * threads };
-    accumulate_in(receivers, receivers.window().height.div_ceil(bands).max(FEWEST_ROWS))
+    receivers.window().height.div_ceil(bands).max(FEWEST_ROWS)
 }
 
 /// Minimum number of rows of a band: the trunk grows with the number of bands.
 const FEWEST_ROWS: usize = 128;
 
 /// [`accumulate`] with bands of `rows` rows.
-fn accumulate_in(receivers: &Receivers, rows: usize) -> Accumulation {
+fn accumulate_in<E: Send>(
+    receivers: &Receivers,
+    rows: usize,
+    check: &(impl Fn() -> Result<(), E> + Sync),
+) -> Result<Accumulation, E> {
     let window = *receivers.window();
     let mut area = vec![1u32; window.len()];
     if window.is_empty() {
-        return Accumulation { area: Grid::filled(window, 1), trunk: Vec::new(), bands: Vec::new() };
+        return Ok(Accumulation { area: Grid::filled(window, 1), trunk: Vec::new(), bands: Vec::new() });
     }
     let size = rows * window.width;
     let donors = receivers.donors();
+    check()?;
     let trunk = Trunk::new(receivers, rows);
-    let bands: Vec<Band> = area
+    let bands = area
         .par_chunks_mut(size)
         .zip(donors.par_chunks(size))
         .enumerate()
-        .map(|(k, (area, donors))| Band::new(receivers, &trunk.order, k * size, donors, area))
-        .collect();
+        .map(|(k, (area, donors))| Band::new(receivers, &trunk.order, k * size, donors, area, check))
+        .collect::<Result<Vec<Band>, E>>()?;
     let strides = strides(window.width);
     for cell in trunk.order.iter().rev().map(|cell| *cell as usize) {
         let flows_in = |k: &usize| donors[cell] & 1 << k != 0;
         area[cell] = 1 + (0..8).filter(flows_in).map(|k| area[neighbour(cell, strides[k])]).sum::<u32>();
     }
     let area = Grid::from_data(window, area).unwrap_or_else(|| Grid::filled(window, 0));
-    Accumulation { area, trunk: trunk.order, bands }
+    Ok(Accumulation { area, trunk: trunk.order, bands })
 }
 
 /// Cells that receive water from other bands.
@@ -183,7 +213,7 @@ mod tests {
                 }
             }
             for rows in [1, 2, 7, 1000] {
-                let got = accumulate_in(&receivers, rows);
+                let Ok(got) = accumulate_in(&receivers, rows, &never);
                 assert_eq!(got.area.data(), expect);
                 let mut place = vec![usize::MAX; expect.len()];
                 for (k, c) in got.upstream_first().enumerate() {

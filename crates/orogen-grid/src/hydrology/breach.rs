@@ -1,10 +1,13 @@
 //! Breaching: depressions drained by channels.
 
-use super::accumulation::accumulate;
+use super::accumulation::{Accumulation, accumulate, accumulate_with};
 use super::drainage::Drainage;
 use super::fill::filled;
 use super::outlets::Outlets;
+use crate::checks::{checks, never, now_and_then, steps};
+use crate::error;
 use crate::grid::Grid;
+use crate::progress::Progress;
 
 /// The heights without depressions. A channel along the path of `drainage` drains each depression; it is at most
 /// `deepest` metres deep, and the part of the depression that lies deeper is filled first (after Lindsay 2016,
@@ -14,21 +17,62 @@ use crate::grid::Grid;
 /// In the result no receiver of `drainage` is higher than its donor. Outlets keep their heights. Costs O(cells).
 #[must_use]
 pub fn breach(heights: &Grid, outlets: &Outlets, drainage: &Drainage, deepest: f32) -> Grid {
+    let mut out = drained(heights, drainage, deepest);
+    let Ok(()) = cut(&mut out, outlets, drainage, &accumulate(&drainage.receivers), &never);
+    out
+}
+
+/// [`breach`] with progress and cancellation.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn breach_with(
+    heights: &Grid,
+    outlets: &Outlets,
+    drainage: &Drainage,
+    deepest: f32,
+    progress: &Progress,
+) -> error::Result<Grid> {
+    let [filling, counting, cutting] = progress.parts([1.0, 2.0, 2.0]);
+    let mut out = drained(heights, drainage, deepest);
+    filling.finish();
+    let accumulation = accumulate_with(&drainage.receivers, &counting)?;
+    counting.finish();
+    let check = steps(&cutting, checks(heights.window().len()));
+    cut(&mut out, outlets, drainage, &accumulation, &check)?;
+    cutting.finish();
+    Ok(out)
+}
+
+/// Depressions filled as far as cuts do not drain them.
+fn drained(heights: &Grid, drainage: &Drainage, deepest: f32) -> Grid {
     let mut out = filled(heights, &drainage.basins);
     for ((level, h), label) in out.data_mut().iter_mut().zip(heights.data()).zip(&drainage.basins.labels) {
         // The level down to which a cut of that depth through the pass drains the basin.
         let drained = drainage.basins.spills[*label as usize].level - deepest;
         *level = if drained > *h { drained.min(*level) } else { *h };
     }
+    out
+}
+
+/// Lowers each receiver to its donors.
+fn cut<E>(
+    heights: &mut Grid,
+    outlets: &Outlets,
+    drainage: &Drainage,
+    accumulation: &Accumulation,
+    check: &impl Fn() -> Result<(), E>,
+) -> Result<(), E> {
     let receivers = &drainage.receivers;
-    let h = out.data_mut();
-    for cell in accumulate(receivers).upstream_first() {
+    let h = heights.data_mut();
+    for (k, cell) in accumulation.upstream_first().enumerate() {
+        now_and_then(k, check)?;
         let receiver = receivers.of(cell);
         if h[cell] < h[receiver] && !outlets.at(receiver) {
             h[receiver] = h[cell];
         }
     }
-    out
+    Ok(())
 }
 
 #[cfg(test)]

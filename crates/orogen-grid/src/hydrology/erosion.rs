@@ -1,6 +1,6 @@
 //! Landscape evolution: uplift and stream-power erosion in time steps.
 
-use super::accumulation::{Accumulation, accumulate};
+use super::accumulation::{Accumulation, accumulate_with};
 use super::creep::{creep_again, creep_stages};
 use super::drainage;
 use super::outlets::Outlets;
@@ -72,9 +72,11 @@ impl Erosion {
         let [routing, cutting] = progress.parts([3.0, 2.0]);
         let receivers = drainage::route_carving_with(heights, outlets, descent, &routing)?.receivers;
         routing.finish();
-        let drained = accumulate(&receivers);
+        let [counting, solving] = cutting.parts([1.0, 1.0]);
+        let drained = accumulate_with(&receivers, &counting)?;
+        counting.finish();
         progress.check()?;
-        self.law.step(heights, &receivers, &drained, ground, years);
+        self.law.step_with(heights, &receivers, &drained, ground, years, &solving)?;
         cutting.finish();
         progress.check()
     }
@@ -149,13 +151,14 @@ impl<'a> ErosionRun<'a> {
     /// # Errors
     /// If the work is cancelled.
     pub fn finish(&self, heights: &mut Grid, progress: &Progress) -> Result<Accumulation> {
-        let [settling, routing] = progress.parts([1.0, 1.0]);
+        let [settling, routing, counting] = progress.parts([1.0, 0.7, 0.3]);
         self.settle(heights, &settling)?;
         settling.finish();
         let receivers = drainage::over_surface_with(heights, &self.outlets, Descent::Steepest, &routing)?;
-        progress.check()?;
-        let drained = accumulate(&receivers);
         routing.finish();
+        progress.check()?;
+        let drained = accumulate_with(&receivers, &counting)?;
+        counting.finish();
         Ok(drained)
     }
 }

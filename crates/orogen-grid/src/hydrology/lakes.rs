@@ -3,9 +3,10 @@
 use super::direction::{DISTANCES, neighbour, strides};
 use super::drainage::Drainage;
 use super::outlets::Outlets;
-use crate::error::Result;
+use crate::checks::{checks, never, now_and_then, steps};
+use crate::error;
 use crate::grid::Grid;
-use crate::hydrology::accumulation::{Accumulation, accumulate};
+use crate::hydrology::accumulation::{Accumulation, accumulate, accumulate_with};
 use crate::progress::Progress;
 
 /// One lake.
@@ -44,8 +45,8 @@ const GENTLEST: f64 = 1e-4;
 /// Costs O(cells).
 #[must_use]
 pub fn lakes(heights: &Grid, outlets: &Outlets, drainage: &Drainage, fewest: u32) -> Lakes {
-    let mut found = find(heights, drainage, fewest);
-    raise(&mut found, outlets, drainage, &accumulate(&drainage.receivers));
+    let Ok(mut found) = find(heights, drainage, fewest, &never);
+    let Ok(()) = raise(&mut found, outlets, drainage, &accumulate(&drainage.receivers), &never);
     found
 }
 
@@ -59,22 +60,23 @@ pub fn lakes_with(
     drainage: &Drainage,
     fewest: u32,
     progress: &Progress,
-) -> Result<Lakes> {
+) -> error::Result<Lakes> {
+    let pieces = checks(heights.window().len());
     let [finding, counting, raising] = progress.parts([1.0, 1.0, 1.0]);
-    let mut found = find(heights, drainage, fewest);
+    let mut found = find(heights, drainage, fewest, &steps(&finding, pieces))?;
     finding.finish();
     progress.check()?;
-    let drained = accumulate(&drainage.receivers);
+    let drained = accumulate_with(&drainage.receivers, &counting)?;
     counting.finish();
     progress.check()?;
-    raise(&mut found, outlets, drainage, &drained);
+    raise(&mut found, outlets, drainage, &drained, &steps(&raising, pieces))?;
     raising.finish();
     Ok(found)
 }
 
 /// The connected cells under water. Adjacent cells under water have the same level, otherwise the higher water would
 /// drain.
-fn find(heights: &Grid, drainage: &Drainage, fewest: u32) -> Lakes {
+fn find<E>(heights: &Grid, drainage: &Drainage, fewest: u32, check: &impl Fn() -> Result<(), E>) -> Result<Lakes, E> {
     let (h, basins) = (heights.data(), &drainage.basins);
     let under = |c: usize| h[c] < basins.spills[basins.labels[c] as usize].level;
     let strides = strides(heights.width());
@@ -83,6 +85,7 @@ fn find(heights: &Grid, drainage: &Drainage, fewest: u32) -> Lakes {
     let mut seen = vec![false; h.len()];
     let mut cells = Vec::new();
     for start in 0..h.len() {
+        now_and_then(start, check)?;
         if seen[start] || !under(start) {
             continue;
         }
@@ -117,14 +120,21 @@ fn find(heights: &Grid, drainage: &Drainage, fewest: u32) -> Lakes {
         let level = basins.spills[basins.labels[start] as usize].level;
         lakes.push(Lake { level, deepest: deepest as u32, outlet: outlet as u32, cells: cells.len() as u32 });
     }
-    Lakes { labels, lakes, bed: heights.clone(), surface: heights.clone() }
+    Ok(Lakes { labels, lakes, bed: heights.clone(), surface: heights.clone() })
 }
 
 /// From the outlets upstream, raises land above its receiver, and lakes to the level of their outlet.
-fn raise(found: &mut Lakes, outlets: &Outlets, drainage: &Drainage, drained: &Accumulation) {
+fn raise<E>(
+    found: &mut Lakes,
+    outlets: &Outlets,
+    drainage: &Drainage,
+    drained: &Accumulation,
+    check: &impl Fn() -> Result<(), E>,
+) -> Result<(), E> {
     let cell = found.bed.window().cell;
     let (bed, surface) = (found.bed.data_mut(), found.surface.data_mut());
-    for c in drained.downstream_first() {
+    for (k, c) in drained.downstream_first().enumerate() {
+        now_and_then(k, check)?;
         let label = found.labels.data()[c];
         if let Some(lake) = label.checked_sub(1).and_then(|k| found.lakes.get_mut(k as usize)) {
             lake.level = surface[lake.outlet as usize].max(lake.level);
@@ -141,6 +151,7 @@ fn raise(found: &mut Lakes, outlets: &Outlets, drainage: &Drainage, drained: &Ac
             surface[c] = bed[c];
         }
     }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -2,7 +2,10 @@
 
 use super::accumulation::Accumulation;
 use super::receivers::Receivers;
+use crate::checks::{checks, never, now_and_then, steps};
+use crate::error;
 use crate::grid::Grid;
+use crate::progress::Progress;
 
 /// A stretch of river between confluences.
 #[derive(Debug, Clone, PartialEq)]
@@ -120,13 +123,42 @@ impl Streams {
 /// The drainage area never decreases downstream, so beds never rise downstream. Cells of order 0 and outlets keep their
 /// heights.
 pub fn carve(heights: &mut Grid, receivers: &Receivers, drained: &Accumulation, orders: &Grid<u8>, channel: &Channel) {
+    let Ok(()) = cut(heights, receivers, drained, orders, channel, &never);
+}
+
+/// [`carve`] with progress and cancellation.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn carve_with(
+    heights: &mut Grid,
+    receivers: &Receivers,
+    drained: &Accumulation,
+    orders: &Grid<u8>,
+    channel: &Channel,
+    progress: &Progress,
+) -> error::Result<()> {
+    let check = steps(progress, checks(heights.window().len()));
+    cut(heights, receivers, drained, orders, channel, &check)
+}
+
+fn cut<E>(
+    heights: &mut Grid,
+    receivers: &Receivers,
+    drained: &Accumulation,
+    orders: &Grid<u8>,
+    channel: &Channel,
+    check: &impl Fn() -> Result<(), E>,
+) -> Result<(), E> {
     let cell_area = heights.window().cell * heights.window().cell;
     for (c, h) in heights.data_mut().iter_mut().enumerate() {
+        now_and_then(c, check)?;
         if orders.data()[c] > 0 && receivers.of(c) != c {
             let discharge = channel.discharge(f64::from(drained.area.data()[c]) * cell_area);
             *h = (f64::from(*h) - channel.depth_of(discharge)) as f32;
         }
     }
+    Ok(())
 }
 
 #[cfg(test)]

@@ -2,7 +2,10 @@
 
 use super::accumulation::Accumulation;
 use super::receivers::Receivers;
+use crate::checks::{checks, never, now_and_then, steps};
+use crate::error;
 use crate::grid::Grid;
+use crate::progress::Progress;
 
 /// The order of the stream through each cell (Strahler 1957). A source has order 1; the order increases by 1 where at
 /// least two inflows have the highest order. A cell that drains fewer than `threshold` cells is not a stream and has 0.
@@ -10,11 +13,35 @@ use crate::grid::Grid;
 /// Costs O(cells).
 #[must_use]
 pub fn orders(receivers: &Receivers, accumulation: &Accumulation, threshold: u32) -> Grid<u8> {
+    let Ok(orders) = ordered(receivers, accumulation, threshold, &never);
+    orders
+}
+
+/// [`orders`] with progress and cancellation.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn orders_with(
+    receivers: &Receivers,
+    accumulation: &Accumulation,
+    threshold: u32,
+    progress: &Progress,
+) -> error::Result<Grid<u8>> {
+    ordered(receivers, accumulation, threshold, &steps(progress, checks(receivers.window().len())))
+}
+
+fn ordered<E>(
+    receivers: &Receivers,
+    accumulation: &Accumulation,
+    threshold: u32,
+    check: &impl Fn() -> Result<(), E>,
+) -> Result<Grid<u8>, E> {
     let area = accumulation.area.data();
     let mut orders = Grid::filled(*receivers.window(), 0u8);
     // Whether the highest order so far has flowed in more than once.
     let mut met = vec![false; area.len()];
-    for cell in accumulation.upstream_first() {
+    for (k, cell) in accumulation.upstream_first().enumerate() {
+        now_and_then(k, check)?;
         if area[cell] < threshold {
             continue;
         }
@@ -26,7 +53,7 @@ pub fn orders(receivers: &Receivers, accumulation: &Accumulation, threshold: u32
             out[receiver] = out[receiver].max(order);
         }
     }
-    orders
+    Ok(orders)
 }
 
 #[cfg(test)]

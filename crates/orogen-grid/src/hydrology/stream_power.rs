@@ -21,7 +21,10 @@ use super::accumulation::Accumulation;
 use super::direction::{DISTANCES, strides};
 use super::points::Points;
 use super::receivers::Receivers;
+use crate::checks::{checks, never, now_and_then, steps};
+use crate::error;
 use crate::grid::Grid;
+use crate::progress::Progress;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -79,6 +82,35 @@ impl StreamPower {
         ground: &Substrate,
         years: f64,
     ) {
+        let Ok(()) = self.solve(heights, receivers, drained, ground, years, &never);
+    }
+
+    /// [`StreamPower::step`] with progress and cancellation.
+    ///
+    /// # Errors
+    /// If the work is cancelled. Only some of the cells have then advanced.
+    pub fn step_with(
+        &self,
+        heights: &mut Grid,
+        receivers: &Receivers,
+        drained: &Accumulation,
+        ground: &Substrate,
+        years: f64,
+        progress: &Progress,
+    ) -> error::Result<()> {
+        let check = steps(progress, checks(heights.window().len()));
+        self.solve(heights, receivers, drained, ground, years, &check)
+    }
+
+    fn solve<E: Send>(
+        &self,
+        heights: &mut Grid,
+        receivers: &Receivers,
+        drained: &Accumulation,
+        ground: &Substrate,
+        years: f64,
+        check: &(impl Fn() -> Result<(), E> + Sync),
+    ) -> Result<(), E> {
         let window = *heights.window();
         let step = Step::new(self, receivers, drained, ground, years);
         let (trunk, bands) = drained.parts();
@@ -101,9 +133,10 @@ impl StreamPower {
             shares.push((band, own, std::mem::replace(&mut above, last), below));
             rest = after;
         }
-        shares.into_par_iter().for_each(|(band, own, above, below)| {
+        shares.into_par_iter().try_for_each(|(band, own, above, below)| {
             let Range { start, end } = band.cells;
-            for c in band.order.iter().map(|c| *c as usize) {
+            for (k, c) in band.order.iter().map(|c| *c as usize).enumerate() {
+                now_and_then(k, check)?;
                 let receiver = receivers.of(c);
                 if receiver != c {
                     let beneath = match receiver {
@@ -114,7 +147,8 @@ impl StreamPower {
                     own[c - start] = step.height(c, own[c - start], beneath);
                 }
             }
-        });
+            Ok(())
+        })
     }
 }
 

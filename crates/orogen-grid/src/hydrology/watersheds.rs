@@ -3,27 +3,55 @@
 use super::accumulation::Accumulation;
 use super::outlets::Outlets;
 use super::receivers::Receivers;
+use crate::checks::{checks, never, now_and_then, steps};
+use crate::error;
 use crate::grid::Grid;
+use crate::progress::Progress;
 
 /// The watershed of every cell, numbered from 1 in row order of the outlets; 0 for outlets that only drain themselves,
 /// such as the sea. Costs O(cells).
 #[must_use]
 pub fn watersheds(receivers: &Receivers, outlets: &Outlets, accumulation: &Accumulation) -> Grid<u32> {
+    let Ok(labels) = labelled(receivers, outlets, accumulation, &never);
+    labels
+}
+
+/// [`watersheds`] with progress and cancellation.
+///
+/// # Errors
+/// If the work is cancelled.
+pub fn watersheds_with(
+    receivers: &Receivers,
+    outlets: &Outlets,
+    accumulation: &Accumulation,
+    progress: &Progress,
+) -> error::Result<Grid<u32>> {
+    labelled(receivers, outlets, accumulation, &steps(progress, 2 * checks(receivers.window().len())))
+}
+
+fn labelled<E>(
+    receivers: &Receivers,
+    outlets: &Outlets,
+    accumulation: &Accumulation,
+    check: &impl Fn() -> Result<(), E>,
+) -> Result<Grid<u32>, E> {
     let mut labels = Grid::filled(*receivers.window(), 0u32);
     let mut count = 0;
     for (cell, area) in accumulation.area.data().iter().enumerate() {
+        now_and_then(cell, check)?;
         if outlets.at(cell) && *area > 1 {
             count += 1;
             labels.data_mut()[cell] = count;
         }
     }
-    for cell in accumulation.downstream_first() {
+    for (k, cell) in accumulation.downstream_first().enumerate() {
+        now_and_then(k, check)?;
         let receiver = receivers.of(cell);
         if receiver != cell {
             labels.data_mut()[cell] = labels.data()[receiver];
         }
     }
-    labels
+    Ok(labels)
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use crate::format::crs::unit::Unit;
 use crate::format::dem::{Dem, Placement, Request, afford, refused};
 use crate::format::import;
 use crate::format::vrt::{self, Virtual};
+use crate::fs;
 use orogen_grid::error::{Error, Result};
 
 /// Maximum number of files.
@@ -34,9 +35,9 @@ struct Part {
 pub fn tiles(folder: &Path) -> Result<Vec<PathBuf>> {
     let failed = |cause: std::io::Error| Error::file("read", folder, &cause);
     let mut tiles = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
+    for entry in fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
-        if import::has_head(&path) && path.is_file() {
+        if import::has_head(&path) && fs::is_file(&path) {
             tiles.push(path);
         }
     }

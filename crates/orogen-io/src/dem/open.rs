@@ -6,6 +6,7 @@ use super::mosaic;
 use crate::format::dem::{Dem, Request};
 use crate::format::import;
 use crate::format::zarr::reader as zarr;
+use crate::fs;
 use orogen_grid::error::Result;
 
 /// Whether a path names heights: by its extension, without a band after a colon, or as a folder of tiles.
@@ -14,7 +15,7 @@ pub fn is_dem(path: &Path) -> bool {
     let (path, _) = split(path);
     import::is_dem(&path)
         || is_virtual(&path)
-        || path.is_dir() && (zarr::is_zarr(&path) || mosaic::tiles(&path).is_ok_and(|tiles| !tiles.is_empty()))
+        || fs::is_dir(&path) && (zarr::is_zarr(&path) || mosaic::tiles(&path).is_ok_and(|tiles| !tiles.is_empty()))
 }
 
 /// Splits a path from the band after it: `alps.tif:2`. If a file with the whole name exists, there is no band.
@@ -23,7 +24,9 @@ pub fn split(path: &Path) -> (PathBuf, Option<u32>) {
     let whole = || (path.to_path_buf(), None);
     let Some(text) = path.to_str() else { return whole() };
     match text.rsplit_once(':').map(|(file, band)| (Path::new(file), band.parse())) {
-        Some((file, Ok(band))) if file.extension().is_some() && !path.exists() => (file.to_path_buf(), Some(band)),
+        Some((file, Ok(band))) if file.extension().is_some() && !fs::is_present(path) => {
+            (file.to_path_buf(), Some(band))
+        }
         _ => whole(),
     }
 }
@@ -33,7 +36,7 @@ pub fn split(path: &Path) -> (PathBuf, Option<u32>) {
 #[must_use]
 pub fn files(path: &Path) -> Vec<PathBuf> {
     let (path, _) = split(path);
-    let mut files = match path.is_dir() {
+    let mut files = match fs::is_dir(&path) {
         true => mosaic::tiles(&path).unwrap_or_default(),
         false if is_virtual(&path) => mosaic::sources(&path),
         false => Vec::new(),
@@ -53,7 +56,7 @@ fn is_virtual(path: &Path) -> bool {
 pub fn read(path: &Path, request: Request) -> Result<Dem> {
     let (path, band) = split(path);
     let request = Request { band: band.or(request.band), ..request };
-    if path.is_dir() {
+    if fs::is_dir(&path) {
         return match zarr::is_zarr(&path) {
             true => zarr::read(&path, request),
             false => mosaic::folder(&path, request),

@@ -1,11 +1,11 @@
 //! Files are written atomically.
 
-use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::policy::Output;
 use super::temporary::Temporary;
+use crate::fs::{self, File, OpenOptions, Permissions};
 use orogen_grid::error::{Error, ErrorKind, Result};
 
 /// Large enough to make system calls rare, small enough for any memory budget.

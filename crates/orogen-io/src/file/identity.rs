@@ -1,7 +1,8 @@
 //! Identity of files: whether two paths refer to the same file.
 
-use std::fs;
 use std::path::{Path, PathBuf};
+
+use crate::fs;
 
 /// The identity of a file, independent of names and links.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -9,7 +10,7 @@ pub struct FileId {
     /// The path with links resolved: the identity on systems without file numbers, and the name in messages elsewhere.
     real: PathBuf,
     /// Device and file number, which hard links share.
-    #[cfg(unix)]
+    #[cfg(all(unix, feature = "fs"))]
     number: (u64, u64),
 }
 
@@ -18,12 +19,12 @@ impl FileId {
     pub fn of(path: &Path) -> Option<FileId> {
         let there = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
         let real = fs::canonicalize(path).ok()?;
-        #[cfg(unix)]
+        #[cfg(all(unix, feature = "fs"))]
         {
             use std::os::unix::fs::MetadataExt;
             Some(FileId { real, number: (there.dev(), there.ino()) })
         }
-        #[cfg(not(unix))]
+        #[cfg(not(all(unix, feature = "fs")))]
         {
             let _ = there;
             Some(FileId { real })
@@ -32,7 +33,7 @@ impl FileId {
 
     /// Whether both are the same file.
     pub fn is(&self, other: &FileId) -> bool {
-        #[cfg(unix)]
+        #[cfg(all(unix, feature = "fs"))]
         if self.number == other.number {
             return true;
         }

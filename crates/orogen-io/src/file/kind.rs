@@ -1,10 +1,10 @@
 //! Detection of the kind of a file by its first bytes.
 
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
 use super::mark;
+use crate::fs::{self, File};
 
 /// Bytes that are read: enough for the head of a recipe, and for the longest title before a document's first element.
 const HEAD: u64 = 64 << 10;
@@ -113,7 +113,7 @@ impl Found {
         let mut head = Vec::new();
         file.take(HEAD).read_to_end(&mut head)?;
         Ok(match Found::of(&head) {
-            Found::Recipe if length <= LONGEST_RECIPE => match std::fs::read_to_string(path) {
+            Found::Recipe if length <= LONGEST_RECIPE => match fs::read_to_string(path) {
                 Ok(text) if mark::is_intact(&text) => Found::OwnRecipe,
                 _ => Found::Recipe,
             },

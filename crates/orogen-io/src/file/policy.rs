@@ -1,11 +1,11 @@
 //! Policies for replacing files.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::identity::FileId;
 use super::kind::Found;
+use crate::fs;
 use orogen_grid::error::{Error, ErrorKind, Result};
 
 /// Treatment of existing files.

@@ -6,11 +6,12 @@
 //! numbers are not sufficient: they are reused, and containers that share a folder have separate numbers.
 
 use std::collections::HashMap;
-use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
+
+use crate::fs::{self, File, OpenOptions, TryLockError};
 
 /// Number of names to try: if all of them are taken, something is wrong with the folder.
 const NAMES: usize = 100;
@@ -131,7 +132,7 @@ impl FolderLock {
             match file.try_lock() {
                 // Another process swept the folder between creation and locking, and removes the file.
                 Err(TryLockError::WouldBlock) => continue,
-                Ok(()) if !path.exists() => continue,
+                Ok(()) if !fs::is_present(&path) => continue,
                 // A file system without locks: its temporary files are never removed.
                 Ok(()) | Err(TryLockError::Error(_)) => return Ok(FolderLock { stem, path, _file: file }),
             }

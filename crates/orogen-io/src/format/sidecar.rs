@@ -19,6 +19,7 @@ use super::crs::unit::Unit;
 use super::crs::wkt::MAX_LENGTH;
 use super::dem::{Placement, refused, turn_rows};
 use super::{aux_xml, world_file};
+use crate::fs;
 use crate::open;
 use orogen_grid::error::Result;
 
@@ -71,21 +72,22 @@ impl Sidecar {
         if path.file_name().is_some_and(|name| name == "height.png" || name == "height8.png") {
             places.push(path.with_file_name("summary.json"));
         }
-        let told = places.into_iter().find(|place| place.is_file()).map(|place| Sidecar::read(&place)).transpose()?;
+        let told =
+            places.into_iter().find(|place| fs::is_file(place)).map(|place| Sidecar::read(&place)).transpose()?;
         let mut all = told.clone().unwrap_or_default();
-        let world = world_file::names(path).into_iter().find(|place| place.is_file());
+        let world = world_file::names(path).into_iter().find(|place| fs::is_file(place));
         if let Some(world) = world {
             let affine = text(&world, world_file::MAX_LENGTH, world_file::parse)?;
             all.geotransform.get_or_insert(affine.geotransform());
         }
         let (notes, projection) = (aux_xml(path), path.with_extension("prj"));
-        if projection.is_file() {
+        if fs::is_file(&projection) {
             match text(&projection, MAX_LENGTH as u64, keys::of_wkt) {
                 Ok(keys) => all.keys = Some(keys),
                 Err(why) => all.notes.push(format!("its coordinate system is not known: {why}")),
             }
         }
-        if notes.is_file() {
+        if fs::is_file(&notes) {
             let notes = text(&notes, aux_xml::MAX_LENGTH, aux_xml::parse)?;
             all.geotransform = all.geotransform.or(notes.affine.map(|affine| affine.geotransform()));
             // An unknown system in GDAL's sidecar is no reason to reject the heights.

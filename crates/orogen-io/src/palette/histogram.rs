@@ -1,10 +1,10 @@
 //! Representative colors of a picture, from its histogram.
 
-use std::fs::File;
 use std::io::{BufRead, BufReader, Seek};
 use std::path::Path;
 
 use super::color::{Light, decode, oklab};
+use crate::fs::{self, File};
 use orogen_grid::error::{Error, ErrorKind, Result};
 
 /// Levels of lightness in the histogram.
@@ -19,7 +19,7 @@ const LEVELS: usize = 4096;
 pub fn read(path: &Path, count: usize) -> Result<Vec<Light>> {
     let name = path.display().to_string();
     let refused = |why: String| Error::new(ErrorKind::File, format!("cannot read the picture {name}: {why}"));
-    let metadata = std::fs::metadata(path).map_err(|cause| Error::file("read", path, &cause))?;
+    let metadata = fs::metadata(path).map_err(|cause| Error::file("read", path, &cause))?;
     if !metadata.is_file() {
         return Err(refused("it is not a regular file".into()));
     }

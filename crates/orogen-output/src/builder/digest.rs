@@ -1,10 +1,10 @@
 //! Length and checksum of a file.
 
-use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
 
 use orogen_grid::hex;
+use orogen_io::fs::{self, File};
 use sha2::{Digest, Sha256};
 
 /// Bytes of a file that are read at a time.
@@ -44,7 +44,7 @@ impl FileDigest {
 
     /// Whether the file at `path` has this digest; false if it cannot be read.
     pub fn is_at(&self, path: &Path) -> bool {
-        std::fs::metadata(path).is_ok_and(|there| there.is_file() && there.len() == self.length)
+        fs::metadata(path).is_ok_and(|there| there.is_file() && there.len() == self.length)
             && FileDigest::of_file(path).is_ok_and(|digest| digest == *self)
     }
 }

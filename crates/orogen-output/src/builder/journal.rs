@@ -1,7 +1,6 @@
 //! The journal of a build, one line per entry.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -12,6 +11,7 @@ use super::digest::FileDigest;
 use super::identity::Identity;
 use super::job::{Job, Record};
 use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_io::fs::{self, File, OpenOptions};
 
 /// A line: JSON, a tab and the first digits of the JSON's SHA-256, so that truncated and damaged lines are detected.
 #[derive(Debug, Serialize, Deserialize)]

@@ -1,7 +1,6 @@
 //! The files of a build, written and verified by checksum.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -13,6 +12,7 @@ use super::journal::Journal;
 use super::work_dir::WorkDir;
 use orogen_grid::error::{Error, Result};
 use orogen_io::file;
+use orogen_io::fs::{self, File};
 
 /// Buffer size for an assembled file, in bytes.
 const BUFFER: usize = 1 << 20;

@@ -25,6 +25,7 @@ use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::Grid;
 use orogen_grid::progress::Progress;
 use orogen_io::file::Output;
+use orogen_io::fs;
 
 /// Treatment of existing results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -276,9 +277,9 @@ impl<'a> Build<'a> {
                 // After completion, temporary files count as intact unless a job reads them.
                 let there = sound.contains(&job)
                     && (!read.contains(&job)
-                        || places
-                            .iter()
-                            .all(|place| matches!(place, JobFile::Result(_)) || self.work_dir.path(place).is_file()));
+                        || places.iter().all(|place| {
+                            matches!(place, JobFile::Result(_)) || fs::is_file(&self.work_dir.path(place))
+                        }));
                 if needed && !there {
                     wanted.insert(job);
                 }

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
-use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -10,6 +9,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::job::JobFile;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_io::file::{self, Output};
+use orogen_io::fs::{self, File, OpenOptions, TryLockError};
 
 /// File names within the folder beside the result.
 const LOCK: &str = "lock";
@@ -171,7 +171,7 @@ impl WorkDir {
     pub fn is_taken(&self) -> bool {
         match fs::read_dir(&self.out) {
             Ok(mut entries) => entries.next().is_some(),
-            Err(_) => self.out.exists(),
+            Err(_) => fs::is_present(&self.out),
         }
     }
 
@@ -194,7 +194,7 @@ impl WorkDir {
         let mut foreign = Vec::new();
         if !self.file && self.is_taken() {
             let refuse = |message: String| Err(Error::new(ErrorKind::File, message));
-            if !known && !MARKS.iter().any(|mark| self.out.join(mark).is_file()) {
+            if !known && !MARKS.iter().any(|mark| fs::is_file(&self.out.join(mark))) {
                 return refuse(format!(
                     "{} holds files that were not made by a build, which --force does not remove; empty the folder, or choose another output",
                     self.out.display()

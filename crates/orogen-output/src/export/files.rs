@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use orogen_grid::progress::Progress;
 use orogen_io::file::{self, Existing, Output, Staged};
+use orogen_io::fs;
 use orogen_io::spool::Spool;
 
 /// The files of one export.
@@ -49,7 +50,7 @@ impl<'a> Files<'a> {
         match &self.sink {
             Sink::File(output) => Spool::beside(output.path()),
             // A stream has no disk of its own.
-            Sink::Stream(_) => Spool::beside(&std::env::temp_dir().join("orogen")),
+            Sink::Stream(_) => Spool::beside(&fs::temporary_folder().join("orogen")),
         }
     }
 
@@ -74,7 +75,7 @@ impl<'a> Files<'a> {
     ) -> io::Result<()> {
         let Sink::File(output) = &self.sink else { return Ok(()) };
         let path = output.path();
-        if path.exists() && !path.is_file() {
+        if fs::is_present(path) && !fs::is_file(path) {
             return Ok(());
         }
         let beside = output.policy().output(name(path))?;

@@ -13,6 +13,7 @@ use orogen_io::file::{self, Existing, Output, Staged};
 use orogen_io::format::affine::Affine;
 use orogen_io::format::dem::Georeference;
 use orogen_io::format::{aux_xml, world_file};
+use orogen_io::fs;
 use orogen_io::open;
 
 /// Larger than any georeferencing file, in bytes.
@@ -71,7 +72,7 @@ pub fn write_for(
     from_south: Option<bool>,
 ) -> io::Result<String> {
     let Some(map) = source.map() else { return Ok(String::new()) };
-    if options.has(NO_SIDECAR.name) || files.path().is_some_and(|path| path.exists() && !path.is_file()) {
+    if options.has(NO_SIDECAR.name) || files.path().is_some_and(|path| fs::is_present(path) && !fs::is_file(path)) {
         return Ok(String::new());
     }
     let affine = from_south.map(|from_south| map.affine(source.window(), from_south));
@@ -101,7 +102,7 @@ pub fn write_for(
 /// Fails if one exists with another position than the new one.
 fn check(path: &Path, beside: &Path, bytes: &[u8]) -> Result<()> {
     let differs = || open::bytes(beside, "read", LONGEST).is_ok_and(|old| old.is_none_or(|old| old != bytes));
-    if !beside.exists() || path.exists() || !differs() {
+    if !fs::is_present(beside) || fs::is_present(path) || !differs() {
         return Ok(());
     }
     let message = format!(

@@ -1,7 +1,6 @@
 //! Sidecars of formats that do not store all properties: NAME.json, which [`format::sidecar`](crate::format::sidecar)
 //! reads.
 
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -15,6 +14,7 @@ use orogen_grid::hex;
 use orogen_io::format::dem::Georeference;
 use orogen_io::format::levels::Levels;
 use orogen_io::format::sidecar::own;
+use orogen_io::fs::{self, File};
 
 /// The option that omits it.
 pub const NO_SIDECAR: OptionSpec = OptionSpec {
@@ -102,7 +102,7 @@ struct Text<'a> {
 /// Fails if the files fail, or both names are taken.
 pub fn write(files: &mut Files, source: &LayerSource, options: &Options, held: &SampleEncoding) -> io::Result<String> {
     let Some(path) = files.path().map(Path::to_path_buf) else { return Ok(String::new()) };
-    if options.has(NO_SIDECAR.name) || path.exists() && !path.is_file() {
+    if options.has(NO_SIDECAR.name) || fs::is_present(&path) && !fs::is_file(&path) {
         return Ok(String::new());
     }
     let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -147,8 +147,8 @@ pub fn write(files: &mut Files, source: &LayerSource, options: &Options, held: &
 fn place(path: &Path, name: &str) -> PathBuf {
     let short = path.with_extension("json");
     match belongs_to(&short).as_deref() {
-        None if !short.exists() => short,
-        Some(file) if file == name || !path.with_file_name(file).exists() => short,
+        None if !fs::is_present(&short) => short,
+        Some(file) if file == name || !fs::is_present(&path.with_file_name(file)) => short,
         _ => own(path),
     }
 }

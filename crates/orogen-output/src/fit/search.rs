@@ -310,7 +310,7 @@ fn trial_world(
     let inner = target.side * across;
     let plain = Stretch { from: [0.0, 1.0], to: [0.0, 1.0], bend: 0.0 };
     let recipe = trial(values, &plain, &FittedWorld { size: [inner + 2 * MARGIN; 2], cell: target.cell, seed });
-    let world = World::with_options(recipe, Options { cache: None, ..options.clone() })?;
+    let world = World::with_options(recipe, Options { store: None, ..options.clone() })?;
     let inside = Window::new(inner, inner, target.cell).at(MARGIN as i64, MARGIN as i64);
     Ok((world, inside))
 }

@@ -8,6 +8,7 @@ use super::geometry::{Affine, Point};
 use super::scene::Step;
 use crate::map::text::Face;
 use orogen_grid::error::{Error, ErrorKind, Result};
+use orogen_io::fs;
 
 /// The fonts of a sheet.
 pub struct FontSet {
@@ -200,12 +201,12 @@ fn search(lacking: &[char]) -> Option<FontVec> {
 }
 
 fn gather(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) {
-    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    let Ok(entries) = fs::read_dir(folder) else { return };
     for path in entries.filter_map(|entry| Some(entry.ok()?.path())) {
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
         if ["ttf", "otf", "ttc", "otc"].iter().any(|known| extension == *known) {
             files.push(path);
-        } else if depth > 0 && path.is_dir() {
+        } else if depth > 0 && fs::is_dir(&path) {
             gather(&path, depth - 1, files);
         }
     }
@@ -213,11 +214,11 @@ fn gather(folder: &Path, depth: usize, files: &mut Vec<PathBuf>) {
 
 /// A font file; of a collection, its first font.
 fn read(path: &Path) -> Option<FontVec> {
-    let length = std::fs::metadata(path).ok()?.len();
+    let length = fs::metadata(path).ok()?.len();
     if length > MAX_BYTES {
         return None;
     }
-    FontVec::try_from_vec_and_index(std::fs::read(path).ok()?, 0).ok()
+    FontVec::try_from_vec_and_index(fs::read(path).ok()?, 0).ok()
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use crate::format::affine::Affine;
 use crate::format::crs::keys::{self, GeoKeys};
 use crate::format::crs::unit::Unit;
 use crate::format::dem::{Dem, Placement, Request, afford, afford_beside, refused, turn_rows};
+use crate::fs;
 use crate::open;
 use orogen_grid::error::{Error, Result};
 
@@ -27,7 +28,7 @@ const MAX_SIDE: u64 = 1 << 31;
 
 /// Whether a folder is a Zarr array or group.
 pub fn is_zarr(folder: &Path) -> bool {
-    ["zarr.json", ".zarray", ".zgroup"].iter().any(|name| folder.join(name).is_file())
+    ["zarr.json", ".zarray", ".zgroup"].iter().any(|name| fs::is_file(&folder.join(name)))
 }
 
 /// Reads heights.
@@ -93,7 +94,7 @@ struct Array {
 
 /// The content of a small file; `None` if it does not exist.
 fn text(path: &Path) -> std::result::Result<Option<Value>, ReadFault> {
-    if !path.exists() {
+    if !fs::is_present(path) {
         return Ok(None);
     }
     let text = open::bytes(path, "read", MAX_METADATA)?;
@@ -253,7 +254,7 @@ impl Array {
         let path = self.folder.join(name);
         let due = self.chunk.iter().product::<u64>() as usize * self.size;
         let most = due as u64 + due as u64 / 8 + (1 << 16);
-        let Ok(there) = path.metadata() else { return Ok(None) };
+        let Ok(there) = fs::metadata(&path) else { return Ok(None) };
         // The compressed and the decompressed bytes, and one intermediate step.
         afford_beside(count, there.len().min(most) + 2 * due as u64, allowed)?;
         let bytes = open::bytes(&path, "read", most)?;
@@ -353,10 +354,10 @@ fn open(folder: &Path, request: Request) -> std::result::Result<Dem, ReadFault> 
 /// The array of heights in a group.
 fn find(folder: &Path) -> std::result::Result<Array, ReadFault> {
     let mut maps = Vec::new();
-    let entries = std::fs::read_dir(folder).map_err(|cause| Error::file("read", folder, &cause))?;
+    let entries = fs::read_dir(folder).map_err(|cause| Error::file("read", folder, &cause))?;
     for entry in entries {
         let path = entry.map_err(|cause| Error::file("read", folder, &cause))?.path();
-        if path.is_dir()
+        if fs::is_dir(&path)
             && let Some(array) = array(&path)?
             && array.is_map()
         {

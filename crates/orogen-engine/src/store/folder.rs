@@ -5,31 +5,29 @@
 //! entry the most recent one; if the folder exceeds its limit, the oldest entries are removed. Several processes may
 //! share a folder: a file that one of them removes stays readable for those that have it open.
 
-use super::entry;
-use crate::op::Solution;
-use crate::plan::key::Key;
-use orogen_grid::hex;
+use super::solution_store::{Entry, EntryKey, SolutionStore};
 use orogen_io::file;
-use sha2::{Digest, Sha256};
-use std::fs::{self, File};
+use orogen_io::fs::{self, File};
+use orogen_io::read_at::{PositionedFile, ReadAt};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-/// A cache of solutions between runs.
+/// A folder of solutions: a store for later runs and other processes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cache {
-    /// The folder; created if it does not exist. Only the cache's own files in it are changed.
+pub struct FolderStore {
+    /// The folder; created if it does not exist. Only the store's own files in it are changed.
     pub folder: PathBuf,
     /// Maximum size of all entries, in bytes.
     pub limit: u64,
-    /// Solutions that took less time to compute are not cached.
+    /// Solutions that took less time to compute are not stored.
     pub slower_than: Duration,
 }
 
-impl Cache {
-    /// A cache in `folder` of at most 10 GiB, for solutions that took longer than 0.25 s.
-    pub fn new(folder: impl Into<PathBuf>) -> Cache {
-        Cache { folder: folder.into(), limit: 10 << 30, slower_than: Duration::from_millis(250) }
+impl FolderStore {
+    /// A store in `folder` of at most 10 GiB, for solutions that took longer than 0.25 s.
+    pub fn new(folder: impl Into<PathBuf>) -> FolderStore {
+        FolderStore { folder: folder.into(), limit: 10 << 30, slower_than: Duration::from_millis(250) }
     }
 
     /// The system's cache folder for Orogen, if it is known: `$XDG_CACHE_HOME/orogen` or `~/.cache/orogen`,
@@ -47,52 +45,13 @@ impl Cache {
         absolute("XDG_CACHE_HOME").or_else(|| home.map(|path| path.join(".cache"))).map(|path| path.join("orogen"))
     }
 
-    /// The solution stored under `key`, if there is an intact one.
-    pub(crate) fn find(&self, key: &Key, on_disk: bool) -> Option<Solution> {
-        let (name, path) = self.place(key);
-        let file = File::open(&path).ok()?;
-        match entry::read(file, &path, &name, on_disk) {
-            Ok(solution) => {
-                // It was just used, so it is removed last. If its time cannot be set, it is removed a little early.
-                if let Ok(file) = File::options().append(true).open(&path) {
-                    let _ = file.set_modified(SystemTime::now());
-                }
-                Some(solution)
-            }
-            Err(_) => {
-                let _ = fs::remove_file(&path);
-                None
-            }
-        }
-    }
-
-    /// Whether there is an entry under `key`, intact or not.
-    pub(crate) fn has(&self, key: &Key) -> bool {
-        self.place(key).1.is_file()
-    }
-
-    /// Stores a solution, and removes the oldest ones if the limit is exceeded. Failures are ignored, because the
-    /// solution is in memory.
-    pub(crate) fn keep(&self, key: &Key, solution: &Solution) {
-        if entry::length(solution) > self.limit || fs::create_dir_all(&self.folder).is_err() {
-            return;
-        }
-        let (name, path) = self.place(key);
-        let _ = file::replace_whole(&path, |out| entry::write(out, &name, solution));
-        self.tidy(&path);
-    }
-
-    fn place(&self, key: &Key) -> (Key, PathBuf) {
-        let mut hash = Sha256::new();
-        hash.update(key);
-        hash.update(env!("CARGO_PKG_VERSION"));
-        let name: Key = hash.finalize().into();
-        (name, self.folder.join(hex::encode(&name) + EXTENSION))
+    pub(super) fn path(&self, key: &EntryKey) -> PathBuf {
+        self.folder.join(format!("{key}{EXTENSION}"))
     }
 
     /// The key in the name of an entry; `None` for other names.
-    pub(super) fn key_of(name: &str) -> Option<Key> {
-        hex::decode(name.strip_suffix(EXTENSION)?)
+    pub(super) fn key_of(name: &str) -> Option<EntryKey> {
+        name.strip_suffix(EXTENSION)?.parse().ok()
     }
 
     /// Removes the oldest entries beyond the limit, but not `newest`, and incomplete files of killed processes.
@@ -103,7 +62,7 @@ impl Cache {
         for file in there.flatten() {
             let (name, Ok(meta)) = (file.file_name(), file.metadata()) else { continue };
             let (name, used) = (name.to_string_lossy(), meta.modified().unwrap_or(SystemTime::UNIX_EPOCH));
-            if Cache::key_of(&name).is_some() {
+            if FolderStore::key_of(&name).is_some() {
                 entries.push((used, meta.len(), file.path()));
             }
         }
@@ -119,11 +78,63 @@ impl Cache {
     }
 }
 
+impl SolutionStore for FolderStore {
+    fn get(&self, key: &EntryKey) -> io::Result<Option<Box<dyn ReadAt>>> {
+        let path = self.path(key);
+        let file = match File::open(&path) {
+            Ok(file) => file,
+            Err(cause) if cause.kind() == io::ErrorKind::NotFound => return Ok(None),
+            Err(cause) => return Err(cause),
+        };
+        // It is used now, so it is removed last. If its time cannot be set, it is removed a little early.
+        if let Ok(file) = File::options().append(true).open(&path) {
+            let _ = file.set_modified(SystemTime::now());
+        }
+        Ok(Some(Box::new(PositionedFile::new(file))))
+    }
+
+    fn put(&self, key: &EntryKey, entry: &Entry) -> io::Result<()> {
+        if entry.length() > self.limit {
+            return Ok(());
+        }
+        fs::create_dir_all(&self.folder)?;
+        let path = self.path(key);
+        let put = file::replace_whole(&path, |out| entry.write_to(out)).map_err(io::Error::from);
+        self.tidy(&path);
+        put
+    }
+
+    fn contains(&self, key: &EntryKey) -> bool {
+        fs::is_file(&self.path(key))
+    }
+
+    fn remove(&self, key: &EntryKey) -> io::Result<()> {
+        match fs::remove_file(self.path(key)) {
+            Err(cause) if cause.kind() != io::ErrorKind::NotFound => Err(cause),
+            _ => Ok(()),
+        }
+    }
+
+    fn slower_than(&self) -> Duration {
+        self.slower_than
+    }
+
+    fn scratch_folder(&self) -> Option<&Path> {
+        Some(&self.folder)
+    }
+
+    fn name(&self, key: &EntryKey) -> PathBuf {
+        self.path(key)
+    }
+}
+
 const EXTENSION: &str = ".solved";
 
 #[cfg(test)]
 mod tests {
+    use super::super::solutions::{look_up, store};
     use super::*;
+    use crate::op::Solution;
     use orogen_grid::grid::{Grid, Window};
     use orogen_io::raster::Raster;
 
@@ -135,10 +146,10 @@ mod tests {
         }
     }
 
-    fn cache(name: &str) -> (Folder, Cache) {
+    fn folder_store(name: &str) -> (Folder, FolderStore) {
         let path = std::env::temp_dir().join(format!("orogen-cache-{}-{name}", std::process::id()));
         let _ = fs::remove_dir_all(&path);
-        (Folder(path.clone()), Cache { slower_than: Duration::ZERO, ..Cache::new(path) })
+        (Folder(path.clone()), FolderStore { slower_than: Duration::ZERO, ..FolderStore::new(path) })
     }
 
     fn solution(side: usize) -> Solution {
@@ -161,27 +172,27 @@ mod tests {
 
     #[test]
     fn what_is_kept_is_found_again() {
-        let (_folder, cache) = cache("kept");
+        let (_folder, cache) = folder_store("kept");
         let kept = solution(600);
-        assert!(cache.find(&[1; 32], false).is_none());
-        cache.keep(&[1; 32], &kept);
+        assert!(look_up(&cache, &[1; 32], false).unwrap().is_none());
+        store(&cache, &[1; 32], &kept).unwrap();
         for on_disk in [false, true] {
-            let found = cache.find(&[1; 32], on_disk).unwrap();
+            let found = look_up(&cache, &[1; 32], on_disk).unwrap().unwrap();
             assert!(found.layers.iter().all(|layer| layer.is_on_disk() == on_disk));
             same(&kept, &found);
         }
-        assert!(cache.find(&[2; 32], false).is_none());
+        assert!(look_up(&cache, &[2; 32], false).unwrap().is_none());
         let numbers = Solution { layers: Vec::new(), scalars: vec![-7.0] };
-        cache.keep(&[3; 32], &numbers);
-        same(&numbers, &cache.find(&[3; 32], true).unwrap());
+        store(&cache, &[3; 32], &numbers).unwrap();
+        same(&numbers, &look_up(&cache, &[3; 32], true).unwrap().unwrap());
     }
 
     #[test]
     fn damage_is_found_and_removed() {
-        let (_folder, cache) = cache("damage");
+        let (_folder, cache) = folder_store("damage");
         let key = [7; 32];
-        let path = cache.place(&key).1;
-        cache.keep(&key, &solution(300));
+        let path = cache.path(&EntryKey::of(&key));
+        store(&cache, &key, &solution(300)).unwrap();
         let sound = fs::read(&path).unwrap();
         // A flipped byte at any position, a truncated or extended file, another entry's file under this name.
         let mut damaged: Vec<Vec<u8>> =
@@ -197,56 +208,56 @@ mod tests {
         for bytes in damaged {
             for on_disk in [false, true] {
                 fs::write(&path, &bytes).unwrap();
-                assert!(cache.find(&key, on_disk).is_none());
+                assert!(look_up(&cache, &key, on_disk).is_err());
                 assert!(!path.exists(), "what is damaged is removed");
             }
         }
-        cache.keep(&[8; 32], &solution(300));
-        fs::rename(cache.place(&[8; 32]).1, &path).unwrap();
-        assert!(cache.find(&key, false).is_none());
-        cache.keep(&key, &solution(300));
-        same(&solution(300), &cache.find(&key, true).unwrap());
+        store(&cache, &[8; 32], &solution(300)).unwrap();
+        fs::rename(cache.path(&EntryKey::of(&[8; 32])), &path).unwrap();
+        assert!(look_up(&cache, &key, false).is_err());
+        store(&cache, &key, &solution(300)).unwrap();
+        same(&solution(300), &look_up(&cache, &key, true).unwrap().unwrap());
     }
 
     #[test]
     fn the_longest_unused_goes_first() {
-        let (_folder, mut cache) = cache("limit");
+        let (_folder, mut cache) = folder_store("limit");
         let one = solution(256);
-        cache.limit = 5 * entry::length(&one) / 2;
+        cache.limit = 5 * Entry::new(&EntryKey::of(&[0; 32]), &one).length() / 2;
         let old = |key: u8, seconds: u64| {
-            let file = File::options().append(true).open(cache.place(&[key; 32]).1).unwrap();
+            let file = File::options().append(true).open(cache.path(&EntryKey::of(&[key; 32]))).unwrap();
             file.set_modified(SystemTime::now() - Duration::from_secs(seconds)).unwrap();
         };
-        let there = |key: u8| cache.place(&[key; 32]).1.exists();
-        cache.keep(&[1; 32], &one);
+        let there = |key: u8| cache.path(&EntryKey::of(&[key; 32])).exists();
+        store(&cache, &[1; 32], &one).unwrap();
         old(1, 30);
-        cache.keep(&[2; 32], &one);
+        store(&cache, &[2; 32], &one).unwrap();
         old(2, 20);
-        assert!(cache.find(&[1; 32], true).is_some(), "used again");
+        assert!(look_up(&cache, &[1; 32], true).unwrap().is_some(), "used again");
         fs::write(cache.folder.join("mine.txt"), "not an entry").unwrap();
         let abandoned = cache.folder.join(".orogen-1-1-1.tmp");
         fs::write(&abandoned, [0; 99]).unwrap();
-        cache.keep(&[3; 32], &one);
+        store(&cache, &[3; 32], &one).unwrap();
         assert_eq!([there(1), there(2), there(3)], [true, false, true]);
         assert!(cache.folder.join("mine.txt").exists() && !abandoned.exists());
-        cache.keep(&[4; 32], &solution(2000));
+        store(&cache, &[4; 32], &solution(2000)).unwrap();
         assert_eq!([there(1), there(3), there(4)], [true, true, false], "what is larger than the limit is not kept");
     }
 
     #[test]
     fn many_at_once_neither_break_nor_see_halves() {
-        let (_folder, cache) = cache("many");
+        let (_folder, cache) = folder_store("many");
         let kept = solution(300);
         std::thread::scope(|scope| {
             for _ in 0..4 {
                 scope.spawn(|| {
                     for round in 0..20 {
-                        cache.keep(&[round % 3; 32], &kept);
-                        if let Some(found) = cache.find(&[round % 3; 32], round % 2 == 0) {
+                        store(&cache, &[round % 3; 32], &kept).unwrap();
+                        if let Some(found) = look_up(&cache, &[round % 3; 32], round % 2 == 0).unwrap() {
                             same(&kept, &found);
                         }
                         if round % 5 == 0 {
-                            let _ = fs::remove_file(cache.place(&[round % 3; 32]).1);
+                            let _ = fs::remove_file(cache.path(&EntryKey::of(&[round % 3; 32])));
                         }
                     }
                 });

@@ -1,0 +1,220 @@
+//! Stores: where solutions wait for later runs, as bytes under a key.
+
+use super::entry;
+use crate::op::Solution;
+use crate::plan::key::Key;
+use orogen_io::read_at::ReadAt;
+use sha2::{Digest, Sha256};
+use std::fmt;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::time::Duration;
+
+/// Keeps solutions for later runs, and for other sessions: bytes under a key. [`FolderStore`](super::folder::FolderStore)
+/// keeps them in a folder, [`MemoryStore`](super::memory::MemoryStore) in memory; a program may keep them anywhere else.
+///
+/// A [`Session`](crate::Session) looks for a solution before it solves, and stores one after it has solved. A store may
+/// forget entries at any time and may be shared by any number of sessions and processes; its methods are called from
+/// several threads at once.
+///
+/// A store cannot change terrain. Each entry contains its key and checksums of all its bytes, and a session verifies them
+/// before it uses the entry, so whatever a store returns is either the solution or recognised as damaged. If an entry is
+/// missing or damaged or the store fails, the session solves instead; [`Session::store_failure`](crate::Session::store_failure)
+/// tells why. If an entry is left in the store to save memory and can no longer be read while it is used, the request ends
+/// with an error.
+///
+/// ```
+/// use orogen_engine::store::solution_store::{Entry, EntryKey, SolutionStore};
+/// use orogen_engine::field::fbm::Fbm;
+/// use orogen_engine::solver::normalise::Normalise;
+/// use orogen_engine::{Options, Recipe, Session, Window, WorldSpec};
+/// use orogen_io::read_at::ReadAt;
+/// use std::collections::HashMap;
+/// use std::io;
+/// use std::sync::{Arc, Mutex, PoisonError};
+///
+/// /// Stands for an object store.
+/// #[derive(Debug, Default)]
+/// struct Objects(Mutex<HashMap<String, Arc<Vec<u8>>>>);
+///
+/// impl Objects {
+///     fn all(&self) -> std::sync::MutexGuard<'_, HashMap<String, Arc<Vec<u8>>>> {
+///         self.0.lock().unwrap_or_else(PoisonError::into_inner)
+///     }
+/// }
+///
+/// impl SolutionStore for Objects {
+///     fn get(&self, key: &EntryKey) -> io::Result<Option<Box<dyn ReadAt>>> {
+///         Ok(self.all().get(&key.to_string()).map(|bytes| Box::new(Arc::clone(bytes)) as Box<dyn ReadAt>))
+///     }
+///     fn put(&self, key: &EntryKey, entry: &Entry) -> io::Result<()> {
+///         let bytes = Arc::new(entry.to_bytes()?);
+///         self.all().insert(key.to_string(), bytes);
+///         Ok(())
+///     }
+///     fn contains(&self, key: &EntryKey) -> bool {
+///         self.all().contains_key(&key.to_string())
+///     }
+///     fn remove(&self, key: &EntryKey) -> io::Result<()> {
+///         self.all().remove(&key.to_string());
+///         Ok(())
+///     }
+/// }
+///
+/// let objects = Arc::new(Objects::default());
+/// let mut recipe = Recipe::new(WorldSpec { size: Some([2000.0, 2000.0]), cell: 20.0, ..WorldSpec::default() });
+/// recipe.add("noise", Fbm::default()).add("land", Normalise { source: "noise".into(), low: 0.0, high: 900.0 });
+/// recipe.output("height", "land");
+/// let make = || -> orogen_engine::Result<u64> {
+///     let session = Session::new(Options { store: Some(objects.clone()), ..Options::default() })?;
+///     session.open(recipe.clone())?.window("height", &Window::new(32, 32, 60.0))?;
+///     Ok(session.solutions_made())
+/// };
+/// assert!(make()? > 0);
+/// assert_eq!(make()?, 0, "another session finds what this one has solved");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub trait SolutionStore: Send + Sync + fmt::Debug {
+    /// The bytes stored under `key`; `None` if there are none. They must stay readable while they are held, even if the
+    /// entry is removed or replaced meanwhile.
+    ///
+    /// # Errors
+    /// If the store fails. The session then solves.
+    fn get(&self, key: &EntryKey) -> io::Result<Option<Box<dyn ReadAt>>>;
+
+    /// Stores an entry under `key`, atomically: a reader finds all of it or none of it. An entry that is there already is
+    /// replaced. A store that has no room for it may ignore it.
+    ///
+    /// # Errors
+    /// If the store fails. The session keeps the solution in memory all the same.
+    fn put(&self, key: &EntryKey, entry: &Entry) -> io::Result<()>;
+
+    /// Whether there is an entry under `key`, intact or not. It is asked for estimates of work, so it should be quick; a
+    /// store that cannot tell returns `false`.
+    fn contains(&self, key: &EntryKey) -> bool;
+
+    /// Removes a damaged entry. It is no error if there is none.
+    ///
+    /// # Errors
+    /// If the store fails.
+    fn remove(&self, key: &EntryKey) -> io::Result<()>;
+
+    /// Solutions that took less time to compute are not stored. By default all are stored.
+    fn slower_than(&self) -> Duration {
+        Duration::ZERO
+    }
+
+    /// The folder for data that does not fit in memory, if the session's options name none. By default there is none.
+    fn scratch_folder(&self) -> Option<&Path> {
+        None
+    }
+
+    /// The name of an entry in messages: by default its key.
+    fn name(&self, key: &EntryKey) -> PathBuf {
+        PathBuf::from(key.to_string())
+    }
+}
+
+/// The key of an entry: a hash of a solver's content key and the version of this library. It is displayed, and read
+/// back, as 64 hexadecimal digits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct EntryKey(pub [u8; 32]);
+
+impl EntryKey {
+    /// The key under which the solution with a content key is stored.
+    pub(crate) fn of(key: &Key) -> EntryKey {
+        let mut hash = Sha256::new();
+        hash.update(key);
+        hash.update(env!("CARGO_PKG_VERSION"));
+        EntryKey(hash.finalize().into())
+    }
+}
+
+impl fmt::Display for EntryKey {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        self.0.iter().try_for_each(|byte| write!(formatter, "{byte:02x}"))
+    }
+}
+
+/// A text that is not 64 hexadecimal digits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NoEntryKey;
+
+impl fmt::Display for NoEntryKey {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str("the key of an entry has 64 hexadecimal digits")
+    }
+}
+
+impl std::error::Error for NoEntryKey {}
+
+impl FromStr for EntryKey {
+    type Err = NoEntryKey;
+
+    fn from_str(text: &str) -> Result<EntryKey, NoEntryKey> {
+        if text.len() != 64 || !text.bytes().all(|byte| byte.is_ascii_hexdigit()) {
+            return Err(NoEntryKey);
+        }
+        let mut key = [0; 32];
+        for (byte, pair) in key.iter_mut().zip(text.as_bytes().as_chunks().0) {
+            let [high, low]: [u8; 2] = *pair;
+            let digit = |digit: u8| (digit as char).to_digit(16).unwrap_or_default() as u8;
+            *byte = 16 * digit(high) + digit(low);
+        }
+        Ok(EntryKey(key))
+    }
+}
+
+/// A solution to be stored: bytes that contain its key and checksums.
+#[derive(Debug)]
+pub struct Entry<'a> {
+    key: &'a EntryKey,
+    solution: &'a Solution,
+}
+
+impl<'a> Entry<'a> {
+    pub(crate) fn new(key: &'a EntryKey, solution: &'a Solution) -> Entry<'a> {
+        Entry { key, solution }
+    }
+
+    /// Its length in bytes.
+    #[must_use]
+    pub fn length(&self) -> u64 {
+        entry::length(self.solution)
+    }
+
+    /// Writes its bytes, a page of 256 KiB at a time.
+    ///
+    /// # Errors
+    /// If `out` fails, or a solution on disk cannot be read.
+    pub fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
+        entry::write(out, &self.key.0, self.solution)
+    }
+
+    /// All of its bytes.
+    ///
+    /// # Errors
+    /// If a solution on disk cannot be read.
+    pub fn to_bytes(&self) -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::with_capacity(usize::try_from(self.length()).unwrap_or_default());
+        self.write_to(&mut bytes)?;
+        Ok(bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_are_read_back_from_what_they_display() {
+        let key = EntryKey::of(&[7; 32]);
+        let text = key.to_string();
+        assert_eq!((text.len(), text.parse()), (64, Ok(key)));
+        assert_ne!(key, EntryKey::of(&[8; 32]));
+        for wrong in ["", &text[1..], &format!("{text}0"), &text.replacen(&text[..1], "g", 1), &"é".repeat(32)] {
+            assert_eq!(wrong.parse::<EntryKey>(), Err(NoEntryKey), "{wrong}");
+        }
+    }
+}
