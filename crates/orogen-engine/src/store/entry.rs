@@ -7,7 +7,7 @@
 use crate::op::Solution;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
-use orogen_io::pages::{self, BYTES, PageFile, Pages, SIDE, checksum};
+use orogen_io::pages::{self, BYTES, PageFile, Pages, SIDE, checksum, has_checksum};
 use orogen_io::raster::Raster;
 use std::fs::File;
 use std::io::{self, Write};
@@ -129,6 +129,11 @@ impl Reader<'_> {
         Ok(bytes)
     }
 
+    fn sum(&mut self) -> Result<u32> {
+        let bytes = self.bytes(4)?;
+        Ok(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
+    }
+
     fn head(&mut self, key: &[u8; 32], length: u64) -> Result<Head> {
         let mut bytes = self.bytes(MAGIC.len() + 32 + 16)?;
         if bytes[..16] != MAGIC[..] || bytes[16..48] != key[..] {
@@ -139,8 +144,8 @@ impl Reader<'_> {
             return Err(self.fault("it declares too many layers"));
         }
         bytes.extend(self.bytes(scalars * 8 + layers * 40)?);
-        let sum = self.bytes(4)?;
-        if checksum(&bytes).to_le_bytes() != sum[..] {
+        let sum = self.sum()?;
+        if !has_checksum(&bytes, sum) {
             return Err(self.fault("its header is damaged"));
         }
         let numbers = |from: usize, count: usize| (0..count).map(move |i| from + i * 8);
@@ -157,6 +162,9 @@ impl Reader<'_> {
             scalars: numbers(scalars_at, scalars).map(|at| f64::from_bits(word(&bytes, at))).collect(),
             windows: (0..layers).map(|i| window(windows_at + i * 40)).collect(),
         };
+        if !head.windows.iter().all(is_layer) {
+            return Err(self.fault("a layer has no valid position, size or cell"));
+        }
         let pages = head.windows.iter().fold(0u64, |sum, window| sum.saturating_add(pages::count(window) as u64));
         let whole = pages.saturating_mul(BYTES as u64 + 4).saturating_add(self.at + 4);
         if length != whole {
@@ -168,12 +176,25 @@ impl Reader<'_> {
     fn sums(&mut self, at: u64, pages: usize) -> Result<Vec<u32>> {
         self.at = at;
         let bytes = self.bytes(pages * 4)?;
-        let sum = self.bytes(4)?;
-        if checksum(&bytes).to_le_bytes() != sum[..] {
+        let sum = self.sum()?;
+        if !has_checksum(&bytes, sum) {
             return Err(self.fault("its checksums are damaged"));
         }
         Ok(bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
     }
+}
+
+/// Whether a solver can make a layer over this window.
+fn is_layer(window: &Window) -> bool {
+    const FAR: i64 = 1 << 53;
+    let is_side = |side: usize| (1..=FAR as u64).contains(&(side as u64));
+    let is_position = |position: i64| (-FAR..=FAR).contains(&position);
+    is_side(window.width)
+        && is_side(window.height)
+        && is_position(window.x)
+        && is_position(window.y)
+        && window.cell.is_finite()
+        && window.cell > 0.0
 }
 
 /// Eight bytes as an integer; missing bytes give 0.

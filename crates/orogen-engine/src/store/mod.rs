@@ -5,3 +5,9 @@ mod entry;
 pub(crate) mod grids;
 pub mod listing;
 pub(crate) mod solutions;
+
+/// Readers of stored solutions, for the fuzz targets.
+#[doc(hidden)]
+pub mod fuzzing {
+    pub use super::entry::{read, windows};
+}

@@ -8,6 +8,19 @@ use orogen::node::Node;
 use orogen::value::{Spanned, Value};
 use orogen::{Options, Recipe, World, WorldSpec};
 
+/// Whether the tests write what they would compare: `OROGEN_BLESS=1`.
+pub fn bless() -> bool {
+    match std::env::var_os("OROGEN_BLESS") {
+        None => false,
+        Some(value) if value == "1" => true,
+        Some(value) => {
+            panic!(
+                "OROGEN_BLESS is {value:?}; set it to 1 to rewrite the committed files, or unset it to compare with them"
+            )
+        }
+    }
+}
+
 /// A small deterministic generator for test inputs (splitmix64).
 pub struct Random(pub u64);
 
