@@ -205,3 +205,52 @@ fn word(bytes: &[u8], at: usize) -> u64 {
     }
     u64::from_le_bytes(word)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use orogen_grid::grid::Grid;
+
+    /// A header whose checksum matches, as no solver writes it: no pages follow from an empty window, however high.
+    #[test]
+    fn layers_that_no_solver_makes_are_refused() {
+        let key = [7; 32];
+        let sound = Window::new(3, 2, 10.0);
+        let layer = Raster::in_memory(Grid::filled(sound, 1.0f32));
+        let mut bytes = Vec::new();
+        write(&mut bytes, &key, &Solution { layers: vec![layer], scalars: Vec::new() }).unwrap();
+        let path = std::env::temp_dir().join(format!("orogen-entry-{}", std::process::id()));
+        let read_with = |window: [u64; 5], pages: usize| {
+            let mut bytes = bytes.clone();
+            bytes.truncate(104 + 4 + pages * BYTES);
+            for (k, number) in window.iter().enumerate() {
+                bytes[64 + 8 * k..72 + 8 * k].copy_from_slice(&number.to_le_bytes());
+            }
+            let sum = checksum(&bytes[..104]).to_le_bytes();
+            bytes[104..108].copy_from_slice(&sum);
+            let sums: Vec<u8> = bytes[108..].chunks(BYTES).flat_map(|page| checksum(page).to_le_bytes()).collect();
+            let sums_of_sums = checksum(&sums).to_le_bytes();
+            bytes.extend([&sums[..], &sums_of_sums].concat());
+            std::fs::write(&path, &bytes).unwrap();
+            let headed = windows(File::open(&path).unwrap(), &path, &key);
+            let read = read(File::open(&path).unwrap(), &path, &key, false);
+            assert_eq!(headed.is_ok(), read.is_ok());
+            read.map(|_| ()).map_err(|error| error.to_string())
+        };
+        let cell = 10.0f64.to_bits();
+        assert_eq!(read_with([0, 0, 3, 2, cell], 1), Ok(()));
+        let far = (1u64 << 53) + 1;
+        for (window, pages) in [
+            ([0, 0, 0, 1 << 62, cell], 0),
+            ([0, 0, u64::MAX, 0, cell], 0),
+            ([far, 0, 3, 2, cell], 1),
+            ([0, far.wrapping_neg(), 3, 2, cell], 1),
+            ([0, 0, 3, 2, 0], 1),
+            ([0, 0, 3, 2, f64::NAN.to_bits()], 1),
+        ] {
+            let why = read_with(window, pages).unwrap_err();
+            assert!(why.contains("no valid position, size or cell"), "{window:?}: {why}");
+        }
+        std::fs::remove_file(&path).unwrap();
+    }
+}
