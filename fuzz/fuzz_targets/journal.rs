@@ -45,7 +45,7 @@ fn files(folder: &Path, into: &mut BTreeMap<PathBuf, Vec<u8>>) {
 impl Site {
     fn resume(&self, start: Start) -> orogen::Result<()> {
         let build = Build::new(&self.world, &spec(), &OutputPolicy::default().output(&self.out)?)?;
-        build.disk();
+        let _ = build.disk();
         build.run(start, &Progress::none()).map(drop)
     }
 }

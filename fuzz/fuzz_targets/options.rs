@@ -78,7 +78,11 @@ fuzz_target!(|text: &str| {
         assert!(expression.value(&values).is_some(), "{text}");
     }
     let mut options = Options::default();
-    for (spec, _) in registry::options().into_iter().map(|(spec, _)| (spec, ())).chain(list::options().into_iter().map(|(spec, _)| (spec, ()))) {
+    for (spec, _) in registry::options()
+        .into_iter()
+        .map(|(spec, _)| (spec, ()))
+        .chain(list::options().into_iter().map(|(spec, _)| (spec, ())))
+    {
         let _ = options.give(spec, text);
     }
 });

@@ -192,7 +192,8 @@ fn numbers_are_readable_and_near_what_they_say() {
         let units = ["bytes", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
         let power = units.iter().position(|known| *known == unit || n == 1 && unit == "byte");
         let power = power.ok_or_else(|| TestCaseError::fail(text.clone()))?;
-        let read = digits.parse::<f64>().map_err(|_| TestCaseError::fail(text.clone()))? * 1024f64.powi(power as i32);
+        let read =
+            digits.parse::<f64>().map_err(|_| TestCaseError::fail(text.clone()))? * (1u64 << (10 * power)) as f64;
         prop_assert!((read - n as f64).abs() <= n as f64 * 0.051, "{} for {}", text, n);
         Ok(())
     });

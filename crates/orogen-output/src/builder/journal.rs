@@ -45,6 +45,7 @@ pub struct JournalState {
 
 impl JournalState {
     /// The state of a new build.
+    #[must_use]
     pub fn begun(identity: Identity) -> JournalState {
         JournalState { identity, records: BTreeMap::new(), finished: None }
     }
@@ -69,6 +70,7 @@ impl JournalState {
     }
 
     /// The state in the bytes of a journal; `None` if the first line is not that of one.
+    #[must_use]
     pub fn parse(bytes: &[u8]) -> Option<JournalState> {
         let mut lines = bytes.split(|byte| *byte == b'\n').map(parse);
         let Some(Some(Line::Begun(identity))) = lines.next() else { return None };
