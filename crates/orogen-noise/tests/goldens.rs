@@ -131,15 +131,12 @@ fn goldens() -> Vec<String> {
 
 /// Whether the tests write what they would compare: `OROGEN_BLESS=1`.
 fn bless() -> bool {
-    match std::env::var_os("OROGEN_BLESS") {
-        None => false,
-        Some(value) if value == "1" => true,
-        Some(value) => {
-            panic!(
-                "OROGEN_BLESS is {value:?}; set it to 1 to rewrite the committed files, or unset it to compare with them"
-            )
-        }
-    }
+    let value = std::env::var_os("OROGEN_BLESS");
+    assert!(
+        value.as_ref().is_none_or(|value| value == "1"),
+        "OROGEN_BLESS is {value:?}; set it to 1 to rewrite the committed files, or unset it to compare with them"
+    );
+    value.is_some()
 }
 
 #[test]
