@@ -1,19 +1,20 @@
-//! `cargo xtask fuzz`: libFuzzer on every reader of foreign files, with the stable compiler.
+//! `cargo xtask fuzz`: libFuzzer on every reader of files and texts, with the stable compiler.
 
 use crate::failure::{Failure, Result};
 use crate::shell;
 
-pub const ABOUT: &str = "run libFuzzer on the readers of foreign files";
+pub const ABOUT: &str = "run libFuzzer on the readers of files and texts";
 
 pub const HELP: &str = "
-Usage: cargo xtask fuzz [TARGET...] [--seconds N]
+Usage: cargo xtask fuzz [TARGET...] [--seconds N] [--runs N]
 
-Builds fuzz/ with coverage counters and AddressSanitizer into target/fuzz and runs all targets, or those named, for N seconds each (default 60),
-starting with the files in fuzz/corpus/TARGET. New inputs are written to target/fuzz/found, not to the committed corpus. Inputs that break a reader
+Builds fuzz/ with coverage counters and AddressSanitizer into target/fuzz and runs all targets, or those named, for N seconds each (default 60)
+or N executions, whichever comes first, starting with the files in fuzz/corpus/TARGET. New inputs are written to target/fuzz/found, not to the committed corpus. Inputs that break a reader
 are written to fuzz/artifacts. Needs a C++ compiler for libFuzzer; cargo-fuzz is optional.
 ";
 
-const TARGETS: [&str; 4] = ["dem", "palette", "place", "recipe"];
+const TARGETS: [&str; 10] =
+    ["dem", "journal", "options", "palette", "place", "plan", "recipe", "sidecar", "solution", "zarr"];
 
 /// Flags for coverage instrumentation (those of cargo-fuzz).
 const FLAGS: &str = "--cfg fuzzing -Zsanitizer=address -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
@@ -22,12 +23,13 @@ const FLAGS: &str = "--cfg fuzzing -Zsanitizer=address -Cpasses=sancov-module -C
 
 /// Builds and runs.
 pub fn run(args: &[String]) -> Result {
-    let (mut seconds, mut named, mut args) = (60, Vec::new(), args.iter());
+    let (mut seconds, mut runs, mut named, mut args) = (60, None, Vec::new(), args.iter());
     while let Some(arg) = args.next() {
         match arg.as_str() {
-            "--seconds" => {
-                let number = args.next().and_then(|number| number.parse().ok());
-                seconds = number.ok_or_else(|| Failure::usage("--seconds takes a whole number"))?;
+            "--seconds" | "--runs" => {
+                let number = args.next().and_then(|number| number.parse::<u32>().ok());
+                let number = number.ok_or_else(|| Failure::usage(format!("{arg} takes a whole number")))?;
+                if arg == "--runs" { runs = Some(number) } else { seconds = number }
             }
             target if TARGETS.contains(&target) => named.push(target),
             other => {
@@ -52,6 +54,7 @@ pub fn run(args: &[String]) -> Result {
             .arg("--")
             .args([&found, &shell::root().join("fuzz/corpus").join(target)])
             .arg(format!("-max_total_time={seconds}"))
+            .args(runs.map(|runs| format!("-runs={runs}")))
             .arg(format!("-artifact_prefix={}/", artifacts.join(target).display()))
             .args(["-rss_limit_mb=1024", "-malloc_limit_mb=256", "-timeout=10", "-print_final_stats=1", "-verbosity=0"])
             // Sanitizers are unstable; this allows them in the stable compiler that builds everything else.

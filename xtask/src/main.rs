@@ -9,6 +9,7 @@ mod failure;
 mod fuzz;
 mod gallery;
 mod licences;
+mod links;
 mod resolution;
 mod shell;
 mod steps;

@@ -1,20 +1,22 @@
 //! `cargo xtask test`: all tests that need only Rust.
 
-use crate::failure::Result;
+use crate::failure::{Failure, Result};
 use crate::shell::{self, cargo, run as sh};
 use crate::steps::{self, Step};
-use crate::{codegen, licences, words};
+use crate::{codegen, licences, links, words};
 
 pub const ABOUT: &str = "run all tests that need only Rust";
 
 pub const HELP: &str = "
 Usage: cargo xtask test [STEP...]
+       cargo xtask test --long [NAME]
 
 Runs the steps in this order, or only those named, and stops at the first failure:
 
   fmt       every file is formatted
   lists     the generated module and node lists are up to date
   words     names and texts use the field's terms
+  links     relative links in Markdown files lead to files, and their anchors to headings
   clippy    no warning in any target
   tests     unit tests, integration tests, doctests, examples build
   features  what is off by default: no warning, unit tests and doctests; the libraries without files and threads
@@ -23,6 +25,9 @@ Runs the steps in this order, or only those named, and stops at the first failur
   licences  every dependency has a licence we accept
   package   every crate builds from its own published archive
 
+With --long, it runs the long tests instead, one at a time: all tests of the workspace that are marked as ignored, with a reason
+that begins with `long: `, or those whose name contains NAME. All together take hours.
+
 Needs only Rust and, the first time, a connection for the crates in Cargo.lock.
 ";
 
@@ -30,6 +35,7 @@ const STEPS: &[&Step] = &[
     &Step { name: "fmt", about: "cargo fmt --all --check", run: || sh(&mut cargo("fmt --all --check")) },
     &Step { name: "lists", about: "the generated module and node lists are up to date", run: || codegen::lists(true) },
     &Step { name: "words", about: "names and texts use the field's terms", run: words::check },
+    &Step { name: "links", about: "relative links in Markdown files lead to files and headings", run: links::check },
     &Step {
         name: "clippy",
         about: "cargo clippy --workspace --all-targets -- -D warnings",
@@ -51,9 +57,53 @@ const STEPS: &[&Step] = &[
     &Step { name: "package", about: "every crate builds from its own published archive", run: package },
 ];
 
-/// Runs the checks.
+/// Runs the checks, or the long tests.
 pub fn run(args: &[String]) -> Result {
+    if let [first, names @ ..] = args
+        && first == "--long"
+    {
+        return match names {
+            [] => long(None),
+            [name] if !name.starts_with('-') => long(Some(name)),
+            _ => Err(Failure::usage("expected --long [NAME]")),
+        };
+    }
     steps::run("cargo xtask test", STEPS, args)
+}
+
+/// All ignored tests. Without doctests, where `ignore` marks code that is not meant to run.
+fn long(name: Option<&str>) -> Result {
+    reasons()?;
+    const TARGETS: &str = "test --workspace --lib --bins --tests --examples";
+    let with = |more: &[&str]| {
+        let mut command = cargo(TARGETS);
+        command.arg("--").args(name).arg("--ignored").args(more);
+        command
+    };
+    let listed = shell::capture(&mut with(&["--list"]))?;
+    let tests: Vec<&str> = listed.lines().filter_map(|line| line.strip_suffix(": test")).collect();
+    if tests.is_empty() {
+        return Err(Failure::new(match name {
+            Some(name) => format!("no long test has a name that contains '{name}'"),
+            None => "there are no long tests".to_owned(),
+        }));
+    }
+    println!("{} long tests:", tests.len());
+    tests.iter().for_each(|test| println!("  {test}"));
+    sh(&mut with(&["--nocapture", "--test-threads=1"]))
+}
+
+/// Checks that every ignored test is a long one, so that `--long` runs what its help says.
+fn reasons() -> Result {
+    let listed = shell::capture(shell::program("git").args(["grep", "-n", "#\\[ignore", "--", "crates", "bench"]))?;
+    let others: Vec<&str> = listed.lines().filter(|line| !line.contains("#[ignore = \"long: ")).collect();
+    match others.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::new(format!(
+            "ignored tests without a reason that begins with `long: `:\n{}",
+            others.join("\n")
+        ))),
+    }
 }
 
 /// A step of its own: other features of the whole workspace would have everything compiled twice.

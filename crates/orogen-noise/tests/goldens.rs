@@ -129,12 +129,22 @@ fn goldens() -> Vec<String> {
     list
 }
 
+/// Whether the tests write what they would compare: `OROGEN_BLESS=1`.
+fn bless() -> bool {
+    let value = std::env::var_os("OROGEN_BLESS");
+    assert!(
+        value.as_ref().is_none_or(|value| value == "1"),
+        "OROGEN_BLESS is {value:?}; set it to 1 to rewrite the committed files, or unset it to compare with them"
+    );
+    value.is_some()
+}
+
 #[test]
 fn the_bits_are_the_committed_ones_at_every_level() {
     for level in Level::available() {
         Level::force(level).unwrap();
         let found = goldens().join("\n") + "\n";
-        if std::env::var_os("OROGEN_BLESS").is_some() {
+        if bless() {
             std::fs::write(FILE, &found).unwrap();
         }
         let expected = std::fs::read_to_string(FILE).unwrap_or_default();

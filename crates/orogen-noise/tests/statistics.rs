@@ -1,7 +1,7 @@
 //! Numbers over many samples, for every noise there is: mean and range, independence of seeds, sameness in all directions, slopes,
 //! smoothness far away.
 //!
-//! `OROGEN_LONG=1 cargo test --release -p orogen-noise --test statistics -- --nocapture` takes a hundred times the samples.
+//! `cargo test --release -p orogen-noise --test statistics -- --ignored --nocapture` takes a hundred times the samples.
 #![allow(clippy::unwrap_used)] // here a failure is what a test is for, in its helpers too
 
 #[allow(dead_code)] // the list is for several binaries
@@ -13,11 +13,6 @@ use orogen_noise::{Depth, Fractal, Points};
 
 /// Samples per side of one window.
 const SIDE: usize = 1000;
-
-/// How many windows make the figures of means and ranges: a million samples each.
-fn windows() -> usize {
-    if std::env::var_os("OROGEN_LONG").is_some() { 100 } else { 1 }
-}
 
 fn axis(start: f64, cell: f64, count: usize) -> Vec<f64> {
     (0..count).map(|i| start + i as f64 * cell).collect()
@@ -38,10 +33,21 @@ fn rms(values: impl Iterator<Item = f64>) -> f64 {
 
 #[test]
 fn means_are_zero_and_ranges_within_bounds() {
+    check_means(1);
+}
+
+#[test]
+#[ignore = "long: a hundred million samples of every noise, in the plane and in space"]
+fn means_of_many_samples_are_zero_and_ranges_within_bounds() {
+    check_means(100);
+}
+
+/// Means and ranges of so many windows of a million samples each.
+fn check_means(windows: usize) {
     for (place, name) in ["in the plane", "in space"].into_iter().enumerate() {
         for (number, noise) in endless(11, 1.0).iter().enumerate() {
             let (mut sum, mut low, mut high) = (0.0, f32::MAX, f32::MIN);
-            for window in 0..windows() {
+            for window in 0..windows {
                 // A third of a cell apart and a bit more, so that all parts of cells are met; in space, at another depth each time.
                 let start = -60.0 + window as f64 * 377.17;
                 let (xs, ys) = (axis(start, 0.371, SIDE), axis(-start * 0.7, 0.371, SIDE));
@@ -53,9 +59,9 @@ fn means_are_zero_and_ranges_within_bounds() {
                 high = values.iter().fold(high, |high, &x| high.max(x));
                 assert!(values.iter().all(|x| x.is_finite()), "{}", noise.name);
             }
-            let samples = windows() * SIDE * SIDE;
+            let samples = windows * SIDE * SIDE;
             let mean = sum / samples as f64;
-            if windows() > 1 {
+            if windows > 1 {
                 println!("{number:3} {} {name}: mean {mean:.5}, {low:.4} to {high:.4}", noise.name);
             }
             let bound = noise.bounds()[place];

@@ -3,16 +3,28 @@
 
 mod support;
 
+/// See [`side`].
+static SIDE: AtomicUsize = AtomicUsize::new(384);
+
 use orogen::node::Node;
 use orogen::op::Op;
 use orogen::{ErrorKind, Grid, Progress, Recipe, Result, Window, World, WorldSpec};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use support::{Random, laws_of, open, recipe_of, world_of};
 
+#[test]
+#[ignore = "long: every node at 1024 x 1024 samples"]
+fn progress_of_larger_work() {
+    SIDE.store(1024, Ordering::Relaxed);
+    shares_grow_from_nothing_to_all_without_long_silences();
+    whatever_is_cancelled_at_any_moment_ends_at_once();
+}
+
 /// Samples along a side of the test worlds.
 fn side() -> usize {
-    if std::env::var_os("OROGEN_LONG").is_some() { 1024 } else { 384 }
+    SIDE.load(Ordering::Relaxed)
 }
 
 /// A node in a world large enough to take some time.

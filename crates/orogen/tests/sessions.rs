@@ -210,7 +210,7 @@ fn cancelled_requests_leave_nothing_behind() {
 }
 
 #[test]
-#[ignore = "takes many minutes: every preset, 200 moments each"]
+#[ignore = "long: every preset, 200 moments each"]
 fn every_preset_can_be_cancelled_at_any_moment() {
     for preset in presets::all() {
         println!("{}", preset.name);

@@ -7,10 +7,6 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-/// Environment variable: the number of kills of one run of the tests. A small number by default.
-const KILLS: &str = "OROGEN_KILLS";
-const FEW: u32 = 8;
-
 /// The builds: a name and the options.
 const BUILDS: [(&str, &[&str]); 6] = [
     ("a.tif", &["small.toml", "--tile", "64", "--cell", "0.7"]),
@@ -105,7 +101,16 @@ fn what_cannot_be_built_is_usage() {
 
 #[test]
 fn killed_at_any_moment_it_ends_with_the_same_bytes() {
-    let kills: u32 = std::env::var(KILLS).ok().and_then(|text| text.parse().ok()).unwrap_or(FEW);
+    kill_builds(8);
+}
+
+#[test]
+#[ignore = "long: 300 kills"]
+fn killed_at_many_moments_it_ends_with_the_same_bytes() {
+    kill_builds(300);
+}
+
+fn kill_builds(kills: u32) {
     let mut references = Vec::new();
     for (name, asked) in BUILDS {
         let folder = Folder::with_small();

@@ -28,6 +28,16 @@ height = "land"
 noise = "noise"
 "#;
 
+/// Whether the tests write what they would compare: `OROGEN_BLESS=1`.
+pub fn bless() -> bool {
+    let value = std::env::var_os("OROGEN_BLESS");
+    assert!(
+        value.as_ref().is_none_or(|value| value == "1"),
+        "OROGEN_BLESS is {value:?}; set it to 1 to rewrite the committed files, or unset it to compare with them"
+    );
+    value.is_some()
+}
+
 /// A new, empty folder, removed when dropped.
 pub struct Folder(pub TestFolder);
 

@@ -60,8 +60,7 @@ impl Solver for Rivers {
         let window = *land.heights.window();
         let [routing, breaching, counting, carving] = context.progress.parts([2.0, 1.0, 1.0, 2.0]);
         let drainage = land.route(&routing)?;
-        let mut ground =
-            breach::breach_with(&land.heights, &land.outlets, &drainage, self.deepest as f32, &breaching)?;
+        let mut ground = breach::breach_with(&land.heights, &land.outlets, &drainage, self.deepest as f32, &breaching)?;
         drop(land);
         breaching.finish();
         context.progress.check()?;

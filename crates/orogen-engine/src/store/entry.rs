@@ -7,7 +7,7 @@
 use crate::op::Solution;
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_grid::grid::{Grid, Window};
-use orogen_io::pages::{self, BYTES, PageFile, Pages, SIDE, checksum};
+use orogen_io::pages::{self, BYTES, PageFile, Pages, SIDE, checksum, has_checksum};
 use orogen_io::raster::Raster;
 use orogen_io::read_at::ReadAt;
 use std::io::{self, Write};
@@ -131,6 +131,11 @@ impl Reader<'_> {
         Ok(bytes)
     }
 
+    fn sum(&mut self) -> Result<u32> {
+        let bytes = self.bytes(4)?;
+        Ok(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
+    }
+
     fn head(&mut self, key: &[u8; 32], length: u64) -> Result<Head> {
         let mut bytes = self.bytes(MAGIC.len() + 32 + 16)?;
         if bytes[..16] != MAGIC[..] || bytes[16..48] != key[..] {
@@ -141,8 +146,8 @@ impl Reader<'_> {
             return Err(self.fault("it declares too many layers"));
         }
         bytes.extend(self.bytes(scalars * 8 + layers * 40)?);
-        let sum = self.bytes(4)?;
-        if checksum(&bytes).to_le_bytes() != sum[..] {
+        let sum = self.sum()?;
+        if !has_checksum(&bytes, sum) {
             return Err(self.fault("its header is damaged"));
         }
         let numbers = |from: usize, count: usize| (0..count).map(move |i| from + i * 8);
@@ -159,6 +164,9 @@ impl Reader<'_> {
             scalars: numbers(scalars_at, scalars).map(|at| f64::from_bits(word(&bytes, at))).collect(),
             windows: (0..layers).map(|i| window(windows_at + i * 40)).collect(),
         };
+        if !head.windows.iter().all(is_layer) {
+            return Err(self.fault("a layer has no valid position, size or cell"));
+        }
         let pages = head.windows.iter().fold(0u64, |sum, window| sum.saturating_add(pages::count(window) as u64));
         let whole = pages.saturating_mul(BYTES as u64 + 4).saturating_add(self.at + 4);
         if length != whole {
@@ -170,12 +178,25 @@ impl Reader<'_> {
     fn sums(&mut self, at: u64, pages: usize) -> Result<Vec<u32>> {
         self.at = at;
         let bytes = self.bytes(pages * 4)?;
-        let sum = self.bytes(4)?;
-        if checksum(&bytes).to_le_bytes() != sum[..] {
+        let sum = self.sum()?;
+        if !has_checksum(&bytes, sum) {
             return Err(self.fault("its checksums are damaged"));
         }
         Ok(bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
     }
+}
+
+/// Whether a solver can make a layer over this window.
+fn is_layer(window: &Window) -> bool {
+    const FAR: i64 = 1 << 53;
+    let is_side = |side: usize| (1..=FAR as u64).contains(&(side as u64));
+    let is_position = |position: i64| (-FAR..=FAR).contains(&position);
+    is_side(window.width)
+        && is_side(window.height)
+        && is_position(window.x)
+        && is_position(window.y)
+        && window.cell.is_finite()
+        && window.cell > 0.0
 }
 
 /// Eight bytes as an integer; missing bytes give 0.
@@ -185,4 +206,55 @@ fn word(bytes: &[u8], at: usize) -> u64 {
         word.copy_from_slice(there);
     }
     u64::from_le_bytes(word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use orogen_grid::grid::Grid;
+    use orogen_io::read_at::PositionedFile;
+
+    /// A header whose checksum matches, as no solver writes it: no pages follow from an empty window, however high.
+    #[test]
+    fn layers_that_no_solver_makes_are_refused() {
+        let key = [7; 32];
+        let sound = Window::new(3, 2, 10.0);
+        let layer = Raster::in_memory(Grid::filled(sound, 1.0f32));
+        let mut bytes = Vec::new();
+        write(&mut bytes, &key, &Solution { layers: vec![layer], scalars: Vec::new() }).unwrap();
+        let path = std::env::temp_dir().join(format!("orogen-entry-{}", std::process::id()));
+        let read_with = |window: [u64; 5], pages: usize| {
+            let mut bytes = bytes.clone();
+            bytes.truncate(104 + 4 + pages * BYTES);
+            for (k, number) in window.iter().enumerate() {
+                bytes[64 + 8 * k..72 + 8 * k].copy_from_slice(&number.to_le_bytes());
+            }
+            let sum = checksum(&bytes[..104]).to_le_bytes();
+            bytes[104..108].copy_from_slice(&sum);
+            let sums: Vec<u8> = bytes[108..].chunks(BYTES).flat_map(|page| checksum(page).to_le_bytes()).collect();
+            let sums_of_sums = checksum(&sums).to_le_bytes();
+            bytes.extend([&sums[..], &sums_of_sums].concat());
+            std::fs::write(&path, &bytes).unwrap();
+            let open = || Box::new(PositionedFile::new(std::fs::File::open(&path).unwrap()));
+            let headed = windows(open(), &path, &key);
+            let read = read(open(), &path, &key, false);
+            assert_eq!(headed.is_ok(), read.is_ok());
+            read.map(|_| ()).map_err(|error| error.to_string())
+        };
+        let cell = 10.0f64.to_bits();
+        assert_eq!(read_with([0, 0, 3, 2, cell], 1), Ok(()));
+        let far = (1u64 << 53) + 1;
+        for (window, pages) in [
+            ([0, 0, 0, 1 << 62, cell], 0),
+            ([0, 0, u64::MAX, 0, cell], 0),
+            ([far, 0, 3, 2, cell], 1),
+            ([0, far.wrapping_neg(), 3, 2, cell], 1),
+            ([0, 0, 3, 2, 0], 1),
+            ([0, 0, 3, 2, f64::NAN.to_bits()], 1),
+        ] {
+            let why = read_with(window, pages).unwrap_err();
+            assert!(why.contains("no valid position, size or cell"), "{window:?}: {why}");
+        }
+        std::fs::remove_file(&path).unwrap();
+    }
 }

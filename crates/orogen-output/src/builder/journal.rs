@@ -12,6 +12,7 @@ use super::identity::Identity;
 use super::job::{Job, Record};
 use orogen_grid::error::{Error, ErrorKind, Result};
 use orogen_io::fs::{self, File, OpenOptions};
+use orogen_io::pages::FUZZING;
 
 /// A line: JSON, a tab and the first digits of the JSON's SHA-256, so that truncated and damaged lines are detected.
 #[derive(Debug, Serialize, Deserialize)]
@@ -44,6 +45,7 @@ pub struct JournalState {
 
 impl JournalState {
     /// The state of a new build.
+    #[must_use]
     pub fn begun(identity: Identity) -> JournalState {
         JournalState { identity, records: BTreeMap::new(), finished: None }
     }
@@ -58,14 +60,20 @@ impl JournalState {
             Err(cause) if cause.kind() == io::ErrorKind::NotFound => return Ok(None),
             Err(cause) => return Err(Error::file("read", path, &cause)),
         };
-        let mut lines = bytes.split(|byte| *byte == b'\n').map(parse);
-        let Some(Some(Line::Begun(identity))) = lines.next() else {
+        JournalState::parse(&bytes).map(Some).ok_or_else(|| {
             let message = format!(
                 "the header of {} is damaged, so the build cannot be resumed; use --force to start again",
                 path.display()
             );
-            return Err(Error::new(ErrorKind::File, message));
-        };
+            Error::new(ErrorKind::File, message)
+        })
+    }
+
+    /// The state in the bytes of a journal; `None` if the first line is not that of one.
+    #[must_use]
+    pub fn parse(bytes: &[u8]) -> Option<JournalState> {
+        let mut lines = bytes.split(|byte| *byte == b'\n').map(parse);
+        let Some(Some(Line::Begun(identity))) = lines.next() else { return None };
         let mut state = JournalState::begun(identity);
         for line in lines.flatten() {
             match line {
@@ -81,7 +89,7 @@ impl JournalState {
                 }
             }
         }
-        Ok(Some(state))
+        Some(state)
     }
 
     fn lines(&self) -> impl Iterator<Item = Line> {
@@ -110,7 +118,8 @@ fn text(line: &Line) -> io::Result<String> {
 fn parse(line: &[u8]) -> Option<Line> {
     let (json, check) = line.split_at_checked(line.len().checked_sub(CHECK + 1)?)?;
     let expect = FileDigest::of(json).sha256;
-    (check.strip_prefix(b"\t")? == &expect.as_bytes()[..CHECK]).then(|| serde_json::from_slice(json).ok())?
+    let check = check.strip_prefix(b"\t")?;
+    (FUZZING || check == &expect.as_bytes()[..CHECK]).then(|| serde_json::from_slice(json).ok())?
 }
 
 /// A journal that is open for writing.

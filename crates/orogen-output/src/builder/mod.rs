@@ -20,7 +20,8 @@ mod digest;
 mod folder;
 mod identity;
 mod job;
-mod journal;
+#[doc(hidden)]
+pub mod journal;
 mod output_store;
 pub mod run;
 mod samples;

@@ -122,7 +122,7 @@ impl<'a> Build<'a> {
     pub fn disk(&self) -> (Disk, u64) {
         let there = match JournalState::read(&self.work_dir.journal()) {
             Ok(Some(state)) => {
-                state.records.values().flat_map(|record| &record.digests).map(|digest| digest.length).sum()
+                sum(state.records.values().flat_map(|record| &record.digests).map(|digest| digest.length))
             }
             _ => 0,
         };
@@ -255,7 +255,7 @@ impl<'a> Build<'a> {
             again: 0,
             samples: FiniteCount::default(),
             foreign: Vec::new(),
-            bytes: self.bytes(&state.records, finished.iter().map(|(_, digest)| digest.length).sum()),
+            bytes: self.bytes(&state.records, sum(finished.iter().map(|(_, digest)| digest.length))),
         })
     }
 
@@ -374,7 +374,7 @@ impl<'a> Build<'a> {
             }));
         }
         self.work_dir.sync(&paths)?;
-        let bytes = self.bytes(&records, extra.iter().map(|(_, digest)| digest.length).sum());
+        let bytes = self.bytes(&records, sum(extra.iter().map(|(_, digest)| digest.length)));
         let state = JournalState { identity: self.identity.clone(), records, finished: Some(extra) };
         Journal::write(&self.work_dir.journal(), &self.work_dir.temporary(0), &state)?;
         self.work_dir.sweep()?;
@@ -386,10 +386,15 @@ impl<'a> Build<'a> {
         let of = |(job, record): (&Job, &Record)| -> u64 {
             let places = self.target.places(*job);
             let own = places.iter().zip(&record.digests).filter(|(place, _)| matches!(place, JobFile::Result(_)));
-            own.map(|(_, digest)| digest.length).sum()
+            sum(own.map(|(_, digest)| digest.length))
         };
-        records.iter().map(of).sum::<u64>() + extra
+        sum(records.iter().map(of).chain([extra]))
     }
+}
+
+/// The sum of lengths, which a journal may state as it likes.
+fn sum(lengths: impl Iterator<Item = u64>) -> u64 {
+    lengths.fold(0, u64::saturating_add)
 }
 
 /// The target for an identity.

@@ -7,6 +7,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use super::journal::{Journal, JournalState};
 use super::run::{Build, Report, Start};
 use super::spec::{BuildSpec, Form, Samples};
 use orogen_engine::budget::Budget;
@@ -395,4 +396,23 @@ fn impossible_orders_are_sentences() {
     fs::write(folder.out(), "a file").unwrap();
     let error = Build::new(&world, &spec(Form::Zarr), &output(&folder.out())).err().unwrap().to_string();
     assert!(error.contains("it is a file, and a folder is needed"), "{error}");
+}
+
+/// A journal with valid checksums whose sums do not fit in 64 bits.
+#[test]
+fn a_journal_of_impossible_lengths_is_no_journal_of_this_result() {
+    let (expect, _) = undisturbed(Form::Zarr);
+    let (world, spec, folder) = (world(None, 2), spec(Form::Zarr), Folder::new());
+    run(&world, &spec, &folder.out(), Start::Fresh);
+    let path = folder.0.join("out.build").join("journal");
+    let mut state = JournalState::read(&path).unwrap().unwrap();
+    for digest in state.records.values_mut().flat_map(|record| &mut record.digests) {
+        digest.length = u64::MAX;
+    }
+    Journal::write(&path, &path.with_extension("new"), &state).unwrap();
+    let build = Build::new(&world, &spec, &output(&folder.out())).unwrap();
+    assert_eq!(build.disk().1, u64::MAX);
+    let report = build.run(Start::Resume, &Progress::none()).unwrap();
+    assert_eq!((report.kept, report.made), (0, build.tiles().0));
+    assert!(result(&folder.out()) == expect);
 }

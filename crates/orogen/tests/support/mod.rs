@@ -8,6 +8,16 @@ use orogen::node::Node;
 use orogen::value::{Spanned, Value};
 use orogen::{Options, Recipe, World, WorldSpec};
 
+/// Whether the tests write what they would compare: `OROGEN_BLESS=1`.
+pub fn bless() -> bool {
+    let value = std::env::var_os("OROGEN_BLESS");
+    assert!(
+        value.as_ref().is_none_or(|value| value == "1"),
+        "OROGEN_BLESS is {value:?}; set it to 1 to rewrite the committed files, or unset it to compare with them"
+    );
+    value.is_some()
+}
+
 /// A small deterministic generator for test inputs (splitmix64).
 pub struct Random(pub u64);
 

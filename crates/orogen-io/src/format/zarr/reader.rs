@@ -134,7 +134,7 @@ fn fill(value: &Value) -> f64 {
 
 fn version3(folder: &Path, value: &Value) -> std::result::Result<Array, String> {
     let kind = value["data_type"].as_str().unwrap_or_default();
-    let bits = |prefix: &str| kind.strip_prefix(prefix).and_then(|bits| bits.parse::<usize>().ok());
+    let bits = |prefix: &str| kind.strip_prefix(prefix)?.parse::<usize>().ok().filter(|bits| bits % 8 == 0);
     let (kind, bits) = match (bits("float"), bits("uint"), bits("int")) {
         (Some(bits), ..) => (Kind::Float, bits),
         (_, Some(bits), _) => (Kind::Unsigned, bits),
