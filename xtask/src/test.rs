@@ -36,7 +36,7 @@ const STEPS: &[&Step] = &[
         run: || sh(&mut cargo("clippy --quiet --workspace --all-targets --features orogen-bench/peers -- -D warnings")),
     },
     &Step { name: "tests", about: "cargo test --workspace", run: || sh(&mut cargo("test --workspace")) },
-    &Step { name: "features", about: "orogen-grid with ndarray and image", run: features },
+    &Step { name: "features", about: "orogen-grid with ndarray, image and mint", run: features },
     &Step {
         name: "schema",
         about: "crates/orogen-engine/recipes/orogen.schema.json is what `orogen schema` prints",

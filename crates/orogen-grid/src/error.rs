@@ -39,6 +39,7 @@ pub struct Error {
 
 /// One problem, with its location in a text if it has one.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Diagnostic {
     /// A complete message without the location: what is wrong and what to do instead.
     pub message: String,
@@ -46,8 +47,23 @@ pub struct Diagnostic {
     pub place: Option<Location>,
 }
 
+impl Diagnostic {
+    /// A problem without a location.
+    #[must_use]
+    pub fn new(message: impl Into<String>) -> Diagnostic {
+        Diagnostic { message: message.into(), place: None }
+    }
+
+    /// Sets the location.
+    #[must_use]
+    pub fn with_place(self, place: Option<Location>) -> Diagnostic {
+        Diagnostic { place, ..self }
+    }
+}
+
 /// A location in a text, as an editor needs it.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Location {
     /// The file's name as the user gave it, or the name of a text that is not a file.
     pub file: String,
@@ -59,6 +75,26 @@ pub struct Location {
     pub length: usize,
     /// The whole line, for display; empty if it is too long to read.
     pub text: String,
+}
+
+impl Location {
+    /// The location of one character in a file: line and column from 1; the line's text is empty.
+    #[must_use]
+    pub fn new(file: impl Into<String>, line: usize, column: usize) -> Location {
+        Location { file: file.into(), line, column, length: 1, text: String::new() }
+    }
+
+    /// Sets the length of the marked part, in characters.
+    #[must_use]
+    pub fn with_length(self, length: usize) -> Location {
+        Location { length, ..self }
+    }
+
+    /// Sets the line's text.
+    #[must_use]
+    pub fn with_text(self, text: impl Into<String>) -> Location {
+        Location { text: text.into(), ..self }
+    }
 }
 
 impl Error {

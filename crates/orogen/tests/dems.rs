@@ -97,7 +97,7 @@ fn other_formats_are_read() {
 fn a_band_of_several_is_chosen() {
     let names = ["bands.tif", "bands-pixels-p3.tif", "bands-pixels-p2.tif", "bands-apart.tif", "bands-lerc.tif"];
     for name in names {
-        let read = |band| import::read(&corpus().join(name), Request { band, allowed: 1 << 20 });
+        let read = |band| import::read(&corpus().join(name), Request::new(1 << 20).with_band(band));
         same(name, &read(Some(1)).unwrap(), 0.0, 0.0, false);
         same(name, &read(Some(2)).unwrap(), 1000.0, 0.0, false);
         assert_eq!(read(Some(3)).unwrap().heights[0], formula(36, 22), "{name}");
@@ -106,7 +106,7 @@ fn a_band_of_several_is_chosen() {
         assert!(read(Some(4)).unwrap_err().to_string().contains("not a band 4"));
         assert!(read(Some(0)).unwrap_err().to_string().contains("not a band 0"));
     }
-    let why = import::read(&corpus().join("arc.asc"), Request { band: Some(2), allowed: 1 << 20 }).unwrap_err();
+    let why = import::read(&corpus().join("arc.asc"), Request::new(1 << 20).with_band(Some(2))).unwrap_err();
     assert!(why.to_string().contains("one band, not a band 2"), "{why}");
     same("lossy-lerc.tif", &read("lossy-lerc.tif"), 0.25, 0.5, false);
     // In a recipe, and after a colon.
@@ -189,7 +189,7 @@ fn files_that_lie_otherwise_are_understood_or_refused() {
     assert_eq!(south_up.place.unwrap().origin, [500015.0, 5200000.0 + 22.5 * 30.0]);
     assert!(refused("turned.tif").contains("its rows are rotated"));
     assert!(refused("webp.tif").contains("it has 3 bands"));
-    let webp = Request { band: Some(1), allowed: 1 << 20 };
+    let webp = Request::new(1 << 20).with_band(Some(1));
     let why = import::read(&corpus().join("webp.tif"), webp).unwrap_err().to_string();
     assert!(why.contains("compressed with WebP"), "{why}");
     assert!(refused("all-nodata.tif").contains("37 x 23 samples are nodata"));
@@ -303,7 +303,7 @@ fn what_a_file_says_of_its_map_is_kept_on_the_way_out() {
         let grid = world.window("height", &Window::new(20, 10, 30.0).at(2, 3)).unwrap();
         let map = world.recipe().georeference().unwrap();
         let mut bytes = Vec::new();
-        let options = Layout { map: Some(map.clone()), ..Layout::default() };
+        let options = Layout::default().with_map(Some(map.clone()));
         writer::write(&mut bytes, &grid, &options, Spool::in_memory()).unwrap();
         let back = reader::read(&mut Cursor::new(&bytes), name, 1 << 20).unwrap();
         assert_eq!(back.heights, grid.data());
@@ -365,7 +365,7 @@ fn damaged_files_are_heights_or_sentences() {
     let mut files: Vec<PathBuf> = std::fs::read_dir(corpus()).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
     let (mut read, mut refused) = (0, 0);
-    let request = Request { band: Some(1), allowed: 1 << 20 };
+    let request = Request::new(1 << 20).with_band(Some(1));
     for (k, path) in files.iter().filter(|path| import::is_dem(path)).enumerate() {
         let whole = std::fs::read(path).unwrap();
         let extension = path.extension().unwrap().to_str().unwrap();

@@ -177,15 +177,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn noise(args: &Args) -> Result<Fractal, Failure> {
-    Ok(Fractal {
-        basis: args.basis,
-        kind: args.sum.kind().map_err(Failure::Usage)?,
-        seed: args.seed,
-        wavelength: args.wavelength.or(args.texture.map(Texture::wavelength)).unwrap_or(64.0),
-        octaves: args.octaves.or(args.texture.map(Texture::octaves)).unwrap_or(args.sum.octaves()),
-        lacunarity: args.lacunarity,
-        gain: args.gain,
-    })
+    Ok(Fractal::new(args.seed, args.wavelength.or(args.texture.map(Texture::wavelength)).unwrap_or(64.0))
+        .with_basis(args.basis)
+        .with_kind(args.sum.kind().map_err(Failure::Usage)?)
+        .with_octaves(args.octaves.or(args.texture.map(Texture::octaves)).unwrap_or(args.sum.octaves()))
+        .with_lacunarity(args.lacunarity)
+        .with_gain(args.gain))
 }
 
 impl Task<'_> {
@@ -284,7 +281,7 @@ impl Task<'_> {
         let drawing = self.drawing();
         let (software, description) = (format!("Orogen {}", env!("CARGO_PKG_VERSION")), self.description());
         let notes = [("Software", software.as_str()), ("Description", description.as_str())];
-        let picture = Picture { width: self.width, height: self.height, pixel: drawing.pixel(), notes: &notes };
+        let picture = Picture::new(self.width, self.height, drawing.pixel()).with_notes(&notes);
         self.progress.expect(self.height as f64);
         png::write(out, &picture, |rows, bytes| {
             self.progress.check()?;
@@ -302,7 +299,7 @@ impl Task<'_> {
         }
         let (software, description) = (format!("Orogen {}", env!("CARGO_PKG_VERSION")), self.description());
         let notes = [("Software", software.as_str()), ("Description", description.as_str())];
-        let picture = Picture { width: self.width, height: self.height, pixel: drawing.pixel(), notes: &notes };
+        let picture = Picture::new(self.width, self.height, drawing.pixel()).with_notes(&notes);
         let frame = |k: u32, bytes: &mut [u8]| drawing.paint(Some(self.depth(k, frames)), 0..self.height, bytes);
         let bytes = self.width * self.height * drawing.pixel().bytes();
         let sample = || {
@@ -312,7 +309,7 @@ impl Task<'_> {
             frame(frames / 3, other);
             Ok(sample)
         };
-        let animation = Animation { frames, delay: DELAY };
+        let animation = Animation::new(frames, DELAY);
         let moving = Moving { outputs, target, picture, animation, sample: &sample };
         self.progress.expect(f64::from(frames));
         moving.write(|k, bytes| {

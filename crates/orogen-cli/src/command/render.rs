@@ -249,7 +249,7 @@ fn sun(args: &Args) -> Result<[f64; 2], Failure> {
         if !(-90.0..=90.0).contains(&latitude) {
             return usage(format!("--latitude must be from -90 to 90 degrees, not {latitude}"));
         }
-        let moment = Moment { latitude, day: args.day.unwrap_or(172), hour };
+        let moment = Moment::new(latitude, args.day.unwrap_or(172), hour);
         let sun = moment.sun();
         return match (sun[1] >= LOWEST_SUN, moment.daylight()) {
             (true, _) => Ok(sun),
@@ -395,7 +395,8 @@ fn draw(
     let origin = [window.east(0), window.south(0)];
     let camera = |shot: &Shot| Camera::new(shot, scene.relief(), origin, size, args.fov, &scene.frame());
     let software = format!("Orogen {}", env!("CARGO_PKG_VERSION"));
-    let picture = Picture { width, height, pixel: Pixel::Rgb8, notes: &[("Software", &software)] };
+    let notes = [("Software", software.as_str())];
+    let picture = Picture::new(width, height, Pixel::Rgb8).with_notes(&notes);
     let file = args.out.display();
     let samples = format!("{} x {} samples of {} m", window.width, window.height, number(window.cell));
     if let (Some(frames), Shot::Around { azimuth, elevation, distance }) = (args.turntable, *shot) {
@@ -418,7 +419,7 @@ fn draw(
             }
             Ok(sample)
         };
-        let animation = Animation { frames, delay: args.delay };
+        let animation = Animation::new(frames, args.delay);
         let moving = Moving { outputs, target, picture, animation, sample: &sample };
         painting.expect(f64::from(frames));
         moving.write(|frame, bytes| Ok(scene.paint(&side(frame), size, 0..height, bytes, &painting.part(1.0))?))?;

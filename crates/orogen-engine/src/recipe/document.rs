@@ -286,7 +286,7 @@ impl Recipe {
                 let left = allowed.saturating_sub(self.held);
                 let read = || match path.1 {
                     true => PreparedDem::picture(&path.0, left),
-                    false => PreparedDem::read(&path.0, None, Request { band, allowed: left }),
+                    false => PreparedDem::read(&path.0, None, Request::new(left).with_band(band)),
                 };
                 let ground = match file.ground().or(known.get(&path)) {
                     Some(ground) => Arc::clone(ground),
@@ -294,7 +294,7 @@ impl Recipe {
                         let message = format!("node `{name}`: {error}");
                         Error::from_diagnostics(
                             ErrorKind::File,
-                            vec![Diagnostic { message, place: file.location().cloned() }],
+                            vec![Diagnostic::new(message).with_place(file.location().cloned())],
                         )
                     })?),
                 };

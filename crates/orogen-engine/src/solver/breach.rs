@@ -74,7 +74,7 @@ impl Solver for Breach {
             }
             Way::LeastCost => {
                 let longest = (self.longest / heights.window().cell).min(f64::from(u32::MAX)) as u32;
-                least_cost::breach(&heights, &outlets, &Limits { deepest, longest }, context.progress)?
+                least_cost::breach(&heights, &outlets, &Limits::new(deepest, longest), context.progress)?
             }
         };
         heights.data_mut().iter_mut().zip(out.data()).for_each(|(change, new)| *change = new - *change);

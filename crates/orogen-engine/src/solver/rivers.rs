@@ -72,7 +72,7 @@ impl Solver for Rivers {
         let cell_area = window.cell * window.cell;
         let threshold = (self.stream / cell_area).ceil().clamp(1.0, f64::from(u32::MAX)) as u32;
         let orders = strahler::orders(&drainage.receivers, &drained, threshold);
-        let channel = Channel { runoff: self.runoff, width: self.width, depth: self.depth };
+        let channel = Channel::default().with_runoff(self.runoff).with_width(self.width).with_depth(self.depth);
         context.progress.check()?;
         carve(&mut ground, &drainage.receivers, &drained, &orders, &channel);
         carving.finish();
