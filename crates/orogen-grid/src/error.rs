@@ -117,10 +117,12 @@ impl Error {
     #[must_use]
     pub fn file(doing: &str, path: &std::path::Path, cause: &io::Error) -> Error {
         let message = format!("cannot {doing} {}: {}", path.display(), reason(cause));
-        // An I/O error cannot be cloned.
-        let source = match cause.raw_os_error() {
-            Some(code) => io::Error::from_raw_os_error(code),
-            None => io::Error::new(cause.kind(), cause.to_string()),
+        // An I/O error cannot be cloned. What it wraps is kept if it is an `Error`, else its message.
+        let wrapped = cause.get_ref().and_then(|wrapped| wrapped.downcast_ref::<Error>());
+        let source = match (cause.raw_os_error(), wrapped) {
+            (Some(code), _) => io::Error::from_raw_os_error(code),
+            (None, Some(error)) => io::Error::new(cause.kind(), error.clone()),
+            (None, None) => io::Error::new(cause.kind(), cause.to_string()),
         };
         Error { source: Some(Arc::new(source)), ..Error::new(ErrorKind::File, message) }
     }
@@ -190,5 +192,16 @@ mod tests {
         let source = error.source().and_then(|source| source.downcast_ref::<io::Error>()).unwrap();
         assert_eq!((source.kind(), source.raw_os_error()), (cause.kind(), Some(2)));
         assert!(Error::new(ErrorKind::Request, "no").source().is_none());
+    }
+
+    #[test]
+    fn an_error_that_passes_through_a_writer_keeps_its_own_source() {
+        let inner = Error::file("read", Path::new("gone.tif"), &io::Error::from_raw_os_error(2));
+        let outer = Error::file("write", Path::new("new.tif"), &io::Error::from(inner));
+        let source = outer.source().and_then(|source| source.downcast_ref::<io::Error>()).unwrap();
+        let kept = source.get_ref().and_then(|wrapped| wrapped.downcast_ref::<Error>()).unwrap();
+        assert_eq!(kept.kind(), ErrorKind::File);
+        let system = kept.source().and_then(|source| source.downcast_ref::<io::Error>()).unwrap();
+        assert_eq!(system.raw_os_error(), Some(2));
     }
 }

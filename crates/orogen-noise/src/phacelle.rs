@@ -78,15 +78,19 @@ impl Phacelle {
     /// The noise with its tables computed once: the same methods, the same bits, and less work per call.
     #[must_use]
     pub fn prepare(&self) -> PreparedPhacelle {
-        let normalisation = if self.normalisation >= 0.0 { self.normalisation.min(1.0) } else { 0.0 };
         let angle = self.direction.to_radians();
         let direction = [libm::cos(angle) as f32, libm::sin(angle) as f32];
+        self.towards(if direction[0].is_finite() { direction } else { [1.0, 0.0] })
+    }
+
+    fn towards(&self, direction: [f32; 2]) -> PreparedPhacelle {
+        let normalisation = if self.normalisation >= 0.0 { self.normalisation.min(1.0) } else { 0.0 };
         PreparedPhacelle {
             program: self.program(),
             // Never 0: waves that cancel each other exactly stay as they are.
             shortest: ((1.0 - normalisation) as f32).max(1e-6),
             stripes: if self.cell.is_finite() { self.cell.clamp(-1e6, 1e6) as f32 } else { 0.0 },
-            direction: if direction[0].is_finite() { direction } else { [1.0, 0.0] },
+            direction,
         }
     }
 
@@ -118,7 +122,8 @@ impl Phacelle {
         cosine: &mut [f32],
         sine: &mut [f32],
     ) -> Result<(), LengthMismatch> {
-        self.prepare().fill_along(points, dx, dy, cosine, sine)
+        // The direction is not read.
+        self.towards([1.0, 0.0]).fill_along(points, dx, dy, cosine, sine)
     }
 
     /// [`fill_along`](Phacelle::fill_along) at a chosen SIMD level, for tests and bug reports: the bits are the same.
@@ -132,7 +137,7 @@ impl Phacelle {
         directions: [&[f32]; 2],
         results: [&mut [f32]; 2],
     ) -> Result<Result<(), LengthMismatch>, LevelError> {
-        self.prepare().fill_along_at(level, points, directions, results)
+        self.towards([1.0, 0.0]).fill_along_at(level, points, directions, results)
     }
 }
 

@@ -223,7 +223,7 @@ fn degrees_and_oblong_cells_become_square_metres() {
 }
 
 fn world(dem: Node, size: Option<[f64; 2]>) -> World {
-    let mut recipe = Recipe::new(WorldSpec { size, cell: 30.0, ..WorldSpec::default() });
+    let mut recipe = Recipe::new(WorldSpec::default().with_size(size).with_cell(30.0));
     recipe.add("place", dem).output("height", "place");
     World::with_options(recipe, Options { threads: Some(1), memory: Budget::of(64 << 20), ..Options::default() })
         .unwrap()
@@ -296,7 +296,7 @@ fn files_count_in_the_memory_of_a_plan() {
 #[test]
 fn what_a_file_says_of_its_map_is_kept_on_the_way_out() {
     for name in ["f32-strips.tif", "point.tif", "degrees.tif", "arc.asc"] {
-        let mut recipe = Recipe::new(WorldSpec { cell: 30.0, ..WorldSpec::default() });
+        let mut recipe = Recipe::new(WorldSpec::default().with_cell(30.0));
         // The corner of the file is two cells east and one cell north of the origin.
         recipe.add("place", Node { at: [60.0, -30.0], ..node(name) }).output("height", "place");
         let world = World::open(recipe).unwrap();

@@ -5,7 +5,7 @@ mod support;
 
 use orogen::node::Node;
 use orogen::op::Op;
-use orogen::{Grid, Progress, Recipe, Result, Window, World, WorldSpec};
+use orogen::{Grid, Progress, Recipe, Result, Window, World};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use support::{laws_of, open, recipe_of, world_of};
@@ -18,7 +18,7 @@ fn side() -> usize {
 /// A node in a world large enough to take some time.
 fn recipe(node: &Node) -> Recipe {
     let size = (side() - 1) as f64 * 10.0;
-    let world = WorldSpec { size: Some([size, size]), ..world_of(10.0) };
+    let world = world_of(10.0).with_size(Some([size, size]));
     recipe_of(node, world, false)
 }
 

@@ -212,7 +212,7 @@ fn side(samples: usize) -> io::Result<u32> {
 fn plain(error: EncodingError) -> io::Error {
     match error {
         EncodingError::IoError(cause) => cause,
-        other => io::Error::new(io::ErrorKind::InvalidInput, other.to_string()),
+        other => io::Error::new(io::ErrorKind::InvalidInput, other),
     }
 }
 

@@ -118,7 +118,7 @@ fn slope_of(basis: Basis, kind: Kind) -> Slope {
         Kind::Ridged | Kind::Billow | Kind::PingPong { .. } | Kind::Hybrid { .. } => Slope::Creased,
         Kind::Hetero { .. } => Slope::Exact,
         Kind::Weighted { .. } | Kind::Swiss { .. } | Kind::Jordan { .. } => Slope::Approximate,
-        _ => panic!("{kind:?} has no entry in this list"),
+        _ => unreachable!("{kind:?} has no entry in this list"),
     }
 }
 
